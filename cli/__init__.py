@@ -1,0 +1,1 @@
+"""The commands; arithmetic lives in feederscrew."""

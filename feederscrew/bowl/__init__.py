@@ -1,0 +1,51 @@
+"""The bowl: its record, its schema and its YAML."""
+
+import hashlib
+from pathlib import Path
+
+from feederscrew.bowl.reading import settings
+from feederscrew.bowl.record import Bowl, Drive, Friction, Track
+from feederscrew.bowl.settings import effective, record, swept, texts
+from feederscrew.bowl.vary import ranges
+
+__all__ = [
+    "Bowl", "Drive", "Friction", "Track",
+    "default", "identity", "name", "ranges", "read", "record", "settings", "swept", "texts",
+]  # fmt: skip
+
+
+def read(path=None, overrides=()):
+    """The Bowl of a file and of ``--set``.
+
+    Parameters
+    ----------
+    path : str or Path or None
+        Bowl file; None for the defaults alone.
+    overrides : sequence of str
+        'drive.frequency=50 Hz'.
+
+    Returns
+    -------
+    Bowl
+
+    Raises
+    ------
+    Faults
+        Every fault of the file and of the overrides, one a line.
+    """
+    return record(settings(path, overrides))
+
+
+def default():
+    """The Bowl of the documented defaults."""
+    return record(effective({}))
+
+
+def name(path=None):
+    """What a bowl's results are filed under: its file's stem, or 'bowl'."""
+    return "bowl" if path is None else Path(path).stem
+
+
+def identity(path=None):
+    """The sha256 of a bowl file by its path; empty for the defaults."""
+    return {} if path is None else {str(path): hashlib.sha256(Path(path).read_bytes()).hexdigest()}

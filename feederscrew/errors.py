@@ -1,0 +1,35 @@
+"""Faults in what the user gave us; the command line prints each as one line."""
+
+
+class FeederError(Exception):
+    """Say where it is, what is wrong and how to mend it; all three are required."""
+
+    def __init__(self, where, what, mend):
+        super().__init__(f"{where}: {what} - {mend}")
+        self.where, self.what, self.mend = where, what, mend
+
+    @property
+    def lines(self):
+        """Every fault as its own line."""
+        return (str(self),)
+
+
+class MeshError(FeederError):
+    """A part file that gives no honest number."""
+
+
+class ConfigError(FeederError):
+    """A value in a YAML file or in an option that cannot be used."""
+
+
+class Faults(FeederError):
+    """All faults of one file, told in one go."""
+
+    def __init__(self, faults):
+        Exception.__init__(self, "\n".join(str(fault) for fault in faults))
+        self.faults = tuple(faults)
+
+    @property
+    def lines(self):
+        """Every fault as its own line."""
+        return tuple(str(fault) for fault in self.faults)

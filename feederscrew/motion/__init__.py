@@ -1,0 +1,1 @@
+"""How a part moves in the bowl: limits, floor, track, conveying."""

@@ -1,0 +1,1 @@
+"""Tables, plots, pictures and result folders: the last stage."""

@@ -1,0 +1,1 @@
+"""From a file to a solid with mass properties: the first stage."""

@@ -1,0 +1,95 @@
+"""Convex hull of a part, seen from its centre of mass."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.errors import MeshError
+
+
+@dataclass(frozen=True, eq=False)
+class Hull:
+    """Triangulated convex hull about the centre of mass; T triangles, V corners."""
+
+    vertices: np.ndarray  # (V, 3) [m] minus the centre of mass
+    triangles: np.ndarray  # (T, 3) indices, counter-clockwise seen from outside
+    neighbours: np.ndarray  # (T, 3) the triangle across the edge opposite corner k
+    normals: np.ndarray  # (T, 3) outward unit normals
+    heights: np.ndarray  # (T,) [m] of the centre of mass over each triangle's plane
+    areas: np.ndarray  # (T,) [m2]
+    volume: float  # [m3]
+    radius: float  # [m] largest distance from the centre of mass to a corner
+
+    @property
+    def corners(self):
+        """(T, 3, 3) [m] corners by triangle."""
+        return self.vertices[self.triangles]
+
+
+def convex_hull(points, centre, where="part"):
+    """Convex hull of a point set about a centre of mass inside it.
+
+    Parameters
+    ----------
+    points : (V, 3) float [m]
+        Corners of the part's surface.
+    centre : (3,) float [m]
+        Centre of mass, in the same axes.
+    where : str
+        The file, for the error line.
+
+    Returns
+    -------
+    Hull
+
+    Raises
+    ------
+    MeshError
+        If the points span no volume, or the centre of mass is on or outside the hull.
+
+    References
+    ----------
+    C. B. Barber, D. P. Dobkin, H. Huhdanpaa, "The quickhull algorithm for convex hulls", ACM Trans.
+    Math. Softw. 22(4), 469-483, 1996.
+    """
+    from scipy.spatial import ConvexHull, QhullError
+
+    centre = check.shaped("centre", centre, (3,))
+    points = check.shaped("points", points, (-1, 3)) - centre
+    try:
+        qhull = ConvexHull(points)
+    except (QhullError, ValueError) as error:
+        raise MeshError(where, "the part has no volume", "export it as a closed solid") from error
+    triangles, neighbours = _outward(points, qhull)
+    used = np.unique(triangles)  # Qhull lists points in the middle of a facet among its vertices
+    vertices = points[used]
+    radius = float(np.linalg.norm(vertices, axis=1).max())
+    heights = -qhull.equations[:, 3]
+    if heights.min() <= 1e-9 * radius:
+        raise MeshError(
+            where,
+            "the centre of mass is not inside the part's convex hull",
+            "check --centre-of-mass and its units",
+        )
+    a, b, c = np.moveaxis(points[triangles], 1, 0)
+    return Hull(
+        vertices=check.frozen(vertices),
+        triangles=check.frozen(np.searchsorted(used, triangles)),
+        neighbours=check.frozen(neighbours),
+        normals=check.frozen(qhull.equations[:, :3].copy()),
+        heights=check.frozen(heights),
+        areas=check.frozen(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)),
+        volume=float(qhull.volume),
+        radius=radius,
+    )
+
+
+def _outward(points, qhull):
+    """Triangles turned counter-clockwise seen from outside, their neighbours with them."""
+    triangles, neighbours = qhull.simplices.copy(), qhull.neighbors.copy()
+    a, b, c = np.moveaxis(points[triangles], 1, 0)
+    inward = np.einsum("ti,ti->t", np.cross(b - a, c - a), qhull.equations[:, :3]) < 0.0
+    triangles[inward, 1:] = triangles[inward, :0:-1]
+    neighbours[inward, 1:] = neighbours[inward, :0:-1]
+    return triangles, neighbours

@@ -1,0 +1,191 @@
+"""The resting aspects of a part, equal ones joined into classes, named and ranked."""
+
+from dataclasses import dataclass, field
+from string import ascii_uppercase
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.part.hull import convex_hull
+from feederscrew.resting import rules
+from feederscrew.resting.classes import body_frame, classes
+from feederscrew.resting.faces import stable_faces, unstable_faces
+from feederscrew.resting.landscape import landscape
+
+TIE = 1e-4  # probabilities that differ by less of themselves are equal but for rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Aspects:
+    """One row a class, the most likely first; A rows."""
+
+    names: tuple[str, ...]
+    kinds: tuple[str, ...]  # 'flat' or 'rolling'
+    faces: np.ndarray  # (A,) int, equal aspects in the class
+    stable: np.ndarray  # (A,) bool
+    normals: np.ndarray  # (A, 3) outward, of one face of the class; points down when the part rests on it
+    axes: np.ndarray  # (A, 3) a rolling class turns about; NaN for a flat and a ball
+    heights: np.ndarray  # (A,) [m] of the centre of mass
+    contact_areas: np.ndarray  # (A,) [m2] of one face
+    solid_angles: np.ndarray  # (A,) [sr] of one face
+    polar_inertias: np.ndarray  # (A,) [kg m2] about the normal through the centre of mass
+    polygons: tuple[np.ndarray, ...]  # (K, 3) [m] from the centre of mass, counter-clockwise from outside
+    probabilities: dict[str, np.ndarray] = field(default_factory=dict)  # (A,) [1] by rule, of the class
+    warnings: tuple[str, ...] = ()
+
+
+def find(part, *, as_published=False, unstable=False):
+    """Resting aspects of a part, with their probability by every published rule.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh, or from a part card with an aspect table.
+    as_published : bool
+        Count each class once in the PMI rule, as the thesis's tables do.
+    unstable : bool
+        List the facets the part rolls off as well, with no probability.
+
+    Returns
+    -------
+    Aspects
+
+    Raises
+    ------
+    MeshError
+        If the centre of mass is not strictly inside the convex hull.
+    """
+    if part.vertices is None:
+        return _from_card(part)
+    hull = convex_hull(part.vertices, part.centre_of_mass, part.source)
+    faces = stable_faces(hull, landscape(hull))
+    if unstable:
+        faces += unstable_faces(hull, faces)
+    label = classes(faces, part)
+    groups = [[face for face, at in zip(faces, label) if at == k] for k in range(label.max() + 1)]
+    table = _geometry(groups, part)
+    chances = _probabilities(table, as_published)
+    order = _ranked(table, chances["csa"], part)
+    return _named(table, chances, order, groups, _said(groups))
+
+
+def _geometry(groups, part):
+    """Columns of the table in the order of the groups; a class's numbers are its faces' means."""
+
+    def mean(quantity):
+        return np.array([np.mean([getattr(face, quantity) for face in group]) for group in groups])
+
+    shown = [max(group, key=lambda face: tuple(np.round(face.normal, 6))) for group in groups]
+    polar = [np.mean([face.normal @ part.inertia @ face.normal for face in group]) for group in groups]
+    return {
+        "kinds": [group[0].kind for group in groups],
+        "faces": np.array([len(group) for group in groups]),
+        "stable": np.array([group[0].stable for group in groups]),
+        "normals": _clean(np.array([face.normal for face in shown])),
+        "axes": _clean(np.array([face.axis for face in shown])),
+        "heights": mean("height"),
+        "contact_areas": mean("area"),
+        "solid_angles": mean("solid_angle"),
+        "polar_inertias": np.array(polar),
+        "polygons": [face.polygon for face in shown],
+    }
+
+
+def _clean(directions):
+    """Directions with rounding noise and minus zeros swept out."""
+    return np.where(np.abs(directions) < 1e-9, 0.0, directions)
+
+
+def _probabilities(table, as_published):
+    """Probability of each class by every rule."""
+    faces, height, stable = table["faces"], table["heights"], table["stable"]
+    counted = np.ones_like(faces) if as_published else faces
+    weights = {
+        "pmi": rules.pmi(counted, table["polar_inertias"], height),
+        "csa": rules.csa(faces, table["solid_angles"], height),
+        "stability": rules.stability(faces, table["contact_areas"], height),
+    }
+    return {rule: rules.normalised(weight, stable) for rule, weight in weights.items()}
+
+
+def _ranked(table, chance, part):
+    """Order of the rows: by falling CSA probability, then by size, then by direction in the part.
+
+    The last is taken in axes fixed in the part, so that a turned file keeps its names.
+    """
+    size = np.where(table["stable"], 1.0 + chance, table["faces"] * table["solid_angles"] / (4.0 * np.pi))
+    order = np.argsort(-size, kind="stable")
+    tied = np.concatenate([[False], -np.diff(size[order]) < TIE * size[order][1:]])
+    if not tied.any():
+        return order
+    rank = np.empty(len(order), dtype=int)
+    rank[order] = np.cumsum(~tied)
+    direction = np.round(table["normals"] @ body_frame(part), 3)
+    height = np.round(table["heights"] / table["heights"].max(), 4)
+    return np.lexsort((*-direction.T, height, rank))
+
+
+def _named(table, chances, order, groups, warnings):
+    """The record, rows in their order."""
+    arrays = {k: check.frozen(v[order]) for k, v in table.items() if isinstance(v, np.ndarray)}
+    return Aspects(
+        names=tuple(_letters(k) for k in range(len(order))),
+        kinds=tuple(table["kinds"][k] for k in order),
+        polygons=tuple(table["polygons"][k] for k in order),
+        probabilities={rule: check.frozen(chance[order]) for rule, chance in chances.items()},
+        warnings=warnings,
+        **arrays,
+    )
+
+
+def _letters(k):
+    """A, B ... Z, AA, AB ... for 0, 1 ..."""
+    name = ""
+    while k >= 0:
+        name = ascii_uppercase[k % 26] + name
+        k = k // 26 - 1
+    return name
+
+
+def _said(groups):
+    """What a user must know of the aspects found."""
+    balls = [group for group in groups if group[0].kind == "rolling" and np.isnan(group[0].axis).all()]
+    if balls and len(groups) == 1:
+        return ("the part is a ball: it rests on no aspect, its one class rolls in every direction",)
+    return ()
+
+
+def _from_card(part):
+    """Aspects as the card's source gives them, by its own names and in its order."""
+    rows = part.aspects
+
+    def column(quantity):
+        values = [getattr(row, quantity) for row in rows]
+        return check.frozen(np.array([np.nan if value is None else value for value in values], dtype=float))
+
+    height, faces = column("height"), np.array([row.faces for row in rows])
+    in_sr = np.array([row.solid_angle_in_sr for row in rows])
+    stable, nothing = np.ones(len(rows), dtype=bool), np.full((len(rows), 3), np.nan)
+
+    def over(quantity):
+        return np.where(np.isnan(column(quantity)), height, column(quantity))
+
+    weights = {
+        "pmi": rules.pmi(faces, column("polar_inertia"), height),
+        "csa": rules.csa(faces, column("solid_angle"), over("csa_height")),
+        "stability": rules.stability(faces, column("contact_area"), over("stability_height")),
+    }
+    return Aspects(
+        names=tuple(row.name for row in rows),
+        kinds=("flat",) * len(rows),
+        faces=check.frozen(faces),
+        stable=check.frozen(stable),
+        normals=check.frozen(nothing),
+        axes=check.frozen(nothing),
+        heights=height,
+        contact_areas=column("contact_area"),
+        solid_angles=check.frozen(np.where(in_sr, column("solid_angle"), np.nan)),
+        polar_inertias=column("polar_inertia"),
+        polygons=(np.empty((0, 3)),) * len(rows),
+        probabilities={k: check.frozen(rules.normalised(w, stable)) for k, w in weights.items()},
+    )

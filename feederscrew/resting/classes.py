@@ -1,0 +1,149 @@
+"""Faces that a rotation symmetry of the part carries into each other, joined into classes."""
+
+from itertools import product
+
+import numpy as np
+
+from feederscrew.part.moments import Moments
+from feederscrew.resting.landscape import angle
+
+SAME_WAY = np.radians(3.0)  # a turned face lies on another when their normals agree this well
+SAME_SIZE = 0.02  # ... and their heights
+CANDIDATES = 400  # rotations tried at most: more equal faces than that are a curve
+
+
+def classes(faces, part):
+    """Labels of equal faces.
+
+    Only rotations count: a feeder cannot reflect a part, so mirror images stay apart. The rotation must be
+    a symmetry of the solid, not just of its hull.
+
+    Parameters
+    ----------
+    faces : list of Face
+    part : Part
+        With a mesh.
+
+    Returns
+    -------
+    (N,) int
+        Class of each face, numbered in order of first appearance.
+    """
+    normals = np.array([face.normal for face in faces])
+    heights = np.array([face.height for face in faces])
+    kinds = np.array([face.kind for face in faces])
+    label = np.arange(len(faces))
+    if _all_differ(heights):
+        return label
+    for rotation in symmetries(faces, part):
+        turned = normals @ rotation.T
+        near = angle(turned[:, None], normals[None]) < SAME_WAY
+        near &= np.abs(heights[:, None] - heights) < SAME_SIZE * heights
+        near &= kinds[:, None] == kinds
+        for i, j in np.argwhere(near):
+            label[label == max(label[i], label[j])] = min(label[i], label[j])
+    return np.unique(label, return_inverse=True)[1]
+
+
+def symmetries(faces, part):
+    """Rotations that leave the solid as it is, the identity left out.
+
+    Parameters
+    ----------
+    faces : list of Face
+        Landmarks: a symmetry must carry them onto each other.
+    part : Part
+
+    Returns
+    -------
+    (N, 3, 3) float [1]
+        Enough of them to carry every face onto all its equals.
+    """
+    moments = Moments(part.vertices, part.faces, part.centre_of_mass)
+    tolerance = moments.error + 2.0 * max(face.roughness for face in faces) / moments.size
+    found = _by_landmarks(faces)
+    if found is None:
+        found = _half_turns(faces[0].normal, moments)
+    return found[moments.mismatch(found) < tolerance]
+
+
+def body_frame(part):
+    """Axes fixed in the part: principal axes of inertia, pointed by the solid's third moments.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+
+    Returns
+    -------
+    (3, 3) float [1]
+        Axes as columns. Where the part is symmetric its own axes are not told apart, and the file's decide.
+    """
+    _, axes = np.linalg.eigh(part.inertia)
+    moments = Moments(part.vertices, part.faces, part.centre_of_mass)
+    skew = moments.directional(axes.T)[:, 2]
+    clear = np.abs(skew) > moments.error
+    largest = axes[np.argmax(np.abs(axes), axis=0), np.arange(3)]
+    axes = axes * np.where(clear, np.sign(skew), np.sign(largest))
+    if clear.sum() == 2:  # the third follows: a mirror plane leaves no skew across it, but a hand
+        axes[:, ~clear] *= np.linalg.det(axes)
+    return axes
+
+
+def _all_differ(heights):
+    ordered = np.sort(heights)
+    return bool((np.diff(ordered) > SAME_SIZE * ordered[:-1]).all())
+
+
+def _by_landmarks(faces):
+    """Rotations that carry one pair of unlike directions onto another; None where all are parallel."""
+    normals = np.array([face.normal for face in faces])
+    heights = np.array([face.height for face in faces])
+    like = np.abs(heights[:, None] - heights) < SAME_SIZE * heights
+    like &= np.array([[a.kind == b.kind for b in faces] for a in faces])
+    flat = np.array([face.kind == "flat" for face in faces])
+    rarest = np.lexsort((-heights, like.sum(axis=1), ~flat))
+    rarest = rarest[flat[rarest]]
+    for a, b in ((a, b) for a in rarest[:1] for b in rarest[1:]):
+        if np.linalg.norm(np.cross(normals[a], normals[b])) > np.sin(SAME_WAY):
+            return _carrying(normals, a, b, np.flatnonzero(like[a] & flat), np.flatnonzero(like[b] & flat))
+    return None
+
+
+def _carrying(normals, a, b, a_images, b_images):
+    """(N, 3, 3) rotations taking normals a, b to every pair of images that keeps their angle."""
+    start, between = _frame(normals[a], normals[b]), angle(normals[a], normals[b])
+    turns = [
+        _frame(normals[c], normals[d]) @ start.T
+        for c, d in product(a_images, b_images)
+        if abs(angle(normals[c], normals[d]) - between) < SAME_WAY and (c, d) != (a, b)
+    ]
+    return np.array(turns[:CANDIDATES]).reshape(-1, 3, 3)
+
+
+def _half_turns(axis, moments):
+    """Half turns about axes across ``axis``: the likeliest, where the solid changes least."""
+    u = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    u /= np.linalg.norm(u)
+    v = np.cross(axis, u)
+
+    def turns(phases):
+        across = np.cos(phases)[:, None] * u + np.sin(phases)[:, None] * v
+        return 2.0 * across[:, :, None] * across[:, None, :] - np.eye(3)
+
+    best, width = 0.0, np.pi / 2
+    for _ in range(4):  # the mismatch is a Fourier sum of the phase up to order six: a coarse grid finds it
+        phases = best + width * np.linspace(-1.0, 1.0, 61)
+        best, width = phases[np.argmin(moments.mismatch(turns(phases)))], width / 20
+    across = turns(np.array([best]))
+    along = 2.0 * np.outer(axis, axis) - np.eye(3)
+    return np.concatenate([across, along[None], across @ along])
+
+
+def _frame(first, second):
+    """(3, 3) right-handed axes as columns: along first, and in the plane of both."""
+    z = first
+    y = np.cross(first, second)
+    y /= np.linalg.norm(y)
+    return np.column_stack([np.cross(y, z), y, z])

@@ -1,0 +1,196 @@
+"""Hull triangles gathered into faces a part can rest on: flats, and curved sides it rolls on."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from feederscrew.resting.landscape import RIPPLE_OF_RADIUS, SMOOTH, angle, edges
+from feederscrew.resting.solid_angle import solid_angles
+
+COARSE = 1.0 / np.cos(0.5 * SMOOTH) - 1.0  # the ripple a smooth edge leaves at most, as a share of the height
+CURVED = np.sinc(np.radians(15.0) / np.pi)  # mean resultant of normals over an arc of 30 deg; below: no plane
+FLATNESS = 1e-2  # of the radius: how deep a corner may lie under the plane of its face
+TIGHTEST_FIRST = (1e-6, 1e-5, 1e-4, 1e-3, FLATNESS)
+ARC = np.radians(60.0)  # coarse strips that turn less may be meant as flats
+
+
+@dataclass(frozen=True, eq=False)
+class Face:
+    """One place on the hull to rest on (or, unstable, to roll off from)."""
+
+    kind: str  # 'flat' or 'rolling'
+    stable: bool
+    normal: np.ndarray  # (3,) outward; of a rolling face, of its lowest strip
+    axis: np.ndarray  # (3,) of a rolling face, NaN where it is a flat or a ball
+    height: float  # [m] of the centre of mass
+    area: float  # [m2] of contact; of a rolling face, of the whole curved side
+    solid_angle: float  # [sr]
+    polygon: np.ndarray  # (K, 3) [m] corners of contact, counter-clockwise seen from outside
+    triangles: np.ndarray  # indices into the hull
+    roughness: float  # [m] mean depth of the contact's corners off its plane: the file's noise
+
+
+def stable_faces(hull, basins):
+    """Faces the part rests on.
+
+    Parameters
+    ----------
+    hull : Hull
+    basins : Landscape
+
+    Returns
+    -------
+    list of Face
+        One for each basin; the strips of a coarsely tessellated curve make one.
+    """
+    group = _coarse_curves(hull, basins)
+    order = np.argsort(basins.basins, kind="stable")
+    starts = np.searchsorted(basins.basins[order], basins.sinks)
+    members = dict(zip(basins.sinks.tolist(), np.split(order, starts[1:])))
+    faces = []
+    for label in np.unique(group):
+        sinks = basins.sinks[group == label]
+        faces.append(_face(hull, sinks, [members[sink] for sink in sinks.tolist()]))
+    return faces
+
+
+def unstable_faces(hull, taken):
+    """Faces made of the triangles no stable face has taken: the part rolls off them.
+
+    Parameters
+    ----------
+    hull : Hull
+    taken : list of Face
+
+    Returns
+    -------
+    list of Face
+    """
+    free = np.ones(len(hull.triangles), dtype=bool)
+    for face in taken:
+        free[face.triangles] = False
+    pairs, _ = edges(hull)
+    pairs = pairs[free[pairs].all(axis=1)]
+    bend = angle(*(hull.normals[pairs[:, k]] for k in (0, 1)))
+    step = np.abs(np.diff(hull.heights[pairs], axis=1))[:, 0]
+    joined = (bend < np.radians(0.2)) | ((bend < SMOOTH) & (step < RIPPLE_OF_RADIUS * hull.radius))
+    labels = _components(len(free), pairs[joined])
+    order = np.flatnonzero(free)[np.argsort(labels[free], kind="stable")]
+    parts = np.split(order, np.flatnonzero(np.diff(labels[order])) + 1) if len(order) else []
+    return [_describe(hull, part, part[np.argmax(hull.areas[part])], stable=False) for part in parts]
+
+
+def _coarse_curves(hull, basins):
+    """(B,) label of each sink; strips of one coarsely tessellated curve share it."""
+    place = np.searchsorted(basins.sinks, basins.saddles)
+    rise = basins.saddle_heights / hull.heights[basins.saddles].max(axis=1) - 1.0
+    strips = (rise < COARSE) & (basins.saddle_bends < SMOOTH)
+    labels = _components(len(basins.sinks), place[strips])
+    for label in np.flatnonzero(np.bincount(labels) > 1):
+        group = np.flatnonzero(labels == label)
+        if _spread(hull.normals[basins.sinks[group]]) < ARC:
+            labels[group] = labels.max() + 1 + np.arange(len(group))
+    return labels
+
+
+def _face(hull, sinks, members):
+    """One face from the basins of its sinks (one, or the strips of a curve)."""
+    lowest = sinks[np.argmin(hull.heights[sinks])]
+    level = [part[hull.heights[part] <= hull.heights[sink] * (1.0 + 1e-9) + FLATNESS * hull.radius / 2]
+             for sink, part in zip(sinks, members)]  # fmt: skip
+    strip = np.concatenate(level)
+    if not _curved(hull, strip):
+        strip = _plane(hull, lowest, np.concatenate(members))
+    return _describe(hull, strip, lowest, stable=True)
+
+
+def _plane(hull, sink, members):
+    """Members in the plane about the sink.
+
+    The tightest plane that holds most of what noise allows, and that a looser one would hardly add to:
+    in a clean file the face itself without the shallow bevels beside it, in a noisy one all of it.
+    """
+    shallow = _depth(hull, sink, members) < FLATNESS * hull.radius
+    shallow &= angle(hull.normals[members], hull.normals[sink]) < SMOOTH
+    near = np.union1d(members[shallow], [sink])
+    largest = near[np.argmax(hull.areas[near])]
+    depth, areas = _depth(hull, largest, near), hull.areas[near]
+    inside = depth <= hull.radius * np.array(TIGHTEST_FIRST)[:, None]
+    held = inside @ areas
+    shared = held / areas.sum() - 0.1 * (inside.sum(axis=1) < 2)  # one triangle is a plane by itself
+    good = (shared[:-1] >= 0.5) & (held[1:] <= 1.02 * held[:-1])
+    return near[inside[np.argmax(good)]] if good.any() else near
+
+
+def _depth(hull, plane, members):
+    """How far the corners of each member lie off the plane of one triangle [m]."""
+    return np.abs(hull.corners[members] @ hull.normals[plane] - hull.heights[plane]).max(axis=1)
+
+
+def _off_plane(hull, members, normal):
+    depth = hull.corners[members] @ normal
+    return np.abs(depth - depth.mean()).max(axis=1)
+
+
+def _describe(hull, triangles, lowest, stable):
+    """The record of a face made of these triangles."""
+    normals, areas = hull.normals[triangles], hull.areas[triangles]
+    curved = _curved(hull, triangles)
+    foot = _plane(hull, lowest, triangles) if curved else triangles
+    weights = np.maximum(hull.areas[foot], np.finfo(float).tiny)
+    normal = weights @ hull.normals[foot]
+    normal /= np.linalg.norm(normal)
+    return Face(
+        kind="rolling" if curved else "flat",
+        stable=stable,
+        normal=normal,
+        axis=_axis(normals, areas) if curved else np.full(3, np.nan),
+        height=float(np.average(hull.heights[foot], weights=weights)),
+        area=float(areas.sum()),
+        solid_angle=float(solid_angles(np.zeros(3), hull.corners[triangles]).sum()),
+        polygon=_outline(hull.vertices[np.unique(hull.triangles[foot])], normal),
+        triangles=triangles,
+        roughness=float(np.average(_off_plane(hull, foot, normal), weights=weights)),
+    )
+
+
+def _axis(normals, weights):
+    """Axis of the cylinder or cone with these normals: all make one angle with it; NaN for a ball."""
+    spread = np.cov(normals.T, aweights=np.maximum(weights, weights.max() * 1e-12))
+    values, vectors = np.linalg.eigh(spread)
+    if values[0] > 0.2 * values[1]:
+        return np.full(3, np.nan)
+    axis = vectors[:, 0]
+    return axis * np.sign(axis[np.argmax(np.abs(axis))])
+
+
+def _outline(points, normal):
+    """(K, 3) convex outline of points about a plane, counter-clockwise seen against ``normal``."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    first = np.eye(3)[np.argmin(np.abs(normal))]
+    u = np.cross(normal, first)
+    u /= np.linalg.norm(u)
+    plane = np.column_stack([points @ u, points @ np.cross(normal, u)])
+    try:
+        return points[ConvexHull(plane).vertices]
+    except QhullError:  # a contact line: a sliver of the hull
+        return points
+
+
+def _curved(hull, triangles):
+    areas = hull.areas[triangles]
+    return np.linalg.norm(areas @ hull.normals[triangles]) < CURVED * areas.sum()
+
+
+def _spread(normals):
+    """Angle across a set of directions [rad], from its end to the end furthest from it."""
+    end = normals[np.argmax(angle(normals, normals[0]))]
+    return angle(normals, end).max()
+
+
+def _components(count, pairs):
+    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
+    return connected_components(graph, directed=False)[1]

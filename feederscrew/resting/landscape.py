@@ -1,0 +1,171 @@
+"""The height of the centre of mass over every way down: sinks, saddles and what lies between.
+
+H(n), the height of the centre of mass when direction n points down, has its minima at hull triangles. The
+way from one triangle to the next leads over their common edge; the lowest such ways make a tree, and
+cutting it at saddles that rise too little above the shallower side leaves one basin per resting place.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import minimum_spanning_tree
+
+SMOOTH = np.radians(25.0)  # a sharper edge is meant: a bar of 12 sides (30 deg) has flats, one of 16 rolls
+RIPPLE_OF_RADIUS = 2e-3  # noise and tessellation leave barriers below this share of the part's radius ...
+RIPPLE_OF_HEIGHT = 2e-2  # ... and below this share of the height, or slender parts would lose their sides
+SLIVER = 1e-3  # of the radius: a contact narrower than this about the foot is noise, however sharp its edges
+
+
+@dataclass(frozen=True, eq=False)
+class Landscape:
+    """Basins of a hull; T triangles, B basins, S saddles on the tree of lowest ways."""
+
+    basins: np.ndarray  # (T,) the triangle at the bottom of each triangle's basin
+    sinks: np.ndarray  # (B,) those bottom triangles
+    saddles: np.ndarray  # (S, 2) sinks on either side
+    saddle_heights: np.ndarray  # (S,) [m] of the centre of mass on the saddle
+    saddle_bends: np.ndarray  # (S,) [rad] between the triangles lowest on either side
+
+
+def edges(hull):
+    """Every edge of the hull once: (E, 2) triangles, (E, 2) corners."""
+    first = np.repeat(np.arange(len(hull.triangles)), 3)
+    second = hull.neighbours.ravel()
+    ends = np.stack([np.roll(hull.triangles, -1, axis=1), np.roll(hull.triangles, -2, axis=1)], axis=-1)
+    once = first < second
+    return np.column_stack([first, second])[once], ends.reshape(-1, 2)[once]
+
+
+def passes(hull, pairs, ends):
+    """Height of the centre of mass at the highest point of the way over each edge.
+
+    Tipping over an edge turns the part about it: the centre of mass climbs until it stands over the edge,
+    if that happens on the way, else the way is downhill and its top is the higher side.
+
+    Parameters
+    ----------
+    hull : Hull
+    pairs, ends : (E, 2) int
+        Triangles on either side and corners of each edge.
+
+    Returns
+    -------
+    (E,) float [m]
+    """
+    p, q = hull.vertices[ends[:, 0]], hull.vertices[ends[:, 1]]
+    along = q - p
+    length2 = np.maximum(_dot(along, along), np.finfo(float).tiny)
+    foot = p - along * (_dot(p, along) / length2)[:, None]  # of the centre of mass on the edge's line
+    n1, n2 = hull.normals[pairs[:, 0]], hull.normals[pairs[:, 1]]
+    turn = _dot(np.cross(n1, n2), along)
+    between = (_dot(np.cross(n1, foot), along) * turn > 0.0) & (_dot(np.cross(foot, n2), along) * turn > 0.0)
+    higher = hull.heights[pairs].max(axis=1)
+    return np.where(between, np.maximum(np.linalg.norm(foot, axis=1), higher), higher)
+
+
+def landscape(hull):
+    """Basins of the hull with ripples merged by persistence.
+
+    Parameters
+    ----------
+    hull : Hull
+
+    Returns
+    -------
+    Landscape
+        A triangle whose way down is cut off by a ripple (noise, a tessellated curve, the diagonal of a
+        flat face) belongs to the basin behind the ripple. A low barrier over a sharp edge, like the one
+        around the end of a slender pin, is no ripple.
+
+    References
+    ----------
+    H. Edelsbrunner, D. Letscher, A. Zomorodian, "Topological persistence and simplification", Discrete
+    Comput. Geom. 28, 511-533, 2002.
+    """
+    pairs, ends = edges(hull)
+    tops = passes(hull, pairs, ends)
+    local = _downhill(hull, pairs, tops)
+    sinks, place = np.unique(local, return_inverse=True)
+    way = _tree(len(sinks), place[pairs], tops)
+    edge_bends, tops, pairs = _bend(hull, pairs[way]), tops[way], place[pairs[way]]
+    merged, standing = _merge(hull, sinks, pairs, tops, edge_bends)
+    basins = sinks[merged][place]
+    return Landscape(
+        basins=basins,
+        sinks=np.unique(basins),
+        saddles=sinks[merged[pairs[standing]]],
+        saddle_heights=tops[standing],
+        saddle_bends=_bend(hull, sinks[pairs[standing]]),
+    )
+
+
+def angle(u, v):
+    """Angles between vectors (..., 3) [rad], true down to the smallest."""
+    return np.arctan2(np.linalg.norm(np.cross(u, v), axis=-1), np.sum(u * v, axis=-1))
+
+
+def _downhill(hull, pairs, tops):
+    """(T,) triangle each triangle ends at when no step may climb."""
+    height = hull.heights
+    steps = np.concatenate([pairs, pairs[:, ::-1]])
+    falls = (height[steps[:, 1]] < height[steps[:, 0]]) & (np.tile(tops, 2) <= height[steps[:, 0]])
+    steps = steps[falls]
+    steps = steps[np.argsort(-height[steps[:, 1]], kind="stable")]
+    local = np.arange(len(height))
+    local[steps[:, 0]] = steps[:, 1]  # of several ways down the lowest is written last
+    while True:
+        further = local[local]
+        if np.array_equal(further, local):
+            return local
+        local = further
+
+
+def _bend(hull, pairs):
+    return angle(hull.normals[pairs[:, 0]], hull.normals[pairs[:, 1]])
+
+
+def _tree(count, pairs, tops):
+    """(B-1,) edges that are the lowest ways between ``count`` sinks, lowest first."""
+    low, high = pairs.min(axis=1), pairs.max(axis=1)
+    order = np.lexsort((tops, high, low))
+    order = order[low[order] != high[order]]
+    key = low[order] * count + high[order]
+    first = np.diff(key, prepend=-1) != 0
+    key, order = key[first], order[first]
+    graph = coo_matrix((tops[order], (low[order], high[order])), shape=(count, count)).tocsr()
+    tree = minimum_spanning_tree(graph).tocoo()
+    way = order[np.searchsorted(key, tree.row.astype(np.int64) * count + tree.col)]
+    return way[np.argsort(tops[way], kind="stable")]
+
+
+def _merge(hull, sinks, pairs, tops, bends):
+    """Joins sinks along the tree; (B,) the sink each belongs to, (B-1,) which saddles are left standing."""
+    heights = hull.heights[sinks]
+    ripple = np.minimum(RIPPLE_OF_RADIUS * hull.radius, RIPPLE_OF_HEIGHT * heights).tolist()
+    sliver = (np.hypot(heights, SLIVER * hull.radius) - heights).tolist()
+    heights = heights.tolist()
+    region, basin = list(range(len(sinks))), list(range(len(sinks)))  # two forests; a root is the lowest
+    standing = np.zeros(len(tops), dtype=bool)
+    for k, ((i, j), top, bend) in enumerate(zip(pairs.tolist(), tops.tolist(), bends.tolist())):
+        low, high = _root(region, i), _root(region, j)
+        if heights[low] > heights[high]:
+            low, high, i, j = high, low, j, i
+        region[high] = low
+        rise = top - heights[high]
+        if rise <= (ripple[high] if bend < SMOOTH else sliver[high]):
+            deep, shallow = sorted((_root(basin, i), _root(basin, j)), key=heights.__getitem__)
+            basin[shallow] = deep
+        else:
+            standing[k] = True
+    return np.array([_root(basin, k) for k in range(len(basin))], dtype=int), standing
+
+
+def _root(forest, k):
+    while forest[k] != k:
+        forest[k] = k = forest[forest[k]]
+    return k
+
+
+def _dot(u, v):
+    return np.einsum("ei,ei->e", u, v)

@@ -1,0 +1,66 @@
+"""The folders are the pipeline: a room imports only rooms before it, and heavy libraries have one door."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+ORDER = [
+    "errors", "check", "units", "documents",
+    "part", "resting", "bowl", "screw", "motion", "maps", "thesis", "output",
+]  # fmt: skip
+DOORS = {
+    "trimesh": {"feederscrew/part"},
+    "yaml": {"feederscrew/documents.py"},
+    "pandas": {"feederscrew/output"},
+    "matplotlib": {"feederscrew/output"},
+    "embreex": {"feederscrew/output"},
+    "click": {"cli"},
+}
+FILES = sorted([*ROOT.glob("feederscrew/**/*.py"), *ROOT.glob("cli/*.py")])
+
+
+def imports(path):
+    """Every dotted name a file imports, at its top or inside a function."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path} imports relatively"
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+def room(dotted):
+    """The room of 'feederscrew.part.hull': 'part'; None for what lies outside the library."""
+    head, *rest = dotted.split(".")
+    return rest[0] if head == "feederscrew" and rest and rest[0] in ORDER else None
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_a_room_imports_only_rooms_before_it(path):
+    here = path.relative_to(ROOT).with_suffix("").parts
+    if here[0] == "cli" or here == ("feederscrew", "__init__"):
+        return
+    allowed = ORDER[: ORDER.index(here[1]) + 1]
+    for name in imports(path):
+        assert room(name) is None or room(name) in allowed, f"{path} imports {name}"
+        assert not name.startswith("cli"), f"{path} imports {name}"
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_a_heavy_library_has_one_door(path):
+    here = str(path.relative_to(ROOT))
+    for name in imports(path):
+        for door in DOORS.get(name.split(".")[0], {here}):
+            assert here.startswith(tuple(DOORS.get(name.split(".")[0], {here}))), f"{here} imports {name}, not through {door}"
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_a_room_stays_small(path):
+    assert len(path.read_text().splitlines()) <= 300
+
+
+def test_every_room_of_the_order_exists():
+    rooms = {p.relative_to(ROOT / "feederscrew").parts[0].removesuffix(".py") for p in ROOT.glob("feederscrew/**/*.py")}
+    assert rooms - {"__init__"} <= set(ORDER)
