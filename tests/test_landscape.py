@@ -21,10 +21,11 @@ def test_a_box_tips_over_its_edges():
     np.testing.assert_allclose(tops, [np.sqrt(5), np.sqrt(10), np.sqrt(13)])
 
 
-def test_the_saddles_of_a_box_are_its_lowest_ways():
-    found = landscape(hull_of(shapes.box(2, 4, 6)))
-    assert len(found.sinks) == 6
-    np.testing.assert_allclose(found.saddle_heights, [np.sqrt(5)] * 3 + [np.sqrt(10)] * 2)
+def test_a_coarse_cylinder_keeps_its_strips_and_says_how_deep_they_are():
+    found = landscape(hull_of(shapes.cylinder(5, 20, 16)))
+    assert len(found.sinks) == 18
+    np.testing.assert_allclose(found.rises, 1 / np.cos(np.pi / 16) - 1)
+    np.testing.assert_allclose(found.bends, np.pi / 8)
 
 
 @pytest.mark.parametrize("sections", [6, 12, 14])

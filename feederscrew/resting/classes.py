@@ -8,7 +8,7 @@ from feederscrew.part.moments import Moments
 from feederscrew.resting.landscape import angle
 
 SAME_WAY = np.radians(3.0)  # a turned face lies on another when their normals agree this well
-SAME_SIZE = 0.02  # ... and their heights
+SAME_SIZE = 0.007  # ... and their heights
 CANDIDATES = 400  # rotations tried at most: more equal faces than that are a curve
 
 
@@ -29,17 +29,14 @@ def classes(faces, part):
     (N,) int
         Class of each face, numbered in order of first appearance.
     """
-    normals = np.array([face.normal for face in faces])
-    heights = np.array([face.height for face in faces])
-    kinds = np.array([face.kind for face in faces])
+    normals, alike = np.array([face.normal for face in faces]), _alike(faces)
     label = np.arange(len(faces))
-    if _all_differ(heights):
+    if alike.sum() == len(faces):
         return label
     for rotation in symmetries(faces, part):
         turned = normals @ rotation.T
         near = angle(turned[:, None], normals[None]) < SAME_WAY
-        near &= np.abs(heights[:, None] - heights) < SAME_SIZE * heights
-        near &= kinds[:, None] == kinds
+        near &= alike
         for i, j in np.argwhere(near):
             label[label == max(label[i], label[j])] = min(label[i], label[j])
     return np.unique(label, return_inverse=True)[1]
@@ -91,17 +88,20 @@ def body_frame(part):
     return axes
 
 
-def _all_differ(heights):
-    ordered = np.sort(heights)
-    return bool((np.diff(ordered) > SAME_SIZE * ordered[:-1]).all())
+def _alike(faces):
+    """(N, N) bool: of one kind and of one height, as far as the file's noise lets us tell."""
+    heights = np.array([face.height for face in faces])
+    kinds = np.array([face.kind for face in faces])
+    noise = 2.0 * max(face.roughness for face in faces)
+    apart = np.abs(heights[:, None] - heights)
+    return (apart < SAME_SIZE * np.minimum(heights[:, None], heights) + noise) & (kinds[:, None] == kinds)
 
 
 def _by_landmarks(faces):
     """Rotations that carry one pair of unlike directions onto another; None where all are parallel."""
     normals = np.array([face.normal for face in faces])
     heights = np.array([face.height for face in faces])
-    like = np.abs(heights[:, None] - heights) < SAME_SIZE * heights
-    like &= np.array([[a.kind == b.kind for b in faces] for a in faces])
+    like = _alike(faces)
     flat = np.array([face.kind == "flat" for face in faces])
     rarest = np.lexsort((-heights, like.sum(axis=1), ~flat))
     rarest = rarest[flat[rarest]]

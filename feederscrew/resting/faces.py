@@ -13,6 +13,7 @@ COARSE = 1.0 / np.cos(0.5 * SMOOTH) - 1.0  # the ripple a smooth edge leaves at 
 CURVED = np.sinc(np.radians(15.0) / np.pi)  # mean resultant of normals over an arc of 30 deg; below: no plane
 FLATNESS = 1e-2  # of the radius: how deep a corner may lie under the plane of its face
 TIGHTEST_FIRST = (1e-6, 1e-5, 1e-4, 1e-3, FLATNESS)
+EQUAL = 5e-3  # of the height: strips of one curve about the centre of mass are as high as each other
 ARC = np.radians(60.0)  # coarse strips that turn less may be meant as flats
 
 
@@ -84,10 +85,12 @@ def unstable_faces(hull, taken):
 
 def _coarse_curves(hull, basins):
     """(B,) label of each sink; strips of one coarsely tessellated curve share it."""
-    place = np.searchsorted(basins.sinks, basins.saddles)
-    rise = basins.saddle_heights / hull.heights[basins.saddles].max(axis=1) - 1.0
-    strips = (rise < COARSE) & (basins.saddle_bends < SMOOTH)
-    labels = _components(len(basins.sinks), place[strips])
+    level = (
+        np.abs(np.diff(hull.heights[basins.ripples], axis=1))[:, 0]
+        < EQUAL * hull.heights[basins.ripples[:, 0]]
+    )
+    strips = level & (basins.rises < COARSE) & (basins.bends < SMOOTH)
+    labels = _components(len(basins.sinks), np.searchsorted(basins.sinks, basins.ripples)[strips])
     for label in np.flatnonzero(np.bincount(labels) > 1):
         group = np.flatnonzero(labels == label)
         if _spread(hull.normals[basins.sinks[group]]) < ARC:

@@ -19,13 +19,13 @@ SLIVER = 1e-3  # of the radius: a contact narrower than this about the foot is n
 
 @dataclass(frozen=True, eq=False)
 class Landscape:
-    """Basins of a hull; T triangles, B basins, S saddles on the tree of lowest ways."""
+    """Basins of a hull; T triangles, B basins, R ripples."""
 
     basins: np.ndarray  # (T,) the triangle at the bottom of each triangle's basin
     sinks: np.ndarray  # (B,) those bottom triangles
-    saddles: np.ndarray  # (S, 2) sinks on either side
-    saddle_heights: np.ndarray  # (S,) [m] of the centre of mass on the saddle
-    saddle_bends: np.ndarray  # (S,) [rad] between the triangles lowest on either side
+    ripples: np.ndarray  # (R, 2) sinks on either side of a smooth edge that were too deep to merge
+    rises: np.ndarray  # (R,) [1] height of the way over that edge, above the higher side, as a share of it
+    bends: np.ndarray  # (R,) [rad] between the lowest triangles on either side
 
 
 def edges(hull):
@@ -85,18 +85,19 @@ def landscape(hull):
     """
     pairs, ends = edges(hull)
     tops = passes(hull, pairs, ends)
+    ripple = np.minimum(RIPPLE_OF_RADIUS * hull.radius, RIPPLE_OF_HEIGHT * hull.heights)
+    sliver = np.hypot(hull.heights, SLIVER * hull.radius) - hull.heights
+    smooth = _bend(hull, pairs) < SMOOTH
     local = _downhill(hull, pairs, tops)
-    sinks, place = np.unique(local, return_inverse=True)
-    way = _tree(len(sinks), place[pairs], tops)
-    edge_bends, tops, pairs = _bend(hull, pairs[way]), tops[way], place[pairs[way]]
-    merged, standing = _merge(hull, sinks, pairs, tops, edge_bends)
-    basins = sinks[merged][place]
+    basins, deep = _joined(hull, local, pairs[smooth], tops[smooth], ripple)
+    strips, way = local[pairs[smooth][deep]], tops[smooth][deep]
+    basins, _ = _joined(hull, basins, pairs, tops, sliver)
     return Landscape(
         basins=basins,
         sinks=np.unique(basins),
-        saddles=sinks[merged[pairs[standing]]],
-        saddle_heights=tops[standing],
-        saddle_bends=_bend(hull, sinks[pairs[standing]]),
+        ripples=basins[strips],
+        rises=way / hull.heights[basins[strips]].max(axis=1, initial=0.0) - 1.0,
+        bends=_bend(hull, strips),
     )
 
 
@@ -125,8 +126,32 @@ def _bend(hull, pairs):
     return angle(hull.normals[pairs[:, 0]], hull.normals[pairs[:, 1]])
 
 
-def _tree(count, pairs, tops):
-    """(B-1,) edges that are the lowest ways between ``count`` sinks, lowest first."""
+def _joined(hull, basins, pairs, tops, limit):
+    """Basins (T,) joined where the way between them rises by no more than the shallower one's limit.
+
+    Returns the new basins, and the edges (indices) of the lowest ways that rise by more.
+    """
+    sinks, place = np.unique(basins, return_inverse=True)
+    way = _lowest_ways(len(sinks), place[pairs], tops)
+    heights, limit = hull.heights[sinks].tolist(), limit[sinks].tolist()
+    region, basin = list(range(len(sinks))), list(range(len(sinks)))  # two forests; a root is the lowest
+    standing = np.zeros(len(way), dtype=bool)
+    for k, ((i, j), top) in enumerate(zip(place[pairs[way]].tolist(), tops[way].tolist())):
+        low, high = _root(region, i), _root(region, j)
+        if heights[low] > heights[high]:
+            low, high = high, low
+        region[high] = low
+        if top - heights[high] <= limit[high]:
+            deep, shallow = sorted((_root(basin, i), _root(basin, j)), key=heights.__getitem__)
+            basin[shallow] = deep
+        else:
+            standing[k] = True
+    merged = np.array([_root(basin, k) for k in range(len(basin))], dtype=int)
+    return sinks[merged][place], way[standing]
+
+
+def _lowest_ways(count, pairs, tops):
+    """Edges (indices, lowest first) that are the lowest ways between ``count`` sinks: a spanning forest."""
     low, high = pairs.min(axis=1), pairs.max(axis=1)
     order = np.lexsort((tops, high, low))
     order = order[low[order] != high[order]]
@@ -137,28 +162,6 @@ def _tree(count, pairs, tops):
     tree = minimum_spanning_tree(graph).tocoo()
     way = order[np.searchsorted(key, tree.row.astype(np.int64) * count + tree.col)]
     return way[np.argsort(tops[way], kind="stable")]
-
-
-def _merge(hull, sinks, pairs, tops, bends):
-    """Joins sinks along the tree; (B,) the sink each belongs to, (B-1,) which saddles are left standing."""
-    heights = hull.heights[sinks]
-    ripple = np.minimum(RIPPLE_OF_RADIUS * hull.radius, RIPPLE_OF_HEIGHT * heights).tolist()
-    sliver = (np.hypot(heights, SLIVER * hull.radius) - heights).tolist()
-    heights = heights.tolist()
-    region, basin = list(range(len(sinks))), list(range(len(sinks)))  # two forests; a root is the lowest
-    standing = np.zeros(len(tops), dtype=bool)
-    for k, ((i, j), top, bend) in enumerate(zip(pairs.tolist(), tops.tolist(), bends.tolist())):
-        low, high = _root(region, i), _root(region, j)
-        if heights[low] > heights[high]:
-            low, high, i, j = high, low, j, i
-        region[high] = low
-        rise = top - heights[high]
-        if rise <= (ripple[high] if bend < SMOOTH else sliver[high]):
-            deep, shallow = sorted((_root(basin, i), _root(basin, j)), key=heights.__getitem__)
-            basin[shallow] = deep
-        else:
-            standing[k] = True
-    return np.array([_root(basin, k) for k in range(len(basin))], dtype=int), standing
 
 
 def _root(forest, k):
