@@ -9,6 +9,9 @@ ORDER = 6
 HALF = [powers for powers in product(range(4), repeat=3) if sum(powers) <= ORDER // 2]  # 20 monomials
 COARSE = 75_000  # facets; a finer mesh has small ones, for which a rule of second order will do
 BLOCK = 1 << 15  # points at a time: what a processor's cache holds
+STRIP = (
+    1 << 9
+)  # points in one matrix product: too few to be shared out to threads, which wait when others run
 
 
 class Moments:
@@ -88,12 +91,19 @@ def _integrals(points, faces):
     gram = np.zeros((len(HALF), len(HALF)))
     for start in range(0, len(weights), BLOCK):
         half = _monomials(nodes[start : start + BLOCK])
-        gram += (half * weights[start : start + BLOCK]) @ half.T
+        gram += _products(half * weights[start : start + BLOCK], half)
     table = _spread_out(gram)
     volume, second = table[0, 0, 0] / 3.0, (table[2, 0, 0] + table[0, 2, 0] + table[0, 0, 2]) / 5.0
     size = np.sqrt(second / volume)
     order = np.indices(table.shape).sum(axis=0)
     return table / (order + 3.0) / size**order, volume, scale * size
+
+
+def _products(left, right):
+    """Sums (20, 20) over the points of every product of a row of one with a row of the other."""
+    whole = left.shape[1] // STRIP * STRIP
+    a, b = (side[:, :whole].reshape(len(side), -1, STRIP).swapaxes(0, 1) for side in (left, right))
+    return (a @ b.swapaxes(1, 2)).sum(axis=0) + left[:, whole:] @ right[:, whole:].T
 
 
 def _monomials(points):
