@@ -1,7 +1,21 @@
-"""Shared fixtures."""
+"""What several test files share."""
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
+
+from cli.main import feeder
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch):
+    """Run one ``feeder`` command line inside an empty folder; gives click's result."""
+    monkeypatch.chdir(tmp_path)
+
+    def call(*arguments, stdin=None):
+        return CliRunner().invoke(feeder, [str(argument) for argument in arguments], input=stdin)
+
+    return call
 
 
 @pytest.fixture

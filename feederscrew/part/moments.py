@@ -7,7 +7,7 @@ import numpy as np
 
 ORDER = 6
 HALF = [powers for powers in product(range(4), repeat=3) if sum(powers) <= ORDER // 2]  # 20 monomials
-COARSE = 75_000  # facets; a finer mesh has small ones, for which a rule of second order will do
+SMALL = 0.08  # of the part: on facets with shorter edges a rule of second order will do
 BLOCK = 1 << 15  # points at a time: what a processor's cache holds
 STRIP = (
     1 << 9
@@ -35,7 +35,7 @@ class Moments:
         """
         table, volume, size = _integrals(np.asarray(vertices) - centre, np.asarray(faces))
         self._moments = table / volume
-        self.error = 3e-5 if len(faces) <= COARSE else 1e-4  # [1] of the quadrature and of float32 files
+        self.error = 1e-4  # [1] of the quadrature, of float32 files and of uneven tessellation
         self.size = size  # [m] root mean square distance from the centre of mass, the unit of length
 
     def directional(self, directions):
@@ -87,7 +87,7 @@ def _integrals(points, faces):
     solid's.
     """
     scale = np.linalg.norm(points, axis=1).mean()
-    nodes, weights = (_gauss if len(faces) <= COARSE else _fine)(points / scale, faces)
+    nodes, weights = _quadrature(points / scale, faces)
     gram = np.zeros((len(HALF), len(HALF)))
     for start in range(0, len(weights), BLOCK):
         half = _monomials(nodes[start : start + BLOCK])
@@ -124,27 +124,29 @@ def _spread_out(gram):
     return out
 
 
-def _flux(corners):
-    """Area of each facet times the distance of its plane."""
+def _quadrature(points, faces):
+    """Nodes (N, 3) and weights (N,) of the surface, each weight times the distance of its facet's plane."""
+    corners = points[faces]
     a, b, c = np.moveaxis(corners, 1, 0)
-    return 0.5 * np.einsum("fi,fi->f", a, np.cross(b - a, c - a))
+    flux = 0.5 * np.einsum("fi,fi->f", a, np.cross(b - a, c - a))
+    small = np.abs(corners - np.roll(corners, 1, axis=1)).max(axis=(1, 2)) < SMALL
+    large_nodes, large_weights = _gauss(corners[~small], flux[~small])
+    small_nodes, small_weights = _second_order(points, faces[small], corners[small], flux[small])
+    return np.concatenate([large_nodes, small_nodes]), np.concatenate([large_weights, small_weights])
 
 
-def _gauss(points, faces):
-    """Nodes (N, 3) and weights (N,) exact to order six: Gauss's rule on the square, folded to triangles."""
+def _gauss(corners, flux):
+    """Exact to order six: Gauss's rule on the square, folded to triangles."""
     x, w = np.polynomial.legendre.leggauss(4)
     x, w = 0.5 * (x + 1.0), 0.5 * w
     u, v = (g.ravel() for g in np.meshgrid(x, x, indexing="ij"))
-    corners, share = points[faces], 2.0 * np.outer(w, w).ravel() * (1.0 - u)
+    share = 2.0 * np.outer(w, w).ravel() * (1.0 - u)
     barycentric = np.column_stack([u, v * (1.0 - u), (1.0 - u) * (1.0 - v)])
-    nodes = np.einsum("qk,fki->fqi", barycentric, corners).reshape(-1, 3)
-    return nodes, np.outer(_flux(corners), share).ravel()
+    return np.einsum("qk,fki->fqi", barycentric, corners).reshape(-1, 3), np.outer(flux, share).ravel()
 
 
-def _fine(points, faces):
-    """Nodes and weights exact to second order: three quarters at the centroid, the rest at the corners."""
-    corners = points[faces]
-    flux = _flux(corners)
+def _second_order(points, faces, corners, flux):
+    """Exact to order two: three quarters at the centroid, the rest at the corners."""
     shared = np.bincount(faces.ravel(), np.repeat(flux / 12.0, 3), minlength=len(points))
     return np.concatenate([corners.mean(axis=1), points]), np.concatenate([0.75 * flux, shared])
 

@@ -57,7 +57,7 @@ def find(part, *, as_published=False, unstable=False):
     """
     if part.vertices is None:
         return _from_card(part)
-    hull = convex_hull(part.vertices, part.centre_of_mass, part.source)
+    hull = part.hull or convex_hull(part.vertices, part.centre_of_mass, part.source)
     faces = stable_faces(hull, landscape(hull))
     if unstable:
         faces += unstable_faces(hull, faces)

@@ -1,0 +1,107 @@
+"""The ``feeder`` program: its commands and its one error fence."""
+
+import importlib
+import os
+import signal
+import sys
+from collections.abc import Mapping
+
+import click
+
+from feederscrew import __version__
+from feederscrew.errors import FeederError
+
+COMMANDS = {
+    "aspects": "cli.aspects",
+    "inertia": "cli.inertia",
+    "compare": "cli.compare",
+    "drop": "cli.drop",
+    "calibrate": "cli.calibrate",
+    "slide": "cli.slide",
+    "convey": "cli.convey",
+    "rate": "cli.rate",
+    "tune": "cli.tune",
+    "floor": "cli.floor",
+    "track": "cli.track",
+    "headings": "cli.headings",
+    "batch": "cli.batch",
+    "config": "cli.config",
+    "report": "cli.report",
+    "reproduce": "cli.reproduce",
+    "doctor": "cli.doctor",
+}
+COLOUR = False if os.environ.get("NO_COLOR") else None  # None: on a terminal only
+INTERRUPTED = 128 + signal.SIGINT
+PIPE_CLOSED = 141  # what a shell reports of any filter whose reader went away
+
+
+class Commands(Mapping):
+    """The commands by name, each imported when it is first asked for."""
+
+    def __getitem__(self, name):
+        return getattr(importlib.import_module(COMMANDS[name]), name)
+
+    def __iter__(self):
+        return iter(COMMANDS)
+
+    def __len__(self):
+        return len(COMMANDS)
+
+
+class Fence(click.Group):
+    """Turns every fault into its lines on stderr and the exit status that goes with it."""
+
+    def list_commands(self, ctx):
+        """In the order of the pipeline, not of the alphabet."""
+        return list(self.commands)
+
+    def main(self, args=None, **extra):
+        """Run one command line and leave the interpreter."""
+        arguments = list(sys.argv[1:] if args is None else args)
+        try:
+            status = super().main(arguments, **{**extra, "standalone_mode": False, "obj": arguments})
+        except click.Abort:
+            _tell("Stopped.")
+            status = INTERRUPTED
+        except click.ClickException as error:
+            _tell("Error: " + " ".join(error.format_message().split()) + _help_hint(error))
+            status = error.exit_code
+        sys.exit(status if isinstance(status, int) else 0)
+
+    def invoke(self, ctx):
+        """Run the command, its faults told one a line."""
+        try:
+            return super().invoke(ctx)
+        except FeederError as error:
+            for line in error.lines:
+                _tell("Error: " + " ".join(line.splitlines()))  # a file's name may hold a line break
+            return ctx.exit(1)
+        except BrokenPipeError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or the last flush fails as well
+            return ctx.exit(PIPE_CLOSED)
+
+
+def _tell(line):
+    click.echo(line, err=True)
+
+
+def _help_hint(error):
+    context = getattr(error, "ctx", None)
+    return f" (see {context.command_path} --help)" if context else ""
+
+
+@click.group(
+    cls=Fence,
+    commands=Commands(),
+    invoke_without_command=True,
+    context_settings={"color": COLOUR, "max_content_width": 100, "help_option_names": ["-h", "--help"]},
+)
+@click.version_option(__version__, prog_name="feeder")
+@click.pass_context
+def feeder(ctx):
+    """Example: feeder aspects parts/lbracket_30x20x15.stl -o results
+
+    Resting aspects, sliding limits and conveying of small parts in vibratory bowl feeders.
+    """
+    if ctx.invoked_subcommand is None:
+        click.echo(ctx.get_help())

@@ -1,0 +1,100 @@
+"""Every option that two commands share, once."""
+
+import functools
+
+import click
+
+from cli import talk
+
+FILE = click.Path(allow_dash=True)  # completes as a path; the library says what is wrong with it
+UNITS = click.Choice(["mm", "cm", "m", "in"])
+
+
+def part(command):
+    """PART and how to read it; the command receives the keywords of ``feederscrew.part.load``."""
+    keywords = ("source", "units", "density", "centre_of_mass", "allow_open")
+    return _stacked(
+        _packed(command, "part", keywords),
+        click.argument("source", metavar="PART", type=FILE),
+        click.option("--units", type=UNITS, help="Length unit of the file (STL has none).  [default: mm]"),
+        click.option("--density", metavar="DENSITY", help='A material or a value: steel, "7.85 g/cm3".'),
+        click.option(
+            "--centre-of-mass",
+            metavar="X,Y,Z",
+            help="Where it is, in the file's units and axes, if the part is not homogeneous.",
+        ),
+        click.option(
+            "--allow-open", is_flag=True, help="Compute from an open surface; every output says so."
+        ),
+    )
+
+
+def bowl(command):
+    """The bowl file; the command receives the keywords of ``feederscrew.bowl.read``."""
+    return _stacked(
+        _packed(command, "bowl", ("path", "overrides")),
+        click.option(
+            "--config", "path", metavar="FILE", type=FILE, help="Bowl file (YAML); without it, the defaults."
+        ),
+        click.option(
+            "--set",
+            "overrides",
+            metavar="KEY=VALUE",
+            multiple=True,
+            help='Override one value: --set drive.frequency="50 Hz".',
+        ),
+    )
+
+
+def pictures(command):
+    """``--no-pictures``; the command receives ``pictures``, true unless it is given."""
+    return click.option(
+        "--no-pictures", "pictures", is_flag=True, flag_value=False, default=True, help="Tables only."
+    )(command)
+
+
+def output(command):
+    """Where results and talk go; the command receives ``out``, a ``talk.Output``."""
+    return _stacked(
+        _packed(command, "out", ("directory", "depfile", "format", "quiet", "verbose"), talk.Output.of),
+        click.option(
+            "-o",
+            "--output",
+            "directory",
+            metavar="DIR",
+            type=click.Path(),
+            help="Write tables, pictures and run.json to DIR/<name>/.",
+        ),
+        click.option(
+            "--depfile",
+            metavar="FILE",
+            type=click.Path(),
+            help="Write a rule for make: what the files of -o are made from.",
+        ),
+        click.option(
+            "--format",
+            type=click.Choice(talk.FORMATS),
+            default="table",
+            show_default=True,
+            help="What is printed on stdout.",
+        ),
+        click.option("-q", "--quiet", is_flag=True, help="No warnings and no talk."),
+        click.option("-v", "--verbose", is_flag=True, help="Say what is read and how long each step takes."),
+    )
+
+
+def _packed(command, name, keywords, pack=dict):
+    """The command with several options handed to it as one argument."""
+
+    @functools.wraps(command)
+    def packed(**options):
+        options[name] = pack(**{keyword: options.pop(keyword) for keyword in keywords})
+        return command(**options)
+
+    return packed
+
+
+def _stacked(command, *decorators):
+    for decorate in reversed(decorators):
+        command = decorate(command)
+    return command

@@ -1,0 +1,130 @@
+"""What goes where: data to stdout, talk to stderr, files to the folder of ``-o``."""
+
+import contextlib
+import time
+from dataclasses import dataclass, field
+
+import click
+
+FORMATS = ("table", "csv", "json")
+PLACES = ("directory", "depfile")  # options that name what is written, not what is read
+
+
+@dataclass(frozen=True, eq=False)
+class Output:
+    """How one call wants its answer; every command prints and writes through it."""
+
+    command: str  # the command's name, as run.json records it
+    arguments: tuple[str, ...]  # as typed
+    format: str  # of what goes to stdout: one of FORMATS
+    directory: str | None  # of -o
+    quiet: bool = False
+    verbose: bool = False
+    depfile: str | None = None  # of --depfile
+    inputs: tuple[str, ...] = ()  # the files named on the command line
+    warnings: list[str] = field(default_factory=list)  # told so far, for run.json
+
+    @classmethod
+    def of(cls, **options):
+        """The output of the command that is running."""
+        context = click.get_current_context()
+        name = context.command_path.removeprefix(context.find_root().command_path).strip()
+        if options.get("depfile") and not options["directory"]:
+            raise click.UsageError("--depfile says what the files of -o depend on - give -o as well")
+        return cls(
+            command=name, arguments=tuple(context.obj or ()), inputs=tuple(_inputs(context)), **options
+        )
+
+    def warn(self, *texts):
+        """Tell each warning on stderr and keep it for run.json."""
+        for text in texts:
+            self.warnings.append(text)
+            self.say(f"Warning: {text}")
+
+    def say(self, *texts):
+        """Each text as a line on stderr, unless ``-q``."""
+        for text in texts:
+            if not self.quiet:
+                click.echo(text, err=True)
+
+    def detail(self, text):
+        """One line on stderr, with ``-v`` only."""
+        if self.verbose:
+            self.say(text)
+
+    def part(self, keywords):
+        """Read the part of ``options.part`` and tell its warnings; the ``Part``."""
+        from feederscrew.part import load
+
+        with self.step(f"read {keywords['source']}"):
+            solid = load(**keywords)
+        self.warn(*solid.warnings)
+        return solid
+
+    @contextlib.contextmanager
+    def step(self, name):
+        """Time what happens inside; told with ``-v``."""
+        start = time.perf_counter()
+        yield
+        self.detail(f"{name}: {time.perf_counter() - start:.2f} s")
+
+    def table(self, frame, *, hidden=()):
+        """Print a frame as the table or CSV asked for; a table for people leaves out ``hidden`` columns."""
+        from feederscrew.output import tables
+
+        shown = frame.drop(columns=list(hidden)) if self.format == "table" else frame
+        click.echo(tables.text(shown, self.format), nl=False)
+
+    def json(self, document):
+        """Print a document as JSON."""
+        from feederscrew.output import tables
+
+        click.echo(tables.json_text(document), nl=False)
+
+    def show(self, frame, document, *, hidden=()):
+        """Print the document with ``--format json``, else the frame."""
+        if self.format == "json":
+            self.json(document)
+        else:
+            self.table(frame, hidden=hidden)
+
+    def depend(self, targets, inputs=None):
+        """Write the rule of ``--depfile``, where it is given: files and what they are made from."""
+        if self.depfile:
+            from feederscrew.output import depfile
+
+            depfile.write(self.depfile, targets, self.inputs if inputs is None else inputs)
+
+    @contextlib.contextmanager
+    def folder(self, name, identity, effective=None):
+        """The folder for this call's files, kept only if all goes well; None without ``-o``.
+
+        Parameters
+        ----------
+        name : str
+            Of the part or the bowl file: the folder below ``-o``.
+        identity : dict of str to str
+            The sha256 of each input by its path, the one that names the folder first.
+        effective : dict or None
+            The parameters that led to the numbers, for run.json.
+        """
+        from feederscrew.output.folder import ResultFolder
+
+        if self.directory is None:
+            yield None
+            return
+        with ResultFolder(self.directory, name, identity) as folder:
+            yield folder
+            folder.keep(
+                self.command, arguments=self.arguments, effective=effective or {}, warnings=self.warnings
+            )
+        self.depend(folder.path / name for name in sorted(folder.staged))
+        self.say(f"Wrote {folder.path} ({', '.join(sorted(folder.staged))}, run.json)")
+
+
+def _inputs(context):
+    """The files named on a command line, apart from where its results go."""
+    for option in context.command.params:
+        value = context.params.get(option.name)
+        if isinstance(option.type, click.Path) and option.name not in PLACES and value not in (None, "-"):
+            yield from value if isinstance(value, tuple) else (value,)

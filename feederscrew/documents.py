@@ -1,0 +1,218 @@
+"""YAML files as trees that remember where each word stands; every scalar stays text."""
+
+import difflib
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import yaml
+
+from feederscrew.errors import ConfigError, Faults
+from feederscrew.units import shown
+
+LARGEST = 200_000  # [bytes]: a bowl file or part card has a few hundred; parsing time grows with size
+DEEPEST = 12  # levels of nesting
+
+
+@dataclass(frozen=True)
+class Node:
+    """One value of a document: text, a mapping or a list."""
+
+    where: str  # 'bowl.yaml:2:14'
+    kind: str  # 'text', 'mapping' or 'list'
+    text: str = ""  # of a text, as typed but for its quotes; '' also where nothing was written
+    entries: tuple["Entry", ...] = ()  # of a mapping, in order, duplicates left out
+    items: tuple["Node", ...] = ()  # of a list
+
+    def find(self, key):
+        """The entry of a mapping under this key, or None."""
+        return next((entry for entry in self.entries if entry.key == key), None)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One 'key: value' of a mapping."""
+
+    key: str
+    where: str  # of the key
+    value: Node
+
+
+def read(path):
+    """The tree of a YAML file.
+
+    Parameters
+    ----------
+    path : str or Path
+        As the user typed it; faults repeat it.
+
+    Returns
+    -------
+    root : Node
+    faults : list of ConfigError
+        What is wrong without hiding the rest: duplicate keys, anchors, tags.
+
+    Raises
+    ------
+    ConfigError
+        If the file cannot be read, is not UTF-8 or not YAML.
+    """
+    try:
+        with Path(path).open("rb") as file:
+            data = file.read(LARGEST + 1)
+    except FileNotFoundError:
+        raise ConfigError(path, "no such file", "check the path") from None
+    except IsADirectoryError:
+        raise ConfigError(path, "is a folder", "name a YAML file in it") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise ConfigError(path, f"cannot be read ({reason})", "check the path and its permissions") from None
+    return load(data, str(path))
+
+
+def load(text, name):
+    """The tree of a YAML text.
+
+    Parameters
+    ----------
+    text : str or bytes
+        Bytes are read as UTF-8.
+    name : str
+        The file as the user typed it; every ``where`` opens with it.
+
+    Returns
+    -------
+    root : Node
+    faults : list of ConfigError
+        What is wrong without hiding the rest: duplicate keys, anchors, tags.
+
+    Raises
+    ------
+    ConfigError
+        If the text is empty, too long, not UTF-8 or not one YAML document.
+    """
+    if len(text) > LARGEST:
+        raise ConfigError(name, f"has more than {LARGEST // 1000} kB", "name a YAML file of settings")
+    text = decoded(text, name) if isinstance(text, bytes) else text
+    builder = _Builder(name)
+    try:
+        root = builder.document(yaml.parse(text, Loader=yaml.SafeLoader))
+    except yaml.reader.ReaderError as error:
+        line = text.count("\n", 0, error.position) + 1
+        what = f"has the character U+{error.character:04X}, which no text file needs"
+        raise ConfigError(f"{name}:{line}", what, "remove it") from None
+    except yaml.MarkedYAMLError as error:
+        raise _syntax(name, error) from None
+    return root, builder.faults
+
+
+def decoded(data, name):
+    """Bytes of a text file as text; raises ConfigError with the line that is not UTF-8."""
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        what = f"byte 0x{data[error.start]:02x} is not UTF-8"
+        raise ConfigError(f"{name}:{line}", what, "save the file as UTF-8 text") from None
+
+
+def raise_all(faults):
+    """Raise every fault of a file in one go, in the order of its lines, the first of each place."""
+    first = {}
+    for fault in faults:
+        first.setdefault(str(fault.where), fault)
+    if first:
+        raise Faults(sorted(first.values(), key=_position))
+
+
+def hint(word, known):
+    """How to mend an unknown word: the nearest known one, or the list of them."""
+    folded = {name.lower(): name for name in known}
+    near = difflib.get_close_matches(word.lower(), folded, n=1, cutoff=0.6)
+    return f"did you mean {folded[near[0]]}?" if near else f"known are {', '.join(known)}"
+
+
+class _Builder:
+    """Turns parser events into nodes, noting what a settings file has no use for."""
+
+    def __init__(self, name):
+        self.name, self.faults = name, []
+
+    def document(self, events):
+        """The one document of the stream."""
+        root = None
+        for event in events:
+            if isinstance(event, yaml.DocumentStartEvent) and root is not None:
+                raise self.fault(event, "a second document begins", "keep one document in a file")
+            if isinstance(event, yaml.NodeEvent):
+                root = self.node(event, events, 0)
+        if root is None or (root.kind, root.text) == ("text", ""):
+            raise ConfigError(self.name, "is empty", "write at least one 'key: value' line")
+        return root
+
+    def node(self, event, events, depth):
+        if depth > DEEPEST:
+            raise self.fault(event, f"is nested deeper than {DEEPEST} levels", "write it flatter")
+        self.note_extras(event)
+        if isinstance(event, yaml.MappingStartEvent):
+            return Node(self.where(event), "mapping", entries=self.entries(events, depth))
+        if isinstance(event, yaml.SequenceStartEvent):
+            return Node(self.where(event), "list", items=self.items(events, depth))
+        return Node(self.where(event), "text", text=getattr(event, "value", ""))
+
+    def entries(self, events, depth):
+        found = {}
+        for event in events:
+            if isinstance(event, yaml.MappingEndEvent):
+                return tuple(found.values())
+            key = self.node(event, events, depth + 1)
+            value = self.node(next(events), events, depth + 1)
+            if key.kind != "text":
+                self.faults.append(ConfigError(key.where, "a key is not plain text", "write 'key: value'"))
+            elif key.text in found:
+                self.faults.append(self.duplicate(key, found[key.text]))
+            else:
+                found[key.text] = Entry(key.text, key.where, value)
+
+    def items(self, events, depth):
+        found = []
+        for event in events:
+            if isinstance(event, yaml.SequenceEndEvent):
+                return tuple(found)
+            found.append(self.node(event, events, depth + 1))
+
+    def duplicate(self, key, first):
+        line = first.where.rsplit(":", 2)[1]
+        return ConfigError(key.where, f"key {shown(key.text)} is already in line {line}", "keep one of them")
+
+    def note_extras(self, event):
+        """Settings files stay plain: what stands in a line is all that counts."""
+        if isinstance(event, yaml.AliasEvent):
+            self.note(event, f"alias {shown('*' + event.anchor)} is not allowed", "write the value itself")
+        elif event.anchor is not None:
+            self.note(event, f"anchor {shown('&' + event.anchor)} is not allowed", "write the value alone")
+        elif event.tag is not None:
+            self.note(event, f"tag {shown(event.tag)} is not allowed", "write the value alone")
+
+    def note(self, event, what, mend):
+        self.faults.append(self.fault(event, what, mend))
+
+    def fault(self, event, what, mend):
+        return ConfigError(self.where(event), what, mend)
+
+    def where(self, event):
+        return f"{self.name}:{event.start_mark.line + 1}:{event.start_mark.column + 1}"
+
+
+def _syntax(name, error):
+    mark = error.problem_mark or error.context_mark
+    where = f"{name}:{mark.line + 1}:{mark.column + 1}" if mark else name
+    what = " ".join(f"is not YAML ({error.problem or error.context})".split())
+    return ConfigError(where, what, "check the colons, quotes and indentation here")
+
+
+def _position(fault):
+    """Sort key of a fault: line and column of a file; what is in no file comes last, in its order."""
+    numbers = str(fault.where).rsplit(":", 2)[1:]
+    in_file = len(numbers) == 2 and all(number.isdecimal() for number in numbers)
+    return tuple(map(int, numbers)) if in_file else (math.inf, 0)

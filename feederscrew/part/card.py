@@ -1,0 +1,183 @@
+"""Part cards: parts known by published data only, as YAML with the units in the text."""
+
+import numpy as np
+
+from feederscrew import check, documents, units
+from feederscrew.errors import ConfigError
+from feederscrew.part import mass
+from feederscrew.part.card_schema import ASPECT, CARD, FLOOR, TRACK
+from feederscrew.part.record import CardAspect, Part
+
+SLIP = 1e-9  # [1] of an entry: closer magnitudes are equal
+ROUNDING = 1e-3  # [1] by which rounded moments may miss the triangle inequality
+BLOCKS = (("floor", FLOOR), ("track", TRACK))
+RELATIVE = "relative"  # in place of sr, where a source states no unit
+
+
+def part(file):
+    """A part from a part card.
+
+    Parameters
+    ----------
+    file : feederscrew.part.read.File
+
+    Returns
+    -------
+    Part
+        Without volume, density and surface.
+
+    Raises
+    ------
+    Faults
+        Every fault of the card, one a line.
+    ConfigError
+        If it is not YAML.
+
+    Notes
+    -----
+    Where print gives an inertia matrix whose halves differ in sign alone, the card keeps it as printed; the
+    upper half is used and a warning says so. Their mean would lose the product of inertia.
+    """
+    root, faults = documents.load(file.data, file.where)
+    if root.kind != "mapping":
+        needed = ", ".join(key.word for key in CARD if key.required)
+        raise ConfigError(root.where, "no 'key: value' line", f"write {needed}")
+    told = _mapping(root, CARD, faults)
+    aspects = _aspects(told.get("aspects"), faults)
+    printed = {key: _mapping(told[key], keys, faults) for key, keys in BLOCKS if key in told}
+    faults += _strangers(root, printed, aspects)
+    inertia, said = _inertia(root, told.get("inertia"), faults)
+    documents.raise_all(faults)
+    return Part(
+        name=file.name,
+        source=file.source,
+        sha256=file.sha256,
+        units="mm",
+        material="part card",
+        density=None,
+        volume=None,
+        mass=told["mass"],
+        centre_of_mass=check.frozen(np.array(told["centre_of_mass"])),
+        inertia=check.frozen(inertia),
+        aspects=tuple(CardAspect(**aspect) for aspect in aspects),
+        printed=printed or None,
+        warnings=said,
+    )
+
+
+def _mapping(node, keys, faults):
+    """Values by word, in SI units; what is wrong is added to ``faults``."""
+    if node.kind != "mapping":
+        what = "is no block of 'key: value' lines"
+        faults.append(ConfigError(node.where, what, f"give it {', '.join(key.word for key in keys)}"))
+        return {}
+    known = {key.word: key for key in keys}
+    told = {}
+    for entry in node.entries:
+        if entry.key not in known:
+            what = f"unknown key {units.shown(entry.key)}"
+            faults.append(ConfigError(entry.where, what, documents.hint(entry.key, list(known))))
+            continue
+        try:
+            told[entry.key] = _value(known[entry.key], entry.value)
+        except ConfigError as fault:
+            faults.append(fault)
+    given = {entry.key for entry in node.entries}
+    missing = [key for key in keys if key.required and key.word not in given]
+    if missing:
+        what = f"without {' and '.join(key.word for key in missing)}"
+        faults.append(ConfigError(node.where, what, f"add {missing[0].word}: {missing[0].example}"))
+    return told
+
+
+def _value(key, node):
+    if key.dimension in ("section", "rows"):
+        return node
+    return _listed(key, node, key.shape)
+
+
+def _listed(key, node, shape):
+    if shape:
+        if node.kind != "list" or len(node.items) != shape[0]:
+            raise ConfigError(node.where, f"{key.word} is no list of {shape[0]}", f"write {key.example}")
+        return tuple(_listed(key, item, shape[1:]) for item in node.items)
+    if node.kind != "text" or not node.text:
+        raise ConfigError(node.where, f"{key.word} has no value", f"write {key.example}")
+    return node.text if key.dimension == "text" else _quantity(key, node)
+
+
+def _quantity(key, node):
+    try:
+        if key.dimension == "solid angle" and units.split(node.text)[1] == RELATIVE:
+            value = units.split(node.text)[0]
+        else:
+            value = units.quantity(node.text, key.dimension)
+    except units.QuantityError as fault:
+        raise ConfigError(node.where, f"{key.word}: {fault.what}", fault.mend) from None
+    if key.positive and not value > 0.0:
+        raise ConfigError(node.where, f"{key.word} is {units.one_line(node.text)}", "give more than zero")
+    if key.dimension == "number" and value % 1.0:
+        raise ConfigError(node.where, f"{key.word} is {units.one_line(node.text)}", "give a whole number")
+    return value
+
+
+def _aspects(rows, faults):
+    """Keywords of each CardAspect, and the fault of an aspect given twice."""
+    if rows is None:
+        return []
+    if rows.kind != "list" or not rows.items:
+        faults.append(ConfigError(rows.where, "aspects is no list", "write - {aspect: 1, height: 6.9 mm}"))
+        return []
+    aspects, seen = [], {}
+    for row in rows.items:
+        told = _mapping(row, ASPECT, faults)
+        name = told.get("aspect")
+        if name in seen:
+            what = f"aspect {units.shown(name)} is already in line {seen[name].rsplit(':', 2)[1]}"
+            faults.append(ConfigError(row.where, what, "keep one of them"))
+        elif name is not None:
+            seen[name] = row.where
+        aspects.append(_keywords(told, row))
+    return aspects
+
+
+def _keywords(told, row):
+    angle = row.find("solid_angle")
+    in_sr = angle is None or not angle.value.text.strip().endswith(RELATIVE)
+    renamed = {"name" if word == "aspect" else word: value for word, value in told.items()}
+    return renamed | {"faces": int(told.get("faces", 1)), "solid_angle_in_sr": in_sr}
+
+
+def _strangers(root, printed, aspects):
+    """Faults of blocks that name an aspect the card does not list."""
+    names = [aspect.get("name") for aspect in aspects]
+    return [
+        ConfigError(
+            root.find(block).value.find("aspect").value.where,
+            f"{block}: the card lists no aspect {units.shown(told['aspect'])}",
+            f"known are {', '.join(map(str, names))}",
+        )
+        for block, told in printed.items()
+        if "aspect" in told and told["aspect"] not in names
+    ]
+
+
+def _inertia(root, rows, faults):
+    """(3, 3) [kg m2] symmetric inertia of a card, and what to say of it."""
+    if rows is None:
+        return np.zeros((3, 3)), ()
+    printed, where = np.array(rows), root.find("inertia").value.where
+    upper = np.triu(printed) + np.triu(printed, 1).T
+    if np.allclose(printed, upper, rtol=SLIP, atol=0.0):
+        said = ()
+    elif np.allclose(np.abs(printed), np.abs(upper), rtol=SLIP, atol=0.0):
+        said = (f"{where}: the inertia matrix is not symmetric (signs differ): its upper half is used",)
+    else:
+        faults.append(ConfigError(where, "the inertia matrix is not symmetric", "make its halves equal"))
+        return upper, ()
+    moments, _ = mass.principal(upper)
+    if moments[0] <= 0.0 or moments[0] + moments[1] < moments[2] * (1.0 - ROUNDING):
+        told = ", ".join(f"{moment / units.factor('g mm2', 'inertia'):.4g}" for moment in moments)
+        what = f"no body has the principal moments {told} g mm2"
+        faults.append(ConfigError(where, what, "the largest must not exceed the sum of the others"))
+    return upper, said

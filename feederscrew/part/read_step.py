@@ -1,0 +1,53 @@
+"""STEP files, tessellated by OpenCASCADE in a process of its own: a damaged file can end that process."""
+
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+FLATNESS, TURN = 0.01, 0.1  # [mm, rad] between a curved face and its facets, and from facet to facet
+PATIENCE = 600.0  # [s]
+CONVERT = (
+    "import sys, cascadio; source, target, *tolerances = sys.argv[1:];"
+    "sys.exit(cascadio.step_to_glb(source, target, *map(float, tolerances), use_parallel=False))"
+)
+UNITS = ((rb"CONVERSION_BASED_UNIT\s*\(\s*'INCH", "in"), (rb"\.CENTI\.\s*,\s*\.METRE\.", "cm"))
+METRE = rb"SI_UNIT\s*\(\s*\$\s*,\s*\.METRE\."
+
+
+def glb(data):
+    """A STEP file as GLB, in metres.
+
+    Parameters
+    ----------
+    data : bytes
+
+    Returns
+    -------
+    bytes
+
+    Raises
+    ------
+    ValueError
+        If it cannot be converted.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        source, target = Path(folder, "part.step"), Path(folder, "part.glb")
+        source.write_bytes(data)
+        call = [sys.executable, "-c", CONVERT, str(source), str(target), str(FLATNESS), str(TURN)]
+        try:
+            done = subprocess.run(call, capture_output=True, timeout=PATIENCE, check=False)
+        except subprocess.TimeoutExpired:
+            raise ValueError(f"no answer in {PATIENCE:.0f} s") from None
+        if done.returncode != 0 or not target.exists():
+            raise ValueError("OpenCASCADE cannot convert it")
+        return target.read_bytes()
+
+
+def unit(data):
+    """The length unit a STEP file is drawn in; millimetres where it does not tell."""
+    for pattern, name in UNITS:
+        if re.search(pattern, data):
+            return name
+    return "m" if re.search(METRE, data) else "mm"

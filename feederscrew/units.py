@@ -1,0 +1,152 @@
+"""Quantities as people write them, '0.5 mm', in SI units: the one place for every factor."""
+
+import math
+import re
+
+FOOT, INCH, POUND = 0.3048, 0.0254, 0.45359237  # [m, m, kg] exact by definition
+MINUTE, HOUR = 60.0, 3600.0  # [s]
+DEGREE, TURN = math.pi / 180.0, 2.0 * math.pi  # [rad]
+
+UNITS = {  # dimension: {unit: SI units in it}, the unit we suggest first
+    "number": {"": 1.0, "%": 0.01},
+    "length": {"mm": 1e-3, "m": 1.0, "cm": 1e-2, "um": 1e-6, "in": INCH, "ft": FOOT},
+    "area": {"mm2": 1e-6, "m2": 1.0, "cm2": 1e-4, "in2": INCH**2},
+    "volume": {"mm3": 1e-9, "m3": 1.0, "cm3": 1e-6, "l": 1e-3, "ml": 1e-6, "in3": INCH**3},
+    "angle": {"deg": DEGREE, "rad": 1.0, "mrad": 1e-3, "turn": TURN},
+    "solid angle": {"sr": 1.0},
+    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": MINUTE, "h": HOUR},
+    "frequency": {"Hz": 1.0, "kHz": 1e3, "1/s": 1.0, "1/min": 1.0 / MINUTE, "rpm": 1.0 / MINUTE},
+    "rate": {
+        "/min": 1.0 / MINUTE,
+        "1/min": 1.0 / MINUTE,
+        "/s": 1.0,
+        "1/s": 1.0,
+        "/h": 1.0 / HOUR,
+        "1/h": 1.0 / HOUR,
+    },
+    "velocity": {"mm/s": 1e-3, "m/s": 1.0, "m/min": 1.0 / MINUTE, "in/s": INCH, "ft/min": FOOT / MINUTE},
+    "angular velocity": {"rad/s": 1.0, "deg/s": DEGREE, "rpm": TURN / MINUTE},
+    "acceleration": {"m/s2": 1.0, "mm/s2": 1e-3, "cm/s2": 1e-2, "in/s2": INCH, "ft/s2": FOOT},
+    "mass": {"g": 1e-3, "kg": 1.0, "mg": 1e-6, "lb": POUND, "oz": POUND / 16.0},
+    "density": {
+        "g/cm3": 1e3,
+        "kg/m3": 1.0,
+        "kg/dm3": 1e3,
+        "g/ml": 1e3,
+        "t/m3": 1e3,
+        "lb/in3": POUND / INCH**3,
+    },
+    "inertia": {"g mm2": 1e-9, "kg m2": 1.0, "kg mm2": 1e-6, "g cm2": 1e-7, "kg cm2": 1e-4},
+    "force": {"N": 1.0, "mN": 1e-3, "kN": 1e3},
+    "energy": {"J": 1.0, "mJ": 1e-3, "uJ": 1e-6},
+}
+SPELLINGS = {"°": "deg", "degree": "deg", "degrees": "deg", "µm": "um", "μm": "um", "inch": "in", '"': "in"}
+NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![\d._,+-])", re.ASCII)
+COMMA = re.compile(r"[+-]?\d+,\d+", re.ASCII)
+PLAIN = str.maketrans({"²": "2", "³": "3", "^": None, "*": " ", "·": " ", "\N{MINUS SIGN}": "-"})
+
+
+class QuantityError(ValueError):
+    """A text that is no quantity of the wanted dimension: what is wrong and how to mend it."""
+
+    def __init__(self, what, mend):
+        super().__init__(f"{what} - {mend}")
+        self.what, self.mend = what, mend
+
+
+def quantity(text, dimension, *, suggest=None, bare=None):
+    """A quantity as typed, in SI units.
+
+    Parameters
+    ----------
+    text : str
+        Number and unit, '0.5 mm'; a number alone where the dimension is 'number'.
+    dimension : str
+        A key of ``UNITS``.
+    suggest : str, optional
+        Unit to name when one is missing; the first of the dimension otherwise.
+    bare : str, optional
+        Unit of a number without one; without ``bare`` such a number is refused.
+
+    Returns
+    -------
+    float [SI]
+
+    Raises
+    ------
+    QuantityError
+        If the text is no finite number, or its unit is missing, unknown or of another dimension.
+    """
+    number, unit = split(text)
+    if unit == "" and bare is not None:
+        unit = bare
+    if unit not in UNITS[dimension]:
+        raise _wrong_unit(text.strip(), unit, dimension, suggest or next(iter(UNITS[dimension])))
+    return number * UNITS[dimension][unit]
+
+
+def factor(unit, dimension):
+    """How many SI units one ``unit`` is; raises KeyError for a unit of another dimension."""
+    return UNITS[dimension][unit]
+
+
+def split(text):
+    """Number and unit of '0.5 mm', as (0.5, 'mm'); raises QuantityError where no number leads."""
+    plain = text.strip().translate(PLAIN)
+    if COMMA.match(plain):
+        raise QuantityError(f"{shown(text)} has a comma", _without_comma(plain))
+    match = NUMBER.match(plain)
+    if match is None:
+        raise _no_number(text)
+    number = float(match.group())
+    if not math.isfinite(number):
+        raise QuantityError(f"{shown(text)} is too large", "give a finite number")
+    unit = " ".join(plain[match.end() :].split())
+    return number, SPELLINGS.get(unit, unit)
+
+
+def one_line(text):
+    """A user's text fit for a message: printable, on one line and not too long."""
+    line = " ".join("".join(c if c.isprintable() else " " for c in text).split())
+    return line if len(line) <= 40 else f"{line[:37]}..."
+
+
+def shown(text):
+    """A user's text fit for a message, in quotes."""
+    return f"'{one_line(text)}'"
+
+
+def _no_number(text):
+    return QuantityError(f"{shown(text)} is not a number", "write digits with a decimal point, as in 0.4")
+
+
+def _without_comma(plain):
+    whole, _, rest = plain.partition(",")
+    return "write it without commas" if "," in rest else f"write {whole}.{rest}"
+
+
+def _wrong_unit(text, unit, dimension, suggest):
+    known = next((other for other, units in UNITS.items() if unit in units), None)
+    if dimension == "number":
+        what = f"{shown(text)} has a unit, and this is a plain number"
+        return QuantityError(what, "write the number alone") if known else _no_number(text)
+    if unit == "":
+        return QuantityError(f"{shown(text)} has no unit", f"write {text} {suggest}")
+    if known:
+        what = f"{shown(text)} is {_with_article(known)}, not {_with_article(dimension)}"
+        return QuantityError(what, f"give it in {suggest}")
+    return QuantityError(
+        f"{shown(text)}: {shown(unit)} is no unit of {dimension}", _units_of(unit, dimension)
+    )
+
+
+def _with_article(dimension):
+    name = "percentage" if dimension == "number" else dimension
+    return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
+
+
+def _units_of(unit, dimension):
+    folded = {known.lower(): known for known in UNITS[dimension]}
+    if unit.lower() in folded:
+        return f"did you mean {folded[unit.lower()]}?"
+    return f"known are {', '.join(UNITS[dimension])}"

@@ -1,0 +1,121 @@
+"""YAML trees with their places, and what is said of texts that are no settings."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from feederscrew import documents
+from feederscrew.errors import ConfigError, Faults, FeederError
+
+
+def test_every_word_keeps_its_place_and_its_text():
+    root, faults = documents.load("drive:\n  amplitude: 0,5 mm\nlist: [yes, '1']\n", "b.yaml")
+    assert not faults
+    drive, items = root.entries
+    amplitude = drive.value.find("amplitude")
+    assert (amplitude.where, amplitude.value.where) == ("b.yaml:2:3", "b.yaml:2:14")
+    assert amplitude.value.text == "0,5 mm"
+    assert [(item.text, item.where) for item in items.value.items] == [
+        ("yes", "b.yaml:3:8"),
+        ("1", "b.yaml:3:13"),
+    ]
+    assert root.find("drave") is None
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("", "b.yaml: is empty - write at least one 'key: value' line"),
+        ("# a comment\n", "b.yaml: is empty - write at least one 'key: value' line"),
+        (
+            "a: 1\nb: c: d\n",
+            "b.yaml:2:5: is not YAML (mapping values are not allowed here)"
+            " - check the colons, quotes and indentation here",
+        ),
+        (
+            "a:\n\tb: 1\n",
+            r"b.yaml:2:1: is not YAML (found character '\t' that cannot start any token)"
+            " - check the colons, quotes and indentation here",
+        ),
+        ("a: 1\n---\nb: 2\n", "b.yaml:2:1: a second document begins - keep one document in a file"),
+        ("[" * 50, "b.yaml:1:14: is nested deeper than 12 levels - write it flatter"),
+        (b"a: 1\nb: \xff\n", "b.yaml:2: byte 0xff is not UTF-8 - save the file as UTF-8 text"),
+        ("a: 1\nb: \x00\n", "b.yaml:2: has the character U+0000, which no text file needs - remove it"),
+        ("x" * 200_001, "b.yaml: has more than 200 kB - name a YAML file of settings"),
+    ],
+)
+def test_texts_that_are_no_document(text, told):
+    with pytest.raises(ConfigError) as caught:
+        documents.load(text, "b.yaml")
+    assert caught.value.lines == (told,)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("a: 1\nb: 2\na: 3\n", "b.yaml:3:1: key 'a' is already in line 1 - keep one of them"),
+        ("a: &x 1\n", "b.yaml:1:4: anchor '&x' is not allowed - write the value alone"),
+        ("a: *x\n", "b.yaml:1:4: alias '*x' is not allowed - write the value itself"),
+        (
+            "a: !!float 1\n",
+            "b.yaml:1:4: tag 'tag:yaml.org,2002:float' is not allowed - write the value alone",
+        ),
+        ("? [a]\n: 2\n", "b.yaml:1:3: a key is not plain text - write 'key: value'"),
+    ],
+)
+def test_faults_that_do_not_hide_the_rest(text, told):
+    _, faults = documents.load(text, "b.yaml")
+    assert [str(fault) for fault in faults] == [told]
+
+
+def test_a_duplicate_keeps_the_first_value():
+    root, _ = documents.load("a: 1\na: 2\n", "b.yaml")
+    assert [entry.value.text for entry in root.entries] == ["1"]
+
+
+def test_files_that_cannot_be_read(tmp_path):
+    missing = tmp_path / "no.yaml"
+    for path, told in (
+        (missing, "no such file - check the path"),
+        (tmp_path, "is a folder - name a YAML file in it"),
+    ):
+        with pytest.raises(ConfigError) as caught:
+            documents.read(path)
+        assert caught.value.lines == (f"{path}: {told}",)
+
+
+def test_a_byte_order_mark_is_no_text(tmp_path):
+    file = tmp_path / "b.yaml"
+    file.write_bytes(b"\xef\xbb\xbfa: 1\r\n")
+    assert documents.read(file)[0].find("a").value.text == "1"
+
+
+def test_faults_are_told_in_order_and_once_a_place():
+    faults = [
+        ConfigError(where, "x", "y") for where in ("--set b", "f:10:1", "f:2:9", "f:2:10", "f:2:9", "--set a")
+    ]
+    with pytest.raises(Faults) as caught:
+        documents.raise_all(faults)
+    assert [fault.where for fault in caught.value.faults] == [
+        "f:2:9",
+        "f:2:10",
+        "f:10:1",
+        "--set b",
+        "--set a",
+    ]
+    documents.raise_all([])
+
+
+def test_hints():
+    assert documents.hint("Amplitud", ["amplitude", "frequency"]) == "did you mean amplitude?"
+    assert documents.hint("xyz", ["amplitude", "frequency"]) == "known are amplitude, frequency"
+
+
+@given(st.text(st.sampled_from("ab:-?[]{},&*!|>'\"%@#<\n\t 1"), max_size=60))
+@settings(max_examples=300, deadline=None)
+def test_any_text_is_a_tree_or_faults_of_one_line(text):
+    try:
+        _, faults = documents.load(text, "b.yaml")
+    except FeederError as error:
+        faults = [error]
+    assert all("\n" not in str(fault) for fault in faults)
