@@ -1,0 +1,49 @@
+"""``feeder config``: write a bowl file, show what holds."""
+
+import click
+
+from cli import options
+
+
+@click.group(short_help="Write a commented bowl file; show the values in effect.")
+def config():
+    """Example: feeder config init bowl.yaml
+
+    Bowl files: start one with all defaults, or show the values in effect and where each came from.
+    """
+
+
+@config.command(short_help="Write a commented bowl file of all defaults.")
+@click.argument("file", type=options.FILE, default="-")
+@click.option("--force", is_flag=True, help="Replace the file if it exists.")
+def init(file, force):
+    """Example: feeder config init bowl.yaml
+
+    Write a bowl file of all defaults, each key with its meaning, to FILE or to standard output.
+    """
+    from feederscrew.bowl import documentation
+
+    if file == "-":
+        click.echo(documentation.template(), nl=False)
+    else:
+        documentation.write_template(file, replace=force)
+        click.echo(f"Wrote {file}", err=True)
+
+
+@config.command(short_help="Show the values in effect and where each came from.")
+@options.bowl
+@options.output
+def show(bowl, out):
+    """Example: feeder config show --config bowl.yaml --set drive.frequency="50 Hz"
+
+    Show every value in effect and where it came from: the default, a line of the bowl file, or --set.
+    """
+    from feederscrew.bowl import identity, name, settings, texts
+    from feederscrew.output import slide_tables, tables
+
+    given, path = settings(**bowl), bowl["path"]
+    frame = slide_tables.settings(given)
+    with out.folder(name(path), identity(path), texts(given)) as folder:
+        if folder:
+            folder.write("config.csv", tables.text(frame, "csv"))
+    out.show(frame, {"settings": frame}, hidden=("lowest", "highest", "meaning"))

@@ -1,0 +1,30 @@
+"""``feeder inertia``."""
+
+import click
+
+from cli import options
+
+
+@click.command(short_help="Volume, mass, centre of mass and inertia of a part.")
+@options.part
+@options.output
+def inertia(part, out):
+    """Example: feeder inertia parts/hexbolt_m8x25.stl --density brass
+
+    Volume, mass, centre of mass, inertia about the centre of mass and about the file's origin,
+    principal moments and axes, convex hull and bounding box of PART.
+
+    PART is a mesh (STL, OBJ, PLY, OFF, GLB, 3MF, STEP), a part card (YAML), or - for standard
+    input; what a card does not tell stays empty. With -o: inertia.csv, or inertia.json with
+    --format json, and run.json.
+    """
+    from feederscrew.output import columns, inertia_tables
+    from feederscrew.part.mass_balance import balance
+
+    solid = out.part(part)
+    told = inertia_tables.document(solid, balance(solid))
+    out.say(f"Material: {solid.material}")
+    with out.folder(solid.name, {solid.source: solid.sha256}, columns.conditions(solid)) as folder:
+        if folder:
+            inertia_tables.write(folder, told, out.format)
+    out.show(inertia_tables.rows(told), told)

@@ -1,0 +1,66 @@
+"""``feeder slide``."""
+
+import click
+
+from cli import options
+
+
+class Angle(click.ParamType):
+    """A vibration angle, '20' or '20 deg', within the limits of the bowl file's; in radians."""
+
+    name = "angle"
+
+    def convert(self, value, param, ctx):
+        """The angle, or a wrong call."""
+        from feederscrew.bowl.reading import checked
+        from feederscrew.bowl.schema import BY_NAME
+        from feederscrew.errors import ConfigError
+
+        key = BY_NAME["drive.vibration_angle"]
+        try:
+            return checked(key, value, key.name, bare=True).value
+        except ConfigError as fault:
+            return self.fail(f"{fault.what} - {fault.mend}", param, ctx)
+
+
+@click.command(short_help="Map of when a part slips, and which way.")
+@click.option(
+    "--beta",
+    "betas",
+    type=Angle(),
+    metavar="DEG",
+    multiple=True,
+    help="Vibration angle; repeatable.  [default: the bowl's]",
+)
+@click.option("--as-published", is_flag=True, help="Keep mu_limit where [4.27] is negative, as past the hop.")
+@options.bowl
+@options.pictures
+@options.output
+def slide(betas, as_published, bowl, pictures, out):
+    """Example: feeder slide --beta 20 --set friction.static=0.4 -o results
+
+    Map the limiting friction over alpha - theta (from the part's heading to the vibration) and the
+    acceleration ratio G = A w2/g, and what a part does there at the bowl's own friction: ride, slip
+    forward, backward or both ways within a cycle, or hop.
+
+    mu_limit is the thesis's [4.27] for a level floor; mu_forward and mu_backward are the friction
+    that stops either slip on the bowl's track, whose smooth wall takes what is across it. Beyond
+    90 deg the drive points back and the two change places. The table sums up the bowl's own point;
+    --format csv prints every cell. With -o: slide.csv, a surface, contour lines and regimes for
+    each angle, and curves over all, as PNG.
+    """
+    from feederscrew.bowl import identity, name, record, settings, texts
+    from feederscrew.maps import slide
+    from feederscrew.output import slide_tables
+
+    given, path = settings(**bowl), bowl["path"]
+    feeder = record(given)
+    angles = dict.fromkeys(betas or [feeder.drive.vibration_angle])
+    with out.folder(name(path), identity(path), texts(given)) as folder:
+        maps = [slide(feeder, beta, as_published=as_published) for beta in angles]
+        if folder:
+            from feederscrew.output import slide_sheets
+
+            slide_sheets.slides(folder, feeder, maps, pictures=pictures)
+    out.say(*slide_tables.remarks(maps))
+    out.show(slide_tables.frame(maps, out.format), slide_tables.document(maps, texts(given), as_published))

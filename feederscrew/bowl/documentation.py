@@ -1,0 +1,67 @@
+"""The schema for people: a commented bowl file and a table of its keys."""
+
+from pathlib import Path
+
+from feederscrew.bowl.schema import BY_NAME, KEYS, rival
+from feederscrew.bowl.settings import default
+from feederscrew.errors import FeederError
+
+WHY = """\
+The defaults are a plain case to start from: steel on a dry steel track that climbs 3 deg, at 60 Hz. The
+stroke is one at which the part slips forward and never back, and does not hop, whether its friction is
+a sixth lower or half as high again. Measure your own: tilt the track until the part slides, and write
+the tangent of that angle as static friction.
+"""
+
+
+def template():
+    """A bowl file of all defaults, commented: what ``feeder config init`` writes."""
+    lines = [
+        "# A bowl feeder: its drive, its surface and its track. Write a unit after every dimensional value."
+    ]
+    lines += [f"# {line}" for line in WHY.splitlines()]
+    section = ""
+    for key in KEYS:
+        if key.section != section:
+            section = key.section
+            lines += ["", f"{section}:"] if section else [""]
+        lines.append(_template_line(key))
+    return "\n".join(lines) + "\n"
+
+
+def write_template(path, *, replace=False):
+    """Write ``template`` to a file; FeederError if it exists, unless ``replace``, or cannot be made."""
+    try:
+        with Path(path).open("w" if replace else "x", encoding="utf-8", newline="\n") as file:
+            file.write(template())
+    except FileExistsError:
+        raise FeederError(
+            path, "exists already", "name another file, or pass --force to replace it"
+        ) from None
+    except OSError as error:
+        raise FeederError(
+            path, f"cannot be written ({error.strerror})", "name a file in a folder of yours"
+        ) from None
+
+
+def markdown():
+    """The keys as a Markdown table, for the README."""
+    head = "| Key | Default | From | To | Meaning |\n|---|---|---|---|---|\n"
+    return head + "".join(
+        f"| `{key.name}` | {_default_for_people(key)} | {key.lowest} | {key.highest} | {key.meaning} |\n"
+        for key in KEYS
+    )
+
+
+def _template_line(key):
+    """'amplitude: 0.05 mm  # ...'; a key that follows another stands behind a comment sign."""
+    indent, follows = "  " if key.section else "", key.default in BY_NAME
+    text = f"{indent}{'# ' if follows else ''}{key.word}: {default(key).text}"
+    left_out = f" (left out: {_default_for_people(key)})" if follows else ""
+    return f"{text:<27}# {key.meaning}{left_out}"
+
+
+def _default_for_people(key):
+    if key.default not in BY_NAME:
+        return key.default
+    return f"as {key.default}" if rival(key) is None else f"from {key.default}"

@@ -1,0 +1,180 @@
+"""Bowl files and --set, checked against the schema; every fault is told, each with its place."""
+
+from feederscrew import documents, units
+from feederscrew.bowl.schema import BY_NAME, KEYS, SECTIONS, rival
+from feederscrew.bowl.settings import Setting, default, effective, replaced
+from feederscrew.errors import ConfigError
+
+ELSEWHERE = ("devices",)  # read where they are used: feederscrew.motion.devices
+TOP_LEVEL = (*SECTIONS, *(key.name for key in KEYS if not key.section))
+
+
+def settings(path=None, overrides=()):
+    """Every value in effect.
+
+    Parameters
+    ----------
+    path : str or Path or None
+        Bowl file; None for the defaults alone.
+    overrides : sequence of str
+        'drive.frequency=50 Hz', as ``--set`` takes them; the last of one key holds.
+
+    Returns
+    -------
+    tuple of Setting
+        One a key, in the order of ``schema.KEYS``.
+
+    Raises
+    ------
+    Faults
+        Every fault of the file and of the overrides, one a line.
+    """
+    in_file, faults = ({}, []) if path is None else _from_file(path)
+    typed = _from_overrides(overrides, faults)
+    given = {name: s for name, s in in_file.items() if not replaced(s.key, typed)} | typed
+    documents.raise_all([*faults, *_kinetic_above_static(given)])
+    return effective(given)
+
+
+def checked(key, text, where, *, bare=False):
+    """One value as a Setting.
+
+    Parameters
+    ----------
+    key : Key
+    text : str
+        As typed.
+    where : str
+        For the fault, which names the key itself unless ``where`` does.
+    bare : bool
+        Whether a number without a unit is taken in ``key.unit``.
+
+    Returns
+    -------
+    Setting
+
+    Raises
+    ------
+    ConfigError
+        If it is no quantity of the key's dimension and range.
+    """
+    subject = "" if where.endswith(key.name) else f"{key.name}: "
+    try:
+        value = units.quantity(text, key.dimension, suggest=key.unit, bare=key.unit if bare else None)
+    except units.QuantityError as fault:
+        raise ConfigError(where, f"{subject}{fault.what}", fault.mend) from None
+    low, high = (units.quantity(limit, key.dimension) for limit in (key.lowest, key.highest))
+    if not low <= value <= high:
+        what = f"{subject}{units.shown(text)} is out of range"
+        raise ConfigError(where, what, f"give {key.lowest} to {key.highest}")
+    return Setting(key, " ".join(text.split()), value, where)
+
+
+def _from_file(path):
+    root, faults = documents.read(path)
+    if root.kind != "mapping":
+        raise ConfigError(root.where, "no 'key: value' line", "start from 'feeder config init'")
+    given = {}
+    for entry in root.entries:
+        if entry.key in SECTIONS:
+            _read_section(entry, given, faults)
+        elif entry.key in TOP_LEVEL:
+            _read_value(BY_NAME[entry.key], entry, given, faults)
+        elif entry.key not in ELSEWHERE:
+            faults.append(_unknown(entry, "", TOP_LEVEL))
+    return given, faults
+
+
+def _read_section(section, given, faults):
+    value = section.value
+    if value.kind == "list" or value.text:
+        what = f"'{section.key}' is a section, not a value"
+        faults.append(ConfigError(value.where, what, f"indent its keys below '{section.key}:'"))
+    words = [key.word for key in KEYS if key.section == section.key]
+    for entry in value.entries:
+        if entry.key in words:
+            _read_value(BY_NAME[f"{section.key}.{entry.key}"], entry, given, faults)
+        else:
+            faults.append(_unknown(entry, section.key, words))
+
+
+def _read_value(key, entry, given, faults):
+    try:
+        setting = _from_node(key, entry.value)
+    except ConfigError as fault:
+        faults.append(fault)
+        return
+    if replaced(key, given):
+        faults.append(_both(key, entry.where))
+    given[key.name] = setting
+
+
+def _from_node(key, node):
+    if node.kind != "text":
+        raise ConfigError(
+            node.where, f"{key.name} is a {node.kind}", f"write one value, such as {default(key).text}"
+        )
+    if not node.text:
+        raise ConfigError(node.where, f"{key.name} has no value", f"write {default(key).text}")
+    return checked(key, node.text, node.where)
+
+
+def _unknown(entry, section, known):
+    """The fault of a key that does not exist here; it may exist elsewhere."""
+    elsewhere = next((k for k in KEYS if entry.key in (k.word, k.name) and k.section != section), None)
+    mend = documents.hint(entry.key, known)
+    if elsewhere is not None:
+        mend = f"write {elsewhere.word} " + (
+            f"below '{elsewhere.section}:'" if elsewhere.section else "without indent"
+        )
+    return ConfigError(entry.where, f"unknown key {units.shown(entry.key)}", mend)
+
+
+def _from_overrides(overrides, faults):
+    """Settings of ``--set`` by key name; what is wrong is added to ``faults``."""
+    given = {}
+    for override in overrides:
+        try:
+            setting = _from_override(override)
+        except ConfigError as fault:
+            faults.append(fault)
+            continue
+        if replaced(setting.key, given):
+            faults.append(_both(setting.key, setting.where))
+        given[setting.key.name] = setting
+    return given
+
+
+def _from_override(override):
+    name, equals, text = override.partition("=")
+    name = name.strip()
+    where = f"--set {units.one_line(name)}"
+    if not equals:
+        raise ConfigError(where, "has no '='", 'write KEY=VALUE, as in --set drive.frequency="50 Hz"')
+    if name not in BY_NAME:
+        raise ConfigError(where, f"unknown key {units.shown(name)}", documents.hint(name, list(BY_NAME)))
+    if not text.strip():
+        raise ConfigError(where, "has no value", f"write {default(BY_NAME[name]).text}")
+    return checked(BY_NAME[name], text, where)
+
+
+def _both(key, where):
+    return ConfigError(where, f"{key.name} and {rival(key).name} are both given", "keep one of them")
+
+
+def _kinetic_above_static(given):
+    """The faults of kinetic coefficients above static ones, each told at the last word on either."""
+    held = {s.key.name: s for s in effective(given)}
+    told = []
+    for suffix in ("", "_backward"):
+        static, kinetic = held[f"friction.static{suffix}"], held[f"friction.kinetic{suffix}"]
+        if kinetic.value > static.value and (static.given or kinetic.given):
+            told.append(_above(static, kinetic))
+    return told
+
+
+def _above(static, kinetic):
+    static_last = not kinetic.given or static.origin == "--set" != kinetic.origin
+    last, other = (static, kinetic) if static_last else (kinetic, static)
+    what = f"{kinetic.key.name} {kinetic.text} is above {static.key.name} {static.text} ({other.where})"
+    return ConfigError(last.where, what, "lower the kinetic coefficient or raise the static one")

@@ -1,0 +1,120 @@
+"""The values in effect: what the user gave, completed by the defaults, each with where it came from."""
+
+import dataclasses
+from dataclasses import dataclass
+
+from feederscrew import units
+from feederscrew.bowl.record import Bowl, Drive, Friction, Track
+from feederscrew.bowl.schema import BY_NAME, KEYS, Key, rival
+
+RECORDS = {"drive": Drive, "friction": Friction, "track": Track}
+FOLLOWING = {
+    f"{name}.{field.name}"
+    for name, kind in RECORDS.items()
+    for field in dataclasses.fields(kind)
+    if field.default is None
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """The value in effect of one key."""
+
+    key: Key
+    text: str  # as typed: '0.5 mm'
+    value: float  # [SI]; an array while the key is varied
+    where: str  # 'bowl.yaml:2:14', '--set drive.amplitude', 'default', 'as friction.static'
+    given: bool = True  # by the user
+
+    @property
+    def origin(self):
+        """Where it came from, for people: 'bowl.yaml:2', '--set', 'default'."""
+        if not self.given:
+            return self.where
+        return self.where.split()[0] if self.where.startswith("--") else self.where.rpartition(":")[0]
+
+
+def effective(given):
+    """Complete settings.
+
+    Parameters
+    ----------
+    given : dict of str to Setting
+        What the user gave, by key name; of two keys of one field at most one.
+
+    Returns
+    -------
+    tuple of Setting
+        One a key, in the order of ``schema.KEYS``.
+    """
+    return tuple(_effective(key, given) for key in KEYS)
+
+
+def record(settings):
+    """The Bowl of complete settings; a field is an array where its setting's value is one.
+
+    A field that may be None, 'as the other one', stays so until its key is given: a Bowl in which the other
+    is replaced later must not keep the old value.
+    """
+    fields = {s.key.field: s.value * s.key.share for s in settings}
+    fields |= {s.key.field: None for s in settings if s.key.field in FOLLOWING and not s.given}
+    sections = {name: {} for name in RECORDS}
+    for name, value in fields.items():
+        section, _, word = name.rpartition(".")
+        sections.setdefault(section, {})[word] = value
+    top_level = sections.pop("")
+    return Bowl(**{name: RECORDS[name](**values) for name, values in sections.items()}, **top_level)
+
+
+def swept(settings, values):
+    """The Bowl of settings of which some are varied.
+
+    Parameters
+    ----------
+    settings : tuple of Setting
+    values : dict of str to array_like [SI]
+        By key name; arrays that broadcast together. A key that takes its value from
+        a varied one varies with it.
+
+    Returns
+    -------
+    Bowl
+        Varied fields are those arrays.
+    """
+    varied = {name: Setting(BY_NAME[name], "", value, "--vary") for name, value in values.items()}
+    given = {s.key.name: s for s in settings if s.given and not replaced(s.key, varied)}
+    return record(effective(given | varied))
+
+
+def texts(settings):
+    """The settings by key name, as text: what run.json records."""
+    return {s.key.name: s.text for s in settings}
+
+
+def default(key):
+    """The Setting of a key while the user gives nothing."""
+    return _effective(key, {})
+
+
+def replaced(key, given):
+    """Whether another key of the same field is given."""
+    other = rival(key)
+    return other is not None and other.name in given
+
+
+def _effective(key, given):
+    if key.name in given:
+        return given[key.name]
+    if replaced(key, given) or key.default == getattr(rival(key), "name", None):
+        return _converted(key, _effective(rival(key), given))
+    if key.default in BY_NAME:
+        source = _effective(BY_NAME[key.default], given)
+        return Setting(key, source.text, source.value, f"as {key.default}", given=False)
+    return Setting(key, key.default, units.quantity(key.default, key.dimension), "default", given=False)
+
+
+def _converted(key, source):
+    """The same field said by its other key."""
+    value = source.value * source.key.share / key.share
+    text = f"{value / units.factor(key.unit, key.dimension):.6g} {key.unit}" if source.text else ""
+    return Setting(key, text, value, f"from {source.key.name}", given=False)

@@ -1,0 +1,73 @@
+"""``--vary KEY=a:b:n``: one key of the bowl over a range."""
+
+from dataclasses import dataclass
+
+from feederscrew import documents, units
+from feederscrew.bowl.reading import checked
+from feederscrew.bowl.schema import BY_NAME, Key
+from feederscrew.errors import ConfigError
+
+MOST = 2000  # values of one key
+
+
+@dataclass(frozen=True)
+class Range:
+    """Evenly spaced values of one key."""
+
+    key: Key
+    values: tuple[float, ...]  # [SI]
+
+
+def ranges(texts):
+    """The ranges of one command.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        'drive.vibration_angle=5:60:200': from 5 to 60 in 200 values. Both ends may carry a
+        unit, '0.05mm:0.6mm:20'; without one they are in the unit of the key's limits.
+
+    Returns
+    -------
+    tuple of Range
+
+    Raises
+    ------
+    Faults
+        Every fault of every text, one a line; also a field varied twice.
+    """
+    found, faults = {}, []
+    for text in texts:
+        try:
+            one = _range(text)
+            if one.key.field in found:
+                raise ConfigError(f"--vary {one.key.name}", "is varied twice", "vary two different keys")
+            found[one.key.field] = one
+        except ConfigError as fault:
+            faults.append(fault)
+    documents.raise_all(faults)
+    return tuple(found.values())
+
+
+def _range(text):
+    name, _, span = (part.strip() for part in text.partition("="))
+    where = f"--vary {units.one_line(name)}"
+    if name not in BY_NAME:
+        raise ConfigError(where, f"unknown key {units.shown(name)}", documents.hint(name, list(BY_NAME)))
+    ends = span.split(":")
+    if len(ends) != 3:
+        what = f"{units.shown(span)} is no range"
+        raise ConfigError(where, what, f"write FROM:TO:COUNT, as in {name}={_example(BY_NAME[name])}")
+    low, high = (checked(BY_NAME[name], end, where, bare=True).value for end in ends[:2])
+    steps = _count(ends[2], where) - 1
+    return Range(BY_NAME[name], tuple((low * (steps - i) + high * i) / steps for i in range(steps + 1)))
+
+
+def _count(text, where):
+    if text.strip().isascii() and text.strip().isdigit() and 2 <= int(text.strip()[:9]) <= MOST:
+        return int(text.strip())
+    raise ConfigError(where, f"{units.shown(text)} is no count", f"give a whole number from 2 to {MOST}")
+
+
+def _example(key):
+    return f"{key.lowest}:{key.highest}:20".replace(" ", "")

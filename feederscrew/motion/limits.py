@@ -1,0 +1,249 @@
+"""When a part starts to slip or hop: closed forms over the two reversals of the vibration.
+
+The part is a point on a surface that vibrates harmonically. At phase s = sin(w t), and per unit of
+weight, the normal force is cos(climb) cos(bank) - G s sin(beta) and the force that friction must
+supply along the track is sin(climb) - G s cos(beta) cos(alpha - theta), with G = A w^2 / g. A wall
+carries what is across the track; cos(alpha - theta) is 1 where there is none. What friction must
+supply over the normal force is monotone in s, so the limits lie at the reversals, s = +1 (the
+part is lightest) and s = -1 (heaviest).
+
+Every function takes numbers or arrays that broadcast together.
+
+References
+----------
+The thesis, section 4.3, for [4.27] and [4.28]: a level floor at s = +1. The track's limits are
+derived here from the two forces above.
+"""
+
+import numpy as np
+
+from feederscrew.errors import ConfigError
+
+REGIMES = ("ride", "forward", "backward", "both", "hop")  # a regime code is a place in this list
+RIDE, FORWARD, BACKWARD, BOTH, HOP = range(len(REGIMES))
+ROUNDING = 1e-9  # [1] a throw number this near 1 counts as hopping: there the forces hang on rounding
+
+USE = "leave it out, or use feeder convey"
+STRAIGHT = ("phase", "second_harmonic")  # of the drive: zero where it is straight and harmonic
+
+
+def plain(bowl):
+    """The bowl itself, once it shakes along a straight line, harmonically, with friction the same both ways.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its fields may be arrays.
+
+    Returns
+    -------
+    Bowl
+
+    Raises
+    ------
+    ConfigError
+        If it does not: the formulas for one point of the cycle know no other.
+    """
+    for word in STRAIGHT:
+        if np.any(getattr(bowl.drive, word) != 0.0):
+            raise ConfigError(
+                f"drive.{word}", "is not 0, and this command knows a straight harmonic drive only", USE
+            )
+    pairs = zip(("static", "kinetic"), bowl.friction.backward, strict=True)
+    for word, backward in pairs:
+        if np.any(backward != getattr(bowl.friction, word)):
+            what = f"is not friction.{word}, and this command knows one friction both ways only"
+            raise ConfigError(f"friction.{word}_backward", what, USE)
+    return bowl
+
+
+def acceleration_ratio(amplitude, frequency, gravity):
+    """G = A w^2 / g [1], from half stroke [m], frequency [Hz] and gravity [m/s2]."""
+    return amplitude * (2.0 * np.pi * np.asarray(frequency)) ** 2 / gravity
+
+
+def published_limit(ratio, beta, alpha_minus_theta=0.0):
+    """Limiting friction of the thesis: the least that holds on a level floor at the upper reversal.
+
+    Parameters
+    ----------
+    ratio : array_like [1]
+        G = A w^2 / g.
+    beta : array_like [rad]
+        Vibration angle above the floor.
+    alpha_minus_theta : array_like [rad]
+        From the part's heading to the vibration in the floor.
+
+    Returns
+    -------
+    array [1]
+        As printed: negative past the hop, G sin(beta) > 1, where no friction holds; infinite at it.
+
+    References
+    ----------
+    The thesis, eq. [4.27]; [4.28] for alpha = theta.
+    """
+    normal = 1.0 - ratio * np.sin(beta)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return ratio * np.cos(beta) * np.cos(alpha_minus_theta) / normal  # eq. [4.27]
+
+
+def throw_number(ratio, beta, climb=0.0, bank=0.0):
+    """k = G sin(beta) / (cos(climb) cos(bank)) [1]; the part hops where it is above 1."""
+    return ratio * np.sin(beta) / (np.cos(climb) * np.cos(bank))
+
+
+def hops(ratio, beta, climb=0.0, bank=0.0):
+    """Whether contact is lost within the cycle; at k = 1 within rounding it counts as lost."""
+    return throw_number(ratio, beta, climb, bank) >= 1.0 - ROUNDING
+
+
+def hop_ratio(beta, climb=0.0, bank=0.0):
+    """G [1] from which the part hops; infinite for beta = 0, where nothing lifts it."""
+    with np.errstate(divide="ignore"):
+        return np.cos(climb) * np.cos(bank) / np.sin(beta)
+
+
+def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_drag=0.0):
+    """Least static friction at which a part never slips forward, up the track.
+
+    Parameters
+    ----------
+    ratio : array_like [1]
+        G = A w^2 / g.
+    beta : array_like [rad]
+        Vibration angle above the track surface.
+    alpha_minus_theta : array_like [rad]
+        From the part's heading, up the track, to the vibration in the surface. Beyond 90 deg
+        the strokes change places: the part is lightest while it is pushed back.
+    climb, bank : array_like [rad]
+        Of the track.
+    wall_drag : array_like [1]
+        Greatest friction force of the wall over the part's weight; 0 for a smooth wall.
+
+    Returns
+    -------
+    array [1]
+        For a part aligned with the drive, (G cos b - sin c)/(cos c - G sin b). Zero or less
+        where no slip comes on any surface; NaN past the hop where it comes on every one.
+    """
+    push = ratio * np.cos(beta) * np.cos(alpha_minus_theta)
+    return _limit(push, np.sin(climb) + wall_drag, ratio, beta, climb, bank)
+
+
+def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_drag=0.0):
+    """Least static friction at which a part never slips back, down the track.
+
+    Parameters
+    ----------
+    ratio, beta, alpha_minus_theta, climb, bank, wall_drag : array_like
+        As for ``forward_limit``.
+
+    Returns
+    -------
+    array [1]
+        For a part aligned with the drive, (G cos b + sin c)/(cos c + G sin b). Zero or less
+        where no slip comes on any surface; NaN past the hop where it comes on every one.
+    """
+    push = ratio * np.cos(beta) * np.cos(alpha_minus_theta)
+    return _limit(-push, wall_drag - np.sin(climb), ratio, beta, climb, bank)
+
+
+def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_drag=0.0):
+    """G from which a part of a given static friction slips forward.
+
+    Parameters
+    ----------
+    friction : array_like [1]
+        Static.
+    beta, alpha_minus_theta, climb, bank, wall_drag : array_like
+        As for ``forward_limit``.
+
+    Returns
+    -------
+    array [1]
+        For a part aligned with the drive, sin(c + p)/cos(b - p) with p = atan(friction); zero
+        where it slides at rest; infinite where it hops before, or never slips.
+    """
+    along = np.cos(beta) * np.cos(alpha_minus_theta)
+    return _onset(friction, along, np.sin(climb) + wall_drag, beta, climb, bank)
+
+
+def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_drag=0.0):
+    """G from which a part of a given static friction slips back.
+
+    Parameters
+    ----------
+    friction : array_like [1]
+        Static.
+    beta, alpha_minus_theta, climb, bank, wall_drag : array_like
+        As for ``forward_limit``.
+
+    Returns
+    -------
+    array [1]
+        For a part aligned with the drive, sin(p - c)/cos(b + p) with p = atan(friction); zero
+        where it slides at rest; infinite where it hops before, or never slips.
+    """
+    along = np.cos(beta) * np.cos(alpha_minus_theta)
+    return _onset(friction, -along, wall_drag - np.sin(climb), beta, climb, bank)
+
+
+def least_forward_angle(friction, climb, bank=0.0):
+    """Vibration angle [rad] above which growing G brings forward slip before backward slip.
+
+    Parameters
+    ----------
+    friction : array_like [1]
+        Static.
+    climb, bank : array_like [rad]
+        Of the track; its wall is smooth.
+
+    Returns
+    -------
+    array [rad]
+        Holds while the drive points up the track in space, tan(beta) tan(climb) < cos(bank);
+        beyond that no vibration slips the part forward.
+    """
+    return np.arctan2(np.sin(climb), np.cos(climb) * np.cos(bank) * np.square(friction))
+
+
+def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_drag=0.0):
+    """What a part does within one cycle.
+
+    Parameters
+    ----------
+    ratio, beta, alpha_minus_theta, climb, bank, wall_drag : array_like
+        As for ``forward_limit``.
+    friction : array_like [1]
+        Static; a part whose friction equals a limit still rides.
+
+    Returns
+    -------
+    array of int
+        Places in ``REGIMES``.
+    """
+    where = (ratio, beta, alpha_minus_theta, climb, bank, wall_drag)
+    forward = friction < forward_limit(*where)
+    backward = friction < backward_limit(*where)
+    slips = np.where(forward, FORWARD, RIDE) + np.where(backward, BACKWARD, RIDE)
+    return np.where(hops(ratio, beta, climb, bank), HOP, slips)
+
+
+def _limit(push, resist, ratio, beta, climb, bank):
+    """Greatest (s push - resist) / (weight - s lift) while there is contact; NaN if unbounded."""
+    weight, lift = np.cos(climb) * np.cos(bank), ratio * np.sin(beta)
+    rises = push * weight > lift * resist  # the sign of its derivative in s
+    hopping = hops(ratio, beta, climb, bank)
+    light = np.where(hopping, np.nan, (push - resist) / np.where(hopping, 1.0, weight - lift))
+    return np.where(rises, light, (-push - resist) / (weight + lift))
+
+
+def _onset(friction, along, resist, beta, climb, bank):
+    """Least G with G s (along + friction sin b) > friction weight + resist at s = +1 or -1."""
+    weight = np.cos(climb) * np.cos(bank)
+    gain = along + friction * np.sin(beta)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = np.maximum(friction * weight + resist, 0.0) / np.abs(gain)
+    ratio = np.where(gain == 0.0, np.inf, ratio)
+    return np.where((gain > 0.0) & hops(ratio, beta, climb, bank), np.inf, ratio)

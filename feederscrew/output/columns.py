@@ -1,0 +1,91 @@
+"""Records as tables in the units of the shop: mm, g, degrees; the one place that converts them."""
+
+import numpy as np
+
+from feederscrew.output import tables
+from feederscrew.units import factor
+
+MM, MM2, MM3 = factor("mm", "length"), factor("mm2", "area"), factor("mm3", "volume")
+GRAM, G_MM2, G_CM3 = factor("g", "mass"), factor("g mm2", "inertia"), factor("g/cm3", "density")
+
+NORMALS = ("normal_x", "normal_y", "normal_z")
+
+
+def aspects(found, solid):
+    """The classes of resting aspects, one row each.
+
+    Parameters
+    ----------
+    found : Aspects
+    solid : Part
+        Whose they are; an open surface is labelled in every row.
+
+    Returns
+    -------
+    DataFrame
+        The columns of ``aspects.csv``.
+    """
+    normals = dict(zip(NORMALS, found.normals.T))
+    chances = {f"p_{rule}": chance for rule, chance in found.probabilities.items()}
+    return tables.frame(
+        {
+            "aspect": found.names,
+            "kind": found.kinds,
+            "faces": found.faces,
+            "stable": found.stable,
+            **normals,
+            "height_mm": found.heights / MM,
+            "contact_area_mm2": found.contact_areas / MM2,
+            "solid_angle_sr": found.solid_angles,
+            "polar_inertia_g_mm2": found.polar_inertias / G_MM2,
+            **chances,
+            **({"surface": ["open"] * len(found.names)} if solid.open_surface else {}),
+        }
+    )
+
+
+def part(solid, warnings=()):
+    """What every document says of its part.
+
+    Parameters
+    ----------
+    solid : Part
+    warnings : sequence of str
+        Told since it was read.
+
+    Returns
+    -------
+    dict
+    """
+    return {
+        "part": solid.name,
+        "units": solid.units,
+        "material": solid.material,
+        "density_g_cm3": _in(solid.density, G_CM3),
+        "mass_g": solid.mass / GRAM,
+        "volume_mm3": _in(solid.volume, MM3),
+        "centre_of_mass_mm": np.asarray(solid.centre_of_mass) / MM,
+        "inertia_g_mm2": np.asarray(solid.inertia) / G_MM2,
+        "open_surface": solid.open_surface,
+        "warnings": [*solid.warnings, *warnings],
+    }
+
+
+def conditions(solid):
+    """What was assumed of a part, for ``run.json``.
+
+    Parameters
+    ----------
+    solid : Part
+
+    Returns
+    -------
+    dict
+    """
+    known = part(solid)
+    names = ("units", "material", "density_g_cm3", "centre_of_mass_mm", "open_surface")
+    return {name: known[name] for name in names}
+
+
+def _in(value, unit):
+    return None if value is None else value / unit

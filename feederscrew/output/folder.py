@@ -1,0 +1,195 @@
+"""The folder of one part's results: all of a run's files or none, and a record of how they came about."""
+
+import contextlib
+import json
+import os
+import platform
+import shutil
+import tempfile
+from importlib import metadata
+from pathlib import Path, PurePosixPath
+
+from feederscrew import __version__
+from feederscrew.errors import FeederError
+from feederscrew.output import tables
+
+RECORD = "run.json"
+LIBRARIES = ("embreex", "matplotlib", "numba", "numpy", "pandas", "scipy", "trimesh")
+RESERVED = {"CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10))}
+
+
+class ResultFolder:
+    """Collects the files of one command on one input and puts them in place together.
+
+    Files are held back until ``keep``; a run that fails or is interrupted leaves the disk as it
+    was. Several commands share the folder: each replaces its own files only.
+
+    Parameters
+    ----------
+    root : str or Path
+        The folder of ``-o``.
+    name : str
+        Of the part or bowl file.
+    identity : dict of str to str
+        The sha256 of each input by its path, the one that names the folder first.
+
+    Raises
+    ------
+    FeederError
+        If the folder cannot be written, or holds the results of another input.
+    """
+
+    def __init__(self, root, name, identity):
+        self.root = Path(root)
+        self.path = self.root / safe_name(name)
+        self.identity = dict(identity)
+        self.staged = {}
+
+    def __enter__(self):
+        self._check_writable()
+        self._records()
+        return self
+
+    def __exit__(self, *fault):
+        return None
+
+    def write(self, name, content):
+        """Hold back one file, text or bytes, until ``keep``; '/' in the name makes folders."""
+        if not _inside(name) or name == RECORD:
+            raise ValueError(f"{name!r} is no name for a result")
+        self.staged[name] = content if isinstance(content, bytes) else content.encode()
+
+    def keep(self, command, *, arguments=(), effective=None, warnings=()):
+        """Put every file in place and record the run.
+
+        Parameters
+        ----------
+        command : str
+            Whose files these are; its files of an earlier run are replaced.
+        arguments : sequence of str
+            As typed.
+        effective : dict or None
+            The parameters that led to the numbers.
+        warnings : sequence of str
+            As told.
+        """
+        record = {
+            "version": __version__,
+            "arguments": list(arguments),
+            "inputs": [{"path": self._seen_from_here(p), "sha256": s} for p, s in self.identity.items()],
+            "effective": effective or {},
+            "warnings": list(warnings),
+            "libraries": {"python": platform.python_version(), **{n: metadata.version(n) for n in LIBRARIES}},
+            "files": sorted(self.staged),
+        }
+        made = _missing(self.path)
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+            with _locked(self.path):
+                self._put(command, record)
+        except OSError as error:
+            raise FeederError(
+                self.path, f"cannot be written ({error.strerror})", "give another folder to -o"
+            ) from error
+        finally:
+            for folder in made:
+                with contextlib.suppress(OSError):
+                    folder.rmdir()  # goes only if nothing came into it
+
+    def _put(self, command, record):
+        records = self._records()
+        old = records.get(command, {}).get("files", [])
+        records[command] = record
+        staging = Path(tempfile.mkdtemp(prefix=f".{self.path.name}.", dir=self.root))
+        try:
+            contents = {**self.staged, RECORD: tables.json_text(dict(sorted(records.items()))).encode()}
+            for name, content in contents.items():
+                _write(staging / name, content)
+            for name in contents:
+                (self.path / name).parent.mkdir(parents=True, exist_ok=True)
+                (staging / name).replace(self.path / name)
+        finally:
+            shutil.rmtree(staging, ignore_errors=True)
+        for name in old:
+            if name not in self.staged and _inside(name):
+                (self.path / name).unlink(missing_ok=True)
+
+    def _records(self):
+        """The record of each command with results here, once it is sure that they are of this input."""
+        file = self.path / RECORD
+        try:
+            records = json.loads(file.read_text())
+            owners = [record["inputs"][0] for record in records.values() if record["inputs"]]
+        except FileNotFoundError:
+            return {}
+        except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
+            raise FeederError(
+                file, "is no record of a run", "remove that folder, or give another to -o"
+            ) from error
+        for owner in owners:
+            self._check_owner(owner)
+        return records
+
+    def _check_owner(self, owner):
+        path, sha256 = next(iter(self.identity.items()), (None, None))
+        if path is None or owner["sha256"] == sha256:
+            return
+        if path == "-" or owner["path"] != self._seen_from_here(path):
+            raise FeederError(
+                self.path,
+                f"holds the results of another file, {owner['path']}",
+                "give another folder to -o, or rename the file",
+            )
+
+    def _seen_from_here(self, path):
+        """An input's path from this folder: the same wherever the project lies and one stands."""
+        if path == "-":
+            return path
+        try:
+            return Path(os.path.relpath(path, self.path)).as_posix()
+        except ValueError:  # another drive
+            return Path(path).absolute().as_posix()
+
+    def _check_writable(self):
+        nearest = next(p for p in (self.path.absolute(), *self.path.absolute().parents) if p.exists())
+        if not nearest.is_dir():
+            raise FeederError(nearest, "is a file, not a folder", "give another folder to -o")
+        if not os.access(nearest, os.W_OK | os.X_OK):
+            raise FeederError(nearest, "may not be written to", "give another folder to -o")
+
+
+def safe_name(name):
+    """A name that any file system takes as one folder."""
+    kept = "".join("_" if c in '<>:"/\\|?*' or ord(c) < 32 else c for c in name).rstrip(". ")
+    return f"{kept}_" if kept.split(".")[0].upper() in RESERVED or not kept else kept
+
+
+def _inside(name):
+    path = PurePosixPath(name)
+    return bool(path.parts) and not path.is_absolute() and ".." not in path.parts and "\\" not in name
+
+
+def _missing(path):
+    """The folders that making ``path`` makes, the innermost first."""
+    return [p for p in (path, *path.parents) if not p.exists()]
+
+
+def _write(path, content):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(content)
+
+
+@contextlib.contextmanager
+def _locked(folder):
+    """Two commands on one part take turns at its record."""
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        yield
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)

@@ -1,0 +1,99 @@
+"""Mass properties of a part as a document and as a table."""
+
+import numpy as np
+
+from feederscrew.output import columns, tables
+from feederscrew.output.columns import G_MM2, MM, MM3
+
+AXES = "xyz"
+NOISE = 1e-8  # of the largest of a vector or matrix: rounding of the file, 0 in the table
+
+
+def document(solid, balance):
+    """Everything ``feeder inertia`` tells, under names that carry their units.
+
+    Parameters
+    ----------
+    solid : Part
+    balance : Balance
+
+    Returns
+    -------
+    dict
+        None where a part card is silent.
+    """
+    told = columns.part(solid)
+    warnings = told.pop("warnings")
+    return told | {
+        "inertia_at_origin_g_mm2": balance.inertia_at_origin / G_MM2,
+        "principal_moments_g_mm2": balance.moments / G_MM2,
+        "principal_axes": balance.axes,
+        "hull_volume_mm3": _in(balance.hull_volume, MM3),
+        "bounding_box_mm": _in(balance.extents, MM),
+        "bounding_box_corner_mm": _in(balance.corner, MM),
+        "warnings": warnings,
+    }
+
+
+def rows(told):
+    """The numbers of a document, one a row.
+
+    Parameters
+    ----------
+    told : dict
+        From ``document``.
+
+    Returns
+    -------
+    DataFrame
+        Columns ``quantity`` and ``value``; NaN where a part card is silent.
+    """
+    scalars = ("density_g_cm3", "mass_g", "volume_mm3", "hull_volume_mm3")
+    listed = [
+        *((name, told[name]) for name in scalars),
+        *_vector(told["bounding_box_mm"], "bounding_box_{}_mm"),
+        *_vector(told["bounding_box_corner_mm"], "bounding_box_corner_{}_mm"),
+        *_vector(told["centre_of_mass_mm"], "centre_of_mass_{}_mm"),
+        *_matrix(told["inertia_g_mm2"], "inertia_{}_g_mm2"),
+        *_matrix(told["inertia_at_origin_g_mm2"], "inertia_at_origin_{}_g_mm2"),
+        *_vector(told["principal_moments_g_mm2"], "principal_moment_{}_g_mm2", "123"),
+    ]
+    for number, axis in zip("123", told["principal_axes"]):
+        listed += _vector(axis, f"principal_axis_{number}_{{}}")
+    quantities, values = zip(*listed)
+    return tables.frame({"quantity": quantities, "value": [np.nan if v is None else v for v in values]})
+
+
+def write(folder, told, format):
+    """``inertia.json`` with the format 'json', else ``inertia.csv``.
+
+    Parameters
+    ----------
+    folder : ResultFolder
+    told : dict
+        From ``document``.
+    format : str
+        Of what is printed: 'table', 'csv' or 'json'.
+    """
+    if format == "json":
+        folder.write("inertia.json", tables.json_text(told))
+    else:
+        folder.write("inertia.csv", tables.text(rows(told), "csv"))
+
+
+def _in(value, unit):
+    return None if value is None else value / unit
+
+
+def _vector(values, name, letters=AXES):
+    values = [None] * len(letters) if values is None else _clean(values)
+    return [(name.format(letter), value) for letter, value in zip(letters, values)]
+
+
+def _matrix(values, name):
+    values = _clean(values)
+    return [(name.format(AXES[i] + AXES[j]), values[i][j]) for i in range(3) for j in range(i, 3)]
+
+
+def _clean(values):
+    return np.where(np.abs(values) <= NOISE * np.abs(values).max(), 0.0, values)

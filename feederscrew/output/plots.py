@@ -1,0 +1,88 @@
+"""Figures that come out as the same bytes every time: their size, their look, the colours of the methods."""
+
+import io
+from pathlib import Path
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.font_manager import findfont, get_font
+
+DPI = 160
+MARGIN = 0.08  # [in] round the axes
+INK = "#22303c"  # text and axes
+FAINT = "#d5dbe1"  # grids and frames
+ACCENT = "#d55e00"  # what a picture is about: the contact polygon, the operating point
+METHODS = {  # label and colour of each rule; the colours keep apart for colour-blind eyes (Okabe and Ito)
+    "pmi": ("PMI", "#0072b2"),
+    "csa": ("CSA", "#e69f00"),
+    "stability": ("stability", "#009e73"),
+}
+SPARE = ("#cc79a7", "#56b4e9", "#d55e00", "#8c8c8c", "#f0e442", "#5b3a8e")
+
+
+def figure(width=6.4, height=4.0):
+    """A white figure that lays out its axes by itself, without any global state.
+
+    Parameters
+    ----------
+    width, height : float [in]
+        Of the page; a PNG has ``DPI`` pixels an inch.
+    """
+    made = Figure(figsize=(width, height), dpi=DPI, layout="constrained", facecolor="white")
+    made.get_layout_engine().set(w_pad=MARGIN, h_pad=MARGIN)
+    FigureCanvasAgg(made)
+    return made
+
+
+def page(width, height):
+    """A white figure of so many pixels whose axes are placed by hand."""
+    made = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor="white")
+    FigureCanvasAgg(made)
+    return made
+
+
+def tidy(axes, *, title="", x="", y="", grid="both"):
+    """The house look for one Axes: labels, a faint grid behind the data, no box.
+
+    Parameters
+    ----------
+    axes : Axes
+        To dress; returned.
+    title, x, y : str
+        Texts, units in square brackets.
+    grid : str
+        'x', 'y', 'both' or 'none'.
+    """
+    axes.set_title(title, loc="left", fontsize=10, color=INK, fontweight="bold")
+    axes.set_xlabel(x, fontsize=9, color=INK)
+    axes.set_ylabel(y, fontsize=9, color=INK)
+    axes.tick_params(labelsize=8, colors=INK, length=3)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.spines[["left", "bottom"]].set_color(INK)
+    axes.set_axisbelow(True)
+    if grid != "none":
+        axes.grid(axis=grid, color=FAINT, linewidth=0.6)
+    return axes
+
+
+def words(text):
+    """A user's text as a figure can show it: no formula, '?' for a letter the font has not."""
+    font = get_font(findfont("DejaVu Sans"))
+    return "".join(letter if font.get_char_index(ord(letter)) else "?" for letter in text).replace("$", r"\$")
+
+
+def method(name, place=0):
+    """Label and colour of a rule or of a profile; ``place`` picks a spare colour for an unknown one."""
+    return METHODS.get(name, (name.replace("_", " "), SPARE[place % len(SPARE)]))
+
+
+def png(figure):
+    """The figure as PNG bytes, without a time or a version in them."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=DPI, metadata={"Software": None})
+    return buffer.getvalue()
+
+
+def save(figure, path):
+    """Write the figure as PNG; the same figure gives the same bytes."""
+    Path(path).write_bytes(png(figure))

@@ -1,0 +1,167 @@
+"""Tables and documents as text: for people, for spreadsheets, for programs."""
+
+import json
+import math
+
+import numpy as np
+import pandas as pd
+
+UNITS = {  # the end of a column's name, and how a heading writes it
+    "_g_mm2": "g mm2",
+    "_kg_m3": "kg/m3",
+    "_g_cm3": "g/cm3",
+    "_rad_s2": "rad/s2",
+    "_m_s2": "m/s2",
+    "_mm_s": "mm/s",
+    "_mm4": "mm4",
+    "_mm3": "mm3",
+    "_mm2": "mm2",
+    "_mm": "mm",
+    "_sr": "sr",
+    "_deg": "deg",
+    "_rad": "rad",
+    "_Hz": "Hz",
+    "_mJ": "mJ",
+    "_uJ": "uJ",
+    "_N": "N",
+    "_g": "g",
+    "_s": "s",
+}
+DIGITS = 4  # significant, in a table for people
+SHORT = 4  # letters of a rule that is an abbreviation
+NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
+
+
+def frame(columns):
+    """A table of equally long columns, in the order given.
+
+    Parameters
+    ----------
+    columns : dict of str to sequence
+        Values by column name; the name ends in the unit (``height_mm``).
+
+    Returns
+    -------
+    DataFrame
+        NaN or None stands for an empty cell.
+    """
+    return pd.DataFrame({name: list(values) for name, values in columns.items()})
+
+
+def text(frame, format):
+    """A frame as ``'csv'`` (six significant digits) or as a ``'table'`` for people.
+
+    Parameters
+    ----------
+    frame : DataFrame
+        From ``frame``.
+    format : str
+        ``'table'`` or ``'csv'``.
+
+    Returns
+    -------
+    str
+        Lines that end in a newline; the same frame always gives the same bytes.
+    """
+    if format == "csv":
+        return frame.to_csv(index=False, float_format="%.6g", lineterminator="\n", na_rep="")
+    if format == "table":
+        return _aligned(frame)
+    raise ValueError(f"format is {format!r}, not 'table' or 'csv'")
+
+
+def json_text(document):
+    """A document as JSON: full precision, null for NaN and infinity, keys in the order given.
+
+    Parameters
+    ----------
+    document : dict
+        Of numbers, texts, sequences, arrays, frames (a list of rows) and dicts of these.
+
+    Returns
+    -------
+    str
+        Ends in a newline.
+    """
+    return json.dumps(_plain(document), indent=1, allow_nan=False) + "\n"
+
+
+def _plain(value):
+    """The same value in JSON's own types."""
+    if isinstance(value, pd.DataFrame):
+        return [_plain(row) for row in value.to_dict("records")]
+    if isinstance(value, dict):
+        return {str(key): _plain(entry) for key, entry in value.items()}
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return [_plain(entry) for entry in value]
+    if isinstance(value, np.generic):
+        return _plain(value.item())
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def heading(name):
+    """A column's name and unit for people.
+
+    Parameters
+    ----------
+    name : str
+        'height_mm', 'p_pmi'.
+
+    Returns
+    -------
+    tuple of str
+        ('height', '[mm]'), ('PMI', '[%]'); no unit is ''.
+    """
+    if name.startswith("p_"):
+        rule = name.removeprefix("p_").replace("_", " ")
+        return (rule.upper() if len(rule) <= SHORT else rule), "[%]"
+    ending = next((ending for ending in UNITS if name.endswith(ending) and name != ending), "")
+    return name.removesuffix(ending).replace("_", " "), f"[{UNITS[ending]}]" if ending else ""
+
+
+def _aligned(frame):
+    """Columns side by side: texts to the left, numbers with their points in one line."""
+    columns = [_column(name, frame[name]) for name in frame.columns]
+    lines = ["  ".join(cells).rstrip() for cells in zip(*columns)]
+    return "".join(f"{line}\n" for line in lines if line)  # a line of units where no column has one
+
+
+def _column(name, values):
+    """Name, unit and cells of one column, all of one width."""
+    numeric = pd.api.types.is_numeric_dtype(values) and not pd.api.types.is_bool_dtype(values)
+    cells = _numbers(name, values.to_numpy()) if numeric else [_word(value) for value in values]
+    cells = [*heading(name), *cells]
+    width = max(map(len, cells))
+    return [cell.rjust(width) if numeric else cell.ljust(width) for cell in cells]
+
+
+def _numbers(name, values):
+    """Cells of a column of numbers, their points under each other."""
+    if np.issubdtype(values.dtype, np.integer):
+        return [str(value) for value in values]
+    values = values * (100.0 if name.startswith("p_") else 1.0)
+    nothing = NOISE * max(np.abs(values[np.isfinite(values)]), default=0.0)
+    return _pointed([_number(0.0 if abs(value) <= nothing else value) for value in values])
+
+
+def _number(value):
+    if not math.isfinite(value):
+        return "-" if math.isnan(value) else str(value)
+    if value == 0.0:
+        return "0"
+    if not 1e-4 <= abs(value) < 1e7:
+        return f"{value:.{DIGITS - 1}e}"
+    exponent = int(f"{value:.{DIGITS - 1}e}".partition("e")[2])  # after rounding: 9.9999 is 10.00
+    return f"{value:.{max(0, DIGITS - 1 - exponent)}f}"
+
+
+def _word(value):
+    if isinstance(value, (bool, np.bool_)):
+        return "yes" if value else "no"
+    return "-" if value is None or value != value else str(value)
+
+
+def _pointed(cells):
+    """Cells padded on the right until their decimal points stand under each other."""
+    tails = [len(cell) - cell.find(".") if "." in cell else 0 for cell in cells]
+    return [cell + " " * (max(tails, default=0) - tail) for cell, tail in zip(cells, tails)]

@@ -1,0 +1,98 @@
+"""Text from tables: for people, for spreadsheets, for programs."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from feederscrew.output import tables
+
+FRAME = tables.frame(
+    {
+        "aspect": ["A", "BB"],
+        "stable": np.array([True, False]),
+        "faces": np.array([1, 12]),
+        "height_mm": [12.34567, 1.0],
+        "normal_x": [1e-17, -0.99999],
+        "p_pmi": [0.1234567, math.nan],
+    }
+)
+
+
+def test_a_table_for_people():
+    assert tables.text(FRAME, "table").splitlines() == [
+        "aspect  stable  faces  height  normal x    PMI",
+        "                         [mm]              [%]",
+        "A       yes         1  12.35      0      12.35",
+        "BB      no         12   1.000    -1.000   -",
+    ]
+
+
+def test_csv_has_six_digits_empty_cells_and_plain_newlines():
+    assert tables.text(FRAME, "csv") == (
+        "aspect,stable,faces,height_mm,normal_x,p_pmi\nA,True,1,12.3457,1e-17,0.123457\nBB,False,12,1,-0.99999,\n"
+    )
+
+
+def test_an_unknown_format_is_a_programmers_fault():
+    with pytest.raises(ValueError, match="format is 'xml'"):
+        tables.text(FRAME, "xml")
+
+
+def test_json_keeps_full_precision_order_and_has_null_for_no_number():
+    third = 1.0 / 3.0
+    text = tables.json_text(
+        {"b": np.float64(third), "a": np.array([math.nan, 1.0]), "c": math.inf, "n": np.int64(3)}
+    )
+    assert list(json.loads(text)) == ["b", "a", "c", "n"]
+    assert json.loads(text) == {"b": third, "a": [None, 1.0], "c": None, "n": 3}
+    assert text.endswith("}\n")
+
+
+def test_a_frame_in_json_is_a_list_of_rows():
+    rows = json.loads(tables.json_text({"rows": FRAME}))["rows"]
+    assert rows[0]["stable"] is True
+    assert rows[1] == {
+        "aspect": "BB",
+        "stable": False,
+        "faces": 12,
+        "height_mm": 1.0,
+        "normal_x": -0.99999,
+        "p_pmi": None,
+    }
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [
+        ("height_mm", ("height", "[mm]")),
+        ("polar_inertia_g_mm2", ("polar inertia", "[g mm2]")),
+        ("alignment_acceleration_rad_s2", ("alignment acceleration", "[rad/s2]")),
+        ("p_csa", ("CSA", "[%]")),
+        ("p_stability", ("stability", "[%]")),
+        ("kind", ("kind", "")),
+        ("_mm", ("_mm".replace("_", " "), "")),
+    ],
+)
+def test_headings_carry_the_unit(name, shown):
+    assert tables.heading(name) == shown
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        (9.99999, "10.00"),
+        (1234.56, "1235"),
+        (0.00123456, "0.001235"),
+        (3.2e-7, "3.200e-07"),
+        (4.2e9, "4.200e+09"),
+    ],
+)
+def test_four_significant_digits(value, shown):
+    assert tables.text(tables.frame({"x": [value]}), "table").split() == ["x", shown]
+
+
+def test_columns_of_another_length_are_refused():
+    with pytest.raises(ValueError, match="same length"):
+        tables.frame({"a": [1, 2], "b": [1]})
