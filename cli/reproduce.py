@@ -1,0 +1,33 @@
+"""``feeder reproduce``."""
+
+import click
+
+from cli import options
+
+
+@click.command(short_help="The thesis's tables and figures, recomputed cell by cell.")
+@options.output
+def reproduce(out):
+    """Example: feeder reproduce -o results
+
+    Compute every table (3-1 to 3-13) and figure (3-6 to 3-13, 5-1 to 5-7) of the thesis again and
+    set each number beside the printed one: exact to print, explained (by a named finding), or
+    differs; what was measured or read off a lost drawing is given, not checked.
+
+    With -o: DIR/thesis/ with a CSV for each item, a PNG for each figure, the findings, and one page
+    to read from top to bottom, thesis.md and thesis.html.
+    """
+    from feederscrew.output import thesis_files
+    from feederscrew.thesis import reproduction
+
+    with out.step("tables and figures"):
+        items = reproduction.items()
+    with out.folder("thesis", {}) as folder, out.step("files"):
+        files = thesis_files.write(folder, items) if folder else {}
+    out.warn(
+        *(
+            f"{item.kind} {item.id}: a cell differs without a reason"
+            for item in reproduction.unexplained(items)
+        )
+    )
+    out.show(thesis_files.overview(items), thesis_files.document(items, files))

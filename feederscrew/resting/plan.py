@@ -1,0 +1,98 @@
+"""Polygons in the floor: outlines seen from above, their centroids, what lies inside them."""
+
+import numpy as np
+
+FLAT = 1e-6  # of the outline's size: a corner that stands out by less is none
+
+
+def outline(points):
+    """Convex outline of points in a plane, without corners in the middle of a straight side.
+
+    Parameters
+    ----------
+    points : (V, 2) float [m]
+        At least three, not all on one line.
+
+    Returns
+    -------
+    (J, 2) float [m]
+        Corners, counter-clockwise.
+    """
+    from scipy.spatial import ConvexHull
+
+    corners = points[ConvexHull(points).vertices]
+    least = FLAT * np.ptp(corners, axis=0).max()
+    while len(corners) > 3:  # one at a time: of two corners in one place one must stay
+        standing_out = _standing_out(corners)
+        k = int(np.argmin(standing_out))
+        if standing_out[k] > least:
+            break
+        corners = np.delete(corners, k, axis=0)
+    return corners
+
+
+def _standing_out(corners):
+    """Distance of each corner from the line through its neighbours."""
+    before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
+    chord = after - before
+    return cross(corners - before, chord) / np.hypot(*chord.T)
+
+
+def centroid(polygon):
+    """Centroid of the area of a polygon; of its corners where it has no area.
+
+    Parameters
+    ----------
+    polygon : (K, 2) float [m]
+        Corners in order.
+
+    Returns
+    -------
+    (2,) float [m]
+    """
+    start = polygon[0]
+    a, b = polygon - start, np.roll(polygon, -1, axis=0) - start
+    twice = cross(a, b)
+    if abs(twice.sum()) <= 1e-12 * np.square(np.ptp(polygon, axis=0)).sum():
+        return polygon.mean(axis=0)
+    return start + (twice[:, None] * (a + b)).sum(axis=0) / (3.0 * twice.sum())
+
+
+def sides(polygon):
+    """Vectors from each corner to the next, (K, 2)."""
+    return np.roll(polygon, -1, axis=0) - polygon
+
+
+def inset(polygon, points):
+    """How far points lie inside a convex polygon.
+
+    Parameters
+    ----------
+    polygon : (K, 2) float [m]
+        Corners, counter-clockwise.
+    points : (..., 2) float [m]
+        Any number.
+
+    Returns
+    -------
+    (...,) float [m]
+        Distance to the line of the nearest side, negative outside; NaN where there is no polygon.
+    """
+    if len(polygon) == 0:
+        return np.full(np.shape(points)[:-1], np.nan)
+    along = sides(polygon)
+    along = along / np.hypot(*along.T)[:, None]
+    return cross(along, np.asarray(points)[..., None, :] - polygon).min(axis=-1)
+
+
+def turned(points, angle):
+    """Points in a plane turned counter-clockwise; ``points`` (..., 2), ``angle`` [rad]."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack(
+        [c * points[..., 0] - s * points[..., 1], s * points[..., 0] + c * points[..., 1]], axis=-1
+    )
+
+
+def cross(u, v):
+    """Third component of u x v, over the last axis."""
+    return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]

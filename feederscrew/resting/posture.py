@@ -1,0 +1,172 @@
+"""A part standing on one of its aspects, in axes of the floor."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.errors import FeederError
+from feederscrew.part.hull import convex_hull
+from feederscrew.resting.plan import centroid, outline, sides
+
+COINCIDE = 1e-5  # of the part's size: a contact centroid nearer to the foot gives no direction
+ALIKE = 1e-6  # of the part's size: sides whose lengths differ by less are equally long
+
+
+@dataclass(frozen=True, eq=False)
+class Posture:
+    """A part on an aspect, not yet turned: x and y in the floor, z up, origin below the centre of mass.
+
+    Heading 0 has the body's own direction (the thesis's Z') along x: from the foot of the centre of mass to
+    the centroid of the contact polygon; where the two coincide, along the longest side of the outline.
+    """
+
+    name: str  # of the aspect
+    kind: str  # 'flat' or 'rolling'
+    mass: float  # [kg]
+    height: float  # [m] of the centre of mass
+    inertia: np.ndarray  # (3, 3) [kg m2] about the centre of mass; NaN where a card is silent
+    contact: np.ndarray  # (K, 2) [m] contact polygon, counter-clockwise from above; (0, 2) of a card
+    outline: np.ndarray  # (J, 2) [m] plan outline of the whole part, as above
+    offset: float  # [m] e, from the foot to the contact polygon's centroid; NaN where a card is silent
+    axis: np.ndarray | None = None  # (2,) direction of the rolling axis in the floor
+    printed: dict | None = None  # a card's 'floor' and 'track' data, in SI units
+    corners: np.ndarray | None = None  # (V, 3) [m] hull corners, z from the floor; None of a card
+
+    @property
+    def turning_inertia(self):
+        """Moment of inertia about the vertical through the centre of mass [kg m2]."""
+        return float(self.inertia[2, 2])
+
+
+def posture(part, aspects, name):
+    """The part standing on one of its aspects.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh or from a part card.
+    aspects : Aspects
+        Of that part.
+    name : str
+        Of the aspect; its case does not matter.
+
+    Returns
+    -------
+    Posture
+
+    Raises
+    ------
+    FeederError
+        If the part has no such aspect; the line names those it has.
+    """
+    row = _row(part, aspects, name)
+    return _of_card(part, aspects, row) if part.vertices is None else _of_mesh(part, aspects, row)
+
+
+def _row(part, aspects, name):
+    wanted = str(name).strip().casefold()
+    found = [row for row, known in enumerate(aspects.names) if known.casefold() == wanted]
+    if not found:
+        known = ", ".join(aspects.names)
+        raise FeederError(part.source, f"there is no aspect {str(name)[:20]!r}", f"choose one of {known}")
+    return found[0]
+
+
+def _of_mesh(part, aspects, row):
+    hull = convex_hull(part.vertices, part.centre_of_mass, part.source)
+    upright = _upright(-aspects.normals[row])
+    height = float(aspects.heights[row])
+    corners = hull.vertices @ upright.T + [0.0, 0.0, height]
+    contact = (aspects.polygons[row] @ upright.T)[::-1, :2]  # from below it runs the other way
+    offset = float(np.hypot(*centroid(contact)))
+    shape = outline(corners[:, :2])
+    ahead = _forward(contact, shape, corners, hull.radius)
+    turn = np.array([ahead, [-ahead[1], ahead[0]]])
+    axes = np.eye(3)
+    axes[:2, :2] = turn
+    axes = axes @ upright
+    return Posture(
+        name=aspects.names[row],
+        kind=aspects.kinds[row],
+        mass=part.mass,
+        height=height,
+        inertia=check.frozen(axes @ part.inertia @ axes.T),
+        contact=check.frozen(contact @ turn.T),
+        outline=check.frozen(shape @ turn.T),
+        offset=offset if offset > COINCIDE * hull.radius else 0.0,
+        axis=_rolling_axis(axes, aspects.axes[row]),
+        corners=check.frozen(np.column_stack([corners[:, :2] @ turn.T, corners[:, 2]])),
+    )
+
+
+def _upright(up):
+    """Rows x, y, z of some axes with z along ``up``."""
+    beside = np.eye(3)[np.argmin(np.abs(up))]
+    x = np.cross(beside, up)
+    x /= np.linalg.norm(x)
+    return np.array([x, np.cross(up, x), up])
+
+
+def _forward(contact, shape, corners, size):
+    """Unit vector of heading 0 in the floor."""
+    towards = centroid(contact)
+    if np.hypot(*towards) > COINCIDE * size:
+        return towards / np.hypot(*towards)
+    edges = sides(shape)
+    lengths = np.hypot(*edges.T)
+    longest = edges[lengths >= lengths.max() - ALIKE * size]
+    unit = longest / np.hypot(*longest.T)[:, None]
+    return max(unit, key=lambda along: _lopsidedness(along, corners / size))
+
+
+def _lopsidedness(along, corners):
+    """Odd moments of the corners about one direction: tells equal sides apart however the file is turned."""
+    x, y = corners[:, :2] @ along, corners[:, :2] @ [-along[1], along[0]]
+    z = corners[:, 2]
+    moments = [
+        np.mean(x**3),
+        np.mean(y**3),
+        np.mean(x * z),
+        np.mean(y * z),
+        np.mean(x * y),
+        np.mean(x**2 * y),
+    ]
+    return tuple(np.round(moments, 5) + 0.0)
+
+
+def _rolling_axis(axes, direction):
+    if not np.isfinite(direction).all():
+        return None
+    flat = (axes @ direction)[:2]
+    return check.frozen(flat / np.hypot(*flat))
+
+
+def _of_card(part, aspects, row):
+    """What the card prints; NaN where it is silent."""
+    floor = _analysis(part, "floor", aspects.names[row])
+    track = _analysis(part, "track", aspects.names[row])
+    analysed = {**track, **floor}
+    turning = analysed.get("polar_inertia", float(aspects.polar_inertias[row]))
+    inertia = np.full((3, 3), np.nan)
+    if analysed:  # the analysed aspect stands with the file's x up and its z in the floor
+        inertia = np.array(part.inertia[::-1, ::-1])
+    inertia[2, 2] = turning
+    nothing = check.frozen(np.empty((0, 2)))
+    return Posture(
+        name=aspects.names[row],
+        kind=aspects.kinds[row],
+        mass=part.mass,
+        height=analysed.get("centroid_height", float(aspects.heights[row])),
+        inertia=check.frozen(inertia),
+        contact=nothing,
+        outline=nothing,
+        offset=analysed.get("drive_offset", np.nan),
+        printed={"floor": floor, "track": track} if analysed else None,
+    )
+
+
+def _analysis(part, block, name):
+    """A card's data of the floor or the track, if they are of this aspect."""
+    told = (part.printed or {}).get(block, {})
+    return dict(told) if told.get("aspect") == name else {}

@@ -1,0 +1,108 @@
+"""``feeder reproduce``: the thesis's tables and figures in one call."""
+
+import csv
+import json
+
+import pytest
+from click.testing import CliRunner
+
+from cli.main import feeder
+from feederscrew.thesis.digits import is_number
+
+KEYS = ["id", "kind", "caption", "cells", "exact", "explained", "differs", "given", "findings", "files"]
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    """The folder of one whole run, and its JSON."""
+    root = tmp_path_factory.mktemp("reproduce")
+    result = CliRunner().invoke(feeder, ["reproduce", "-o", str(root), "--format", "json"])
+    assert result.exit_code == 0, result.output
+    return root / "thesis", json.loads(result.stdout)
+
+
+def rows(path):
+    with path.open() as file:
+        return list(csv.DictReader(file))
+
+
+def test_the_contract(written):
+    _, document = written
+    assert all(list(item) == KEYS for item in document["items"])
+    keys = [(item["kind"], item["id"]) for item in document["items"]]
+    assert len(set(keys)) == 28
+    assert ("table", "3-13") in keys and ("figure", "5-7") in keys
+    assert all(item["differs"] == 0 for item in document["items"])
+    assert all(item["findings"] for item in document["items"] if item["explained"])
+
+
+def test_every_file_named_is_there_and_nothing_else(written):
+    folder, document = written
+    named = {name for item in document["items"] for name in item["files"]}
+    others = {"thesis.md", "thesis.html", "summary.csv", "findings.csv", "run.json"}
+    assert {path.name for path in folder.iterdir()} == named | others
+
+
+def test_fifteen_pictures(written):
+    folder, _ = written
+    pictures = [path for path in folder.glob("*.png") if path.stat().st_size > 5000]
+    assert len(pictures) == 15
+
+
+def test_a_table_file_sets_print_beside_ours(written):
+    folder, _ = written
+    cells = rows(folder / "table_3_09.csv")
+    assert list(cells[0]) == [
+        "row", "column", "published", "recomputed", "deviation", "verdict", "explaining", "finding",
+    ]  # fmt: skip
+    assert len(cells) == 36
+    for cell in cells:
+        assert cell["verdict"] == "exact to print"
+        assert abs(float(cell["recomputed"]) - float(cell["published"])) < 6e-6
+
+
+def test_a_given_cell_has_no_number_of_ours(written):
+    folder, _ = written
+    given = [cell for cell in rows(folder / "table_3_04.csv") if cell["verdict"] == "given"]
+    assert len(given) == 30
+    assert all(cell["recomputed"] == "" and is_number(cell["published"]) for cell in given)
+
+
+def test_findings_are_a_file_and_on_the_page(written):
+    folder, document = written
+    ids = [row["id"] for row in rows(folder / "findings.csv")]
+    assert ids == [finding["id"] for finding in document["findings"]]
+    page = (folder / "thesis.md").read_text()
+    assert all(f"### {id}: " in page for id in ids)
+
+
+def test_the_page_is_self_contained(written):
+    folder, _ = written
+    text = (folder / "thesis.html").read_text()
+    assert text.count("data:image/png;base64,") == 15
+    assert "http" not in text
+
+
+def test_stdout_is_a_summary(run):
+    result = run("reproduce")
+    assert result.exit_code == 0
+    lines = result.stdout.splitlines()
+    assert lines[0].split() == ["item", "cells", "exact", "explained", "differs", "given", "findings"]
+    assert len(lines) == 29
+    assert result.stderr == ""
+
+
+def test_csv_summary(run):
+    result = run("reproduce", "--format", "csv")
+    found = list(csv.DictReader(result.stdout.splitlines()))
+    assert found[0]["item"] == "table 3-1"
+    assert all(row["differs"] == "0" for row in found)
+
+
+def test_the_same_run_gives_the_same_bytes(written, tmp_path):
+    folder, _ = written
+    CliRunner().invoke(feeder, ["reproduce", "-o", str(tmp_path), "-q"])
+    again = {
+        path.name: path.read_bytes() for path in (tmp_path / "thesis").iterdir() if path.name != "run.json"
+    }
+    assert again == {path.name: path.read_bytes() for path in folder.iterdir() if path.name != "run.json"}
