@@ -1,0 +1,18 @@
+"""Angles as people type them: '30deg', '30 deg', '0.5 rad', '30'."""
+
+import click
+
+
+class Angle(click.ParamType):
+    """An angle in radians; a number alone is in degrees."""
+
+    name = "angle"
+
+    def convert(self, value, param, ctx):
+        """The angle, or a wrong call."""
+        from feederscrew.units import QuantityError, quantity
+
+        try:
+            return quantity(value, "angle", bare="deg") if isinstance(value, str) else value
+        except QuantityError as fault:
+            return self.fail(str(fault), param, ctx)

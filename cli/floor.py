@@ -1,0 +1,41 @@
+"""``feeder floor``."""
+
+import click
+
+from cli import options
+from cli.angle import Angle
+
+
+@click.command(short_help="Forces and motion of a part on the bowl floor.")
+@options.part
+@click.option("--aspect", metavar="NAME", help="As `feeder aspects` names it.  [default: the first]")
+@click.option(
+    "--heading", type=Angle(), metavar="ANGLE", default="0deg", help="theta, counter-clockwise from above."
+)
+@click.option("--as-published", is_flag=True, help="Solve the thesis's printed equations, [4.13] to [4.28].")
+@options.bowl
+@options.pictures
+@options.output
+def floor(part, aspect, heading, as_published, bowl, pictures, out):
+    """Example: feeder floor parts/lbracket_30x20x15.stl --aspect A --heading 30deg -o results
+
+    Forces on PART resting on an aspect, its acceleration and turning, and where the normal force acts:
+    whether it sticks, slides, hops or tips, at the upper reversal and over a whole cycle.
+
+    PART is a mesh or a part card. The table gives the upper reversal, --format csv the cycle. With -o:
+    floor.json, the cycle, maps over (beta, mu) and (frequency, amplitude) as Figures 5-6 and 5-7, and
+    theta'' over the heading, as CSV and PNG.
+    """
+    from feederscrew.bowl import record, settings, texts
+    from feederscrew.motion.floor_analysis import analyse
+    from feederscrew.output import columns, floor_sheets, floor_tables
+
+    solid, given = out.part(part), settings(**bowl)
+    conditions = columns.conditions(solid) | texts(given)
+    with out.folder(solid.name, {solid.source: solid.sha256}, conditions) as folder:
+        found = analyse(solid, record(given), aspect, heading)
+        document = floor_tables.document(found, texts(given), as_published=as_published)
+        out.say(*floor_tables.remarks(found))
+        if folder:
+            out.say(*floor_sheets.floor(folder, found, document, pictures=pictures))
+    out.show(floor_tables.shown(document, out.format), document)

@@ -1,0 +1,38 @@
+"""``feeder headings``."""
+
+import click
+
+from cli import options
+
+
+@click.command(short_help="How a part lies along the track's wall, and whether it stays on.")
+@options.part
+@click.option("--aspect", metavar="NAME", help="As `feeder aspects` names it.  [default: every one]")
+@options.bowl
+@options.pictures
+@options.output
+def headings(part, aspect, bowl, pictures, out):
+    """Example: feeder headings parts/lbracket_30x20x15.stl --aspect A --set track.width="12 mm" -o results
+
+    The headings in which PART, resting on an aspect and pushed outward, is stable against the bowl wall: the
+    share of all directions that ends in each, the length it takes along the track, the width it needs, and
+    whether it falls off the track's free edge. A heading, its half turn and its mirror image are rows of
+    their own.
+
+    PART is a mesh. The wall has the bowl's radius; straight_wall_share is for a straight one. With -o:
+    headings.csv, headings.json and a picture of each aspect from above.
+    """
+    from feederscrew.bowl import record, settings, texts
+    from feederscrew.motion.headings_analysis import analyse
+    from feederscrew.output import columns, heading_sheets, heading_tables
+
+    solid, given = out.part(part), settings(**bowl)
+    track = record(given).track
+    conditions = columns.conditions(solid) | texts(given)
+    with out.folder(solid.name, {solid.source: solid.sha256}, conditions) as folder:
+        postures, found, chances = analyse(solid, track, aspect)
+        document = {"part": solid.name, "headings": heading_tables.rows(found, chances), "bowl": texts(given)}
+        out.say(*heading_tables.remarks(found, track))
+        if folder:
+            heading_sheets.headings(folder, solid, postures, found, track, document, pictures=pictures)
+    out.show(heading_tables.frame(document["headings"]), document, hidden=heading_tables.HIDDEN)

@@ -1,0 +1,50 @@
+"""``feeder track``."""
+
+import click
+
+from cli import options
+from cli.angle import Angle
+
+
+@click.command(short_help="Reactions and motion of a part on the track, against the wall.")
+@options.part
+@click.option("--aspect", metavar="NAME", help="As `feeder aspects` names it.  [default: the first]")
+@click.option("--heading", type=Angle(), metavar="ANGLE", help="As laid down.  [default: the most frequent]")
+@click.option("--as-published", is_flag=True, help="Solve the thesis's printed equations, [4.29] to [4.62].")
+@click.option(
+    "--vary",
+    "spans",
+    metavar="KEY=FROM:TO:COUNT",
+    multiple=True,
+    help="Twice, for a map: track.bank=0:30:61.  [default: bank and climb, with -o]",
+)
+@options.bowl
+@options.pictures
+@options.output
+def track(part, aspect, heading, as_published, spans, bowl, pictures, out):
+    """Example: feeder track parts/lbracket_30x20x15.stl --set track.bank="10 deg" -o results
+
+    Reactions on PART on the banked, climbing track against the bowl wall, its acceleration, the friction it
+    needs, which contact opens first and about which axis it then tips.
+
+    PART is a mesh or a part card. A heading is where the part is laid; pushed to the wall it turns to the
+    stable heading of that range (see `feeder headings`). The table gives the upper reversal, --format csv
+    the cycle, or with --vary the map. With -o: track.json, the cycle, a map over two bowl values and the part
+    from above and from behind, as CSV and PNG.
+    """
+    from feederscrew.bowl import ranges, record, settings, texts
+    from feederscrew.motion.track_analysis import analyse
+    from feederscrew.output import columns, track_maps, track_sheets, track_tables
+
+    if len(spans) not in (0, 2):
+        raise click.UsageError(f"--vary is given {len(spans)} times - give it twice, for a map")
+    solid, given, varied = out.part(part), settings(**bowl), ranges(spans)
+    conditions = columns.conditions(solid) | texts(given)
+    with out.folder(solid.name, {solid.source: solid.sha256}, conditions) as folder:
+        found = analyse(solid, record(given), aspect, heading)
+        document = track_tables.document(found, texts(given), as_published=as_published)
+        grid = track_maps.grid(found.posture, given, varied, heading) if spans or folder else None
+        out.say(*track_tables.remarks(found), *(track_maps.remarks(grid) if grid else ()))
+        if folder:
+            track_sheets.track(folder, found, document, grid, pictures=pictures)
+    out.show(track_maps.cells(grid) if spans else track_tables.shown(document, out.format), document)

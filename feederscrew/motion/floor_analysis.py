@@ -1,0 +1,62 @@
+"""Everything ``feeder floor`` finds of one part, in the order of the pipeline."""
+
+from dataclasses import dataclass
+
+from feederscrew.bowl.record import Bowl
+from feederscrew.motion import floor, limits, published_floor
+from feederscrew.motion.cycle import Cycle
+from feederscrew.part.record import Part
+from feederscrew.resting import aspects
+from feederscrew.resting.posture import Posture, posture
+
+
+@dataclass(frozen=True, eq=False)
+class FloorAnalysis:
+    """One part on one aspect in one heading on the floor of one bowl."""
+
+    part: Part
+    posture: Posture
+    bowl: Bowl
+    heading: float  # [rad] theta
+    now: floor.FloorMotion  # at the upper reversal, from rest
+    printed: published_floor.PrintedFloor  # the same by the printed equations
+    cycle: floor.FloorMotion  # over one settled period
+    course: Cycle
+
+
+def analyse(part, bowl, aspect=None, heading=0.0):
+    """A part on the bowl floor.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        Single values.
+    aspect : str, optional
+        Its name; without one, the first of ``resting.aspects.find``.
+    heading : float [rad]
+        theta.
+
+    Returns
+    -------
+    FloorAnalysis
+
+    Raises
+    ------
+    FeederError
+        If the part has no such aspect, or the drive is not ``limits.plain``.
+    """
+    limits.plain(bowl)
+    found = aspects.find(part)
+    stand = posture(part, found, found.names[0] if aspect is None else aspect)
+    cycle, course = floor.over_cycle(stand, bowl, heading)
+    return FloorAnalysis(
+        part=part,
+        posture=stand,
+        bowl=bowl,
+        heading=heading,
+        now=floor.motion(stand, bowl, heading),
+        printed=published_floor.motion(stand, bowl, heading),
+        cycle=cycle,
+        course=course,
+    )

@@ -1,0 +1,103 @@
+"""Everything ``feeder track`` finds of one part, in the order of the pipeline."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew.bowl.record import Bowl
+from feederscrew.motion import limits, published_track, track
+from feederscrew.motion.cycle import Cycle
+from feederscrew.motion.headings import Headings
+from feederscrew.motion.published import Term, omitted_terms
+from feederscrew.motion.track_cells import seated
+from feederscrew.motion.track_frame import Seat, bank_without_radial_friction
+from feederscrew.motion.track_opening import Opening, first_to_open
+from feederscrew.part.record import Part
+from feederscrew.resting import aspects
+from feederscrew.resting.posture import Posture, posture
+
+LEVEL = {"magnet"}  # cards whose printed equations are in level axes, [4.57] to [4.62]
+
+
+@dataclass(frozen=True, eq=False)
+class TrackAnalysis:
+    """One part on one aspect against the wall of one bowl."""
+
+    part: Part
+    posture: Posture
+    bowl: Bowl
+    seat: Seat
+    headings: Headings | None  # None of a part card
+    row: int  # of the headings, the one taken
+    now: track.TrackMotion  # at the upper reversal, from rest
+    printed: published_track.PrintedTrack  # the same by the printed equations
+    omitted: tuple[Term, ...]  # what these leave out
+    cycle: track.TrackMotion  # over one settled period
+    course: Cycle
+    opening: Opening
+    bank_without_radial_friction: float  # [rad]
+
+
+def stand(part, aspect=None):
+    """The part on an aspect; without a name on the first of ``resting.aspects.find``."""
+    found = aspects.find(part)
+    return posture(part, found, found.names[0] if aspect is None else aspect)
+
+
+def analyse(part, bowl, aspect=None, heading=None):
+    """A part on the track.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        Single values.
+    aspect : str, optional
+        Its name; without one, the first of ``resting.aspects.find``.
+    heading : float [rad], optional
+        As laid down: pushed to the wall, the part turns to the stable heading of that range. Without one,
+        the most frequent heading that stays on the track.
+
+    Returns
+    -------
+    TrackAnalysis
+
+    Raises
+    ------
+    FeederError
+        If there is no such aspect, the bowl is smaller than the part, the part falls off the track, or the drive
+        is not ``limits.plain``.
+    """
+    limits.plain(bowl)
+    standing = stand(part, aspect)
+    seat, found, row = seated(standing, bowl, heading)
+    levers = _levers(part, standing, seat)
+    now = track.motion(seat, bowl)
+    cycle, course = track.over_cycle(seat, bowl)
+    return TrackAnalysis(
+        part=part,
+        posture=standing,
+        bowl=bowl,
+        seat=seat,
+        headings=found,
+        row=row,
+        now=now,
+        printed=published_track.motion(levers, bowl, seat.heading),
+        omitted=omitted_terms(seat, bowl, now, levers.offset),
+        cycle=cycle,
+        course=course,
+        opening=first_to_open(seat, bowl),
+        bank_without_radial_friction=bank_without_radial_friction(seat),
+    )
+
+
+def _levers(part, standing, seat):
+    """Levers of the printed equations: the card's own, or the mesh's."""
+    axes = "level" if standing.corners is None and part.name in LEVEL else "tilted"
+    ahead = standing.offset * np.cos(seat.heading)
+    levers = published_track.levers(seat, float(ahead), axes)
+    return (
+        levers
+        if standing.corners is not None
+        else published_track.printed_levers(levers, standing.printed["track"])
+    )

@@ -1,0 +1,70 @@
+"""Stable headings as tables and as a document, in the units of the shop."""
+
+import numpy as np
+
+from feederscrew.output import tables
+from feederscrew.units import factor
+
+MM = factor("mm", "length")
+HIDDEN = ("contact_1_x_mm", "contact_1_y_mm", "contact_2_x_mm", "contact_2_y_mm")
+
+
+def rows(found, chances=None):
+    """Every stable heading of one or more aspects.
+
+    Parameters
+    ----------
+    found : sequence of Headings
+        One an aspect.
+    chances : dict of str to float, optional
+        Probability of each aspect.
+
+    Returns
+    -------
+    list of dict
+        One a heading, the columns of ``headings.csv``.
+    """
+    return [_row(one, row, chances or {}) for one in found for row in range(len(one.headings))]
+
+
+def frame(rows):
+    """The rows as a table."""
+    return tables.frame({name: [row[name] for row in rows] for name in rows[0]})
+
+
+def remarks(found, track):
+    """What a reader of the headings should know, a line each."""
+    lines = []
+    for one in found:
+        if one.rounded:
+            lines.append(f"aspect {one.aspect} is round in plan: it takes any heading")
+        if one.falls_off.all():
+            width = track.width / MM
+            lines.append(f"aspect {one.aspect} falls off the track of {width:.4g} mm in every heading")
+    return lines
+
+
+def _row(one, row, chances):
+    degrees = np.degrees(one.headings)
+    return {
+        "aspect": one.aspect,
+        "heading_deg": float(degrees[row]),
+        "share": float(one.shares[row]),
+        "straight_wall_share": float(one.straight_shares[row]),
+        "aspect_share": chances.get(one.aspect, np.nan) * float(one.shares[row]),
+        "length_mm": float(one.lengths[row]) / MM,
+        "width_mm": float(one.widths[row]) / MM,
+        "overhang_mm": float(one.overhangs[row]) / MM,
+        "falls_off": bool(one.falls_off[row]),
+        "half_turn_of_deg": _partner(degrees, one.half_turns[row]),
+        "mirror_of_deg": _partner(degrees, one.mirrors[row]),
+        **{
+            f"contact_{k + 1}_{axis}_mm": float(one.touching[row, k, i]) / MM
+            for k in (0, 1)
+            for i, axis in enumerate("xy")
+        },
+    }
+
+
+def _partner(degrees, place):
+    return float(degrees[place]) if place >= 0 else np.nan
