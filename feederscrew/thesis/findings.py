@@ -1,26 +1,7 @@
 """What checking the thesis showed: its slips, its silences, and what explains its numbers."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
-from feederscrew.thesis import evidence, motion_evidence
-
-
-@dataclass(frozen=True)
-class Finding:
-    """One thing a reader of the thesis should know; its numbers are computed, never typed."""
-
-    id: str
-    where: str  # in the thesis
-    what: str
-    how: str  # how it shows, a template for the numbers of ``evidence``
-    evidence: Callable[[], dict] = dict
-
-    @property
-    def shown(self):
-        """How it shows, with the numbers filled in."""
-        return self.how.format(**self.evidence())
-
+from feederscrew.thesis import chapter_4, evidence, motion_evidence
+from feederscrew.thesis.finding import Finding
 
 FINDINGS = (
     Finding(
@@ -269,5 +250,6 @@ FINDINGS = (
         "survive.",
         "Such cells are marked 'given'.",
     ),
+    *chapter_4.FINDINGS,
 )
 BY_ID = {finding.id: finding for finding in FINDINGS}

@@ -109,6 +109,7 @@ def card(name):
         centre_of_mass=check.frozen(np.array([value[a] for a in "xyz"]) * MM),
         inertia=check.frozen(matrix * G_MM2),
         aspects=_card_aspects(numbers),
+        printed=_levers(value, table(numbers["pmi"]).names[-1]),
     )
 
 
@@ -151,6 +152,24 @@ def mixed_heights():
     """The Magnet's CSA profile with Table 3-5's Q over Table 3-11's heights, (3,) [1]."""
     weights = table("3-5").numbers("Q") / table("3-11").numbers("h")
     return weights / weights.sum()
+
+
+def _levers(value, aspect):
+    """Chapter 4's geometry of the part on the floor and on the track, of the aspect it stands on."""
+    floor = {
+        "aspect": aspect,
+        "drive_offset": value["drive_offset"] * MM,
+        "centroid_height": value["centroid_height"] * MM,
+        "polar_inertia": value["I_xx"] * G_MM2,
+    }
+    wall = {
+        "wall_lever": value["wall_lever"] * MM,
+        "wall_lever_angle": np.radians(value["wall_lever_angle"]),
+        "wall_x": (value["wall_x_1"] * MM, value["wall_x_2"] * MM),
+        "wall_y": value["wall_y"] * MM,
+        "wall_friction_y": value["wall_friction_y"] * MM,
+    }
+    return {"floor": floor, "track": floor | wall}
 
 
 def _card_aspects(numbers):
