@@ -26,14 +26,15 @@ LABELS = {
 
 def instant(found):
     """One instant under the names of the JSON contract; ``found`` is a TrackMotion of one instant."""
+    load = found.normal_force + abs(found.traction)
     return {
         "normal_force_N": float(found.normal_force),
-        "wall_1_N": float(found.walls[0]),
-        "wall_2_N": float(found.walls[1]),
-        "radial_friction_N": float(found.radial_friction) + 0.0,
-        "traction_N": float(found.traction),
-        "normal_line_offset_mm": float(found.offset[0]) / MM,
-        "normal_line_offset_y_mm": float(found.offset[1]) / MM,
+        "wall_1_N": noiseless(found.walls[0], load),
+        "wall_2_N": noiseless(found.walls[1], load),
+        "radial_friction_N": noiseless(found.radial_friction, load),
+        "traction_N": noiseless(found.traction, load),
+        "normal_line_offset_mm": noiseless(found.offset[0] / MM, 1.0),
+        "normal_line_offset_y_mm": noiseless(found.offset[1] / MM, 1.0),
         "acceleration_x_m_s2": float(found.acceleration[0]),
         "acceleration_y_m_s2": noiseless(found.acceleration[1], found.acceleration[0]),
         "turning_rad_s2": noiseless(found.turning, found.acceleration[0] / MM),

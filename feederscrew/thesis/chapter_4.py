@@ -17,7 +17,7 @@ MILLI = 1e-3
 
 @functools.cache
 def on_track():
-    """The Arc Chute on its fifth aspect on a banked track, driven a little towards the bowl's middle."""
+    """The Arc Chute on its fifth aspect on a banked track, driven a little across it."""
     default = bowl.default()
     drive, track = replace(default.drive, direction=BANK), replace(default.track, bank=BANK)
     banked = replace(default, drive=drive, track=track)
