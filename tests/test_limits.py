@@ -5,6 +5,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from feederscrew import bowl as bowls
+from feederscrew.errors import ConfigError
 from feederscrew.motion import limits
 
 DEG = np.pi / 180.0
@@ -158,3 +160,34 @@ def test_arrays_broadcast():
     ratio, beta = np.linspace(0.0, 3.0, 7)[:, None], np.linspace(0.0, 1.5, 5)[None, :]
     assert limits.forward_limit(ratio, beta).shape == (7, 5)
     assert limits.regimes(ratio, beta, 0.4, climb=0.05).shape == (7, 5)
+
+
+@pytest.mark.parametrize(
+    ("override", "line"),
+    [
+        (
+            "drive.phase=20 deg",
+            "drive.phase: is not 0, and this command knows a straight harmonic drive only"
+            " - leave it out, or use feeder convey",
+        ),
+        (
+            "drive.second_harmonic=0.1",
+            "drive.second_harmonic: is not 0, and this command knows a straight harmonic drive only"
+            " - leave it out, or use feeder convey",
+        ),
+        (
+            "friction.static_backward=0.9",
+            "friction.static_backward: is not friction.static, and this command knows one friction both"
+            " ways only - leave it out, or use feeder convey",
+        ),
+    ],
+)
+def test_a_bowl_that_only_the_kernel_knows(override, line):
+    with pytest.raises(ConfigError) as caught:
+        limits.plain(bowls.read(None, [override]))
+    assert str(caught.value) == line
+
+
+def test_a_plain_bowl_passes_whatever_follows():
+    bowl = bowls.read(None, ["friction.static=0.5", "drive.second_harmonic_phase=30 deg"])
+    assert limits.plain(bowl) is bowl

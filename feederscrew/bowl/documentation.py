@@ -58,7 +58,7 @@ def _template_line(key):
     indent, follows = "  " if key.section else "", key.default in BY_NAME
     text = f"{indent}{'# ' if follows else ''}{key.word}: {default(key).text}"
     left_out = f" (left out: {_default_for_people(key)})" if follows else ""
-    return f"{text:<27}# {key.meaning}{left_out}"
+    return f"{text:<25}  # {key.meaning}{left_out}"
 
 
 def _default_for_people(key):

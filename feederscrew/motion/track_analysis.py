@@ -65,8 +65,8 @@ def analyse(part, bowl, aspect=None, heading=None):
     Raises
     ------
     FeederError
-        If there is no such aspect, the bowl is smaller than the part, the part falls off the track, or the drive
-        is not ``limits.plain``.
+        If there is no such aspect, the bowl is smaller than the part, the part falls off the track, or
+        the drive is not ``limits.plain``.
     """
     limits.plain(bowl)
     standing = stand(part, aspect)

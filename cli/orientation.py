@@ -1,0 +1,69 @@
+"""The options that say which parts are wanted: shared by the commands that count them."""
+
+import click
+
+from cli.angle import Angle
+from cli.quantity import Quantity
+
+CHAIN = (
+    click.option("--aspect", required=True, metavar="NAME", help="Aspect the part shall leave the bowl on."),
+    click.option(
+        "--heading",
+        type=Angle(),
+        metavar="DEG",
+        help="Heading it shall leave in.  [default: the most frequent that stays on the track]",
+    ),
+    click.option(
+        "--rule", default="pmi", show_default=True, metavar="NAME", help="Whose probabilities are taken."
+    ),
+    click.option(
+        "--gap",
+        type=Quantity("length"),
+        default="0 mm",
+        show_default=True,
+        metavar="LENGTH",
+        help="Between one part and the next.",
+    ),
+    click.option(
+        "--fill",
+        type=Quantity("number", positive=True, most=1.0),
+        default="1",
+        show_default=True,
+        metavar="SHARE",
+        help="Share of the track that is occupied.",
+    ),
+)
+
+
+def chain(command):
+    """The wanted orientation, and what the rate hangs on.
+
+    The command receives ``aspect``, ``heading``, ``rule``, ``gap`` and ``fill``.
+    """
+    for option in reversed(CHAIN):
+        command = option(command)
+    return command
+
+
+def stream(solid, track, path, aspect, heading):
+    """The aspects of a part, every orientation of it on a track, and the wanted one.
+
+    Parameters
+    ----------
+    solid : Part
+    track : Track
+    path : str or None
+        Bowl file, for its devices.
+    aspect : str
+    heading : float [rad] or None
+
+    Returns
+    -------
+    (Aspects, Orientations, (str, float))
+    """
+    from feederscrew.motion import devices, rate
+    from feederscrew.resting.aspects import find
+
+    chain, found = devices.read(path), find(solid)
+    target = rate.wanted(solid, found, track, aspect, heading)
+    return found, rate.orientations(solid, found, track, chain), target

@@ -1,0 +1,33 @@
+"""An option's value with its unit."""
+
+import click
+
+
+class Quantity(click.ParamType):
+    """'0.5 mm', '120/min': a quantity of one dimension, in SI units."""
+
+    def __init__(self, dimension, *, positive=False, most=None):
+        self.name = dimension
+        self.positive, self.most = positive, most
+
+    def convert(self, value, param, ctx):
+        """The number in SI units, or a wrong call."""
+        from feederscrew import units
+
+        if not isinstance(value, str):
+            return value
+        try:
+            number = units.quantity(value, self.name)
+        except units.QuantityError as fault:
+            return self.fail(f"{fault.what} - {fault.mend}", param, ctx)
+        return number if self._within(number) else self.fail(self._range(units.shown(value)), param, ctx)
+
+    def _within(self, number):
+        if self.most is not None and number > self.most:
+            return False
+        return number > 0.0 or (number == 0.0 and not self.positive)
+
+    def _range(self, shown):
+        low = "more than 0" if self.positive else "at least 0"
+        most = "" if self.most is None else f" and at most {self.most:g}"
+        return f"{shown} is out of range - give {low}{most}"

@@ -1,0 +1,115 @@
+"""Rates as tables and documents."""
+
+import numpy as np
+
+from feederscrew import units
+from feederscrew.output import tables
+
+PER_MINUTE = units.factor("/min", "rate")
+MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
+
+
+def document(found, rule):
+    """A rate and every factor of its chain as the JSON document.
+
+    Parameters
+    ----------
+    found : Rate
+    rule : str
+        Whose probability was taken.
+
+    Returns
+    -------
+    dict
+    """
+    known, row = found.orientations, found.row
+    return {
+        **_range("parts_per_minute", found.parts, PER_MINUTE),
+        "aspect": known.aspects[row],
+        "heading_deg": known.headings[row] / DEG,
+        **_range("velocity_mm_s", found.velocity, MM_S),
+        "length_mm": known.lengths[row] / MM,
+        "gap_mm": (found.pitch - known.lengths[row]) / MM,
+        "pitch_mm": found.pitch / MM,
+        "rule": rule,
+        **_range("p_orientation", found.probability, 1.0),
+        "p_aspect": found.probability.value / known.heading_shares[row],
+        "p_heading": known.heading_shares[row],
+        "passes_devices": found.through,
+        "fill": found.fill,
+        "well_oriented_of_leaving": found.purity,
+        "orientations": orientations(known, rule),
+    }
+
+
+def orientations(known, rule):
+    """What each station does with each orientation, as a frame: the matrix of the chain.
+
+    Parameters
+    ----------
+    known : Orientations
+    rule : str
+    """
+    stations = {
+        f"{name}_{place}" if place else name: known.passes[:, place]
+        for place, name in enumerate(known.stations)
+    }
+    return tables.frame(
+        {
+            "aspect": known.aspects,
+            "heading_deg": known.headings / DEG,
+            "length_mm": known.lengths / MM,
+            "width_mm": known.widths / MM,
+            f"p_{rule}": known.rules[rule],
+            **stations,
+            "passes": known.through,
+        }
+    )
+
+
+def summary(document):
+    """The document as a frame for people: the chain from velocity to rate."""
+    d = document
+    rows = [
+        ("well-oriented parts per minute", _with_range(d, "parts_per_minute")),
+        ("aspect and heading", f"{d['aspect']} at {d['heading_deg']:.4g} deg"),
+        ("velocity [mm/s]", _with_range(d, "velocity_mm_s")),
+        ("pitch [mm]", f"{d['pitch_mm']:.4g} (part {d['length_mm']:.4g}, gap {d['gap_mm']:.4g})"),
+        (f"probability of the orientation, {d['rule']} [%]", _with_range(d, "p_orientation", 100.0)),
+        ("share that passes the devices [%]", f"{100.0 * d['passes_devices']:.4g}"),
+        ("fill of the track [%]", f"{100.0 * d['fill']:.4g}"),
+        ("well oriented of what leaves [%]", _number(100.0 * d["well_oriented_of_leaving"])),
+    ]
+    return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
+
+
+def remarks(found):
+    """What a reader of a rate must not overlook, as a list of str."""
+    if found.velocity.value <= 0.0:
+        return ["the part does not travel up the track: see feeder convey"]
+    if found.through == 0.0:
+        stations = zip(found.orientations.stations, found.orientations.passes[found.row])
+        return [
+            f"the wanted orientation is returned by: {', '.join(name for name, p in stations if p == 0.0)}"
+        ]
+    return []
+
+
+def write(folder, document):
+    """Write the document and its matrix of devices, where there is a folder."""
+    if folder:
+        folder.write("rate.json", tables.json_text(document))
+        folder.write("orientations.csv", tables.text(document["orientations"], "csv"))
+
+
+def _range(name, found, unit):
+    return {name: found.value / unit, f"{name}_low": found.low / unit, f"{name}_high": found.high / unit}
+
+
+def _with_range(document, name, scale=1.0):
+    value, low, high = (scale * document[key] for key in (name, f"{name}_low", f"{name}_high"))
+    return f"{value:.4g} ({low:.4g} to {high:.4g})"
+
+
+def _number(value):
+    return "none" if np.isnan(value) else f"{value:.4g}"

@@ -1,0 +1,72 @@
+"""``feeder config``: a file that is valid, values with their origins."""
+
+import csv
+import io
+import json
+from pathlib import Path
+
+from feederscrew.bowl import documentation
+
+
+def test_init_writes_a_commented_file_that_is_valid(run):
+    result = run("config", "init", "bowl.yaml")
+    assert (result.exit_code, result.stdout, result.stderr) == (0, "", "Wrote bowl.yaml\n")
+    assert Path("bowl.yaml").read_text() == documentation.template()
+    assert run("config", "show", "--config", "bowl.yaml").exit_code == 0
+
+
+def test_init_prints_without_a_file(run):
+    assert run("config", "init").stdout == documentation.template()
+
+
+def test_init_never_overwrites_silently(run):
+    Path("bowl.yaml").write_text("mine")
+    result = run("config", "init", "bowl.yaml")
+    assert result.exit_code == 1
+    assert (
+        result.stderr
+        == "Error: bowl.yaml: exists already - name another file, or pass --force to replace it\n"
+    )
+    assert Path("bowl.yaml").read_text() == "mine"
+    assert run("config", "init", "bowl.yaml", "--force").exit_code == 0
+    assert Path("bowl.yaml").read_text() == documentation.template()
+
+
+def test_init_into_nowhere_is_one_line(run):
+    result = run("config", "init", "no/bowl.yaml")
+    assert result.exit_code == 1
+    assert result.stderr == (
+        "Error: no/bowl.yaml: cannot be written (No such file or directory)"
+        " - name a file in a folder of yours\n"
+    )
+
+
+def test_show_tells_value_and_origin(run):
+    Path("b.yaml").write_text("drive:\n  frequency: 50 Hz\n")
+    lines = run("config", "show", "--config", "b.yaml", "--set", "friction.static=0.3").stdout.splitlines()
+    shown = {line.split()[0]: line.split()[1:] for line in lines if line}
+    assert shown["drive.frequency"] == ["50", "Hz", "b.yaml:2"]
+    assert shown["friction.static"] == ["0.3", "--set"]
+    assert shown["friction.wall"] == ["0.3", "as", "friction.kinetic"]
+    assert shown["gravity"] == ["9.81", "m/s2", "default"]
+
+
+def test_show_as_csv_and_json_agree(run):
+    table = list(csv.DictReader(io.StringIO(run("config", "show", "--format", "csv").stdout)))
+    document = json.loads(run("config", "show", "--format", "json").stdout)
+    assert table == document["settings"]
+    assert list(table[0]) == ["key", "value", "from", "lowest", "highest", "meaning"]
+
+
+def test_show_keeps_a_record_with_o(run):
+    assert run("config", "show", "-o", "results", "-q").exit_code == 0
+    assert {p.name for p in Path("results/bowl").iterdir()} == {"config.csv", "run.json"}
+
+
+def test_a_fault_prints_nothing_on_stdout(run):
+    result = run("config", "show", "--set", "drive.frequency=50 mm")
+    assert (result.exit_code, result.stdout) == (1, "")
+    assert (
+        result.stderr
+        == "Error: --set drive.frequency: '50 mm' is a length, not a frequency - give it in Hz\n"
+    )

@@ -1,0 +1,189 @@
+"""``feeder convey`` from the command line."""
+
+import csv
+import io
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+POINT = (
+    "--set",
+    "drive.peak_to_peak=1 mm",
+    "--set",
+    "drive.frequency=50 Hz",
+    "--set",
+    "drive.vibration_angle=25 deg",
+)
+MAP = ("--vary", "drive.vibration_angle=10:60:8", "--vary", "drive.amplitude=0.05mm:0.6mm:7")
+CONTRACT = {
+    *("status", "period", "velocity_mm_s", "velocity_low_mm_s", "velocity_high_mm_s", "throw_number"),
+    *("mu_forward", "mu_backward", "fractions", "longest_flight_periods", "hardest_impact_mm_s"),
+    *("sensitivity", "validity", "margins", "regime", "friction_doubt", "bowl"),
+}
+
+
+def told(result):
+    return [line for line in result.stderr.splitlines() if not line.startswith("Compiling")]
+
+
+def test_json_of_a_point(run):
+    result = run("convey", *POINT, "--format", "json")
+    document = json.loads(result.stdout)
+    assert result.exit_code == 0
+    assert set(document) >= CONTRACT
+    assert document["velocity_low_mm_s"] <= document["velocity_mm_s"] <= document["velocity_high_mm_s"]
+    assert set(document["fractions"]) == {"stick", "forward", "backward", "flight"}
+    assert sum(document["fractions"].values()) == pytest.approx(1.0)
+    assert set(document["sensitivity"]) == {"amplitude", "friction", "angle"}
+
+
+def test_table_of_a_point(run):
+    result = run(
+        "convey",
+        *POINT,
+        "--set",
+        "restitution=0",
+        "--set",
+        "friction.static=0.4",
+        "--set",
+        "track.climb=3 deg",
+    )
+    assert "103.7" in result.stdout.splitlines()[1]
+    assert "Sloot and Kruyt 1996" in result.stdout
+
+
+def test_no_steady_state_is_an_answer_and_a_warning(run):
+    result = run("convey", "--set", "track.climb=20 deg", "--set", "friction.static=0.3", "--format", "json")
+    document = json.loads(result.stdout)
+    assert result.exit_code == 0
+    assert document["status"] == "no steady state"
+    assert document["velocity_mm_s"] is None
+    assert told(result) == [
+        "Warning: no steady state: the climb is steeper than friction holds, and the part slides for ever"
+    ]
+
+
+def test_several_velocities_are_told(run):
+    values = ("drive.amplitude=0.4975 mm", "drive.frequency=50 Hz", "drive.vibration_angle=20 deg")
+    values += ("track.climb=0 deg", "friction.static=0.3", "restitution=0.3")
+    result = run("convey", *(word for value in values for word in ("--set", value)))
+    assert told(result)[0].startswith("Warning: several steady velocities, 23.4")
+
+
+def test_map_as_csv(run):
+    result = run("convey", *MAP, "--format", "csv")
+    rows = list(csv.DictReader(io.StringIO(result.stdout)))
+    assert len(rows) == 56
+    assert list(rows[0]) == [
+        *("vibration_angle_deg", "amplitude_mm", "velocity_mm_s", "velocity_low_mm_s", "velocity_high_mm_s"),
+        *("regime", "throw_number", "status"),
+    ]
+    assert {row["status"] for row in rows} <= {"periodic", "averaged"}
+    alone = run(
+        "convey",
+        "--set",
+        "drive.vibration_angle=60 deg",
+        "--set",
+        "drive.amplitude=0.05 mm",
+        "--format",
+        "json",
+    )
+    last_angle = next(row for row in rows if row["vibration_angle_deg"] == "60")
+    assert float(last_angle["velocity_mm_s"]) == pytest.approx(
+        json.loads(alone.stdout)["velocity_mm_s"], rel=1e-5
+    )
+
+
+def test_map_says_how_many_cells_have_no_answer(run):
+    spans = ("--vary", "track.climb=0:40:5", "--vary", "drive.amplitude=0.1mm:0.2mm:2")
+    result = run("convey", *spans, "--set", "friction.static=0.3", "--format", "csv")
+    lost = [row for row in csv.DictReader(io.StringIO(result.stdout)) if row["status"] == "no steady state"]
+    assert len(lost) == 6
+    assert {row["velocity_mm_s"] for row in lost} == {""}
+    assert {row["regime"] for row in lost} == {"no steady state"}
+    assert "6 of 10 cells: no steady state" in result.stderr
+
+
+def test_files(run):
+    run("convey", *POINT, "-o", "results")
+    run("convey", *MAP, "--bowl", "-o", "results")
+    run("convey", "--bowl", "-o", "results")
+    files = {path.name for path in Path("results/bowl").iterdir()}
+    pictures = {"convey.png", "convey_map.png", "convey_radius.png"}
+    assert files == {*pictures, "convey.json", "convey_map.csv", "convey_radius.csv", "run.json"}
+    before = {name: Path("results/bowl", name).read_bytes() for name in files}
+    run("convey", *MAP, "--bowl", "-o", "results")
+    assert all(Path("results/bowl", name).read_bytes() == content for name, content in before.items())
+
+
+def test_one_key_varied_is_a_curve(run):
+    result = run("convey", "--vary", "drive.amplitude=0.02mm:0.2mm:5", "--format", "csv", "-o", "results")
+    rows = list(csv.DictReader(io.StringIO(result.stdout)))
+    assert [row["amplitude_mm"] for row in rows] == ["0.02", "0.065", "0.11", "0.155", "0.2"]
+    alone = json.loads(run("convey", "--set", "drive.amplitude=0.11 mm", "--format", "json").stdout)
+    assert float(rows[2]["velocity_mm_s"]) == pytest.approx(alone["velocity_mm_s"], rel=1e-5)
+    files = {path.name for path in Path("results/bowl").iterdir()}
+    assert files == {"convey_curve.csv", "convey_curve.png", "run.json"}
+
+
+def test_no_pictures(run):
+    run("convey", *POINT, "-o", "results", "--no-pictures")
+    assert {path.name for path in Path("results/bowl").iterdir()} == {"convey.json", "run.json"}
+
+
+def test_radius_table(run):
+    rows = list(csv.DictReader(io.StringIO(run("convey", "--bowl", "--format", "csv").stdout)))
+    assert [float(rows[0]["radius_mm"]), float(rows[-1]["radius_mm"])] == [75.0, 150.0]
+    assert float(rows[0]["vibration_angle_deg"]) > float(rows[-1]["vibration_angle_deg"])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "line"),
+    [
+        (
+            ("--set", "drive.amplitude=0 mm"),
+            1,
+            "Error: drive.amplitude: is 0 mm, so nothing moves - give more than 0 mm",
+        ),
+        (
+            ("--vary", "drive.amplitude=0:1:3", "--bowl"),
+            2,
+            "Error: --vary is given 1 times - give it once for a curve, twice for a map; "
+            "--bowl goes with none or two (see feeder convey --help)",
+        ),
+        (
+            ("--set", "drive.phase=20 deg", "--bowl"),
+            1,
+            "Error: drive.phase: is not 0 deg, and an elliptical drive is no screw motion to follow inwards"
+            " - leave out --bowl, or the phase",
+        ),
+        (
+            ("--set", "friction.static_backward=0.3"),
+            1,
+            "Error: --set friction.static_backward: friction.kinetic_backward 0.6 is above "
+            "friction.static_backward 0.3 (as friction.kinetic) - "
+            "lower the kinetic coefficient or raise the static one",
+        ),
+        (
+            ("--set", "friction.kinetic=0.9"),
+            1,
+            "Error: --set friction.kinetic: friction.kinetic 0.9 is above friction.static 0.6 (default) - "
+            "lower the kinetic coefficient or raise the static one",
+        ),
+    ],
+)
+def test_faults_are_one_line(run, arguments, status, line):
+    result = run("convey", *arguments)
+    assert (result.exit_code, result.stderr) == (status, line + "\n")
+
+
+def test_one_point_needs_no_compiler():
+    code = (
+        "import sys\nfrom click.testing import CliRunner\nfrom cli.main import feeder\n"
+        "print(CliRunner().invoke(feeder, ['convey']).exit_code, 'numba' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "0 False\n"
