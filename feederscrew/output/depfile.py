@@ -1,0 +1,47 @@
+"""Rules for make: what results are made from, in the form that compilers write."""
+
+import os
+import tempfile
+from pathlib import Path
+
+from feederscrew.errors import FeederError
+
+
+def write(path, targets, inputs):
+    """Write one rule, and an empty one for each input so that make goes on when it is gone.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file to be included by a Makefile; replaced whole.
+    targets, inputs : iterable of str or Path
+        What is made, and from what.
+
+    Raises
+    ------
+    FeederError
+        If the file cannot be written.
+    """
+    path = Path(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, staged = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
+            file.write(rule(targets, inputs))
+        Path(staged).chmod(0o644)
+        Path(staged).replace(path)
+    except OSError as error:
+        raise FeederError(path, f"cannot be written ({error.strerror})", "give another --depfile") from error
+
+
+def rule(targets, inputs):
+    """The text of the rule."""
+    made, needed = ([_escaped(path) for path in paths] for paths in (targets, inputs))
+    lines = [" ".join(made) + ": " + " \\\n  ".join(needed), *(f"{path}:" for path in needed)]
+    return "".join(f"{line.rstrip()}\n" for line in lines)
+
+
+def _escaped(path):
+    """A path with what make takes for its own marked."""
+    text = Path(path).as_posix().replace("$", "$$")
+    return "".join(f"\\{letter}" if letter in " #:%" else letter for letter in text)

@@ -1,0 +1,187 @@
+"""A report as one HTML file that needs no other: style, viewer, mesh and pictures are inside."""
+
+import base64
+import csv
+import io
+import json
+import struct
+from html import escape
+from importlib import resources
+from itertools import groupby
+
+from feederscrew.output.plots import DPI
+from feederscrew.output.report import blocks as kinds
+from feederscrew.output.report.blocks import cells
+
+POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
+CSS_DPI = 96  # pixels of a page to the inch
+HALF = 700  # [px] a broader picture is not put beside another
+SCRIPTS = ("three.js", "viewer.js")
+HINT = (
+    "Drag a view to turn it, or use the arrow keys; double-click sets it back. "
+    "Orange is the face it rests on, the dot its centre of mass."
+)
+LICENCE = "three.LICENSE.txt"
+
+
+def html(page):
+    """The page as HTML.
+
+    Parameters
+    ----------
+    page : Page
+
+    Returns
+    -------
+    str
+    """
+    views = any(isinstance(block, kinds.Views) for section in page.sections for block in section.blocks)
+    return "\n".join(
+        [
+            '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
+            f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
+            '<meta name="viewport" content="width=device-width, initial-scale=1">',
+            f"<title>{escape(page.title)}: report</title>",
+            f"<style>\n{_asset('page.css')}</style>\n</head>\n<body>",
+            _head(page),
+            *(_section(section) for section in page.sections),
+            *(_scripts() if views else ()),
+            "</body>\n</html>\n",
+        ]
+    )
+
+
+def _asset(name):
+    return resources.files("feederscrew.output.report").joinpath(name).read_text(encoding="utf-8")
+
+
+def _scripts():
+    yield f"<!--\nThe 3-D views are drawn with three.js.\n\n{_asset(LICENCE)}-->"
+    for name in SCRIPTS:
+        yield f"<script>\n{_asset(name)}</script>"
+
+
+def _head(page):
+    tiles = "\n".join(
+        f'<div class="tile"><span>{escape(tile.label)}</span><strong>{escape(tile.value)}</strong>'
+        f"<small>{escape(tile.note)}</small></div>"
+        for tile in page.tiles
+    )
+    links = "\n".join(f'<a href="#{section.anchor}">{escape(section.title)}</a>' for section in page.sections)
+    warnings = _list(page.warnings, "loud") if page.warnings else ""
+    return (
+        f"<header>\n<h1>{escape(page.title)}</h1>\n<p>{escape(page.subtitle)}</p>\n"
+        f'<div class="tiles">\n{tiles}\n</div>\n{warnings}\n<nav>\n{links}\n</nav>\n</header>'
+    )
+
+
+def _section(section):
+    body = "\n".join(_run(*run) for run in groupby(section.blocks, _side_by_side))
+    return f'<section id="{section.anchor}">\n<h2>{escape(section.title)}</h2>\n{body}\n</section>'
+
+
+def _side_by_side(block):
+    return isinstance(block, kinds.Picture) and not block.printed
+
+
+def _run(pictures, blocks):
+    """Blocks that follow each other; pictures side by side where the window is wide enough."""
+    body = "\n".join(_block(block) for block in blocks)
+    return f'<div class="pictures">\n{body}\n</div>' if pictures else body
+
+
+def _block(block):
+    match block:
+        case kinds.Text(text, quiet):
+            mark = ' class="quiet"' if quiet else ""
+            return f"<p{mark}>{escape(text)}</p>"
+        case kinds.Notes(lines, loud):
+            return _list(lines, "loud" if loud else "notes")
+        case kinds.Code(text):
+            return f"<pre>{escape(text)}</pre>"
+        case kinds.Table(frame):
+            return _table(frame)
+        case kinds.Sheet(file, text):
+            return _sheet(file, text)
+        case kinds.Picture():
+            return _picture(block)
+        case kinds.Views():
+            return _views(block)
+    raise ValueError(f"{type(block).__name__} is no block of a report")
+
+
+def _picture(picture):
+    """The picture at its own size or smaller; a broad one has the whole width."""
+    width, height = (round(pixels * CSS_DPI / DPI) for pixels in struct.unpack(">2I", picture.content[16:24]))
+    kind = "stand-in" if picture.printed else "broad" if width > HALF else "plain"
+    return (
+        f'<figure id="{picture.file}" class="{kind}"><img src="{_data("image/png", picture.content)}" '
+        f'width="{width}" height="{height}" alt="{escape(picture.alt)}"></figure>'
+    )
+
+
+def _list(lines, mark):
+    return f'<ul class="{mark}">\n' + "\n".join(f"<li>{escape(line)}</li>" for line in lines) + "\n</ul>"
+
+
+def _table(frame):
+    heads, numeric, rows = cells(frame)
+    marks = [' class="number"' if n else "" for n in numeric]
+    head = "".join(
+        f"<th{mark}>{escape(name)} <small>{escape(unit)}</small></th>"
+        for mark, (name, unit) in zip(marks, heads)
+    )
+    lines = [
+        f"<tr>{''.join(f'<td{m}>{escape(cell)}</td>' for m, cell in zip(marks, row))}</tr>" for row in rows
+    ]
+    return _grid("", head, lines)
+
+
+def _sheet(file, text):
+    """Every cell as the CSV file writes it, and the file itself to save."""
+    head, *rows = csv.reader(io.StringIO(text))
+    heads = "".join(f"<th>{escape(name)}</th>" for name in head)
+    lines = [f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows]
+    link = f'<a download="{file}" href="{_data("text/csv", text.encode())}">Save {file}</a>'
+    marks = f' class="sheet" id="{file}"'
+    return f"{_grid(marks, heads, lines)}\n<p>{link}</p>"
+
+
+def _grid(marks, head, lines):
+    body = "\n".join(lines)
+    return (
+        f'<div class="wide"><table{marks}>\n<thead><tr>{head}</tr></thead>\n'
+        f"<tbody>\n{body}\n</tbody>\n</table></div>"
+    )
+
+
+def _views(views):
+    figures = "\n".join(_view(place, *caption) for place, caption in enumerate(views.captions))
+    scene = json.dumps(views.scene, separators=(",", ":")).replace("<", "\\u003c")
+    return (
+        f'<div id="views" hidden>\n<p class="quiet">{HINT}</p>\n'
+        f'<div class="views">\n{figures}\n</div>\n</div>\n'
+        f'<script type="application/json" id="scene">{scene}</script>'
+    )
+
+
+def _view(place, name, kind, bars):
+    label = f"Aspect {escape(name)} in three dimensions; arrow keys turn it"
+    shares = "\n".join(_bar(*bar) for bar in bars)
+    return (
+        f'<figure class="view">\n'
+        f'<canvas data-pose="{place}" tabindex="0" role="img" aria-label="{label}"></canvas>\n'
+        f"<figcaption><strong>{escape(name)}</strong> <span>{escape(kind)}</span> "
+        f'<button type="button">from below</button>\n{shares}</figcaption>\n</figure>'
+    )
+
+
+def _bar(rule, colour, share):
+    width = f'<b style="width:{100.0 * share:.2f}%;background:{colour}"></b>'
+    return (
+        f'<div class="bar"><span>{escape(rule)}</span><i>{width}</i><span>{100.0 * share:.1f} %</span></div>'
+    )
+
+
+def _data(kind, content):
+    return f"data:{kind};base64,{base64.b64encode(content).decode()}"

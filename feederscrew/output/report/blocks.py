@@ -1,0 +1,169 @@
+"""What a report is made of; the two writers turn each kind into HTML or Markdown."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from feederscrew.output import tables
+
+DIGITS = 4  # significant, in a cell for people
+SHORT = 3  # of a percentage, and at the head of the page
+PLAIN = (1e-4, 1e7)  # numbers outside are written with an exponent
+NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
+NOTHING = "–"
+
+
+@dataclass(frozen=True)
+class Text:
+    """A paragraph; ``quiet`` for what explains rather than tells."""
+
+    text: str
+    quiet: bool = False
+
+
+@dataclass(frozen=True)
+class Notes:
+    """Lines to be read one by one; ``loud`` for warnings."""
+
+    lines: tuple[str, ...]
+    loud: bool = False
+
+
+@dataclass(frozen=True)
+class Code:
+    """What one types."""
+
+    text: str
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """A frame for people."""
+
+    frame: pd.DataFrame
+    caption: str = ""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A CSV file cell by cell, to copy from or to save."""
+
+    file: str
+    csv: str
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A PNG; ``printed`` for one that stands in for the 3-D views on paper."""
+
+    file: str
+    content: bytes
+    alt: str
+    printed: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Views:
+    """The part on each aspect, to be turned; ``scene`` is JSON for the viewer."""
+
+    scene: dict
+    captions: tuple[
+        tuple[str, str, tuple[tuple[str, str, float], ...]], ...
+    ]  # name, kind, (label, colour, share)
+
+
+@dataclass(frozen=True)
+class Tile:
+    """One answer at the head of the page."""
+
+    label: str
+    value: str
+    note: str
+
+
+@dataclass(frozen=True)
+class Section:
+    """A chapter of the page; its place and title are the page's to give."""
+
+    blocks: tuple
+    tiles: tuple[Tile, ...] = ()
+    warnings: tuple[str, ...] = ()
+    anchor: str = ""
+    title: str = ""
+
+
+@dataclass(frozen=True)
+class Page:
+    """A whole report."""
+
+    title: str
+    subtitle: str
+    sections: tuple[Section, ...]
+
+    @property
+    def tiles(self):
+        """The answers of all sections, in their order."""
+        return tuple(tile for section in self.sections for tile in section.tiles)
+
+    @property
+    def warnings(self):
+        """What a reader must not overlook, each line once."""
+        return tuple(dict.fromkeys(line for section in self.sections for line in section.warnings))
+
+
+def cells(frame):
+    """A frame as texts for people.
+
+    Parameters
+    ----------
+    frame : DataFrame
+        Columns named with their units.
+
+    Returns
+    -------
+    heads : list of (str, str)
+        Name and unit of each column.
+    numeric : list of bool
+        Whether a column is of numbers.
+    rows : list of tuple of str
+    """
+    numeric = [_is_numeric(frame[name]) for name in frame.columns]
+    columns = [_column(name, frame[name]) for name in frame.columns]
+    return [tables.heading(name) for name in frame.columns], numeric, list(zip(*columns))
+
+
+def number(value, digits=DIGITS):
+    """A number for people with so many significant digits, NaN as a dash."""
+    if value == 0.0 or np.isnan(value):
+        return "0" if value == 0.0 else NOTHING
+    if not PLAIN[0] <= abs(value) < PLAIN[1]:
+        return f"{value:.{digits - 1}e}"
+    exponent = int(f"{value:.{digits - 1}e}".partition("e")[2])  # after rounding: 9.9999 is 10.00
+    return f"{value:.{max(0, digits - 1 - exponent)}f}"
+
+
+def percent(share):
+    """A share as a percentage without its sign."""
+    return number(100.0 * share, SHORT)
+
+
+def _column(name, values):
+    if not _is_numeric(values):
+        return [_word(value) for value in values]
+    if pd.api.types.is_integer_dtype(values):
+        return [str(value) for value in values]
+    if name.startswith("p_"):
+        return [percent(value) for value in values]
+    noise = NOISE * np.abs(values).max(skipna=True)
+    return [number(0.0 if abs(value) <= noise else value) for value in values]
+
+
+def _is_numeric(values):
+    return pd.api.types.is_numeric_dtype(values) and not pd.api.types.is_bool_dtype(values)
+
+
+def _word(value):
+    if isinstance(value, (bool, np.bool_)):
+        return "yes" if value else "no"
+    return NOTHING if value is None or value != value else str(value)

@@ -1,0 +1,54 @@
+"""The chapters of a report in their order; one that cannot be computed says why."""
+
+from contextlib import nullcontext
+from dataclasses import replace
+
+from feederscrew import __version__
+from feederscrew.errors import FeederError
+from feederscrew.output.report import closing, moving, resting
+from feederscrew.output.report.blocks import Notes, Page, Section
+
+CHAPTERS = (  # anchor, title, what computes it
+    ("aspects", "How it comes to rest", resting.aspects),
+    ("tipping", "How it tips", resting.tips),
+    ("headings", "How it lies along the wall", moving.headings),
+    ("velocity", "How fast it travels", moving.convey),
+    ("rate", "How many leave a minute", moving.rate),
+    ("track", "On the track, against the wall", moving.track),
+    ("floor", "On the bowl floor", moving.floor),
+    ("slip", "When a part slips", moving.slide),
+    ("part", "The part", resting.the_part),
+    ("limits", "What these numbers cannot tell", closing.limits),
+    ("repeat", "To get these numbers again", closing.repeat),
+)
+
+
+def page(case, step=nullcontext, chapters=CHAPTERS):
+    """Everything known of a part in a bowl.
+
+    Parameters
+    ----------
+    case : Case
+    step : callable
+        Of a title; gives a context manager round the computation of that chapter.
+    chapters : sequence
+        Those wanted, rows of ``CHAPTERS``.
+
+    Returns
+    -------
+    Page
+    """
+    part, bowl = case.part, case.path or "the default bowl"
+    sections = tuple(_chapter(case, *chapter, step) for chapter in chapters)
+    return Page(part.name, f"{part.material}, in {bowl} · feeder {__version__}", sections)
+
+
+def _chapter(case, anchor, title, compute, step):
+    """The chapter, or the reason there is none."""
+    try:
+        with step(title):
+            found = compute(case)
+    except FeederError as fault:
+        told = tuple(f"{title}: {line}" for line in fault.lines)
+        found = Section((Notes(fault.lines, loud=True),), warnings=told)
+    return replace(found, anchor=anchor, title=title)

@@ -1,0 +1,63 @@
+"""What the numbers cannot tell, and what is needed to get them again."""
+
+import platform
+from importlib import metadata
+
+from feederscrew import __version__
+from feederscrew.output import slide_tables, tables
+from feederscrew.output.folder import LIBRARIES
+from feederscrew.output.report.blocks import Code, Notes, Section, Table, Text
+from feederscrew.output.report.resting import numbers
+
+LIMITS = (
+    "How often a part lands on an aspect: PMI, CSA and stability are rules of thumb from geometry alone. "
+    "They disagree, and on real parts each is right in some cases only. Where they lie far apart, drop the "
+    "part a few hundred times and count (feeder compare). None of them knows the height of the drop, the "
+    "surface or other parts.",
+    "The part is rigid and, unless its centre of mass was given, homogeneous. A mesh is a polyhedron: its "
+    "curved sides are a little smaller than the part's. Two aspects that are mirror images have the same "
+    "numbers.",
+    "Friction is Coulomb's, with one static and one kinetic value. The limits of slip and hop are exact "
+    "for that model; the coefficients are yours to measure, and velocity depends on them more than on "
+    "anything else.",
+    "The velocity is of a point mass on the track: tipping, turning and the push of the parts behind are "
+    "left out. A flight ends in an impact with one coefficient of restitution.",
+    "Forces on the floor and on the track are of one part alone, of the rigid body at each instant of the "
+    "drive, as long as it keeps contact; what it does after it lifts off is not followed.",
+    "The rate counts parts one behind the other with the gap given. A returned part is taken to land again "
+    "like a fresh one; parts do not help or hinder each other at the devices.",
+)
+
+
+def limits(case):
+    """What the methods leave out, in plain words."""
+    return Section((Notes(LIMITS),))
+
+
+def repeat(case):
+    """The inputs: command, files, bowl values, versions, and the table of aspects to the last digit."""
+    hashes = tables.frame({"input": list(case.inputs), "sha256": list(case.inputs.values())})
+    bowl = slide_tables.settings(case.settings)[["key", "value", "from", "meaning"]]
+    chain = [f"device {device.kind} ({device.where})" for device in case.chain]
+    names, versions = zip(*_versions())
+    return Section(
+        (
+            Code(case.command),
+            Text("The same program and inputs give this page again, byte for byte."),
+            Table(hashes),
+            Text("The bowl: every value in effect and where it came from."),
+            Table(bowl),
+            *((Notes(tuple(chain)),) if chain else ()),
+            Text("The aspects to six digits, as feeder aspects writes them."),
+            numbers(case),
+            Text("Versions."),
+            Table(tables.frame({"program": names, "version": versions})),
+        ),
+    )
+
+
+def _versions():
+    yield "feeder", __version__
+    yield "python", platform.python_version()
+    for name in LIBRARIES:
+        yield name, metadata.version(name)

@@ -1,0 +1,230 @@
+"""What the bowl does with the part: slip, velocity, the track, the rate."""
+
+import numpy as np
+
+from feederscrew import bowl as bowls
+from feederscrew import maps
+from feederscrew.motion import rate as rates
+from feederscrew.motion.conveying import answer, sensitivity, trace
+from feederscrew.motion.floor_analysis import analyse as on_floor
+from feederscrew.motion.headings_analysis import analyse as against_wall
+from feederscrew.motion.track_analysis import analyse as on_track
+from feederscrew.output import (
+    convey_plots,
+    convey_tables,
+    floor_sheets,
+    floor_tables,
+    heading_sheets,
+    heading_tables,
+    plots,
+    rate_tables,
+    slide_sheets,
+    slide_tables,
+    track_maps,
+    track_sheets,
+    track_tables,
+)
+from feederscrew.output.report.blocks import (
+    NOTHING,
+    SHORT,
+    Notes,
+    Picture,
+    Section,
+    Table,
+    Text,
+    Tile,
+    number,
+    percent,
+)
+from feederscrew.output.report.kept import Kept
+from feederscrew.units import factor
+
+MM, DEG = factor("mm", "length"), factor("deg", "angle")
+ANGLES, STROKES = 56, 48  # cells of the velocity map
+LEAST_STROKE = 0.1 * MM  # the velocity map goes at least so far
+HEADINGS = {  # columns of the table, and their names here
+    "aspect": "aspect",
+    "heading_deg": "heading_deg",
+    "share": "p_of this aspect",
+    "aspect_share": "p_of all drops (CSA)",
+    "length_mm": "length_mm",
+    "width_mm": "width_mm",
+    "overhang_mm": "overhang_mm",
+    "falls_off": "falls off",
+}
+WORDS = {  # of a regime, for a tile
+    "ride": "rides, does not travel",
+    "forward": "slips forward only",
+    "backward": "slips back only",
+    "both": "slips both ways",
+    "hop": "hops",
+}
+
+
+def slide(case):
+    """When a part slips, over its heading and the drive."""
+    kept, beta = Kept(), case.bowl.drive.vibration_angle
+    one = maps.slide(case.bowl, beta)
+    slide_sheets.slides(kept, case.bowl, [one])
+    pictures = [
+        *_pictures(kept, "slide_regimes", "Regimes of a part over its heading and the acceleration ratio"),
+        *_pictures(kept, "slide_contours", "Lines of equal limiting friction"),
+    ]
+    return Section(
+        (*_notes(slide_tables.remarks([one])), Table(slide_tables.summary([one])), *pictures),
+    )
+
+
+def convey(case):
+    """Operating point and velocity."""
+    bowl = case.bowl
+    found = answer.answer(bowl)
+    around = sensitivity.sensitivity(bowl), sensitivity.friction_doubt(bowl)
+    document = convey_tables.document(bowl, found, *around)
+    blocks = [Table(convey_tables.summary(document))]
+    if found.status != "no steady state":
+        cycle = convey_plots.cycle(trace.trace(found.setting), bowl.drive.amplitude, found.velocity)
+        blocks.append(Picture("convey.png", plots.png(cycle), "Plate and part over one steady cycle"))
+    blocks.append(_velocity_map(case))
+    return Section(
+        tuple(blocks),
+        tiles=(_velocity_tile(document),),
+        warnings=tuple(convey_tables.remarks(document)),
+    )
+
+
+def floor(case):
+    """Forces and regimes on the bowl's floor."""
+    found, kept = on_floor(case.part, case.bowl, case.aspect, case.heading or 0.0), Kept()
+    document = floor_tables.document(found, bowls.texts(case.settings))
+    told = floor_sheets.floor(kept, found, document)
+    alts = {
+        "floor_plan": "The part from above, with the forces on it",
+        "floor_frequency_amplitude": "Acceleration along the heading over frequency and amplitude",
+        "floor_beta_friction": "Acceleration along the heading over vibration angle and friction",
+    }
+    pictures = [picture for name, alt in alts.items() for picture in _pictures(kept, name, alt)]
+    lead = Text(
+        f"Aspect {found.posture.name}, heading {np.degrees(found.heading):.4g} deg, at the upper reversal of "
+        "the drive; the maps show the same instant for other drives and other friction."
+    )
+    lines = _notes(told + floor_tables.remarks(found))
+    return Section((lead, *lines, Table(floor_tables.summary(document)), *pictures))
+
+
+def headings(case):
+    """How the part lies along the wall."""
+    track, kept = case.bowl.track, Kept()
+    postures, found, chances = against_wall(case.part, track)
+    rows = heading_tables.rows(found, chances)
+    own = [k for k, one in enumerate(postures) if one.name == case.aspect]
+    document = {"headings": rows}
+    heading_sheets.headings(
+        kept, case.part, [postures[k] for k in own], [found[k] for k in own], track, document
+    )
+    frame = heading_tables.frame(rows)[list(HEADINGS)].rename(columns=HEADINGS)
+    lead = Text(
+        "The directions in which the part is stable when pushed against the wall, the share of all "
+        "directions of laying down that ends in each, and the room it takes."
+    )
+    pictures = _pictures(kept, "headings", f"Stable headings of aspect {case.aspect} from above")
+    lines = tuple(heading_tables.remarks(found, track))
+    return Section((lead, Table(frame), *pictures), warnings=lines)
+
+
+def track(case):
+    """Reactions on the track, against the wall."""
+    found, kept = on_track(case.part, case.bowl, case.aspect, case.heading), Kept()
+    document = track_tables.document(found, bowls.texts(case.settings))
+    grid = track_maps.grid(found.posture, case.settings, (), case.heading)
+    track_sheets.track(kept, found, document, grid)
+    alts = {
+        "track_part": "The part on the track from above and from behind, with the forces on it",
+        "track_map": "Acceleration along the track over bank and climb",
+        "track_cycle": "Reactions over one cycle",
+    }
+    pictures = [picture for name, alt in alts.items() for picture in _pictures(kept, name, alt)]
+    lines = _notes(track_tables.remarks(found) + track_maps.remarks(grid))
+    return Section(
+        (*lines, Table(track_tables.summary(document)), *pictures),
+        tiles=_heading_tiles(found),
+    )
+
+
+def rate(case):
+    """Well-oriented parts a minute."""
+    known = rates.orientations(case.part, case.found, case.bowl.track, case.chain)
+    target = rates.wanted(case.part, case.found, case.bowl.track, case.aspect, case.heading)
+    speed = rates.velocity(case.bowl)
+    found = rates.rate(known, speed, target, case.rule, gap=case.gap, fill=case.fill)
+    document = rate_tables.document(found, case.rule)
+    lead = Text(
+        "The chain from velocity to rate; the range in brackets is over all starts, friction a fifth "
+        "off and every rule. The second table has what the track and each device do with each "
+        "orientation."
+    )
+    return Section(
+        (lead, Table(rate_tables.summary(document)), Table(document["orientations"])),
+        tiles=(_rate_tile(document),),
+        warnings=tuple(rate_tables.remarks(found)),
+    )
+
+
+def _velocity_map(case):
+    """Velocity and regimes over vibration angle and stroke, with the bowl's own point."""
+    drive = case.bowl.drive
+    top = max(2.5 * drive.amplitude, LEAST_STROKE) / MM
+    spans = bowls.ranges(
+        (
+            f"drive.vibration_angle=5deg:60deg:{ANGLES}",
+            f"drive.amplitude={0.02 * top:.4g}mm:{top:.4g}mm:{STROKES}",
+        )
+    )
+    grid = convey_tables.grid(spans, lambda values: bowls.swept(case.settings, values))
+    if not np.isfinite(grid.values["velocity_mm_s"]).any():
+        return Text("No drive of 5 to 60 deg and up to 2.5 times this stroke has a steady velocity here.")
+    own = [np.array([drive.vibration_angle / DEG]), np.array([drive.amplitude / MM])]
+    drawn = plots.png(convey_plots.velocity_map(grid, own))
+    return Picture("convey_map.png", drawn, "Velocity and regimes over vibration angle and amplitude")
+
+
+def _velocity_tile(document):
+    if np.isnan(document["velocity_mm_s"]):
+        return Tile("travels", NOTHING, document["status"])
+    doubt = document["friction_doubt"]
+    around = [document["velocity_mm_s"], doubt["velocity_less_mm_s"], doubt["velocity_more_mm_s"]]
+    low, high = (number(limit(around), SHORT) for limit in (np.nanmin, np.nanmax))
+    regime = WORDS.get(document["regime"], document["regime"])
+    note = f"{regime}; {low} to {high} mm/s for friction {doubt['change_percent']:g} % off"
+    return Tile("travels", f"{number(document['velocity_mm_s'], SHORT)} mm/s", note)
+
+
+def _heading_tiles(found):
+    if found.headings is None:
+        return ()
+    length, width = found.headings.lengths[found.row] / MM, found.headings.widths[found.row] / MM
+    note = f"{length:.3g} mm long, covers {width:.3g} of the track's {found.bowl.track.width / MM:.3g} mm"
+    return (Tile("lies along the wall at", f"{np.degrees(found.seat.heading):.3g} deg", note),)
+
+
+def _rate_tile(document):
+    low, high = (number(document[f"parts_per_minute_{end}"], SHORT) for end in ("low", "high"))
+    share = f"{percent(document['p_orientation'])} % of drops"
+    what = f"{document['aspect']} at {document['heading_deg']:.3g} deg, {share}"
+    return Tile(
+        "leaves well oriented",
+        f"{number(document['parts_per_minute'], SHORT)} a minute",
+        f"{low} to {high}; {what} ({document['rule']})",
+    )
+
+
+def _pictures(kept, start, alt):
+    return [
+        Picture(name, content, alt)
+        for name, content in kept.items()
+        if name.startswith(start) and name.endswith(".png")
+    ]
+
+
+def _notes(lines):
+    return (Notes(tuple(lines)),) if lines else ()

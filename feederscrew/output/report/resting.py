@@ -1,0 +1,127 @@
+"""The part, and how it comes to rest."""
+
+import numpy as np
+
+from feederscrew import units
+from feederscrew.output import columns, inertia_tables, plots, sheets, tables
+from feederscrew.output.columns import MM
+from feederscrew.output.report import graph
+from feederscrew.output.report.blocks import Notes, Picture, Section, Sheet, Table, Text, Tile, Views, percent
+from feederscrew.output.report.case import likeliest
+from feederscrew.output.report.kept import Kept
+from feederscrew.output.report.scene import scene
+from feederscrew.part.mass_balance import balance
+from feederscrew.resting import tumbling_aspects
+
+MOST_VIEWS = sheets.MOST
+CARD = "A part card is published data without a shape: there is nothing to draw or to turn."
+SHOWN = (
+    "density_g_cm3", "mass_g", "volume_mm3", "bounding_box_x_mm", "bounding_box_y_mm", "bounding_box_z_mm",
+    "centre_of_mass_x_mm", "centre_of_mass_y_mm", "centre_of_mass_z_mm",
+    "principal_moment_1_g_mm2", "principal_moment_2_g_mm2", "principal_moment_3_g_mm2",
+)  # fmt: skip
+UJ = units.factor("uJ", "energy")
+
+
+def the_part(case):
+    """Mass properties and warnings."""
+    part = case.part
+    told = inertia_tables.rows(inertia_tables.document(part, balance(part)))
+    rows = told[told["quantity"].isin(SHOWN)].reset_index(drop=True)
+    names = [" ".join(tables.heading(name)).strip() for name in rows["quantity"]]
+    facts = tables.frame({"quantity": names, "value": rows["value"]})
+    facets = "a part card: published data, no shape" if part.vertices is None else f"{len(part.faces)} facets"
+    lead = Text(f"{part.source}: {facets}, lengths in {part.units}. Material: {part.material}.")
+    return Section((lead, Table(facts)), warnings=tuple(part.warnings))
+
+
+def aspects(case):
+    """Table, views and chart of the aspects."""
+    part, found, kept = case.part, case.found, Kept()
+    table = columns.aspects(found, part)
+    said = sheets.aspects(kept, part, found, columns.part(part) | {"aspects": table})
+    rows = range(min(len(found.names), MOST_VIEWS))
+    views = (Text(CARD, quiet=True),) if part.vertices is None else (*_views(case, rows, kept),)
+    chart = Picture(
+        "probabilities.png", kept["probabilities.png"], "Probability of each aspect by every rule"
+    )
+    lines = (Notes(tuple(said)),) if said and part.vertices is not None else ()
+    shown = table.drop(columns=[name for name in columns.NORMALS if name in table])
+    return Section(
+        (*views, *lines, Table(shown), chart),
+        tiles=(_tile(case),),
+        warnings=tuple(found.warnings),
+    )
+
+
+def tips(case):
+    """The tipping graph, from exact tumbling."""
+    ground = tumbling_aspects.ground(case.part, case.found)
+    exact = tumbling_aspects.exact(ground, case.part, case.found)
+    shown = np.flatnonzero(case.found.stable)[: graph.MOST]
+    names = [case.found.names[row] for row in shown]
+    place = {row: k for k, row in enumerate(shown.tolist())}
+    ways = [
+        tumbling_aspects.Transition(place[way.start], place[way.end], way.lift, way.axis)
+        for way in tumbling_aspects.transitions(ground)
+        if way.start != way.end and way.start in place and way.end in place
+    ]
+    shares = exact.probabilities["quasistatic"][shown]
+    drawn = graph.tipping(names, shares, ways, "Lift of the centre of mass that tips it over [mm]")
+    table = tables.frame(
+        {
+            "aspect": names,
+            "p_quasistatic": shares,
+            "lowest_lift_mm": exact.barriers[shown] / MM,
+            "energy_uJ": exact.barrier_energies[shown] / UJ,
+            "tilts_over_at_deg": np.degrees(exact.tip_angles[shown]),
+        }
+    )
+    lead = Text(
+        "How firmly each aspect holds: the least height by which its centre of mass must be lifted "
+        "before the part tips over an edge, into an equal face too, what energy that is, and the tilt "
+        "of the floor that does it without sliding. Quasistatic is the share of all orientations from "
+        "which the part, let go without speed, ends there."
+    )
+    picture = Picture(
+        "tipping.png", plots.png(drawn), "Tipping graph: which aspect tips into which, and the lift it takes"
+    )
+    return Section((lead, Table(table), picture), warnings=tuple(exact.doubts))
+
+
+def numbers(case):
+    """The table of aspects cell by cell, as ``aspects.csv`` has it."""
+    return Sheet("aspects.csv", tables.text(columns.aspects(case.found, case.part), "csv"))
+
+
+def _views(case, rows, kept):
+    """Turnable views, the picture that replaces them on paper, and what is simplified."""
+    drawn = scene(case.part, case.found, rows)
+    captions = tuple(_caption(case.found, row) for row in rows)
+    yield Views(drawn, captions)
+    yield Picture("aspects.png", kept["aspects.png"], "The part as it rests on each aspect", printed=True)
+    if drawn["facets"] < drawn["all"]:
+        yield Text(
+            f"The views show a coarser surface of {drawn['facets']} facets; "
+            f"every number is of all {drawn['all']}.",
+            quiet=True,
+        )
+
+
+def _caption(found, row):
+    kind = f"{found.kinds[row]} ×{found.faces[row]}" if found.stable[row] else "not stable"
+    bars = [
+        (*plots.method(rule, place), float(values[row]))
+        for place, (rule, values) in enumerate(found.probabilities.items())
+    ]
+    return found.names[row], kind, tuple(bars) if found.stable[row] else ()
+
+
+def _tile(case):
+    """Which aspect, and how likely by the rules."""
+    first = case.aspect == likeliest(case.found)
+    chances = {rule: values[case.row] for rule, values in case.found.probabilities.items()}
+    known = {rule: share for rule, share in chances.items() if np.isfinite(share)}
+    low, high = percent(min(known.values())), percent(max(known.values()))
+    note = f"{low} to {high} % of drops, by {len(known)} rules" if known else "no rule tells how often"
+    return Tile("rests most often on" if first else "wanted", f"aspect {case.aspect}", note)

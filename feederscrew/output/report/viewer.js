@@ -1,0 +1,161 @@
+// Turns the views of a report. One WebGL context draws them all, each into a canvas of its own; without WebGL
+// the page keeps the still picture that also stands in for the views on paper.
+"use strict";
+
+(() => {
+  const TURN = 0.5; // degrees a pixel dragged
+  const STEP = 10; // degrees an arrow key
+  const CREASE = 24; // degrees: facets that meet under less are one curved side
+  const WIDTH = 680, HEIGHT = 544; // pixels of a view
+  const REACH = 1.16; // of the picture over the part
+  const COLOURS = { steel: 0xc3d3e4, edge: 0x22303c, accent: 0xd55e00, floor: 0xe3e8ed };
+
+  const data = JSON.parse(document.getElementById("scene").textContent);
+
+  function renderer() {
+    const canvas = document.createElement("canvas");
+    const context = canvas.getContext("webgl2", { antialias: true, alpha: true });
+    if (!context) return null;
+    const made = new THREE.WebGLRenderer({ canvas, context });
+    made.setSize(WIDTH, HEIGHT, false);
+    return made;
+  }
+
+  function decoded(text, Kind) {
+    const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+    return new Kind(bytes.buffer);
+  }
+
+  function partMesh() {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(decoded(data.positions, Float32Array), 3));
+    geometry.setIndex(new THREE.BufferAttribute(decoded(data.index, Uint32Array), 1));
+    const creased = THREE.toCreasedNormals(geometry, (CREASE * Math.PI) / 180);
+    const surface = new THREE.MeshStandardMaterial({
+      color: COLOURS.steel, metalness: 0.0, roughness: 0.62, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+    });
+    const edges = new THREE.EdgesGeometry(geometry, CREASE);
+    const line = new THREE.LineBasicMaterial({ color: COLOURS.edge, transparent: true, opacity: 0.75 });
+    return [new THREE.Mesh(creased, surface), new THREE.LineSegments(edges, line)];
+  }
+
+  function contactLines() {
+    const through = { color: COLOURS.accent, depthTest: false, transparent: true };
+    return [
+      new THREE.LineLoop(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ ...through, opacity: 0.55 })),
+      new THREE.Mesh(
+        new THREE.BufferGeometry(),
+        new THREE.MeshBasicMaterial({ color: COLOURS.accent, transparent: true, opacity: 0.4, side: 2, depthWrite: false,
+          polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -2 }),
+      ),
+    ];
+  }
+
+  function centreMark() {
+    const material = new THREE.MeshBasicMaterial({ color: COLOURS.accent, depthTest: false, transparent: true, opacity: 0.85 });
+    const mark = new THREE.Mesh(new THREE.SphereGeometry(0.022 * data.radius, 16, 12), material);
+    mark.renderOrder = 2;
+    return mark;
+  }
+
+  function floorDisc() {
+    const material = new THREE.MeshBasicMaterial({ color: COLOURS.floor, transparent: true, opacity: 0.55, depthWrite: false });
+    const disc = new THREE.Mesh(new THREE.CircleGeometry(data.radius, 96), material);
+    disc.position.z = -0.004 * data.radius;
+    return disc; // seen from above only, so that from below the contact face is free
+  }
+
+  function stage() {
+    const scene = new THREE.Scene(), part = new THREE.Group();
+    const contact = contactLines(), lamp = new THREE.DirectionalLight(0xffffff, 2.1), fill = new THREE.DirectionalLight(0xffffff, 0.7);
+    part.add(...partMesh(), ...contact, centreMark());
+    scene.add(part, floorDisc(), new THREE.HemisphereLight(0xffffff, 0xd8dee5, 1.9), lamp, fill);
+    const tall = REACH * data.radius, wide = (tall * WIDTH) / HEIGHT;
+    const camera = new THREE.OrthographicCamera(-wide, wide, tall, -tall, 0.1 * data.radius, 20 * data.radius);
+    camera.up.set(0, 0, 1);
+    return { scene, part, contact, lamp, fill, camera };
+  }
+
+  function placePart({ part, contact }, pose) {
+    part.quaternion.set(...pose.quaternion);
+    part.position.z = pose.height;
+    const corners = new THREE.BufferAttribute(new Float32Array(pose.contact), 3), fan = [];
+    for (let k = 1; k + 1 < corners.count; k++) fan.push(0, k, k + 1);
+    for (const line of contact) {
+      line.geometry.dispose();
+      line.geometry = new THREE.BufferGeometry().setAttribute("position", corners).setIndex(line.isMesh ? fan : null);
+    }
+  }
+
+  function placeCamera({ camera, lamp, fill }, view, height) {
+    const a = (view.azimuth * Math.PI) / 180, e = (view.elevation * Math.PI) / 180, far = 8 * data.radius;
+    const out = new THREE.Vector3(Math.cos(a) * Math.cos(e), Math.sin(a) * Math.cos(e), Math.sin(e));
+    camera.position.copy(out).multiplyScalar(far);
+    camera.position.z += height;
+    camera.lookAt(0, 0, height);
+    camera.updateMatrixWorld();
+    lamp.position.set(-0.45, 0.6, 0.66).applyQuaternion(camera.quaternion);
+    fill.position.set(0.75, 0.05, 0.66).applyQuaternion(camera.quaternion);
+  }
+
+  function start(view) {
+    Object.assign(view, { azimuth: data.azimuth, elevation: data.elevation });
+  }
+
+  function turn(view, across, up) {
+    view.azimuth -= across;
+    view.elevation = Math.max(-89, Math.min(89, view.elevation + up));
+    view.draw();
+  }
+
+  function listen(canvas, view) {
+    const keys = { ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, STEP], ArrowDown: [0, -STEP] };
+    let last = null;
+    canvas.addEventListener("pointerdown", (event) => {
+      last = [event.clientX, event.clientY];
+      canvas.setPointerCapture?.(event.pointerId);
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      if (!last) return;
+      turn(view, TURN * (event.clientX - last[0]), TURN * (event.clientY - last[1]));
+      last = [event.clientX, event.clientY];
+    });
+    for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => (last = null));
+    canvas.addEventListener("dblclick", () => { start(view); view.draw(); });
+    canvas.addEventListener("keydown", (event) => {
+      if (!keys[event.key]) return;
+      event.preventDefault();
+      turn(view, ...keys[event.key]);
+    });
+    const button = canvas.parentElement.querySelector("button");
+    button.addEventListener("click", () => {
+      const above = view.elevation > 0;
+      view.elevation = above ? -50 : data.elevation;
+      button.textContent = above ? "from above" : "from below";
+      view.draw();
+    });
+  }
+
+  function show(pen, set, canvas) {
+    const view = {}, pose = data.poses[Number(canvas.dataset.pose)], paper = canvas.getContext("2d");
+    canvas.width = WIDTH;
+    canvas.height = HEIGHT;
+    view.draw = () => {
+      placePart(set, pose);
+      placeCamera(set, view, pose.height);
+      pen.render(set.scene, set.camera);
+      paper.clearRect(0, 0, WIDTH, HEIGHT);
+      paper.drawImage(pen.domElement, 0, 0);
+    };
+    start(view);
+    listen(canvas, view);
+    view.draw();
+  }
+
+  const pen = renderer();
+  if (!pen) return;
+  const set = stage();
+  document.body.classList.add("has-views");
+  document.getElementById("views").hidden = false;
+  for (const canvas of document.querySelectorAll(".view canvas")) show(pen, set, canvas);
+})();

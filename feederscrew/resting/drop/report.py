@@ -1,0 +1,79 @@
+"""One drop test of one part, from its aspects to counts."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew.resting.drop import conditions, ensemble, kernel
+from feederscrew.resting.drop.ensemble import Drops, Tally
+from feederscrew.resting.drop.shape import shape_of_part
+from feederscrew.resting.tumbling_aspects import Ground, ground
+from feederscrew.resting.tumbling_compiled import on_disk
+
+USUAL = 10_000  # drops, where the user names neither a number nor a width
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """A drop test and how to repeat it."""
+
+    launch: dict  # name and ranges sampled, in the units of the shop
+    seed: int
+    ground: Ground
+    drops: Drops
+    tally: Tally
+
+
+def test(part, aspects, preset, own, *, drops=None, until=None, seed=1, jobs=1, progress=None):
+    """Drop a part and count the aspects it rests on.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    aspects : Aspects
+        Of that part.
+    preset : str
+        A key of ``launch.PRESETS``.
+    own : dict of str to (str or None)
+        Ranges that replace the preset's, as typed: see ``conditions.launch_of``.
+    drops : int, optional
+        How many; with ``until`` at most so many.
+    until : str, optional
+        Go on until every class's 95 % interval is this narrow to either side, '1%'.
+    seed : int
+    jobs : int
+        Cores to use; the counts do not depend on it.
+    progress : function, optional
+        As in ``ensemble.drop``.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    FeederError
+        If the part has no shape, or an option is no such quantity or out of range.
+    """
+    width = None if until is None else conditions.share(until, "--until")
+    found = ground(part, aspects)
+    shape, length = shape_of_part(part, found)
+    launch = conditions.launch_of(preset, length, own)
+    count = len(aspects.names)
+    dropped = ensemble.drop(
+        shape,
+        launch,
+        np.random.default_rng(seed),
+        count=USUAL if drops is None and until is None else drops,
+        narrow=None if width is None else ensemble.narrow_to(width, found.rows, count),
+        jobs=jobs,
+        progress=progress,
+    )
+    counted = ensemble.tally(dropped, found.rows, count)
+    return Result(conditions.described(launch, length), seed, found, dropped, counted)
+
+
+def compiled():
+    """Whether the drop kernel is on disk already; else the first drop on a machine compiles it."""
+    return on_disk(kernel.settle_all)

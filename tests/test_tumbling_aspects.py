@@ -1,0 +1,94 @@
+"""Exact tumbling by class of aspect: columns, barriers and the tipping graph."""
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew.errors import MeshError
+from feederscrew.output import graph_sheets
+from feederscrew.resting.aspects import find
+from feederscrew.resting.tumbling_aspects import exact, ground, transitions
+
+
+def everything(mesh, **exponent):
+    part = shapes.part(mesh)
+    aspects = find(part)
+    found = ground(part, aspects)
+    return part, aspects, found, exact(found, part, aspects, **exponent)
+
+
+def test_a_box_by_class():
+    part, aspects, _, result = everything(shapes.box(10.0, 20.0, 30.0))
+    share = aspects.faces * aspects.solid_angles / (4.0 * np.pi)
+    assert result.probabilities["quasistatic"] == pytest.approx(share, rel=1e-9)
+    assert all(p.sum() == pytest.approx(1.0) for p in result.probabilities.values())
+    assert 1e3 * result.barriers == pytest.approx(
+        [np.hypot(10, 20) / 2 - 5, np.hypot(10, 20) / 2 - 10, np.hypot(10, 30) / 2 - 15]
+    )
+    assert result.barrier_energies == pytest.approx(part.mass * 9.80665 * result.barriers)
+    assert np.degrees(result.tip_angles) == pytest.approx(np.degrees(np.arctan([20 / 10, 10 / 20, 10 / 30])))
+    assert not result.doubts
+
+
+def test_the_surface_exponent_reaches_the_column():
+    soft, hard = (everything(shapes.box(10, 20, 30), exponent=a)[3] for a in (0.0, 2.0))
+    assert soft.probabilities["surface"] == pytest.approx(soft.probabilities["quasistatic"])
+    assert hard.probabilities["surface"][0] > soft.probabilities["surface"][0]
+
+
+@pytest.mark.parametrize("sections", [16, 64, 200])
+def test_a_cylinder_rolls_and_stands(sections):
+    _, aspects, found, result = everything(shapes.cylinder(5.0, 20.0, sections))
+    ends = aspects.kinds.index("flat")
+    assert result.probabilities["quasistatic"][ends] == pytest.approx(
+        1 - 10 / np.hypot(10, 5), rel=1.5 / sections
+    )
+    assert 1e3 * result.barriers[ends] == pytest.approx(np.hypot(10, 5) - 10, rel=2.0 / sections)
+    assert len(transitions(found)) == 2
+
+
+def test_a_cube_tips_into_its_equals():
+    _, _, found, result = everything(shapes.box(8.0, 8.0, 8.0))
+    assert [(way.start, way.end) for way in transitions(found)] == [(0, 0)]
+    assert 1e3 * result.barriers == pytest.approx([np.sqrt(32.0) - 4.0])
+
+
+def test_the_graph_is_a_table(rng):
+    part, aspects, found, result = everything(shapes.box(10.0, 20.0, 30.0))
+    frame = graph_sheets.transitions(part, aspects, transitions(found))
+    assert list(frame.columns) == ["from", "to", "barrier_mm", "barrier_uJ", "axis_x", "axis_y", "axis_z"]
+    assert list(zip(frame["from"], frame["to"])) == [(a, b) for a in "ABC" for b in "ABC" if a != b]
+    assert np.hypot(np.hypot(frame["axis_x"], frame["axis_y"]), frame["axis_z"]).to_numpy() == pytest.approx(
+        1.0
+    )
+    assert frame.groupby("from")["barrier_mm"].min().to_numpy() == pytest.approx(1e3 * result.barriers)
+    columns = graph_sheets.barriers(result)
+    assert columns["tip_angle_deg"][0] == pytest.approx(np.degrees(np.arctan(2.0)))
+
+
+def test_the_graph_is_drawn():
+    from feederscrew.output import graph_plots
+
+    _, aspects, found, result = everything(shapes.box(10.0, 20.0, 30.0))
+    figure = graph_plots.graph("box", aspects, transitions(found), result.probabilities["quasistatic"])
+    texts = {text.get_text() for text in figure.axes[0].texts}
+    assert {"A", "B", "C", "6.18"} <= texts
+
+
+def test_noise_and_turning_change_little(rng):
+    box = shapes.box(10.0, 20.0, 30.0)
+    clean = everything(box)[3]
+    for mesh in (shapes.turned(box, rng), shapes.noisy(box.subdivide(), 2e-3, rng)):
+        result = everything(mesh)[3]
+        for rule, p in clean.probabilities.items():
+            assert result.probabilities[rule] == pytest.approx(p, abs=0.01), rule
+
+
+def test_a_card_has_no_shape(monkeypatch):
+    from dataclasses import replace
+
+    part = shapes.part(shapes.box(1.0, 2.0, 3.0))
+    aspects = find(part)
+    with pytest.raises(MeshError) as fault:
+        ground(replace(part, vertices=None, faces=None), aspects)
+    assert str(fault.value) == "part.stl: is a part card, it has no shape to tumble - give a mesh file"
