@@ -1,7 +1,9 @@
 """The ``feeder`` program: its commands and its one error fence."""
 
+import difflib
 import importlib
 import os
+import re
 import signal
 import sys
 from collections.abc import Mapping
@@ -31,6 +33,7 @@ COMMANDS = {
     "doctor": "cli.doctor",
 }
 COLOUR = False if os.environ.get("NO_COLOR") else None  # None: on a terminal only
+NO_CHOICE = re.compile(r"'([^']*)' is not one of")
 INTERRUPTED = 128 + signal.SIGINT
 PIPE_CLOSED = 141  # what a shell reports of any filter whose reader went away
 
@@ -64,7 +67,9 @@ class Fence(click.Group):
             _tell("Stopped.")
             status = INTERRUPTED
         except click.ClickException as error:
-            _tell("Error: " + " ".join(error.format_message().split()) + _help_hint(error))
+            _tell(
+                "Error: " + " ".join(error.format_message().split()) + _near_miss(error) + _help_hint(error)
+            )
             status = error.exit_code
         sys.exit(status if isinstance(status, int) else 0)
 
@@ -83,6 +88,18 @@ class Fence(click.Group):
 
 def _tell(line):
     click.echo(line, err=True)
+
+
+def _near_miss(error):
+    """The choice that a mistyped one was meant for, as click says it of commands and options."""
+    typed, kind = (
+        NO_CHOICE.match(getattr(error, "message", "")),
+        getattr(getattr(error, "param", None), "type", None),
+    )
+    if not typed or not isinstance(kind, click.Choice):
+        return ""
+    near = difflib.get_close_matches(typed[1], [str(choice) for choice in kind.choices], n=1)
+    return f" Did you mean '{near[0]}'?" if near else ""
 
 
 def _help_hint(error):

@@ -1,0 +1,89 @@
+# `make` alone lists what there is to make. Nothing but Python 3.11 and make is needed beforehand.
+
+PYTHON ?= $(shell command -v python3.11 || command -v python3)
+BIN := .venv/bin
+FEEDER := $(BIN)/feeder
+READY := .venv/.ready
+READY_TO_TEST := .venv/.ready-to-test
+DEMO := lbracket_30x20x15
+
+PARTS := $(wildcard parts/*.stl)
+CARDS := $(wildcard parts/*.yaml)
+CONFIGS := $(wildcard configs/*.yaml)
+NAMES := $(basename $(notdir $(PARTS)))
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.SUFFIXES:
+.PHONY: help demo test check lint format all-aspects inertia maps bench docs clean distclean
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+
+demo: $(READY) ## resting table and picture of a bracket, sliding map of a bowl
+	$(FEEDER) aspects parts/$(DEMO).stl -o results
+	$(FEEDER) slide --config configs/bowl.yaml -o results
+	@echo
+	@echo "Pictures:"
+	@ls results/$(DEMO)/*.png results/bowl/*.png
+
+test: lint ## format, lint and every test, warnings as errors
+	$(BIN)/python -m pytest -n 2
+
+check: test ## the same: all that CI runs
+
+lint: $(READY_TO_TEST) ## format and lint, nothing changed
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+
+format: $(READY_TO_TEST) ## put the code into the house format
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+# A user's own Makefile can drive the tool with these rules as they stand: one part or bowl file,
+# one folder of results, and only what is older than its file is made again.
+
+all-aspects: $(NAMES:%=results/%/aspects.csv) $(CARDS:parts/%.yaml=results/%/aspects.csv) ## aspects of every part in parts/
+
+inertia: $(NAMES:%=results/%/inertia.csv) ## mass properties of every mesh in parts/
+
+maps: $(CONFIGS:configs/%.yaml=results/%/slide.csv) ## sliding maps of every bowl in configs/
+
+results/%/aspects.csv: parts/%.stl | $(READY)
+	$(FEEDER) aspects $< -o results --quiet > /dev/null
+
+results/%/aspects.csv: parts/%.yaml | $(READY)
+	$(FEEDER) aspects $< -o results --quiet > /dev/null
+
+results/%/inertia.csv: parts/%.stl | $(READY)
+	$(FEEDER) inertia $< -o results --quiet > /dev/null
+
+results/%/slide.csv: configs/%.yaml | $(READY)
+	$(FEEDER) slide --config $< -o results --quiet > /dev/null
+
+bench: $(READY_TO_TEST) ## benchmarks, a few minutes
+	for script in benchmarks/*.py; do $(BIN)/python $$script || exit 1; done
+
+docs: docs/aspects.png docs/regimes.png $(READY) ## pictures, outputs and tables of the README
+	$(BIN)/python docs/readme.py
+
+docs/aspects.png: results/$(DEMO)/aspects.csv
+	cp results/$(DEMO)/aspects.png $@
+
+docs/regimes.png: results/bowl/slide.csv
+	cp results/bowl/slide_regimes_*.png $@
+
+clean: ## remove results and caches
+	rm -rf results build .pytest_cache .ruff_cache .hypothesis
+
+distclean: clean ## remove .venv as well
+	rm -rf .venv *.egg-info
+
+$(READY): pyproject.toml
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	touch $@
+
+$(READY_TO_TEST): $(READY)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	touch $@

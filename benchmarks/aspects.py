@@ -1,0 +1,176 @@
+"""Speed of the resting aspects against a bare floor and a peer, on meshes of 10^3 to 10^6 facets.
+
+Example: python benchmarks/aspects.py --largest 1e6 --repeats 5
+
+Floor: trimesh.load_mesh + is_watertight + mass_properties + SciPy ConvexHull, what any tool must pay.
+Peer: trimesh.poses.compute_stable_poses on hulls of about 10^4 facets.
+Each figure is the median ratio over alternating runs, each in a process of its own; imports are not
+counted in the time, but are in the memory.
+"""
+
+import argparse
+import json
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import trimesh
+
+SIZES = (1e3, 1e4, 1e5, 1e6)
+TARGETS = {"box": 1.3, "screw": 1.3, "sphere": 2.0}
+
+
+def box(facets):
+    """A box subdivided to about that many facets."""
+    mesh = trimesh.creation.box((10.0, 20.0, 30.0))
+    while len(mesh.faces) * 2 < facets:
+        mesh = mesh.subdivide()
+    return mesh
+
+
+def sphere(facets):
+    """A ball of longitudes and latitudes, every facet on the hull."""
+    n = round(np.sqrt(facets / 8)) + 1
+    return trimesh.creation.uv_sphere(radius=10.0, count=[n, 2 * n])
+
+
+def screw(facets):
+    """A threaded shank under a round head: most of the surface lies inside the hull."""
+    around = max(12, round(np.sqrt(facets / 20)))
+    along = round(facets / 2 / around)
+    z = np.concatenate([np.linspace(0, 15.9, along - 4), [16, 16, 20, 20]])
+    radius = np.concatenate([np.full(along - 4, 2.0), [2.0, 3.5, 3.5, 0.0]])
+    turn = 2 * np.pi * np.arange(around) / around
+    thread = 0.4 * np.abs(((z[:, None] / 0.7 - turn / (2 * np.pi)) % 1.0) - 0.5)
+    rings = radius[:, None] - np.where(z[:, None] < 16, thread, 0.0)
+    rings[0] = rings[-1] = 1e-3  # the ends close on a small disc
+    points = np.stack([rings * np.cos(turn), rings * np.sin(turn), np.tile(z[:, None], around)], axis=-1)
+    k, j = np.meshgrid(np.arange(along - 1), np.arange(around), indexing="ij")
+    a, b = k * around + j, k * around + (j + 1) % around
+    quads = np.stack([a, b, b + around, a, b + around, a + around], axis=-1).reshape(-1, 3)
+    fan = np.arange(1, around - 1)
+    ends = np.stack([np.zeros_like(fan), fan, fan + 1], axis=-1)
+    faces = np.vstack([quads, ends[:, ::-1], ends + (along - 1) * around])
+    return trimesh.Trimesh(points.reshape(-1, 3), faces, process=False)
+
+
+def floor(path):
+    """What any tool must pay: read, check, integrate, hull."""
+    from scipy.spatial import ConvexHull
+
+    mesh = trimesh.load_mesh(path)
+    assert mesh.is_watertight
+    _ = mesh.mass_properties
+    return len(ConvexHull(mesh.vertices).simplices)
+
+
+def ours(path):
+    """The whole of `feeder aspects` but printing."""
+    import feederscrew.part
+    from feederscrew.resting.aspects import find
+
+    return len(find(feederscrew.part.load(path)).names)
+
+
+def peer(path):
+    """Stable poses as trimesh computes them."""
+    return len(trimesh.poses.compute_stable_poses(trimesh.load_mesh(path).convex_hull, threshold=0.0)[0])
+
+
+def poses(path):
+    """Our aspects on the same hull, for the peer's comparison."""
+    return ours(path)
+
+
+JOBS = {"floor": floor, "ours": ours, "peer": peer, "poses": poses}
+
+
+def measured(job, path):
+    """Seconds and peak memory [MB] of one job in a process of its own."""
+    done = subprocess.run(
+        [sys.executable, __file__, "--job", job, str(path)], capture_output=True, text=True, check=True
+    )
+    return json.loads(done.stdout)
+
+
+def run(job, path):
+    """One job here: imports first, then the clock."""
+    import pandas
+    import scipy.sparse.csgraph
+    import scipy.spatial
+
+    assert pandas and scipy
+    if job != "floor":
+        import feederscrew.resting.aspects
+
+        assert feederscrew.resting.aspects
+    start = time.perf_counter()
+    JOBS[job](path)
+    seconds = time.perf_counter() - start
+    print(json.dumps([seconds, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024]))
+
+
+def compare(first, second, path, repeats):
+    """Median ratios (time, memory) of two jobs, and the median seconds of each."""
+    pairs = [(measured(first, path), measured(second, path)) for _ in range(repeats)]
+    ratio = [statistics.median(a[k] / b[k] for a, b in pairs) for k in (0, 1)]
+    return *ratio, *(statistics.median(pair[k][0] for pair in pairs) for k in (0, 1))
+
+
+def cold(path, repeats):
+    """Median ratio of a cold `feeder aspects` to importing the libraries it cannot do without."""
+    command = [str(Path(sys.executable).with_name("feeder")), "aspects", str(path), "--format", "csv"]
+    imports = [sys.executable, "-c", "import numpy, scipy.spatial, trimesh, pandas"]
+    ratios = []
+    for _ in range(repeats):
+        seconds = []
+        for call in (command, imports):
+            start = time.perf_counter()
+            subprocess.run(call, check=True, capture_output=True)
+            seconds.append(time.perf_counter() - start)
+        ratios.append(seconds[0] / seconds[1])
+    return statistics.median(ratios)
+
+
+def main(largest, repeats):
+    """Print the tables."""
+    print(f"{'mesh':8} {'facets':>9} {'floor s':>8} {'ours s':>8} {'time':>6} {'memory':>7}  target")
+    with tempfile.TemporaryDirectory() as folder:
+        for name, make in (("box", box), ("screw", screw), ("sphere", sphere)):
+            for size in (s for s in SIZES if s <= largest):
+                mesh = make(size)
+                path = Path(folder) / f"{name}.stl"
+                mesh.export(path)
+                time_ratio, memory, a, b = compare("ours", "floor", path, repeats)
+                print(
+                    f"{name:8} {len(mesh.faces):9,} {b:8.3f} {a:8.3f} {time_ratio:6.2f} {memory:7.2f}"
+                    f"  time {TARGETS[name]} memory 1.5",
+                    flush=True,
+                )
+        for mesh in (trimesh.creation.icosphere(subdivisions=4).apply_scale([3, 4, 5]), sphere(1e4)):
+            path = Path(folder) / "hull.stl"
+            mesh.export(path)
+            ratio, _, a, b = compare("peer", "poses", path, 1)
+            print(f"hull of {len(mesh.faces):,} facets: {a:.2f} s, ours {b:.3f} s, {ratio:.0f} times faster")
+    part = Path(__file__).parent.parent / "parts" / "lbracket_30x20x15.stl"
+    print(f"cold `feeder aspects` over importing its libraries: {cold(part, repeats):.2f} (target 1.5)")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--largest", type=float, default=1e5, help="facets of the largest mesh")
+    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--job", choices=JOBS, help=argparse.SUPPRESS)
+    parser.add_argument("path", nargs="?", help=argparse.SUPPRESS)
+    given = parser.parse_args()
+    if given.job:
+        run(given.job, given.path)
+    else:
+        main(given.largest, given.repeats)

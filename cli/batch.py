@@ -1,0 +1,93 @@
+"""``feeder batch``."""
+
+import click
+
+from cli import options
+from cli.progress import Progress
+
+
+class Jobs(click.ParamType):
+    """A number of processes, or 'auto'."""
+
+    name = "jobs"
+
+    def convert(self, value, param, ctx):
+        """The number; None for 'auto'."""
+        if value == "auto":
+            return None
+        if not value.isdecimal() or not int(value):
+            self.fail(f"{value!r} is no number of processes - give 1, 2, ... or auto", param, ctx)
+        return int(value)
+
+
+@click.command(short_help="Aspects, conveying and rate of any number of parts, in parallel.")
+@click.argument("sources", metavar="PARTS...", nargs=-1, required=True, type=options.FILE)
+@click.option(
+    "--config",
+    "configs",
+    metavar="FILE",
+    multiple=True,
+    type=options.FILE,
+    help="Bowl file or folder; may be repeated.",
+)
+@click.option("--set", "overrides", metavar="KEY=VALUE", multiple=True, help="Override one value.")
+@click.option("--rule", default="pmi", show_default=True, metavar="NAME", help="Probabilities taken.")
+@click.option(
+    "--drops",
+    metavar="N",
+    type=click.IntRange(0, 10_000_000),
+    default=0,
+    help="Simulated drops of each part; none without it.",
+)
+@click.option("--jobs", type=Jobs(), metavar="N|auto", help="Processes of this machine.  [default: auto]")
+@click.option(
+    "--scheduler",
+    metavar="ADDRESS",
+    envvar="DASK_SCHEDULER_ADDRESS",
+    help="Work on this Dask cluster: tcp://host:8786.  [default: $DASK_SCHEDULER_ADDRESS, if set]",
+)
+@click.option("--resume", is_flag=True, help="Go on where a batch stopped: only what is missing or changed.")
+@options.pictures
+@options.output
+@click.pass_context
+def batch(ctx, sources, configs, overrides, rule, drops, jobs, scheduler, resume, pictures, out):
+    """Example: feeder batch parts/ --config bowl.yaml -o results/all --jobs 2
+
+    Compute every part in every bowl: its aspects, how it travels, and the rate of the orientation
+    that leaves the bowl most often. A part that fails is told, and the others go on; exit status 1
+    says that some failed.
+
+    PARTS are part files, folders of them, patterns ("parts/**/*.stl") and lists: a CSV whose first
+    line names its columns, out of part, units, density, centre_of_mass and config. -o DIR gets summary.csv
+    with a row a part, index.html, contact_sheet.png, and a folder a part in DIR/parts.
+    """
+    from feederscrew import batch as batches
+
+    if out.directory is None:
+        raise click.UsageError("Missing option '-o' - say where the results go")
+    requests = batches.gather(sources, configs, overrides)
+    workers = batches.crew(jobs, None if _typed(ctx, "jobs") else scheduler)
+    choices = batches.Choices(rule=rule, drops=drops, pictures=pictures)
+    with Progress(len(requests), not out.quiet) as progress:
+        found = batches.run(
+            requests, out.directory, workers=workers, choices=choices, resume=resume, tell=progress.tell
+        )
+    out.depend(found.targets, found.sources)
+    _report(found, out)
+    ctx.exit(1 if found.faults else 0)
+
+
+def _typed(ctx, name):
+    """Whether an option stands on the command line."""
+    return ctx.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE
+
+
+def _report(found, out):
+    from feederscrew.batch import summary
+
+    out.say(*(f"Error: {fault}" for fault in found.faults))
+    if found.strangers:
+        out.warn(f"{len(found.strangers)} folders are of parts not in this batch: {found.strangers[0]}, ...")
+    kept = f", {found.kept} of them as they were" if found.kept else ""
+    out.say(f"Wrote {out.directory} ({len(found.rows)} parts{kept}; open index.html)")
+    out.show(summary.frame(found.rows), {"parts": list(found.rows)}, hidden=summary.HIDDEN)

@@ -1,0 +1,18 @@
+"""``feeder doctor``."""
+
+import click
+
+
+@click.command(short_help="What is installed here, what is missing, and how to get it.")
+def doctor():
+    """Example: feeder doctor
+
+    Print the versions of Python and of every library, which extras are there (and the line that
+    installs one that is not), where compiled kernels are kept, and how to turn on completion.
+    """
+    from cli import health
+
+    for title, lines in health.report().items():
+        click.echo(click.style(title, bold=True))
+        for name, told in lines:
+            click.echo(f"  {name:<20} {told}")

@@ -1,0 +1,62 @@
+"""``feeder report``."""
+
+import click
+
+from cli import options, orientation, talk
+
+WANTED = (
+    click.option("--aspect", metavar="NAME", help="Aspect to leave the bowl on.  [default: the likeliest]"),
+    *orientation.CHAIN[1:],
+)
+PLACE = (
+    click.option(
+        "-o", "--output", "directory", metavar="DIR", type=click.Path(), default="results", show_default=True,
+        help="Write the page and run.json to DIR/<name>/.",
+    ),
+    click.option(
+        "--format", type=click.Choice(["html", "md"]), default="html", show_default=True,
+        help="One HTML file, or Markdown with pictures beside it.",
+    ),
+    click.option("-q", "--quiet", is_flag=True, help="No warnings and no talk."),
+    click.option("-v", "--verbose", is_flag=True, help="Say what is read and how long each chapter takes."),
+)  # fmt: skip
+
+
+def _all(decorators):
+    """Several options as one decorator."""
+
+    def decorate(command):
+        for option in reversed(decorators):
+            command = option(command)
+        return command
+
+    return decorate
+
+
+@click.command(short_help="All that is known of a part in a bowl, on one page to turn, print and keep.")
+@options.part
+@_all(WANTED)
+@options.bowl
+@_all(PLACE)
+def report(part, bowl, directory, format, quiet, verbose, **wanted):
+    """Example: feeder report parts/lbracket_30x20x15.stl --config bowl.yaml -o results
+
+    Everything the other commands tell of PART in a bowl: its aspects in 3-D views that can be turned, how
+    often it lands on each, how it tips, slides and travels, the reactions on the track and the rate, with
+    what the methods leave out and what it takes to get the numbers again.
+
+    PART is a mesh or a part card. report.html needs no other file and no network; --format md writes
+    report.md with its pictures beside it. A chapter that cannot be computed says why.
+    """
+    from feederscrew.bowl import texts
+    from feederscrew.output import columns
+    from feederscrew.output.report import Case, page, repeated, write
+
+    out = talk.Output.of(format=format, directory=directory, quiet=quiet, verbose=verbose)
+    solid = out.part(part)
+    case = Case.of(solid, **bowl, **wanted, command=repeated(out.arguments))
+    effective = columns.conditions(solid) | texts(case.settings)
+    with out.folder(solid.name, case.inputs, effective) as folder:
+        made = page(case, out.step)
+        out.warn(*(line for line in made.warnings if line not in solid.warnings))
+        write(folder, made, format)

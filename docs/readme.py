@@ -1,0 +1,70 @@
+"""Bring the README up to what the program says: its outputs, its commands, its keys.
+
+Example: python docs/readme.py          (writes README.md)
+         python docs/readme.py --check  (status 1, and the differences, if it is out of date)
+"""
+
+import difflib
+import os
+import re
+import shlex
+import sys
+from pathlib import Path
+
+from click.testing import CliRunner
+
+from cli.main import feeder
+from feederscrew.bowl import documentation
+
+ROOT = Path(__file__).resolve().parent.parent
+BLOCK = re.compile(r"```console\n\$ (feeder .*)\n((?:(?!```).*\n)*)```")
+CUT = "...\n"
+
+
+def filled(text):
+    """The README with every output, command and key as it is now."""
+    text = BLOCK.sub(_block, text)
+    text = _between(text, "commands", _commands())
+    return _between(text, "bowl keys", documentation.markdown())
+
+
+def _block(match):
+    """A command line with its output; one that ended in '...' keeps its length."""
+    line, shown = match.groups()
+    output = CliRunner().invoke(feeder, shlex.split(line)[1:], catch_exceptions=False).stdout
+    if shown.endswith(CUT):
+        length = shown.count("\n") - 1
+        output = "".join(output.splitlines(keepends=True)[:length]) + CUT
+    return f"```console\n$ {line}\n{output}```"
+
+
+def _commands():
+    rows = "".join(
+        f"| `feeder {name}` | {command.short_help} |\n" for name, command in feeder.commands.items()
+    )
+    return f"| Command | What it tells |\n|---|---|\n{rows}"
+
+
+def _between(text, name, content):
+    begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->"
+    before, _, rest = text.partition(begin)
+    return before + begin + content + end + rest.partition(end)[2]
+
+
+def main():
+    """Write or check; the exit status."""
+    os.chdir(ROOT)
+    path = Path("README.md")
+    old = path.read_text(encoding="utf-8")
+    new = filled(old)
+    if "--check" in sys.argv:
+        sys.stdout.writelines(
+            difflib.unified_diff(old.splitlines(True), new.splitlines(True), "README", "now")
+        )
+        return int(old != new)
+    path.write_text(new, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,187 @@
+"""The library's front door: what a script needs, by plain names; ``feederscrew`` itself hands them on.
+
+Every function returns the record or the table that the command of its name is made from.
+"""
+
+from collections.abc import Iterable, Sequence
+from os import PathLike
+from typing import IO, TYPE_CHECKING
+
+from feederscrew import bowl as _bowls
+from feederscrew import part as _parts
+from feederscrew.bowl import Bowl
+from feederscrew.errors import ConfigError, Faults, FeederError, MeshError
+from feederscrew.motion import rate as _rates
+from feederscrew.motion.conveying.answer import Answer, answer
+from feederscrew.motion.devices import Device
+from feederscrew.motion.rate import Rate
+from feederscrew.output import columns as _columns
+from feederscrew.part import Part
+from feederscrew.resting.aspects import Aspects, find
+from feederscrew.resting.posture import Posture, posture
+
+if TYPE_CHECKING:
+    from feederscrew.output.tables import pd
+
+__all__ = [
+    "Answer", "Aspects", "Bowl", "ConfigError", "Faults", "FeederError", "MeshError", "Part", "Posture",
+    "Rate", "aspects", "convey", "find_aspects", "load", "posture", "rate", "read_bowl",
+]  # fmt: skip
+
+
+def load(
+    source: str | PathLike[str],
+    *,
+    units: str | None = None,
+    density: str | None = None,
+    centre_of_mass: str | None = None,
+    allow_open: bool = False,
+    stdin: IO[bytes] | None = None,
+) -> Part:
+    """A part from a mesh file or a part card.
+
+    Parameters
+    ----------
+    source : str or Path
+        STL, OBJ, PLY, OFF, GLB, 3MF, STEP or YAML.
+    units : str, optional
+        'mm', 'cm', 'm' or 'in', of a file that does not state it.
+    density : str, optional
+        A material or a value, '7.85 g/cm3'; steel without it.
+    centre_of_mass : str, optional
+        'x,y,z' in the file's axes and units, if the part is not homogeneous.
+    allow_open : bool
+        Compute from an open surface.
+    stdin : binary file, optional
+        Read in place of the file.
+
+    Returns
+    -------
+    Part
+
+    Raises
+    ------
+    FeederError
+        If the file is damaged, or an option cannot be used.
+    """
+    return _parts.load(
+        source,
+        units=units,
+        density=density,
+        centre_of_mass=centre_of_mass,
+        allow_open=allow_open,
+        stdin=stdin,
+    )
+
+
+def find_aspects(part: Part, *, unstable: bool = False, as_published: bool = False) -> Aspects:
+    """The resting aspects of a part as a record of arrays, in SI units.
+
+    Parameters
+    ----------
+    part : Part
+    unstable : bool
+        List the facets it rolls off as well.
+    as_published : bool
+        Count each class once in the PMI rule, as the thesis's tables do.
+
+    Returns
+    -------
+    Aspects
+    """
+    return find(part, unstable=unstable, as_published=as_published)
+
+
+def aspects(part: Part, *, unstable: bool = False, as_published: bool = False) -> "pd.DataFrame":
+    """The resting aspects of a part as the table that ``feeder aspects`` writes.
+
+    Parameters
+    ----------
+    part : Part
+    unstable, as_published : bool
+        As for ``find_aspects``.
+
+    Returns
+    -------
+    DataFrame
+        The columns of ``aspects.csv``: mm, g, sr.
+    """
+    return _columns.aspects(find_aspects(part, unstable=unstable, as_published=as_published), part)
+
+
+def read_bowl(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> Bowl:
+    """A bowl from its file, from 'drive.frequency=50 Hz', or the defaults.
+
+    Parameters
+    ----------
+    path : str or Path, optional
+        Bowl file (YAML).
+    overrides : iterable of str
+        As ``--set`` takes them.
+
+    Returns
+    -------
+    Bowl
+
+    Raises
+    ------
+    Faults
+        Every fault of the file and of the overrides.
+    """
+    return _bowls.read(path, tuple(overrides))
+
+
+def convey(bowl: Bowl) -> Answer:
+    """How a part travels on the bowl's track.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    Answer
+        Its velocity in m/s, status, regime and margins.
+    """
+    return answer(bowl)
+
+
+def rate(
+    part: Part,
+    bowl: Bowl,
+    aspect: str,
+    *,
+    heading: float | None = None,
+    rule: str = "pmi",
+    devices: Sequence[Device] = (),
+    gap: float = 0.0,
+    fill: float = 1.0,
+) -> Rate:
+    """Well-oriented parts a second, with each factor.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    bowl : Bowl
+    aspect : str
+        The one wanted, as ``aspects`` names it.
+    heading : float [rad], optional
+        Without one, the most frequent that stays on the track.
+    rule : str
+        Whose probabilities are taken.
+    devices : sequence of Device
+        From ``feederscrew.motion.devices.read``.
+    gap : float [m]
+        Between one part and the next.
+    fill : float [1]
+        Share of the track that is occupied.
+
+    Returns
+    -------
+    Rate
+    """
+    found = find_aspects(part)
+    known = _rates.orientations(part, found, bowl.track, devices)
+    target = _rates.wanted(part, found, bowl.track, aspect, heading)
+    return _rates.rate(known, _rates.velocity(bowl), target, rule, gap=gap, fill=fill)

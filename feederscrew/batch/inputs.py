@@ -1,0 +1,143 @@
+"""From what was typed to one request a part and bowl: folders, patterns, lists."""
+
+import glob
+import re
+import unicodedata
+from dataclasses import replace
+from pathlib import Path
+
+from feederscrew import bowl as bowls
+from feederscrew.batch import listing
+from feederscrew.batch.task import Conditions, Request
+from feederscrew.documents import raise_all
+from feederscrew.errors import ConfigError, FeederError
+from feederscrew.motion import devices
+from feederscrew.motion.conveying import answer
+from feederscrew.output.folder import safe_name
+from feederscrew.part.read_format import CARD, FORMATS
+
+MESHES = {suffix for name, known in FORMATS.items() if name != CARD for suffix in known.suffixes}
+CARDS = set(FORMATS[CARD].suffixes)
+CARD_KEY = re.compile(rb"^(mass|inertia|aspects)\s*:", re.MULTILINE)
+LONGEST = 80  # letters of a folder's name
+
+
+def gather(sources, configs=(), overrides=()):
+    """Every part in every bowl, each with a folder name of its own.
+
+    Parameters
+    ----------
+    sources : sequence of str
+        Part files, folders of them, patterns ('parts/**/*.stl') and lists ('parts.csv').
+    configs : sequence of str
+        Bowl files, folders of them and patterns; none for the defaults.
+    overrides : sequence of str
+        'drive.frequency=50 Hz', for every bowl.
+
+    Returns
+    -------
+    tuple of Request
+        In the order given; a folder's or a pattern's in the order of their names.
+
+    Raises
+    ------
+    FeederError, Faults
+        If a folder or a pattern holds no part, or a list or a bowl cannot be used.
+    """
+    faults = []
+    wanted = [path for config in configs for path in _expanded(config, CARDS, "bowl")] or [None]
+    rows = [row for source in sources for row in _rows(source, faults)]
+    paths = dict.fromkeys([*wanted, *(row.config for row in rows if row.config)])
+    bowls_by_path = {path: _conditions(path, overrides, faults) for path in paths}
+    raise_all(faults)
+    requests = dict.fromkeys(
+        Request(row.source, bowls_by_path[path], row.options)
+        for row in rows
+        for path in ([row.config] if row.config else wanted)
+    )
+    return _named(list(requests))
+
+
+def _rows(source, faults):
+    """The parts that one argument stands for."""
+    if Path(source).suffix.lower() == ".csv" and not Path(source).is_dir():
+        return listing.read(source, faults)
+    return [listing.Row(path) for path in _expanded(source, MESHES | CARDS, "part")]
+
+
+def _expanded(typed, suffixes, kind):
+    """The files of a folder or of a pattern by name; a file itself, there or not."""
+    path = Path(typed)
+    if path.is_dir():
+        found = [str(p) for p in sorted(path.iterdir()) if _fits(p, suffixes, kind)]
+        return _some(found, typed, f"holds no {kind} file", f"name a folder of {kind} files")
+    if glob.has_magic(typed) and not path.exists():
+        found = [p for p in sorted(glob.glob(typed, recursive=True)) if Path(p).is_file()]  # noqa: PTH207 - takes any path
+        return _some(found, typed, "fits no file", "check the pattern")
+    return [typed]
+
+
+def _fits(path, suffixes, kind):
+    """Whether a file of a folder is meant: parts and bowls may lie side by side."""
+    suffix = path.suffix.lower().removeprefix(".")
+    if suffix not in suffixes or not path.is_file() or path.name.startswith("."):
+        return False
+    return suffix not in CARDS or (CARD_KEY.search(path.read_bytes()) is not None) == (kind == "part")
+
+
+def _some(found, typed, what, mend):
+    if not found:
+        raise FeederError(typed, what, mend)
+    return found
+
+
+def _conditions(path, overrides, faults):
+    try:
+        settings = bowls.settings(path, overrides)
+        bowl = answer.conveying(bowls.record(settings))
+        texts = tuple(bowls.texts(settings).items())
+        return Conditions(bowls.name(path), bowl, texts, devices.read(path))
+    except FeederError as fault:
+        faults += getattr(fault, "faults", [_placed(fault, path)])
+        return None
+
+
+def _placed(fault, path):
+    """A fault of a bowl that says of which, once there are several."""
+    if path is None or str(fault.where).startswith(str(path)):
+        return fault
+    return ConfigError(path, f"{fault.where} {fault.what}", fault.mend)
+
+
+def _named(requests):
+    """The requests with folder names that differ on every file system."""
+    several = len({request.conditions for request in requests}) > 1
+    labels = [_label(request, several) for request in requests]
+    taken, named = set(map(_folded, labels)), set()
+    found = []
+    for request, label in zip(requests, labels):
+        name = _unlike(label, named, taken)
+        named.add(_folded(name))
+        found.append(replace(request, name=name))
+    return tuple(found)
+
+
+def _label(request, several):
+    stem = unicodedata.normalize("NFC", Path(request.source).stem)
+    name = f"{stem}-{request.conditions.name}" if several else stem
+    return safe_name(safe_name(name)[:LONGEST])
+
+
+def _unlike(label, named, taken):
+    """The label, or the label with the first number that no other part has or wants."""
+    if _folded(label) not in named:
+        return label
+    number = 2
+    while _folded(f"{label}-{number}") in named | taken:
+        number += 1
+    return f"{label}-{number}"
+
+
+def _folded(name):
+    """As a file system sees it that takes upper and lower case for the same."""
+    return unicodedata.normalize("NFC", name).casefold()

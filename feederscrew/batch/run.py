@@ -1,0 +1,126 @@
+"""A batch from its first part to its summary."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from feederscrew.batch import index_page, summary
+from feederscrew.batch.cluster import Cluster
+from feederscrew.batch.store import Store
+from feederscrew.batch.task import FAILED, Choices, Outcome, Task
+from feederscrew.batch.workers import Processes, processors
+from feederscrew.documents import hint
+from feederscrew.errors import ConfigError, FeederError
+from feederscrew.output import contact_sheet, tables
+from feederscrew.part import read
+from feederscrew.resting.rules import RULES
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """What a finished batch has to say."""
+
+    rows: tuple[dict[str, object], ...]  # one a part, in the order asked for
+    kept: int  # parts whose results were there already
+    strangers: tuple[str, ...]  # folders of parts that are not in this batch
+    targets: tuple[Path, ...]  # files of the whole batch
+    sources: tuple[str, ...]  # files of its parts
+
+    @property
+    def faults(self):
+        """One line a failed part."""
+        return tuple(str(row["reason"]) for row in self.rows if row["status"] == FAILED)
+
+
+def crew(jobs=None, scheduler=None):
+    """Who does the work.
+
+    Parameters
+    ----------
+    jobs : int, optional
+        Processes of this machine; as many as it has processors without it.
+    scheduler : str, optional
+        Address of a Dask scheduler, 'tcp://host:8786', whose workers are taken instead.
+    """
+    return Cluster(scheduler) if scheduler else Processes(jobs or processors())
+
+
+def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda kept: None):
+    """Compute every part and write the folder of the batch.
+
+    Parameters
+    ----------
+    requests : sequence of Request
+        From ``gather``.
+    directory : str or Path
+        Where the results go.
+    workers : Processes or Cluster
+        From ``crew``.
+    choices : Choices, optional
+    resume : bool
+        Leave alone what is there already, whole and of the same input.
+    tell : function
+        Called for each part that is finished; ``kept`` says whether its results were there already.
+
+    Returns
+    -------
+    Batch
+
+    Raises
+    ------
+    FeederError
+        If the folder cannot be used or the scheduler is lost; what is finished is kept.
+    """
+    choices = choices or Choices()
+    if choices.rule not in RULES:
+        raise ConfigError("--rule", f"unknown rule {choices.rule!r}", hint(choices.rule, list(RULES)))
+    with Store(directory) as store:
+        store.remove(summary.NAME, index_page.NAME, contact_sheet.PATTERN)
+        under_way = _UnderWay(store, choices, resume, tell)
+        for outcome in workers.outcomes(under_way.tasks(requests)):
+            under_way.finish(outcome)
+        return _finished(store, requests, under_way.kept)
+
+
+class _UnderWay:
+    """A batch that is being worked on."""
+
+    def __init__(self, store, choices, resume, tell):
+        self.store, self.choices, self.resume, self.tell = store, choices, resume, tell
+        self.kept = 0
+
+    def tasks(self, requests):
+        """A task for each request that needs one, its file read only when the task is asked for."""
+        for request in requests:
+            try:
+                data = read.file(request.source).data
+            except FeederError as fault:
+                unread = Task.of(request, self.choices, b"")
+                self.finish(Outcome.failed(unread, str(fault), final=False))
+                continue
+            task = Task.of(request, self.choices, data)
+            if self.resume and self.store.holds(request.name, task.key):
+                self.kept += 1
+                self.tell(kept=True)
+            else:
+                yield task
+
+    def finish(self, outcome):
+        """Put what came of a part in place."""
+        self.store.keep(outcome)
+        self.tell(kept=False)
+
+
+def _finished(store, requests, kept):
+    """The summary, the contact sheets and the index page, from what lies on the disk."""
+    rows = summary.rows(store, requests)
+    for name, page in contact_sheet.pages(summary.tiles(store, rows)):
+        store.write(name, page)
+    store.write(index_page.NAME, index_page.html(store, rows))
+    store.write(summary.NAME, tables.text(summary.frame(rows), "csv"))  # last: it says that all is there
+    return Batch(
+        rows=rows,
+        kept=kept,
+        strangers=tuple(store.strangers([request.name for request in requests])),
+        targets=(store.path / summary.NAME, store.path / index_page.NAME),
+        sources=tuple(dict.fromkeys(request.source for request in requests)),
+    )

@@ -1,0 +1,149 @@
+"""The folder of a batch: each part's results appear in it whole or not at all, whatever stops the run."""
+
+import contextlib
+import hashlib
+import json
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+from feederscrew import __version__
+from feederscrew.batch.task import libraries
+from feederscrew.errors import FeederError
+from feederscrew.output import tables
+from feederscrew.output.folder import RECORD
+
+MARKER = "batch.json"  # says that the folder is a batch's
+PARTS = "parts"
+STALE = ".batch-"  # how the name of what is not finished begins
+
+
+class Store:
+    """The results of a batch on disk.
+
+    Parameters
+    ----------
+    directory : str or Path
+        Empty, not there yet, or of an earlier batch.
+
+    Raises
+    ------
+    FeederError
+        If it holds something else, cannot be written, or another batch is at work in it.
+    """
+
+    def __init__(self, directory):
+        self.path = Path(directory)
+        self.parts = self.path / PARTS
+
+    def __enter__(self):
+        try:
+            self.parts.parent.mkdir(parents=True, exist_ok=True)
+            self.lock = _locked(self.path)
+            self._check_ours()
+            for stale in self.path.glob(f"{STALE}*"):
+                shutil.rmtree(stale) if stale.is_dir() else stale.unlink()
+            self.write(MARKER, tables.json_text({"version": __version__}))
+            self.parts.mkdir(exist_ok=True)
+        except OSError as error:
+            mend = "give another folder to -o"
+            raise FeederError(self.path, f"cannot be written ({error.strerror})", mend) from error
+        return self
+
+    def __exit__(self, *fault):
+        if self.lock is not None:
+            os.close(self.lock)
+
+    def _check_ours(self):
+        held = [p.name for p in self.path.iterdir() if not p.name.startswith(STALE)]
+        if held and MARKER not in held:
+            what = f"holds other files, such as {sorted(held)[0]}"
+            raise FeederError(self.path, what, "give an empty folder to -o, or that of an earlier batch")
+
+    def holds(self, name, key):
+        """Whether the results of one part are there, whole and of this very input."""
+        record = self.record(name)
+        if record.get("key") != key or not key:
+            return False
+        folder, files = self.parts / name, record.get("files", {})
+        there = {p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()} - {RECORD}
+        return there == set(files) and all(
+            hashlib.sha256((folder / file).read_bytes()).hexdigest() == sha256
+            for file, sha256 in files.items()
+        )
+
+    def keep(self, outcome):
+        """Put the results of one part in place, instead of those of an earlier run."""
+        staging = Path(tempfile.mkdtemp(prefix=STALE, dir=self.path))
+        fresh, place = staging / "new", self.parts / outcome.name
+        record = tables.json_text({"batch": _told(outcome)})
+        for name, content in {**outcome.files, RECORD: record.encode()}.items():
+            (fresh / name).parent.mkdir(parents=True, exist_ok=True)
+            (fresh / name).write_bytes(content)
+        if place.exists():
+            place.rename(staging / "old")
+        fresh.rename(place)
+        shutil.rmtree(staging)
+
+    def file(self, name, file):
+        """The bytes of one result of a part, or None."""
+        path = self.parts / name / file
+        return path.read_bytes() if path.exists() else None
+
+    def write(self, name, content):
+        """Put one file of the whole batch in place, text or bytes, at once."""
+        handle, staged = tempfile.mkstemp(prefix=STALE, dir=self.path)
+        with os.fdopen(handle, "wb") as file:
+            file.write(content if isinstance(content, bytes) else content.encode())
+        Path(staged).chmod(0o644)
+        Path(staged).replace(self.path / name)
+
+    def remove(self, *patterns):
+        """Take files of the whole batch away, those that say what is no longer so."""
+        for pattern in patterns:
+            for path in self.path.glob(pattern):
+                path.unlink()
+
+    def strangers(self, names):
+        """Folders of parts that are not in this batch, by name."""
+        return sorted({p.name for p in self.parts.iterdir()} - set(names))
+
+    def record(self, name):
+        """What is recorded of one part: key, status, reason, row, files; empty if there is no record."""
+        try:
+            record = json.loads((self.parts / name / RECORD).read_text())["batch"]
+        except (OSError, ValueError, LookupError, TypeError):
+            return {}
+        return record if isinstance(record, dict) else {}
+
+
+def _told(outcome):
+    return {
+        "version": __version__,
+        "key": outcome.key,
+        "inputs": [{"path": outcome.source, "sha256": outcome.sha256}],
+        "effective": outcome.effective,
+        "warnings": list(outcome.warnings),
+        "libraries": libraries(),
+        "status": outcome.status,
+        "reason": outcome.reason,
+        "row": outcome.row,
+        "files": {name: hashlib.sha256(data).hexdigest() for name, data in sorted(outcome.files.items())},
+    }
+
+
+def _locked(folder):
+    """A lock on the folder that goes with this process, however it ends; None where there is none."""
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        return None
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        with contextlib.suppress(OSError):
+            os.close(handle)
+        raise FeederError(folder, "another batch is at work in it", "wait for it, or stop it") from None
+    return handle

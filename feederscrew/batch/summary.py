@@ -1,0 +1,71 @@
+"""One row a part: what the summary, the contact sheets and the index page are made of."""
+
+from pathlib import Path
+
+from feederscrew.batch.task import DONE
+from feederscrew.batch.work import THUMBNAIL
+from feederscrew.output import tables
+
+NAME = "summary.csv"
+COLUMNS = (
+    "part", "folder", "config", "status", "reason", "material", "mass_g", "aspects", "aspect", "heading_deg",
+    "rule", "p_orientation", "passes_devices", "velocity_mm_s", "regime", "pitch_mm",
+    "parts_per_minute", "parts_per_minute_low", "parts_per_minute_high",
+    "drops", "drop_aspect", "p_drop", "note", "warnings",
+)  # fmt: skip
+HIDDEN = (  # from a table for people
+    "folder", "aspects", "material", "rule", "regime", "passes_devices",
+    "parts_per_minute_low", "parts_per_minute_high", "drops", "drop_aspect", "p_drop", "note", "warnings",
+)  # fmt: skip
+
+
+def rows(store, requests):
+    """What the disk says of each part.
+
+    Parameters
+    ----------
+    store : Store
+    requests : sequence of Request
+
+    Returns
+    -------
+    tuple of dict
+        By ``COLUMNS``, None where there is nothing to say.
+    """
+    return tuple(_row(store.record(request.name), request) for request in requests)
+
+
+def _row(record, request):
+    known = {
+        "part": Path(request.source).name,
+        "folder": request.name,
+        "config": request.conditions.name,
+        "status": record["status"],
+        "reason": record["reason"] or None,
+        "warnings": "; ".join(record["warnings"]) or None,
+    }
+    numbers = record["row"] | known
+    return {name: numbers.get(name) for name in COLUMNS}
+
+
+def frame(rows):
+    """The rows as a table."""
+    return tables.frame({name: [row[name] for row in rows] for name in COLUMNS})
+
+
+def rate(row):
+    """A row's rate for people."""
+    number = row["parts_per_minute"]
+    return "no rate" if number is None else f"{number:.3g} / min"
+
+
+def tiles(store, rows):
+    """What a contact sheet shows of each part: its picture, or None, and two lines of text.
+
+    Yields
+    ------
+    (bytes or None, str, str)
+    """
+    for row in rows:
+        said = f"{row['aspect'] or '-'}: {rate(row)}" if row["status"] == DONE else "failed"
+        yield store.file(row["folder"], THUMBNAIL), row["folder"], said

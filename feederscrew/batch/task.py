@@ -1,0 +1,113 @@
+"""What is asked of one part, and what came of it."""
+
+import dataclasses
+import hashlib
+import json
+from dataclasses import dataclass, field
+from importlib import metadata
+
+from feederscrew import __version__
+from feederscrew.bowl import Bowl
+from feederscrew.motion.devices import Device
+from feederscrew.output.folder import LIBRARIES
+
+DONE, FAILED = "done", "failed"
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """One bowl file: where the parts are to travel."""
+
+    name: str  # the file's stem; 'bowl' for the defaults
+    bowl: Bowl
+    texts: tuple[tuple[str, str], ...]  # key and value in effect, as text
+    chain: tuple[Device, ...] = ()
+
+
+@dataclass(frozen=True)
+class Choices:
+    """What is computed of every part."""
+
+    rule: str = "pmi"  # whose probabilities the rate takes
+    drops: int = 0  # simulated drops of each part
+    pictures: bool = True
+
+
+@dataclass(frozen=True)
+class Request:
+    """One part in one bowl, as the user asked for it."""
+
+    source: str  # path as typed
+    conditions: Conditions
+    options: tuple[tuple[str, str], ...] = ()  # units, density, centre_of_mass: those that were given
+    name: str = ""  # of its folder, unlike any other of the batch
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """A request with the bytes of its file: all that a worker needs, wherever it is."""
+
+    request: Request
+    choices: Choices
+    data: bytes
+    sha256: str  # of the bytes
+    key: str  # of everything that the results hang on
+
+    @classmethod
+    def of(cls, request, choices, data):
+        """The task of a request, once its file is read."""
+        sha256 = hashlib.sha256(data).hexdigest()
+        return cls(request, choices, data, sha256, fingerprint(request, choices, sha256))
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What came of one part; its files are ready to be put in place."""
+
+    name: str  # of the folder
+    key: str  # '' where another try may do better
+    source: str
+    sha256: str
+    status: str  # DONE or FAILED
+    reason: str = ""  # why it failed, one line
+    row: dict[str, object] = field(default_factory=dict)  # its numbers, for the summary
+    effective: dict[str, object] = field(default_factory=dict)  # the parameters that led to the numbers
+    warnings: tuple[str, ...] = ()
+    files: dict[str, bytes] = field(default_factory=dict)
+
+    @classmethod
+    def failed(cls, task, reason, *, final=True):
+        """Of a part that gave nothing; ``final`` if it would fail again."""
+        reason = " ".join(reason.split())
+        key = task.key if final else ""
+        return cls(task.request.name, key, task.request.source, task.sha256, FAILED, reason)
+
+
+def fingerprint(request, choices, sha256):
+    """A digest of everything that one part's results hang on.
+
+    Parameters
+    ----------
+    request : Request
+    choices : Choices
+    sha256 : str
+        Of the part's file.
+
+    Returns
+    -------
+    str
+        The same for the same input, options, program and libraries.
+    """
+    told = {
+        "part": sha256,
+        "request": dataclasses.asdict(request),
+        "choices": dataclasses.asdict(choices),
+        "version": __version__,
+        "libraries": libraries(),
+    }
+    return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
+
+
+def libraries():
+    """Version of each library that has a say in the numbers or pictures, by name."""
+    return {name: metadata.version(name) for name in LIBRARIES}

@@ -1,0 +1,138 @@
+"""The whole pipeline for one part, from the bytes of its file to the bytes of its results."""
+
+import functools
+import io
+
+import numpy as np
+
+from feederscrew.batch.task import DONE, Outcome
+from feederscrew.errors import FeederError
+from feederscrew.motion import rate
+from feederscrew.motion.conveying import answer, sensitivity
+from feederscrew.output import columns, contact_sheet, convey_tables, rate_tables, sheets, tables
+from feederscrew.part import load
+from feederscrew.resting.aspects import find
+
+THUMBNAIL = "thumbnail.png"
+LAUNCH = "tumble"  # as parts leave a bowl's floor
+SEED_DIGITS = 8  # hexadecimal, of the file's sha256
+
+
+class Files(dict):
+    """Results by name, as a folder would take them."""
+
+    def write(self, name, content):
+        """Keep one file, text or bytes."""
+        self[name] = content if isinstance(content, bytes) else content.encode()
+
+
+def work(task):
+    """Everything that is asked of one part.
+
+    Parameters
+    ----------
+    task : Task
+
+    Returns
+    -------
+    Outcome
+        The same bytes wherever it is computed; a part that cannot be used gives a reason, never a fault.
+    """
+    try:
+        return _results(task)
+    except FeederError as fault:
+        return Outcome.failed(task, "; ".join(fault.lines))
+    except Exception as bug:  # noqa: BLE001 - our bug on one part must not stop the others
+        return Outcome.failed(task, f"unexpected {type(bug).__name__}: {bug} - please report it")
+
+
+def _results(task):
+    request, choices, files = task.request, task.choices, Files()
+    part = load(request.source, **dict(request.options), stdin=io.BytesIO(task.data))
+    found = find(part)
+    document = columns.part(part, found.warnings) | {"aspects": columns.aspects(found, part)}
+    sheets.aspects(files, part, found, document, pictures=choices.pictures)
+    if choices.pictures and part.vertices is not None:
+        files.write(THUMBNAIL, contact_sheet.thumbnail(part, found))
+    velocity, conveying = travel(request.conditions)
+    files.write("convey.json", tables.json_text(conveying))
+    row = {
+        "config": request.conditions.name,
+        "material": part.material,
+        "mass_g": document["mass_g"],
+        "aspects": int(found.stable.sum()),
+        "velocity_mm_s": conveying["velocity_mm_s"],
+        "regime": conveying["regime"],
+        **_rate(part, found, velocity, task, files),
+        **_drops(part, found, task, files),
+    }
+    return Outcome(
+        name=request.name,
+        key=task.key,
+        source=request.source,
+        sha256=task.sha256,
+        status=DONE,
+        row=row,
+        effective=columns.conditions(part)
+        | dict(request.conditions.texts)
+        | {"rule": choices.rule, "drops": choices.drops},
+        warnings=(*part.warnings, *found.warnings),
+        files=files,
+    )
+
+
+@functools.lru_cache(maxsize=64)
+def travel(conditions):
+    """Velocity in a bowl and the document of ``convey.json``: the same for every part, a point mass."""
+    bowl = conditions.bowl
+    around = sensitivity.sensitivity(bowl), sensitivity.friction_doubt(bowl)
+    document = convey_tables.document(bowl, answer.answer(bowl), *around)
+    return rate.velocity(bowl), document | {"bowl": dict(conditions.texts)}
+
+
+def _rate(part, found, velocity, task, files):
+    """The rate of the orientation that leaves the bowl most often, for the summary."""
+    if part.vertices is None:
+        return {"note": "a part card has no outline: no rate"}
+    conditions, rule = task.request.conditions, task.choices.rule
+    known = rate.orientations(part, found, conditions.bowl.track, conditions.chain)
+    document = rate_tables.document(rate.rate(known, velocity, most_frequent(known, rule), rule), rule)
+    rate_tables.write(files, columns.part(part, found.warnings) | document)
+    wanted = ("aspect", "heading_deg", "pitch_mm", "p_orientation", "passes_devices")
+    rates = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
+    return {"rule": rule, **{name: document[name] for name in (*wanted, *rates)}}
+
+
+def _drops(part, found, task, files):
+    """The drop test, where it is asked for: its random numbers hang on the part's file alone."""
+    if not task.choices.drops or part.vertices is None:
+        return {}
+    from feederscrew.output import drop_sheets
+    from feederscrew.resting.drop import report
+
+    seed = int(task.sha256[:SEED_DIGITS], 16)
+    result = report.test(part, found, LAUNCH, {}, drops=task.choices.drops, seed=seed)
+    document = drop_sheets.document(part, found, result)
+    drop_sheets.write(files, part, found, result, document, pictures=task.choices.pictures)
+    first = int(np.argmax(result.tally.p))
+    return {"drops": task.choices.drops, "drop_aspect": found.names[first], "p_drop": result.tally.p[first]}
+
+
+def most_frequent(known, rule):
+    """Aspect and heading of which most parts leave the bowl a minute.
+
+    Parameters
+    ----------
+    known : Orientations
+    rule : str
+        Whose probabilities are taken.
+
+    Returns
+    -------
+    (str, float [rad])
+        Where none leaves, the most likely to land in.
+    """
+    chance = np.nan_to_num(known.rules[rule])
+    leaving = chance * known.through / known.lengths
+    row = int(np.argmax(leaving if leaving.any() else chance))
+    return known.aspects[row], known.headings[row]

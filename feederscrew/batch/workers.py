@@ -1,0 +1,128 @@
+"""Parts on several processes of this machine: one that dies costs a retry, never the batch."""
+
+import contextlib
+import multiprocessing
+import os
+import signal
+from multiprocessing.connection import wait
+
+from feederscrew.batch.task import Outcome
+from feederscrew.batch.work import work
+
+ATTEMPTS = 3  # of a part whose worker dies under it
+LIFETIME = 200  # parts of one process: what libraries leak goes with it
+LOST = "the process that computed it died each of {} times, for lack of memory perhaps - try it alone"
+
+
+class Processes:
+    """A crew of processes.
+
+    Parameters
+    ----------
+    jobs : int
+        How many work at a time.
+    job : function
+        From a Task to an Outcome; importable by name.
+    lifetime : int
+        Parts after which a process is replaced by a fresh one.
+    """
+
+    def __init__(self, jobs, job=work, lifetime=LIFETIME):
+        self.jobs, self.job, self.lifetime = jobs, job, lifetime
+        methods = multiprocessing.get_all_start_methods()
+        self.context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
+        self.context.set_forkserver_preload([work.__module__])
+
+    def outcomes(self, tasks):
+        """The outcome of each task, as they come; a task is taken only when a process is free for it.
+
+        Parameters
+        ----------
+        tasks : iterable of Task
+
+        Yields
+        ------
+        Outcome
+        """
+        tasks, again, failures, crew = iter(tasks), [], {}, []
+        try:
+            while self._busy(crew, tasks, again):
+                for worker in _ready(crew):
+                    task, outcome = worker.take()
+                    name = task.request.name
+                    if outcome is None:
+                        failures[name] = failures.get(name, 0) + 1
+                        if failures[name] < ATTEMPTS:
+                            again.append(task)
+                            continue
+                        outcome = Outcome.failed(task, LOST.format(ATTEMPTS), final=False)
+                    yield outcome
+        finally:
+            for worker in crew:
+                worker.stop()
+
+    def _busy(self, crew, tasks, again):
+        """Give every process work, as long as there is any; those at work."""
+        for worker in [w for w in crew if w.task is None and (w.dead or w.served >= self.lifetime)]:
+            worker.stop()
+            crew.remove(worker)
+        while len(idle := [w for w in crew if w.task is None]) or len(crew) < self.jobs:
+            task = again.pop() if again else next(tasks, None)
+            if task is None:
+                break
+            if not idle:
+                crew.append(idle := _Worker(self.context, self.job))
+            else:
+                idle = idle[0]
+            idle.give(task)
+        return [w for w in crew if w.task is not None]
+
+
+class _Worker:
+    """One process, and the line to it."""
+
+    def __init__(self, context, job):
+        self.connection, theirs = context.Pipe()
+        self.process = context.Process(target=_serve, args=(theirs, job), daemon=True)
+        self.process.start()
+        theirs.close()  # so that the line breaks when the process does
+        self.task, self.served, self.dead = None, 0, False
+
+    def give(self, task):
+        self.task, self.served = task, self.served + 1
+        with contextlib.suppress(OSError):  # it is dead: ``take`` finds out
+            self.connection.send(task)
+
+    def take(self):
+        """The task and its outcome; None for a worker that died over it."""
+        task, self.task = self.task, None
+        try:
+            return task, self.connection.recv()
+        except (EOFError, OSError):
+            self.dead = True
+            return task, None
+
+    def stop(self):
+        self.connection.close()
+        self.process.terminate()
+        self.process.join()
+
+
+def _ready(crew):
+    lines = {worker.connection: worker for worker in crew if worker.task is not None}
+    return [lines[line] for line in wait(list(lines))]
+
+
+def _serve(connection, job):
+    """Answer tasks until the other end of the line is gone."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the batch itself decides when to stop
+    with contextlib.suppress(EOFError, OSError):
+        while True:
+            connection.send(job(connection.recv()))
+
+
+def processors():
+    """How many this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -1,0 +1,192 @@
+"""Damaged files given to the program, in a process that may be watched and killed."""
+
+import contextlib
+import functools
+import json
+import multiprocessing
+import os
+import resource
+import signal
+import tempfile
+import traceback
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from fuzz import mutate
+
+ROOT = Path(__file__).parent.parent.parent
+PATIENCE = 10.0  # [s] of computing for one input
+STUCK = 60.0  # [s] on the clock, for one that waits for ever
+MEMORY = 768 << 10  # [kB] for a file under 1 MB; the program itself takes the rest of a gigabyte
+CARD = str(ROOT / "parts/magnet.yaml")
+PLAN = {  # seeds, how the damaged file is called, and what reads it
+    "stl": (
+        ("parts/lbracket_30x20x15.stl", "parts/squarenut_m5.stl", "parts/key_a_d12x20.stl"),
+        "part.stl",
+        (
+            ("aspects", "FILE", "--no-pictures", "-o", "out"),
+            ("inertia", "FILE", "--allow-open", "-o", "out"),
+            ("aspects", "FILE", "--all", "--allow-open", "--no-pictures", "-o", "out"),
+            ("headings", "FILE", "--aspect", "A", "--no-pictures", "-o", "out"),
+            ("rate", "FILE", "--aspect", "A", "-o", "out"),
+        ),
+    ),
+    "bowl": (
+        ("configs/bowl.yaml", "configs/thesis.yaml"),
+        "bowl.yaml",
+        (
+            ("config", "show", "--config", "FILE"),
+            ("convey", "--config", "FILE", "--no-pictures", "-o", "out"),
+            ("rate", str(ROOT / "parts/squarenut_m5.stl"), "--aspect", "A", "--config", "FILE", "-o", "out"),
+        ),
+    ),
+    "card": (
+        ("parts/magnet.yaml", "parts/arc_chute.yaml"),
+        "card.yaml",
+        (("aspects", "FILE", "--no-pictures", "-o", "out"), ("inertia", "FILE", "-o", "out")),
+    ),
+    "counts": (
+        ("feederscrew/thesis/data/table_3_07.csv", "feederscrew/thesis/data/table_3_08.csv"),
+        "counts.csv",
+        (("compare", CARD, "--with", "FILE", "--no-pictures", "-o", "out"),),
+    ),
+    "list": (("tests/fuzz/list.csv",), "list.csv", (("gather", "FILE"),)),
+}
+
+
+@dataclass(frozen=True)
+class Case:
+    """One damaged file and the command that reads it; the seed makes it again."""
+
+    kind: str
+    seed: int
+
+    def build(self):
+        """The bytes, the file's name and the arguments."""
+        rng = np.random.default_rng(self.seed)
+        seeds, name, calls = PLAN[self.kind]
+        first, second = ((ROOT / seeds[int(rng.integers(len(seeds)))]).read_bytes() for _ in range(2))
+        call = calls[int(rng.integers(len(calls)))]
+        return mutate.mutated(first, second, rng), name, [name if a == "FILE" else a for a in call]
+
+
+def run(cases):
+    """What is wrong, as (case, arguments, fault); a hung or dead process is one fault and goes on."""
+    context, cases, faults, child = multiprocessing.get_context("fork"), list(cases), [], None
+    _warm()
+    for case in cases:
+        if child is None:
+            child = _child(context)
+        process, line = child
+        line.send(case)
+        try:
+            fault = line.recv() if line.poll(STUCK) else f"no answer in {STUCK:g} s"
+        except EOFError:
+            process.join()
+            hung = process.exitcode == -signal.SIGPROF
+            fault = f"computed for {PATIENCE:g} s" if hung else f"the process died ({process.exitcode})"
+        if fault:
+            faults.append((case, " ".join(case.build()[2]), fault))
+        if fault and not fault.startswith("Traceback"):
+            process.kill()
+            process.join()
+            child = None
+    if child:
+        child[1].close()
+        child[0].join()
+    return faults
+
+
+@functools.cache
+def _warm():
+    """Import before the first process is forked what every one needs."""
+    for kind in PLAN:
+        fault(Case(kind, 0))
+
+
+def _child(context):
+    ours, theirs = context.Pipe()
+    process = context.Process(target=_serve, args=(theirs, ours), daemon=True)
+    process.start()
+    theirs.close()
+    return process, ours
+
+
+def _serve(line, other):
+    other.close()
+    before = _most_memory()
+    with contextlib.suppress(EOFError):
+        while True:
+            case = line.recv()
+            signal.setitimer(signal.ITIMER_PROF, PATIENCE)
+            told = fault(case)
+            signal.setitimer(signal.ITIMER_PROF, 0)
+            used = _most_memory() - before
+            if not told and used > MEMORY:
+                told = f"took {used >> 10} MB"
+            line.send(told)
+
+
+def fault(case):
+    """What is wrong with how one case ends; '' if nothing is."""
+    data, name, arguments = case.build()
+    here = Path.cwd()
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        Path(name).write_bytes(data)
+        try:
+            told = _gathered(name) if arguments[0] == "gather" else _called(arguments)
+        finally:
+            os.chdir(here)
+    return told
+
+
+def _most_memory():
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+
+def _called(arguments):
+    from click.testing import CliRunner
+
+    from cli.main import feeder
+
+    with warnings.catch_warnings(record=True) as noise:
+        warnings.simplefilter("always")
+        done = CliRunner().invoke(feeder, arguments)
+    if done.exception is not None and not isinstance(done.exception, SystemExit):
+        return "".join(traceback.format_exception(*done.exc_info))
+    if done.exit_code not in (0, 1, 2):
+        return f"exit status {done.exit_code}"
+    if done.exit_code and not (done.stderr.strip() and "Error: " in done.stderr):
+        return f"status {done.exit_code} without a reason: {done.stderr}"
+    if noise:
+        return f"Python warns: {noise[0].message} ({noise[0].filename}:{noise[0].lineno})"
+    return _half_written(Path("out"), done.exit_code)
+
+
+def _half_written(out, status):
+    """Results are there whole with their record, or not at all."""
+    files = [p for p in out.rglob("*") if p.is_file()] if out.exists() else []
+    if status:
+        return f"failed, but wrote {files[0]}" if files else ""
+    for record in out.rglob("run.json"):
+        listed = {f for entry in json.loads(record.read_text()).values() for f in entry["files"]}
+        there = {p.relative_to(record.parent).as_posix() for p in record.parent.rglob("*") if p.is_file()}
+        if listed | {"run.json"} != there:
+            return f"wrote {sorted(there)}, recorded {sorted(listed)}"
+    return "a temporary file is left" if any(p.name.startswith(".") for p in files) else ""
+
+
+def _gathered(name):
+    from feederscrew.batch import gather
+    from feederscrew.errors import FeederError
+
+    try:
+        gather([name])
+    except FeederError as told:
+        return "" if all(" - " in line for line in told.lines) else f"no mend: {told}"
+    except Exception:  # noqa: BLE001 - any other is what is looked for
+        return traceback.format_exc()
+    return ""

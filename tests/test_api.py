@@ -1,0 +1,72 @@
+"""The library's public names: quick to import, and what the commands print."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import feederscrew as fs
+from feederscrew import api
+from feederscrew.output import tables
+
+ROOT = Path(__file__).parent.parent
+BRACKET = ROOT / "parts/lbracket_30x20x15.stl"
+
+
+@pytest.fixture(scope="module")
+def bracket():
+    return fs.load(BRACKET)
+
+
+def test_importing_the_library_imports_nothing_heavy():
+    code = "import sys, feederscrew; dir(feederscrew); print(*{'numpy', 'pandas'} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
+    assert (done.stdout.strip(), done.stderr) == ("", "")
+
+
+def test_every_public_name_is_there_and_no_other():
+    assert sorted(fs.__all__) == sorted(api.__all__)
+    for name in fs.__all__:
+        assert getattr(fs, name) is getattr(api, name)
+        assert name in dir(fs)
+    with pytest.raises(AttributeError, match="no attribute 'lod'"):
+        fs.lod
+
+
+def test_no_public_name_is_that_of_a_room():
+    """``import feederscrew.bowl`` would put the room in its place."""
+    rooms = {p.stem for p in (ROOT / "feederscrew").iterdir()}
+    assert not rooms & set(fs.__all__)
+
+
+def test_aspects_are_what_the_command_prints(run, bracket):
+    printed = run("aspects", BRACKET, "--format", "csv", "-q").stdout
+    assert tables.text(fs.aspects(bracket), "csv") == printed
+
+
+def test_unstable_facets_and_published_counts_pass_through(bracket):
+    assert len(fs.aspects(bracket, unstable=True)) >= len(fs.aspects(bracket))
+    bolt = fs.load(ROOT / "parts/hexbolt_m8x25.stl")
+    assert not fs.aspects(bolt).equals(fs.aspects(bolt, as_published=True))
+
+
+def test_a_rate_is_what_the_command_says(run, bracket):
+    import json
+
+    said = json.loads(run("rate", BRACKET, "--aspect", "A", "--format", "json", "-q").stdout)
+    found = fs.rate(bracket, fs.read_bowl(), "A")
+    assert found.parts.value * 60.0 == pytest.approx(said["parts_per_minute"], rel=1e-12)
+    assert fs.convey(fs.read_bowl()).velocity * 1e3 == pytest.approx(said["velocity_mm_s"], rel=1e-12)
+
+
+def test_overrides_reach_the_bowl():
+    assert fs.read_bowl(overrides=["drive.frequency=50 Hz"]).drive.frequency == 50.0
+
+
+def test_types_are_there_for_a_checker():
+    assert (ROOT / "feederscrew/py.typed").exists()
+    for name in api.__all__:
+        function = getattr(api, name)
+        if callable(function) and not isinstance(function, type) and function.__module__ == "feederscrew.api":
+            assert "return" in function.__annotations__, name

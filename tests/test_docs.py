@@ -1,0 +1,32 @@
+"""The documents against the program: every example runs, every command is as it says."""
+
+import contextlib
+import io
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+EXAMPLE = re.compile(r"```python\n(.*?)```\n(?:\n```\n(.*?)```)?", re.DOTALL)
+
+
+def test_the_examples_of_the_library_page_print_what_it_shows(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    names = {"__name__": "library"}
+    examples = EXAMPLE.findall((ROOT / "docs/library.md").read_text())
+    assert len(examples) >= 5
+    for code, shown in examples:
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            exec(compile(code, "docs/library.md", "exec"), names)
+        assert printed.getvalue() == shown
+
+
+@pytest.mark.parametrize("name", ["commands"])
+def test_a_generated_page_is_as_the_program_is(name):
+    call = [sys.executable, f"docs/{name}.py", "--check"]
+    done = subprocess.run(call, capture_output=True, text=True, cwd=ROOT)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", ""), f"run: python docs/{name}.py"

@@ -1,0 +1,25 @@
+"""Damaged files end in one line each: no traceback, no hang, no half-written output."""
+
+import pytest
+from fuzz import harness, mutate
+
+COUNTS = {"stl": 40, "bowl": 50, "card": 60, "counts": 50, "list": 200}  # about ten seconds in all
+
+
+@pytest.mark.parametrize("kind", list(harness.PLAN))
+def test_damaged_files_give_a_line_and_never_a_traceback(kind):
+    faults = harness.run(harness.Case(kind, seed) for seed in range(COUNTS[kind]))
+    assert faults == []
+
+
+def test_a_case_is_made_again_from_its_seed():
+    for kind in harness.PLAN:
+        assert harness.Case(kind, 7).build() == harness.Case(kind, 7).build()
+
+
+@pytest.mark.parametrize("damage", mutate.BYTES + mutate.LINES + mutate.FACETS, ids=lambda f: f.__name__)
+def test_every_kind_of_damage_changes_something(damage, rng):
+    whole = (harness.ROOT / "parts/squarenut_m5.stl").read_bytes()
+    text = (harness.ROOT / "configs/bowl.yaml").read_bytes()
+    seed = whole if damage in mutate.FACETS else text
+    assert any(damage(seed, text[::-1], rng) != seed for _ in range(20))
