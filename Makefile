@@ -15,7 +15,7 @@ NAMES := $(basename $(notdir $(PARTS)))
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .SUFFIXES:
-.PHONY: help demo test check lint format all-aspects inertia maps bench docs clean distclean
+.PHONY: help demo test check lint format all-aspects inertia maps bench docs fuzz clean distclean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -66,12 +66,16 @@ bench: $(READY_TO_TEST) ## benchmarks, a few minutes
 
 docs: docs/aspects.png docs/regimes.png $(READY) ## pictures, outputs and tables of the README
 	$(BIN)/python docs/readme.py
+	$(BIN)/python docs/commands.py
 
 docs/aspects.png: results/$(DEMO)/aspects.csv
 	cp results/$(DEMO)/aspects.png $@
 
 docs/regimes.png: results/bowl/slide.csv
 	cp results/bowl/slide_regimes_*.png $@
+
+fuzz: $(READY_TO_TEST) ## ten minutes of damaged files
+	PYTHONPATH=tests $(BIN)/python -m fuzz 600
 
 clean: ## remove results and caches
 	rm -rf results build .pytest_cache .ruff_cache .hypothesis

@@ -18,7 +18,7 @@ def conditions(command):
                 "--launch", type=LAUNCHES, default="tumble", show_default=True, help="How it comes in."
             ),
             click.option("--height", "fall", metavar="LENGTH", help='Fall: "20 mm" or "5 mm:50 mm".'),
-            click.option("--spin", metavar="RATE", help='About any axis: "20 rad/s".'),
+            click.option("--spin", metavar="RATE", help='How fast it turns: "20 rad/s".'),
             click.option("--speed", metavar="SPEED", help='Along the plane: "0.3 m/s".'),
             click.option("--restitution", metavar="E", help="Of a corner hit: 0.3 or 0.1:0.5."),
             click.option("--friction", metavar="MU", help="Against the plane: 0.4 or 0.3:0.6."),

@@ -62,6 +62,11 @@ def test_a_card_in_si_units():
             "1:1: unknown key 'mas' - did you mean mass?",
         )),
         ("mass: 2 g", "mass: -2 g", ("1:7: mass is -2 g - give more than zero",)),
+        (
+            "mass: 2 g",
+            "mass: 2e300 g",
+            ("1:7: mass is 2e300 g, which no fed part has - check its digits and its unit, as in 1.98 g",),
+        ),
         ("mass: 2 g", "mass: 2", ("1:7: mass: '2' has no unit - write 2 g",)),
         ("mass: 2 g", "mass: 2 mm", ("1:7: mass: '2 mm' is a length, not a mass - give it in g",)),
         ("mass: 2 g", "mass:", ("1:6: mass has no value - write 1.98 g",)),

@@ -5,6 +5,7 @@ import io
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 import shapes
 
@@ -172,3 +173,36 @@ def test_an_open_surface_is_labelled_everywhere(run, tmp_path):
     assert {row["surface"] for row in told["aspects"]} == {"open"}
     assert told["warnings"]
     assert done.stderr.startswith("Warning: ")
+
+
+def test_exact_tumbling_joins_the_columns(run, stl):
+    rows = json.loads(run("aspects", stl, "--format", "json").stdout)["aspects"]
+    names = {"p_quasistatic", "p_crsa", "p_barrier", "p_surface", "barrier_mm", "barrier_uJ", "tip_angle_deg"}
+    assert names <= set(rows[0])
+    for row in rows:
+        share = row["faces"] * row["solid_angle_sr"] / (4 * np.pi)
+        assert row["p_quasistatic"] == pytest.approx(share, rel=1e-9)
+
+
+def test_a_soft_surface_is_quasistatic(run, stl):
+    for words in (("--surface", "soft"), ("--surface-exponent", "0")):
+        rows = json.loads(run("aspects", stl, "--format", "json", *words).stdout)["aspects"]
+        assert [row["p_surface"] for row in rows] == pytest.approx([row["p_quasistatic"] for row in rows])
+
+
+def test_the_graph_needs_a_folder(run, stl):
+    done = run("aspects", stl, "--graph")
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert "--graph writes files: give -o DIR as well" in done.stderr
+
+
+def test_the_graph_is_written(run, tmp_path, stl):
+    assert run("aspects", stl, "--graph", "-o", "res").exit_code == 0
+    assert (tmp_path / "res/box/graph.csv").read_text().startswith("from,to,barrier_mm")
+    assert (tmp_path / "res/box/graph.png").stat().st_size > 5000
+
+
+def test_a_drop_test_joins_the_columns(run, stl):
+    rows = json.loads(run("aspects", stl, "--drop", "300", "--format", "json", "-q").stdout)["aspects"]
+    assert sum(row["p_drop"] for row in rows) == pytest.approx(1.0, abs=0.05)
+    assert all(row["p_drop_low"] <= row["p_drop"] <= row["p_drop_high"] for row in rows)

@@ -27,7 +27,15 @@ def test_json_is_the_contract(run, stl):
     told = document(run("drop", stl, "--drops", "600", "--seed", "7", "--format", "json"))
     assert list(told)[:6] == ["part", "drops", "seed", "launch", "partial", "unsettled"]
     assert told["drops"] == 600 and told["seed"] == 7 and told["launch"]["name"] == "tumble"
-    assert set(told["launch"]) == {"name", "height_mm", "spin_rad_s", "speed_mm_s", "restitution", "friction"}
+    assert set(told["launch"]) == {
+        "name",
+        "height_mm",
+        "spin_rad_s",
+        "speed_mm_s",
+        "restitution",
+        "friction",
+        "forward",
+    }
     assert [list(row) for row in told["aspects"]] == [COLUMNS] * 3
     assert sum(row["count"] for row in told["aspects"]) + told["unsettled"] == 600
     assert all(row["p_drop_low"] <= row["p_drop"] <= row["p_drop_high"] for row in told["aspects"])

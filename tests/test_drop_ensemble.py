@@ -3,6 +3,7 @@
 import drop_bodies
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from scipy.stats import binom
 
 from feederscrew.errors import ConfigError
@@ -97,10 +98,19 @@ def test_every_drop_starts_at_its_fall_within_the_ranges(rng):
         )
 
 
+def test_a_tumbling_launch_spins_the_way_it_would_roll(rng):
+    starts = sample(PRESETS["tumble"], BOX, 200, rng)
+    states = starts.states.copy()
+    turns = Rotation.from_quat(states[:, [7, 8, 9, 6]])
+    spin, ahead = turns.apply(states[:, 10:]), states[:, 3:6]
+    below = np.cross(spin, [0.0, 0.0, -1.0])  # the corner under the centre goes back
+    size = np.linalg.norm(spin, axis=1) * np.linalg.norm(ahead, axis=1)
+    assert np.einsum("ni,ni->n", below, ahead) == pytest.approx(-size)
+
+
 def test_attitudes_are_uniform(rng):
     q = sample(PRESETS["drop"], BOX, 20000, rng).states[:, 6:10]
-    a, b, c, d = q.T
-    down = np.stack([2 * (b * d - a * c), 2 * (c * d + a * b), 1 - 2 * (b * b + c * c)])
+    down = Rotation.from_quat(q[:, [1, 2, 3, 0]]).inv().apply([0.0, 0.0, 1.0]).T
     assert np.abs(down.mean(axis=1)).max() < 0.02
     assert down @ down.T / len(q) == pytest.approx(np.eye(3) / 3.0, abs=0.01)
 

@@ -174,6 +174,7 @@ def test_an_independent_monte_carlo_of_the_flow(seed):
 @pytest.mark.parametrize("seed", range(4))
 def test_rolls_agree_with_basin_areas(seed):
     from feederscrew.resting import tumbling_walk
+    from feederscrew.resting.tumbling_compiled import SMALL, fitting
     from feederscrew.resting.tumbling_edges import half_edges, sinks
 
     points, centre = random_body(seed)
@@ -181,7 +182,8 @@ def test_rolls_agree_with_basin_areas(seed):
     result, edges = tumble(hull), half_edges(hull)
     starts = np.random.default_rng(seed).normal(size=(20000, 3))
     ends = np.empty(len(starts), int)
-    tumbling_walk.rolls(edges, starts / np.linalg.norm(starts, axis=1, keepdims=True), ends)
+    rolls = fitting(tumbling_walk.rolls, SMALL + 1)
+    rolls(edges, starts / np.linalg.norm(starts, axis=1, keepdims=True), ends)
     found = np.bincount(np.searchsorted(sinks(edges), ends), minlength=len(result.sinks)) / len(starts)
     spread = np.sqrt(result.shares * (1 - result.shares) / len(starts))
     assert (np.abs(found - result.shares) < 4.5 * spread + 1e-4).all()
@@ -209,3 +211,15 @@ def test_a_hundred_thousand_facets_cost_little_beside_their_hull():
         middle - start
     )  # a shared machine; benchmarks/speed has the figure
     assert result.doubts == () and len(hull.triangles) == 39996
+
+
+def test_the_walks_give_the_same_plain_and_compiled(monkeypatch):
+    from feederscrew.resting import tumbling_compiled
+
+    points, centre = random_body(7)
+    hull = convex_hull(points, centre)
+    plain = tumble(hull)
+    monkeypatch.setattr(tumbling_compiled, "SMALL", 0)
+    fast = tumble(hull)
+    np.testing.assert_allclose(fast.areas, plain.areas, rtol=1e-12)
+    np.testing.assert_array_equal(fast.pairs, plain.pairs)

@@ -5,7 +5,7 @@ import pytest
 import shapes
 
 from feederscrew.errors import MeshError
-from feederscrew.output import graph_sheets
+from feederscrew.output import columns, graph_sheets
 from feederscrew.resting.aspects import find
 from feederscrew.resting.tumbling_aspects import exact, ground, transitions
 
@@ -62,8 +62,7 @@ def test_the_graph_is_a_table(rng):
         1.0
     )
     assert frame.groupby("from")["barrier_mm"].min().to_numpy() == pytest.approx(1e3 * result.barriers)
-    columns = graph_sheets.barriers(result)
-    assert columns["tip_angle_deg"][0] == pytest.approx(np.degrees(np.arctan(2.0)))
+    assert columns.aspects(aspects, part)["tip_angle_deg"][0] == pytest.approx(np.degrees(np.arctan(2.0)))
 
 
 def test_the_graph_is_drawn():
@@ -84,11 +83,9 @@ def test_noise_and_turning_change_little(rng):
             assert result.probabilities[rule] == pytest.approx(p, abs=0.01), rule
 
 
-def test_a_card_has_no_shape(monkeypatch):
-    from dataclasses import replace
+def test_a_card_has_no_shape():
+    from feederscrew.thesis import parts
 
-    part = shapes.part(shapes.box(1.0, 2.0, 3.0))
-    aspects = find(part)
-    with pytest.raises(MeshError) as fault:
-        ground(replace(part, vertices=None, faces=None), aspects)
-    assert str(fault.value) == "part.stl: is a part card, it has no shape to tumble - give a mesh file"
+    card = parts.card("magnet")
+    with pytest.raises(MeshError, match=r"is a part card, it has no shape to tumble - give a mesh file$"):
+        ground(card, find(card))

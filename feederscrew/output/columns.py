@@ -6,12 +6,14 @@ from feederscrew.output import tables
 from feederscrew.units import factor
 
 MM, MM2, MM3 = factor("mm", "length"), factor("mm2", "area"), factor("mm3", "volume")
+UJ, DEG = factor("uJ", "energy"), factor("deg", "angle")
 GRAM, G_MM2, G_CM3 = factor("g", "mass"), factor("g mm2", "inertia"), factor("g/cm3", "density")
 
 NORMALS = ("normal_x", "normal_y", "normal_z")
+HIDDEN = (*NORMALS, "barrier_uJ")  # left out of the table for people
 
 
-def aspects(found, solid):
+def aspects(found, solid, tally=None):
     """The classes of resting aspects, one row each.
 
     Parameters
@@ -19,6 +21,8 @@ def aspects(found, solid):
     found : Aspects
     solid : Part
         Whose they are; an open surface is labelled in every row.
+    tally : Tally, optional
+        Of a drop test.
 
     Returns
     -------
@@ -39,9 +43,27 @@ def aspects(found, solid):
             "solid_angle_sr": found.solid_angles,
             "polar_inertia_g_mm2": found.polar_inertias / G_MM2,
             **chances,
+            **_barriers(found),
+            **_dropped(tally),
             **({"surface": ["open"] * len(found.names)} if solid.open_surface else {}),
         }
     )
+
+
+def _barriers(found):
+    if found.barriers is None:
+        return {}
+    return {
+        "barrier_mm": found.barriers / MM,
+        "barrier_uJ": found.barrier_energies / UJ,
+        "tip_angle_deg": found.tip_angles / DEG,
+    }
+
+
+def _dropped(tally):
+    if tally is None:
+        return {}
+    return {"p_drop": tally.p, "p_drop_low": tally.low, "p_drop_high": tally.high}
 
 
 def part(solid, warnings=()):

@@ -1,31 +1,10 @@
-"""Barriers and the tipping graph as columns, tables and files."""
+"""The tipping graph as a table and as files."""
 
 import numpy as np
 from scipy.constants import g
 
 from feederscrew.output import tables
-from feederscrew.output.columns import MM
-from feederscrew.units import factor
-
-UJ, DEG = factor("uJ", "energy"), factor("deg", "angle")
-
-
-def barriers(exact):
-    """Columns that exact tumbling adds to ``aspects.csv``, the probabilities left out.
-
-    Parameters
-    ----------
-    exact : Exact
-
-    Returns
-    -------
-    dict of str to (A,) float
-    """
-    return {
-        "barrier_mm": exact.barriers / MM,
-        "barrier_uJ": exact.barrier_energies / UJ,
-        "tip_angle_deg": exact.tip_angles / DEG,
-    }
+from feederscrew.output.columns import MM, UJ
 
 
 def transitions(part, aspects, ways):

@@ -16,8 +16,12 @@ METHODS = {  # label and colour of each rule; the colours keep apart for colour-
     "pmi": ("PMI", "#0072b2"),
     "csa": ("CSA", "#e69f00"),
     "stability": ("stability", "#009e73"),
+    "quasistatic": ("quasi-static", "#cc79a7"),
+    "crsa": ("CRSA", "#56b4e9"),
+    "barrier": ("barrier", "#8c8c8c"),
+    "surface": ("surface", "#d55e00"),
 }
-SPARE = ("#cc79a7", "#56b4e9", "#d55e00", "#8c8c8c", "#f0e442", "#5b3a8e")
+SPARE = ("#f0e442", "#5b3a8e", "#7a5c3e", "#a3b18a")
 
 
 def figure(width=6.4, height=4.0):

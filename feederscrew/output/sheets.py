@@ -7,7 +7,7 @@ from feederscrew.output import tables
 MOST = 24  # rows that a picture shows
 
 
-def aspects(folder, part, found, document, *, pictures=True):
+def aspects(folder, part, found, document, *, graph=False, pictures=True):
     """Write the table of aspects and its pictures.
 
     Parameters
@@ -17,6 +17,8 @@ def aspects(folder, part, found, document, *, pictures=True):
     found : Aspects
     document : dict
         Of the JSON file; its ``aspects`` is the table.
+    graph : bool
+        Write the tipping graph as well.
     pictures : bool
         False for the tables only.
 
@@ -27,6 +29,8 @@ def aspects(folder, part, found, document, *, pictures=True):
     """
     folder.write("aspects.csv", tables.text(document["aspects"], "csv"))
     folder.write("aspects.json", tables.json_text(document))
+    if graph:
+        _graph(folder, part, found, pictures)
     if not pictures:
         return []
     from feederscrew.output import bars, plots
@@ -43,3 +47,12 @@ def aspects(folder, part, found, document, *, pictures=True):
     count = len(found.names)
     folder.write("aspects.png", plots.png(picture.aspects(part, found, range(min(count, MOST)))))
     return [f"aspects.png shows the first {MOST} of {count} rows"] if count > MOST else []
+
+
+def _graph(folder, part, found, pictures):
+    from feederscrew.output import graph_sheets
+    from feederscrew.resting.tumbling_aspects import ground, transitions
+
+    ways = transitions(ground(part, found))
+    shares = found.probabilities["quasistatic"]
+    graph_sheets.write(folder, part, found, ways, shares, pictures=pictures)

@@ -12,6 +12,7 @@ SLIP = 1e-9  # [1] of an entry: closer magnitudes are equal
 ROUNDING = 1e-3  # [1] by which rounded moments may miss the triangle inequality
 BLOCKS = (("floor", FLOOR), ("track", TRACK))
 RELATIVE = "relative"  # in place of sr, where a source states no unit
+SMALLEST, LARGEST = 1e-18, 1e9  # in SI units: between lies every length, area, mass and moment of a part
 
 
 def part(file):
@@ -116,6 +117,9 @@ def _quantity(key, node):
         raise ConfigError(node.where, f"{key.word}: {fault.what}", fault.mend) from None
     if key.positive and not value > 0.0:
         raise ConfigError(node.where, f"{key.word} is {units.one_line(node.text)}", "give more than zero")
+    if value and not SMALLEST < abs(value) < LARGEST:
+        what = f"{key.word} is {units.one_line(node.text)}, which no fed part has"
+        raise ConfigError(node.where, what, f"check its digits and its unit, as in {key.example}")
     if key.dimension == "number" and value % 1.0:
         raise ConfigError(node.where, f"{key.word} is {units.one_line(node.text)}", "give a whole number")
     return value

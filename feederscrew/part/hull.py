@@ -61,8 +61,9 @@ def convex_hull(points, centre, where="part"):
         qhull = ConvexHull(points)
     except (QhullError, ValueError) as error:
         raise MeshError(where, "the part has no volume", "export it as a closed solid") from error
-    triangles, neighbours = _outward(points, qhull)
-    used = np.unique(triangles)  # Qhull lists points in the middle of a facet among its vertices
+    triangles, neighbours, areas = _outward(points, qhull)
+    used = np.zeros(len(points), dtype=bool)  # Qhull lists points in the middle of a facet among its vertices
+    used[triangles] = True
     vertices = points[used]
     radius = float(np.linalg.norm(vertices, axis=1).max())
     heights = -qhull.equations[:, 3]
@@ -72,24 +73,24 @@ def convex_hull(points, centre, where="part"):
             "the centre of mass is not inside the part's convex hull",
             "check --centre-of-mass and its units",
         )
-    a, b, c = np.moveaxis(points[triangles], 1, 0)
     return Hull(
         vertices=check.frozen(vertices),
-        triangles=check.frozen(np.searchsorted(used, triangles)),
+        triangles=check.frozen((np.cumsum(used) - 1)[triangles]),
         neighbours=check.frozen(neighbours),
         normals=check.frozen(qhull.equations[:, :3].copy()),
         heights=check.frozen(heights),
-        areas=check.frozen(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)),
+        areas=check.frozen(areas),
         volume=float(qhull.volume),
         radius=radius,
     )
 
 
 def _outward(points, qhull):
-    """Triangles turned counter-clockwise seen from outside, their neighbours with them."""
+    """Triangles turned counter-clockwise seen from outside, their neighbours with them; and their areas."""
     triangles, neighbours = qhull.simplices.copy(), qhull.neighbors.copy()
-    a, b, c = np.moveaxis(points[triangles], 1, 0)
-    inward = np.einsum("ti,ti->t", np.cross(b - a, c - a), qhull.equations[:, :3]) < 0.0
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    cross = np.cross(b - a, c - a)
+    inward = np.einsum("ti,ti->t", cross, qhull.equations[:, :3]) < 0.0
     triangles[inward, 1:] = triangles[inward, :0:-1]
     neighbours[inward, 1:] = neighbours[inward, :0:-1]
-    return triangles, neighbours
+    return triangles, neighbours, 0.5 * np.linalg.norm(cross, axis=1)

@@ -94,7 +94,7 @@ def _integrals(points, faces):
         gram += _products(half * weights[start : start + BLOCK], half)
     table = _spread_out(gram)
     volume, second = table[0, 0, 0] / 3.0, (table[2, 0, 0] + table[0, 2, 0] + table[0, 0, 2]) / 5.0
-    size = np.sqrt(second / volume)
+    size = np.sqrt(abs(second / volume))  # facets that overlap may leave either negative
     order = np.indices(table.shape).sum(axis=0)
     return table / (order + 3.0) / size**order, volume, scale * size
 

@@ -1,13 +1,13 @@
 """The resting aspects of a part, equal ones joined into classes, named and ranked."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from string import ascii_uppercase
 
 import numpy as np
 
 from feederscrew import check
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting import rules
+from feederscrew.resting import rules, surface, tumbling_aspects
 from feederscrew.resting.classes import body_frame, classes
 from feederscrew.resting.faces import stable_faces, unstable_faces
 from feederscrew.resting.landscape import landscape
@@ -31,11 +31,15 @@ class Aspects:
     polar_inertias: np.ndarray  # (A,) [kg m2] about the normal through the centre of mass
     polygons: tuple[np.ndarray, ...]  # (K, 3) [m] from the centre of mass, counter-clockwise from outside
     probabilities: dict[str, np.ndarray] = field(default_factory=dict)  # (A,) [1] by rule, of the class
+    barriers: np.ndarray | None = None  # (A,) [m] least lift that tips the part; NaN where nothing does
+    barrier_energies: np.ndarray | None = None  # (A,) [J]
+    tip_angles: np.ndarray | None = None  # (A,) [rad] of a floor that tips a part that does not slide
+    ground: tumbling_aspects.Ground | None = None  # faces, basins and barriers behind the rows
     warnings: tuple[str, ...] = ()
 
 
-def find(part, *, as_published=False, unstable=False):
-    """Resting aspects of a part, with their probability by every published rule.
+def find(part, *, as_published=False, unstable=False, exponent=surface.EXPONENTS["hard"]):
+    """Resting aspects of a part, with their probability by every rule.
 
     Parameters
     ----------
@@ -45,6 +49,8 @@ def find(part, *, as_published=False, unstable=False):
         Count each class once in the PMI rule, as the thesis's tables do.
     unstable : bool
         List the facets the part rolls off as well, with no probability.
+    exponent : float [1]
+        Of the surface-weighted closed form; see `surface.EXPONENTS`.
 
     Returns
     -------
@@ -58,15 +64,31 @@ def find(part, *, as_published=False, unstable=False):
     if part.vertices is None:
         return _from_card(part)
     hull = part.hull or convex_hull(part.vertices, part.centre_of_mass, part.source)
-    faces = stable_faces(hull, landscape(hull))
-    if unstable:
-        faces += unstable_faces(hull, faces)
+    stable = stable_faces(hull, landscape(hull))
+    faces = stable + (unstable_faces(hull, stable) if unstable else [])
     label = classes(faces, part)
     groups = [[face for face, at in zip(faces, label) if at == k] for k in range(label.max() + 1)]
     table = _geometry(groups, part)
     chances = _probabilities(table, as_published)
     order = _ranked(table, chances["csa"], part)
-    return _named(table, chances, order, groups, _said(groups))
+    named = _named(table, chances, order, _said(groups))
+    ground = tumbling_aspects.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
+    return _tumbled(named, ground, part, exponent)
+
+
+def _tumbled(named, ground, part, exponent):
+    """The record with all that exact tumbling adds to it."""
+    more = tumbling_aspects.exact(ground, part, named, exponent)
+    doubts = tuple(f"exact tumbling is doubtful: {doubt}" for doubt in more.doubts)
+    return replace(
+        named,
+        probabilities=named.probabilities | more.probabilities,
+        barriers=more.barriers,
+        barrier_energies=more.barrier_energies,
+        tip_angles=more.tip_angles,
+        ground=ground,
+        warnings=named.warnings + doubts,
+    )
 
 
 def _geometry(groups, part):
@@ -125,7 +147,7 @@ def _ranked(table, chance, part):
     return np.lexsort((*-direction.T, height, rank))
 
 
-def _named(table, chances, order, groups, warnings):
+def _named(table, chances, order, warnings):
     """The record, rows in their order."""
     arrays = {k: check.frozen(v[order]) for k, v in table.items() if isinstance(v, np.ndarray)}
     return Aspects(

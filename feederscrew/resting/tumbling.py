@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew import check
-from feederscrew.resting import tumbling_edges
+from feederscrew.resting import tumbling_edges, tumbling_walk
+from feederscrew.resting.tumbling_compiled import fitting
 
 SPHERE = 4.0 * np.pi  # [sr]
 ROUNDING = 1e-6  # [1] what the shares may miss 1 by before the result is called doubtful
@@ -84,13 +85,12 @@ def tumble(hull):
 
 def _basins(edges, sinks, saddles, maxima, directions):
     """(E, 2) sinks each saddle joins, (S,) boundary integrals of their basins, whether every walk arrived."""
-    from feederscrew.resting import tumbling_walk
-
     tops = np.zeros(len(edges.vertices), bool)
     tops[maxima] = True
     pairs, peaks = np.empty((2, len(saddles), 2), int)
     raw = np.zeros(len(edges.normals))
-    tumbling_walk.trace_saddles(edges, tops, saddles, directions, _gauges(edges.normals), pairs, peaks, raw)
+    trace = fitting(tumbling_walk.trace_saddles, len(edges.origins))
+    trace(edges, tops, saddles, directions, _gauges(edges.normals), pairs, peaks, raw)
     rank = np.full(len(edges.normals) + 1, -1)  # the last entry stands for a lost walk
     rank[sinks] = np.arange(len(sinks))
     return rank[pairs], raw[sinks], bool((pairs >= 0).all() and (peaks >= 0).all())

@@ -7,11 +7,9 @@ from scipy.constants import g
 
 from feederscrew import check
 from feederscrew.errors import MeshError
-from feederscrew.part.hull import Hull, convex_hull
+from feederscrew.part.hull import Hull
 from feederscrew.resting import barriers, rules, surface
-from feederscrew.resting.classes import classes
-from feederscrew.resting.faces import Face, stable_faces
-from feederscrew.resting.landscape import landscape
+from feederscrew.resting.faces import Face
 from feederscrew.resting.tumbling import tumble
 
 
@@ -47,6 +45,28 @@ class Transition:
     axis: tuple[float, float, float]  # unit, along the edge it tips over, in the file's axes
 
 
+def grounded(hull, faces, rows):
+    """Exact basins and barriers of the faces a part rests on.
+
+    Parameters
+    ----------
+    hull : Hull
+    faces : sequence of Face
+        Stable ones.
+    rows : (F,) int
+        Row of each face's class among the aspects.
+
+    Returns
+    -------
+    Ground
+    """
+    labels = np.full(len(hull.triangles), barriers.UNNAMED)
+    for k, face in enumerate(faces):
+        labels[face.triangles] = k
+    tips = barriers.tipping(tumble(hull), labels)
+    return Ground(hull, tuple(faces), check.frozen(rows), check.frozen(labels), tips)
+
+
 def ground(part, aspects):
     """Faces of a part matched to the rows of its aspects, with exact basins and barriers.
 
@@ -66,16 +86,9 @@ def ground(part, aspects):
     MeshError
         If the part is a card without a shape.
     """
-    if part.vertices is None:
+    if aspects.ground is None:
         raise MeshError(part.source, "is a part card, it has no shape to tumble", "give a mesh file")
-    hull = convex_hull(part.vertices, part.centre_of_mass, part.source)
-    faces = stable_faces(hull, landscape(hull))
-    labels = np.full(len(hull.triangles), barriers.UNNAMED)
-    for k, face in enumerate(faces):
-        labels[face.triangles] = k
-    tips = barriers.tipping(tumble(hull), labels)
-    rows = _rows(aspects, faces, classes(faces, part))
-    return Ground(hull, tuple(faces), check.frozen(rows), check.frozen(labels), tips)
+    return aspects.ground
 
 
 def exact(found, part, aspects, exponent=surface.EXPONENTS["hard"]):
@@ -133,14 +146,6 @@ def transitions(found):
             if way.lift < best.lift:
                 ways[way.start, way.end] = way
     return [ways[pair] for pair in sorted(ways)]
-
-
-def _rows(aspects, faces, label):
-    """(F,) row of each face: that of its class, whose normal is one of its faces'."""
-    away = np.abs(aspects.normals[:, None] - np.array([face.normal for face in faces])).max(axis=2)
-    away[~aspects.stable] = np.inf
-    nearest = [away[:, label == one].min(axis=1).argmin() for one in range(label.max() + 1)]
-    return np.array(nearest)[label]
 
 
 def _critical(face):

@@ -1,33 +1,61 @@
-"""How the event loops are compiled: cached on disk, free of the interpreter lock."""
+"""How the event loops are compiled: on first need, cached on disk, free of the interpreter lock."""
 
+import functools
 import hashlib
 from pathlib import Path
 
-from numba import njit
-from numba.core.options import DefaultOptions
-
-QUICK = {"_nrt": False} if hasattr(DefaultOptions, "_nrt") else {}
-"""No reference counting, which costs more than the arithmetic: such a function may not make arrays."""
-
+PLAIN = []  # functions that run as they stand, and may be called from compiled ones
+SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
 SOURCES = ("tumbling_*.py", "drop/body.py", "drop/contact.py", "drop/kernel.py")
 
 
+def compilable(function):
+    """Mark a function that runs as it stands on a small hull and is compiled for a large one."""
+    PLAIN.append(function)
+    return function
+
+
+def fitting(function, half_edges):
+    """A compilable function as it stands or compiled, whichever is done sooner on a hull of that size."""
+    return function if half_edges <= SMALL else _once(function)
+
+
+def compiled(function):
+    """Compile a function that fills arrays it is handed and makes none of its own."""
+    from numba import njit
+
+    _register()
+    function.__qualname__ = f"{function.__name__}_{_fingerprint()}"  # names the files of the cache
+    return njit(cache=True, nogil=True, **_options())(function)
+
+
+def on_disk(function):
+    """Whether a compiled function is in the cache already: its first call takes no compiler."""
+    return any(Path(function.stats.cache_path).glob(f"*{function.__name__}_{_fingerprint()}*.nbi"))
+
+
+_once = functools.cache(compiled)
+
+
+@functools.cache
+def _register():
+    from numba.extending import register_jitable
+
+    for function in PLAIN:
+        register_jitable(**_options())(function)
+
+
+@functools.cache
+def _options():
+    """No reference counting, which costs more than the arithmetic: such a function may not make arrays."""
+    from numba.core.options import DefaultOptions
+
+    return {"error_model": "numpy"} | ({"_nrt": False} if hasattr(DefaultOptions, "_nrt") else {})
+
+
+@functools.cache
 def _fingerprint():
     """Digest of the compiled sources: a changed source must not find what an older one left on disk."""
     here = Path(__file__).parent
     files = sorted(path for pattern in SOURCES for path in here.glob(pattern))
     return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:12]
-
-
-FINGERPRINT = _fingerprint()
-
-
-def compiled(function):
-    """Compile a function that fills arrays it is handed and makes none of its own."""
-    function.__qualname__ = f"{function.__name__}_{FINGERPRINT}"  # names the files of the cache
-    return njit(cache=True, nogil=True, error_model="numpy", **QUICK)(function)
-
-
-def on_disk(function):
-    """Whether a compiled function is in the cache already: its first call takes no compiler."""
-    return any(Path(function.stats.cache_path).glob(f"*{function.__name__}_{FINGERPRINT}*.nbi"))

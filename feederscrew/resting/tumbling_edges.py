@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from feederscrew import check
+from feederscrew.resting import tumbling_walk
+from feederscrew.resting.tumbling_compiled import fitting
 
 COPLANAR = 1e-10  # [1] of the radius: depth below a neighbour's plane that is still the same facet
 SLIVER = 1e-9  # [1] of the radius: a triangle narrower than this has no plane of its own
@@ -45,8 +47,6 @@ def half_edges(hull):
     -------
     Edges
     """
-    from feederscrew.resting import tumbling_walk
-
     twins = _twins(hull.neighbours)
     facets = _facets(hull, twins)
     origins = hull.triangles[:, [1, 2, 0]].ravel().astype(int)
@@ -55,7 +55,8 @@ def half_edges(hull):
     owners = np.repeat(facets, 3)
     borders = owners != owners[twins]
     slopes, sides = np.empty((2, len(owners)))
-    tumbling_walk.signs(hull.vertices, normals, origins, targets, owners, slopes, sides)
+    signs = fitting(tumbling_walk.signs, len(owners))
+    signs(hull.vertices, normals, origins, targets, owners, slopes, sides)
     by_facet, by_vertex = np.zeros(len(normals), int), np.zeros(len(hull.vertices), int)
     edges = np.flatnonzero(borders)
     by_facet[owners[edges]] = edges
@@ -114,11 +115,10 @@ def _facets(hull, twins):
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    from feederscrew.resting import tumbling_walk
-
     owners = np.repeat(np.arange(len(hull.triangles)), 3)
     depths = np.empty(len(owners))
-    tumbling_walk.depths(hull.vertices, hull.normals, hull.heights, hull.triangles.ravel(), twins, depths)
+    fill = fitting(tumbling_walk.depths, len(owners))
+    fill(hull.vertices, hull.normals, hull.heights, hull.triangles.ravel(), twins, depths)
     near = np.flatnonzero(np.minimum(depths, depths[twins]) <= COPLANAR * hull.radius)
     if not len(near):
         return np.arange(len(hull.triangles))

@@ -1,4 +1,4 @@
-"""Compiled walks along the flow of a part that rolls without momentum.
+"""Walks along the flow of a part that rolls without momentum.
 
 Directions are "down" in the part's axes, as tuples of three. Over corner v the flow leaves v along great
 circles; where the foot of the centre of mass lies between the two corners of an edge the flow gathers on
@@ -7,24 +7,24 @@ the arc between the normals of its two facets.
 
 import math
 
-from feederscrew.resting.tumbling_compiled import compiled
+from feederscrew.resting.tumbling_compiled import compilable
 
 LOST = -1  # a walk that ends nowhere: the hull is not closed and convex
 
 
-@compiled
+@compilable
 def row(array, k):
     """Row of an (N, 3) array as a tuple."""
     return array[k, 0], array[k, 1], array[k, 2]
 
 
-@compiled
+@compilable
 def dot(a, b):
     """Scalar product of two triples."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@compiled
+@compilable
 def triple(a, b, c):
     """a . (b x c)."""
     return (
@@ -34,7 +34,7 @@ def triple(a, b, c):
     )
 
 
-@compiled
+@compilable
 def toward(a, b, step):
     """Unit vector along a + step b."""
     x, y, z = a[0] + step * b[0], a[1] + step * b[1], a[2] + step * b[2]
@@ -42,7 +42,7 @@ def toward(a, b, step):
     return n * x, n * y, n * z
 
 
-@compiled
+@compilable
 def signs(vertices, normals, origins, targets, owners, slopes, sides):
     """Fill (H,) slopes and sides, as ``Edges`` has them, from each half-edge's corners and facet."""
     for h in range(len(origins)):
@@ -51,7 +51,7 @@ def signs(vertices, normals, origins, targets, owners, slopes, sides):
         sides[h] = triple(row(normals, owners[h]), u, w)
 
 
-@compiled
+@compilable
 def depths(vertices, normals, heights, corners, twins, below):
     """Fill (H,) [m]: how far the corner off each edge, of the neighbour, lies below the triangle's plane."""
     for h in range(len(twins)):
@@ -59,13 +59,13 @@ def depths(vertices, normals, heights, corners, twins, below):
         below[h] = heights[t] - dot(row(normals, t), row(vertices, corners[twins[h]]))
 
 
-@compiled
+@compilable
 def around_vertex(edges, h):
     """Next half-edge leaving the same corner."""
     return edges.twins[h + 2 if h % 3 == 0 else h - 1]
 
 
-@compiled
+@compilable
 def along_facet(edges, h):
     """Next half-edge around the border of the same facet."""
     h = h - 2 if h % 3 == 2 else h + 1
@@ -75,7 +75,7 @@ def along_facet(edges, h):
     return h
 
 
-@compiled
+@compilable
 def exit_of(edges, facet):
     """How the part leaves a facet: (half-edge, -1) over an edge, (-1, corner) over a corner, (-1, -1) not."""
     start = h = edges.facet_edges[facet]
@@ -95,7 +95,7 @@ def exit_of(edges, facet):
     return -1, corner if leaves else -1
 
 
-@compiled
+@compilable
 def next_corner(edges, x, corner, sign):
     """Where the great circle through direction x and a corner leaves the corner's region.
 
@@ -118,7 +118,7 @@ def next_corner(edges, x, corner, sign):
     return best, toward(x, v, sign * step) if best != LOST else x
 
 
-@compiled
+@compilable
 def side_of(edges, h, x):
     """Facet to which the part rolls from direction x on the arc of a half-edge."""
     u, w = row(edges.vertices, edges.origins[h]), row(edges.vertices, edges.targets[h])
@@ -126,7 +126,7 @@ def side_of(edges, h, x):
     return edges.facets[ahead // 3]
 
 
-@compiled
+@compilable
 def roll_from_corner(edges, x, corner):
     """Facet first reached by a part that rolls over a corner from direction x; LOST if none."""
     for _ in range(len(edges.vertices)):
@@ -139,7 +139,7 @@ def roll_from_corner(edges, x, corner):
     return LOST
 
 
-@compiled
+@compilable
 def roll_from_facet(edges, facet):
     """Facet on which a part comes to rest that is set down on ``facet``; LOST if none."""
     for _ in range(len(edges.normals) + 1):
@@ -155,7 +155,7 @@ def roll_from_facet(edges, facet):
     return LOST
 
 
-@compiled
+@compilable
 def support(edges, x, corner):
     """Corner furthest along direction x, climbing from ``corner``."""
     while True:
@@ -174,7 +174,7 @@ def support(edges, x, corner):
         corner = best
 
 
-@compiled
+@compilable
 def rolls(edges, directions, ends):
     """Fill (N,) ends with the facet a part set down with each of (N, 3) directions down comes to rest on."""
     corner = 0
@@ -184,13 +184,13 @@ def rolls(edges, directions, ends):
         ends[n] = roll_from_facet(edges, roll_from_corner(edges, x, corner))
 
 
-@compiled
+@compilable
 def triangle_area(a, b, c):
     """Signed area [sr] of a spherical triangle of unit vectors, positive counter-clockwise from outside."""
     return 2.0 * math.atan2(triple(a, b, c), 1.0 + dot(a, b) + dot(b, c) + dot(c, a))
 
 
-@compiled
+@compilable
 def climb(edges, tops, x, corner, left, right):
     """Follow the flow back from direction x over a corner up to a maximum, one of the corners ``tops``.
 
@@ -209,7 +209,7 @@ def climb(edges, tops, x, corner, left, right):
     return LOST, area_left, area_right
 
 
-@compiled
+@compilable
 def trace_saddles(edges, tops, saddles, directions, gauges, pairs, peaks, areas):
     """Sinks joined by each saddle, and the boundary integral of every facet's basin.
 

@@ -62,6 +62,7 @@ def described(launch, length):
         "speed_mm_s": [speed * end for end in launch.speed],
         "restitution": list(launch.restitution),
         "friction": list(launch.friction),
+        "forward": launch.forward,
     }
 
 
