@@ -106,9 +106,11 @@ def run(job, path):
 
     assert pandas and scipy
     if job != "floor":
+        import numba
+
         import feederscrew.resting.aspects
 
-        assert feederscrew.resting.aspects
+        assert numba and feederscrew.resting.aspects
     start = time.perf_counter()
     JOBS[job](path)
     seconds = time.perf_counter() - start

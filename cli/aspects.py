@@ -57,9 +57,11 @@ def _files_wanted(graph, out):
 def _found(solid, as_published, unstable, surface, own, out):
     """The aspects, and what there is to say of them."""
     with out.step("aspects"):
-        from feederscrew.resting.aspects import find
+        from feederscrew.resting.aspects import find, waits
         from feederscrew.resting.surface import EXPONENTS
 
+        if waits(solid):
+            out.say("Compiling what large hulls need, once on this machine: about ten seconds.")
         exponent = EXPONENTS[surface] if own is None else own
         found = find(solid, unstable=unstable, as_published=as_published, exponent=exponent)
     out.say(f"Material: {solid.material}")

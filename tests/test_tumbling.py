@@ -174,7 +174,7 @@ def test_an_independent_monte_carlo_of_the_flow(seed):
 @pytest.mark.parametrize("seed", range(4))
 def test_rolls_agree_with_basin_areas(seed):
     from feederscrew.resting import tumbling_walk
-    from feederscrew.resting.tumbling_compiled import SMALL, fitting
+    from feederscrew.resting.compiled import SMALL, fitting
     from feederscrew.resting.tumbling_edges import half_edges, sinks
 
     points, centre = random_body(seed)
@@ -214,12 +214,12 @@ def test_a_hundred_thousand_facets_cost_little_beside_their_hull():
 
 
 def test_the_walks_give_the_same_plain_and_compiled(monkeypatch):
-    from feederscrew.resting import tumbling_compiled
+    from feederscrew.resting import compiled
 
     points, centre = random_body(7)
     hull = convex_hull(points, centre)
     plain = tumble(hull)
-    monkeypatch.setattr(tumbling_compiled, "SMALL", 0)
+    monkeypatch.setattr(compiled, "SMALL", 0)
     fast = tumble(hull)
     np.testing.assert_allclose(fast.areas, plain.areas, rtol=1e-12)
     np.testing.assert_array_equal(fast.pairs, plain.pairs)

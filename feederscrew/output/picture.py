@@ -13,7 +13,7 @@ PANEL, ALONE = 400, 720  # [px] width of one panel, and of one that is alone
 LETTER = 22  # [px] width of a letter of the name
 TALLEST = 1.15  # height of a panel over its width
 LINE = 24  # [px] of text
-BAR = 158  # [px] length of a bar for a probability of 1
+BAR, BARS = 144, 126  # [px] length of a bar for a probability of 1, and where it starts
 HEAD, FOOT = 92, 76  # [px] above and below the panels
 ROOM = 1.1  # of a panel over the largest part in it
 
@@ -125,8 +125,8 @@ def _caption(figure, sheet, panel, found, row):
         label, colour = plots.method(rule, place)
         y = -(place + 1.55) * LINE
         axes.text(30, y, label, fontsize=7, color=plots.INK, va="center")
-        axes.barh(y, BAR, height=9, left=112, color=plots.FAINT, alpha=0.5)
-        axes.barh(y, BAR * values[row], height=9, left=112, color=colour)
+        axes.barh(y, BAR, height=9, left=BARS, color=plots.FAINT, alpha=0.5)
+        axes.barh(y, BAR * values[row], height=9, left=BARS, color=colour)
         axes.text(
             345, y, f"{100.0 * values[row]:.1f} %", fontsize=7, color=plots.INK, va="center", ha="right"
         )

@@ -7,7 +7,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting import rules, surface, tumbling_aspects
+from feederscrew.resting import compiled, rules, surface, tumbling_aspects, tumbling_walk
 from feederscrew.resting.classes import body_frame, classes
 from feederscrew.resting.faces import stable_faces, unstable_faces
 from feederscrew.resting.landscape import landscape
@@ -74,6 +74,13 @@ def find(part, *, as_published=False, unstable=False, exponent=surface.EXPONENTS
     named = _named(table, chances, order, _said(groups))
     ground = tumbling_aspects.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
     return _tumbled(named, ground, part, exponent)
+
+
+def waits(part):
+    """Whether `find` must compile first: on a machine's first large hull, for some seconds."""
+    if part.hull is None:
+        return False
+    return compiled.due(tumbling_walk.trace_saddles, 3 * len(part.hull.triangles))
 
 
 def _tumbled(named, ground, part, exponent):

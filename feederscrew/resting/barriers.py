@@ -5,9 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew import check
+from feederscrew.resting import forest
+from feederscrew.resting.compiled import fitting
 from feederscrew.resting.solid_angle import solid_angles
 
-UNNAMED = -1  # label of a hull triangle that belongs to no face
+UNNAMED = forest.NAMELESS  # label of a hull triangle that belongs to no face
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,16 +189,9 @@ def named(tumbling, labels):
     """(S,) label of each sink from its own (S,) label; an unnamed one takes that behind its lowest saddle."""
     if not (labels != UNNAMED).any():
         raise ValueError("no sink of the tumbling carries a label")
-    parent, name = list(range(len(labels))), labels.tolist()
-    for e in np.argsort(tumbling.saddle_heights, kind="stable"):
-        i, j = (_root(parent, k) for k in tumbling.pairs[e].tolist())
-        if i != j and UNNAMED in (name[i], name[j]):
-            named, other = (i, j) if name[i] != UNNAMED else (j, i)
-            parent[other] = named
-    return np.array([name[_root(parent, k)] for k in range(len(parent))])
-
-
-def _root(parent, k):
-    while parent[k] != k:
-        parent[k] = k = parent[parent[k]]
-    return k
+    parent = np.arange(len(labels))
+    order = np.argsort(tumbling.saddle_heights, kind="stable")
+    fitting(forest.adopt, len(order))(tumbling.pairs[order], labels, parent)
+    while not np.array_equal(parent, parent[parent]):
+        parent = parent[parent]
+    return labels[parent]

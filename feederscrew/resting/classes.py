@@ -60,7 +60,8 @@ def symmetries(faces, part):
     tolerance = moments.error + 2.0 * max(face.roughness for face in faces) / moments.size
     found = _by_landmarks(faces)
     if found is None:
-        found = _half_turns(faces[0].normal, moments)
+        flats = [face for face in faces if face.kind == "flat"]
+        found = np.concatenate([_half_turns((flats or faces)[0].normal, moments), _principal(part)])
     return found[moments.mismatch(found) < tolerance]
 
 
@@ -139,6 +140,12 @@ def _half_turns(axis, moments):
     across = turns(np.array([best]))
     along = 2.0 * np.outer(axis, axis) - np.eye(3)
     return np.concatenate([across, along[None], across @ along])
+
+
+def _principal(part):
+    """Half turns about the principal axes: all there are where the principal moments differ."""
+    axes = np.linalg.eigh(part.inertia)[1].T
+    return 2.0 * axes[:, :, None] * axes[:, None, :] - np.eye(3)
 
 
 def _frame(first, second):

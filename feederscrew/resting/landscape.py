@@ -11,9 +11,13 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import minimum_spanning_tree
 
+from feederscrew.resting import forest
+from feederscrew.resting.compiled import fitting
+
 SMOOTH = np.radians(25.0)  # a sharper edge is meant: a bar of 12 sides (30 deg) has flats, one of 16 rolls
 RIPPLE_OF_RADIUS = 2e-3  # noise and tessellation leave barriers below this share of the part's radius ...
 RIPPLE_OF_HEIGHT = 2e-2  # ... and below this share of the height, or slender parts would lose their sides
+SLIVERS = 6  # 2**6 beside each other at most are followed to a broad triangle
 SLIVER = 1e-3  # of the radius: a contact narrower than this about the foot is noise, however sharp its edges
 
 
@@ -87,7 +91,7 @@ def landscape(hull):
     tops = passes(hull, pairs, ends)
     ripple = np.minimum(RIPPLE_OF_RADIUS * hull.radius, RIPPLE_OF_HEIGHT * hull.heights)
     sliver = np.hypot(hull.heights, SLIVER * hull.radius) - hull.heights
-    smooth = _bend(hull, pairs) < SMOOTH
+    smooth = angle(*np.moveaxis(_broad_normals(hull)[pairs], 1, 0)) < SMOOTH
     local = _downhill(hull, pairs, tops)
     basins, deep = _joined(hull, local, pairs[smooth], tops[smooth], ripple)
     strips, way = local[pairs[smooth][deep]], tops[smooth][deep]
@@ -115,15 +119,32 @@ def _downhill(hull, pairs, tops):
     steps = steps[np.argsort(-height[steps[:, 1]], kind="stable")]
     local = np.arange(len(height))
     local[steps[:, 0]] = steps[:, 1]  # of several ways down the lowest is written last
-    while True:
-        further = local[local]
-        if np.array_equal(further, local):
-            return local
-        local = further
+    return _roots(local)
 
 
 def _bend(hull, pairs):
     return angle(hull.normals[pairs[:, 0]], hull.normals[pairs[:, 1]])
+
+
+def _broad_normals(hull):
+    """(T, 3) normal of each triangle, of a sliver that of the broad one it borders.
+
+    A corner moved by noise splits a sharp edge into slivers that lead round it by gentle bends.
+    """
+    sides = np.linalg.norm(hull.corners - np.roll(hull.corners, 1, axis=1), axis=2).max(axis=1)
+    toward = np.arange(len(sides))
+    thin = 2.0 * hull.areas < SLIVER * hull.radius * sides
+    toward[thin] = _across_longest(hull, thin)
+    for _ in range(SLIVERS):
+        toward = np.where(thin, toward[toward], toward)
+    return np.where(thin[toward], hull.normals.T, hull.normals[toward].T).T
+
+
+def _across_longest(hull, some):
+    """The triangles across the longest side of some."""
+    corners = hull.corners[some]
+    sides = np.linalg.norm(np.roll(corners, -1, axis=1) - np.roll(corners, -2, axis=1), axis=2)
+    return hull.neighbours[some, np.argmax(sides, axis=1)]
 
 
 def _joined(hull, basins, pairs, tops, limit):
@@ -133,21 +154,20 @@ def _joined(hull, basins, pairs, tops, limit):
     """
     sinks, place = np.unique(basins, return_inverse=True)
     way = _lowest_ways(len(sinks), place[pairs], tops)
-    heights, limit = hull.heights[sinks].tolist(), limit[sinks].tolist()
-    region, basin = list(range(len(sinks))), list(range(len(sinks)))  # two forests; a root is the lowest
+    region, basin = np.arange(len(sinks)), np.arange(len(sinks))
     standing = np.zeros(len(way), dtype=bool)
-    for k, ((i, j), top) in enumerate(zip(place[pairs[way]].tolist(), tops[way].tolist())):
-        low, high = _root(region, i), _root(region, j)
-        if heights[low] > heights[high]:
-            low, high = high, low
-        region[high] = low
-        if top - heights[high] <= limit[high]:
-            deep, shallow = sorted((_root(basin, i), _root(basin, j)), key=heights.__getitem__)
-            basin[shallow] = deep
-        else:
-            standing[k] = True
-    merged = np.array([_root(basin, k) for k in range(len(basin))], dtype=int)
-    return sinks[merged][place], way[standing]
+    join = fitting(forest.join, 3 * len(basins))
+    join(hull.heights[sinks], limit[sinks], place[pairs[way]], tops[way], region, basin, standing)
+    return sinks[_roots(basin)][place], way[standing]
+
+
+def _roots(trees):
+    """The root of every member of a forest."""
+    while True:
+        further = trees[trees]
+        if np.array_equal(further, trees):
+            return trees
+        trees = further
 
 
 def _lowest_ways(count, pairs, tops):
@@ -162,12 +182,6 @@ def _lowest_ways(count, pairs, tops):
     tree = minimum_spanning_tree(graph).tocoo()
     way = order[np.searchsorted(key, tree.row.astype(np.int64) * count + tree.col)]
     return way[np.argsort(tops[way], kind="stable")]
-
-
-def _root(forest, k):
-    while forest[k] != k:
-        forest[k] = k = forest[forest[k]]
-    return k
 
 
 def _dot(u, v):

@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.resting import tumbling_edges, tumbling_walk
-from feederscrew.resting.tumbling_compiled import fitting
+from feederscrew.resting.compiled import fitting
 
 SPHERE = 4.0 * np.pi  # [sr]
 ROUNDING = 1e-6  # [1] what the shares may miss 1 by before the result is called doubtful

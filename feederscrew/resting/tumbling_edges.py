@@ -9,7 +9,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.resting import tumbling_walk
-from feederscrew.resting.tumbling_compiled import fitting
+from feederscrew.resting.compiled import fitting
 
 COPLANAR = 1e-10  # [1] of the radius: depth below a neighbour's plane that is still the same facet
 SLIVER = 1e-9  # [1] of the radius: a triangle narrower than this has no plane of its own

@@ -7,7 +7,7 @@ the arc between the normals of its two facets.
 
 import math
 
-from feederscrew.resting.tumbling_compiled import compilable
+from feederscrew.resting.compiled import compilable
 
 LOST = -1  # a walk that ends nowhere: the hull is not closed and convex
 

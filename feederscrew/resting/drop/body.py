@@ -6,7 +6,7 @@ principal axes: 13 numbers. ``turn`` is the rotation matrix row by row, 9 number
 
 import math
 
-from feederscrew.resting.tumbling_compiled import compiled
+from feederscrew.resting.compiled import compiled
 
 X, Y, Z, VX, VY, VZ, Q, W = 0, 1, 2, 3, 4, 5, 6, 10
 STATE = 13

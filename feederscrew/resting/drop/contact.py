@@ -7,8 +7,8 @@ the upward speed wanted after the impulse; then the impulse itself, (x, y, z).
 
 import math
 
+from feederscrew.resting.compiled import compiled
 from feederscrew.resting.drop.body import VX, VZ, W, energy, keep
-from feederscrew.resting.tumbling_compiled import compiled
 
 MOST = 12  # contacts solved together; of more, those furthest out in as many directions
 LEVER, RATE, MASS, WANTED, IMPULSE, WIDTH = 0, 9, 18, 21, 22, 25

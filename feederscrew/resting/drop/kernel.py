@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from feederscrew.resting.compiled import compiled
 from feederscrew.resting.drop import body, contact
 from feederscrew.resting.drop.body import VX, VY, VZ, W, Z
-from feederscrew.resting.tumbling_compiled import compiled
 from feederscrew.resting.tumbling_walk import LOST, roll_from_corner, roll_from_facet
 
 UNSETTLED = -1

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew.resting.compiled import on_disk
 from feederscrew.resting.drop import conditions, ensemble, kernel
 from feederscrew.resting.drop.ensemble import Drops, Tally
 from feederscrew.resting.drop.shape import shape_of_part
 from feederscrew.resting.tumbling_aspects import Ground, ground
-from feederscrew.resting.tumbling_compiled import on_disk
 
 USUAL = 10_000  # drops, where the user names neither a number nor a width
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 PLAIN = []  # functions that run as they stand, and may be called from compiled ones
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
-SOURCES = ("tumbling_*.py", "drop/body.py", "drop/contact.py", "drop/kernel.py")
+SOURCES = ("forest.py", "tumbling_*.py", "drop/body.py", "drop/contact.py", "drop/kernel.py")
 
 
 def compilable(function):
@@ -32,6 +32,11 @@ def compiled(function):
 def on_disk(function):
     """Whether a compiled function is in the cache already: its first call takes no compiler."""
     return any(Path(function.stats.cache_path).glob(f"*{function.__name__}_{_fingerprint()}*.nbi"))
+
+
+def due(function, half_edges):
+    """Whether a compilable function must be compiled for a hull of that size: some seconds, once."""
+    return half_edges > SMALL and not on_disk(_once(function))
 
 
 _once = functools.cache(compiled)
