@@ -33,9 +33,12 @@ def convey(bowl, spans, curve, pictures, out):
     """
     from feederscrew import bowl as bowls
 
-    if len(spans) > 2 or (curve and len(spans) == 1):
-        mend = "give it once for a curve, twice for a map; --bowl goes with none or two"
-        raise click.UsageError(f"--vary is given {len(spans)} times - {mend}")
+    if len(spans) > len(WAYS):
+        raise click.UsageError(
+            f"--vary is given {len(spans)} times - give it once for a curve, twice for a map"
+        )
+    if curve and len(spans) == 1:
+        raise click.UsageError("--bowl goes with no --vary or with two - leave one of them out")
     settings, ranges, path = bowls.settings(**bowl), bowls.ranges(spans), bowl["path"]
     out = replace(out, command=WAYS[len(ranges)] if ranges else "convey radius" if curve else "convey")
     with out.folder(bowls.name(path), bowls.identity(path), bowls.texts(settings)) as folder:
@@ -64,7 +67,7 @@ def _point(settings, picture_folder, folder, out):
     if picture_folder:
         from feederscrew.output import convey_plots, plots
 
-        figure = convey_plots.cycle(trace.trace(found.setting), bowl.drive.amplitude, found.velocity)
+        figure = convey_plots.cycle(trace.trace(found.setting), bowl.drive.amplitude, found)
         folder.write("convey.png", plots.png(figure))
     out.show(convey_tables.summary(document), document)
 
@@ -116,7 +119,7 @@ def _inwards(bowl, picture_folder, folder, out):
     if picture_folder:
         from feederscrew.output import convey_plots, plots
 
-        folder.write("convey_radius.png", plots.png(convey_plots.curve(frame, "A part nearer to the axis")))
+        folder.write("convey_radius.png", plots.png(convey_plots.curve(frame, "Velocity over the radius")))
     out.show(frame, {"cells": frame})
 
 

@@ -11,7 +11,8 @@ CHAIN = (
         "--heading",
         type=Angle(),
         metavar="DEG",
-        help="Heading it shall leave in.  [default: the most frequent that stays on the track]",
+        help="Heading it is laid down in, which the wall turns to the next stable one.  "
+        "[default: the most frequent that stays on the track]",
     ),
     click.option(
         "--rule", default="pmi", show_default=True, metavar="NAME", help="Whose probabilities are taken."
@@ -45,11 +46,13 @@ def chain(command):
     return command
 
 
-def stream(solid, track, path, aspect, heading):
+def stream(out, solid, track, path, aspect, heading):
     """The aspects of a part, every orientation of it on a track, and the wanted one.
 
     Parameters
     ----------
+    out : Output
+        Told of yields that are of no aspect of this part.
     solid : Part
     track : Track
     path : str or None
@@ -65,5 +68,6 @@ def stream(solid, track, path, aspect, heading):
     from feederscrew.resting.aspects import find
 
     chain, found = devices.read(path), find(solid)
+    out.warn(*devices.strangers(chain, found.names))
     target = rate.wanted(solid, found, track, aspect, heading)
     return found, rate.orientations(solid, found, track, chain), target

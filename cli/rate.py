@@ -28,7 +28,7 @@ def rate(part, aspect, heading, rule, gap, fill, bowl, out):
     solid, feeder = out.part(part), bowls.read(**bowl)
     effective = columns.conditions(solid) | bowls.texts(bowls.settings(**bowl))
     with out.folder(solid.name, {solid.source: solid.sha256}, effective) as folder:
-        aspects, known, target = orientation.stream(solid, feeder.track, bowl["path"], aspect, heading)
+        aspects, known, target = orientation.stream(out, solid, feeder.track, bowl["path"], aspect, heading)
         found = rate.rate(known, rate.velocity(feeder), target, rule, gap=gap, fill=fill)
         document = columns.part(solid, aspects.warnings) | rate_tables.document(found, rule)
         out.warn(*aspects.warnings, *rate_tables.remarks(found))

@@ -83,6 +83,11 @@ def test_no_scheduler_is_one_line(tmp_path, three, monkeypatch):  # noqa: F811
         ran(three, tmp_path / "out", workers=batch.Cluster("tcp://127.0.0.1:1"))
 
 
+def test_what_is_no_address_is_one_line():
+    with pytest.raises(FeederError, match=r"^nonsense: is no address of a scheduler - write it as tcp://"):
+        list(batch.Cluster("nonsense").outcomes([]))
+
+
 def test_workers_of_another_version_are_refused(tmp_path, three, monkeypatch):  # noqa: F811
     with cluster(tmp_path, workers=1) as (address, _):
         monkeypatch.setattr(task, "LIBRARIES", ("numpy",))

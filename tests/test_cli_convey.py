@@ -151,8 +151,8 @@ def test_radius_table(run):
         (
             ("--vary", "drive.amplitude=0:1:3", "--bowl"),
             2,
-            "Error: --vary is given 1 times - give it once for a curve, twice for a map; "
-            "--bowl goes with none or two (see feeder convey --help)",
+            "Error: --bowl goes with no --vary or with two - leave one of them out "
+            "(see feeder convey --help)",
         ),
         (
             ("--set", "drive.phase=20 deg", "--bowl"),
@@ -187,3 +187,10 @@ def test_one_point_needs_no_compiler():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "0 False\n"
+
+
+def test_a_map_without_any_velocity_is_drawn(run):
+    result = run("convey", "--set", "track.climb=40 deg", *MAP, "-o", "results")
+    assert result.exit_code == 0
+    assert "56 of 56 cells: no steady state" in told(result)
+    assert (Path("results") / "bowl" / "convey_map.png").stat().st_size > 0

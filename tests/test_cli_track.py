@@ -154,7 +154,8 @@ def test_a_card_without_track_data(run):
     result = run("track", CARD, "--aspect", "1")
     assert result.exit_code == 1
     assert result.stderr.splitlines()[-1] == (
-        "Error: part card, aspect 1: the card has no wall_lever in its track block - give the part as a mesh"
+        "Error: part card, aspect 1: the card has no wall_lever for this aspect in its track block"
+        " - choose the aspect that its track block names, or give the part as a mesh"
     )
 
 

@@ -43,3 +43,11 @@ def test_a_target_without_unit(run):
     assert told(result)[0].startswith(
         "Error: Invalid value for '--target': '120' has no unit - write 120 /min"
     )
+
+
+def test_the_table_fits_a_terminal(run):
+    result = run("tune", PART, "--aspect", "A", "--target", "12/min", *BOWL)
+    lines = result.stdout.splitlines()
+    assert max(map(len, lines)) <= 110
+    assert lines[2].startswith("drive.amplitude ")
+    assert lines[0].endswith("to hop")

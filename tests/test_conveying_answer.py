@@ -1,5 +1,6 @@
 """From a bowl to an answer in SI units: published demonstration, radius, sensitivity, traces."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from feederscrew.errors import ConfigError
 from feederscrew.motion.conveying import answer, radius, sensitivity
 from feederscrew.motion.conveying.setting import FLIGHT, PHASES, plain
 from feederscrew.motion.conveying.trace import trace
+from feederscrew.output import convey_plots
 
 DEG = np.pi / 180.0
 
@@ -237,3 +239,17 @@ def test_trace_of_an_uneven_drive_rests_on_its_plate():
     turn = 2.0 * np.pi * drawn.time
     plate = np.sin(0.5) * (np.sin(turn) + 0.4 * np.sin(2.0 * turn + 1.0))
     np.testing.assert_allclose(drawn.plate_normal, plate, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "title"),
+    [
+        ((), "One steady cycle: 0.8642 mm/s"),
+        (("track.climb=40 deg",), "No steady state: 4 periods of a slide for ever"),
+        (("drive.amplitude=0.4 mm",), r"4 periods of a motion that does not repeat: \S+ mm/s on average"),
+        (("drive.amplitude=0.5 mm", "restitution=0.3"), r"4 of the 6 periods of a steady cycle: \S+ mm/s"),
+    ],
+)
+def test_title_of_a_cycle_says_what_is_shown(overrides, title):
+    found = answer.answer(bowls.read(None, overrides))
+    assert re.fullmatch(title, convey_plots.cycle_title(trace(found.setting), found))

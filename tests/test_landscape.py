@@ -39,7 +39,7 @@ def test_the_ripple_of_a_fine_cylinder_merges(sections):
 
 
 def test_a_slender_pin_keeps_its_ends():
-    found = landscape(hull_of(shapes.box(1, 1, 300)))
+    found = landscape(hull_of(shapes.box(1, 1, 60)))
     assert len(found.sinks) == 6
 
 

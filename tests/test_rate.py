@@ -101,7 +101,7 @@ def test_rules_and_aspects_that_do_not_exist():
     target = rate.wanted(part, found, STRAIGHT, "a")
     with pytest.raises(FeederError) as caught:
         rate.rate(known, Range(1, 1, 1), target, "guess")
-    assert str(caught.value).startswith("--rule guess: has no probabilities of this part - choose one of pmi")
+    assert str(caught.value).startswith("--rule guess: has no probabilities of this part - known are pmi, ")
     with pytest.raises(FeederError, match="there is no aspect"):
         rate.wanted(part, found, STRAIGHT, "Z")
 

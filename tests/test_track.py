@@ -295,5 +295,6 @@ def test_a_card_without_track_data_is_refused():
     with pytest.raises(FeederError) as fault:
         card_seat(card)
     assert str(fault.value) == (
-        "part card, aspect A: the card has no wall_lever in its track block - give the part as a mesh"
+        "part card, aspect A: the card has no wall_lever for this aspect in its track block"
+        " - choose the aspect that its track block names, or give the part as a mesh"
     )

@@ -83,6 +83,15 @@ def test_noise_and_turning_change_little(rng):
             assert result.probabilities[rule] == pytest.approx(p, abs=0.01), rule
 
 
+def test_a_heavy_bottom_takes_the_sides_that_a_micrometre_holds():
+    """Sides with the foot 0.1 mm from their edge have a barrier of 1 um: the part rolls off them."""
+    part = shapes.part(shapes.box(10.0, 10.0, 10.0))
+    object.__setattr__(part, "centre_of_mass", np.array([0.0, 0.0, -4.9e-3]))
+    aspects = find(part)
+    assert aspects.faces.tolist() == [1, 1]
+    assert aspects.probabilities["quasistatic"] == pytest.approx([0.9348543, 0.0651457], abs=1e-6)
+
+
 def test_a_card_has_no_shape():
     from feederscrew.thesis import parts
 

@@ -68,3 +68,14 @@ def test_a_part_that_only_travels_back():
     flat = bowls.read(None, ("drive.vibration_angle=0 deg", "drive.amplitude=0.001 mm", "restitution=0"))
     with pytest.raises(FeederError, match="no setting reaches 6/min: the part never travels up the track"):
         tune.solutions(flat, 0.1, PER_METRE)
+
+
+def test_a_target_that_the_velocity_jumps_over():
+    bouncing = bowls.read(None, ())  # from rest its velocity jumps onto the regular bounce of a period
+    with pytest.raises(FeederError) as caught:
+        tune.solutions(bouncing, 0.866, PER_METRE)
+    line = str(caught.value)
+    assert line.startswith(
+        "--target: no setting gives 51.96/min: at drive.amplitude 0.3308 mm the rate jumps"
+    )
+    assert float(line.split(", to ")[1].split("/min")[0]) > 51.96

@@ -2,6 +2,7 @@
 
 import contextlib
 import logging
+import re
 import time
 from concurrent.futures import CancelledError
 from itertools import islice
@@ -14,6 +15,7 @@ from feederscrew.errors import FeederError
 PATIENCE = 20  # [s] for a scheduler to answer and for a first worker
 AHEAD = 2  # tasks sent for each thread of the cluster, so that none waits
 POLL = 0.05  # [s] between looks at what has come
+ADDRESS = re.compile(r"((tcp|tls|ucx|wss?)://)?[^\s/]+:\d+/?")
 AGAIN = "see to it, then start this command again with --resume: what is finished is kept"
 
 
@@ -56,6 +58,8 @@ class Cluster:
 
     def _client(self):
         distributed = _distributed()
+        if not ADDRESS.fullmatch(self.address):
+            raise FeederError(self.address, "is no address of a scheduler", "write it as tcp://host:8786")
         logging.getLogger("distributed").setLevel(logging.CRITICAL)  # we tell what is lost, in one line
         try:
             return distributed.Client(self.address, timeout=PATIENCE, set_as_default=False)

@@ -70,7 +70,7 @@ def _expanded(typed, suffixes, kind):
     path = Path(typed)
     if path.is_dir():
         found = [str(p) for p in sorted(path.iterdir()) if _fits(p, suffixes, kind)]
-        return _some(found, typed, f"holds no {kind} file", f"name a folder of {kind} files")
+        return _some(found, typed, f"holds no {kind} file", f"name a folder of {kind} files, or a pattern")
     if glob.has_magic(typed) and not path.exists():
         found = [p for p in sorted(glob.glob(typed, recursive=True)) if Path(p).is_file()]  # noqa: PTH207 - takes any path
         return _some(found, typed, "fits no file", "check the pattern")

@@ -15,6 +15,7 @@ from feederscrew.resting.aspects import find
 
 THUMBNAIL = "thumbnail.png"
 LAUNCH = "tumble"  # as parts leave a bowl's floor
+ALIKE = 1.0 - 1e-9  # of the most frequent orientation: as frequent
 SEED_DIGITS = 8  # hexadecimal, of the file's sha256
 
 
@@ -134,5 +135,6 @@ def most_frequent(known, rule):
     """
     chance = np.nan_to_num(known.rules[rule])
     leaving = chance * known.through / known.lengths
-    row = int(np.argmax(leaving if leaving.any() else chance))
+    weight = leaving if leaving.any() else chance
+    row = int(np.argmax(weight >= ALIKE * weight.max()))  # the first of equals, whatever the rounding
     return known.aspects[row], known.headings[row]

@@ -4,6 +4,7 @@ import contextlib
 import multiprocessing
 import os
 import signal
+from multiprocessing import forkserver, resource_tracker
 from multiprocessing.connection import wait
 
 from feederscrew.batch.task import Outcome
@@ -44,6 +45,7 @@ class Processes:
         ------
         Outcome
         """
+        _start_server(self.context)
         tasks, again, failures, crew = iter(tasks), [], {}, []
         try:
             while self._busy(crew, tasks, again):
@@ -76,6 +78,18 @@ class Processes:
                 idle = idle[0]
             idle.give(task)
         return [w for w in crew if w.task is not None]
+
+
+def _start_server(context):
+    """Start what forks the processes, deaf to Ctrl-C: the batch itself decides when to stop."""
+    if context.get_start_method() != "forkserver":
+        return
+    resource_tracker.ensure_running()  # it would let the signal through again
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        forkserver.ensure_running()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 class _Worker:

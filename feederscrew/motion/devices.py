@@ -67,6 +67,29 @@ def read(path):
     return tuple(found)
 
 
+def strangers(chain, aspects):
+    """What is odd in a chain for one part: yields of aspects that it has not.
+
+    Parameters
+    ----------
+    chain : sequence of Device
+    aspects : sequence of str
+        Names of the part's aspects.
+
+    Returns
+    -------
+    list of str
+        One line each; the file may be meant for other parts as well, so it is no fault.
+    """
+    known = {name.casefold() for name in aspects}
+    return [
+        f"{device.where}: yield names aspect {units.shown(name)}, which this part has not"
+        for device in chain
+        for name, _ in device.shares
+        if name.casefold() not in known
+    ]
+
+
 def passed(device, posture, found, track):
     """Share of each heading of one aspect that a device lets pass.
 

@@ -14,6 +14,7 @@ from feederscrew.motion.wall import rests
 from feederscrew.resting.plan import inset, outline, sides, turned
 
 ALIKE = 1e-5  # of the outline's size: outlines that differ by less are the same
+NO_TURN = 1e-8  # [rad] single precision files turn a part by more
 SAME = 1e-6  # of the outline's size: touching corners nearer than this are the same corner
 
 
@@ -64,6 +65,7 @@ def headings(posture, track):
     found, straight = rests(posture.outline, track.radius), rests(posture.outline, np.inf)
     order = np.lexsort((np.round(_heading(found.outward), 9), -np.round(found.share, 9)))
     turn = _heading(found.outward[order])
+    halves = np.abs(np.abs(turn[:, None] - turn) - np.pi)  # how far two headings are from a half turn
     shapes = [turned(posture.outline, angle) for angle in turn]
     distances = found.distance[order]
     widths = np.array([_width(shape, d, track.radius) for shape, d in zip(shapes, distances)])
@@ -80,8 +82,8 @@ def headings(posture, track):
         overhangs=check.frozen(nothing),
         falls_off=check.frozen(nothing > 0.0),
         touching=check.frozen(turned(found.touching[order], turn[:, None])),
-        half_turns=check.frozen(_partners(shapes, lambda shape: -shape)),
-        mirrors=check.frozen(_partners(shapes, lambda shape: shape * [-1.0, 1.0])),
+        half_turns=check.frozen(_partners(shapes, lambda shape: -shape, halves)),
+        mirrors=check.frozen(_partners(shapes, lambda shape: shape * [-1.0, 1.0], 0.0 * halves)),
         rounded=found.rounded,
     )
     return on_track(geometry, posture, track)
@@ -156,9 +158,9 @@ def _check_fits(posture, track):
 
 
 def _heading(outward):
-    """Turn that brings a body direction to the wall, at -Y; 0 to 2 pi, without rounding just below 2 pi."""
+    """Turn that brings a body direction to the wall, at -Y; 0 to 2 pi, without the rounding of 0."""
     turn = np.mod(-0.5 * np.pi - outward, 2.0 * np.pi)
-    return np.where(2.0 * np.pi - turn < 1e-9, 0.0, turn)
+    return np.where(np.minimum(turn, 2.0 * np.pi - turn) < NO_TURN, 0.0, turn)
 
 
 def _at_straight(outward, straight):
@@ -213,12 +215,12 @@ def _crossings(start, along, radius):
     return shares[(shares >= 0.0) & (shares <= 1.0)]
 
 
-def _partners(shapes, image):
-    """For each outline the row of another that is its image, -1 where there is none."""
+def _partners(shapes, image, astray):
+    """For each outline the row of another that is its image, -1 for none; of several the least astray."""
     partner = np.full(len(shapes), -1)
     for i, shape in enumerate(shapes):
         other = [j for j, s in enumerate(shapes) if j != i and _alike(image(shape), s)]
-        partner[i] = other[0] if other else -1
+        partner[i] = min(other, key=lambda j: astray[i, j], default=-1)
     return partner
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew import check
+from feederscrew.documents import hint
 from feederscrew.errors import FeederError
 from feederscrew.motion import devices as tooling
 from feederscrew.motion.conveying import answer, sensitivity
@@ -225,8 +226,9 @@ def parts_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
 
 def _check_rule(found, rule):
     if rule not in found.rules:
-        known = ", ".join(found.rules)
-        raise FeederError(f"--rule {rule}", "has no probabilities of this part", f"choose one of {known}")
+        raise FeederError(
+            f"--rule {rule}", "has no probabilities of this part", hint(rule, list(found.rules))
+        )
 
 
 def _row(found, target):

@@ -15,6 +15,7 @@ from feederscrew.motion.track_frame import frame, loads
 from feederscrew.resting.plan import inset
 
 PULL = 1e-9  # of the weight: a reaction more negative than this would be a pull
+NOISE = 1e-12  # of the weight: less than this is rounding
 PASSES = 3  # of the period, each with the speed of the one before in the centrifugal force
 
 
@@ -168,14 +169,16 @@ def _motion(seat, found, wall_use, slides, needed, load):
     walls = np.where(found["closed"] & contact[..., None], np.maximum(found["walls"], 0.0), 0.0)
     state = np.where(inside < -ON_THE_LINE, TIP, np.where(slides, SLIDE, STICK))
     friction = np.where(contact[..., None], found["friction"], 0.0)
+    noise = NOISE * np.linalg.norm(load, axis=-1)[..., None] / mass
+    walls, friction = (mass * np.where(np.abs(force) < noise, 0.0, force) for force in (walls, friction))
     return TrackMotion(
         state=np.where(contact, state, HOP),
         normal_force=mass * normal,
-        walls=mass * walls,
+        walls=walls,
         closed=found["closed"],
-        radial_friction=mass * friction[..., 1],
-        traction=-mass * friction[..., 0],
-        wall_friction=mass * wall_use[..., None] * walls,
+        radial_friction=friction[..., 1],
+        traction=0.0 - friction[..., 0],
+        wall_friction=wall_use[..., None] * walls,
         couple=mass * height * found["couple"] * contact,
         acceleration=np.where(contact[..., None], found["acceleration"], load[..., :2] / mass),
         turning=found["turning"] / height * contact,

@@ -105,7 +105,8 @@ def _seat(posture, bowl, heading, there, known):
 
 def _answers(found):
     leaves = ~found.closed.any(axis=-1) & (found.state != HOP) & (found.acceleration[..., 1] > 0.0)
-    along = np.where(found.state == HOP, np.nan, found.acceleration[..., 0])
+    along = np.where(found.slides, found.acceleration[..., 0], 0.0)
+    along = np.where(found.state == HOP, np.nan, along)
     walls, offsets = np.moveaxis(found.walls, -1, 0), np.moveaxis(found.offset, -1, 0)
     values = (along, found.normal_force, *walls, found.radial_friction, found.traction, *offsets)
     return dict(zip(COLUMNS, values)) | {"regime": np.where(leaves, LEAVES, found.state)}

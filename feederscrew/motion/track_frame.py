@@ -97,8 +97,9 @@ def card_seat(posture):
     told = (posture.printed or {}).get("track") or {}
     missing = [word for word in ("wall_lever", "wall_lever_angle", "wall_x") if word not in told]
     if missing:
-        what = f"the card has no {missing[0]} in its track block"
-        raise FeederError(f"part card, aspect {posture.name}", what, "give the part as a mesh")
+        what = f"the card has no {missing[0]} for this aspect in its track block"
+        mend = "choose the aspect that its track block names, or give the part as a mesh"
+        raise FeederError(f"part card, aspect {posture.name}", what, mend)
     lever, angle, (behind, ahead) = told["wall_lever"], told["wall_lever_angle"], told["wall_x"]
     beside, level = -lever * np.cos(angle), lever * np.sin(angle)
     return Seat(

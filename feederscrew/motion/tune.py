@@ -52,14 +52,20 @@ def solutions(bowl, target, parts_per_metre):
     Raises
     ------
     FeederError
-        If none does; the line says what the bowl reaches at most.
+        If none does; the line says what the bowl reaches at most, or where its rate jumps over the target.
     """
-    found, peaks = [], []
+    found, jumps, peaks = [], [], []
     for name in KNOBS:
         key, values = BY_NAME[name], _values(bowl, BY_NAME[name])
         speeds = _speeds(bowl, key, values)
-        found += _crossings(bowl, key, values, speeds, target / parts_per_metre)
+        for one in _crossings(bowl, key, values, speeds, target / parts_per_metre):
+            reached = (
+                abs(one.answer.velocity - target / parts_per_metre) <= REACHED * target / parts_per_metre
+            )
+            (found if reached else jumps).append(one)
         peaks += [(speed, key, value) for speed, value in zip(speeds, values) if np.isfinite(speed)]
+    if not found and jumps:
+        raise _jumped(target, parts_per_metre, min(jumps, key=lambda one: one.order))
     if not found:
         raise _unreachable(target, parts_per_metre, max(peaks, key=lambda peak: peak[0], default=None))
     return sorted(found, key=lambda one: one.order)
@@ -90,7 +96,7 @@ def _speeds(bowl, key, values):
 
 
 def _crossings(bowl, key, values, speeds, velocity):
-    """Solutions between neighbouring values whose velocities lie on both sides of the wanted one."""
+    """Where a velocity is passed: the faster side of it, beyond a jump where it jumps over the wanted one."""
     above, known = speeds >= velocity, np.isfinite(speeds)
     k = np.flatnonzero((above[1:] != above[:-1]) & known[1:] & known[:-1])
     low, high, rises = values[k], values[k + 1], above[k + 1]
@@ -98,8 +104,17 @@ def _crossings(bowl, key, values, speeds, velocity):
         middle = 0.5 * (low + high)
         beyond = (_speeds(bowl, key, middle) >= velocity) == rises
         low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
-    found = [Solution(key, float(value), answer.answer(turned(bowl, key, value))) for value in high]
-    return [one for one in found if abs(one.answer.velocity - velocity) <= REACHED * velocity]
+    fast = np.where(rises, high, low)
+    return [Solution(key, float(value), answer.answer(turned(bowl, key, value))) for value in fast]
+
+
+def _jumped(target, parts_per_metre, one):
+    """The fault that the velocity jumps over the wanted one, and what it jumps to."""
+    per_minute, key = units.factor("/min", "rate"), one.key
+    beyond = f"{one.answer.velocity * parts_per_metre / per_minute:.4g}/min"
+    at = f"{key.name} {one.value / units.factor(key.unit, key.dimension):.4g} {key.unit}"
+    what = f"no setting gives {target / per_minute:.6g}/min: at {at} the rate jumps over it, to {beyond}"
+    return FeederError("--target", what, "ask for what the bowl gives on either side of the jump")
 
 
 def _unreachable(target, parts_per_metre, peak):

@@ -12,6 +12,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.resting.plan import cross, inset
 
+LEVEL = 0.1  # of that depth: tops of a curved end that differ by less are one, and halved
 ROUND = 1e-2  # of the outline's size: dips between headings shallower than this are facets of a curve
 
 
@@ -141,15 +142,17 @@ def _merged(lows, tops, borders, least):
     Parameters are per dip: its depth, the height of the border before it and where that border lies.
     """
     dips = list(range(len(lows)))
-    edges = dict(zip(dips, zip(tops, borders)))
+    edges = dict(enumerate(tops))
     while len(dips) > 1:
-        rises = [min(edges[k][0], edges[dips[(i + 1) % len(dips)]][0]) - lows[k] for i, k in enumerate(dips)]
+        rises = [min(edges[k], edges[dips[(i + 1) % len(dips)]]) - lows[k] for i, k in enumerate(dips)]
         i = int(np.argmin(rises))
         if rises[i] >= least:
             break
         _join(dips, edges, i)
     rounded = bool(max(tops) - min(lows) < 2.0 * least)
-    starts = np.array([edges[k][1] for k in dips])
+    starts = np.array(
+        [_border(tops, borders, dips[i - 1], k, LEVEL * least) for i, k in enumerate(dips)]
+    )
     share = np.mod(np.roll(starts, -1) - starts, 2.0 * np.pi) / (2.0 * np.pi)
     return np.array(dips), starts, np.where(share > 0.0, share, 1.0), rounded
 
@@ -157,6 +160,12 @@ def _merged(lows, tops, borders, least):
 def _join(dips, edges, i):
     """Give dip i to the neighbour behind the lower of its two borders."""
     here, following = dips[i], dips[(i + 1) % len(dips)]
-    if edges[here][0] > edges[following][0]:
-        edges[following] = edges[here]
+    edges[following] = max(edges[here], edges[following])
     dips.pop(i)
+
+
+def _border(tops, borders, before, after, level):
+    """Middle of the highest tops between two dips that are left, so that an even end is shared evenly."""
+    between = (before + 1 + np.arange((after - before - 1) % len(tops) + 1)) % len(tops)
+    highest = borders[between[tops[between] >= tops[between].max() - level]]
+    return highest[0] + 0.5 * np.mod(highest[-1] - highest[0], 2.0 * np.pi)

@@ -23,17 +23,20 @@ REGIMES = {  # colour and label; what a designer wants is the strongest
 BEST_THROW = 3.0  # [1] near here the velocity per stroke is greatest
 THROWS = {1.0: "hop", BEST_THROW: "best", round(throw_of_flight(1.0), 4): "one period"}
 HATCH = "////"
+LEAST = 1e-9  # [mm/s] a scale of velocities is at least this wide
+NOWHERE = "no steady velocity anywhere"
 WAY = "[mm]"
 
 
-def cycle(trace, amplitude, velocity):
+def cycle(trace, amplitude, found):
     """Plate and part over one steady cycle, along the track and along its normal.
 
     Parameters
     ----------
     trace : Trace
     amplitude : float [m]
-    velocity : float [m/s]
+    found : Answer
+        To the same setting.
 
     Returns
     -------
@@ -41,7 +44,7 @@ def cycle(trace, amplitude, velocity):
     """
     figure = plots.figure(6.4, 5.2)
     top, bottom = figure.subplots(2, 1, sharex=True)
-    plots.tidy(top, title=f"One steady cycle: {velocity * 1e3:.4g} mm/s", y=f"along the track {WAY}")
+    plots.tidy(top, title=cycle_title(trace, found), y=f"along the track {WAY}")
     plots.tidy(bottom, x="time [periods of the drive]", y=f"along its normal {WAY}")
     scale = amplitude * 1e3
     for axes, plate, part in (
@@ -52,6 +55,18 @@ def cycle(trace, amplitude, velocity):
         _by_phase(axes, trace, part * scale)
     top.legend(fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), labelcolor=plots.INK)
     return figure
+
+
+def cycle_title(trace, found):
+    """What of a motion a trace shows, and how fast it is."""
+    shown, velocity = round(trace.time[-1]), f"{found.velocity * 1e3:.4g} mm/s"
+    if found.status == "no steady state":
+        return f"No steady state: {shown} periods of a slide for ever"
+    if found.status == "averaged":
+        return f"{shown} periods of a motion that does not repeat: {velocity} on average"
+    if shown < found.period:
+        return f"{shown} of the {found.period} periods of a steady cycle: {velocity}"
+    return f"One steady cycle: {velocity}" if shown == found.period else f"Steady motion: {velocity}"
 
 
 def velocity_map(grid, curve=None):
@@ -146,15 +161,20 @@ def _velocity(figure, axes, grid):
     plots.tidy(axes, title="Velocity [mm/s], from rest", grid="none")
     axes.set(xlabel=_label(grid.first), ylabel=_label(grid.second))
     velocity = grid.values["velocity_mm_s"].T
-    largest = max(np.nanmax(np.abs(velocity), initial=0.0), 1e-9)
+    known = velocity[np.isfinite(velocity)]
+    lowest, highest = known.min(initial=0.0), known.max(initial=LEAST)
+    largest = max(highest, -lowest)
     shades = matplotlib.colormaps["PuOr_r"].with_extremes(bad="#8c8c8c")
     norm = TwoSlopeNorm(0.0, -largest, largest)
     x, y = grid.first.shown, grid.second.shown
     mesh = axes.pcolormesh(x, y, velocity, cmap=shades, norm=norm, shading="nearest", rasterized=True)
+    if not known.size:
+        axes.text(0.97, 0.93, NOWHERE, transform=axes.transAxes, ha="right", color="white")
+        return
     bar = figure.colorbar(mesh, ax=axes, fraction=0.05, pad=0.02).ax
     bar.tick_params(labelsize=8)
-    bar.set_ylim(min(np.nanmin(velocity), 0.0), max(np.nanmax(velocity), 1e-9))
-    if np.nanmin(velocity) < 0.0 < np.nanmax(velocity):
+    bar.set_ylim(lowest, highest)
+    if known.min() < 0.0 < known.max():
         axes.contour(x, y, velocity, [0.0], colors=plots.INK, linewidths=1.2)
     several = grid.values["several"].T.astype(float)
     if several.any():
@@ -171,6 +191,8 @@ def _regimes(axes, grid):
     )
     present = [name for code, name in enumerate(grid.names) if (grid.codes == code).any()]
     handles = [Patch(facecolor=REGIMES[name][0], label=REGIMES[name][1]) for name in present]
+    if grid.values["several"].any():
+        handles.append(Patch(fill=False, linewidth=0, hatch=HATCH, label="several velocities (left)"))
     axes.legend(
         handles=handles,
         fontsize=8,

@@ -134,10 +134,10 @@ def alignment(grid, direction, title):
     return figure
 
 
-def arrow(axes, start, step, text, color, *, pushing=False, beside=False):
+def arrow(axes, start, step, text, color, *, pushing=False, beside=0):
     """A force arrow with its value: from ``start`` on or, ``pushing``, towards it from outside.
 
-    ``beside`` writes the value to the left of the head instead of beyond it.
+    ``beside`` writes the value to the left (-1) or right (1) of the middle instead of beyond the head.
     """
     tail = np.asarray(start) - step if pushing else np.asarray(start)
     head = tail + step
@@ -145,7 +145,10 @@ def arrow(axes, start, step, text, color, *, pushing=False, beside=False):
     axes.annotate("", head, tail, arrowprops=style, zorder=6)
     axes.plot(*(tail if pushing else head), alpha=0)
     shift = (-9.0 if pushing else 9.0) * np.asarray(step) / max(float(np.hypot(*step)), 1e-12)
-    _note(axes, tail if pushing else head, text, color, (-8.0, -4.0) if beside else shift, centred=not beside)
+    if beside:
+        _note(axes, 0.4 * tail + 0.6 * head, text, color, (8.0 * beside, 0.0))
+    else:
+        _note(axes, tail if pushing else head, text, color, shift, centred=True)
 
 
 def newtons(force):

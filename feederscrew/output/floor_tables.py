@@ -41,7 +41,7 @@ def instant(found, posture, bowl):
     size = np.hypot(*found.acceleration)
     return {
         "normal_force_N": float(found.normal_force),
-        "alignment_acceleration_rad_s2": float(found.turning),
+        "alignment_acceleration_rad_s2": float(found.turning) + 0.0,
         "stable_heading_deg": float(np.degrees(stable_heading(posture, bowl))),
         "limiting_friction": float(found.limiting_friction),
         "acceleration_y_m_s2": noiseless(found.acceleration[1], size),
@@ -75,7 +75,7 @@ def over_cycle(found, course):
         "limiting_friction": found.limiting_friction[shown],
         "acceleration_z_m_s2": found.acceleration[shown, 0],
         "acceleration_y_m_s2": found.acceleration[shown, 1],
-        "alignment_acceleration_rad_s2": found.turning[shown],
+        "alignment_acceleration_rad_s2": found.turning[shown] + 0.0,
         "velocity_m_s": course.velocity[shown],
         "normal_line_offset_mm": found.offset[shown, 0] / MM,
         "normal_line_offset_y_mm": found.offset[shown, 1] / MM,

@@ -182,9 +182,9 @@ def _chapter_4(items):
     carried = {id for item in items for id in item.findings}
     rest = [finding for finding in FINDINGS if finding.id not in carried or "4." in finding.where]
     return [
-        Heading(2, "Chapter 4: inertial data and levers"),
+        Heading(2, "Chapter 4: inertial data, levers and equations"),
         Paragraph(CHAPTER_4),
-        *_bearing([finding.id for finding in rest]),
+        Bullets(tuple((one.id, one.id, f"{one.where}. {one.what} {one.shown}") for one in rest)),
     ]
 
 

@@ -23,6 +23,7 @@ table { border-collapse: collapse; margin: 1rem 0; font-size: 0.9rem; display: b
 th, td { padding: 0.2rem 0.7rem; border-bottom: 1px solid #d5dbe1; text-align: left; vertical-align: top; }
 th { border-bottom: 2px solid #22303c; }
 td { font-variant-numeric: tabular-nums; }
+td:first-child { white-space: nowrap; }
 .explained { background: #fdf3dc; }
 .differs { background: #f7d6c8; font-weight: bold; }
 .given { color: #6b7682; font-style: italic; }

@@ -65,17 +65,20 @@ def printed(found):
 def over_cycle(found, course):
     """One period as columns; ``found`` is a TrackMotion of shape (N,)."""
     shown = slice(None, None, EVERY)
-    pairs = {"wall": found.walls, "wall_friction": found.wall_friction}
+    pairs = {"": found.walls, "_friction": found.wall_friction}
     return {
         "phase_deg": np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)[shown],
         "state": [STATES[code] for code in found.state[shown]],
         "normal_force_N": found.normal_force[shown],
-        **{f"{name}_{k + 1}_N": pair[shown, k] for name, pair in pairs.items() for k in (0, 1)},
+        **{f"wall_{k + 1}{name}_N": pair[shown, k] for name, pair in pairs.items() for k in (0, 1)},
         "radial_friction_N": found.radial_friction[shown] + 0.0,
         "traction_N": found.traction[shown],
         "normal_line_offset_mm": found.offset[shown, 0] / MM,
         "normal_line_offset_y_mm": found.offset[shown, 1] / MM,
         "acceleration_x_m_s2": found.acceleration[shown, 0],
+        "acceleration_y_m_s2": found.acceleration[shown, 1],
+        "turning_rad_s2": found.turning[shown],
+        "floor_couple_N_mm": found.couple[shown] / MM,
         "velocity_m_s": course.velocity[shown],
         "friction_needed": found.needed[shown, 0],
         "opened": [" ".join(opened(pair)) for pair in found.closed[shown]],

@@ -8,6 +8,7 @@ from feederscrew.motion.tune import turned
 from feederscrew.output import tables
 
 PER_MINUTE, MM_S = units.factor("/min", "rate"), units.factor("mm/s", "velocity")
+SEVERAL = ", several"  # velocities, depending on how the part arrives
 
 
 def settings(found, bowl, parts_per_metre):
@@ -29,6 +30,34 @@ def write(folder, document):
     if folder:
         folder.write("tune.json", tables.json_text(document))
         folder.write("tune.csv", tables.text(document["settings"], "csv"))
+
+
+def summary(frame):
+    """The solutions as a frame for people: no more than a terminal holds.
+
+    Parameters
+    ----------
+    frame : DataFrame
+        Of ``settings``.
+    """
+    rows = frame.to_dict("records")
+    return tables.frame(
+        {
+            "setting": [f"{row['key']} {row['value']:.4g} {row['unit']}" for row in rows],
+            "per min": frame["parts_per_minute"],
+            "mu +-20 %": [_between(row) for row in rows],
+            "velocity_mm_s": frame["velocity_mm_s"],
+            "impact_mm_s": frame["hardest_impact_mm_s"],
+            "regime": [row["regime"] + (SEVERAL if row["several"] else "") for row in rows],
+            "to fwd": frame["margin_forward"],
+            "to back": frame["margin_backward"],
+            "to hop": frame["margin_hop"],
+        }
+    )
+
+
+def _between(row):
+    return f"{row['parts_per_minute_low']:.4g} to {row['parts_per_minute_high']:.4g}"
 
 
 def _row(one, bowl, parts_per_metre):

@@ -61,7 +61,8 @@ def symmetries(faces, part):
     found = _by_landmarks(faces)
     if found is None:
         flats = [face for face in faces if face.kind == "flat"]
-        found = np.concatenate([_half_turns((flats or faces)[0].normal, moments), _principal(part)])
+        found = _half_turns((flats or faces)[0].normal, moments)
+    found = np.concatenate([found, _principal(part)])
     return found[moments.mismatch(found) < tolerance]
 
 

@@ -14,6 +14,10 @@ CURVED = np.sinc(np.radians(15.0) / np.pi)  # mean resultant of normals over an 
 FLATNESS = 1e-2  # of the radius: how deep a corner may lie under the plane of its face
 TIGHTEST_FIRST = (1e-6, 1e-5, 1e-4, 1e-3, FLATNESS)
 EQUAL = 5e-3  # of the height: strips of one curve about the centre of mass are as high as each other
+STRAIGHT = (
+    1e-2  # of their variance along the curve: how far normals of a rocker may leave their plane or cone
+)
+FEWEST = 6  # strips that show a curve whose middle is not the centre of mass
 ARC = np.radians(60.0)  # coarse strips that turn less may be meant as flats
 
 
@@ -89,12 +93,20 @@ def _coarse_curves(hull, basins):
         np.abs(np.diff(hull.heights[basins.ripples], axis=1))[:, 0]
         < EQUAL * hull.heights[basins.ripples[:, 0]]
     )
-    strips = level & (basins.rises < COARSE) & (basins.bends < SMOOTH)
-    labels = _components(len(basins.sinks), np.searchsorted(basins.sinks, basins.ripples)[strips])
+    strips, place = (
+        (basins.rises < COARSE) & (basins.bends < SMOOTH),
+        np.searchsorted(basins.sinks, basins.ripples),
+    )
+    labels = _components(len(basins.sinks), place[level & strips])
     for label in np.flatnonzero(np.bincount(labels) > 1):
         group = np.flatnonzero(labels == label)
         if _spread(hull.normals[basins.sinks[group]]) < ARC:
             labels[group] = labels.max() + 1 + np.arange(len(group))
+    around = _components(len(basins.sinks), place[strips])
+    for label in np.flatnonzero(np.bincount(around) >= FEWEST):
+        group = np.flatnonzero(around == label)
+        if _spread(hull.normals[basins.sinks[group]]) >= ARC and _round(hull, basins.sinks[group]):
+            labels[group] = labels.max() + 1
     return labels
 
 
@@ -106,7 +118,37 @@ def _face(hull, sinks, members):
     strip = np.concatenate(level)
     if not _curved(hull, strip):
         strip = _plane(hull, lowest, np.concatenate(members))
+        side = _smooth_part(hull, lowest, np.concatenate(members))
+        if hull.areas[strip].sum() < 0.5 * hull.areas[side].sum() and _rocks(hull, side):
+            strip = side
     return _describe(hull, strip, lowest, stable=True)
+
+
+def _smooth_part(hull, sink, members):
+    """Members that gentle bends lead to from the sink."""
+    inside = np.isin(hull.neighbours[members], members)
+    pairs = np.column_stack([np.repeat(members, 3), hull.neighbours[members].ravel()])[inside.ravel()]
+    gentle = angle(hull.normals[pairs[:, 0]], hull.normals[pairs[:, 1]]) < SMOOTH
+    labels = _components(len(hull.triangles), pairs[gentle])
+    return members[labels[members] == labels[sink]]
+
+
+def _rocks(hull, side):
+    """Whether these triangles are strips of a curved side whose axis may lie off the centre of mass."""
+    strips = np.unique(hull.normals[side].round(2), axis=0)
+    if len(strips) < FEWEST or not _curved(hull, side):
+        return False
+    across = np.linalg.eigvalsh(np.cov(hull.normals[side].T, aweights=hull.areas[side]))
+    return bool(across[0] < STRAIGHT * across[1]) and _round(hull, side)
+
+
+def _round(hull, triangles):
+    """Whether triangles touch one cylinder, cone or ball, wherever its middle is."""
+    weights, height = np.sqrt(hull.areas[triangles]), hull.heights[triangles]
+    around = np.column_stack([np.ones(len(triangles)), hull.normals[triangles]])
+    fit = np.linalg.lstsq(around * weights[:, None], height * weights, rcond=1e-6)[0]
+    off = (around @ fit - height) * weights
+    return bool(np.linalg.norm(off) < EQUAL * height.mean() * np.linalg.norm(weights))
 
 
 def _plane(hull, sink, members):

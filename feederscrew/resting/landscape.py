@@ -18,7 +18,8 @@ SMOOTH = np.radians(25.0)  # a sharper edge is meant: a bar of 12 sides (30 deg)
 RIPPLE_OF_RADIUS = 2e-3  # noise and tessellation leave barriers below this share of the part's radius ...
 RIPPLE_OF_HEIGHT = 2e-2  # ... and below this share of the height, or slender parts would lose their sides
 SLIVERS = 6  # 2**6 beside each other at most are followed to a broad triangle
-SLIVER = 1e-3  # of the radius: a contact narrower than this about the foot is noise, however sharp its edges
+BARE = 1e-4  # of the radius, 1 um on a small part: a lower barrier holds nothing, however sharp its edge
+SLIVER = 1e-3  # of the radius: a narrower triangle has no direction of its own
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,12 +91,12 @@ def landscape(hull):
     pairs, ends = edges(hull)
     tops = passes(hull, pairs, ends)
     ripple = np.minimum(RIPPLE_OF_RADIUS * hull.radius, RIPPLE_OF_HEIGHT * hull.heights)
-    sliver = np.hypot(hull.heights, SLIVER * hull.radius) - hull.heights
+    nothing = np.full(len(hull.heights), BARE * hull.radius)
     smooth = angle(*np.moveaxis(_broad_normals(hull)[pairs], 1, 0)) < SMOOTH
     local = _downhill(hull, pairs, tops)
     basins, deep = _joined(hull, local, pairs[smooth], tops[smooth], ripple)
     strips, way = local[pairs[smooth][deep]], tops[smooth][deep]
-    basins, _ = _joined(hull, basins, pairs, tops, sliver)
+    basins, _ = _joined(hull, basins, pairs, tops, nothing)
     return Landscape(
         basins=basins,
         sinks=np.unique(basins),

@@ -83,8 +83,10 @@ def convey(case):
     document = convey_tables.document(bowl, found, *around)
     blocks = [Table(convey_tables.summary(document))]
     if found.status != "no steady state":
-        cycle = convey_plots.cycle(trace.trace(found.setting), bowl.drive.amplitude, found.velocity)
-        blocks.append(Picture("convey.png", plots.png(cycle), "Plate and part over one steady cycle"))
+        followed = trace.trace(found.setting)
+        cycle = convey_plots.cycle(followed, bowl.drive.amplitude, found)
+        alt = f"Plate and part: {convey_plots.cycle_title(followed, found)}"
+        blocks.append(Picture("convey.png", plots.png(cycle), alt))
     blocks.append(_velocity_map(case))
     return Section(
         tuple(blocks),
