@@ -163,3 +163,21 @@ def test_vary_is_given_twice(run):
     result = run("track", BRACKET, "--vary", "track.bank=0:5:3")
     assert result.exit_code == 2
     assert "--vary is given 1 times - give it twice, for a map" in result.stderr
+
+
+def test_the_cycle_has_the_names_of_the_instant(run):
+    document = json.loads(run("track", BRACKET, "--format", "json").stdout)
+    assert set(document["instant"]) <= set(document["cycle"])
+
+
+def test_values_in_the_picture_do_not_cover_one_another(tmp_path):
+    from feederscrew import bowl, part
+    from feederscrew.motion.track_analysis import analyse
+    from feederscrew.output import track_plots
+
+    figure = track_plots.part(analyse(part.load(BRACKET), bowl.default()), "bracket")
+    figure.canvas.draw()
+    for axes in figure.axes:
+        boxes = [text.get_window_extent() for text in axes.texts if text.get_text()]
+        clashes = [a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i]]
+        assert len(boxes) > 2 and not any(clashes)

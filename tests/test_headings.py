@@ -194,3 +194,22 @@ def test_faults():
     assert str(every.value) == (
         "aspect A: the part falls off the track in every heading - give a wider track, or another aspect"
     )
+
+
+def test_an_even_end_is_shared_evenly():
+    """A blunt, faceted end has a shallow dip in its middle, which belongs to neither side."""
+    bend = np.linspace(-0.25, 0.25, 12)
+    end = 0.025 * np.column_stack([np.cos(bend), np.sin(bend)]) - [0.005, 0.0]
+    plan = np.concatenate([end, [[-0.012, 0.007], [-0.012, -0.007]]])
+    found = rests(plan, 0.15)
+    sides = found.share[np.abs(np.abs(found.outward) - np.pi / 2) < 0.5]
+    assert len(sides) == 2
+    assert sides[0] == pytest.approx(sides[1], rel=1e-9)
+
+
+def test_a_half_turn_is_the_heading_half_a_turn_on():
+    """All six headings of a hexagon look alike from above."""
+    angle = np.pi / 3 * np.arange(6)
+    found = headings(plan_posture(0.01 * np.column_stack([np.cos(angle), np.sin(angle)])), TRACK)
+    away = np.abs(found.headings[found.half_turns] - found.headings)
+    assert away == pytest.approx([np.pi] * 6)

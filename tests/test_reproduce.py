@@ -190,6 +190,13 @@ def test_the_page_follows_the_thesis(items):
     assert titles[len(found) :] == [f"{f.id}: {f.where}" for f in FINDINGS]
 
 
+def test_chapter_4_names_each_equation_and_its_slip(items):
+    lists = [b for b in thesis_page.blocks(items) if isinstance(b, thesis_page.Bullets)]
+    told = {label: text for entry in lists for _, label, text in entry.entries}
+    assert told["radial-gravity"].startswith("Equation [4.33]. ")
+    assert told["alpha-plus-theta"].endswith("the print gives 0.766.")
+
+
 def test_the_page_shows_print_and_ours(items):
     by_id = {(item.kind, item.id): item for item in items}
     entry = {(e.row, e.column): e for e in by_id["table", "3-13"].entries}["CSA - PMI", "deviation"]

@@ -109,36 +109,6 @@ def test_centrifugal_force_presses_against_the_wall():
     assert across == pytest.approx(0.01 * 0.2**2 / 0.15)
 
 
-def test_a_drive_inward_opens_the_wall_and_is_solved_without_it():
-    settings = bowl(direction=20 * DEG, bank=0.0)
-    found = track.motion(seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 0.0), settings)
-    assert not found.closed.any()
-    assert not found.walls.any()
-    assert found.acceleration[1] > 0.0
-    assert found.radial_friction < 0.0
-    assert np.hypot(found.traction, found.radial_friction) == pytest.approx(0.3 * found.normal_force)
-
-
-def test_one_wall_contact_opens_and_the_part_turns_off_it():
-    """Wall friction at a long side lever unloads the leading contact of a short part."""
-    posture = box_posture(length=0.006, width=0.02)
-    settings = bowl(wall=1.0, bank=15 * DEG, climb=0.0)
-    part = seat(posture, 0.0, rectangle(0.006, 0.02)[:2], 1.0)
-    found = track.motion(part, settings, 0.5 * np.pi, 1.0)
-    assert found.closed.sum() == 1
-    opened = int(np.argmin(found.closed))
-    axes = frame(settings, part.walls)
-    for k, least in ((opened, 1e-9), (1 - opened, -1e-9)):
-        place = part.walls[k]
-        gained = np.append(found.acceleration * [0.0, 1.0], 0.0) + found.turning * np.array(
-            [-place[1], place[0], 0.0]
-        )
-        rate = gained @ (axes.normals[k] * [1.0, 1.0, 0.0])
-        assert rate > least if k == opened else abs(rate) < 1e-9
-    assert found.walls[opened] == 0.0
-    assert found.walls[1 - opened] > 0.0
-
-
 def test_rest_goes_over_into_sliding_without_a_jump():
     part = seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 1.0)
     limit = float(track.motion(part, bowl(), 0.5 * np.pi).needed[0])

@@ -71,7 +71,12 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0):
         *map(np.asarray, (coefficients.static, coefficients.kinetic, coefficients.wall))
     )
     ratio = np.divide(wall, static, out=np.zeros(np.shape(static)), where=static > 0.0)
-    still = _chosen(lambda closed: track_system.held(seat, axes, load, closed, ratio), bowl.gravity)
+
+    def holding(closed):
+        found = track_system.held(seat, axes, load, closed, ratio)
+        return vars(found) | {"wall_use": found.mobilised * ratio}
+
+    still = _chosen(holding, bowl.gravity)
     needed = _needed(still, ratio)
     moving = np.asarray(moving, dtype=float)
     slides = (moving != 0.0) | ~(needed[..., 0] <= static)
@@ -80,13 +85,19 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0):
 
     def sliding(closed):
         """Along the track while a wall contact is closed; a part off the wall goes where it is pushed."""
-        course, drag = (sense[..., None] * track_system.AHEAD, sense) if any(closed) else (free, 0.0 * sense)
-        return track_system.sliding(seat, axes, load, closed, kinetic, wall * drag, course)
+        course = sense[..., None] * track_system.AHEAD if any(closed) else free
+
+        def solve(use):
+            return track_system.sliding(seat, axes, load, closed, kinetic, use, course)
+
+        ahead = sense * wall if any(closed) else 0.0 * sense * wall
+        turns = (moving == 0.0) & (sum(closed) == 1)
+        use = track_system.wall_use(seat, axes, solve, closed, ahead, turns) if turns.any() else ahead
+        return vars(solve(use)) | {"wall_use": use}
 
     slipping = _chosen(sliding, bowl.gravity) if slides.any() else still
     found = {name: _where(slides, slipping[name], still[name]) for name in still}
-    use = np.where(slides, sense * wall, still["mobilised"] * ratio)
-    return _motion(seat, found, use, slides, needed, load)
+    return _motion(seat, found, slides, needed, load)
 
 
 def over_cycle(seat, bowl, samples=cycle.SAMPLES):
@@ -135,7 +146,7 @@ def _chosen(solve, gravity):
     least = -PULL * np.max(gravity)
     chosen = {}
     for closed in track_system.SETS:
-        found = vars(solve(closed))
+        found = solve(closed)
         found = found | {"closed": np.broadcast_to(closed, found["walls"].shape)}
         fits = (found["walls"] >= least).all(axis=-1) & (found["parting"] >= least).all(axis=-1)
         if not chosen:
@@ -156,7 +167,7 @@ def _needed(still, ratio):
     return np.concatenate([floor[..., None], wall], axis=-1)
 
 
-def _motion(seat, found, wall_use, slides, needed, load):
+def _motion(seat, found, slides, needed, load):
     """The record, in newtons and metres, with what holds while there is no contact."""
     mass, height = seat.mass, seat.height
     contact = found["normal"] > 0.0
@@ -178,7 +189,7 @@ def _motion(seat, found, wall_use, slides, needed, load):
         closed=found["closed"],
         radial_friction=friction[..., 1],
         traction=0.0 - friction[..., 0],
-        wall_friction=wall_use[..., None] * walls,
+        wall_friction=found["wall_use"][..., None] * walls,
         couple=mass * height * found["couple"] * contact,
         acceleration=np.where(contact[..., None], found["acceleration"], load[..., :2] / mass),
         turning=found["turning"] / height * contact,

@@ -5,7 +5,7 @@ along X, two motions or reactions that the wall contacts decide, the normal forc
 N d_y, and the wall's R1 and R2. Friction acts where the normal force does, which keeps the system linear.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -97,7 +97,61 @@ def held(seat, axes, load, closed, ratio):
         change = slip - slip_before
         step = np.divide(slip * (after - before), change, out=np.zeros(slip.shape), where=change != 0.0)
         before, slip_before, after = after, slip, after - np.clip(step, -10.0, 10.0)
-    return _resting(seat, axes, load, closed, after, ratio)
+    found = _resting(seat, axes, load, closed, after, ratio)
+    return replace(found, parting=_released(seat, axes, closed, found.couple))
+
+
+def _released(seat, axes, closed, couple):
+    """How the open one of two wall contacts would part if the floor let go of the couple it holds."""
+    parting = np.zeros((*np.shape(couple), 2))
+    if sum(closed) == 1:
+        shut, open_ = closed.index(True), closed.index(False)
+        rates = _opening(seat, axes, np.shape(couple))
+        across, turning = np.moveaxis(rates, -1, 0)
+        shift = turning[..., shut] / across[..., shut] * across[..., open_]  # which keeps the other closed
+        parting[..., open_] = -couple * (turning[..., open_] - shift)
+    return parting
+
+
+def wall_use(seat, axes, solve, closed, ahead, turns):
+    """Friction over normal force at the one closed wall contact of a part that starts to turn about it.
+
+    Parameters
+    ----------
+    seat, axes
+        As for ``sliding``.
+    solve : callable
+        From that coefficient, (...) float [1], to a Solution.
+    closed : pair of bool
+        Which wall contact presses.
+    ahead : (...) float [1]
+        The coefficient, negative where the part slides back.
+    turns : (...) bool
+        Where the part starts from rest; elsewhere it goes on sliding and ``ahead`` is kept.
+
+    Returns
+    -------
+    (...) float [1]
+        ``ahead`` where the contact slides with the part, its opposite where turning drives it the other way,
+        and between them what keeps it in place: the part then rolls along the wall.
+    """
+    k = closed.index(True)
+
+    def slip(use):
+        """Acceleration of the contact along the wall."""
+        found, course = solve(use), axes.courses[..., k, :2]
+        turning = cross(seat.walls[k, :2] / seat.height, course)
+        return (found.acceleration * course).sum(axis=-1) + found.turning * turning
+
+    before, after = -ahead, ahead
+    slip_before = slip(before)
+    for _ in range(STEPS):
+        slip_after = slip(after)
+        change = slip_after - slip_before
+        step = np.divide(slip_after * (after - before), change, out=np.zeros(change.shape), where=change != 0)
+        before, slip_before = after, slip_after
+        after = np.clip(after - step, -np.abs(ahead), np.abs(ahead))
+    return np.where(turns, after, ahead)
 
 
 def _resting(seat, axes, load, closed, mobilised, ratio):

@@ -150,9 +150,7 @@ def _merged(lows, tops, borders, least):
             break
         _join(dips, edges, i)
     rounded = bool(max(tops) - min(lows) < 2.0 * least)
-    starts = np.array(
-        [_border(tops, borders, dips[i - 1], k, LEVEL * least) for i, k in enumerate(dips)]
-    )
+    starts = np.array([_border(tops, borders, dips[i - 1], k, LEVEL * least) for i, k in enumerate(dips)])
     share = np.mod(np.roll(starts, -1) - starts, 2.0 * np.pi) / (2.0 * np.pi)
     return np.array(dips), starts, np.where(share > 0.0, share, 1.0), rounded
 

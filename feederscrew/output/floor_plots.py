@@ -50,7 +50,7 @@ def plan(posture, heading, found):
         loc="left", fontsize=10, color=plots.INK, fontweight="bold",
     )  # fmt: skip
     axes.set_aspect("equal")
-    axes.margins(0.24)
+    axes.margins(0.4, 0.24)
     _legend(figure, posture)
     return figure
 
@@ -180,7 +180,7 @@ def _heading_line(axes, heading, size):
     """The body's own direction, x' (the thesis's Z')."""
     end = 0.72 * size * np.array([np.cos(heading), np.sin(heading)])
     axes.plot([0, end[0]], [0, end[1]], color=plots.INK, linewidth=0.8, linestyle=(0, (6, 3)), zorder=4)
-    axes.annotate("x'", end, (3, 3), textcoords="offset points", fontsize=9, color=plots.INK, style="italic")
+    axes.annotate("x'", end, (3, 10), textcoords="offset points", fontsize=9, color=plots.INK, style="italic")
 
 
 def _legend(figure, posture):

@@ -53,7 +53,7 @@ def part(found, title):
     _behind(behind, found)
     for axes in (above, behind):
         axes.set_aspect("equal")
-        axes.margins(0.12)
+        axes.margins(0.16)
         axes.tick_params(labelsize=8)
     return figure
 
