@@ -35,11 +35,11 @@ def compare(part, counts, as_published, pictures, out):
     out.warn(*solid.warnings, *found.warnings)
     rules = profiles.of_rules(found)
     measured = profiles.read(counts, found.names, [rule.name for rule in rules])
-    out.say("\n".join(measured.notes))
     every = (*measured.profiles, *rules)
     compared = deviation.compare(every)
     inputs = {solid.source: solid.sha256, measured.source: measured.sha256}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
+        out.say("\n".join(measured.notes))
         if folder:
             profile_tables.write(folder, solid.name, found.names, every, compared, pictures=pictures)
     document = {"part": solid.name, **profile_tables.document(found.names, every, compared)}

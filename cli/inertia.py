@@ -23,8 +23,8 @@ def inertia(part, out):
 
     solid = out.part(part)
     told = inertia_tables.document(solid, balance(solid))
-    out.say(f"Material: {solid.material}")
     with out.folder(solid.name, {solid.source: solid.sha256}, columns.conditions(solid)) as folder:
+        out.say(f"Material: {solid.material}")
         if folder:
             inertia_tables.write(folder, told, out.format)
     out.show(inertia_tables.rows(told), told)

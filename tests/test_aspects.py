@@ -176,3 +176,38 @@ def test_the_contact_polygon_is_the_facet():
     np.testing.assert_allclose(corners @ found.normals[0], found.heights[0], rtol=1e-9)
     turn = np.cross(np.roll(corners, -1, 0) - corners, np.roll(corners, -2, 0) - np.roll(corners, -1, 0))
     assert (turn @ found.normals[0] > 0).all()  # counter-clockwise seen from outside
+
+
+@pytest.mark.parametrize("strips", [14, 16, 24, 48, 200])
+def test_a_half_cylinder_rocks_on_its_whole_curved_side(strips):
+    turn = np.linspace(0.0, np.pi, strips + 1)
+    half = shapes.prism(np.column_stack([8.0 * np.cos(turn), 8.0 * np.sin(turn)]), 25.0)
+    found = find(shapes.part(half))
+    assert sorted(zip(found.kinds, found.faces)) == [("flat", 1), ("flat", 2), ("rolling", 1)]
+    height = 8e-3 * (1.0 - 4.0 / (3.0 * np.pi))  # [m] of the smooth one
+    assert found.heights[found.kinds.index("rolling")] == pytest.approx(height, rel=0.015)
+    assert found.probabilities["csa"][found.kinds.index("rolling")] == pytest.approx(0.528, abs=2e-3)
+
+
+@pytest.mark.parametrize("sections", [16, 40])
+def test_a_shaft_with_a_flat_rolls_on_its_round_side(sections):
+    turn = np.linspace(-0.5 * np.pi + 0.6, 1.5 * np.pi - 0.6, sections + 1)
+    shaft = shapes.prism(np.column_stack([5.0 * np.cos(turn), 5.0 * np.sin(turn)]), 20.0)
+    found = find(shapes.part(shaft))
+    assert sorted(zip(found.kinds, found.faces)) == [("flat", 1), ("flat", 2), ("rolling", 1)]
+
+
+def test_the_half_turns_of_an_ellipsoid_do_not_depend_on_the_file():
+    egg = shapes.ball(1.0, 4).apply_transform(np.diag([10.0, 7.0, 5.0, 1.0]))
+    for mesh in (egg, shapes.turned(egg, np.random.default_rng(2))):
+        assert find(shapes.part(mesh)).faces.tolist() == [2]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_slivers_at_sharp_edges_leave_every_aspect(seed):
+    rng = np.random.default_rng(seed)
+    body = trimesh.convex.convex_hull(rng.normal(size=(12, 3)) * [10.0, 7.0, 4.0])
+    rough = shapes.noisy(shapes.subdivided(body, 1), 1e-6 * body.extents.max(), rng)
+    exact, found = find(shapes.part(body)), find(shapes.part(rough))
+    assert found.heights == pytest.approx(exact.heights, rel=1e-4)
+    assert found.probabilities["csa"] == pytest.approx(exact.probabilities["csa"], abs=1e-3)

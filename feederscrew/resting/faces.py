@@ -89,14 +89,10 @@ def unstable_faces(hull, taken):
 
 def _coarse_curves(hull, basins):
     """(B,) label of each sink; strips of one coarsely tessellated curve share it."""
-    level = (
-        np.abs(np.diff(hull.heights[basins.ripples], axis=1))[:, 0]
-        < EQUAL * hull.heights[basins.ripples[:, 0]]
-    )
-    strips, place = (
-        (basins.rises < COARSE) & (basins.bends < SMOOTH),
-        np.searchsorted(basins.sinks, basins.ripples),
-    )
+    place, sinks = np.searchsorted(basins.sinks, basins.ripples), basins.ripples
+    step = np.abs(np.diff(hull.heights[sinks], axis=1))[:, 0] / hull.heights[sinks[:, 0]]
+    strips = (basins.rises < COARSE) & (basins.bends < SMOOTH) & (step < EQUAL + basins.bends**2)
+    level = step < EQUAL
     labels = _components(len(basins.sinks), place[level & strips])
     for label in np.flatnonzero(np.bincount(labels) > 1):
         group = np.flatnonzero(labels == label)
@@ -119,7 +115,7 @@ def _face(hull, sinks, members):
     if not _curved(hull, strip):
         strip = _plane(hull, lowest, np.concatenate(members))
         side = _smooth_part(hull, lowest, np.concatenate(members))
-        if hull.areas[strip].sum() < 0.5 * hull.areas[side].sum() and _rocks(hull, side):
+        if _rocks(hull, side, lowest):
             strip = side
     return _describe(hull, strip, lowest, stable=True)
 
@@ -133,12 +129,15 @@ def _smooth_part(hull, sink, members):
     return members[labels[members] == labels[sink]]
 
 
-def _rocks(hull, side):
+def _rocks(hull, side, sink):
     """Whether these triangles are strips of a curved side whose axis may lie off the centre of mass."""
-    strips = np.unique(hull.normals[side].round(2), axis=0)
-    if len(strips) < FEWEST or not _curved(hull, side):
+    normals, share = hull.normals[side], hull.areas[side] / hull.areas[side].sum()
+    strips = np.unique(normals.round(2), axis=0, return_inverse=True)[1].ravel()
+    even = 1.0 / (np.bincount(strips, share) ** 2).sum()  # as many strips of one size
+    flat = share[angle(normals, hull.normals[sink]) < 0.5 * SMOOTH].sum()
+    if even < FEWEST - 0.5 or flat > 0.5 or not _curved(hull, side):
         return False
-    across = np.linalg.eigvalsh(np.cov(hull.normals[side].T, aweights=hull.areas[side]))
+    across = np.linalg.eigvalsh(np.cov(normals.T, aweights=share))
     return bool(across[0] < STRAIGHT * across[1]) and _round(hull, side)
 
 
