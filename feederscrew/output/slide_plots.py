@@ -180,7 +180,7 @@ def _own_point(axes, x, y, text, drop=0):
 
 def _label_region(axes, slide, name):
     """Write the regime's name into its region, on two lines if need be; False if it has no room."""
-    inside = slide.grid.codes == slide.grid.names.index(name)
+    inside = (slide.grid.codes == slide.grid.names.index(name)) & ~_taken(slide)
     for text in (REGIMES[name][1], REGIMES[name][1].replace(" ", "\n", 1)):
         lines = text.split("\n")
         box = (
@@ -194,6 +194,15 @@ def _label_region(axes, slide, name):
             axes.text(x, y, text, ha="center", va="center", **LABEL)
             return True
     return False
+
+
+def _taken(slide):
+    """Cells that the bowl's own point and its name lie over."""
+    angles, ratios = slide.grid.first.shown, slide.grid.second.values
+    across = (np.asarray(angles) - np.degrees(slide.alpha_minus_theta)) / np.ptp(angles)
+    across = np.abs(across) if slide.alpha_minus_theta > 0.0 else across  # the name is on either side
+    up = np.abs(np.asarray(ratios) - slide.ratio) / np.ptp(ratios)
+    return ((across > -0.02) & (across < 0.27))[:, None] & (up < 0.03)
 
 
 def _most_central(room):
