@@ -6,6 +6,7 @@ FEEDER := $(BIN)/feeder
 READY := .venv/.ready
 READY_TO_TEST := .venv/.ready-to-test
 DEMO := lbracket_30x20x15
+BOLT := hexbolt_m8x25
 
 PARTS := $(wildcard parts/*.stl)
 CARDS := $(wildcard parts/*.yaml)
@@ -64,7 +65,7 @@ results/%/slide.csv: configs/%.yaml | $(READY)
 bench: $(READY_TO_TEST) ## benchmarks, a few minutes
 	for script in benchmarks/*.py; do $(BIN)/python $$script || exit 1; done
 
-docs: docs/aspects.png docs/regimes.png $(READY) ## pictures, outputs and tables of the README
+docs: docs/aspects.png docs/regimes.png docs/drop.png $(READY) ## pictures, outputs and tables of the README
 	$(BIN)/python docs/readme.py
 	$(BIN)/python docs/commands.py
 
@@ -73,6 +74,10 @@ docs/aspects.png: results/$(DEMO)/aspects.csv
 
 docs/regimes.png: results/bowl/slide.csv
 	cp results/bowl/slide_regimes_*.png $@
+
+docs/drop.png: parts/$(BOLT).stl | $(READY)
+	$(FEEDER) drop $< --drops 1000 --trace 1 -o results --quiet > /dev/null
+	cp results/$(BOLT)/drop_trace.png $@
 
 fuzz: $(READY_TO_TEST) ## ten minutes of damaged files
 	PYTHONPATH=tests $(BIN)/python -m fuzz 600

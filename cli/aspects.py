@@ -19,7 +19,9 @@ SURFACES = click.Choice(["soft", "medium", "hard"])
 @click.option(
     "--surface-exponent", type=click.FloatRange(-10, 10), help="The same as a number, 0 to about 3."
 )
-@click.option("--drop", "drops", type=click.IntRange(1, 10**7), help="Drop it so often; adds p_drop.")
+@click.option(
+    "--drop", "drops", type=click.IntRange(1, 10**7), help="Drop it so often; adds p_drop, the answer then."
+)
 @click.option("--graph", is_flag=True, help="With -o: what tips into what over which barrier, CSV and PNG.")
 @options.pictures
 @options.output
@@ -36,17 +38,17 @@ def aspects(part, unstable, as_published, surface, surface_exponent, drops, grap
 
     _files_wanted(graph, out)
     solid = out.part(part)
-    told = {"as_published": as_published, "unstable": unstable, "surface": surface_exponent or surface}
+    lands = surface if surface_exponent is None else surface_exponent
+    told = {"as_published": as_published, "unstable": unstable, "surface": lands}
     with out.folder(
         solid.name, {solid.source: solid.sha256}, columns.conditions(solid) | told | {"drops": drops}
     ) as folder:
         found = _found(solid, as_published, unstable, surface, surface_exponent, out)
         tally = _dropped(solid, found, drops, out)
-        rows = columns.aspects(found, solid, tally)
-        document = columns.part(solid, found.warnings) | {"aspects": rows}
+        document = columns.document(found, solid, tally)
         if folder:
             out.say(*sheets.aspects(folder, solid, found, document, graph=graph, pictures=pictures))
-    out.show(rows, document, hidden=columns.HIDDEN)
+    out.show(document["aspects"], document, hidden=columns.HIDDEN)
 
 
 def _files_wanted(graph, out):
@@ -75,6 +77,8 @@ def _dropped(solid, found, drops, out):
         return None
     from cli.drop import announce, progress
     from feederscrew.resting.drop import report
+    from feederscrew.resting.recommended import LAUNCH
 
     announce(out)
-    return report.test(solid, found, "tumble", {}, drops=drops, progress=progress(out)).tally
+    with progress(out) as bar:
+        return report.test(solid, found, LAUNCH, {}, drops=drops, progress=bar.reach).tally

@@ -2,7 +2,7 @@
 
 import click
 
-from cli import options
+from cli import completion, options
 from cli.progress import Progress
 
 
@@ -30,8 +30,15 @@ class Jobs(click.ParamType):
     type=options.FILE,
     help="Bowl file or folder; may be repeated.",
 )
-@click.option("--set", "overrides", metavar="KEY=VALUE", multiple=True, help="Override one value.")
-@click.option("--rule", default="pmi", show_default=True, metavar="NAME", help="Probabilities taken.")
+@options.overrides
+@click.option(
+    "--rule",
+    default="pmi",
+    show_default=True,
+    metavar="NAME",
+    shell_complete=completion.rules,
+    help="Probabilities taken.",
+)
 @click.option(
     "--drops",
     metavar="N",

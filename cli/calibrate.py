@@ -8,7 +8,7 @@ from cli import options
 @click.command(short_help="The surface exponent that your own counts ask for.")
 @options.part
 @click.option(
-    "--with", "counts", metavar="CSV", required=True, type=click.Path(), help="Counted parts by aspect."
+    "--with", "counts", metavar="CSV", required=True, type=options.Place(), help="Counted parts by aspect."
 )
 @options.output
 def calibrate(part, counts, out):

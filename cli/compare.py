@@ -8,7 +8,12 @@ from cli import options
 @click.command(short_help="Measured aspects against every rule.")
 @options.part
 @click.option(
-    "--with", "counts", metavar="CSV", required=True, type=click.Path(), help="Counts or fractions by aspect."
+    "--with",
+    "counts",
+    metavar="CSV",
+    required=True,
+    type=options.Place(),
+    help="Counts or fractions by aspect.",
 )
 @click.option("--as-published", is_flag=True, help="Count each class once in PMI, as Tables 3-8 and 3-9 do.")
 @options.pictures

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import click
 
-from cli import options
+from cli import completion, options
 
 WAYS = {1: "convey curve", 2: "convey map"}  # by how many keys are varied
 
@@ -16,6 +16,7 @@ WAYS = {1: "convey curve", 2: "convey map"}  # by how many keys are varied
     "spans",
     metavar="KEY=FROM:TO:COUNT",
     multiple=True,
+    shell_complete=completion.keys,
     help="Once for a curve, twice for a map: drive.vibration_angle=5:60:200.",
 )
 @click.option("--bowl", "curve", is_flag=True, help="Follow this bowl inwards, where its angle is steeper.")

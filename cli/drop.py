@@ -1,11 +1,13 @@
 """``feeder drop``."""
 
 import os
-import sys
 
 import click
 
 from cli import options
+from cli import plate as plates
+from cli.interrupt import held_back
+from cli.progress import Progress
 
 LAUNCHES = click.Choice(["place", "drop", "tumble"])
 
@@ -31,13 +33,17 @@ def conditions(command):
 @click.command(short_help="A virtual drop test: how often a part lands on each aspect.")
 @options.part
 @conditions
-@click.option("--drops", type=click.IntRange(1, 10_000_000), help="How many.  [default: 10000]")
+@click.option("--drops", type=click.IntRange(1, 10**7), help="How many.  [default: 10000; on a plate 400]")
 @click.option("--until", metavar="SHARE", help='Go on until no 95 % interval is wider: "1%" to either side.')
 @click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random launches.")
 @click.option("--jobs", type=click.IntRange(1, 256), metavar="N", help="Cores to use.  [default: all]")
+@click.option(
+    "--trace", type=click.IntRange(1, 1000), metavar="K", help="With -o: the motion of the first K drops."
+)
+@plates.plate
 @options.pictures
 @options.output
-def drop(part, launch, drops, until, seed, jobs, pictures, out, **own):
+def drop(part, launch, drops, until, seed, jobs, trace, plate, pictures, out, **own):
     """Example: feeder drop parts/lbracket_30x20x15.stl --launch tumble --until 1% -o results
 
     Drop PART on a hard plane, again and again, each time from a launch drawn from the ranges of
@@ -46,23 +52,60 @@ def drop(part, launch, drops, until, seed, jobs, pictures, out, **own):
 
     p_drop_low and p_drop_high are the 95 % interval of the sampling; p_gentle and p_violent the shares
     among the third of the launches with the least and with the most energy. The same seed gives the same
-    counts whatever the number of jobs. With -o: drop.csv, drop.json, drop.png and run.json.
+    counts whatever the number of jobs. Ctrl-C ends the test early: what is counted so far is given, marked
+    partial.
+
+    With -o: drop.csv, drop.json, drop.png and run.json; with --trace drop_traces.csv, where the part is
+    and how it is turned from launch to rest, and drop_trace.png, a strip of stills of the first traced
+    drop that tumbles and lies still (else that tumbles, else the first).
+
+    With --plate the plane vibrates with the drive of a bowl, whose restitution and friction hold unless
+    given: the share of the time parts lie on each aspect (p_plate, in the second half), where the rates
+    at which they change lead in the end (p_limit), and how fast they travel. With -o: plate.csv,
+    plate_drives.csv, plate_rates.csv, plate_time.csv, plate.json and plate.png.
     """
-    from feederscrew.output import columns, drop_sheets
-    from feederscrew.resting.aspects import find
-    from feederscrew.resting.drop import report
+    _fitting(until, trace, plate, out)
+    test = {"drops": drops, "seed": seed, "jobs": jobs or os.cpu_count()}
+    if plate:
+        plates.run(part, plate, launch, own, test, pictures, out)
+    else:
+        _on_floor(part, launch, own, test | {"until": until, "traced": trace or 0}, pictures, out)
+
+
+def _fitting(until, trace, plate, out):
+    """Wrong calls."""
+    for option, given in (("--until", until), ("--trace", trace)):
+        if plate and given:
+            raise click.UsageError(f"{option} is for a plane at rest - leave it or --plate out")
+    if trace and out.directory is None:
+        raise click.UsageError("--trace writes files: give -o DIR as well")
+
+
+def _on_floor(part, launch, own, test, pictures, out):
+    """Drop the part on a plane at rest, write and tell what becomes of it."""
+    with held_back():
+        from feederscrew.output import columns, drop_sheets
+        from feederscrew.resting.aspects import find
 
     solid = out.part(part)
     aspects = find(solid)
-    announce(out)
-    until = {"drops": drops, "until": until, "seed": seed, "jobs": jobs or os.cpu_count()}
     with out.folder(solid.name, {solid.source: solid.sha256}, columns.conditions(solid)) as folder:
-        result = report.test(solid, aspects, launch, own, progress=progress(out), **until)
+        result = _tested(solid, aspects, launch, own, test, out)
         document = drop_sheets.document(solid, aspects, result)
         out.warn(*drop_sheets.remarks(document))
         if folder:
             drop_sheets.write(folder, solid, aspects, result, document, pictures=pictures)
     out.show(document["aspects"], document)
+
+
+def _tested(solid, aspects, launch, own, run, out):
+    """The drop test, with a bar where a person waits."""
+    with held_back():
+        from feederscrew.resting.drop import report
+
+    announce(out)
+    with progress(out) as bar:
+        return report.test(solid, aspects, launch, own, progress=bar.reach, **run)
 
 
 def announce(out):
@@ -74,11 +117,5 @@ def announce(out):
 
 
 def progress(out):
-    """A function that shows how far the test is where a person waits; None elsewhere."""
-    if out.quiet or not sys.stderr.isatty():
-        return None
-
-    def show(done, total):
-        click.echo(f"\r{done} of {total} drops", nl=done == total, err=True)
-
-    return show
+    """A bar of the drops where a person waits; hidden elsewhere."""
+    return Progress(None, not out.quiet, "drops")

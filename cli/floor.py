@@ -8,7 +8,7 @@ from cli.angle import Angle
 
 @click.command(short_help="Forces and motion of a part on the bowl floor.")
 @options.part
-@click.option("--aspect", metavar="NAME", help="As `feeder aspects` names it.  [default: the first]")
+@click.option("--aspect", metavar="NAME", help="As `feeder aspects` names it.  [default: the likeliest]")
 @click.option(
     "--heading", type=Angle(), metavar="ANGLE", default="0deg", help="theta, counter-clockwise from above."
 )

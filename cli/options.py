@@ -4,20 +4,36 @@ import functools
 
 import click
 
-from cli import talk
+from cli import completion, talk
 
-FILE = click.Path(allow_dash=True)  # completes as a path; the library says what is wrong with it
+
+class Place(click.Path):
+    """A path; the library says what is wrong with it, unless it is none, as of an unset shell variable."""
+
+    def convert(self, value, param, ctx):
+        """The path as typed, or a wrong call."""
+        return (
+            super().convert(value, param, ctx) if value else self.fail("is empty - give a path", param, ctx)
+        )
+
+
+FILE = Place(allow_dash=True)
 UNITS = click.Choice(["mm", "cm", "m", "in"])
 
 
 def part(command):
     """PART and how to read it; the command receives the keywords of ``feederscrew.part.load``."""
     keywords = ("source", "units", "density", "centre_of_mass", "allow_open")
-    return _stacked(
-        _packed(command, "part", keywords),
+    return stacked(
+        packed(command, "part", keywords),
         click.argument("source", metavar="PART", type=FILE),
         click.option("--units", type=UNITS, help="Length unit of the file (STL has none).  [default: mm]"),
-        click.option("--density", metavar="DENSITY", help='A material or a value: steel, "7.85 g/cm3".'),
+        click.option(
+            "--density",
+            metavar="DENSITY",
+            shell_complete=completion.materials,
+            help='A material or a value: steel, "7.85 g/cm3".',
+        ),
         click.option(
             "--centre-of-mass",
             metavar="X,Y,Z",
@@ -31,19 +47,25 @@ def part(command):
 
 def bowl(command):
     """The bowl file; the command receives the keywords of ``feederscrew.bowl.read``."""
-    return _stacked(
-        _packed(command, "bowl", ("path", "overrides")),
+    return stacked(
+        packed(command, "bowl", ("path", "overrides")),
         click.option(
             "--config", "path", metavar="FILE", type=FILE, help="Bowl file (YAML); without it, the defaults."
         ),
-        click.option(
-            "--set",
-            "overrides",
-            metavar="KEY=VALUE",
-            multiple=True,
-            help='Override one value: --set drive.frequency="50 Hz".',
-        ),
+        overrides,
     )
+
+
+def overrides(command):
+    """``--set``; the command receives ``overrides``, a tuple of texts."""
+    return click.option(
+        "--set",
+        "overrides",
+        metavar="KEY=VALUE",
+        multiple=True,
+        shell_complete=completion.keys,
+        help='Override one value: --set drive.frequency="50 Hz".',
+    )(command)
 
 
 def pictures(command):
@@ -55,20 +77,20 @@ def pictures(command):
 
 def output(command):
     """Where results and talk go; the command receives ``out``, a ``talk.Output``."""
-    return _stacked(
-        _packed(command, "out", ("directory", "depfile", "format", "quiet", "verbose"), talk.Output.of),
+    return stacked(
+        packed(command, "out", ("directory", "depfile", "format", "quiet", "verbose"), talk.Output.of),
         click.option(
             "-o",
             "--output",
             "directory",
             metavar="DIR",
-            type=click.Path(),
+            type=Place(),
             help="Write tables, pictures and run.json to DIR/<name>/.",
         ),
         click.option(
             "--depfile",
             metavar="FILE",
-            type=click.Path(),
+            type=Place(),
             help="Write a rule for make: what the files of -o are made from.",
         ),
         click.option(
@@ -83,18 +105,19 @@ def output(command):
     )
 
 
-def _packed(command, name, keywords, pack=dict):
-    """The command with several options handed to it as one argument."""
+def packed(command, name, keywords, pack=dict):
+    """The command with several options handed to it as one argument: ``pack`` of them by keyword."""
 
     @functools.wraps(command)
-    def packed(**options):
+    def handed(**options):
         options[name] = pack(**{keyword: options.pop(keyword) for keyword in keywords})
         return command(**options)
 
-    return packed
+    return handed
 
 
-def _stacked(command, *decorators):
+def stacked(command, *decorators):
+    """The command with several decorators, the first outermost: options are listed in this order."""
     for decorate in reversed(decorators):
         command = decorate(command)
     return command

@@ -2,6 +2,7 @@
 
 import click
 
+from cli import completion
 from cli.angle import Angle
 from cli.quantity import Quantity
 
@@ -15,7 +16,12 @@ CHAIN = (
         "[default: the most frequent that stays on the track]",
     ),
     click.option(
-        "--rule", default="pmi", show_default=True, metavar="NAME", help="Whose probabilities are taken."
+        "--rule",
+        default="pmi",
+        show_default=True,
+        metavar="NAME",
+        shell_complete=completion.rules,
+        help="Whose probabilities are taken.",
     ),
     click.option(
         "--gap",

@@ -1,52 +1,54 @@
 """How far a long run is, on a terminal."""
 
+import itertools
 import sys
-import time
 
 import click
 
 
 class Progress:
-    """One line on stderr that is written over: how many are done, and how long the rest will take.
+    """A bar on stderr: how many are done, and how long the rest will take.
 
     Parameters
     ----------
-    total : int
-        How many there are.
+    total : int or None
+        How many there are; None where that must be told first.
     shown : bool
         False for nothing at all; nothing is shown either where stderr is no terminal.
+    what : str
+        They are.
     """
 
-    def __init__(self, total, shown=True):
-        self.total, self.shown = total, shown and sys.stderr.isatty()
-        self.computed, self.kept, self.start, self.width = 0, 0, time.monotonic(), 0
+    def __init__(self, total, shown=True, what="parts"):
+        hidden = not (shown and sys.stderr.isatty())
+        self.bar = click.progressbar(
+            itertools.repeat(None),  # never asked: they are counted by hand
+            length=total,
+            label=what,
+            show_pos=True,
+            item_show_func=_said,
+            file=sys.stderr,
+            hidden=hidden,
+        )
 
     def __enter__(self):
+        self.bar.__enter__()
         return self
 
     def __exit__(self, *fault):
-        self._write("")
+        self.bar.__exit__(*fault)
 
     def tell(self, kept):
-        """Count one more; ``kept`` if it was there already and took no time."""
-        self.computed, self.kept = self.computed + (not kept), self.kept + kept
-        done = self.computed + self.kept
-        self._write(f"{done} of {self.total} parts{self._remaining(self.total - done)}")
+        """Count one more; one that was ``kept`` took no time and leaves the bar altogether."""
+        self.reach(self.bar.pos + (not kept), self.bar.length - kept)
 
-    def _remaining(self, left):
-        if not self.computed or not left:
-            return ""
-        return f", {lasting((time.monotonic() - self.start) / self.computed * left)} left"
-
-    def _write(self, line):
-        if self.shown:
-            click.echo(f"\r{line.ljust(self.width)}" + ("" if line else "\r"), err=True, nl=False)
-            self.width = len(line)
+    def reach(self, done, total, widest=None):
+        """So many are done of so many, and the widest interval [1] is so wide to either side."""
+        self.bar.length, self.bar.finished = total, False  # more may be found to be needed
+        self.bar.current_item = widest
+        self.bar.make_step(done - self.bar.pos)
+        self.bar.render_progress()
 
 
-def lasting(seconds):
-    """A time for people: '40 s', '12 min', '3 h 20 min'."""
-    if seconds < 90:
-        return f"{seconds:.0f} s"
-    minutes = round(seconds / 60)
-    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"
+def _said(widest):
+    return None if widest is None else f"widest interval ±{100.0 * widest:.2g} %"

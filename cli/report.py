@@ -10,7 +10,8 @@ WANTED = (
 )
 PLACE = (
     click.option(
-        "-o", "--output", "directory", metavar="DIR", type=click.Path(), default="results", show_default=True,
+        "-o", "--output", "directory", metavar="DIR", type=options.Place(),
+        default="results", show_default=True,
         help="Write the page and run.json to DIR/<name>/.",
     ),
     click.option(

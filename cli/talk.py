@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 
 import click
 
+from cli.interrupt import held_back
+
 FORMATS = ("table", "csv", "json")
 PLACES = ("directory", "depfile")  # options that name what is written, not what is read
 
@@ -54,9 +56,10 @@ class Output:
 
     def part(self, keywords):
         """Read the part of ``options.part`` and tell its warnings; the ``Part``."""
-        from feederscrew.part import load
+        typed = keywords["source"] == "-"  # one who waits for standard input can give it up
+        with contextlib.nullcontext() if typed else held_back(), self.step(f"read {keywords['source']}"):
+            from feederscrew.part import load
 
-        with self.step(f"read {keywords['source']}"):
             solid = load(**keywords)
         self.warn(*solid.warnings)
         return solid

@@ -2,13 +2,13 @@
 
 import click
 
-from cli import options
+from cli import completion, options
 from cli.angle import Angle
 
 
 @click.command(short_help="Reactions and motion of a part on the track, against the wall.")
 @options.part
-@click.option("--aspect", metavar="NAME", help="As `feeder aspects` names it.  [default: the first]")
+@click.option("--aspect", metavar="NAME", help="As `feeder aspects` names it.  [default: the likeliest]")
 @click.option("--heading", type=Angle(), metavar="ANGLE", help="As laid down.  [default: the most frequent]")
 @click.option("--as-published", is_flag=True, help="Solve the thesis's printed equations, [4.29] to [4.62].")
 @click.option(
@@ -16,6 +16,7 @@ from cli.angle import Angle
     "spans",
     metavar="KEY=FROM:TO:COUNT",
     multiple=True,
+    shell_complete=completion.keys,
     help="Twice, for a map: track.bank=0:30:61.  [default: bank and climb, with -o]",
 )
 @options.bowl

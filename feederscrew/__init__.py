@@ -22,16 +22,18 @@ if TYPE_CHECKING:
         Rate,
         aspects,
         convey,
+        drop,
         find_aspects,
         load,
         posture,
         rate,
         read_bowl,
+        shake,
     )  # fmt: skip
 
 __all__ = [
     "Answer", "Aspects", "Bowl", "ConfigError", "Faults", "FeederError", "MeshError", "Part", "Posture",
-    "Rate", "aspects", "convey", "find_aspects", "load", "posture", "rate", "read_bowl",
+    "Rate", "aspects", "convey", "drop", "find_aspects", "load", "posture", "rate", "read_bowl", "shake",
 ]  # fmt: skip
 
 

@@ -21,11 +21,13 @@ from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.posture import Posture, posture
 
 if TYPE_CHECKING:
+    from feederscrew.motion.plate.report import Shaken
     from feederscrew.output.tables import pd
+    from feederscrew.resting.drop.report import Result
 
 __all__ = [
     "Answer", "Aspects", "Bowl", "ConfigError", "Faults", "FeederError", "MeshError", "Part", "Posture",
-    "Rate", "aspects", "convey", "find_aspects", "load", "posture", "rate", "read_bowl",
+    "Rate", "aspects", "convey", "drop", "find_aspects", "load", "posture", "rate", "read_bowl", "shake",
 ]  # fmt: skip
 
 
@@ -107,6 +109,91 @@ def aspects(part: Part, *, unstable: bool = False, as_published: bool = False) -
         The columns of ``aspects.csv``: mm, g, sr.
     """
     return _columns.aspects(find_aspects(part, unstable=unstable, as_published=as_published), part)
+
+
+def drop(
+    part: Part,
+    *,
+    launch: str = "tumble",
+    drops: int | None = None,
+    seed: int = 1,
+    jobs: int = 1,
+    **conditions: str,
+) -> "Result":
+    """A virtual drop test on a hard plane.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    launch : str
+        'place', 'drop' or 'tumble'.
+    drops : int, optional
+        How many; 10,000 without it.
+    seed : int
+        Of the random launches.
+    jobs : int
+        Cores to use; the counts do not depend on it.
+    **conditions : str
+        Ranges that replace the launch's: fall='20 mm:50 mm', spin, speed, restitution, friction.
+
+    Returns
+    -------
+    Result
+        Its ``tally`` has counts, shares and intervals by class, in the order of ``find_aspects``.
+
+    Raises
+    ------
+    FeederError
+        If the part has no shape, or a condition is no such quantity or out of range.
+    """
+    from feederscrew.resting.drop import report
+
+    return report.test(part, find(part), launch, conditions, drops=drops, seed=seed, jobs=jobs)
+
+
+def shake(
+    part: Part,
+    bowls: Sequence[Bowl],
+    *,
+    launch: str = "tumble",
+    drops: int | None = None,
+    seconds: float | None = None,
+    seed: int = 1,
+    jobs: int = 1,
+    **conditions: str,
+) -> "list[Shaken]":
+    """A virtual dynamic bowl test: parts on a plate that vibrates with each bowl's drive.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    bowls : sequence of Bowl
+    launch : str
+        As for ``drop``.
+    drops : int, optional
+        Parts on each plate; 400 without it.
+    seconds : float, optional [s]
+        How long each is followed; 5 without it.
+    seed, jobs, **conditions
+        As for ``drop``; restitution and friction are each bowl's unless given.
+
+    Returns
+    -------
+    list of Shaken
+        One a bowl; its ``occupancy`` has shares, transition rates and velocities with their intervals.
+
+    Raises
+    ------
+    FeederError
+        As for ``drop``.
+    """
+    from feederscrew.motion.plate import report
+
+    return report.test(
+        part, find(part), bowls, launch, conditions, drops=drops, seconds=seconds, seed=seed, jobs=jobs
+    )
 
 
 def read_bowl(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> Bowl:

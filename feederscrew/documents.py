@@ -55,19 +55,48 @@ def read(path):
     Raises
     ------
     ConfigError
-        If the file cannot be read, is not UTF-8 or not YAML.
+        If the file cannot be read, is a stream, is not UTF-8 or not YAML.
     """
+    if str(path) == "-" or Path(path).is_fifo():
+        what = "is a stream, and a bowl file is read more than once"
+        raise ConfigError(path, what, "save it and name the file")
+    return load(content(path, LARGEST, "a YAML file"), str(path))
+
+
+def content(path, most, wanted, kind=ConfigError):
+    """The bytes of a file.
+
+    Parameters
+    ----------
+    path : str or Path
+        As the user typed it; the fault repeats it.
+    most : int
+        Bytes that are of use; one more is read at most.
+    wanted : str
+        What to name in place of a folder: 'a YAML file'.
+    kind : type of FeederError
+
+    Returns
+    -------
+    bytes
+
+    Raises
+    ------
+    FeederError
+        Of that kind, if the file cannot be read.
+    """
+    if not str(path):
+        raise kind("''", "is an empty path", f"name {wanted}")
     try:
         with Path(path).open("rb") as file:
-            data = file.read(LARGEST + 1)
+            return file.read(most + 1)
     except FileNotFoundError:
-        raise ConfigError(path, "no such file", "check the path") from None
+        raise kind(path, "no such file", "check the path") from None
     except IsADirectoryError:
-        raise ConfigError(path, "is a folder", "name a YAML file in it") from None
+        raise kind(path, "is a folder", f"name {wanted} in it") from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise ConfigError(path, f"cannot be read ({reason})", "check the path and its permissions") from None
-    return load(data, str(path))
+        raise kind(path, f"cannot be read ({reason})", "check the path and its permissions") from None
 
 
 def load(text, name):

@@ -60,6 +60,18 @@ def test_a_rate_is_what_the_command_says(run, bracket):
     assert fs.convey(fs.read_bowl()).velocity * 1e3 == pytest.approx(said["velocity_mm_s"], rel=1e-12)
 
 
+def test_a_drop_test_and_a_plate_are_what_the_command_says(run, bracket):
+    import json
+
+    call = ("drop", BRACKET, "--drops", 60, "--seed", 3, "--format", "json", "-q")
+    said = json.loads(run(*call, "--friction", "0.3").stdout)
+    tally = fs.drop(bracket, drops=60, seed=3, friction="0.3").tally
+    assert [row["count"] for row in said["aspects"]] == tally.counts.tolist()
+    plate = json.loads(run(*call, "--plate", "--seconds", 0.5).stdout)["plates"][0]
+    (shaken,) = fs.shake(bracket, [fs.read_bowl()], drops=60, seed=3, seconds=0.5)
+    assert plate["velocity_mm_s"] == pytest.approx(1e3 * shaken.occupancy.velocity[0])
+
+
 def test_overrides_reach_the_bowl():
     assert fs.read_bowl(overrides=["drive.frequency=50 Hz"]).drive.frequency == 50.0
 

@@ -163,7 +163,7 @@ def test_a_fault_of_a_list_names_its_line(tmp_path, monkeypatch, text, line):
 
 @pytest.mark.parametrize(
     ("typed", "what"),
-    [("empty", "holds no part file"), ("empty/*.stl", "fits no file"), ("gone.csv", "cannot be read")],
+    [("empty", "holds no part file"), ("empty/*.stl", "fits no file"), ("gone.csv", "no such file")],
 )
 def test_what_gives_no_part_is_told(tmp_path, monkeypatch, typed, what):
     monkeypatch.chdir(tmp_path)

@@ -270,6 +270,10 @@ def test_ranges():
             "friction.static=0:1",
             "friction.static: '0:1' is no range - write FROM:TO:COUNT, as in friction.static=0:10:20",
         ),
+        (
+            "friction.static=0.3:0.30:5",
+            "friction.static: begins where it ends - give two different values, or --set the one",
+        ),
         ("friction.static=0:1:1", "friction.static: '1' is no count - give a whole number from 2 to 2000"),
         (
             "friction.static=0:1:1e9",
@@ -304,7 +308,7 @@ def test_the_schema_agrees_with_the_record():
 
 def test_names_and_identities(file):
     path = file("restitution: 0.1\n")
-    assert (bowl.name(), bowl.name("configs/thesis.yaml")) == ("bowl", "thesis")
+    assert (bowl.name(), bowl.name("configs/thesis.yaml")) == ("defaults", "thesis")
     assert bowl.identity() == {}
     assert len(bowl.identity(path)["bowl.yaml"]) == 64
 

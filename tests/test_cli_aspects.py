@@ -190,6 +190,43 @@ def test_a_soft_surface_is_quasistatic(run, stl):
         assert [row["p_surface"] for row in rows] == pytest.approx([row["p_quasistatic"] for row in rows])
 
 
+@pytest.mark.parametrize(
+    ("words", "told"), [((), "hard"), (("--surface", "soft"), "soft"), (("--surface-exponent", "0"), 0.0)]
+)
+def test_the_surface_is_recorded(run, stl, tmp_path, words, told):
+    assert run("aspects", stl, "-o", "res", "--no-pictures", *words).exit_code == 0
+    recorded = json.loads((tmp_path / "res" / "box" / "run.json").read_text())
+    assert recorded["aspects"]["effective"]["surface"] == told
+
+
+def test_a_failed_self_check_marks_every_row(run, stl, tmp_path, monkeypatch):
+    from feederscrew.resting import tumbling
+
+    assert "doubtful" not in run("aspects", stl).output
+    monkeypatch.setattr(tumbling, "ROUNDING", -1.0)  # no sum is close enough to 1
+    line = "exact tumbling is doubtful: the basins fill 1 of the sphere"
+    done = run("aspects", stl, "--format", "json", "-o", "res", "--no-pictures")
+    assert document(done)["warnings"] == [line] and f"Warning: {line}" in done.stderr
+    assert {row["tumbling"] for row in document(done)["aspects"]} == {"doubtful"}
+    with (tmp_path / "res" / "box" / "aspects.csv").open() as file:
+        assert {row["tumbling"] for row in csv.DictReader(file)} == {"doubtful"}
+    assert line in (tmp_path / "res" / "box" / "run.json").read_text()
+    assert all(text.endswith("doubtful") for text in run("aspects", stl).stdout.splitlines()[-3:])
+
+
+@pytest.mark.parametrize("centre", ["5,0,0", "0,-10,0", "0,0,15.001", "100,0,0"])
+def test_a_centre_of_mass_on_or_outside_the_hull_is_one_line(run, stl, centre):
+    done = run("aspects", stl, "--centre-of-mass", centre)
+    line = "the centre of mass is not inside the part's convex hull - check --centre-of-mass and its units"
+    assert (done.exit_code, done.stdout) == (1, "")
+    assert done.stderr.splitlines() == [f"Error: {stl}: {line}"]
+
+
+def test_a_centre_of_mass_just_inside_is_computed(run, stl):
+    rows = document(run("aspects", stl, "--centre-of-mass", "4.99,0,0", "--format", "json"))["aspects"]
+    assert sum(row["p_quasistatic"] for row in rows) == pytest.approx(1.0, rel=1e-9)
+
+
 def test_the_graph_needs_a_folder(run, stl):
     done = run("aspects", stl, "--graph")
     assert (done.exit_code, done.stdout) == (2, "")
@@ -206,3 +243,34 @@ def test_a_drop_test_joins_the_columns(run, stl):
     rows = json.loads(run("aspects", stl, "--drop", "300", "--format", "json", "-q").stdout)["aspects"]
     assert sum(row["p_drop"] for row in rows) == pytest.approx(1.0, abs=0.05)
     assert all(row["p_drop_low"] <= row["p_drop"] <= row["p_drop_high"] for row in rows)
+
+
+def test_one_answer_with_an_interval_comes_last(run, stl):
+    told = document(run("aspects", stl, "--format", "json"))
+    assert told["recommended"] == "surface, hard"
+    last = ["p_recommended", "p_recommended_low", "p_recommended_high"]
+    for row in told["aspects"]:
+        assert list(row)[-3:] == last
+        assert row["p_recommended"] == row["p_surface"]
+        assert 0.0 <= row[last[1]] <= row["p_quasistatic"] <= row[last[2]] <= 1.0
+
+
+def test_the_answer_is_the_drop_test_where_there_is_one(run, stl):
+    told = document(run("aspects", stl, "--drop", "300", "--format", "json", "-q"))
+    assert told["recommended"] == "drop, tumble"
+    for row in told["aspects"]:
+        assert row["p_recommended"] == row["p_drop"]
+        assert (
+            row["p_recommended_low"] <= row["p_drop_low"] <= row["p_drop_high"] <= row["p_recommended_high"]
+        )
+
+
+def test_a_card_has_no_answer_of_its_own(run):
+    told = document(run("aspects", PARTS / "arc_chute.yaml", "--format", "json"))
+    assert told["recommended"] is None
+    assert "p_recommended" not in told["aspects"][0]
+
+
+def test_the_answer_says_its_surface(run, stl):
+    for words, rule in ((("--surface", "soft"), "soft"), (("--surface-exponent", "1.5"), "exponent 1.5")):
+        assert document(run("aspects", stl, "--format", "json", *words))["recommended"] == f"surface, {rule}"

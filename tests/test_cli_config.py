@@ -3,7 +3,10 @@
 import csv
 import io
 import json
+import os
 from pathlib import Path
+
+import pytest
 
 from feederscrew.bowl import documentation
 
@@ -30,6 +33,22 @@ def test_init_never_overwrites_silently(run):
     assert Path("bowl.yaml").read_text() == "mine"
     assert run("config", "init", "bowl.yaml", "--force").exit_code == 0
     assert Path("bowl.yaml").read_text() == documentation.template()
+
+
+@pytest.mark.parametrize("extra", [[], ["--force"]])
+def test_init_of_a_folder_says_what_to_name(run, extra):
+    Path("bowls").mkdir()
+    result = run("config", "init", "bowls", *extra)
+    assert (result.exit_code, list(Path("bowls").iterdir())) == (1, [])
+    assert result.stderr == "Error: bowls: is a folder - name a file in it, such as bowls/bowl.yaml\n"
+
+
+def test_init_of_an_empty_path_is_a_wrong_call(run):
+    result = run("config", "init", "")
+    assert (result.exit_code, result.stderr) == (
+        2,
+        "Error: Invalid value for '[FILE]': is empty - give a path (see feeder config init --help)\n",
+    )
 
 
 def test_init_into_nowhere_is_one_line(run):
@@ -60,7 +79,14 @@ def test_show_as_csv_and_json_agree(run):
 
 def test_show_keeps_a_record_with_o(run):
     assert run("config", "show", "-o", "results", "-q").exit_code == 0
-    assert {p.name for p in Path("results/bowl").iterdir()} == {"config.csv", "run.json"}
+    assert {p.name for p in Path("results/defaults").iterdir()} == {"config.csv", "run.json"}
+
+
+def test_a_bowl_file_from_a_stream_is_refused(run):
+    told = "is a stream, and a bowl file is read more than once - save it and name the file"
+    assert run("config", "show", "--config", "-").stderr == f"Error: -: {told}\n"
+    os.mkfifo("pipe.yaml")
+    assert run("config", "show", "--config", "pipe.yaml").stderr == f"Error: pipe.yaml: {told}\n"
 
 
 def test_a_fault_prints_nothing_on_stdout(run):

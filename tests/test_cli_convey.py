@@ -111,12 +111,12 @@ def test_files(run):
     run("convey", *POINT, "-o", "results")
     run("convey", *MAP, "--bowl", "-o", "results")
     run("convey", "--bowl", "-o", "results")
-    files = {path.name for path in Path("results/bowl").iterdir()}
+    files = {path.name for path in Path("results/defaults").iterdir()}
     pictures = {"convey.png", "convey_map.png", "convey_radius.png"}
     assert files == {*pictures, "convey.json", "convey_map.csv", "convey_radius.csv", "run.json"}
-    before = {name: Path("results/bowl", name).read_bytes() for name in files}
+    before = {name: Path("results/defaults", name).read_bytes() for name in files}
     run("convey", *MAP, "--bowl", "-o", "results")
-    assert all(Path("results/bowl", name).read_bytes() == content for name, content in before.items())
+    assert all(Path("results/defaults", name).read_bytes() == content for name, content in before.items())
 
 
 def test_one_key_varied_is_a_curve(run):
@@ -125,13 +125,13 @@ def test_one_key_varied_is_a_curve(run):
     assert [row["amplitude_mm"] for row in rows] == ["0.02", "0.065", "0.11", "0.155", "0.2"]
     alone = json.loads(run("convey", "--set", "drive.amplitude=0.11 mm", "--format", "json").stdout)
     assert float(rows[2]["velocity_mm_s"]) == pytest.approx(alone["velocity_mm_s"], rel=1e-5)
-    files = {path.name for path in Path("results/bowl").iterdir()}
+    files = {path.name for path in Path("results/defaults").iterdir()}
     assert files == {"convey_curve.csv", "convey_curve.png", "run.json"}
 
 
 def test_no_pictures(run):
     run("convey", *POINT, "-o", "results", "--no-pictures")
-    assert {path.name for path in Path("results/bowl").iterdir()} == {"convey.json", "run.json"}
+    assert {path.name for path in Path("results/defaults").iterdir()} == {"convey.json", "run.json"}
 
 
 def test_radius_table(run):
@@ -193,4 +193,4 @@ def test_a_map_without_any_velocity_is_drawn(run):
     result = run("convey", "--set", "track.climb=40 deg", *MAP, "-o", "results")
     assert result.exit_code == 0
     assert "56 of 56 cells: no steady state" in told(result)
-    assert (Path("results") / "bowl" / "convey_map.png").stat().st_size > 0
+    assert (Path("results") / "defaults" / "convey_map.png").stat().st_size > 0

@@ -1,7 +1,9 @@
 """``feeder doctor``: the installation, told without importing it."""
 
 import platform
+import tomllib
 from importlib import metadata
+from pathlib import Path
 
 import pytest
 
@@ -25,6 +27,13 @@ def test_it_lists_versions_extras_kernels_and_completion(run, installation):
     assert told["dist"] == "missing nowhere: pip install 'feederscrew[dist]'"
     assert told["step"] == f"click {metadata.version('click')}"
     assert "test" not in told
+
+
+def test_every_extra_of_the_project_is_told_but_those_of_developers():
+    project = tomllib.loads((Path(__file__).parent.parent / "pyproject.toml").read_text())["project"]
+    needed, extras = health.requirements()
+    assert set(extras) == set(project["optional-dependencies"]) - set(health.DEVELOPERS)
+    assert len(needed) == len(project["dependencies"])
 
 
 def test_it_counts_the_kernels_of_the_folder_that_numba_is_told(monkeypatch, tmp_path):

@@ -1,11 +1,21 @@
 """``feeder drop``: its columns, its files, its errors."""
 
+import contextlib
 import csv
 import json
+import os
+import re
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 import shapes
+
+from cli import interrupt, progress
+from feederscrew.output import drop_sheets
+from feederscrew.resting.drop import ensemble
 
 PARTS = Path(__file__).parent.parent / "parts"
 COLUMNS = ["aspect", "height_mm", "count", "p_drop", "p_drop_low", "p_drop_high", "p_gentle", "p_violent"]
@@ -38,6 +48,9 @@ def test_json_is_the_contract(run, stl):
     }
     assert [list(row) for row in told["aspects"]] == [COLUMNS] * 3
     assert sum(row["count"] for row in told["aspects"]) + told["unsettled"] == 600
+    assert told["until"] is None and told["traces"] == []
+    wide = max(row["p_drop_high"] - row["p_drop_low"] for row in told["aspects"])
+    assert told["widest"] == pytest.approx(0.5 * wide)
     assert all(row["p_drop_low"] <= row["p_drop"] <= row["p_drop_high"] for row in told["aspects"])
 
 
@@ -87,6 +100,12 @@ def test_own_conditions_are_told(run, stl):
         ),
         (("--launch", "kick"), 2, "Error: Invalid value for '--launch'"),
         (("--drops", "0"), 2, "Error: Invalid value for '--drops'"),
+        (
+            ("--trace", "3"),
+            2,
+            "Error: --trace writes files: give -o DIR as well (see feeder drop --help)",
+        ),
+        (("--trace", "0", "-o", "out"), 2, "Error: Invalid value for '--trace'"),
     ],
 )
 def test_faults_are_one_line(run, stl, arguments, status, line):
@@ -99,3 +118,153 @@ def test_faults_are_one_line(run, stl, arguments, status, line):
 def test_a_card_cannot_be_dropped(run):
     done = run("drop", PARTS / "arc_chute.yaml")
     assert done.exit_code == 1 and "has no shape to tumble" in done.stderr
+
+
+def test_traces_are_written(run, stl, tmp_path):
+    call = ("drop", stl, "--drops", "40", "--trace", "3", "-o", "results", "--format", "json")
+    told = document(run(*call))
+    folder = tmp_path / "results/box"
+    names = ["drop.csv", "drop.json", "drop.png", "drop_trace.png", "drop_traces.csv", "run.json"]
+    assert sorted(path.name for path in folder.iterdir()) == names
+    rows = list(csv.DictReader((folder / "drop_traces.csv").read_text().splitlines()))
+    assert [each["drop"] for each in told["traces"]] == [1, 2, 3]
+    for each in told["traces"]:
+        mine = [row for row in rows if row["drop"] == str(each["drop"])]
+        assert {row["aspect"] for row in mine} == {each["aspect"]}
+        assert float(mine[-1]["time_s"]) >= each["counted_s"] and each["still"]
+    before = {name: (folder / name).read_bytes() for name in names[:-1]}
+    document(run(*call))
+    assert {name: (folder / name).read_bytes() for name in names[:-1]} == before
+    document(run(*call, "--no-pictures"))
+    assert sorted(path.name for path in folder.iterdir()) == [
+        name for name in names if not name.endswith(".png")
+    ]
+
+
+def test_no_more_drops_are_traced_than_there_are(run, stl, tmp_path):
+    told = document(run("drop", stl, "--drops", "2", "--trace", "5", "-o", "results", "--format", "json"))
+    assert [each["drop"] for each in told["traces"]] == [1, 2]
+
+
+def test_a_width_that_is_not_reached_is_said(run, stl):
+    done = run("drop", stl, "--drops", "500", "--until", "1%", "--format", "json")
+    told = document(done)
+    assert told["drops"] == 500 and told["until"] == 0.01 and not told["partial"]
+    line = f"Warning: after 500 drops the widest interval is {100 * told['widest']:.3g} % to either side, "
+    assert f"{line}not 1 % - give more --drops, or a wider --until\n" in done.stderr
+
+
+def test_until_gives_up_and_says_so(run, stl, monkeypatch):
+    monkeypatch.setattr(ensemble, "MOST", 2000)
+    done = run("drop", stl, "--until", "0.1%", "--format", "json")
+    assert document(done)["drops"] == 2000
+    assert "Warning: after 2000 drops the widest interval is" in done.stderr
+
+
+def test_drops_that_never_settle_are_told(run, stl):
+    done = run("drop", stl, "--drops", "3", "--restitution", "1", "--friction", "0", "--format", "json")
+    assert document(done)["unsettled"] == 3
+    assert "Warning: 3 of 3 drops came to rest on no aspect\n" in done.stderr
+
+
+def start(stl, folder, *more, **streams):
+    """The program on its own."""
+    call = [
+        sys.executable,
+        "-c",
+        "from cli.main import feeder; feeder()",
+        "drop",
+        stl,
+        "-o",
+        "results",
+        *more,
+    ]
+    return subprocess.Popen(
+        [str(each) for each in call],
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(PARTS.parent)},
+        stdout=subprocess.PIPE,
+        text=True,
+        **streams,
+    )
+
+
+def heard(terminal, until):
+    """What comes out of a terminal, up to a pattern or to the end."""
+    text = ""
+    with contextlib.suppress(OSError):  # how Linux says that nobody writes to it any more
+        while not re.search(until, text) and (more := os.read(terminal, 4096)):
+            text += more.decode()
+    return text
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no interrupt to send")
+def test_an_interrupt_prints_and_writes_what_is_there(run, stl, tmp_path):
+    import pty
+
+    terminal, stderr = pty.openpty()
+    call = ("--drops", "10000000", "--trace", "2", "--format", "csv", "--jobs", "1")
+    running = start(stl, tmp_path, *call, stderr=stderr)
+    os.close(stderr)
+    assert "1000/10000000" in heard(terminal, "] +1000/")
+    running.send_signal(signal.SIGINT)
+    err = heard(terminal, "Wrote .*\n").replace("\r\n", "\n")
+    os.close(terminal)
+    out, _ = running.communicate(timeout=60)
+    assert running.returncode == 0, err
+    folder = tmp_path / "results/box"
+    told = json.loads((folder / "drop.json").read_text())
+    assert f"Warning: partial: stopped after {told['drops']} drops\n" in err and "Traceback" not in err
+    assert told["partial"] and told["drops"] % 250 == 0 and len(told["traces"]) == 2
+    rows = list(csv.DictReader(out.splitlines()))
+    assert out == (folder / "drop.csv").read_text()
+    assert [row["partial"] for row in rows] == ["True"] * 3
+    assert sum(int(row["count"]) for row in rows) == told["drops"] - told["unsettled"]
+    assert "partial: stopped" in json.loads((folder / "run.json").read_text())["drop"]["warnings"][-1]
+    whole = document(run("drop", stl, "--drops", told["drops"], "--format", "json"))
+    assert [row["count"] for row in whole["aspects"]] == [int(row["count"]) for row in rows]
+
+
+def test_an_interrupt_before_the_first_drop_leaves_nothing(run, stl, tmp_path, monkeypatch):
+    def stop(*told):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(ensemble, "sample", stop)
+    done = run("drop", stl, "-o", "results")
+    assert done.exit_code == 130 and done.stdout == ""
+    assert done.stderr.strip() == "Stopped." and not (tmp_path / "results").exists()
+
+
+def test_an_interrupt_is_held_back_and_then_heard():
+    done = []
+    with pytest.raises(KeyboardInterrupt), interrupt.held_back():
+        signal.raise_signal(signal.SIGINT)
+        done.append("all")
+    assert done == ["all"] and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    with pytest.raises(KeyboardInterrupt), interrupt.held_back():
+        signal.raise_signal(signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
+        done.append("too much")
+    assert done == ["all"]
+
+
+def test_a_partial_test_is_labelled():
+    told = {"partial": True, "drops": 250, "unsettled": 0, "until": 0.01, "widest": 0.03}
+    assert drop_sheets.remarks(told) == ["partial: stopped after 250 drops"]
+
+
+def test_progress_grows_with_what_is_needed(capsys, monkeypatch):
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
+    with progress.Progress(None, what="drops") as shown:
+        shown.reach(2000, 2000)
+        shown.reach(2000, 8000, 0.021)
+        shown.reach(8000, 8000, 0.0099)
+    lines = [
+        line.partition("]  ")[2].split("\x1b")[0].strip() for line in capsys.readouterr().err.split("\r")
+    ]
+    assert [line for line in lines if line] == [
+        "0",
+        "2000/2000",
+        "2000/8000  widest interval ±2.1 %",
+        "8000/8000  widest interval ±0.99 %",
+    ]

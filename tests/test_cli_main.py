@@ -78,6 +78,16 @@ def put(part, bowl, out):
     out.json({"part": part, "bowl": bowl})
 
 
+EMPTY_PATHS = (  # and the option or argument that is to blame
+    (["aspects", ""], "PART"),
+    (["batch", ""], "PARTS..."),
+    (["aspects", "a.stl", "-o", ""], "-o' / '--output"),
+    (["report", "a.stl", "-o", ""], "-o' / '--output"),
+    (["aspects", "a.stl", "--depfile", ""], "--depfile"),
+    (["slide", "--config", ""], "--config"),
+    (["compare", "a.stl", "--with", ""], "--with"),
+    (["calibrate", "a.stl", "--with", ""], "--with"),
+)
 PROGRAM = Fence("feeder", commands=[bad, worse, stop, bug, speak, put])
 
 
@@ -120,6 +130,10 @@ def test_our_own_bug_keeps_its_traceback():
             ["aspects", "a.stl", "--format", "jsn"],
             "Error: Invalid value for '--format': 'jsn' is not one of 'table', 'csv', 'json'."
             " Did you mean 'json'? (see feeder aspects --help)",
+        ),
+        *(
+            (call, f"Error: Invalid value for '{name}': is empty - give a path (see feeder {call[0]} --help)")
+            for call, name in EMPTY_PATHS
         ),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",

@@ -56,7 +56,7 @@ def test_as_published_is_negative_past_the_hop(run):
 def test_files_of_a_run(run):
     result = run("slide", "--beta", "10", "--beta", "40", "-o", "results", "-q")
     assert (result.exit_code, result.stderr) == (0, "")
-    folder = Path("results/bowl")
+    folder = Path("results/defaults")
     pictures = [f"slide_{kind}_beta{b}.png" for b in (10, 40) for kind in ("surface", "contours", "regimes")]
     assert {p.name for p in folder.iterdir()} == {"run.json", "slide.csv", "slide_curves.png", *pictures}
     assert (folder / "slide.csv").read_text().splitlines()[0] == COLUMNS

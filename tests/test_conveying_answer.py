@@ -205,6 +205,15 @@ def test_half_a_turn_of_the_phase_sends_a_part_the_other_way_on_a_level_track(ph
     assert abs(there) > 1e-4
 
 
+def test_a_cell_at_rest_has_no_throw_number():
+    strokes = np.array([[0.0, 0.05e-3]])
+    angles = np.radians([[20.0], [40.0]])
+    varied = {"drive.amplitude": strokes, "drive.vibration_angle": angles}
+    found = answer.cells(bowls.swept(bowls.settings(), varied))["throw_number"]
+    assert (found[:, 0] == 0.0).all()
+    assert (found[:, 1] > 0.1).all()
+
+
 def test_cells_and_answers_agree_on_an_uneven_drive():
     keys = (
         "drive.second_harmonic=0.3",

@@ -1,5 +1,7 @@
 """Launches, many drops and their counts."""
 
+from concurrent.futures import Future
+
 import drop_bodies
 import numpy as np
 import pytest
@@ -8,7 +10,7 @@ from scipy.stats import binom
 
 from feederscrew.errors import ConfigError
 from feederscrew.resting.drop import conditions, ensemble
-from feederscrew.resting.drop.ensemble import Drops, drop, narrow_to, tally, wilson
+from feederscrew.resting.drop.ensemble import Aim, Drops, drop, tally, wilson
 from feederscrew.resting.drop.kernel import UNSETTLED
 from feederscrew.resting.drop.launch import PRESETS, sample
 
@@ -34,26 +36,94 @@ def test_fewer_drops_are_the_first_of_many(monkeypatch):
 
 
 def test_until_ends_when_every_interval_is_narrow():
-    drops = seeded(narrow=narrow_to(0.02, ROWS, 3))
+    aim = Aim(0.015, ROWS, 3)
+    drops = seeded(aim=aim)
     counted = tally(drops, ROWS, 3)
-    assert (counted.high - counted.low).max() <= 0.04
-    before = Drops(drops.faces[: -ensemble.ROUND], drops.times, drops.energies[: -ensemble.ROUND], False)
-    if len(before.faces):
-        assert not narrow_to(0.02, ROWS, 3)(before.faces)
+    assert counted.widest == 0.5 * (counted.high - counted.low).max() <= 0.015
+    assert len(drops.faces) > ensemble.ROUND and aim.widest(drops.faces[: -ensemble.ROUND]) > 0.015
 
 
-def test_an_interrupt_keeps_what_is_there():
-    def stop(done, total):
+def test_until_gives_up_at_the_count():
+    assert len(seeded(aim=Aim(1e-3, ROWS, 3), count=2300).faces) == 2300
+
+
+def test_what_an_aim_needs():
+    aim = Aim(0.01, ROWS, 3)
+    assert aim.needed(4000, 0.01) == 4000
+    assert aim.needed(2000, 0.02) == 8000  # four times as many for half the width
+    assert aim.needed(2000, 0.0101) == 4000  # in whole rounds
+
+
+@pytest.mark.parametrize("jobs", [1, 3])
+@pytest.mark.parametrize("batches", [1, 5, 9])
+def test_an_interrupt_keeps_what_is_finished(jobs, batches):
+    """The batches done so far, as a shorter run gives them; those the others were at may come on top."""
+    told = []
+
+    def stop(done, total, widest):
+        told.append(done)
+        if len(told) == batches:
+            raise KeyboardInterrupt
+
+    drops = seeded(count=20_000, jobs=jobs, progress=stop)
+    count = len(drops.faces)
+    assert drops.partial and told[-1] == batches * ensemble.BATCH <= count < 20_000
+    assert count % ensemble.BATCH == 0
+    whole = seeded(count=count)
+    assert not whole.partial
+    for name in ("faces", "times", "energies"):
+        assert (getattr(drops, name) == getattr(whole, name)).all()
+
+
+def test_a_batch_that_was_not_waited_for_ends_what_is_kept(monkeypatch):
+    """Of three batches the second is still to come: only the first counts, though the third is there."""
+    real, begun = ensemble._begun, []
+
+    def odd(*told):
+        begun.extend(real(*told))
+        begun[0].result()
+        begun[2].result()
+        return [begun[0], Future(), begun[2]]
+
+    monkeypatch.setattr(ensemble, "_begun", odd)
+
+    def stop(*told):
         raise KeyboardInterrupt
 
-    drops = seeded(count=5000, progress=stop)
-    assert drops.partial and len(drops.faces) == ensemble.ROUND
+    assert len(seeded(count=750, progress=stop).faces) == ensemble.BATCH
+
+
+def test_an_interrupt_before_anything_is_there_is_passed_on(monkeypatch):
+    def stop(*told):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(ensemble, "sample", stop)
+    with pytest.raises(KeyboardInterrupt):
+        seeded(count=300)
+
+
+def test_a_fault_in_a_batch_is_told(monkeypatch):
+    def fail(*told):
+        raise ArithmeticError("here")
+
+    monkeypatch.setattr(ensemble.kernel, "settle_all", fail)
+    with pytest.raises(ArithmeticError, match="here"):
+        seeded(count=300)
 
 
 def test_progress_ends_at_the_count():
     told = []
     seeded(count=2300, progress=lambda *done: told.append(done))
-    assert told == [(2000, 2300), (2300, 2300)]
+    assert told == [(done, 2300, None) for done in [*range(250, 2300, 250), 2300]]
+
+
+def test_progress_of_an_aim_ends_at_what_was_needed():
+    told = []
+    drops = seeded(aim=Aim(0.015, ROWS, 3), progress=lambda *done: told.append(done))
+    assert told[0] == (250, 2000, None)
+    done, total, widest = told[-1]
+    assert done == total == len(drops.faces) and widest <= 0.015
+    assert all(done <= total for done, total, _ in told)
 
 
 def test_a_tally_counts_every_drop_once():

@@ -143,6 +143,23 @@ def test_a_run_of_defaults_has_no_input(tmp_path):
     assert record(tmp_path)["aspects"]["inputs"] == []
 
 
+@pytest.mark.parametrize(
+    ("first", "second", "told"),
+    [
+        ({}, PART, "a run without a file - give another folder to -o, or rename the file"),
+        (PART, {}, "another file, {} - give another folder to -o"),
+    ],
+    ids=["defaults first", "file first"],
+)
+def test_defaults_and_a_file_do_not_mix(tmp_path, first, second, told):
+    run(tmp_path, {"a.csv": "x\n"}, identity=first)
+    with pytest.raises(FeederError) as caught:
+        run(tmp_path, {"b.csv": "y\n"}, command="slide", identity=second)
+    owner = os.path.relpath(next(iter(PART)), tmp_path / "nut")
+    assert str(caught.value) == f"{tmp_path / 'nut'}: holds the results of {told.format(owner)}"
+    assert {path.name for path in (tmp_path / "nut").iterdir()} == {"a.csv", "run.json"}
+
+
 @pytest.mark.parametrize("text", ["{", "[]", '{"aspects": 3}', '{"aspects": {}}', "\xff"])
 def test_a_record_of_something_else_is_refused(tmp_path, text):
     (tmp_path / "nut").mkdir()

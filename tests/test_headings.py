@@ -207,6 +207,36 @@ def test_an_even_end_is_shared_evenly():
     assert sides[0] == pytest.approx(sides[1], rel=1e-9)
 
 
+def regular(count, error=0.0):
+    """A regular polygon with a side below, turned by a small error."""
+    angle = 2.0 * np.pi * np.arange(count) / count - np.pi / 2 + np.pi / count + error
+    return 0.01 * np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+@pytest.mark.parametrize("error", [0.0, 3e-7, -3e-7])
+@pytest.mark.parametrize(
+    ("count", "mirrors"),
+    [
+        (4, {0: 180, 90: None, 180: 0, 270: None}),
+        (6, {0: 180, 60: 120, 120: 60, 180: 0, 240: 300, 300: 240}),
+    ],
+)
+def test_equal_headings_come_from_0_on_whatever_the_rounding(count, mirrors, error):
+    """Every side of a regular polygon is as good; one is laid on 0, and rounding makes it no 360."""
+    plan = regular(count, error + 1e-9 * np.arange(count))
+    found = headings(plan_posture(plan), TRACK)
+    assert np.degrees(found.headings) == pytest.approx(list(mirrors), abs=1e-4)
+    named = [None if row < 0 else round(np.degrees(found.headings[row])) for row in found.mirrors]
+    assert named == list(mirrors.values())
+
+
+def test_the_more_frequent_heading_comes_first_by_more_than_rounding():
+    found = headings(plan_posture(rectangle(0.01 * (1.0 + 1e-6), 0.01)), TRACK)
+    assert np.degrees(found.headings) == pytest.approx([0, 90, 180, 270])
+    found = headings(plan_posture(rectangle(0.01, 0.011)), TRACK)
+    assert np.degrees(found.headings) == pytest.approx([90, 270, 0, 180])
+
+
 def test_a_half_turn_is_the_heading_half_a_turn_on():
     """All six headings of a hexagon look alike from above."""
     angle = np.pi / 3 * np.arange(6)

@@ -5,7 +5,7 @@ import pytest
 import shapes
 
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting.landscape import edges, landscape, passes
+from feederscrew.resting.landscape import BARE, RIPPLE_OF_RADIUS, edges, landscape, passes
 
 
 def hull_of(mesh, centre=None):
@@ -52,3 +52,39 @@ def test_an_unstable_end_belongs_to_the_basin_it_rolls_into():
     standing = hull.normals[found.sinks]
     assert not np.any(standing @ [0, -1, 0] > 0.999)
     assert set(np.unique(found.basins)) == set(found.sinks)
+
+
+def keel(chamfer=0.0):
+    """A bar standing on a strip 0.6 wide whose sides leave at 40 deg, its centre of mass 5 over it.
+
+    The way over the strip's edge rises by less than a ripple may, but it is sharp.
+    """
+    away = np.array([np.cos(np.radians(40)), np.sin(np.radians(40))])
+    edge = np.array([0.3, -5.0])
+    corner = [edge] if chamfer == 0.0 else [edge - (chamfer, 0.0), edge + chamfer * away]
+    right = np.array([*corner, edge + 4 * away, (edge[0] + 4 * away[0], 5.0)])
+    return shapes.prism(np.vstack([right, right[::-1] * (-1, 1)]), 20.0)
+
+
+def stands_on_its_keel(mesh):
+    hull = convex_hull(mesh.vertices, np.zeros(3))
+    rise = np.hypot(0.3, 5.0) - 5.0
+    assert BARE * hull.radius < rise < RIPPLE_OF_RADIUS * hull.radius
+    found = landscape(hull)
+    assert len(found.sinks) == 8
+    return hull.normals[found.sinks, 1].min() < -0.999
+
+
+def test_a_sharp_edge_with_a_low_barrier_parts_two_faces():
+    assert stands_on_its_keel(keel())
+
+
+@pytest.mark.parametrize("chamfer", [1e-6, 1e-4, 5e-3])
+def test_a_chamfer_too_small_to_see_leaves_its_edge_sharp(chamfer):
+    assert stands_on_its_keel(keel(chamfer))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_slivers_that_noise_leaves_at_an_edge_leave_it_sharp(seed):
+    rng = np.random.default_rng(seed)
+    assert stands_on_its_keel(shapes.noisy(shapes.subdivided(keel(), 1), 1e-4, rng))

@@ -157,3 +157,9 @@ def test_a_rule_without_data_is_left_out():
     (found,) = profiles.of_rules(aspects)
     assert (found.name, found.kind) == ("PMI", "rule")
     np.testing.assert_array_equal(found.fractions, [0.4, 0.6])
+
+
+def test_of_a_drop_table_the_counts_are_taken():
+    text = "aspect,height_mm,count,p_drop,p_drop_low\nA,1.5,30,0.75,0.6\nB,2.5,10,0.25,0.1\n"
+    (found,) = profiles.parse(text, "drop.csv", ["B", "A"])
+    assert (found.name, found.kind, found.values.tolist()) == ("count", "counts", [10.0, 30.0])

@@ -196,6 +196,8 @@ TEXT = files.ascii_stl(BOX)
         (files.ascii_stl(BOX, end="\r"), ()),
         (files.ascii_stl(BOX, name="solid vertex facet endsolid"), ()),
         (b"\xef\xbb\xbf" + TEXT, ()),
+        (TEXT + bytes(600), ("600 NUL bytes after the text are left out",)),
+        (TEXT + bytes(70_000), ("70000 NUL bytes after the text are left out",)),
         (TEXT.upper(), ()),
         (TEXT.replace(b"solid part", "solid größe".encode("latin-1")), ()),
         (files.ascii_stl(BOX[:5], "first") + files.ascii_stl(BOX[5:], "second"), ()),
@@ -207,6 +209,8 @@ def test_stl_that_can_be_used(tmp_path, data, warnings):
     assert part.warnings == warnings
 
 
+AS_UTF8 = "save it as ASCII or UTF-8 text"
+UTF16 = ("utf-16", "utf-16-le", "utf-16-be")  # the first opens with a mark
 GLB = exported("glb", BOX / 1000)
 PLY = exported("ply")
 
@@ -248,6 +252,10 @@ PLY = exported("ply")
         ("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "has no facets - export the part again as a solid"),
         ("a.stl", b"<!DOCTYPE html><html></html>", f"is an HTML page, not a part - {NO_MESH}"),
         ("a.stl", b"\x89PNG\r\n\x1a\n" + bytes(200), f"is a picture, not a part - {NO_MESH}"),
+        *(("a.stl", TEXT.decode().encode(code), f"is text in UTF-16 - {AS_UTF8}") for code in UTF16),
+        ("a.obj", files.obj(BOX).decode().encode("utf-16"), f"is text in UTF-16 - {AS_UTF8}"),
+        ("a.stl", TEXT[:1000] + bytes(100) + TEXT[1100:],
+         f"is ASCII STL with NUL bytes in the middle - {NO_MESH}"),
         ("a.stl", b"%PDF-1.7\n" + bytes(200), f"is a PDF document, not a part - {NO_MESH}"),
         ("a.3mf", b"PK\x03\x04" + bytes(200), f"is a ZIP archive without a 3MF model - {NO_MESH}"),
         ("a.sldprt", b"\xd0\xcf\x11\xe0" + bytes(200),
@@ -272,6 +280,12 @@ def test_file_that_is_refused(tmp_path, name, data, line):
 def test_missing_file_and_folder(tmp_path):
     assert files.refused(tmp_path / "none.stl") == "no such file - check the path"
     assert files.refused(tmp_path) == "is a folder - name a part file in it"
+
+
+def test_empty_path():
+    with pytest.raises(FeederError) as error:
+        load("")
+    assert str(error.value) == "'': is an empty path - name a part file"
 
 
 def test_standard_input_is_named_in_lines():

@@ -69,6 +69,17 @@ def test_the_mesh_is_stored_once_and_whole(bracket):
     assert len(json.dumps(told)) < 1.5 * (4 * 3 * len(bracket.vertices) + 12 * len(index)) + 3000
 
 
+def test_shapes_and_probabilities_are_a_table_each(light):
+    """One table of both would be broader than a window."""
+    section = next(section for section in light.sections if section.anchor == "aspects")
+    shapes, chances = (block.frame for block in section.blocks if isinstance(block, blocks.Table))
+    assert list(shapes["aspect"]) == list(chances["aspect"])
+    assert {"height_mm", "contact_area_mm2", "barrier_mm", "tip_angle_deg"} <= set(shapes)
+    assert {"p_pmi", "p_csa", "p_surface"} <= set(chances)
+    assert all(name == "aspect" or name.startswith("p_") for name in chances)
+    assert not any(name.startswith("p_") for name in shapes)
+
+
 def sphere(rings):
     """Corners and facets of a unit sphere."""
     v, u = np.meshgrid(
@@ -133,7 +144,8 @@ def test_markdown_has_every_chapter_and_no_script(light):
         s.title for s in light.sections
     ]
     assert "![The part as it rests on each aspect](report/aspects.png)" in text
-    assert "| A | flat | 1 | yes | 4.651 | 450.0 | 3.699 | 1218 | 31.2 | 42.7 | 34.9 |" in text
+    assert "| A | flat | 1 | yes | 4.651 | 450.0 | 3.699 | 1218 |" in text
+    assert "| A | 31.2 | 42.7 | 34.9 |" in text
     assert "<script" not in text
 
 
@@ -183,7 +195,7 @@ def test_same_input_same_bytes(bracket, light):
         (
             {"rule": "guess"},
             "--rule guess: has no probabilities of this part - choose one of pmi, csa, stability, "
-            "quasistatic, crsa, barrier, surface",
+            "quasistatic, crsa, barrier, surface, hops",
         ),
     ],
 )

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import shapes
+import trimesh
 
 from feederscrew.errors import MeshError
 from feederscrew.output import columns, graph_sheets
@@ -81,6 +82,48 @@ def test_noise_and_turning_change_little(rng):
         result = everything(mesh)[3]
         for rule, p in clean.probabilities.items():
             assert result.probabilities[rule] == pytest.approx(p, abs=0.01), rule
+
+
+def half_cylinder():
+    turn = np.linspace(0.0, np.pi, 33)
+    return shapes.prism(np.column_stack([8.0 * np.cos(turn), 8.0 * np.sin(turn)]), 25.0)
+
+
+BODIES = {
+    "bracket": shapes.prism(shapes.l_profile(), 15.0),
+    "cylinder": shapes.cylinder(5.0, 20.0, 40),
+    "rocker": half_cylinder(),
+}
+
+
+def assert_alike(first, second, scale):
+    """Classes, probabilities, barriers and the graph of a part are those of another, scaled."""
+    (_, aspects, found, result), (_, others, beside, again) = first, second
+    assert (others.names, others.kinds) == (aspects.names, aspects.kinds)
+    assert others.faces.tolist() == aspects.faces.tolist()
+    for rule, p in result.probabilities.items():
+        assert again.probabilities[rule] == pytest.approx(p, rel=1e-6), rule
+    assert again.barriers == pytest.approx(scale * result.barriers, rel=1e-6)
+    assert again.barrier_energies == pytest.approx(scale**4 * result.barrier_energies, rel=1e-6)
+    assert again.tip_angles == pytest.approx(result.tip_angles, rel=1e-6)
+    ways = [{(way.start, way.end): way.lift for way in transitions(one)} for one in (found, beside)]
+    assert ways[1] == pytest.approx({pair: scale * lift for pair, lift in ways[0].items()}, rel=1e-6)
+
+
+@pytest.mark.parametrize("body", BODIES)
+@pytest.mark.parametrize("scale", [1.0, 0.2, 3.0])
+def test_turning_moving_scaling_and_shuffling_change_nothing(body, scale):
+    mesh, rng = BODIES[body], np.random.default_rng(round(10 * scale))
+    moved = shapes.turned(mesh, rng).apply_scale(scale)
+    order = rng.permutation(len(moved.vertices))
+    faces = rng.permutation(np.argsort(order)[moved.faces])
+    moved = trimesh.Trimesh(moved.vertices[order], faces, process=False)
+    assert_alike(everything(mesh), everything(moved), scale)
+
+
+@pytest.mark.parametrize("body", BODIES)
+def test_cutting_the_surface_finer_changes_nothing(body):
+    assert_alike(everything(BODIES[body]), everything(shapes.subdivided(BODIES[body], 2)), 1.0)
 
 
 def test_a_heavy_bottom_takes_the_sides_that_a_micrometre_holds():

@@ -53,11 +53,7 @@ def read(path, faults):
 
 
 def _text(path):
-    try:
-        with Path(path).open("rb") as file:
-            data = file.read(LARGEST + 1)
-    except OSError as error:
-        raise ConfigError(path, f"cannot be read ({error.strerror})", "check the path") from None
+    data = documents.content(path, LARGEST, "a CSV file")
     if len(data) > LARGEST:
         raise ConfigError(path, f"has more than {LARGEST // 10**6} MB", "split the list")
     return documents.decoded(data, path)

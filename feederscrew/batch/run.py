@@ -10,9 +10,9 @@ from feederscrew.batch.task import FAILED, Choices, Outcome, Task
 from feederscrew.batch.workers import Processes, processors
 from feederscrew.documents import hint
 from feederscrew.errors import ConfigError, FeederError
+from feederscrew.motion.rate import RULES
 from feederscrew.output import contact_sheet, tables
 from feederscrew.part import read
-from feederscrew.resting.rules import RULES
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +72,7 @@ def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda
     """
     choices = choices or Choices()
     if choices.rule not in RULES:
-        raise ConfigError("--rule", f"unknown rule {choices.rule!r}", hint(choices.rule, list(RULES)))
+        raise ConfigError("--rule", f"unknown rule {choices.rule!r}", hint(choices.rule, RULES))
     with Store(directory) as store:
         store.remove(summary.NAME, index_page.NAME, contact_sheet.PATTERN)
         under_way = _UnderWay(store, choices, resume, tell)

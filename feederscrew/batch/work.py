@@ -51,7 +51,7 @@ def _results(task):
     request, choices, files = task.request, task.choices, Files()
     part = load(request.source, **dict(request.options), stdin=io.BytesIO(task.data))
     found = find(part)
-    document = columns.part(part, found.warnings) | {"aspects": columns.aspects(found, part)}
+    document = columns.document(found, part)
     sheets.aspects(files, part, found, document, pictures=choices.pictures)
     if choices.pictures and part.vertices is not None:
         files.write(THUMBNAIL, contact_sheet.thumbnail(part, found))

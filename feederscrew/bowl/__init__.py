@@ -6,11 +6,13 @@ from pathlib import Path
 from feederscrew.bowl.reading import settings
 from feederscrew.bowl.record import Bowl, Drive, Friction, Track
 from feederscrew.bowl.settings import effective, record, swept, texts
+from feederscrew.bowl.strokes import named, strokes
 from feederscrew.bowl.vary import ranges
 
 __all__ = [
     "Bowl", "Drive", "Friction", "Track",
-    "default", "identity", "name", "ranges", "read", "record", "settings", "swept", "texts",
+    "default", "identity", "name", "named", "ranges", "read", "record", "settings", "strokes", "swept",
+    "texts",
 ]  # fmt: skip
 
 
@@ -42,8 +44,8 @@ def default():
 
 
 def name(path=None):
-    """What a bowl's results are filed under: its file's stem, or 'bowl'."""
-    return "bowl" if path is None else Path(path).stem
+    """What a bowl's results are filed under: its file's stem, or 'defaults'."""
+    return "defaults" if path is None else Path(path).stem
 
 
 def identity(path=None):

@@ -31,6 +31,8 @@ def template():
 
 def write_template(path, *, replace=False):
     """Write ``template`` to a file; FeederError if it exists, unless ``replace``, or cannot be made."""
+    if Path(path).is_dir():
+        raise FeederError(path, "is a folder", f"name a file in it, such as {Path(path) / 'bowl.yaml'}")
     try:
         with Path(path).open("w" if replace else "x", encoding="utf-8", newline="\n") as file:
             file.write(template())

@@ -59,6 +59,8 @@ def _range(text):
         what = f"{units.shown(span)} is no range"
         raise ConfigError(where, what, f"write FROM:TO:COUNT, as in {name}={_example(BY_NAME[name])}")
     low, high = (checked(BY_NAME[name], end, where, bare=True).value for end in ends[:2])
+    if low == high:
+        raise ConfigError(where, "begins where it ends", "give two different values, or --set the one")
     steps = _count(ends[2], where) - 1
     return Range(BY_NAME[name], tuple((low * (steps - i) + high * i) / steps for i in range(steps + 1)))
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from feederscrew.bowl.record import Bowl
 from feederscrew.motion import floor, limits, published_floor
 from feederscrew.motion.cycle import Cycle
+from feederscrew.motion.standing import standing
 from feederscrew.part.record import Part
-from feederscrew.resting import aspects
-from feederscrew.resting.posture import Posture, posture
+from feederscrew.resting.posture import Posture
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,6 +22,7 @@ class FloorAnalysis:
     printed: published_floor.PrintedFloor  # the same by the printed equations
     cycle: floor.FloorMotion  # over one settled period
     course: Cycle
+    why: str | None = None  # this aspect; None where it was asked for
 
 
 def analyse(part, bowl, aspect=None, heading=0.0):
@@ -33,7 +34,7 @@ def analyse(part, bowl, aspect=None, heading=0.0):
     bowl : Bowl
         Single values.
     aspect : str, optional
-        Its name; without one, the first of ``resting.aspects.find``.
+        Its name; without one, as ``standing`` chooses.
     heading : float [rad]
         theta.
 
@@ -47,8 +48,7 @@ def analyse(part, bowl, aspect=None, heading=0.0):
         If the part has no such aspect, or the drive is not ``limits.plain``.
     """
     limits.plain(bowl)
-    found = aspects.find(part)
-    stand = posture(part, found, found.names[0] if aspect is None else aspect)
+    stand, why = standing(part, aspect, "floor")
     cycle, course = floor.over_cycle(stand, bowl, heading)
     return FloorAnalysis(
         part=part,
@@ -59,4 +59,5 @@ def analyse(part, bowl, aspect=None, heading=0.0):
         printed=published_floor.motion(stand, bowl, heading),
         cycle=cycle,
         course=course,
+        why=why,
     )

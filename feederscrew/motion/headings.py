@@ -14,13 +14,14 @@ from feederscrew.motion.wall import rests
 from feederscrew.resting.plan import inset, outline, sides, turned
 
 ALIKE = 1e-5  # of the outline's size: outlines that differ by less are the same
-NO_TURN = 1e-8  # [rad] single precision files turn a part by more
+NO_TURN = 1e-5  # [rad] files in single precision turn a part by a hundredth of it
+TIE = 1e-4  # shares that differ by less of themselves are equal but for rounding
 SAME = 1e-6  # of the outline's size: touching corners nearer than this are the same corner
 
 
 @dataclass(frozen=True, eq=False)
 class Headings:
-    """Every stable heading of one posture on one track, the most frequent first; M rows."""
+    """Every stable heading of one posture on one track, the most frequent first, equals from 0 on; M rows."""
 
     aspect: str
     headings: (
@@ -38,7 +39,7 @@ class Headings:
     falls_off: np.ndarray  # (M,) bool
     touching: np.ndarray  # (M, 2, 2) [m] corners at the wall, trailing one first, in track axes from the foot
     half_turns: np.ndarray  # (M,) int, the row with the same outline turned by half; -1 where there is none
-    mirrors: np.ndarray  # (M,) int, the row with the mirror image of the outline; -1 where there is none
+    mirrors: np.ndarray  # (M,) int, the row with the mirror image of the outline; -1 for none but itself
     rounded: bool  # round in plan: it takes any heading
 
 
@@ -63,9 +64,10 @@ def headings(posture, track):
     """
     _check_fits(posture, track)
     found, straight = rests(posture.outline, track.radius), rests(posture.outline, np.inf)
-    order = np.lexsort((np.round(_heading(found.outward), 9), -np.round(found.share, 9)))
+    order = _ranked(found)
     turn = _heading(found.outward[order])
-    halves = np.abs(np.abs(turn[:, None] - turn) - np.pi)  # how far two headings are from a half turn
+    halves = _apart(turn[:, None] + np.pi, turn) + np.pi * np.eye(len(turn))  # a row is not its own half turn
+    mirrored = _apart(np.pi - turn[:, None], turn)  # as the body's own axes are mirrored
     shapes = [turned(posture.outline, angle) for angle in turn]
     distances = found.distance[order]
     widths = np.array([_width(shape, d, track.radius) for shape, d in zip(shapes, distances)])
@@ -83,7 +85,7 @@ def headings(posture, track):
         falls_off=check.frozen(nothing > 0.0),
         touching=check.frozen(turned(found.touching[order], turn[:, None])),
         half_turns=check.frozen(_partners(shapes, lambda shape: -shape, halves)),
-        mirrors=check.frozen(_partners(shapes, lambda shape: shape * [-1.0, 1.0], 0.0 * halves)),
+        mirrors=check.frozen(_partners(shapes, lambda shape: shape * [-1.0, 1.0], mirrored)),
         rounded=found.rounded,
     )
     return on_track(geometry, posture, track)
@@ -143,8 +145,21 @@ def laid(found, heading=None):
 def _settled(found, heading):
     """The row whose range of headings holds one; on a border the one nearer in heading."""
     beyond = np.mod(heading - found.lowest, 2.0 * np.pi) - 2.0 * np.pi * found.shares
-    gap = np.abs(np.mod(found.headings - heading + np.pi, 2.0 * np.pi) - np.pi)
-    return int(np.lexsort((gap, beyond > 1e-9))[0])
+    return int(np.lexsort((_apart(found.headings, heading), beyond > 1e-9))[0])
+
+
+def _ranked(found):
+    """Places of the rests, the most frequent first; those of equal shares by their headings."""
+    order = np.argsort(-found.share)
+    share = found.share[order]
+    rank = np.zeros(len(order), dtype=int)
+    rank[order[1:]] = np.cumsum(share[:-1] - share[1:] > TIE * share[:-1])
+    return np.lexsort((_heading(found.outward), rank))
+
+
+def _apart(first, second):
+    """Angle between headings, 0 to pi."""
+    return np.abs(np.mod(first - second + np.pi, 2.0 * np.pi) - np.pi)
 
 
 def _check_fits(posture, track):
@@ -216,12 +231,12 @@ def _crossings(start, along, radius):
 
 
 def _partners(shapes, image, astray):
-    """For each outline the row of another that is its image, -1 for none; of several the least astray."""
+    """For each outline the row that is its image, of several the least astray; -1 for none but itself."""
     partner = np.full(len(shapes), -1)
     for i, shape in enumerate(shapes):
-        other = [j for j, s in enumerate(shapes) if j != i and _alike(image(shape), s)]
-        partner[i] = min(other, key=lambda j: astray[i, j], default=-1)
-    return partner
+        like = [j for j, s in enumerate(shapes) if _alike(image(shape), s)]
+        partner[i] = min(like, key=lambda j: round(astray[i, j], 3), default=-1)
+    return np.where(partner == np.arange(len(shapes)), -1, partner)
 
 
 def _alike(first, second):

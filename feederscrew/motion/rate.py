@@ -13,6 +13,7 @@ from feederscrew.motion.headings import headings, laid
 from feederscrew.resting.plan import turned
 from feederscrew.resting.posture import posture
 
+RULES = ("pmi", "csa", "stability", "quasistatic", "crsa", "barrier", "surface", "hops")  # a rate can go by
 SAME = 1e-3  # of the part's size: hulls whose corners differ by less are the same
 
 

@@ -9,12 +9,12 @@ from feederscrew.motion import limits, published_track, track
 from feederscrew.motion.cycle import Cycle
 from feederscrew.motion.headings import Headings
 from feederscrew.motion.published import Term, omitted_terms
+from feederscrew.motion.standing import standing
 from feederscrew.motion.track_cells import seated
 from feederscrew.motion.track_frame import Seat, bank_without_radial_friction
 from feederscrew.motion.track_opening import Opening, first_to_open
 from feederscrew.part.record import Part
-from feederscrew.resting import aspects
-from feederscrew.resting.posture import Posture, posture
+from feederscrew.resting.posture import Posture
 
 LEVEL = {"magnet"}  # cards whose printed equations are in level axes, [4.57] to [4.62]
 
@@ -36,12 +36,7 @@ class TrackAnalysis:
     course: Cycle
     opening: Opening
     bank_without_radial_friction: float  # [rad]
-
-
-def stand(part, aspect=None):
-    """The part on an aspect; without a name on the first of ``resting.aspects.find``."""
-    found = aspects.find(part)
-    return posture(part, found, found.names[0] if aspect is None else aspect)
+    why: str | None = None  # this aspect; None where it was asked for
 
 
 def analyse(part, bowl, aspect=None, heading=None):
@@ -53,7 +48,7 @@ def analyse(part, bowl, aspect=None, heading=None):
     bowl : Bowl
         Single values.
     aspect : str, optional
-        Its name; without one, the first of ``resting.aspects.find``.
+        Its name; without one, as ``standing`` chooses.
     heading : float [rad], optional
         As laid down: pushed to the wall, the part turns to the stable heading of that range. Without one,
         the most frequent heading that stays on the track.
@@ -69,14 +64,14 @@ def analyse(part, bowl, aspect=None, heading=None):
         the drive is not ``limits.plain``.
     """
     limits.plain(bowl)
-    standing = stand(part, aspect)
-    seat, found, row = seated(standing, bowl, heading)
-    levers = _levers(part, standing, seat)
+    posture, why = standing(part, aspect, "track")
+    seat, found, row = seated(posture, bowl, heading)
+    levers = _levers(part, posture, seat)
     now = track.motion(seat, bowl)
     cycle, course = track.over_cycle(seat, bowl)
     return TrackAnalysis(
         part=part,
-        posture=standing,
+        posture=posture,
         bowl=bowl,
         seat=seat,
         headings=found,
@@ -88,16 +83,17 @@ def analyse(part, bowl, aspect=None, heading=None):
         course=course,
         opening=first_to_open(seat, bowl),
         bank_without_radial_friction=bank_without_radial_friction(seat),
+        why=why,
     )
 
 
-def _levers(part, standing, seat):
+def _levers(part, posture, seat):
     """Levers of the printed equations: the card's own, or the mesh's."""
-    axes = "level" if standing.corners is None and part.name in LEVEL else "tilted"
-    ahead = standing.offset * np.cos(seat.heading)
+    axes = "level" if posture.corners is None and part.name in LEVEL else "tilted"
+    ahead = posture.offset * np.cos(seat.heading)
     levers = published_track.levers(seat, float(ahead), axes)
     return (
         levers
-        if standing.corners is not None
-        else published_track.printed_levers(levers, standing.printed["track"])
+        if posture.corners is not None
+        else published_track.printed_levers(levers, posture.printed["track"])
     )

@@ -3,6 +3,7 @@
 import numpy as np
 
 from feederscrew.output import tables
+from feederscrew.resting import recommended
 from feederscrew.units import factor
 
 MM, MM2, MM3 = factor("mm", "length"), factor("mm2", "area"), factor("mm3", "volume")
@@ -10,7 +11,7 @@ UJ, DEG = factor("uJ", "energy"), factor("deg", "angle")
 GRAM, G_MM2, G_CM3 = factor("g", "mass"), factor("g mm2", "inertia"), factor("g/cm3", "density")
 
 NORMALS = ("normal_x", "normal_y", "normal_z")
-HIDDEN = (*NORMALS, "barrier_uJ")  # left out of the table for people
+HIDDEN = (*NORMALS, "barrier_uJ", "p_hops")  # left out of the table for people
 
 
 def aspects(found, solid, tally=None):
@@ -20,7 +21,7 @@ def aspects(found, solid, tally=None):
     ----------
     found : Aspects
     solid : Part
-        Whose they are; an open surface is labelled in every row.
+        Whose they are; an open surface is labelled in every row, and tumbling that fails a self-check.
     tally : Tally, optional
         Of a drop test.
 
@@ -45,9 +46,15 @@ def aspects(found, solid, tally=None):
             **chances,
             **_barriers(found),
             **_dropped(tally),
+            **_recommended(_answer(found, tally)),
             **({"surface": ["open"] * len(found.names)} if solid.open_surface else {}),
+            **({"tumbling": ["doubtful"] * len(found.names)} if _doubtful(found) else {}),
         }
     )
+
+
+def _doubtful(found):
+    return found.ground is not None and bool(found.ground.tips.doubts)
 
 
 def _barriers(found):
@@ -64,6 +71,36 @@ def _dropped(tally):
     if tally is None:
         return {}
     return {"p_drop": tally.p, "p_drop_low": tally.low, "p_drop_high": tally.high}
+
+
+def _answer(found, tally):
+    """The recommended answer: the drop test where there is one, else the closed form; None for a card."""
+    return found.recommended if tally is None else recommended.dropped(tally, found.stable)
+
+
+def _recommended(known):
+    if known is None:
+        return {}
+    return {"p_recommended": known.p, "p_recommended_low": known.low, "p_recommended_high": known.high}
+
+
+def document(found, solid, tally=None):
+    """All that is told of a part and its aspects.
+
+    Parameters
+    ----------
+    found, solid, tally
+        As in `aspects`.
+
+    Returns
+    -------
+    dict
+        That of `part`; ``recommended``, the rule of the columns ``p_recommended...``, None for a card;
+        ``aspects``, the table.
+    """
+    known, table = _answer(found, tally), aspects(found, solid, tally)
+    rule = None if known is None else known.rule
+    return part(solid, found.warnings) | {"recommended": rule, "aspects": table}
 
 
 def part(solid, warnings=()):

@@ -1,16 +1,18 @@
 """Drop tests as tables, documents and files."""
 
-from feederscrew.output import tables
+from feederscrew.output import drop_trace_sheets, tables
 from feederscrew.output.columns import MM
 
 
-def counts(aspects, tally):
+def counts(aspects, tally, partial=False):
     """One row an aspect: how many drops rest on it.
 
     Parameters
     ----------
     aspects : Aspects
     tally : Tally
+    partial : bool
+        Stopped by the user: labelled in every row.
 
     Returns
     -------
@@ -27,6 +29,7 @@ def counts(aspects, tally):
             "p_drop_high": tally.high,
             "p_gentle": tally.gentle,
             "p_violent": tally.violent,
+            **({"partial": [True] * len(aspects.names)} if partial else {}),
         }
     )
 
@@ -51,7 +54,10 @@ def document(part, aspects, result):
         "launch": result.launch,
         "partial": result.drops.partial,
         "unsettled": result.tally.unsettled,
-        "aspects": counts(aspects, result.tally),
+        "until": result.aim,
+        "widest": result.tally.widest,
+        "traces": drop_trace_sheets.listed(aspects, result.traces),
+        "aspects": counts(aspects, result.tally, result.drops.partial),
     }
 
 
@@ -60,9 +66,21 @@ def remarks(document):
     told = []
     if document["partial"]:
         told.append(f"partial: stopped after {document['drops']} drops")
+    elif document["until"] is not None and document["widest"] > document["until"]:
+        told.append(
+            f"after {document['drops']} drops the widest interval is {100.0 * document['widest']:.3g} % to "
+            f"either side, not {100.0 * document['until']:.3g} % - give more --drops, or a wider --until"
+        )
     if document["unsettled"]:
         told.append(f"{document['unsettled']} of {document['drops']} drops came to rest on no aspect")
     return told
+
+
+def _title(part, document):
+    """What the picture is of, and what is the matter with it."""
+    title = f"{part.name}: {document['drops']} drops, {document['launch']['name']}"
+    unsettled = f", {document['unsettled']} unsettled" if document["unsettled"] else ""
+    return title + unsettled + ", partial" * document["partial"]
 
 
 def write(folder, part, aspects, result, document, *, pictures=True):
@@ -81,9 +99,11 @@ def write(folder, part, aspects, result, document, *, pictures=True):
     """
     folder.write("drop.csv", tables.text(document["aspects"], "csv"))
     folder.write("drop.json", tables.json_text(document))
+    if result.traces:
+        drop_trace_sheets.write(folder, part, aspects, result, pictures=pictures)
     if pictures:
         from feederscrew.output import drop_plots, plots
 
-        title = f"{part.name}: {document['drops']} drops, {document['launch']['name']}"
         rules = {"csa": aspects.probabilities["csa"]}
-        folder.write("drop.png", plots.png(drop_plots.counts(title, aspects, result.tally, rules)))
+        chart = drop_plots.counts(_title(part, document), aspects, result.tally, rules)
+        folder.write("drop.png", plots.png(chart))

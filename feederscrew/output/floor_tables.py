@@ -167,7 +167,7 @@ def difference(printed, complete, terms=FLOOR_TERMS):
 
 def remarks(found):
     """What a reader of a FloorAnalysis should know, a line each."""
-    posture, lines = found.posture, []
+    posture, lines = found.posture, chosen(found)
     if len(posture.contact) == 0:
         lines.append("a part card has no contact polygon: whether it tips is not known")
     if rolls(posture):
@@ -182,6 +182,11 @@ def remarks(found):
     if not np.isfinite(posture.offset):
         lines.append(f"the card gives no drive offset for aspect {posture.name}: theta'' is not known")
     return lines
+
+
+def chosen(found):
+    """Which aspect was taken, in one line, where none was asked for."""
+    return [f"Aspect {found.posture.name}, {found.why}"] if found.why else []
 
 
 def label(name, text):

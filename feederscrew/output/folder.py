@@ -15,6 +15,7 @@ from feederscrew.output import tables
 
 RECORD = "run.json"
 LIBRARIES = ("embreex", "matplotlib", "numba", "numpy", "pandas", "scipy", "trimesh")
+NO_FILE = {"path": "", "sha256": ""}  # in place of an input where all is by default
 RESERVED = {"CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10))}
 
 
@@ -119,7 +120,7 @@ class ResultFolder:
         file = self.path / RECORD
         try:
             records = json.loads(file.read_text())
-            owners = [record["inputs"][0] for record in records.values() if record["inputs"]]
+            owners = [(record["inputs"] or [NO_FILE])[0] for record in records.values()]
         except FileNotFoundError:
             return {}
         except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
@@ -131,15 +132,13 @@ class ResultFolder:
         return records
 
     def _check_owner(self, owner):
-        path, sha256 = next(iter(self.identity.items()), (None, None))
-        if path is None or owner["sha256"] == sha256:
+        path, sha256 = next(iter(self.identity.items()), (None, NO_FILE["sha256"]))
+        if owner["sha256"] == sha256:
             return
-        if path == "-" or owner["path"] != self._seen_from_here(path):
-            raise FeederError(
-                self.path,
-                f"holds the results of another file, {owner['path']}",
-                "give another folder to -o, or rename the file",
-            )
+        if path in (None, "-") or owner["path"] != self._seen_from_here(path):
+            held = "a run without a file" if owner == NO_FILE else f"another file, {owner['path']}"
+            mend = "give another folder to -o" + (", or rename the file" if path else "")
+            raise FeederError(self.path, f"holds the results of {held}", mend)
 
     def _seen_from_here(self, path):
         """An input's path from this folder: the same wherever the project lies and one stands."""

@@ -20,8 +20,9 @@ METHODS = {  # label and colour of each rule; the colours keep apart for colour-
     "crsa": ("CRSA", "#56b4e9"),
     "barrier": ("barrier", "#8c8c8c"),
     "surface": ("surface", "#d55e00"),
+    "hops": ("hops", "#5b3a8e"),
 }
-SPARE = ("#f0e442", "#5b3a8e", "#7a5c3e", "#a3b18a")
+SPARE = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
 
 
 def figure(width=6.4, height=4.0):

@@ -31,7 +31,7 @@ def comparisons(compared, format="csv"):
         return tables.frame(columns)
     if not any(test.degrees_of_freedom for test in tests):
         columns = dict(list(columns.items())[:4])
-    return tables.frame({name.replace("p_value", "p value"): values for name, values in columns.items()})
+    return tables.frame(columns)
 
 
 def document(names, profiles, compared):

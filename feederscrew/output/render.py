@@ -92,8 +92,8 @@ class Camera:
         distances, normals = solid.hits(origins.reshape(-1, 3), -self.back)
         return distances.reshape(origins.shape[:2]), normals.reshape(origins.shape)
 
-    def sees(self, solid, points, slack=0.01):
-        """Which of (N, 3) points are not hidden by the solid, all in its size; (N,) bool."""
-        starts = points + AWAY * self.back
+    def sees(self, solid, points, slack=0.01, away=AWAY):
+        """Which of (N, 3) points, less than ``away`` behind the solid, it does not hide; (N,) bool."""
+        starts = points + away * self.back
         distances, _ = solid.hits(starts, -self.back)
-        return distances > AWAY - slack
+        return distances > away - slack

@@ -50,10 +50,13 @@ def stance(points, down, height):
     Stance
     """
     along = _long_side(points, down)
+    lean = np.cov(points @ np.cross(along, down), -points @ down)[0, 1]  # the tall end goes to the back
+    return placed(points, down, height, -along if lean < -(BACK_TALL**2) else along)
+
+
+def placed(points, down, height, along):
+    """The same with the floor axis ``along`` that runs ``TURN`` out of the picture's plane, a unit vector."""
     across = np.cross(along, down)
-    lean = np.cov(points @ across, -points @ down)[0, 1]  # the tall end goes to the back
-    if lean < -(BACK_TALL**2):
-        along, across = -along, -across
     camera = _camera(along, across, -down)
     plan = points @ np.column_stack([along, across])
     middle = 0.5 * (plan.min(axis=0) + plan.max(axis=0))

@@ -110,13 +110,21 @@ def heading(name):
     Returns
     -------
     tuple of str
-        ('height', '[mm]'), ('PMI', '[%]'); no unit is ''.
+        ('height', '[mm]'), ('PMI', '[%]'); no unit is ''. The ends of an interval, which follow their
+        value, are ('low', '[%]') and ('high', '[%]').
     """
-    if name.startswith("p_"):
+    if is_share(name):
         rule = name.removeprefix("p_").replace("_", " ")
+        if rule.endswith((" low", " high")):
+            return rule.rsplit(" ", 1)[1], "[%]"
         return (rule.upper() if len(rule) <= SHORT else rule), "[%]"
     ending = next((ending for ending in UNITS if name.endswith(ending) and name != ending), "")
     return name.removesuffix(ending).replace("_", " "), f"[{UNITS[ending]}]" if ending else ""
+
+
+def is_share(name):
+    """Whether a column holds probabilities of aspects, which people read in percent."""
+    return name.startswith("p_") and name != "p_value"
 
 
 def _aligned(frame):
@@ -139,7 +147,7 @@ def _numbers(name, values):
     """Cells of a column of numbers, their points under each other."""
     if np.issubdtype(values.dtype, np.integer):
         return [str(value) for value in values]
-    values = values * (100.0 if name.startswith("p_") else 1.0)
+    values = values * (100.0 if is_share(name) else 1.0)
     nothing = NOISE * max(np.abs(values[np.isfinite(values)]), default=0.0)
     return _pointed([_number(0.0 if abs(value) <= nothing else value) for value in values])
 

@@ -5,7 +5,7 @@ import numpy as np
 from feederscrew.motion.floor import HOP, STATES, regime
 from feederscrew.motion.published import TRACK_TERMS
 from feederscrew.output import tables
-from feederscrew.output.floor_tables import EVERY, MM, difference, label, noiseless, shown_value, tips
+from feederscrew.output.floor_tables import EVERY, MM, chosen, difference, label, noiseless, shown_value, tips
 
 CONTACTS = ("floor", "wall_1", "wall_2")
 TURNED = 1.0  # [deg] of heading: less is not worth a word
@@ -170,7 +170,7 @@ def summary(document):
 
 def remarks(found):
     """What a reader of a TrackAnalysis should know, a line each."""
-    lines, cycle = [], found.cycle
+    lines, cycle = chosen(found), found.cycle
     if len(found.seat.contact) == 0:
         lines.append("a part card has no contact polygon: whether it tips is not known")
     if HOP in cycle.state:

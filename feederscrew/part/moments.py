@@ -1,5 +1,6 @@
 """Moments of a solid up to order six, and whether a rotation leaves them alone."""
 
+from functools import cached_property
 from itertools import product
 from math import factorial
 
@@ -7,6 +8,10 @@ import numpy as np
 
 ORDER = 6
 HALF = [powers for powers in product(range(4), repeat=3) if sum(powers) <= ORDER // 2]  # 20 monomials
+POWERS = np.array(sorted((p for p in product(range(ORDER + 1), repeat=3) if 1 <= sum(p) <= ORDER), key=sum)).T
+WAYS = np.array(
+    [factorial(sum(p)) // (factorial(p[0]) * factorial(p[1]) * factorial(p[2])) for p in POWERS.T]
+)
 SMALL = 0.08  # of the part: on facets with shorter edges a rule of second order will do
 BLOCK = 1 << 15  # points at a time: what a processor's cache holds
 STRIP = (
@@ -23,7 +28,7 @@ class Moments:
     """
 
     def __init__(self, vertices, faces, centre):
-        """Moments of a closed surface.
+        """Moments of a closed surface, integrated when they are first asked for.
 
         Parameters
         ----------
@@ -33,10 +38,18 @@ class Moments:
         centre : (3,) float [m]
             Centre of mass.
         """
-        table, volume, size = _integrals(np.asarray(vertices) - centre, np.asarray(faces))
-        self._moments = table / volume
+        self._surface = np.asarray(vertices) - centre, np.asarray(faces)
         self.error = 1e-4  # [1] of the quadrature, of float32 files and of uneven tessellation
-        self.size = size  # [m] root mean square distance from the centre of mass, the unit of length
+
+    @cached_property
+    def _integrated(self):
+        table, volume, size = _integrals(*self._surface)
+        return table / volume, size
+
+    @property
+    def size(self):
+        """Root mean square distance from the centre of mass [m], the unit of length."""
+        return self._integrated[1]
 
     def directional(self, directions):
         """Directional moments of every order from 1 to 6.
@@ -51,15 +64,13 @@ class Moments:
         (..., 6) float [1]
             In units of the size to the power of the order.
         """
-        power = directions[..., None, :] ** np.arange(ORDER + 1)[:, None]  # (..., 7, 3)
-        out = np.zeros((*directions.shape[:-1], ORDER))
-        for a, b, c in product(range(ORDER + 1), repeat=3):
-            order = a + b + c
-            if 1 <= order <= ORDER:
-                ways = factorial(order) // (factorial(a) * factorial(b) * factorial(c))
-                moment = ways * self._moments[a, b, c]
-                out[..., order - 1] += moment * power[..., a, 0] * power[..., b, 1] * power[..., c, 2]
-        return out
+        moments, _ = self._integrated
+        a, b, c = POWERS
+        power = np.ones((*directions.shape[:-1], ORDER + 1, 3))
+        power[..., 1:, :] = directions[..., None, :]
+        power = np.cumprod(power, axis=-2)
+        terms = WAYS * moments[a, b, c] * power[..., a, 0] * power[..., b, 1] * power[..., c, 2]
+        return np.add.reduceat(terms, np.searchsorted(POWERS.sum(axis=0), np.arange(1, ORDER + 1)), axis=-1)
 
     def mismatch(self, rotations):
         """How far rotations are from being symmetries of the solid.

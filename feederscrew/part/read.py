@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from feederscrew import documents
 from feederscrew.errors import MeshError
 from feederscrew.part import read_format
 from feederscrew.part.read_format import CARD, FORMATS
@@ -89,7 +90,8 @@ def soup(file):
 
     kind, alien = read_format.detect(file.data, file.suffix)
     if kind in (None, CARD):
-        raise MeshError(file.where, alien or "is a part card, not a mesh", EXPORT)
+        mend = "save it as ASCII or UTF-8 text" if alien == read_format.UTF16 else EXPORT
+        raise MeshError(file.where, alien or "is a part card, not a mesh", mend)
     reader = read_stl.soup if kind.startswith("stl") else read_scene.soup
     found = reader(file.data, kind, file.where)
     if not len(found.faces):
@@ -105,18 +107,12 @@ def is_card(file):
 
 
 def _bytes(source, where, stdin):
+    if source != "-" and stdin is None:
+        return documents.content(source, LARGEST, "a part file", MeshError)
     try:
-        if source == "-" or stdin is not None:
-            return (stdin or sys.stdin.buffer).read(LARGEST + 1)
-        with Path(source).open("rb") as stream:
-            return stream.read(LARGEST + 1)
-    except FileNotFoundError:
-        raise MeshError(where, "no such file", "check the path") from None
-    except IsADirectoryError:
-        raise MeshError(where, "is a folder", "name a part file in it") from None
+        return (stdin or sys.stdin.buffer).read(LARGEST + 1)
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise MeshError(where, f"cannot be read ({reason})", "check the path and its permissions") from None
+        raise MeshError(where, f"cannot be read ({error})", "check what it comes from") from None
 
 
 def _misnamed(file, kind):

@@ -36,7 +36,10 @@ MARKS = (  # pattern at the start of a file, and its format
     (rb"(?:#[^\n]*\n|\s)*C?OFF\b", "off"),
     (rb"\s*(?:/\*[^*]*\*/\s*)?ISO-10303-21", "step"),
 )
+UTF16 = "is text in UTF-16"
 ALIENS = (  # what people save under a mesh's name by mistake
+    (rb"\xff\xfe[\t-~]\0|\xfe\xff\0[\t-~]|(?:[\t-~]\0){8}|(?:\0[\t-~]){8}", UTF16),
+    (rb"(?i)\s*solid\b[^\0]*\bfacet\s+normal[^\0]*\0", "is ASCII STL with NUL bytes in the middle"),
     (rb"(?is)\s*<.{,2000}?(?<=<)(?:!doctype\s+html|html\b|head\b|body\b)", "is an HTML page, not a part"),
     (rb"(?s)\s*<\?xml.*<amf", "is an AMF file, which is not read"),
     (rb"\s*<", "is an XML file, not a part"),
@@ -71,7 +74,7 @@ def detect(data, suffix=""):
     """
     if fits_binary_stl(data):
         return BINARY, None
-    head = data[:HEAD].removeprefix(b"\xef\xbb\xbf")
+    head = data.rstrip(b"\0")[:HEAD].removeprefix(b"\xef\xbb\xbf")
     kind = _marked(data, head) or _text(head, suffix)
     if kind:
         return kind, None

@@ -8,7 +8,7 @@ import numpy as np
 
 from feederscrew.errors import MeshError
 from feederscrew.part import read
-from feederscrew.part.read_format import BINARY, FACET, HEADER, claimed_facets, plain
+from feederscrew.part.read_format import ASCII, BINARY, FACET, HEADER, claimed_facets, plain
 
 UNKNOWN_COUNTS = (0, 0xFFFFFFFF)  # what streaming exporters leave in the header
 NAME_LINE = re.compile(rb"(?im)^[ \t]*(end)?solid\b[^\n]*$")
@@ -73,9 +73,16 @@ def _recounted(data, count):
 
 
 def _ascii(data, where):
+    whole = data.rstrip(b"\0")
+    padding = len(data) - len(whole)
+    said = (f"{padding} NUL bytes after the text are left out",) if padding else ()
+    return _from_text(plain(whole.removeprefix(b"\xef\xbb\xbf")), said, where)
+
+
+def _from_text(text, warned, where):
     from trimesh.exchange.stl import load_stl_ascii
 
-    text = plain(data.removeprefix(b"\xef\xbb\xbf")).replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    text = text.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     text = NAME_LINE.sub(lambda match: (match[1] or b"").lower() + b"solid", text)
     said = text.lower().count(b"vertex")
     if said % 3 or not re.search(rb"(?i)endsolid\s*\Z", text):
@@ -90,7 +97,7 @@ def _ascii(data, where):
     vertices = np.concatenate([solid["vertices"] for solid in solids] or [np.empty((0, 3))])
     if len(vertices) != said:
         raise _garbled(where)
-    return read.Soup(vertices, np.arange(len(vertices)).reshape(-1, 3), "stl-ascii")
+    return read.Soup(vertices, np.arange(len(vertices)).reshape(-1, 3), ASCII, warnings=warned)
 
 
 def _garbled(where):

@@ -7,10 +7,12 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.part.hull import convex_hull
+from feederscrew.part.moments import Moments
 from feederscrew.resting import compiled, rules, surface, tumbling_aspects, tumbling_walk
 from feederscrew.resting.classes import body_frame, classes
 from feederscrew.resting.faces import stable_faces, unstable_faces
 from feederscrew.resting.landscape import landscape
+from feederscrew.resting.recommended import Recommended
 
 TIE = 1e-4  # probabilities that differ by less of themselves are equal but for rounding
 
@@ -34,6 +36,7 @@ class Aspects:
     barriers: np.ndarray | None = None  # (A,) [m] least lift that tips the part; NaN where nothing does
     barrier_energies: np.ndarray | None = None  # (A,) [J]
     tip_angles: np.ndarray | None = None  # (A,) [rad] of a floor that tips a part that does not slide
+    recommended: Recommended | None = None  # the one answer to take; None for a card
     ground: tumbling_aspects.Ground | None = None  # faces, basins and barriers behind the rows
     warnings: tuple[str, ...] = ()
 
@@ -66,11 +69,12 @@ def find(part, *, as_published=False, unstable=False, exponent=surface.EXPONENTS
     hull = part.hull or convex_hull(part.vertices, part.centre_of_mass, part.source)
     stable = stable_faces(hull, landscape(hull))
     faces = stable + (unstable_faces(hull, stable) if unstable else [])
-    label = classes(faces, part)
+    moments = Moments(part.vertices, part.faces, part.centre_of_mass)
+    label = classes(faces, part, moments)
     groups = [[face for face, at in zip(faces, label) if at == k] for k in range(label.max() + 1)]
     table = _geometry(groups, part)
     chances = _probabilities(table, as_published)
-    order = _ranked(table, chances["csa"], part)
+    order = _ranked(table, chances["csa"], part, moments)
     named = _named(table, chances, order, _said(groups))
     ground = tumbling_aspects.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
     return _tumbled(named, ground, part, exponent)
@@ -93,6 +97,7 @@ def _tumbled(named, ground, part, exponent):
         barriers=more.barriers,
         barrier_energies=more.barrier_energies,
         tip_angles=more.tip_angles,
+        recommended=more.recommended,
         ground=ground,
         warnings=named.warnings + doubts,
     )
@@ -137,7 +142,7 @@ def _probabilities(table, as_published):
     return {rule: rules.normalised(weight, stable) for rule, weight in weights.items()}
 
 
-def _ranked(table, chance, part):
+def _ranked(table, chance, part, moments):
     """Order of the rows: by falling CSA probability, then by size, then by direction in the part.
 
     The last is taken in axes fixed in the part, so that a turned file keeps its names.
@@ -149,7 +154,7 @@ def _ranked(table, chance, part):
         return order
     rank = np.empty(len(order), dtype=int)
     rank[order] = np.cumsum(~tied)
-    direction = np.round(table["normals"] @ body_frame(part), 3)
+    direction = np.round(table["normals"] @ body_frame(part, moments), 3)
     height = np.round(table["heights"] / table["heights"].max(), 4)
     return np.lexsort((*-direction.T, height, rank))
 

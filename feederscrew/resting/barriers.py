@@ -5,11 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew import check
-from feederscrew.resting import forest
-from feederscrew.resting.compiled import fitting
+from feederscrew.resting import adoption
 from feederscrew.resting.solid_angle import solid_angles
 
-UNNAMED = forest.NAMELESS  # label of a hull triangle that belongs to no face
+UNNAMED = adoption.UNNAMED  # label of a hull triangle that belongs to no face
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +31,8 @@ def tipping(tumbling, labels):
     tumbling : Tumbling
     labels : (T,) int
         Face of each hull triangle; UNNAMED for triangles of none. A sink of no face (a facet that noise
-        or tessellation left) joins the face behind the lowest saddle around it.
+        or tessellation left) joins the face behind the lowest saddle around it, or the faces behind
+        saddles as low as each other, in equal parts.
 
     Returns
     -------
@@ -44,22 +44,33 @@ def tipping(tumbling, labels):
         If no sink carries a label.
     """
     labels = np.asarray(labels)
-    sinks = named(tumbling, labels[tumbling.sinks])
-    count = int(labels.max()) + 1
-    heights = np.full(count, np.inf)
-    np.minimum.at(heights, sinks, tumbling.heights)
-    faces = np.sort(sinks[tumbling.pairs], axis=1)
-    order = np.lexsort((tumbling.saddle_heights, faces[:, 1], faces[:, 0]))
+    basins = adoption.adopted(tumbling, labels[tumbling.sinks], labels.max() + 1)
+    heights = np.full(basins.shape[1], np.inf)
+    sinks = np.repeat(np.arange(basins.shape[0]), np.diff(basins.indptr))
+    np.minimum.at(heights, basins.indices, tumbling.heights[sinks])
+    saddles, faces = _between(basins, tumbling.pairs)
+    order = np.lexsort((tumbling.saddle_heights[saddles], faces[:, 1], faces[:, 0]))
     order = order[faces[order, 0] != faces[order, 1]]
     pairs, first = np.unique(faces[order], axis=0, return_index=True)
+    lowest = saddles[order][first]
     return Tipping(
-        shares=check.frozen(np.bincount(sinks, tumbling.shares, minlength=count)),
+        shares=check.frozen(tumbling.shares @ basins),
         heights=check.frozen(np.where(np.isfinite(heights), heights, np.nan)),
         pairs=check.frozen(pairs),
-        tops=check.frozen(tumbling.saddle_heights[order][first]),
-        axes=check.frozen(tumbling.saddle_axes[order][first]),
+        tops=check.frozen(tumbling.saddle_heights[lowest]),
+        axes=check.frozen(tumbling.saddle_axes[lowest]),
         doubts=tumbling.doubts,
     )
+
+
+def _between(basins, pairs):
+    """(N,) saddles and (N, 2) faces on both sides, smaller first: each way from a face to a face."""
+    many = np.diff(basins.indptr)[pairs]
+    ways = many.prod(axis=1)
+    saddles = np.repeat(np.arange(len(pairs)), ways)
+    step = np.arange(len(saddles)) - np.repeat(np.cumsum(ways) - ways, ways)
+    turn = np.column_stack(np.divmod(step, many[saddles, 1]))
+    return saddles, np.sort(basins.indices[basins.indptr[pairs[saddles]] + turn], axis=1)
 
 
 def rises(tips):
@@ -124,8 +135,9 @@ def critical_solid_angle(polygon, height):
     normal, across = _edge_levers(polygon)
     lifts = np.hypot(across, height) - height
     fan = np.stack([np.broadcast_to(polygon[0], polygon[1:-1].shape), polygon[1:-1], polygon[2:]], axis=1)
-    seen = [solid_angles(-lift * normal, fan).sum() for lift in (0.0, *lifts)]
-    return float(1.0 - np.mean(seen[1:]) / seen[0])
+    lifted = fan + np.append(0.0, lifts)[:, None, None, None] * normal
+    seen = solid_angles(np.zeros(3), lifted.reshape(-1, 3, 3)).reshape(len(lifted), -1).sum(axis=1)
+    return float(1.0 - seen[1:].mean() / seen[0])
 
 
 def balance(tips):
@@ -186,12 +198,8 @@ def _edge_levers(polygon):
 
 
 def named(tumbling, labels):
-    """(S,) label of each sink from its own (S,) label; an unnamed one takes that behind its lowest saddle."""
-    if not (labels != UNNAMED).any():
-        raise ValueError("no sink of the tumbling carries a label")
-    parent = np.arange(len(labels))
-    order = np.argsort(tumbling.saddle_heights, kind="stable")
-    fitting(forest.adopt, len(order))(tumbling.pairs[order], labels, parent)
-    while not np.array_equal(parent, parent[parent]):
-        parent = parent[parent]
-    return labels[parent]
+    """(S,) label of each sink from its own (S,) label; an unnamed one takes that of the face it joins.
+
+    The first of the faces that share it, where they do.
+    """
+    return adoption.adopted(tumbling, labels, labels.max() + 1).argmax(axis=1)

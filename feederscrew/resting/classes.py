@@ -4,7 +4,6 @@ from itertools import product
 
 import numpy as np
 
-from feederscrew.part.moments import Moments
 from feederscrew.resting.landscape import angle
 
 SAME_WAY = np.radians(3.0)  # a turned face lies on another when their normals agree this well
@@ -12,7 +11,7 @@ SAME_SIZE = 0.007  # ... and their heights
 CANDIDATES = 400  # rotations tried at most: more equal faces than that are a curve
 
 
-def classes(faces, part):
+def classes(faces, part, moments):
     """Labels of equal faces.
 
     Only rotations count: a feeder cannot reflect a part, so mirror images stay apart. The rotation must be
@@ -23,6 +22,8 @@ def classes(faces, part):
     faces : list of Face
     part : Part
         With a mesh.
+    moments : Moments
+        Of the part.
 
     Returns
     -------
@@ -33,7 +34,7 @@ def classes(faces, part):
     label = np.arange(len(faces))
     if alike.sum() == len(faces):
         return label
-    for rotation in symmetries(faces, part):
+    for rotation in symmetries(faces, part, moments):
         turned = normals @ rotation.T
         near = angle(turned[:, None], normals[None]) < SAME_WAY
         near &= alike
@@ -42,7 +43,7 @@ def classes(faces, part):
     return np.unique(label, return_inverse=True)[1]
 
 
-def symmetries(faces, part):
+def symmetries(faces, part, moments):
     """Rotations that leave the solid as it is, the identity left out.
 
     Parameters
@@ -50,13 +51,14 @@ def symmetries(faces, part):
     faces : list of Face
         Landmarks: a symmetry must carry them onto each other.
     part : Part
+    moments : Moments
+        Of the part.
 
     Returns
     -------
     (N, 3, 3) float [1]
         Enough of them to carry every face onto all its equals.
     """
-    moments = Moments(part.vertices, part.faces, part.centre_of_mass)
     tolerance = moments.error + 2.0 * max(face.roughness for face in faces) / moments.size
     found = _by_landmarks(faces)
     if found is None:
@@ -66,13 +68,15 @@ def symmetries(faces, part):
     return found[moments.mismatch(found) < tolerance]
 
 
-def body_frame(part):
+def body_frame(part, moments):
     """Axes fixed in the part: principal axes of inertia, pointed by the solid's third moments.
 
     Parameters
     ----------
     part : Part
         With a mesh.
+    moments : Moments
+        Of the part.
 
     Returns
     -------
@@ -80,7 +84,6 @@ def body_frame(part):
         Axes as columns. Where the part is symmetric its own axes are not told apart, and the file's decide.
     """
     _, axes = np.linalg.eigh(part.inertia)
-    moments = Moments(part.vertices, part.faces, part.centre_of_mass)
     skew = moments.directional(axes.T)[:, 2]
     clear = np.abs(skew) > moments.error
     largest = axes[np.argmax(np.abs(axes), axis=0), np.arange(3)]

@@ -4,9 +4,14 @@ import functools
 import hashlib
 from pathlib import Path
 
-PLAIN = []  # functions that run as they stand, and may be called from compiled ones
+PLAIN = []  # functions that run as they stand and may be called from compiled ones, not yet registered
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
-SOURCES = ("forest.py", "tumbling_*.py", "drop/body.py", "drop/contact.py", "drop/kernel.py")
+SOURCES = (
+    "forest.py",
+    "tumbling_*.py",
+    "compiled.py",
+    *(f"drop/{name}.py" for name in ("body", "contact", "floor", "motion", "kernel", "shaken")),
+)
 
 
 def compilable(function):
@@ -20,13 +25,18 @@ def fitting(function, half_edges):
     return function if half_edges <= SMALL else _once(function)
 
 
-def compiled(function):
+def compiled(function, **options):
     """Compile a function that fills arrays it is handed and makes none of its own."""
     from numba import njit
 
     _register()
     function.__qualname__ = f"{function.__name__}_{_fingerprint()}"  # names the files of the cache
-    return njit(cache=True, nogil=True, **_options())(function)
+    return njit(cache=True, nogil=True, **_options(), **options)(function)
+
+
+def inlined(function):
+    """Compile a function into its callers: where handing it its records would cost more than its work."""
+    return compiled(function, forceinline=True)
 
 
 def on_disk(function):
@@ -42,12 +52,12 @@ def due(function, half_edges):
 _once = functools.cache(compiled)
 
 
-@functools.cache
 def _register():
+    """Tell numba of the functions marked since, whichever room was imported first."""
     from numba.extending import register_jitable
 
-    for function in PLAIN:
-        register_jitable(**_options())(function)
+    while PLAIN:
+        register_jitable(**_options())(PLAIN.pop())
 
 
 @functools.cache

@@ -50,15 +50,13 @@ def stable_faces(hull, basins):
     list of Face
         One for each basin; the strips of a coarsely tessellated curve make one.
     """
-    group = _coarse_curves(hull, basins)
     order = np.argsort(basins.basins, kind="stable")
     starts = np.searchsorted(basins.basins[order], basins.sinks)
-    members = dict(zip(basins.sinks.tolist(), np.split(order, starts[1:])))
-    faces = []
-    for label in np.unique(group):
-        sinks = basins.sinks[group == label]
-        faces.append(_face(hull, sinks, [members[sink] for sink in sinks.tolist()]))
-    return faces
+    members = np.split(order, starts[1:])
+    group = _coarse_curves(hull, basins, members)
+    sides = _smooth_sides(hull, basins, group)
+    together = [np.flatnonzero(group == label) for label in np.unique(group)]
+    return [_face(hull, basins.sinks[some], [members[k] for k in some], sides) for some in together]
 
 
 def unstable_faces(hull, taken):
@@ -87,7 +85,7 @@ def unstable_faces(hull, taken):
     return [_describe(hull, part, part[np.argmax(hull.areas[part])], stable=False) for part in parts]
 
 
-def _coarse_curves(hull, basins):
+def _coarse_curves(hull, basins, members):
     """(B,) label of each sink; strips of one coarsely tessellated curve share it."""
     place, sinks = np.searchsorted(basins.sinks, basins.ripples), basins.ripples
     step = np.abs(np.diff(hull.heights[sinks], axis=1))[:, 0] / hull.heights[sinks[:, 0]]
@@ -99,46 +97,57 @@ def _coarse_curves(hull, basins):
         if _spread(hull.normals[basins.sinks[group]]) < ARC:
             labels[group] = labels.max() + 1 + np.arange(len(group))
     around = _components(len(basins.sinks), place[strips])
-    for label in np.flatnonzero(np.bincount(around) >= FEWEST):
+    several = np.flatnonzero(np.bincount(around) > 1)
+    sides = _smooth_sides(hull, basins, around) if len(several) else None
+    for label in several:
         group = np.flatnonzero(around == label)
-        if _spread(hull.normals[basins.sinks[group]]) >= ARC and _round(hull, basins.sinks[group]):
+        if _one_round(hull, basins.sinks[group], [members[k] for k in group], sides):
             labels[group] = labels.max() + 1
     return labels
 
 
-def _face(hull, sinks, members):
+def _one_round(hull, sinks, members, sides):
+    """Whether the sinks lie on one round side: on many of its strips, or on a few of a rocker's."""
+    if len(sinks) >= FEWEST and _spread(hull.normals[sinks]) >= ARC and _round(hull, sinks):
+        return True
+    lowest, every = sinks[np.argmin(hull.heights[sinks])], np.concatenate(members)
+    return _rocks(hull, every[sides[every] == sides[lowest]], lowest)
+
+
+def _face(hull, sinks, members, sides):
     """One face from the basins of its sinks (one, or the strips of a curve)."""
-    lowest = sinks[np.argmin(hull.heights[sinks])]
+    lowest, every = sinks[np.argmin(hull.heights[sinks])], np.concatenate(members)
     level = [part[hull.heights[part] <= hull.heights[sink] * (1.0 + 1e-9) + FLATNESS * hull.radius / 2]
              for sink, part in zip(sinks, members)]  # fmt: skip
-    strip = np.concatenate(level)
-    if not _curved(hull, strip):
-        strip = _plane(hull, lowest, np.concatenate(members))
-        side = _smooth_part(hull, lowest, np.concatenate(members))
-        if _rocks(hull, side, lowest):
-            strip = side
+    strip, side = np.concatenate(level), every[sides[every] == sides[lowest]]
+    if _rocks(hull, side, lowest):
+        strip = side
+    elif not _curved(hull, strip):
+        strip = _plane(hull, lowest, every)
     return _describe(hull, strip, lowest, stable=True)
 
 
-def _smooth_part(hull, sink, members):
-    """Members that gentle bends lead to from the sink."""
-    inside = np.isin(hull.neighbours[members], members)
-    pairs = np.column_stack([np.repeat(members, 3), hull.neighbours[members].ravel()])[inside.ravel()]
+def _smooth_sides(hull, basins, group):
+    """(T,) label of each triangle; gentle bends within its group lead to all others of the same."""
+    owner = group[np.searchsorted(basins.sinks, basins.basins)]
+    pairs, _ = edges(hull)
+    pairs = pairs[owner[pairs[:, 0]] == owner[pairs[:, 1]]]
     gentle = angle(hull.normals[pairs[:, 0]], hull.normals[pairs[:, 1]]) < SMOOTH
-    labels = _components(len(hull.triangles), pairs[gentle])
-    return members[labels[members] == labels[sink]]
+    return _components(len(owner), pairs[gentle])
 
 
 def _rocks(hull, side, sink):
     """Whether these triangles are strips of a curved side whose axis may lie off the centre of mass."""
     normals, share = hull.normals[side], hull.areas[side] / hull.areas[side].sum()
-    strips = np.unique(normals.round(2), axis=0, return_inverse=True)[1].ravel()
-    even = 1.0 / (np.bincount(strips, share) ** 2).sum()  # as many strips of one size
     flat = share[angle(normals, hull.normals[sink]) < 0.5 * SMOOTH].sum()
-    if even < FEWEST - 0.5 or flat > 0.5 or not _curved(hull, side):
+    if len(side) < FEWEST or flat > 0.5 or not _curved(hull, side):
         return False
     across = np.linalg.eigvalsh(np.cov(normals.T, aweights=share))
-    return bool(across[0] < STRAIGHT * across[1]) and _round(hull, side)
+    if across[0] >= STRAIGHT * across[1]:
+        return False
+    strips = np.unique(normals.round(2), axis=0, return_inverse=True)[1].ravel()
+    even = 1.0 / (np.bincount(strips, share) ** 2).sum()  # as many strips of one size
+    return even > FEWEST - 0.5 and _round(hull, side)
 
 
 def _round(hull, triangles):
@@ -151,7 +160,7 @@ def _round(hull, triangles):
 
 
 def _plane(hull, sink, members):
-    """Members in the plane about the sink.
+    """Members in the plane about the sink, and with them what lies in the sink's own.
 
     The tightest plane that holds most of what noise allows, and that a looser one would hardly add to:
     in a clean file the face itself without the shallow bevels beside it, in a noisy one all of it.
@@ -165,7 +174,8 @@ def _plane(hull, sink, members):
     held = inside @ areas
     shared = held / areas.sum() - 0.1 * (inside.sum(axis=1) < 2)  # one triangle is a plane by itself
     good = (shared[:-1] >= 0.5) & (held[1:] <= 1.02 * held[:-1])
-    return near[inside[np.argmax(good)]] if good.any() else near
+    inside = inside[np.argmax(good)] if good.any() else np.ones(len(near), dtype=bool)
+    return near[inside | (_depth(hull, sink, near) < TIGHTEST_FIRST[0] * hull.radius)]
 
 
 def _depth(hull, plane, members):

@@ -1,8 +1,19 @@
 """Loops over trees of ways between basins: which of them are one."""
 
+import numpy as np
+
 from feederscrew.resting.compiled import compilable
 
 NAMELESS = -1  # a sink of no face
+
+
+def roots(forest):
+    """The root of every member of a forest."""
+    while True:
+        further = forest[forest]
+        if np.array_equal(further, forest):
+            return forest
+        forest = further
 
 
 @compilable
@@ -41,18 +52,40 @@ def join(heights, limits, pairs, tops, region, basin, standing):
 
 
 @compilable
-def adopt(pairs, names, parent):
-    """Let each nameless sink follow the named one behind its lowest saddle.
+def adopt(pairs, tops, tie, names, parent, claims):
+    """Let every nameless sink be claimed by what lies behind its lowest saddle, or saddles where they tie.
 
     Parameters
     ----------
-    pairs : (E, 2) sinks on both sides of each saddle, lowest first
-    names : (S,) int, NAMELESS where a sink has none
-    parent : (S,) int, each sink its own; filled with a forest
+    pairs : (E, 2) sinks on both sides of each saddle
+    tops : (E,) float [m], ascending
+    tie : float [m], saddles that differ by less are as high as each other
+    names : (S,) int, NAMELESS where a sink has none; filled at the roots of ``parent``
+    parent : (S,) int, each sink its own; filled with a forest of nameless sinks that are claimed as one
+    claims : (E, 2) filled with the root of the claimed and that of the claiming
+
+    Returns
+    -------
+    int
+        Claims made.
     """
-    for e in range(len(pairs)):
-        i, j = root(parent, pairs[e, 0]), root(parent, pairs[e, 1])
-        if i != j and (names[i] == NAMELESS or names[j] == NAMELESS):
+    count = start = 0
+    while start < len(pairs):
+        stop = start
+        while stop == start or (stop < len(pairs) and tops[stop] - tops[start] <= tie):
+            i, j = root(parent, pairs[stop, 0]), root(parent, pairs[stop, 1])
+            if names[i] == NAMELESS and names[j] == NAMELESS:
+                parent[j] = i
+            stop += 1
+        first = count
+        for e in range(start, stop):
+            i, j = root(parent, pairs[e, 0]), root(parent, pairs[e, 1])
             if names[i] == NAMELESS:
                 i, j = j, i
-            parent[j] = i
+            if names[i] != NAMELESS and names[j] == NAMELESS:
+                claims[count, 0], claims[count, 1] = j, i
+                count += 1
+        for c in range(first, count):
+            names[claims[c, 0]] = names[claims[c, 1]]
+        start = stop
+    return count

@@ -17,8 +17,8 @@ from feederscrew.resting.compiled import fitting
 SMOOTH = np.radians(25.0)  # a sharper edge is meant: a bar of 12 sides (30 deg) has flats, one of 16 rolls
 RIPPLE_OF_RADIUS = 2e-3  # noise and tessellation leave barriers below this share of the part's radius ...
 RIPPLE_OF_HEIGHT = 2e-2  # ... and below this share of the height, or slender parts would lose their sides
-SLIVERS = 6  # 2**6 beside each other at most are followed to a broad triangle
 BARE = 1e-4  # of the radius, 1 um on a small part: a lower barrier holds nothing, however sharp its edge
+FLAT = 1e-6  # [rad] between halves of one strip
 SLIVER = 1e-3  # of the radius: a narrower triangle has no direction of its own
 
 
@@ -92,8 +92,9 @@ def landscape(hull):
     tops = passes(hull, pairs, ends)
     ripple = np.minimum(RIPPLE_OF_RADIUS * hull.radius, RIPPLE_OF_HEIGHT * hull.heights)
     nothing = np.full(len(hull.heights), BARE * hull.radius)
-    smooth = angle(*np.moveaxis(_broad_normals(hull)[pairs], 1, 0)) < SMOOTH
-    local = _downhill(hull, pairs, tops)
+    below = _downhill(hull, pairs, tops)
+    smooth = angle(*np.moveaxis(_broad_normals(hull, below)[pairs], 1, 0)) < SMOOTH
+    local = forest.roots(below)
     basins, deep = _joined(hull, local, pairs[smooth], tops[smooth], ripple)
     strips, way = local[pairs[smooth][deep]], tops[smooth][deep]
     basins, _ = _joined(hull, basins, pairs, tops, nothing)
@@ -112,40 +113,37 @@ def angle(u, v):
 
 
 def _downhill(hull, pairs, tops):
-    """(T,) triangle each triangle ends at when no step may climb."""
+    """(T,) neighbour each triangle rolls to when no step may climb; itself where there is none."""
     height = hull.heights
     steps = np.concatenate([pairs, pairs[:, ::-1]])
     falls = (height[steps[:, 1]] < height[steps[:, 0]]) & (np.tile(tops, 2) <= height[steps[:, 0]])
     steps = steps[falls]
     steps = steps[np.argsort(-height[steps[:, 1]], kind="stable")]
-    local = np.arange(len(height))
-    local[steps[:, 0]] = steps[:, 1]  # of several ways down the lowest is written last
-    return _roots(local)
+    below = np.arange(len(height))
+    below[steps[:, 0]] = steps[:, 1]  # of several ways down the lowest is written last
+    return below
 
 
 def _bend(hull, pairs):
     return angle(hull.normals[pairs[:, 0]], hull.normals[pairs[:, 1]])
 
 
-def _broad_normals(hull):
-    """(T, 3) normal of each triangle, of a sliver that of the broad one it borders.
+def _broad_normals(hull, below):
+    """(T, 3) normal of each triangle, of a sliver that of the first broad one on its way down.
 
-    A corner moved by noise splits a sharp edge into slivers that lead round it by gentle bends.
+    A corner moved by noise, or a chamfer too small to see, leads round a sharp edge by gentle bends.
     """
-    sides = np.linalg.norm(hull.corners - np.roll(hull.corners, 1, axis=1), axis=2).max(axis=1)
-    toward = np.arange(len(sides))
-    thin = 2.0 * hull.areas < SLIVER * hull.radius * sides
-    toward[thin] = _across_longest(hull, thin)
-    for _ in range(SLIVERS):
-        toward = np.where(thin, toward[toward], toward)
-    return np.where(thin[toward], hull.normals.T, hull.normals[toward].T).T
-
-
-def _across_longest(hull, some):
-    """The triangles across the longest side of some."""
-    corners = hull.corners[some]
+    corners = hull.corners
     sides = np.linalg.norm(np.roll(corners, -1, axis=1) - np.roll(corners, -2, axis=1), axis=2)
-    return hull.neighbours[some, np.argmax(sides, axis=1)]
+    thin = 2.0 * hull.areas < SLIVER * hull.radius * sides.max(axis=1)
+    end = forest.roots(np.where(thin, below, np.arange(len(thin))))
+    still = np.flatnonzero(thin & (end == np.arange(len(thin))))  # no way down, or half of a flat strip
+    beside = hull.neighbours[still]
+    level = angle(hull.normals[still, None], hull.normals[beside]) < FLAT
+    best = np.where(thin[end[beside]], 0.0, np.where(level, np.inf, sides[still])).argmax(axis=1)
+    out = np.arange(len(thin))
+    out[still] = end[hull.neighbours[still, best]]
+    return hull.normals[out[end]]
 
 
 def _joined(hull, basins, pairs, tops, limit):
@@ -159,16 +157,7 @@ def _joined(hull, basins, pairs, tops, limit):
     standing = np.zeros(len(way), dtype=bool)
     join = fitting(forest.join, 3 * len(basins))
     join(hull.heights[sinks], limit[sinks], place[pairs[way]], tops[way], region, basin, standing)
-    return sinks[_roots(basin)][place], way[standing]
-
-
-def _roots(trees):
-    """The root of every member of a forest."""
-    while True:
-        further = trees[trees]
-        if np.array_equal(further, trees):
-            return trees
-        trees = further
+    return sinks[forest.roots(basin)][place], way[standing]
 
 
 def _lowest_ways(count, pairs, tops):

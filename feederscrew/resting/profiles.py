@@ -15,6 +15,7 @@ from feederscrew.units import shown
 
 ROUNDING = 0.005  # of the whole: how far printed fractions may miss their sum
 WHOLE = {"counts": 0.0, "fractions": 1.0, "percent": 100.0}  # what a column sums to; counts, to anything
+DROPPED = ["height_mm", "count"]  # columns by which a table of ``feeder drop`` is known
 EXAMPLE = "give a header 'aspect,counts' and one row an aspect"
 INTEGER = re.compile(r"\+?\d+", re.ASCII)
 DECIMAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
@@ -106,7 +107,8 @@ def parse(text, where, names, taken=()):
     ----------
     text : str
         Lines that open with '#' are comments. Whole numbers are counts; fractions sum to 1 and
-        percents to 100, both within ``ROUNDING`` of the whole.
+        percents to 100, both within ``ROUNDING`` of the whole. Of a table of ``feeder drop`` only the
+        counts are taken.
     where : str
         The file, for the fault lines.
     names : sequence of str
@@ -126,7 +128,7 @@ def parse(text, where, names, taken=()):
     lines = [(k, row) for k, row in _rows(text, where) if any(cell for cell in row)]
     if not lines:
         raise FeederError(where, "is empty", EXAMPLE)
-    (first, header), *rows = lines
+    (first, header), *rows = _counted(lines)
     columns = _columns(f"{where}:{first}", header, taken)
     faults, cells = [], {}
     for number, row in rows:
@@ -152,6 +154,14 @@ def _rows(text, where):
         return [(k, [cell.strip() for cell in next(csv.reader([line]), [])]) for k, line in lines]
     except csv.Error as error:
         raise FeederError(where, f"is not CSV ({error})", EXAMPLE) from None
+
+
+def _counted(lines):
+    """The lines of a file; of our own ``drop.csv`` its first column and its counts."""
+    header = lines[0][1]
+    if header[1:3] != DROPPED:
+        return lines
+    return [(number, [row[0], *row[2:3]]) for number, row in lines]
 
 
 def _columns(where, header, taken):

@@ -9,6 +9,12 @@ EXPONENTS = {"soft": 0.0, "medium": 1.2, "hard": 2.0}  # [1] by what the part la
 0.5 and of tumbling launches on a hard plane follow; 2 was chosen with measured cuboids in view."""
 
 
+def named(exponent):
+    """The surface of an exponent, 'hard'; 'exponent 1.5' where it has no name."""
+    names = {value: name for name, value in EXPONENTS.items()}
+    return names.get(exponent, f"exponent {exponent:g}")
+
+
 def surface_weights(shares, heights, radius, exponent):
     """Shares of a part that bounces before it settles, not normalised.
 

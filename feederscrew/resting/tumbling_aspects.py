@@ -8,8 +8,9 @@ from scipy.constants import g
 from feederscrew import check
 from feederscrew.errors import MeshError
 from feederscrew.part.hull import Hull
-from feederscrew.resting import barriers, rules, surface
+from feederscrew.resting import barriers, hops, rules, surface
 from feederscrew.resting.faces import Face
+from feederscrew.resting.recommended import Recommended, closed_form
 from feederscrew.resting.tumbling import tumble
 
 
@@ -28,10 +29,11 @@ class Ground:
 class Exact:
     """What exact tumbling adds to the aspects, A rows; NaN where the part does not rest."""
 
-    probabilities: dict[str, np.ndarray]  # (A,) [1] 'quasistatic', 'crsa', 'barrier', 'surface'
+    probabilities: dict[str, np.ndarray]  # (A,) [1] 'quasistatic', 'crsa', 'barrier', 'surface', 'hops'
     barriers: np.ndarray  # (A,) [m] lowest lift that tips the part; NaN where nothing does
     barrier_energies: np.ndarray  # (A,) [J]
     tip_angles: np.ndarray  # (A,) [rad] of the floor, at which a part that does not slide tips
+    recommended: Recommended  # the surface-weighted rule, with its interval
     doubts: tuple[str, ...]  # self-checks of the tumbling that failed
 
 
@@ -113,17 +115,36 @@ def exact(found, part, aspects, exponent=surface.EXPONENTS["hard"]):
         "crsa": np.array([_critical(face) for face in found.faces]),
         "barrier": barriers.balance(tips),
         "surface": surface.surface_weights(tips.shares, tips.heights, found.hull.radius, exponent),
+        "hops": hops.hop_shares(tips, found.hull.radius),
     }
-    sums = {rule: np.bincount(found.rows, weight, minlength=count) for rule, weight in weights.items()}
+    chances = {rule: _by_class(found, weight, aspects.stable) for rule, weight in weights.items()}
     lowest = _lowest(found.rows, np.where(np.isfinite(lifts), lifts, np.nan), count)
     angles = [_tip_angle(face, lift) for face, lift in zip(found.faces, lifts)]
     return Exact(
-        probabilities={rule: check.frozen(rules.normalised(w, aspects.stable)) for rule, w in sums.items()},
+        probabilities=chances,
         barriers=check.frozen(lowest),
         barrier_energies=check.frozen(part.mass * g * lowest),
         tip_angles=check.frozen(_lowest(found.rows, np.array(angles), count)),
+        recommended=_recommended(found, aspects.stable, chances, exponent),
         doubts=tips.doubts,
     )
+
+
+def _by_class(found, weights, stable):
+    """(A,) shares of the classes, from the (F,) weights of their faces."""
+    sums = np.bincount(found.rows, weights, minlength=len(stable))
+    return check.frozen(rules.normalised(sums, stable))
+
+
+def _recommended(found, stable, chances, exponent):
+    """The surface-weighted rule, between all its surfaces and the cascade of hops."""
+    tips, radius = found.tips, found.hull.radius
+    others = [
+        _by_class(found, surface.surface_weights(tips.shares, tips.heights, radius, other), stable)
+        for other in surface.EXPONENTS.values()
+    ]
+    rule = f"surface, {surface.named(exponent)}"
+    return closed_form(rule, chances["surface"], [*others, chances["hops"]], stable)
 
 
 def transitions(found):

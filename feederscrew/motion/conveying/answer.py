@@ -146,7 +146,7 @@ def cells(bowl):
         "regime": np.where(
             status == steady.NO_STEADY_STATE, len(REGIMES) - 1, out[..., steady.REGIME].astype(int)
         ),
-        "throw_number": out[..., steady.THROW],
+        "throw_number": np.where(speed > 0.0, out[..., steady.THROW], 0.0),  # not that of ``STILL``
         "status": status,
     }
 

@@ -36,7 +36,7 @@ def the_part(case):
 
 
 def aspects(case):
-    """Table, views and chart of the aspects."""
+    """Views, tables and chart of the aspects: one table of shapes and heights, one of probabilities."""
     part, found, kept = case.part, case.found, Kept()
     table = columns.aspects(found, part)
     said = sheets.aspects(kept, part, found, columns.part(part) | {"aspects": table})
@@ -47,8 +47,10 @@ def aspects(case):
     )
     lines = (Notes(tuple(said)),) if said and part.vertices is not None else ()
     shown = table.drop(columns=[name for name in columns.NORMALS if name in table])
+    chances = [name for name in shown if name.startswith("p_")]
+    shapes = Table(shown.drop(columns=chances))
     return Section(
-        (*views, *lines, Table(shown), chart),
+        (*views, *lines, shapes, Table(shown[["aspect", *chances]]), chart),
         tiles=(_tile(case),),
         warnings=tuple(found.warnings),
     )

@@ -42,10 +42,16 @@ def spin_energy(state, inertia):
 
 
 @compiled
+def moving_energy(state, inertia):
+    """Kinetic energy at mass 1."""
+    u, v, w = state[VX], state[VY], state[VZ]
+    return spin_energy(state, inertia) + 0.5 * (u * u + v * v + w * w)
+
+
+@compiled
 def energy(state, inertia):
     """Kinetic energy and height: the total energy at mass 1 and gravity 1."""
-    u, v, w = state[VX], state[VY], state[VZ]
-    return spin_energy(state, inertia) + 0.5 * (u * u + v * v + w * w) + state[Z]
+    return moving_energy(state, inertia) + state[Z]
 
 
 @compiled
@@ -104,9 +110,9 @@ def lowest(points, links, turn, corner):
 
 @compiled
 def slow_down(state, inertia, limit):
-    """Scale all velocities so that the total energy is at most ``limit``."""
-    moving = energy(state, inertia) - state[Z]
-    if moving + state[Z] > limit:
-        scale = math.sqrt(max(limit - state[Z], 0.0) / moving) if moving > 0.0 else 0.0
+    """Scale all velocities so that the kinetic energy is at most ``limit``."""
+    moving = moving_energy(state, inertia)
+    if moving > limit:
+        scale = math.sqrt(max(limit, 0.0) / moving) if moving > 0.0 else 0.0
         for k in (VX, VY, VZ, W, W + 1, W + 2):
             state[k] *= scale

@@ -10,7 +10,7 @@ import math
 from feederscrew.resting.compiled import compiled
 from feederscrew.resting.drop.body import VX, VZ, W, energy, keep
 
-MOST = 12  # contacts solved together; of more, those furthest out in as many directions
+MOST = 12  # contacts solved together; of more, the lowest and those furthest out in the other directions
 LEVER, RATE, MASS, WANTED, IMPULSE, WIDTH = 0, 9, 18, 21, 22, 25
 CONVERGED = 1e-3  # of the relative velocity, in a whole sweep
 
@@ -40,10 +40,12 @@ def touching(points, links, turn, height, corner, reach, seen, found):
 
 @compiled
 def thin_out(points, turn, found, count):
-    """Keep of many touching corners those furthest out in MOST directions of the floor."""
+    """Keep of many touching corners the lowest, which is the first, and those furthest out around it."""
     kept = found[len(points) :]
-    for m in range(MOST):
-        cos, sin = math.cos(2.0 * math.pi * m / MOST), math.sin(2.0 * math.pi * m / MOST)
+    kept[0] = found[0]
+    for m in range(1, MOST):
+        turn_to = 2.0 * math.pi * m / (MOST - 1)
+        cos, sin = math.cos(turn_to), math.sin(turn_to)
         best = -math.inf
         for k in range(count):
             p = points[found[k]]
@@ -200,9 +202,9 @@ def steepest(state, contacts, count):
 
 
 @compiled
-def press(state, contacts, count, friction, dt, sweeps):
-    """Contact impulses of a time step under gravity, without rebound."""
-    state[VZ] -= dt
+def hold(state, contacts, count, friction, sweeps):
+    """Contact impulses that let nothing fall further, without rebound."""
     for n in range(count):
-        contacts[n, WANTED] = 0.0
+        for k in range(WANTED, WIDTH):
+            contacts[n, k] = 0.0
     solve(state, contacts, count, friction, sweeps)

@@ -2,6 +2,7 @@
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import takewhile
 
 import numpy as np
 
@@ -34,11 +35,30 @@ class Tally:
     p: np.ndarray  # (A,) [1] of all drops, the unsettled ones too
     low: np.ndarray  # (A,) [1] ends of the 95 % Wilson interval
     high: np.ndarray
+    widest: float  # [1] half the longest interval
     gentle: np.ndarray  # (A,) [1] among the third of the drops launched with the least energy
     violent: np.ndarray  # (A,) [1] ... with the most
 
 
-def drop(shape, launch, rng, *, count=None, narrow=None, jobs=1, steps=None, progress=None):
+@dataclass(frozen=True, eq=False)
+class Aim:
+    """How narrow the 95 % intervals of all classes shall become."""
+
+    width: float  # [1] to either side
+    rows: np.ndarray  # (F,) class of each face
+    count: int  # classes
+
+    def widest(self, faces):
+        """Half the longest interval after drops on (N,) ``faces``."""
+        return half_width(*wilson(counted(faces, self.rows, self.count), len(faces)))
+
+    def needed(self, done, widest):
+        """How many drops it takes: ``done``, or an estimate, as intervals narrow with 1 / sqrt(N)."""
+        excess = (widest / self.width) ** 2
+        return done if excess <= 1.0 else ROUND * int(np.ceil(excess * done / ROUND))
+
+
+def drop(shape, launch, rng, *, count=None, aim=None, jobs=1, steps=None, progress=None):
     """Drop a part again and again.
 
     Parameters
@@ -48,36 +68,45 @@ def drop(shape, launch, rng, *, count=None, narrow=None, jobs=1, steps=None, pro
     rng : numpy.random.Generator
         Drop n gets the n-th set of numbers: the outcome does not depend on ``jobs``.
     count : int, optional
-        How many drops, above 0; with ``narrow``, at most so many.
-    narrow : function, optional
-        Told the (N,) faces so far after every ROUND drops; true ends the run.
+        How many drops, above 0; with ``aim``, at most so many.
+    aim : Aim, optional
+        Looked at after every ROUND drops; once it is reached the run ends.
     jobs : int
         Cores to use.
     steps : kernel.Steps, optional
     progress : function, optional
-        Told how many drops are done and how many there will be.
+        Told after every batch how many drops are done, about how many there will be, and half the longest
+        interval so far: None without an ``aim`` and in its first round.
 
     Returns
     -------
     Drops
-        An interrupt from the keyboard after the first round ends the run and is noted as ``partial``.
+        After an interrupt from the keyboard, noted as ``partial``, the batches that were finished: a run
+        of so many drops gives the same.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If no batch was finished.
     """
     steps, count = steps or kernel.Steps(), MOST if count is None else int(count)
-    done, partial = [], False
-    with ThreadPoolExecutor(jobs) as pool:
-        try:
-            for first in range(0, count, ROUND):
-                starts = sample(launch, shape, min(ROUND, count - first), rng)
-                done.append((*_round(pool, shape, starts, steps), starts.energies))
-                if progress:
-                    progress(first + len(starts.energies), count)
-                if narrow and narrow(np.concatenate([faces for faces, *_ in done])):
-                    break
-        except KeyboardInterrupt:
-            if not done:
-                raise
-            partial = True
-    return Drops(*(check.frozen(np.concatenate(each)) for each in zip(*done)), partial)
+    tasks, partial = [], False
+    pool = ThreadPoolExecutor(jobs)
+
+    def begin(first):
+        starts = sample(launch, shape, min(ROUND, count - first), rng)
+        tasks.extend(_begun(pool, shape, starts, steps))
+
+    try:
+        _run(begin, tasks, count, aim, progress or (lambda *told: None))
+    except KeyboardInterrupt:
+        pool.shutdown(cancel_futures=True)  # a thread cannot be stopped: this waits for running batches
+        tasks, partial = list(takewhile(_finished, tasks)), True
+        if not tasks:
+            raise
+    finally:
+        pool.shutdown(cancel_futures=True)
+    return Drops(*(check.frozen(_joined(tasks, k)) for k in range(3)), partial)
 
 
 def tally(drops, rows, count):
@@ -106,6 +135,7 @@ def tally(drops, rows, count):
         p=check.frozen(counts / total),
         low=check.frozen(low),
         high=check.frozen(high),
+        widest=half_width(low, high),
         gentle=check.frozen(ends[0]),
         violent=check.frozen(ends[1]),
     )
@@ -140,27 +170,45 @@ def wilson(counts, total):
     return np.minimum(np.maximum(middle - half, 0.0), p), np.maximum(np.minimum(middle + half, 1.0), p)
 
 
-def narrow_to(width, rows, count):
-    """Test for ``drop``: every class's 95 % interval is at most ``width`` [1] wide on either side."""
-
-    def narrow(faces):
-        low, high = wilson(counted(faces, rows, count), len(faces))
-        return bool((high - low <= 2.0 * width).all())
-
-    return narrow
+def half_width(low, high):
+    """Half the longest of some intervals."""
+    return float(0.5 * (high - low).max())
 
 
-def _round(pool, shape, starts, steps):
-    """Faces and times of one round, its batches spread over the pool."""
-    count = len(starts.energies)
-    faces, times = np.full(count, kernel.UNSETTLED), np.zeros(count)
+def _begun(pool, shape, starts, steps):
+    """Tasks of one round, a batch each, that give faces, times and energies."""
 
     def batch(first):
         part = slice(first, first + BATCH)
+        energies = starts.energies[part]
+        faces, times = np.full(len(energies), kernel.UNSETTLED), np.zeros(len(energies))
         kernel.settle_all(
             shape, kernel.scratch(shape), starts.states[part], starts.restitutions[part],
-            starts.frictions[part], steps, faces[part], times[part],
+            starts.frictions[part], steps, faces, times,
         )  # fmt: skip
+        return faces, times, energies
 
-    list(pool.map(batch, range(0, count, BATCH)))
-    return faces, times
+    return [pool.submit(batch, first) for first in range(0, len(starts.energies), BATCH)]
+
+
+def _run(begin, tasks, count, aim, tell):
+    """Begin round after round and wait for its batches, until there are enough."""
+    done, total, widest = 0, min(count, ROUND) if aim else count, None
+    while done < total:
+        begin(done)
+        for task in tasks[done // BATCH :]:
+            done += len(task.result()[0])
+            tell(done, total, widest)
+        if aim:
+            widest = aim.widest(_joined(tasks, 0))
+            total = min(aim.needed(done, widest), count)
+            tell(done, total, widest)
+
+
+def _finished(task):
+    return task.done() and not task.cancelled() and task.exception() is None
+
+
+def _joined(tasks, k):
+    """(N,) faces (k = 0), times (1) or energies (2) of finished tasks."""
+    return np.concatenate([task.result()[k] for task in tasks])

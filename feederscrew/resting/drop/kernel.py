@@ -1,140 +1,20 @@
-"""Compiled drop: flight, impacts and rolling of one body until its resting face is decided."""
+"""Compiled drop: one body on a floor at rest, until its resting face is decided."""
 
 import math
-from typing import NamedTuple
-
-import numpy as np
 
 from feederscrew.resting.compiled import compiled
-from feederscrew.resting.drop import body, contact
+from feederscrew.resting.drop import body
 from feederscrew.resting.drop.body import VX, VY, VZ, W, Z
+from feederscrew.resting.drop.floor import at_rest
+from feederscrew.resting.drop.motion import Steps, approach, go_on, meet, scratch, start
 from feederscrew.resting.tumbling_walk import LOST, roll_from_corner, roll_from_facet
 
+__all__ = ["STEADY", "UNSETTLED", "Steps", "face_below", "scratch", "settle", "settle_all"]
+
 UNSETTLED = -1
+STILL = 1e-7  # kinetic energy below which a part does not move
+BALANCED = 32  # steps it must not move: at the turning point of a slow rocking it stands still for fewer
 STEADY = 0.3  # of the barrier: what a steadily rolling part may have beside its rolling energy
-
-
-class Scratch(NamedTuple):
-    """Arrays the kernel writes to: one set for each thread."""
-
-    state: np.ndarray  # (STATE,)
-    saved: np.ndarray  # (STATE,)
-    turn: np.ndarray  # (9,)
-    seen: np.ndarray  # (V,) bool
-    found: np.ndarray  # (V + MOST,)
-    contacts: np.ndarray  # (MOST, WIDTH)
-    trace: np.ndarray  # (N, 14) time and state at the start of each step, until it is full
-
-
-def scratch(shape, rows=0):
-    """Fresh working arrays for a shape, with a trace of so many rows."""
-    size = len(shape.vertices)
-    return Scratch(
-        state=np.zeros(body.STATE),
-        saved=np.zeros(body.STATE),
-        turn=np.zeros(9),
-        seen=np.zeros(size, bool),
-        found=np.zeros(size + contact.MOST, int),
-        contacts=np.zeros((contact.MOST, contact.WIDTH)),
-        trace=np.zeros((rows, 1 + body.STATE)),
-    )
-
-
-class Steps(NamedTuple):
-    """Step sizes and tolerances of a drop, dimensionless."""
-
-    flight: float = 0.01  # shortest step in the air
-    turn: float = 0.06  # [rad] largest turn in a step in the air
-    contact: float = 0.006  # step on the floor
-    tolerance: float = 1e-3  # corners this near the floor touch it
-    threshold: float = 0.05  # approach speed from which a contact rebounds
-    sweeps: int = 20  # of the contact solver
-    margin: float = 2e-3  # energy below the lowest saddle at which the face is decided
-    rolling: float = 2e-3  # rolling resistance: lever of the normal force
-    longest: float = 400.0  # time after which a drop counts as unsettled
-    early: bool = True  # stop as soon as the face is decided, not at rest
-
-
-@compiled
-def gap_after(points, links, inertia, state, saved, turn, corner, dt):
-    """Fly from the saved state over dt; lowest corner and its height over the floor."""
-    body.keep(saved, state)
-    body.fly(state, inertia, dt)
-    body.rotation(state, turn)
-    corner, level = body.lowest(points, links, turn, corner)
-    return corner, state[Z] + level
-
-
-@compiled
-def approach(points, links, inertia, radius, state, saved, turn, corner, gap, steps):
-    """One step through the air, ended on the floor if it would go below; corner, gap and time taken."""
-    rate = math.sqrt(state[W] ** 2 + state[W + 1] ** 2 + state[W + 2] ** 2)
-    quickest = abs(state[VZ]) + rate * radius + 1e-9
-    dt = min(max(gap / quickest, steps.flight), steps.turn / (rate + 1e-9), 0.5)
-    body.keep(state, saved)
-    corner, after = gap_after(points, links, inertia, state, saved, turn, corner, dt)
-    if after >= 0.0:
-        return corner, after, dt
-    early, late, above, below = 0.0, dt, max(gap, 0.0), after
-    for _ in range(30):
-        share = min(max(above / (above - below), 0.1), 0.9)
-        dt = early + share * (late - early)
-        corner, after = gap_after(points, links, inertia, state, saved, turn, corner, dt)
-        if 0.0 <= after <= steps.tolerance:
-            break
-        if after > 0.0:
-            early, above = dt, after
-        else:
-            late, below = dt, after
-    return corner, after, dt
-
-
-@compiled
-def move(points, links, state, saved, turn, corner, dt):
-    """Move the saved positions at the present velocities over dt; lowest corner and its height."""
-    for k in range(3):
-        state[k] = saved[k] + dt * state[VX + k]
-    for k in range(4):
-        state[body.Q + k] = saved[body.Q + k]
-    body.rotate(state, state[W], state[W + 1], state[W + 2], dt)
-    body.rotation(state, turn)
-    corner, level = body.lowest(points, links, turn, corner)
-    return corner, state[Z] + level
-
-
-@compiled
-def press_on(points, links, inertia, state, saved, turn, corner, contacts, count, friction, steps):
-    """One step on the floor, ended where another corner lands; corner, gap and time taken."""
-    dt, before = steps.contact, body.energy(state, inertia)
-    body.keep(state, saved)
-    body.spin(state, inertia, dt)
-    contact.press(state, contacts, count, friction, dt, steps.sweeps)
-    resist(state, inertia, steps.rolling, dt)
-    corner, gap = move(points, links, state, saved, turn, corner, dt)
-    early, late = 0.0, dt
-    while gap < -0.5 * steps.tolerance and late - early > 0.05 * steps.contact:
-        dt = 0.5 * (early + late)
-        corner, gap = move(points, links, state, saved, turn, corner, dt)
-        if gap < -0.5 * steps.tolerance:
-            late = dt
-        elif gap > 0.5 * steps.tolerance:
-            early = dt
-        else:
-            break
-    state[Z] = min(state[Z] - min(gap, 0.0), before)
-    body.slow_down(state, inertia, before)
-    return corner, max(gap, 0.0), dt
-
-
-@compiled
-def resist(state, inertia, lever, dt):
-    """Take the work of rolling resistance out of the rotation."""
-    spinning = body.spin_energy(state, inertia)
-    rate = math.sqrt(state[W] ** 2 + state[W + 1] ** 2 + state[W + 2] ** 2)
-    if spinning > 0.0:
-        scale = math.sqrt(max(1.0 - lever * rate * dt / spinning, 0.0))
-        for k in range(3):
-            state[W + k] *= scale
 
 
 @compiled
@@ -168,15 +48,15 @@ def slides_flat(shape, state, turn, face, friction):
 
 
 @compiled
-def decided(shape, state, turn, corner, count, friction, rests, steps):
-    """Face on which the body is bound to rest, ``rests`` steps on the floor; UNSETTLED if it can leave."""
+def decided(shape, state, turn, corner, count, friction, quiet, steps):
+    """Face on which the body is bound to rest, ``quiet`` steps without motion; UNSETTLED if it can leave."""
     total = body.energy(state, shape.inertia)
     if total >= shape.ceiling and count < 2:
         return UNSETTLED
     face = face_below(shape, turn, corner)
     if face == UNSETTLED:
         return UNSETTLED
-    if rests >= 64 and total - state[Z] < 1e-7:
+    if quiet >= BALANCED:
         return face  # balanced on an edge by rolling resistance
     if not steps.early:
         still = total - shape.heights[face] < min(1e-3, 0.02 * shape.barriers[face])
@@ -206,40 +86,24 @@ def settle(shape, work, restitution, friction, steps):
     -------
     face, time, rows of the trace filled
     """
-    points, links, inertia, radius = shape.vertices, shape.links, shape.inertia, shape.radius
-    state, saved, turn, contacts = work.state, work.saved, work.turn, work.contacts
-    time, rows, rests = 0.0, 0, 0
-    body.rotation(state, turn)
-    corner, level = body.lowest(points, links, turn, 0)
-    gap = state[Z] + level
+    floor, time, rows, rests, quiet = at_rest(), 0.0, 0, 0, 0
+    corner, gap = start(shape, work)
     while time < steps.longest:
         if rows < len(work.trace):
-            record(work.trace, rows, time, state)
+            record(work.trace, rows, time, work.state)
             rows += 1
         if gap > steps.tolerance:
-            corner, gap, dt = approach(points, links, inertia, radius, state, saved, turn, corner, gap, steps)
+            corner, gap, dt = approach(shape, work, floor, time, corner, gap, steps)
             time += dt
             continue
-        count = contact.touching(
-            points, links, turn, state[Z], corner, steps.tolerance, work.seen, work.found
-        )
-        contact.levers(points, inertia, turn, work.found, count, contacts)
-        fall = contact.steepest(state, contacts, count)
-        rests += 1
-        if fall < -steps.threshold:
-            contact.strike(inertia, state, saved, contacts, count, restitution, friction, steps)
-            fall = contact.steepest(state, contacts, count)
-            rests = 0
+        count, rise, struck = meet(shape, work, corner, restitution, friction, steps)
+        rests = 0 if struck else rests + 1
+        quiet = quiet + 1 if body.moving_energy(work.state, shape.inertia) < STILL else 0
         if rests % 8 == 0:
-            face = decided(shape, state, turn, corner, count, friction, rests, steps)
+            face = decided(shape, work.state, work.turn, corner, count, friction, quiet, steps)
             if face != UNSETTLED:
                 return face, time, rows
-        if fall > steps.threshold:
-            corner, gap, dt = approach(points, links, inertia, radius, state, saved, turn, corner, gap, steps)
-        else:
-            corner, gap, dt = press_on(
-                points, links, inertia, state, saved, turn, corner, contacts, count, friction, steps
-            )
+        corner, gap, dt = go_on(shape, work, floor, time, corner, gap, count, rise, friction, steps)
         time += dt
     return UNSETTLED, time, rows
 

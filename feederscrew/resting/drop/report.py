@@ -6,8 +6,10 @@ import numpy as np
 
 from feederscrew.resting.compiled import on_disk
 from feederscrew.resting.drop import conditions, ensemble, kernel
-from feederscrew.resting.drop.ensemble import Drops, Tally
-from feederscrew.resting.drop.shape import shape_of_part
+from feederscrew.resting.drop.ensemble import Aim, Drops, Tally
+from feederscrew.resting.drop.launch import sample
+from feederscrew.resting.drop.shape import principal_axes, shape_of_part
+from feederscrew.resting.drop.traces import Trace, follow
 from feederscrew.resting.tumbling_aspects import Ground, ground
 
 USUAL = 10_000  # drops, where the user names neither a number nor a width
@@ -22,9 +24,11 @@ class Result:
     ground: Ground
     drops: Drops
     tally: Tally
+    aim: float | None = None  # [1] half-width the intervals were to reach
+    traces: tuple[Trace, ...] = ()  # of the first drops
 
 
-def test(part, aspects, preset, own, *, drops=None, until=None, seed=1, jobs=1, progress=None):
+def test(part, aspects, preset, own, *, drops=None, until=None, seed=1, jobs=1, progress=None, traced=0):
     """Drop a part and count the aspects it rests on.
 
     Parameters
@@ -46,6 +50,8 @@ def test(part, aspects, preset, own, *, drops=None, until=None, seed=1, jobs=1, 
         Cores to use; the counts do not depend on it.
     progress : function, optional
         As in ``ensemble.drop``.
+    traced : int
+        Of how many drops, from the first, the motion is kept as well.
 
     Returns
     -------
@@ -55,6 +61,8 @@ def test(part, aspects, preset, own, *, drops=None, until=None, seed=1, jobs=1, 
     ------
     FeederError
         If the part has no shape, or an option is no such quantity or out of range.
+    KeyboardInterrupt
+        If the user stops it before there is anything to count; later, the result is partial.
     """
     width = None if until is None else conditions.share(until, "--until")
     found = ground(part, aspects)
@@ -66,12 +74,15 @@ def test(part, aspects, preset, own, *, drops=None, until=None, seed=1, jobs=1, 
         launch,
         np.random.default_rng(seed),
         count=USUAL if drops is None and until is None else drops,
-        narrow=None if width is None else ensemble.narrow_to(width, found.rows, count),
+        aim=None if width is None else Aim(width, found.rows, count),
         jobs=jobs,
         progress=progress,
     )
     counted = ensemble.tally(dropped, found.rows, count)
-    return Result(conditions.described(launch, length), seed, found, dropped, counted)
+    starts = sample(launch, shape, min(traced, len(dropped.faces)), np.random.default_rng(seed))
+    traces = follow(shape, length, principal_axes(part.inertia)[1], starts, dropped, found.rows)
+    described = conditions.described(launch, length)
+    return Result(described, seed, found, dropped, counted, width, traces)
 
 
 def compiled():

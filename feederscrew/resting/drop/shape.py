@@ -51,8 +51,7 @@ def shape_of(hull, labels, mass, inertia, axes=None):
         Cube root of the hull's volume.
     """
     length, mass = float(np.cbrt(hull.volume)), check.positive("mass", mass)
-    moments, principal = np.linalg.eigh(check.shaped("inertia", inertia, (3, 3)))
-    principal *= np.sign(np.linalg.det(principal))
+    moments, principal = principal_axes(check.shaped("inertia", inertia, (3, 3)))
     edges = _turned(half_edges(hull), principal, length)
     tumbling = tumble(hull)
     tips = barriers.tipping(tumbling, labels)
@@ -93,6 +92,12 @@ def shape_of_part(part, found):
     """
     axes = np.array([face.axis for face in found.faces])
     return shape_of(found.hull, found.labels, part.mass, part.inertia, axes)
+
+
+def principal_axes(inertia):
+    """Principal moments (3,), ascending, and a rotation (3, 3) whose columns are their axes."""
+    moments, principal = np.linalg.eigh(inertia)
+    return moments, principal * np.sign(np.linalg.det(principal))
 
 
 def _turned(edges, principal, length):

@@ -1,0 +1,72 @@
+"""``--amplitude 78%,80%,82%``: bowls at several strokes."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from feederscrew import units
+from feederscrew.bowl.reading import checked
+from feederscrew.bowl.schema import BY_NAME
+from feederscrew.errors import ConfigError
+
+WHERE = "--amplitude"
+MOST = 50  # strokes of one call
+FULL = 5.0  # of the bowl's own amplitude, at most
+
+
+def strokes(bowl, text=None):
+    """The bowl at each amplitude of its drive.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    text : str or None
+        '78%,80%,82%' of the bowl's own amplitude, or '0.3 mm,0.4 mm'; None for that one alone.
+
+    Returns
+    -------
+    tuple of Bowl
+
+    Raises
+    ------
+    ConfigError
+        If an entry is neither, or out of range.
+    """
+    if text is None:
+        return (bowl,)
+    entries = text.split(",")
+    if len(entries) > MOST:
+        raise ConfigError(WHERE, f"{len(entries)} amplitudes", f"give at most {MOST}")
+    amplitudes = [_amplitude(bowl.drive.amplitude, entry) for entry in entries]
+    return tuple(replace(bowl, drive=replace(bowl.drive, amplitude=amplitude)) for amplitude in amplitudes)
+
+
+def named(paths):
+    """What bowl files are called side by side: by their stems, by their paths where two stems are the same.
+
+    Parameters
+    ----------
+    paths : sequence of (str or None)
+        None for the defaults.
+
+    Returns
+    -------
+    list of str
+    """
+    stems = ["defaults" if path is None else Path(path).stem for path in paths]
+    if len(set(stems)) == len(stems):
+        return stems
+    return [stem if path is None else str(path) for stem, path in zip(stems, paths)]
+
+
+def _amplitude(full, entry):
+    if not entry.strip().endswith("%"):
+        return checked(BY_NAME["drive.amplitude"], entry, WHERE).value
+    try:
+        share = units.quantity(entry, "number")
+    except units.QuantityError as fault:
+        raise ConfigError(WHERE, fault.what, fault.mend) from None
+    if not 0.0 <= share <= FULL:
+        raise ConfigError(
+            WHERE, f"{units.shown(entry)} is out of range", f"give 0% to {FULL:.0%} of drive.amplitude"
+        )
+    return share * full

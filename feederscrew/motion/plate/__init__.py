@@ -1,0 +1,1 @@
+"""A virtual dynamic bowl test: many parts, one at a time, on a plate that vibrates with the bowl's drive."""

@@ -1,0 +1,89 @@
+"""Many parts on one vibrating plate, on several cores."""
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.resting.compiled import on_disk
+from feederscrew.resting.drop import motion, shaken
+from feederscrew.resting.drop.kernel import UNSETTLED
+
+BATCH = 10  # parts a core takes at a time
+
+
+@dataclass(frozen=True, eq=False)
+class Rides:
+    """Where each of N parts lay at each of K looks."""
+
+    faces: np.ndarray  # (N, K) face it lies on, UNSETTLED while it may be tipping over
+    places: np.ndarray  # (N, K, 2) of its centre of mass, in units of L
+    lost: int  # further parts, left out: their motion took far more steps than it should
+    partial: bool  # stopped by the user before all were done
+
+
+def ride(shape, floor, starts, looks, steps, *, jobs=1, progress=None):
+    """Follow parts on a plate.
+
+    Parameters
+    ----------
+    shape : Shape
+    floor : Floor
+    starts : feederscrew.resting.drop.launch.Starts
+        Of the N parts, relative to the plate.
+    looks : (K,) float
+        Times in units of sqrt(L / g), ascending.
+    steps : Steps
+    jobs : int
+        Cores to use; the outcome does not depend on it.
+    progress : function, optional
+        Told after every batch how many parts are done.
+
+    Returns
+    -------
+    Rides
+        After an interrupt from the keyboard, the batches that were finished.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If no batch was finished.
+    """
+    tasks, partial, count = [], False, len(starts.energies)
+    pool = ThreadPoolExecutor(jobs)
+    try:
+        _batch(shape, floor, starts, looks, steps, slice(0, 0))  # compiled here, if need be
+        parts = [slice(first, first + BATCH) for first in range(0, count, BATCH)]
+        tasks = [pool.submit(_batch, shape, floor, starts, looks, steps, part) for part in parts]
+        done = 0
+        for task in tasks:
+            done += len(task.result()[0])
+            if progress:
+                progress(done)
+    except KeyboardInterrupt:
+        pool.shutdown(cancel_futures=True)
+        tasks, partial = [task for task in tasks if task.done() and not task.cancelled()], True
+        if not tasks:
+            raise
+    finally:
+        pool.shutdown(cancel_futures=True)
+    faces, places, whole = (np.concatenate([task.result()[k] for task in tasks]) for k in range(3))
+    return Rides(check.frozen(faces[whole]), check.frozen(places[whole]), int((~whole).sum()), partial)
+
+
+def compiled():
+    """Whether the kernel of the plate is on disk already."""
+    return on_disk(shaken.ride_all)
+
+
+def _batch(shape, floor, starts, looks, steps, part):
+    """Faces and places of some parts, and whether every look was taken."""
+    states = starts.states[part]
+    faces = np.full((len(states), len(looks)), UNSETTLED)
+    places, taken = np.full((*faces.shape, 2), np.nan), np.zeros(len(states), int)
+    shaken.ride_all(
+        shape, motion.scratch(shape), floor, states, starts.restitutions[part], starts.frictions[part],
+        steps, looks, faces, places, taken,
+    )  # fmt: skip
+    return faces, places, taken == len(looks)
