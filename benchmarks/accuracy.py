@@ -6,9 +6,10 @@ Examples: python benchmarks/accuracy.py --drops 4000
 Measured: steel square cuboids tossed by hand (root-mean-square error of the share on the square faces; also
 weighted by tosses, and what is left of it once the sampling of the tosses is taken off) and the experiment
 column of the thesis's Table 3-1, whose aspect ratio is printed as 0.6 and fits 0.4 (total variation at both).
-Against the drop test: real parts, and boxes, hulls and prisms made at random, on none of which anything was
-chosen. Then how often the recommended interval holds what was
-measured and what the drop tests give, and PMI with its products of inertia on the two published cards.
+Against the drop test: real parts, and boxes, hulls and prisms made at random. Nothing was chosen on the made
+ones; the cascade of hops was, on the real ones among others: docs/resting.md. Then how often the recommended
+interval holds what was measured and what the drop tests give, and PMI with its products of inertia on the two
+published cards.
 """
 
 import argparse

@@ -21,7 +21,7 @@ def calibrate(part, counts, out):
     The CSV is that of `feeder compare`: a line 'aspect,NAME,...', then one line an aspect; columns that
     hold whole numbers are counts. With -o: calibrate.csv, calibrate.json and run.json.
     """
-    from feederscrew.output import calibrate_tables, columns, tables
+    from feederscrew.output import calibrate_tables, columns
     from feederscrew.resting import profiles
     from feederscrew.resting.aspects import find
     from feederscrew.resting.calibrate_counts import fits
@@ -35,6 +35,5 @@ def calibrate(part, counts, out):
     inputs = {solid.source: solid.sha256, measured.source: measured.sha256}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
         if folder:
-            folder.write("calibrate.csv", tables.text(document["calibrations"], "csv"))
-            folder.write("calibrate.json", tables.json_text(document))
+            calibrate_tables.write(folder, document)
     out.show(document["calibrations"], document)

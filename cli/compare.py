@@ -31,18 +31,16 @@ def compare(part, counts, as_published, pictures, out):
     are expected are joined for the test. With -o: compare.csv, compare.png and run.json.
     """
     from feederscrew.output import columns, profile_tables
-    from feederscrew.part import load
     from feederscrew.resting import deviation, profiles
     from feederscrew.resting.aspects import find
 
-    solid = load(**part)
+    solid = out.part(part)
     found = find(solid, as_published=as_published)
-    out.warn(*solid.warnings, *found.warnings)
+    out.warn(*found.warnings)
     rules = profiles.of_rules(found)
     measured = profiles.read(counts, found.names, [rule.name for rule in rules])
     every = (*measured.profiles, *rules)
-    compared = deviation.compare(every)
-    inputs = {solid.source: solid.sha256, measured.source: measured.sha256}
+    compared, inputs = deviation.compare(every), {p.source: p.sha256 for p in (solid, measured)}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
         out.say("\n".join(measured.notes))
         if folder:

@@ -34,12 +34,7 @@ def convey(bowl, spans, curve, pictures, out):
     """
     from feederscrew import bowl as bowls
 
-    if len(spans) > len(WAYS):
-        raise click.UsageError(
-            f"--vary is given {len(spans)} times - give it once for a curve, twice for a map"
-        )
-    if curve and len(spans) == 1:
-        raise click.UsageError("--bowl goes with no --vary or with two - leave one of them out")
+    _fitting(spans, curve)
     settings, ranges, path = bowls.settings(**bowl), bowls.ranges(spans), bowl["path"]
     out = replace(out, command=WAYS[len(ranges)] if ranges else "convey radius" if curve else "convey")
     with out.folder(bowls.name(path), bowls.identity(path), bowls.texts(settings)) as folder:
@@ -51,6 +46,16 @@ def convey(bowl, spans, curve, pictures, out):
             _inwards(bowls.record(settings), pictures and folder, folder, out)
         else:
             _point(settings, pictures and folder, folder, out)
+
+
+def _fitting(spans, curve):
+    """Wrong calls."""
+    if len(spans) > len(WAYS):
+        raise click.UsageError(
+            f"--vary is given {len(spans)} times - give it once for a curve, twice for a map"
+        )
+    if curve and len(spans) == 1:
+        raise click.UsageError("--bowl goes with no --vary or with two - leave one of them out")
 
 
 def _point(settings, picture_folder, folder, out):

@@ -37,8 +37,7 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out):
     from feederscrew.motion.track_analysis import analyse
     from feederscrew.output import columns, track_maps, track_sheets, track_tables
 
-    if len(spans) not in (0, 2):
-        raise click.UsageError(f"--vary is given {len(spans)} times - give it twice, for a map")
+    _fitting(spans)
     solid, given, varied = out.part(part), settings(**bowl), ranges(spans)
     conditions = columns.conditions(solid) | texts(given)
     with out.folder(solid.name, {solid.source: solid.sha256}, conditions) as folder:
@@ -49,3 +48,9 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out):
         if folder:
             track_sheets.track(folder, found, document, grid, pictures=pictures)
     out.show(track_maps.cells(grid) if spans else track_tables.shown(document, out.format), document)
+
+
+def _fitting(spans):
+    """Wrong calls."""
+    if len(spans) not in (0, 2):
+        raise click.UsageError(f"--vary is given {len(spans)} times - give it twice, for a map")

@@ -46,4 +46,4 @@ def test_a_completed_material_is_one_that_is_known():
 
 
 def test_the_rules_completed_are_those_a_part_has_probabilities_of():
-    assert tuple(find(load(BRACKET)).probabilities) == rate.RULES
+    assert tuple(find(load(BRACKET)).chances) == rate.RULES

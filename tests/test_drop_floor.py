@@ -74,6 +74,7 @@ def test_flight_over_a_moving_floor_is_a_parabola_in_the_room():
 
 
 def test_a_floor_that_does_not_move_is_the_floor_of_a_drop_test():
+    """To the share of drops by which stopping early and running to rest may differ."""
     starts = sample(PRESETS["tumble"], BOX, 150, np.random.default_rng(4))
     faces, times = np.empty(150, int), np.empty(150)
     given = starts.states, starts.restitutions, starts.frictions

@@ -8,7 +8,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.motion.plate import drive, report
 from feederscrew.motion.plate.occupancy import lasting, limit_of, occupancy
-from feederscrew.motion.plate.rides import ride
+from feederscrew.motion.plate.rides import BATCH, ride
 from feederscrew.resting.aspects import find
 from feederscrew.resting.drop.kernel import UNSETTLED
 from feederscrew.resting.drop.launch import PRESETS, sample
@@ -141,7 +141,7 @@ def test_an_interrupt_keeps_the_batches_that_are_done():
     looks = np.arange(1.0, 20.0)
     part = ride(BOX, floor, starts, looks, drive.steps_of(floor), progress=stop)
     whole = ride(BOX, floor, starts, looks, drive.steps_of(floor))
-    assert part.partial and 0 < len(part.faces) <= 200
+    assert part.partial and 0 < len(part.faces) < 200 and len(part.faces) % BATCH == 0
     assert (part.faces == whole.faces[: len(part.faces)]).all()
 
 
@@ -181,8 +181,7 @@ def test_the_throw_number_of_a_plate():
     assert drive.throw_number(given) == pytest.approx(0.3e-3 * (120 * np.pi) ** 2 * 0.5 / 9.81)
 
 
-def test_nothing_is_open_at_the_end():
-    """Faces and their order are those of the part: UNSETTLED stays outside every class."""
+def test_a_part_that_never_lies_counts_for_no_class():
     found = counted([[UNSETTLED] * 8, [0] * 8])
     assert found.course.sum(axis=1) == pytest.approx(np.full(8, 0.5))
 
@@ -190,3 +189,35 @@ def test_nothing_is_open_at_the_end():
 def test_the_start_is_what_each_part_lay_on_first():
     found = counted([[-1, -1, 2, 0, 0, 0, 0, 0], [0, 2, 2, 2, 2, 2, 2, 2], [-1] * 8, [1] * 8])
     assert found.start == pytest.approx([0.5, 0.25])
+
+
+def test_nothing_leads_to_a_class_that_no_part_was_ever_on():
+    """How it would be left is not known: it must not swallow the others."""
+    rng = np.random.default_rng(1)
+    faces = chain((2.0, 1.0), 200, 60, 0.1, rng)  # classes 0 and 2
+    found = occupancy(faces, np.zeros(faces.shape), np.arange(3), 3, 0.1, rng)
+    assert np.isnan([found.limit[1], found.limit_low[1], found.limit_high[1]]).all()
+    assert found.limit[[0, 2]].sum() == pytest.approx(1.0)
+    assert found.limit_low[2] <= 2 / 3 <= found.limit_high[2] < 0.8
+
+
+def test_the_velocity_of_one_part_has_no_interval():
+    found = counted([[0] * 8], places=[np.arange(8.0)])
+    assert found.velocity[0] == pytest.approx(2.0) and np.isnan(found.velocity[1:]).all()
+
+
+def test_the_throw_number_counts_the_second_harmonic():
+    """Its acceleration is sin x + 4 r sin(2 x + psi): 1 + 4 r at x = 90 deg for psi = -90 deg."""
+    own = ("drive.second_harmonic=0.2", "drive.second_harmonic_phase=-90 deg")
+    assert drive.throw_number(bowl(*own)) == pytest.approx(1.8 * drive.throw_number(bowl()))
+
+
+def test_a_launch_keeps_its_speed_whatever_the_gravity():
+    """Without friction nothing stops a part along the plate: it goes on as fast as it came."""
+    part = shapes.part(shapes.box(12.0, 12.0, 3.0))
+    own = dict.fromkeys(("fall", "spin", "restitution")) | {"speed": "0.1 m/s", "friction": "0"}
+    plates = [bowl("drive.amplitude=0 mm", f"gravity={gravity} m/s2") for gravity in (9.81, 1.0)]
+    earth, moon = report.test(part, find(part), plates, "place", own, drops=60, seconds=0.3)
+    assert earth.launch["speed_mm_s"] == moon.launch["speed_mm_s"] == pytest.approx([100.0, 100.0])
+    assert abs(earth.occupancy.velocity[0]) > 1e-3  # not all ways cancel
+    assert moon.occupancy.velocity[0] == pytest.approx(earth.occupancy.velocity[0], rel=1e-3)

@@ -195,7 +195,7 @@ def test_same_input_same_bytes(bracket, light):
         (
             {"rule": "guess"},
             "--rule guess: has no probabilities of this part - choose one of pmi, csa, stability, "
-            "quasistatic, crsa, barrier, surface, hops",
+            "quasistatic, crsa, barrier, surface, hops, recommended",
         ),
     ],
 )
@@ -252,6 +252,14 @@ def test_a_bowl_too_steep_to_travel_is_told(bracket):
     assert velocity.tiles == (blocks.Tile("travels", "–", "no steady state"),)
     assert velocity.blocks[-1].text.startswith("No drive of 5 to 60 deg")
     assert rate.blocks[0].lines[0].startswith("track.climb: is steeper than friction holds")
+
+
+def test_a_part_with_a_shape_has_the_recommended_answer(bracket):
+    case = Case.of(bracket, None, ())
+    answer = case.found.recommended
+    (tile,) = page(case, chapters=LIGHT[:1]).tiles
+    assert tile.note.startswith(f"{100.0 * answer.p[case.row]:.3g} % of drops (")
+    assert tile.note.endswith(f" %), {answer.rule}")
 
 
 def test_the_likeliest_aspect_is_wanted_unless_another_is():

@@ -13,7 +13,9 @@ from feederscrew.motion.headings import headings, laid
 from feederscrew.resting.plan import turned
 from feederscrew.resting.posture import posture
 
-RULES = ("pmi", "csa", "stability", "quasistatic", "crsa", "barrier", "surface", "hops")  # a rate can go by
+RULES = (  # a rate can go by
+    "pmi", "csa", "stability", "quasistatic", "crsa", "barrier", "surface", "hops", "recommended",
+)  # fmt: skip
 SAME = 1e-3  # of the part's size: hulls whose corners differ by less are the same
 
 
@@ -100,7 +102,7 @@ def orientations(part, aspects, track, chain=()):
         widths=_joined(found, first, "widths"),
         stations=("track", *(device.kind for device in chain)),
         passes=check.frozen(np.concatenate(passes)),
-        rules={name: check.frozen(chance[rows] * joined) for name, chance in aspects.probabilities.items()},
+        rules={name: check.frozen(chance[rows] * joined) for name, chance in aspects.chances.items()},
     )
 
 

@@ -56,3 +56,16 @@ def remarks(fits):
         if fit.calibration.p_value < 0.01:
             told.append(f"{fit.name}: no exponent explains these counts (p {fit.calibration.p_value:.2g})")
     return told
+
+
+def write(folder, document):
+    """The files of ``feeder calibrate``.
+
+    Parameters
+    ----------
+    folder : ResultFolder
+    document : dict
+        From `document`.
+    """
+    folder.write("calibrate.csv", tables.text(document["calibrations"], "csv"))
+    folder.write("calibrate.json", tables.json_text(document))

@@ -104,6 +104,6 @@ def write(folder, part, aspects, result, document, *, pictures=True):
     if pictures:
         from feederscrew.output import drop_plots, plots
 
-        rules = {"csa": aspects.probabilities["csa"]}
+        rules = {rule: aspects.probabilities[rule] for rule in ("csa", "surface")}
         chart = drop_plots.counts(_title(part, document), aspects, result.tally, rules)
         folder.write("drop.png", plots.png(chart))

@@ -5,15 +5,16 @@ import numpy as np
 
 from feederscrew.output import plots
 from feederscrew.output.columns import MM
-from feederscrew.output.plate_tables import MM_S
+from feederscrew.output.plate_tables import MM_S, travels
 
 COLOURS = [colour for _, colour in plots.METHODS.values()] + list(plots.SPARE)
-LABELLED = 0.02  # share of the parts from which an area over time carries its name
+LABELLED = 0.02  # share of the parts from which an aspect carries its name, or a line in a trend
+APART = 0.012  # of the range of throw numbers: from one aspect's points to the next one's
 GREY = "#aab4bd"
 
 
 def one(title, aspects, result):
-    """Shares over time on one plate, and beside them how parts fell, lay and would lie in the end.
+    """Shares over time on one plate, and beside them how parts lay at first, later and in the end.
 
     Parameters
     ----------
@@ -28,7 +29,9 @@ def one(title, aspects, result):
     figure = plots.figure(8.2, 3.8)
     left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
     plots.tidy(left, title=plots.words(title), x="time on the plate [s]", y="parts [%]", grid="y")
-    plots.tidy(right, title=_speed(result), x="aspect", y="share [%]", grid="y")
+    plots.tidy(
+        right, title=travels(result, 3) + ", partial" * result.partial, x="aspect", y="share [%]", grid="y"
+    )
     over_time(left, aspects, result)
     shares(right, aspects, result.occupancy)
     right.legend(fontsize=8, frameon=False, loc="upper right", labelcolor=plots.INK)
@@ -52,16 +55,16 @@ def over_time(axes, aspects, result):
 
 
 def shares(axes, aspects, seen):
-    """How parts fell, how they lay in the second half with its interval, and where the rates lead."""
+    """How parts lay at first, how they lay in the second half with its interval, and where the rates lead."""
     places = np.arange(len(aspects.names))
-    axes.bar(places - 0.2, 100.0 * seen.start, 0.36, color=GREY, label="as they fell")
+    axes.bar(places - 0.2, 100.0 * seen.start, 0.36, color=GREY, label="at first")
     axes.bar(places + 0.2, 100.0 * seen.plate, 0.36, color=plots.INK, alpha=0.8, label="second half")
     error = 100.0 * np.stack([seen.plate - seen.plate_low, seen.plate_high - seen.plate])
     axes.errorbar(places + 0.2, 100.0 * seen.plate, error, fmt="none", ecolor=plots.INK, capsize=3, lw=1.0)
     spread = 100.0 * np.stack([seen.limit - seen.limit_low, seen.limit_high - seen.limit])
     axes.errorbar(
         places + 0.3, 100.0 * seen.limit, spread, fmt="_", ms=9, mew=2, color=plots.ACCENT, capsize=3, lw=1.0,
-        label="where the rates lead",
+        label=None if np.isnan(seen.limit).all() else "where the rates lead",
     )  # fmt: skip
     axes.set_xticks(places, aspects.names)
     axes.tick_params(axis="x", length=0)
@@ -84,47 +87,42 @@ def trend(title, aspects, results, names):
     """
     figure = plots.figure(8.2, 3.8)
     left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
-    x = np.array([result.throw_number for result in results])
-    order = np.argsort(x, kind="stable")
     plots.tidy(left, title=plots.words(title), x="throw number", y="share in the second half [%]")
     plots.tidy(right, title="Transport", x="throw number", y="velocity [mm/s]")
-    seen = [results[k].occupancy for k in order]
-    for k, name in enumerate(aspects.names):
+    order = np.argsort([result.throw_number for result in results], kind="stable")
+    results, names = [results[k] for k in order], [names[k] for k in order]
+    x = np.array([result.throw_number for result in results])
+    seen = [result.occupancy for result in results]
+    shown = [k for k in range(len(aspects.names)) if max(one.plate[k] for one in seen) > LABELLED]
+    over_throw(left, x, seen, {k: aspects.names[k] for k in shown})
+    velocity = np.array([one.velocity for one in seen]) / MM_S
+    ends = np.abs(velocity[:, 1:] - velocity[:, :1]).T
+    right.errorbar(x, velocity[:, 0], ends, color=plots.INK, marker="o", ms=4, capsize=2)
+    named(right, x, results, names)
+    figure.legend(
+        *left.get_legend_handles_labels(), loc="outside lower center", ncols=12, fontsize=8, frameon=False,
+        labelcolor=plots.INK, title="dotted: at first" + _left_out(aspects, shown), title_fontsize=8,
+    )  # fmt: skip
+    return figure
+
+
+def over_throw(axes, x, seen, names):
+    """Share of each named aspect over the (N,) throw numbers ``x``, a little apart lest one hides another."""
+    for place, (k, name) in enumerate(names.items()):
+        at = x + APART * np.ptp(x) * (place - 0.5 * (len(names) - 1))
         middle, low, high = (
             100.0 * np.array([getattr(one, end)[k] for one in seen])
             for end in ("plate", "plate_low", "plate_high")
         )
-        left.errorbar(
-            x[order],
-            middle,
-            [middle - low, high - middle],
-            color=colour(k),
-            marker="o",
-            ms=4,
-            capsize=2,
-            label=name,
-        )
-        left.plot(x[order], [100.0 * one.start[k] for one in seen], ls=":", lw=1.0, color=colour(k))
-    velocity = np.array([one.velocity for one in seen]) / MM_S
-    right.errorbar(
-        x[order],
-        velocity[:, 0],
-        np.abs(velocity[:, 1:] - velocity[:, :1]).T,
-        color=plots.INK,
-        marker="o",
-        ms=4,
-        capsize=2,
-    )
-    named(right, x, results, names)
-    left.legend(
-        fontsize=8,
-        frameon=False,
-        ncols=2,
-        labelcolor=plots.INK,
-        title="dotted: as they fell",
-        title_fontsize=8,
-    )
-    return figure
+        spread = [middle - low, high - middle]
+        axes.errorbar(at, middle, spread, color=colour(k), marker="o", ms=4, capsize=2, label=name)
+        axes.plot(at, [100.0 * one.start[k] for one in seen], ls=":", lw=1.0, color=colour(k))
+
+
+def _left_out(aspects, shown):
+    """What the picture does not show, as a clause."""
+    count = len(aspects.names) - len(shown)
+    return f"; {count} aspects never above {100.0 * LABELLED:g} % left out" if count else ""
 
 
 def named(axes, x, results, names):
@@ -134,8 +132,8 @@ def named(axes, x, results, names):
         stroke = f"{result.bowl.drive.amplitude / MM:.3g} mm"
         axes.annotate(
             plots.words(f"{name} {stroke}" if several else stroke),
-            (at, result.occupancy.velocity[0] / MM_S), (0, 7), textcoords="offset points", ha="center",
-            fontsize=7, color=plots.INK,
+            (at, np.nanmax(result.occupancy.velocity) / MM_S), (0, 4), textcoords="offset points",
+            ha="center", fontsize=7, color=plots.INK,
         )  # fmt: skip
     axes.margins(x=0.12, y=0.15)
 
@@ -143,8 +141,3 @@ def named(axes, x, results, names):
 def colour(k):
     """Colour of the k-th aspect; further ones run through a map."""
     return COLOURS[k] if k < len(COLOURS) else matplotlib.colormaps["viridis"]((0.37 * k) % 1.0)
-
-
-def _speed(result):
-    speed, low, high = result.occupancy.velocity / MM_S
-    return f"travels at {speed:.3g} mm/s ({low:.3g} to {high:.3g})"

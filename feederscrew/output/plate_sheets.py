@@ -30,10 +30,14 @@ def write(folder, part, aspects, results, names, document, *, pictures=True):
         figure = (
             plate_plots.one(_title(part, results[0]), aspects, results[0])
             if len(results) == 1
-            else plate_plots.trend(f"{part.name} on {len(results)} plates", aspects, results, names)
+            else plate_plots.trend(_over(part, results), aspects, results, names)
         )
         folder.write("plate.png", plots.png(figure))
 
 
 def _title(part, result):
     return f"{part.name}: {result.parts} parts, throw number {result.throw_number:.3g}"
+
+
+def _over(part, results):
+    return f"{part.name} on {len(results)} plates" + ", partial" * results[-1].partial

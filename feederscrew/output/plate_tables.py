@@ -9,7 +9,7 @@ from feederscrew.output.columns import MM
 
 MM_S = units.factor("mm/s", "velocity")
 SURFACE = ("restitution", "friction")  # of a launch: the plate's own
-HIDDEN = ("p_limit_low", "p_limit_high", "velocity_low_mm_s", "velocity_high_mm_s")  # in a table for people
+HIDDEN = ("velocity_low_mm_s", "velocity_high_mm_s")  # in a table for people
 TIMES = 101  # rows an aspect in the course over time, at most
 
 
@@ -28,7 +28,7 @@ def plates(aspects, results, names):
     DataFrame
         The columns of ``plate.csv``.
     """
-    return tables.frame(_stacked([_plate(aspects, *pair) for pair in zip(results, names)]))
+    return _labelled([_plate(aspects, *pair) for pair in zip(results, names)], results)
 
 
 def rates(aspects, results, names):
@@ -36,37 +36,29 @@ def rates(aspects, results, names):
 
     A row whose two aspects are the same counts tips onto an equal face.
     """
-    return tables.frame(_stacked([_rates(aspects, *pair) for pair in zip(results, names)]))
+    return _labelled([_rates(aspects, *pair) for pair in zip(results, names)], results)
 
 
 def course(aspects, results, names):
     """One row a plate, time and aspect: the share of the parts there; ``plate_time.csv``."""
-    return tables.frame(_stacked([_course(aspects, *pair) for pair in zip(results, names)]))
+    return _labelled([_course(aspects, *pair) for pair in zip(results, names)], results)
 
 
 def drives(results, names):
     """One row a plate: how fast parts travel on it, and how much was seen; ``plate_drives.csv``."""
-    ends = ("velocity_mm_s", "velocity_low_mm_s", "velocity_high_mm_s")
-    columns = {
-        **_stacked([_head(result, name, 1) for result, name in zip(results, names)]),
-        "drops": [result.parts for result in results],
-        "seconds": [result.seconds for result in results],
-        "unsettled": [_unsettled(result) for result in results],
-        "transitions": [_seen(result.occupancy) for result in results],
-        "steady": ["no" if result.occupancy.changing.any() else "yes" for result in results],
-        **{end: [result.occupancy.velocity[k] / MM_S for result in results] for k, end in enumerate(ends)},
-    }
-    return tables.frame(columns)
+    return _labelled([_drive(*pair) for pair in zip(results, names)], results)
 
 
 def told(results, names):
     """How fast parts travel on each plate, a line each."""
     for result, name in zip(results, names):
-        speed, low, high = result.occupancy.velocity / MM_S
-        yield (
-            f"{_where(result, name)}: travels at {speed:.4g} mm/s ({low:.4g} to {high:.4g}), "
-            f"{_seen(result.occupancy)} transitions seen"
-        )
+        yield f"{_where(result, name)}: {travels(result, 4)}, {_seen(result.occupancy)} transitions seen"
+
+
+def travels(result, digits):
+    """The mean velocity on one plate and, of several parts, its interval."""
+    speed, low, high = (f"{end:.{digits}g}" for end in result.occupancy.velocity / MM_S)
+    return f"travels at {speed} mm/s" + f" ({low} to {high})" * (result.parts > 1)
 
 
 def document(part, aspects, seed, results, names):
@@ -110,7 +102,7 @@ def remarks(document):
         if 0 < seen < FEW:
             told.append(f"{where}: too few transitions ({seen}) for p_limit; give more --drops or --seconds")
     if document["partial"]:
-        told.append(f"partial: stopped after {document['plates'][-1]['drops']} parts on the last plate")
+        told.append(f"partial: stopped after {plate['drops']} parts on the plate of {where}")
     return told
 
 
@@ -136,8 +128,13 @@ def _unsettled(result):
     return round(result.parts * (1.0 - float(result.occupancy.course[-1].sum())))
 
 
-def _stacked(parts):
-    return {name: np.concatenate([np.asarray(part[name]) for part in parts]) for name in parts[0]}
+def _labelled(parts, results):
+    """The columns of all plates as a table; once the user stopped, which plate is not whole."""
+    columns = {name: np.concatenate([np.asarray(part[name]) for part in parts]) for name in parts[0]}
+    if any(result.partial for result in results):
+        lengths = [len(part["bowl"]) for part in parts]
+        columns["partial"] = np.repeat([result.partial for result in results], lengths)
+    return tables.frame(columns)
 
 
 def _head(result, name, count):
@@ -145,6 +142,19 @@ def _head(result, name, count):
     drive = result.bowl.drive
     told = {"bowl": name, "amplitude_mm": drive.amplitude / MM, "throw_number": result.throw_number}
     return {key: [value] * count for key, value in told.items()}
+
+
+def _drive(result, name):
+    ends = ("velocity_mm_s", "velocity_low_mm_s", "velocity_high_mm_s")
+    return {
+        **_head(result, name, 1),
+        "drops": [result.parts],
+        "seconds": [result.seconds],
+        "unsettled": [_unsettled(result)],
+        "transitions": [_seen(result.occupancy)],
+        "steady": ["no" if result.occupancy.changing.any() else "yes"],
+        **{end: [result.occupancy.velocity[k] / MM_S] for k, end in enumerate(ends)},
+    }
 
 
 def _plate(aspects, result, name):

@@ -28,7 +28,7 @@ UNITS = {  # the end of a column's name, and how a heading writes it
     "_s": "s",
 }
 DIGITS = 4  # significant, in a table for people
-SHORT = 4  # letters of a rule that is an abbreviation
+ABBREVIATIONS = ("pmi", "csa", "crsa")  # rules written in capitals
 NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
 
 
@@ -117,7 +117,7 @@ def heading(name):
         rule = name.removeprefix("p_").replace("_", " ")
         if rule.endswith((" low", " high")):
             return rule.rsplit(" ", 1)[1], "[%]"
-        return (rule.upper() if len(rule) <= SHORT else rule), "[%]"
+        return (rule.upper() if rule in ABBREVIATIONS else rule), "[%]"
     ending = next((ending for ending in UNITS if name.endswith(ending) and name != ending), "")
     return name.removesuffix(ending).replace("_", " "), f"[{UNITS[ending]}]" if ending else ""
 

@@ -40,6 +40,12 @@ class Aspects:
     ground: tumbling_aspects.Ground | None = None  # faces, basins and barriers behind the rows
     warnings: tuple[str, ...] = ()
 
+    @property
+    def chances(self):
+        """Probability of each aspect by every name a user may ask for: the rules, and 'recommended'."""
+        answer = {} if self.recommended is None else {"recommended": self.recommended.p}
+        return self.probabilities | answer
+
 
 def find(part, *, as_published=False, unstable=False, exponent=surface.EXPONENTS["hard"]):
     """Resting aspects of a part, with their probability by every rule.

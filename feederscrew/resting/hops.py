@@ -37,8 +37,8 @@ def hop_shares(tips, radius):
     face it is on, and once no saddle lies below, it stays. Deep faces hold what comes, high and shallow
     ones pass it on.
 
-    KEPT and the powers of one were chosen with the measured cuboids and half of some made bodies in view;
-    ``benchmarks/accuracy.py`` compares.
+    KEPT and the powers of one were chosen by eye: docs/resting.md says on what, ``benchmarks/accuracy.py``
+    compares.
     """
     present = np.flatnonzero(np.isfinite(tips.heights) & (tips.shares > 0.0))
     ways = np.isin(tips.pairs, present).all(axis=1)

@@ -1,12 +1,13 @@
 """The bowl's drive as the drop kernel needs it."""
 
 import math
+from dataclasses import replace
 
-from feederscrew.motion import limits
+from feederscrew.motion.conveying import answer
 from feederscrew.resting.drop.floor import Floor
 from feederscrew.resting.drop.motion import Steps
 
-PERIOD = 120  # steps of a period, at least: the velocity of a flat part is then 2 to 8 % off the exact one
+PERIOD = 120  # steps of a period, at least: eight times as many change a flat part's velocity by 2 % at most
 FINER = 2.0  # than the steps of a drop
 SLOW = 0.1  # of the plate's greatest speed upwards: slower contacts do not rebound
 
@@ -50,7 +51,7 @@ def steps_of(floor):
 
 
 def throw_number(bowl):
-    """Greatest acceleration of the level floor along its normal over gravity [1]; of the first harmonic."""
-    drive = bowl.drive
-    ratio = limits.acceleration_ratio(drive.amplitude, drive.frequency, bowl.gravity)
-    return float(ratio * math.sin(drive.vibration_angle))
+    """Greatest downward acceleration of the level floor over gravity [1], as of the track that conveys."""
+    if bowl.drive.amplitude == 0.0:
+        return 0.0
+    return float(answer.throw_number(replace(bowl, track=replace(bowl.track, climb=0.0, bank=0.0))))

@@ -21,11 +21,11 @@ SURE = 3.0  # standard errors by which it must stand out
 class Occupancy:
     """What N parts did on a plate; A classes. Intervals are of 95 %, over the parts."""
 
-    start: np.ndarray  # (A,) [1] share of the parts by what they lay on first
+    start: np.ndarray  # (A,) [1] share of the parts by what they lay on at the first look that shows it
     plate: np.ndarray  # (A,) [1] share of the time, in the second half
     plate_low: np.ndarray  # (A,) [1]
     plate_high: np.ndarray
-    limit: np.ndarray  # (A,) [1] share to which the rates lead in the end; NaN where too few were seen
+    limit: np.ndarray  # (A,) [1] share to which the rates lead in the end; NaN where too little was seen
     limit_low: np.ndarray  # (A,) [1]
     limit_high: np.ndarray
     changing: np.ndarray  # (A,) bool: the share still changed from the third quarter to the last
@@ -35,7 +35,7 @@ class Occupancy:
     rates_low: np.ndarray  # (A, A) [1/s]
     rates_high: np.ndarray
     velocity: np.ndarray  # (3,) [m/s] mean along the drive, over all; low, high
-    velocities: np.ndarray  # (A, 3) [m/s] while in a class; NaN where nothing was seen
+    velocities: np.ndarray  # (A, 3) [m/s] while in a class; NaN where nothing was seen, ends NaN of one part
     course: np.ndarray  # (K, A) [1] share of the parts at each look
 
 
@@ -67,7 +67,8 @@ def occupancy(faces, places, rows, count, period, rng):
     A rate is the number of transitions over the time spent; its interval is that of a Poisson count
     (F. Garwood, Biometrika 28, 437-442, 1936). The interval of a share of time is Wilson's for so many
     parts, which is too wide where a part changes often. ``limit`` is the mean over DRAWS of all rates, each
-    from a Gamma distribution of its count (with PRIOR) and time, of where they lead from the last look on.
+    from a Gamma distribution of its count (with PRIOR) and time, of where they lead from the last look on;
+    a class in which no time was spent is left out, as nothing is known of how it is left.
     """
     held = lasting(faces)
     classes = np.where(held == UNSETTLED, count, np.asarray(rows)[held])  # one more for parts not yet down
@@ -145,9 +146,12 @@ def _limits(counts, times, last, rng):
     if seen < FEW:
         nothing = np.full(len(last), np.nan)
         return nothing, (nothing, nothing)
-    shape = counts + PRIOR / max(len(last) - 1, 1)
-    rates = np.where(times > 0.0, 1.0 / np.maximum(times, np.finfo(float).tiny), 0.0)[:, None]
-    drawn = limit_of(rng.gamma(shape, size=(DRAWS, *shape.shape)) * rates, last)
+    spent = times > 0.0
+    prior = PRIOR / max(spent.sum() - 1, 1)
+    shape = (counts + prior)[np.ix_(spent, spent)]
+    rates = rng.gamma(shape, size=(DRAWS, *shape.shape)) / times[spent, None]
+    drawn = np.full((DRAWS, len(last)), np.nan)
+    drawn[:, spent] = limit_of(rates, last[spent])
     return drawn.mean(axis=0), np.percentile(drawn, (2.5, 97.5), axis=0)
 
 
@@ -172,8 +176,10 @@ def _velocities(places, inside, period):
 
 
 def _ratio(ways, times):
-    """(A, 3) sum of (N, A) ways over sum of (N, A) times, and its interval over the parts."""
+    """(A, 3) sum of (N, A) ways over sum of (N, A) times, and its interval over the parts: NaN of one."""
     total = np.where(times.sum(axis=0) > 0.0, times.sum(axis=0), np.nan)
     mean = ways.sum(axis=0) / total
-    error = NORMAL * np.sqrt(((ways - mean * times) ** 2).sum(axis=0)) / total
+    parts = (times > 0.0).sum(axis=0)
+    wider = np.sqrt(parts / np.where(parts > 1, parts - 1.0, np.nan))  # as the mean is of the same parts
+    error = NORMAL * wider * np.sqrt(((ways - mean * times) ** 2).sum(axis=0)) / total
     return np.stack([mean, mean - error, mean + error], axis=-1)

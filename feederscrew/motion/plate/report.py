@@ -71,15 +71,14 @@ def test(part, aspects, bowls, preset, own, *, drops=None, seconds=None, seed=1,
     """
     found = ground(part, aspects)
     shape, length = shape_of_part(part, found)
-    launch = conditions.launch_of(preset, length, own)
     seconds = SECONDS if seconds is None else seconds
     count, results = USUAL if drops is None else drops, []
     plate = partial(_plate, found, aspects, shape, length, seconds)
     for k, bowl in enumerate(bowls):
         try:
             tell = _after(k * count, len(bowls) * count, progress)
-            surfaced = _surfaced(launch, bowl, own)
-            results.append(plate(bowl, surfaced, count, seed, jobs, tell))
+            launch = _surfaced(conditions.launch_of(preset, length, own, bowl.gravity), bowl, own)
+            results.append(plate(bowl, launch, count, seed, jobs, tell))
         except KeyboardInterrupt:
             if not results:
                 raise
@@ -112,7 +111,7 @@ def _plate(found, aspects, shape, length, seconds, bowl, launch, count, seed, jo
     seen = occupancy(rides.faces, length * rides.places[:, :, 0], found.rows, len(aspects.names), period, rng)
     return Shaken(
         bowl=bowl,
-        launch=conditions.described(launch, length),
+        launch=conditions.described(launch, length, bowl.gravity),
         throw_number=drive.throw_number(bowl),
         parts=len(rides.faces),
         seconds=number * period,

@@ -2,12 +2,14 @@
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import takewhile
 
 import numpy as np
 
 from feederscrew import check
 from feederscrew.resting.compiled import on_disk
 from feederscrew.resting.drop import motion, shaken
+from feederscrew.resting.drop.ensemble import finished
 from feederscrew.resting.drop.kernel import UNSETTLED
 
 BATCH = 10  # parts a core takes at a time
@@ -43,7 +45,8 @@ def ride(shape, floor, starts, looks, steps, *, jobs=1, progress=None):
     Returns
     -------
     Rides
-        After an interrupt from the keyboard, the batches that were finished.
+        After an interrupt from the keyboard, the batches that were finished, up to the first that was not:
+        a run of so many parts gives the same.
 
     Raises
     ------
@@ -63,7 +66,7 @@ def ride(shape, floor, starts, looks, steps, *, jobs=1, progress=None):
                 progress(done)
     except KeyboardInterrupt:
         pool.shutdown(cancel_futures=True)
-        tasks, partial = [task for task in tasks if task.done() and not task.cancelled()], True
+        tasks, partial = list(takewhile(finished, tasks)), True
         if not tasks:
             raise
     finally:

@@ -68,8 +68,8 @@ class Case:
         """
         settings = bowls.settings(path, overrides)
         found = aspects.find(part)
-        if rule not in found.probabilities:
-            known = ", ".join(found.probabilities)
+        if rule not in found.chances:
+            known = ", ".join(found.chances)
             raise FeederError(f"--rule {rule}", "has no probabilities of this part", f"choose one of {known}")
         return cls(
             part=part,

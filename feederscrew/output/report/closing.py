@@ -10,10 +10,10 @@ from feederscrew.output.report.blocks import Code, Notes, Section, Table, Text
 from feederscrew.output.report.resting import numbers
 
 LIMITS = (
-    "How often a part lands on an aspect: PMI, CSA and stability are rules of thumb from geometry alone. "
-    "They disagree, and on real parts each is right in some cases only. Where they lie far apart, drop the "
-    "part a few hundred times and count (feeder compare). None of them knows the height of the drop, the "
-    "surface or other parts.",
+    "How often a part lands on an aspect: the rules compute from the part's shape and mass alone; only "
+    "p_surface and the interval of p_recommended consider different surfaces, and none knows the height of "
+    "the drop or other parts. They disagree, and on real parts each is right in some cases only. Where they "
+    "lie far apart, drop the part a few hundred times and let your own counts decide (feeder compare).",
     "The part is rigid and, unless its centre of mass was given, homogeneous. A mesh is a polyhedron: its "
     "curved sides are a little smaller than the part's. Two aspects that are mirror images have the same "
     "numbers.",

@@ -120,10 +120,20 @@ def _caption(found, row):
 
 
 def _tile(case):
-    """Which aspect, and how likely by the rules."""
+    """Which aspect, and how likely."""
     first = case.aspect == likeliest(case.found)
+    return Tile("rests most often on" if first else "wanted", f"aspect {case.aspect}", _how_likely(case))
+
+
+def _how_likely(case):
+    """The recommended answer with its interval; for a card, what its rules span."""
+    answer = case.found.recommended
+    if answer is not None:
+        share, low, high = (percent(ends[case.row]) for ends in (answer.p, answer.low, answer.high))
+        return f"{share} % of drops ({low} to {high} %), {answer.rule}"
     chances = {rule: values[case.row] for rule, values in case.found.probabilities.items()}
     known = {rule: share for rule, share in chances.items() if np.isfinite(share)}
+    if not known:
+        return "no rule tells how often"
     low, high = percent(min(known.values())), percent(max(known.values()))
-    note = f"{low} to {high} % of drops, by {len(known)} rules" if known else "no rule tells how often"
-    return Tile("rests most often on" if first else "wanted", f"aspect {case.aspect}", note)
+    return f"{low} to {high} % of drops, by {len(known)} rules"

@@ -101,7 +101,7 @@ def drop(shape, launch, rng, *, count=None, aim=None, jobs=1, steps=None, progre
         _run(begin, tasks, count, aim, progress or (lambda *told: None))
     except KeyboardInterrupt:
         pool.shutdown(cancel_futures=True)  # a thread cannot be stopped: this waits for running batches
-        tasks, partial = list(takewhile(_finished, tasks)), True
+        tasks, partial = list(takewhile(finished, tasks)), True
         if not tasks:
             raise
     finally:
@@ -205,7 +205,8 @@ def _run(begin, tasks, count, aim, tell):
             tell(done, total, widest)
 
 
-def _finished(task):
+def finished(task):
+    """Whether a task has run to its end, without a fault."""
     return task.done() and not task.cancelled() and task.exception() is None
 
 
