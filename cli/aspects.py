@@ -16,9 +16,7 @@ SURFACES = click.Choice(["soft", "medium", "hard"])
 @click.option(
     "--surface", type=SURFACES, default="hard", show_default=True, help="What it lands on, for p_surface."
 )
-@click.option(
-    "--surface-exponent", type=click.FloatRange(-10, 10), help="The same as a number, 0 to about 3."
-)
+@click.option("--surface-exponent", type=options.Number(-10, 10), help="The same as a number, 0 to about 3.")
 @click.option(
     "--drop", "drops", type=click.IntRange(1, 10**7), help="Drop it so often; adds p_drop, the answer then."
 )

@@ -21,6 +21,17 @@ FILE = Place(allow_dash=True)
 UNITS = click.Choice(["mm", "cm", "m", "in"])
 
 
+class Number(click.FloatRange):
+    """A number within limits; not 'nan', which is within any."""
+
+    name = "number"
+
+    def convert(self, value, param, ctx):
+        """The number, or a wrong call."""
+        number = super().convert(value, param, ctx)
+        return number if number == number else self.fail(f"{value!r} is no number", param, ctx)
+
+
 def part(command):
     """PART and how to read it; the command receives the keywords of ``feederscrew.part.load``."""
     keywords = ("source", "units", "density", "centre_of_mass", "allow_open")

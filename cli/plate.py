@@ -34,7 +34,7 @@ def plate(command):
         ),
         click.option(
             "--seconds",
-            type=click.FloatRange(0.05, 3600.0),
+            type=options.Number(0.05, 3600.0),
             help="With --plate: how long each part is on it.  [default: 5]",
         ),
     )

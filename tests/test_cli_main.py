@@ -268,3 +268,17 @@ def test_the_readme_says_what_the_program_says():
         [sys.executable, "docs/readme.py", "--check"], capture_output=True, text=True, cwd=ROOT
     )
     assert (done.returncode, done.stdout, done.stderr) == (0, "", ""), "run: make docs"
+
+
+@pytest.mark.parametrize(
+    ("call", "line"),
+    [
+        (("aspects", "--surface-exponent", "nan"), "'--surface-exponent': 'nan' is no number"),
+        (("drop", "--plate", "--seconds", "nan"), "'--seconds': 'nan' is no number"),
+        (("track", "--heading", "1e300"), "'--heading': '1e300' is out of range - stay within ten turns"),
+    ],
+)
+def test_a_number_that_is_none_is_a_wrong_call(run, call, line):
+    done = run(call[0], ROOT / "parts/washer_m6.stl", *call[1:])
+    assert done.exit_code == 2 and done.stdout == ""
+    assert done.stderr == f"Error: Invalid value for {line} (see feeder {call[0]} --help)\n"
