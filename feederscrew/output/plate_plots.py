@@ -132,10 +132,10 @@ def named(axes, x, results, names):
         stroke = f"{result.bowl.drive.amplitude / MM:.3g} mm"
         axes.annotate(
             plots.words(f"{name} {stroke}" if several else stroke),
-            (at, np.nanmax(result.occupancy.velocity) / MM_S), (0, 4), textcoords="offset points",
-            ha="center", fontsize=7, color=plots.INK,
+            (at, np.nanmax(result.occupancy.velocity) / MM_S), (-5, 4), textcoords="offset points",
+            ha="right", fontsize=7, color=plots.INK,
         )  # fmt: skip
-    axes.margins(x=0.12, y=0.15)
+    axes.margins(x=0.2, y=0.15)
 
 
 def colour(k):
