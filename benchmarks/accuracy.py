@@ -36,7 +36,6 @@ sys.path.insert(0, str(ROOT / "tests"))
 import shapes  # noqa: E402 - the parts with closed forms
 
 RATIOS = (0.4, 0.6, 0.8, 1.0, 1.2, 1.4)
-T_OUTLINE = [(-5.5, 0), (5.5, 0), (5.5, 12), (12.5, 12), (12.5, 25), (-12.5, 25), (-12.5, 12), (-5.5, 12)]
 T_HEIGHTS = (14.8895, 12.5, 10.1105, 12.2532)  # [mm] of aspects A to D; E is the flat side
 CARDS = {"arc_chute": "table_3_04", "magnet": "table_3_07"}  # and the tables of their measured fractions
 
@@ -234,7 +233,7 @@ def main(chosen):
         (row, Body(shapes.part(shapes.box(10.0 * float(row["x_over_y"]), 10.0, 10.0)), chosen.drops))
         for row in rows(ROOT / "tests/data/square_cuboids.csv")
     ]
-    shown = {r: Body(shapes.part(shapes.prism(T_OUTLINE, 25.0 * r)), chosen.drops) for r in RATIOS}
+    shown = {r: Body(shapes.part(shapes.prism(shapes.T_OUTLINE, 25.0 * r)), chosen.drops) for r in RATIOS}
     meshes = list(made(chosen.made, np.random.default_rng(2013)))
     bodies = [Body(shapes.part(mesh), chosen.drops) for mesh in meshes]
     files = sorted(chosen.parts.glob("*.stl"))

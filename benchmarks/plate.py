@@ -22,7 +22,6 @@ from feederscrew.resting.aspects import find
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 import shapes
 
-T_OUTLINE = [(-5.5, 0), (5.5, 0), (5.5, 12), (12.5, 12), (12.5, 25), (-12.5, 25), (-12.5, 12), (-5.5, 12)]
 ANGLE = math.radians(20.0)
 NOTHING = dict.fromkeys(("fall", "spin", "speed", "restitution", "friction"))
 
@@ -60,7 +59,7 @@ def t_shapes(parts):
     print("\nT shape, thickness 0.6 of the width: share on the deepest aspect, at first and after 4 s;")
     print("transitions seen; seconds of processor time a part")
     for width in (5.0, 10.0, 25.0):
-        outline = [(x * width / 25.0, y * width / 25.0) for x, y in T_OUTLINE]
+        outline = [(x * width / 25.0, y * width / 25.0) for x, y in shapes.T_OUTLINE]
         part = shapes.part(shapes.prism(outline, 0.6 * width))
         aspects = find(part)
         deepest = np.argmin(aspects.heights)

@@ -39,7 +39,6 @@ from feederscrew.resting.tumbling_aspects import ground
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 import shapes
 
-T_OUTLINE = [(-5.5, 0), (5.5, 0), (5.5, 12), (12.5, 12), (12.5, 25), (-12.5, 25), (-12.5, 12), (-5.5, 12)]
 THROW = Launch("benchmark", (2.0, 2.0), (3.0, 3.0), (3.0, 3.0), (0.3, 0.3), (0.3, 0.3))
 RINGS = ((4.5, 0.0), (4.5, 3.0), (2.5, 17.5), (2.25, 18.0))  # [mm] radius and height: a screw's hull
 KERNEL_DROPS = 20000  # to compare profiles with
@@ -115,7 +114,7 @@ def bodies():
     turn = 2 * np.pi * np.arange(250) / 250
     rings = [np.column_stack([r * np.cos(turn), r * np.sin(turn), np.full(250, z)]) for r, z in RINGS]
     meshes = {
-        "T shape, 12 corners": shapes.prism(T_OUTLINE, 15.0),
+        "T shape, 12 corners": shapes.prism(shapes.T_OUTLINE, 15.0),
         "cuboid, 8 corners": shapes.box(10.0, 13.0, 17.0),
         "screw, 1,000 corners": trimesh.convex.convex_hull(np.concatenate(rings)),
     }

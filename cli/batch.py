@@ -2,7 +2,7 @@
 
 import click
 
-from cli import completion, options
+from cli import options
 from cli.progress import Progress
 
 
@@ -31,14 +31,7 @@ class Jobs(click.ParamType):
     help="Bowl file or folder; may be repeated.",
 )
 @options.overrides
-@click.option(
-    "--rule",
-    default="pmi",
-    show_default=True,
-    metavar="NAME",
-    shell_complete=completion.rules,
-    help="Probabilities taken.",
-)
+@options.rule
 @click.option(
     "--drops",
     metavar="N",

@@ -79,6 +79,18 @@ def overrides(command):
     )(command)
 
 
+def rule(command):
+    """``--rule``; the command receives its name."""
+    return click.option(
+        "--rule",
+        default="pmi",
+        show_default=True,
+        metavar="NAME",
+        shell_complete=completion.rules,
+        help="Whose probabilities are taken.",
+    )(command)
+
+
 def pictures(command):
     """``--no-pictures``; the command receives ``pictures``, true unless it is given."""
     return click.option(

@@ -2,7 +2,7 @@
 
 import click
 
-from cli import completion
+from cli import options
 from cli.angle import Angle
 from cli.quantity import Quantity
 
@@ -15,14 +15,7 @@ CHAIN = (
         help="Heading it is laid down in, which the wall turns to the next stable one.  "
         "[default: the most frequent that stays on the track]",
     ),
-    click.option(
-        "--rule",
-        default="pmi",
-        show_default=True,
-        metavar="NAME",
-        shell_complete=completion.rules,
-        help="Whose probabilities are taken.",
-    ),
+    options.rule,
     click.option(
         "--gap",
         type=Quantity("length"),

@@ -8,6 +8,10 @@ from feederscrew.part.record import Part
 STEEL = 7850.0  # [kg/m3]
 
 
+T_OUTLINE = [(-5.5, 0), (5.5, 0), (5.5, 12), (12.5, 12), (12.5, 25), (-12.5, 25), (-12.5, 12), (-5.5, 12)]
+"""[mm] The profile of the thesis's T shape, 25 wide and high; it follows from Table 3-8."""
+
+
 def part(mesh, name="part"):
     """Part of a trimesh in millimetres, of steel."""
     mesh = mesh.copy()

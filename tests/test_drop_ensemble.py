@@ -1,6 +1,6 @@
 """Launches, many drops and their counts."""
 
-from concurrent.futures import Future
+from concurrent.futures import wait
 
 import drop_bodies
 import numpy as np
@@ -13,6 +13,7 @@ from feederscrew.resting.drop import conditions, ensemble
 from feederscrew.resting.drop.ensemble import Aim, Drops, drop, tally, wilson
 from feederscrew.resting.drop.kernel import UNSETTLED
 from feederscrew.resting.drop.launch import PRESETS, sample
+from feederscrew.resting.drop.pool import gather
 
 BOX, LENGTH = drop_bodies.box((1.0, 1.3, 1.7))
 ROWS = np.array([0, 0, 1, 1, 2, 2])
@@ -75,22 +76,15 @@ def test_an_interrupt_keeps_what_is_finished(jobs, batches):
         assert (getattr(drops, name) == getattr(whole, name)).all()
 
 
-def test_a_batch_that_was_not_waited_for_ends_what_is_kept(monkeypatch):
-    """Of three batches the second is still to come: only the first counts, though the third is there."""
-    real, begun = ensemble._begun, []
+def test_a_batch_that_failed_ends_what_is_kept():
+    """Of three batches the second has a fault: only the first counts, though the third is there."""
 
-    def odd(*told):
-        begun.extend(real(*told))
-        begun[0].result()
-        begun[2].result()
-        return [begun[0], Future(), begun[2]]
-
-    monkeypatch.setattr(ensemble, "_begun", odd)
-
-    def stop(*told):
+    def work(begin):
+        tasks = [begin(lambda: "first"), begin(lambda: 1 / 0), begin(lambda: "third")]
+        wait(tasks)
         raise KeyboardInterrupt
 
-    assert len(seeded(count=750, progress=stop).faces) == ensemble.BATCH
+    assert gather(work, 3) == (["first"], True)
 
 
 def test_an_interrupt_before_anything_is_there_is_passed_on(monkeypatch):

@@ -127,7 +127,7 @@ def test_what_is_said_to_lie_still_lies_on_its_face(preset):
     part, aspects, result = followed(PARTS / "squarenut_m5.stl", preset, count=60, drops=60)
     tolerance = 4e-3 * np.cbrt(part.hull.volume)
     still = [trace for trace in result.traces if trace.still]
-    assert len(still) >= 57
+    assert len(still) > 0.9 * len(result.traces)
     for trace in still:
         assert trace.energies[-1] == pytest.approx(aspects.heights[trace.row], abs=tolerance)
     for trace in set(result.traces) - set(still):

@@ -75,6 +75,19 @@ def test_the_graph_is_drawn():
     assert {"A", "B", "C", "6.18"} <= texts
 
 
+def test_no_arrow_of_the_graph_ends_under_a_disc():
+    from feederscrew.output import graph_plots
+
+    _, aspects, found, _ = everything(shapes.box(10.0, 20.0, 30.0))
+    axes = graph_plots.graph("box", aspects, transitions(found), np.array([1.0, 0.0, 0.0])).axes[0]
+    discs = {tuple(disc.get_offsets()[0]): np.sqrt(disc.get_sizes()[0]) / 2.0 for disc in axes.collections}
+    arrows = [text for text in axes.texts if text.arrow_patch is not None]
+    assert len(arrows) == 6
+    for arrow in arrows:
+        assert arrow.arrow_patch.shrinkA > discs[tuple(arrow.xyann)]
+        assert arrow.arrow_patch.shrinkB > discs[tuple(arrow.xy)]
+
+
 def test_noise_and_turning_change_little(rng):
     box = shapes.box(10.0, 20.0, 30.0)
     clean = everything(box)[3]

@@ -1,16 +1,14 @@
 """Many parts on one vibrating plate, on several cores."""
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from itertools import takewhile
 
 import numpy as np
 
 from feederscrew import check
 from feederscrew.resting.compiled import on_disk
 from feederscrew.resting.drop import motion, shaken
-from feederscrew.resting.drop.ensemble import finished
 from feederscrew.resting.drop.kernel import UNSETTLED
+from feederscrew.resting.drop.pool import gather
 
 BATCH = 10  # parts a core takes at a time
 
@@ -53,25 +51,18 @@ def ride(shape, floor, starts, looks, steps, *, jobs=1, progress=None):
     KeyboardInterrupt
         If no batch was finished.
     """
-    tasks, partial, count = [], False, len(starts.energies)
-    pool = ThreadPoolExecutor(jobs)
-    try:
-        _batch(shape, floor, starts, looks, steps, slice(0, 0))  # compiled here, if need be
-        parts = [slice(first, first + BATCH) for first in range(0, count, BATCH)]
-        tasks = [pool.submit(_batch, shape, floor, starts, looks, steps, part) for part in parts]
-        done = 0
+    _batch(shape, floor, starts, looks, steps, slice(0, 0))  # compiled here, if need be
+
+    def work(begin):
+        parts = [slice(first, first + BATCH) for first in range(0, len(starts.energies), BATCH)]
+        tasks, done = [begin(_batch, shape, floor, starts, looks, steps, part) for part in parts], 0
         for task in tasks:
             done += len(task.result()[0])
             if progress:
                 progress(done)
-    except KeyboardInterrupt:
-        pool.shutdown(cancel_futures=True)
-        tasks, partial = list(takewhile(finished, tasks)), True
-        if not tasks:
-            raise
-    finally:
-        pool.shutdown(cancel_futures=True)
-    faces, places, whole = (np.concatenate([task.result()[k] for task in tasks]) for k in range(3))
+
+    results, partial = gather(work, jobs)
+    faces, places, whole = (np.concatenate(column) for column in zip(*results))
     return Rides(check.frozen(faces[whole]), check.frozen(places[whole]), int((~whole).sum()), partial)
 
 

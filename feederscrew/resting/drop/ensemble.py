@@ -1,14 +1,14 @@
 """Many drops of one part: run on several cores, counted by face, with intervals."""
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from itertools import takewhile
+from functools import partial
 
 import numpy as np
 
 from feederscrew import check
 from feederscrew.resting.drop import kernel
 from feederscrew.resting.drop.launch import sample
+from feederscrew.resting.drop.pool import gather
 
 BATCH = 250  # drops a core takes at a time
 ROUND = 8 * BATCH  # drops between two looks at the intervals, whatever the number of jobs
@@ -90,23 +90,13 @@ def drop(shape, launch, rng, *, count=None, aim=None, jobs=1, steps=None, progre
         If no batch was finished.
     """
     steps, count = steps or kernel.Steps(), MOST if count is None else int(count)
-    tasks, partial = [], False
-    pool = ThreadPoolExecutor(jobs)
 
-    def begin(first):
-        starts = sample(launch, shape, min(ROUND, count - first), rng)
-        tasks.extend(_begun(pool, shape, starts, steps))
+    def starts(size):
+        return sample(launch, shape, size, rng)
 
-    try:
-        _run(begin, tasks, count, aim, progress or (lambda *told: None))
-    except KeyboardInterrupt:
-        pool.shutdown(cancel_futures=True)  # a thread cannot be stopped: this waits for running batches
-        tasks, partial = list(takewhile(finished, tasks)), True
-        if not tasks:
-            raise
-    finally:
-        pool.shutdown(cancel_futures=True)
-    return Drops(*(check.frozen(_joined(tasks, k)) for k in range(3)), partial)
+    work = partial(_rounds, partial(_batch, shape, steps), starts, count, aim, progress or _unheard)
+    done, interrupted = gather(work, jobs)
+    return Drops(*(check.frozen(np.concatenate(column)) for column in zip(*done)), interrupted)
 
 
 def tally(drops, rows, count):
@@ -175,41 +165,33 @@ def half_width(low, high):
     return float(0.5 * (high - low).max())
 
 
-def _begun(pool, shape, starts, steps):
-    """Tasks of one round, a batch each, that give faces, times and energies."""
-
-    def batch(first):
-        part = slice(first, first + BATCH)
-        energies = starts.energies[part]
-        faces, times = np.full(len(energies), kernel.UNSETTLED), np.zeros(len(energies))
-        kernel.settle_all(
-            shape, kernel.scratch(shape), starts.states[part], starts.restitutions[part],
-            starts.frictions[part], steps, faces, times,
-        )  # fmt: skip
-        return faces, times, energies
-
-    return [pool.submit(batch, first) for first in range(0, len(starts.energies), BATCH)]
-
-
-def _run(begin, tasks, count, aim, tell):
+def _rounds(batch, starts, count, aim, tell, begin):
     """Begin round after round and wait for its batches, until there are enough."""
-    done, total, widest = 0, min(count, ROUND) if aim else count, None
+    tasks, done, total, widest = [], 0, min(count, ROUND) if aim else count, None
     while done < total:
-        begin(done)
-        for task in tasks[done // BATCH :]:
+        sampled = starts(min(ROUND, count - done))
+        size = len(sampled.energies)
+        fresh = [begin(batch, sampled, slice(first, first + BATCH)) for first in range(0, size, BATCH)]
+        for task in fresh:
             done += len(task.result()[0])
             tell(done, total, widest)
+        tasks += fresh
         if aim:
-            widest = aim.widest(_joined(tasks, 0))
+            widest = aim.widest(np.concatenate([task.result()[0] for task in tasks]))
             total = min(aim.needed(done, widest), count)
             tell(done, total, widest)
 
 
-def finished(task):
-    """Whether a task has run to its end, without a fault."""
-    return task.done() and not task.cancelled() and task.exception() is None
+def _batch(shape, steps, starts, part):
+    """Faces, times and energies of some drops."""
+    energies = starts.energies[part]
+    faces, times = np.full(len(energies), kernel.UNSETTLED), np.zeros(len(energies))
+    kernel.settle_all(
+        shape, kernel.scratch(shape), starts.states[part], starts.restitutions[part],
+        starts.frictions[part], steps, faces, times,
+    )  # fmt: skip
+    return faces, times, energies
 
 
-def _joined(tasks, k):
-    """(N,) faces (k = 0), times (1) or energies (2) of finished tasks."""
-    return np.concatenate([task.result()[k] for task in tasks])
+def _unheard(*told):
+    """Progress that nobody wants to see."""

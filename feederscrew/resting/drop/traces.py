@@ -14,7 +14,6 @@ MOST = 1000  # such rows; a longer drop has them further apart
 HITS = 250  # impacts that are kept, those that take most energy
 ROWS = 8192  # of a trace at first; a longer drop is followed again with twice as many
 STILL = 3e-3  # energy over a face's height at which a part lies still on it, contact tolerance included
-LEGS = 50  # times a part is followed on that seemed to be balanced
 CHUNK = 256  # rows whose corners are looked at together
 TURNED = np.radians(90.0)  # of the underside, from which on a part has tumbled
 
@@ -116,21 +115,12 @@ def telling(traces):
 
 
 def _to_rest(shape, start, restitution, friction, face):
-    """Rows until the part lies still on a face; None if it does not.
-
-    At the turning point of slow rocking the kernel may take a part for balanced: then it goes on from there.
-    """
-    legs, time = [], 0.0
-    for _ in range(LEGS if face != kernel.UNSETTLED else 0):
-        end, states = _path(shape, start, restitution, friction, kernel.Steps(early=False))
-        states[:, 0] += time
-        if end != face:
-            return None
-        if _energies(shape, states[-1:])[0] - shape.heights[face] < STILL:
-            return np.vstack([*legs, states])
-        legs.append(states[:-1])
-        time, start = states[-1, 0], states[-1, 1:]
-    return None
+    """Rows until the part lies still on a face; None if it does not."""
+    if face == kernel.UNSETTLED:
+        return None
+    end, states = _path(shape, start, restitution, friction, kernel.Steps(early=False))
+    lies = end == face and _energies(shape, states[-1:])[0] - shape.heights[face] < STILL
+    return states if lies else None
 
 
 def _filled(shape, states):

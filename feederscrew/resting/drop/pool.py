@@ -1,0 +1,49 @@
+"""Batches of drops on several cores, of which an interrupt keeps what is done."""
+
+from concurrent.futures import ThreadPoolExecutor
+from itertools import takewhile
+
+
+def gather(work, jobs):
+    """Results of batches, in order.
+
+    Parameters
+    ----------
+    work : function
+        Handed ``begin(function, *arguments)``, which queues a batch and gives its task; it queues them in
+        order, and returns once all it wants are done.
+    jobs : int
+        Threads; compiled batches run beside each other.
+
+    Returns
+    -------
+    results : list
+        Of every batch; after an interrupt from the keyboard of those up to the first that was not finished.
+    partial : bool
+        Whether there was one.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If no batch was finished.
+    """
+    tasks, partial, pool = [], False, ThreadPoolExecutor(jobs)
+
+    def begin(function, *arguments):
+        tasks.append(pool.submit(function, *arguments))
+        return tasks[-1]
+
+    try:
+        work(begin)
+    except KeyboardInterrupt:
+        pool.shutdown(cancel_futures=True)  # a thread cannot be stopped: this waits for running batches
+        tasks, partial = list(takewhile(_finished, tasks)), True
+        if not tasks:
+            raise
+    finally:
+        pool.shutdown(cancel_futures=True)
+    return [task.result() for task in tasks], partial
+
+
+def _finished(task):
+    return task.done() and not task.cancelled() and task.exception() is None
