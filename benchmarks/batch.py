@@ -16,7 +16,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-CALL = [sys.executable, "-c", "from cli.main import feeder; feeder()", "batch"]
+CALL = [sys.executable, "-c", "from feederscrew_cli.main import feeder; feeder()", "batch"]
 FEW, KILLS = 24, 10
 SEED = 20260101
 

@@ -2,7 +2,7 @@
 
 import click
 
-from cli import options
+from feederscrew_cli import options
 
 SURFACES = click.Choice(["soft", "medium", "hard"])
 
@@ -73,9 +73,9 @@ def _dropped(solid, found, drops, out):
     """Counts of a drop test with the usual launches; None without ``--drop``."""
     if drops is None:
         return None
-    from cli.drop import announce, progress
     from feederscrew.resting.drop import report
     from feederscrew.resting.recommended import LAUNCH
+    from feederscrew_cli.drop import announce, progress
 
     announce(out)
     with progress(out) as bar:

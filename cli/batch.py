@@ -2,8 +2,8 @@
 
 import click
 
-from cli import options
-from cli.progress import Progress
+from feederscrew_cli import options
+from feederscrew_cli.progress import Progress
 
 
 class Jobs(click.ParamType):

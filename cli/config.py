@@ -2,7 +2,7 @@
 
 import click
 
-from cli import options
+from feederscrew_cli import options
 
 
 @click.group(short_help="Write a commented bowl file; show the values in effect.")

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import click
 
-from cli import completion, options
+from feederscrew_cli import completion, options
 
 WAYS = {1: "convey curve", 2: "convey map"}  # by how many keys are varied
 

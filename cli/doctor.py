@@ -10,7 +10,7 @@ def doctor():
     Print the versions of Python and of every library, which extras are there (and the line that
     installs one that is not), where compiled kernels are kept, and how to turn on completion.
     """
-    from cli import health
+    from feederscrew_cli import health
 
     for title, lines in health.report().items():
         click.echo(click.style(title, bold=True))

@@ -4,10 +4,10 @@ import os
 
 import click
 
-from cli import options
-from cli import plate as plates
-from cli.interrupt import held_back
-from cli.progress import Progress
+from feederscrew_cli import options
+from feederscrew_cli import plate as plates
+from feederscrew_cli.interrupt import held_back
+from feederscrew_cli.progress import Progress
 
 LAUNCHES = click.Choice(["place", "drop", "tumble"])
 

@@ -2,8 +2,8 @@
 
 import click
 
-from cli import options
-from cli.angle import Angle
+from feederscrew_cli import options
+from feederscrew_cli.angle import Angle
 
 
 @click.command(short_help="Forces and motion of a part on the bowl floor.")

@@ -2,7 +2,7 @@
 
 import click
 
-from cli import options
+from feederscrew_cli import options
 
 
 @click.command(short_help="How a part lies along the track's wall, and whether it stays on.")

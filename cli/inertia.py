@@ -2,7 +2,7 @@
 
 import click
 
-from cli import options
+from feederscrew_cli import options
 
 
 @click.command(short_help="Volume, mass, centre of mass and inertia of a part.")

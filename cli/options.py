@@ -4,7 +4,7 @@ import functools
 
 import click
 
-from cli import completion, talk
+from feederscrew_cli import completion, talk
 
 
 class Place(click.Path):

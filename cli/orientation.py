@@ -2,9 +2,9 @@
 
 import click
 
-from cli import options
-from cli.angle import Angle
-from cli.quantity import Quantity
+from feederscrew_cli import options
+from feederscrew_cli.angle import Angle
+from feederscrew_cli.quantity import Quantity
 
 CHAIN = (
     click.option("--aspect", required=True, metavar="NAME", help="Aspect the part shall leave the bowl on."),

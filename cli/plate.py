@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import click
 
-from cli import options
-from cli.interrupt import held_back
-from cli.progress import Progress
+from feederscrew_cli import options
+from feederscrew_cli.interrupt import held_back
+from feederscrew_cli.progress import Progress
 
 KEYWORDS = ("shaken", "paths", "overrides", "amplitudes", "seconds")
 OPTIONS = {"paths": "--config", "overrides": "--set", "amplitudes": "--amplitude", "seconds": "--seconds"}

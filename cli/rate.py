@@ -2,7 +2,7 @@
 
 import click
 
-from cli import options, orientation
+from feederscrew_cli import options, orientation
 
 
 @click.command(short_help="Well-oriented parts per minute, with each factor of the chain.")

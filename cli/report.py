@@ -2,7 +2,7 @@
 
 import click
 
-from cli import options, orientation, talk
+from feederscrew_cli import options, orientation, talk
 
 WANTED = (
     click.option("--aspect", metavar="NAME", help="Aspect to leave the bowl on.  [default: the likeliest]"),

@@ -2,7 +2,7 @@
 
 import click
 
-from cli import options
+from feederscrew_cli import options
 
 
 class Angle(click.ParamType):

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import click
 
-from cli.interrupt import held_back
+from feederscrew_cli.interrupt import held_back
 
 FORMATS = ("table", "csv", "json")
 PLACES = ("directory", "depfile")  # options that name what is written, not what is read

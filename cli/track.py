@@ -2,8 +2,8 @@
 
 import click
 
-from cli import completion, options
-from cli.angle import Angle
+from feederscrew_cli import completion, options
+from feederscrew_cli.angle import Angle
 
 
 @click.command(short_help="Reactions and motion of a part on the track, against the wall.")

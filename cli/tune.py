@@ -2,9 +2,9 @@
 
 import click
 
-from cli import options, orientation
-from cli.convey import announce
-from cli.quantity import Quantity
+from feederscrew_cli import options, orientation
+from feederscrew_cli.convey import announce
+from feederscrew_cli.quantity import Quantity
 
 
 @click.command(short_help="Amplitude, angle or frequency that reaches a rate.")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import click
 
-from cli.main import feeder
+from feederscrew_cli.main import feeder
 
 PAGE = Path(__file__).resolve().parent / "commands.md"
 HEAD = "# Commands\n\nWritten by `docs/commands.py` from the commands themselves.\n"

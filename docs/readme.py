@@ -13,8 +13,8 @@ from pathlib import Path
 
 from click.testing import CliRunner
 
-from cli.main import feeder
 from feederscrew.bowl import documentation
+from feederscrew_cli.main import feeder
 
 ROOT = Path(__file__).resolve().parent.parent
 BLOCK = re.compile(r"```console( sampled)?\n\$ (feeder .*)\n((?:(?!```).*\n)*)```")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from cli.main import feeder
+from feederscrew_cli.main import feeder
 
 
 @pytest.fixture

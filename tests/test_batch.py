@@ -328,7 +328,10 @@ def test_an_unknown_rule_is_a_near_miss(tmp_path, three):
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 def test_killed_at_any_moment_and_resumed_it_ends_with_the_same_bytes(tmp_path):
-    folder, call = tmp_path / "in", [sys.executable, "-c", "from cli.main import feeder; feeder()", "batch"]
+    folder, call = (
+        tmp_path / "in",
+        [sys.executable, "-c", "from feederscrew_cli.main import feeder; feeder()", "batch"],
+    )
     folder.mkdir()
     for number in range(30):
         block(folder / f"block_{number}.stl", 4.0 + 0.5 * number, 6.0, 3.0)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from cli import progress
+from feederscrew_cli import progress
 
 ROOT = Path(__file__).parent.parent
 NUT = ROOT / "parts/squarenut_m5.stl"

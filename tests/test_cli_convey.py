@@ -182,7 +182,7 @@ def test_faults_are_one_line(run, arguments, status, line):
 
 def test_one_point_needs_no_compiler():
     code = (
-        "import sys\nfrom click.testing import CliRunner\nfrom cli.main import feeder\n"
+        "import sys\nfrom click.testing import CliRunner\nfrom feederscrew_cli.main import feeder\n"
         "print(CliRunner().invoke(feeder, ['convey']).exit_code, 'numba' in sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

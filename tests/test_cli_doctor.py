@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cli import health
+from feederscrew_cli import health
 
 SAID = ["click>=8", "numpy>=1", 'nowhere; extra == "dist"', 'click; extra == "step"', 'ruff; extra == "test"']
 

@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 import shapes
 
-from cli import interrupt, progress
 from feederscrew.output import drop_sheets
 from feederscrew.resting.drop import ensemble
+from feederscrew_cli import interrupt, progress
 
 PARTS = Path(__file__).parent.parent / "parts"
 COLUMNS = ["aspect", "height_mm", "count", "p_drop", "p_drop_low", "p_drop_high", "p_gentle", "p_violent"]
@@ -172,7 +172,7 @@ def start(stl, folder, *more, **streams):
     call = [
         sys.executable,
         "-c",
-        "from cli.main import feeder; feeder()",
+        "from feederscrew_cli.main import feeder; feeder()",
         "drop",
         stl,
         "-o",

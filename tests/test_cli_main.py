@@ -12,11 +12,11 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from cli import options
-from cli.main import Fence, feeder
 from feederscrew import __version__
 from feederscrew.errors import Faults, FeederError, MeshError
 from feederscrew.output import tables
+from feederscrew_cli import options
+from feederscrew_cli.main import Fence, feeder
 
 ROOT = Path(__file__).parent.parent
 HEAVY = {"numpy", "scipy", "trimesh", "pandas", "matplotlib", "numba", "embreex", "yaml"}
@@ -191,7 +191,7 @@ def test_help_imports_no_heavy_library():
     code = f"""
 import sys
 from click.testing import CliRunner
-from cli.main import feeder
+from feederscrew_cli.main import feeder
 done = CliRunner().invoke(feeder, ["--help"])
 assert done.exit_code == 0 and "aspects" in done.stdout, done.output
 print(*sorted({HEAVY!r} & set(sys.modules)))
@@ -229,7 +229,7 @@ def test_every_command_is_in_the_readme(name):
 def test_a_closed_pipe_is_silent():
     code = """
 import click
-from cli.main import Fence
+from feederscrew_cli.main import Fence
 def talk():
     for k in range(100_000):
         click.echo("line")
@@ -247,7 +247,7 @@ Fence("feeder", commands=[click.Command("talk", callback=talk)])(["talk"])
 def test_ctrl_c_stops_in_one_line():
     code = """
 import click, time
-from cli.main import Fence
+from feederscrew_cli.main import Fence
 def nap():
     print("up", flush=True)
     time.sleep(30)

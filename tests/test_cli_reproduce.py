@@ -6,8 +6,8 @@ import json
 import pytest
 from click.testing import CliRunner
 
-from cli.main import feeder
 from feederscrew.thesis.digits import is_number
+from feederscrew_cli.main import feeder
 
 KEYS = ["id", "kind", "caption", "cells", "exact", "explained", "differs", "given", "findings", "files"]
 

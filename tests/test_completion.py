@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from cli.main import feeder
 from feederscrew.motion import rate
 from feederscrew.part import load
 from feederscrew.part.density import density
 from feederscrew.resting.aspects import find
+from feederscrew_cli.main import feeder
 
 BRACKET = Path(__file__).parent.parent / "parts/lbracket_30x20x15.stl"
 

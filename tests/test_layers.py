@@ -45,7 +45,7 @@ def test_a_room_imports_only_rooms_before_it(path):
     allowed = ORDER[: ORDER.index(here[1]) + 1]
     for name in imports(path):
         assert room(name) is None or room(name) in allowed, f"{path} imports {name}"
-        assert not name.startswith("cli"), f"{path} imports {name}"
+        assert not name.startswith("feederscrew_cli"), f"{path} imports {name}"
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(ROOT)))

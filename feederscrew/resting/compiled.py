@@ -40,8 +40,10 @@ def inlined(function):
 
 
 def on_disk(function):
-    """Whether a compiled function is in the cache already: its first call takes no compiler."""
-    return any(Path(function.stats.cache_path).glob(f"*{function.__name__}_{_fingerprint()}*.nbi"))
+    """Whether a compiled function is in the cache already, or numba is told not to compile."""
+    return not hasattr(function, "stats") or any(
+        Path(function.stats.cache_path).glob(f"*{function.__name__}_{_fingerprint()}*.nbi")
+    )
 
 
 def due(function, half_edges):

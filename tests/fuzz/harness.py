@@ -150,7 +150,7 @@ def _most_memory():
 def _called(arguments):
     from click.testing import CliRunner
 
-    from cli.main import feeder
+    from feederscrew_cli.main import feeder
 
     with warnings.catch_warnings(record=True) as noise:
         warnings.simplefilter("always")

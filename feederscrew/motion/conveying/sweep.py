@@ -66,8 +66,10 @@ def sweep(settings, workers=None):
 
 
 def compiled():
-    """Whether the compiled functions are already on disk."""
-    return any(Path(_compiled().stats.cache_path).glob(f"*{_fingerprint()}*.nbi"))
+    """Whether the compiled functions are already on disk, or numba is told not to compile."""
+    return not hasattr(_compiled(), "stats") or any(
+        Path(_compiled().stats.cache_path).glob(f"*{_fingerprint()}*.nbi")
+    )
 
 
 def _suspects(settings):
