@@ -21,14 +21,14 @@ import numpy as np
 import trimesh
 from closed_forms import TRIED
 
+from feederscrew.dropping import conditions, runs
+from feederscrew.dropping.launches import PRESETS
 from feederscrew.part import load
-from feederscrew.resting import recommended
 from feederscrew.resting.aspects import find
-from feederscrew.resting.deviation import deviation, total_variation
-from feederscrew.resting.drop import conditions, report
-from feederscrew.resting.drop.launch import PRESETS
-from feederscrew.resting.surface import EXPONENTS
-from feederscrew.resting.tumbling_aspects import exact, ground
+from feederscrew.resting.counts.deviation import deviation, total_variation
+from feederscrew.resting.rules import recommended
+from feederscrew.resting.rules.surface import EXPONENTS
+from feederscrew.resting.tumbling.by_class import exact, ground
 
 ROOT = Path(__file__).parent.parent
 DATA = ROOT / "feederscrew/thesis/data"
@@ -71,7 +71,7 @@ class Body:
         """Counts of a drop test."""
         if preset not in self.tallies:
             own = dict.fromkeys(conditions.KEYS)
-            tested = report.test(self.part, self.aspects, preset, own, drops=self.drops)
+            tested = runs.test(self.part, self.aspects, preset, own, drops=self.drops)
             self.tallies[preset] = tested.tally
         return self.tallies[preset]
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from feederscrew.resting import barriers
-from feederscrew.resting.tumbling import tumble
+from feederscrew.resting.basins import barriers
+from feederscrew.resting.tumbling.exact import tumble
 
 DIRECTIONS = 3000  # of the quadrature over the sphere
 STEPS = (0.02,) * 150 + (0.004,) * 30  # [rad] of a walk down the height

@@ -16,9 +16,9 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 from conveying_reference import Reference, random_settings
 
-from feederscrew.motion import limits
-from feederscrew.motion.conveying import steady, sweep
-from feederscrew.motion.conveying.setting import Setting, plain
+from feederscrew.conveying import steady, sweep
+from feederscrew.conveying.setting import Setting, plain
+from feederscrew.mechanics import limits
 
 TARGETS = {0.0: (25_000, 1_600), 0.3: (5_000, 300)}  # points a second: compiled, plain Python
 SPEED_UP = 15.0

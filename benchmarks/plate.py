@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew.motion.conveying import answer
-from feederscrew.motion.plate import report
+from feederscrew.conveying import answer
+from feederscrew.dropping.plate import runs
 from feederscrew.resting.aspects import find
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
@@ -44,7 +44,7 @@ def flat():
         bowl_list = [plate(ratio, restitution) for ratio in (0.5, 0.9, 1.2, 1.5, 2.0, 2.5)]
         own = NOTHING | {"fall": "0 mm"}
         for bowl, seen in zip(
-            bowl_list, report.test(part, find(part), bowl_list, "place", own, drops=20, seconds=2.0)
+            bowl_list, runs.test(part, find(part), bowl_list, "place", own, drops=20, seconds=2.0)
         ):
             deepest = np.argmin(find(part).heights)
             ours, exact = seen.occupancy.velocities[deepest, 0], answer.answer(bowl).velocity
@@ -65,9 +65,7 @@ def t_shapes(parts):
         deepest = np.argmin(aspects.heights)
         for ratio in (1.5, 2.0, 2.5):
             start = time.process_time()
-            (seen,) = report.test(
-                part, aspects, [plate(ratio, 0.3)], "drop", NOTHING, drops=parts, seconds=4.0
-            )
+            (seen,) = runs.test(part, aspects, [plate(ratio, 0.3)], "drop", NOTHING, drops=parts, seconds=4.0)
             took = (time.process_time() - start) / parts
             course = seen.occupancy.course[:, deepest]
             print(

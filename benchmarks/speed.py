@@ -28,13 +28,14 @@ from scipy.optimize import brentq
 from scipy.spatial import ConvexHull
 from scipy.stats import chi2_contingency
 
+from feederscrew.dropping import ensemble
+from feederscrew.dropping.kernel import body, drop
+from feederscrew.dropping.launches import Launch, sample
+from feederscrew.dropping.shape import shape_of_part
 from feederscrew.part.hull import convex_hull
 from feederscrew.resting.aspects import find
-from feederscrew.resting.drop import body, ensemble, kernel
-from feederscrew.resting.drop.launch import Launch, sample
-from feederscrew.resting.drop.shape import shape_of_part
-from feederscrew.resting.tumbling import tumble
-from feederscrew.resting.tumbling_aspects import ground
+from feederscrew.resting.tumbling.by_class import ground
+from feederscrew.resting.tumbling.exact import tumble
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 import shapes
@@ -127,9 +128,9 @@ def bodies():
 def rates(shape, count, launch=THROW):
     """Drops a second and core, and the faces."""
     starts = sample(launch, shape, count, np.random.default_rng(1))
-    faces, times, work = np.empty(count, int), np.empty(count), kernel.scratch(shape)
-    given = shape, work, starts.states, starts.restitutions, starts.frictions, kernel.Steps(), faces, times
-    return count / seconds(kernel.settle_all, *given, repeats=2), faces
+    faces, times, work = np.empty(count, int), np.empty(count), drop.scratch(shape)
+    given = shape, work, starts.states, starts.restitutions, starts.frictions, drop.Steps(), faces, times
+    return count / seconds(drop.settle_all, *given, repeats=2), faces
 
 
 def jobs(shape):
@@ -192,10 +193,10 @@ def mujoco_drop(engine, model, data, shape, stiffness, friction, state):
         here[2] += 0.5 * stiffness * np.sum(np.minimum(data.contact.dist, 0.0) ** 2)
         body.rotation(here, turn)
         corner, _ = body.lowest(shape.vertices, shape.links, turn, 0)
-        face = kernel.decided(shape, here, turn, corner, max(data.ncon, 1), friction, 0, kernel.Steps())
-        if face != kernel.UNSETTLED:
+        face = drop.decided(shape, here, turn, corner, max(data.ncon, 1), friction, 0, drop.Steps())
+        if face != drop.UNSETTLED:
             return face
-    return kernel.UNSETTLED
+    return drop.UNSETTLED
 
 
 def mujoco_faces(shape, setting, count, seed):

@@ -32,7 +32,8 @@ def aspects(part, unstable, as_published, surface, surface_exponent, drops, grap
     PART is a mesh (STL, OBJ, PLY, OFF, GLB, 3MF, STEP), a part card (YAML), or - for standard
     input. With -o: aspects.csv, aspects.json, aspects.png, probabilities.png and run.json.
     """
-    from feederscrew.output import columns, sheets
+    from feederscrew.output import columns
+    from feederscrew.output.aspects import files as sheets
 
     _files_wanted(graph, out)
     solid = out.part(part)
@@ -58,7 +59,7 @@ def _found(solid, as_published, unstable, surface, own, out):
     """The aspects, and what there is to say of them."""
     with out.step("aspects"):
         from feederscrew.resting.aspects import find, waits
-        from feederscrew.resting.surface import EXPONENTS
+        from feederscrew.resting.rules.surface import EXPONENTS
 
         if waits(solid):
             out.say("Compiling what large hulls need, once on this machine: about ten seconds.")
@@ -73,10 +74,10 @@ def _dropped(solid, found, drops, out):
     """Counts of a drop test with the usual launches; None without ``--drop``."""
     if drops is None:
         return None
-    from feederscrew.resting.drop import report
-    from feederscrew.resting.recommended import LAUNCH
+    from feederscrew.dropping import runs
+    from feederscrew.resting.rules.recommended import LAUNCH
     from feederscrew_cli.drop import announce, progress
 
     announce(out)
     with progress(out) as bar:
-        return report.test(solid, found, LAUNCH, {}, drops=drops, progress=bar.reach).tally
+        return runs.test(solid, found, LAUNCH, {}, drops=drops, progress=bar.reach).tally

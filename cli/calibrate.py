@@ -21,10 +21,11 @@ def calibrate(part, counts, out):
     The CSV is that of `feeder compare`: a line 'aspect,NAME,...', then one line an aspect; columns that
     hold whole numbers are counts. With -o: calibrate.csv, calibrate.json and run.json.
     """
-    from feederscrew.output import calibrate_tables, columns
-    from feederscrew.resting import profiles
+    from feederscrew.output import columns
+    from feederscrew.output.profiles import calibration_tables as calibrate_tables
     from feederscrew.resting.aspects import find
-    from feederscrew.resting.calibrate_counts import fits
+    from feederscrew.resting.counts import profiles
+    from feederscrew.resting.counts.calibration_file import fits
 
     solid = out.part(part)
     aspects = find(solid)

@@ -30,9 +30,10 @@ def compare(part, counts, as_published, pictures, out):
     or percents that sum to 100. Lines that begin with # are comments. Aspects of which fewer than five
     are expected are joined for the test. With -o: compare.csv, compare.png and run.json.
     """
-    from feederscrew.output import columns, profile_tables
-    from feederscrew.resting import deviation, profiles
+    from feederscrew.output import columns
+    from feederscrew.output.profiles import tables as profile_tables
     from feederscrew.resting.aspects import find
+    from feederscrew.resting.counts import deviation, profiles
 
     solid = out.part(part)
     found = find(solid, as_published=as_published)

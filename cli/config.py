@@ -39,7 +39,8 @@ def show(bowl, out):
     Show every value in effect and where it came from: the default, a line of the bowl file, or --set.
     """
     from feederscrew.bowl import identity, name, settings, texts
-    from feederscrew.output import slide_tables, tables
+    from feederscrew.output import tables
+    from feederscrew.output.slide import tables as slide_tables
 
     given, path = settings(**bowl), bowl["path"]
     frame = slide_tables.settings(given)

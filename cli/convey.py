@@ -60,8 +60,9 @@ def _fitting(spans, curve):
 
 def _point(settings, picture_folder, folder, out):
     from feederscrew import bowl as bowls
-    from feederscrew.motion.conveying import answer, sensitivity, trace
-    from feederscrew.output import convey_tables, tables
+    from feederscrew.conveying import answer, sensitivity, trace
+    from feederscrew.output import tables
+    from feederscrew.output.convey import tables as convey_tables
 
     bowl = bowls.record(settings)
     found = answer.answer(bowl)
@@ -71,16 +72,18 @@ def _point(settings, picture_folder, folder, out):
     if folder:
         folder.write("convey.json", tables.json_text(document))
     if picture_folder:
-        from feederscrew.output import convey_plots, plots
+        from feederscrew.output import style
+        from feederscrew.output.convey import figures as convey_plots
 
         figure = convey_plots.cycle(trace.trace(found.setting), bowl.drive.amplitude, found)
-        folder.write("convey.png", plots.png(figure))
+        folder.write("convey.png", style.png(figure))
     out.show(convey_tables.summary(document), document)
 
 
 def _map(settings, ranges, curve, picture_folder, folder, out):
     from feederscrew import bowl as bowls
-    from feederscrew.output import convey_tables, tables
+    from feederscrew.output import tables
+    from feederscrew.output.convey import tables as convey_tables
 
     announce(out)
     with out.step("map"):
@@ -90,17 +93,19 @@ def _map(settings, ranges, curve, picture_folder, folder, out):
     if folder:
         folder.write("convey_map.csv", tables.text(frame, "csv"))
     if picture_folder:
-        from feederscrew.motion.conveying import radius
-        from feederscrew.output import convey_plots, plots
+        from feederscrew.conveying import radius
+        from feederscrew.output import style
+        from feederscrew.output.convey import figures as convey_plots
 
         line = convey_plots.on_axes(ranges, radius.inwards(bowls.record(settings))) if curve else None
-        folder.write("convey_map.png", plots.png(convey_plots.velocity_map(grid, line)))
+        folder.write("convey_map.png", style.png(convey_plots.velocity_map(grid, line)))
     out.show(frame, {"cells": frame})
 
 
 def _curve(settings, span, picture_folder, folder, out):
     from feederscrew import bowl as bowls
-    from feederscrew.output import convey_tables, tables
+    from feederscrew.output import tables
+    from feederscrew.output.convey import tables as convey_tables
 
     announce(out)
     frame = convey_tables.along_key(span, bowls.swept(settings, convey_tables.values(span)))
@@ -108,30 +113,33 @@ def _curve(settings, span, picture_folder, folder, out):
     if folder:
         folder.write("convey_curve.csv", tables.text(frame, "csv"))
     if picture_folder:
-        from feederscrew.output import convey_plots, plots
+        from feederscrew.output import style
+        from feederscrew.output.convey import figures as convey_plots
 
-        folder.write("convey_curve.png", plots.png(convey_plots.curve(frame, convey_tables.title(span))))
+        folder.write("convey_curve.png", style.png(convey_plots.curve(frame, convey_tables.title(span))))
     out.show(frame, {"cells": frame})
 
 
 def _inwards(bowl, picture_folder, folder, out):
-    from feederscrew.motion.conveying import radius
-    from feederscrew.output import convey_tables, tables
+    from feederscrew.conveying import radius
+    from feederscrew.output import tables
+    from feederscrew.output.convey import tables as convey_tables
 
     announce(out)
     frame = convey_tables.along_radius(radius.inwards(bowl))
     if folder:
         folder.write("convey_radius.csv", tables.text(frame, "csv"))
     if picture_folder:
-        from feederscrew.output import convey_plots, plots
+        from feederscrew.output import style
+        from feederscrew.output.convey import figures as convey_plots
 
-        folder.write("convey_radius.png", plots.png(convey_plots.curve(frame, "Velocity over the radius")))
+        folder.write("convey_radius.png", style.png(convey_plots.curve(frame, "Velocity over the radius")))
     out.show(frame, {"cells": frame})
 
 
 def announce(out):
     """Say so when the first map on this machine must wait for the compiler."""
-    from feederscrew.motion.conveying import sweep
+    from feederscrew.conveying import sweep
 
     if not sweep.compiled():
         out.say("Compiling the conveying kernel, once on this machine: about ten seconds.")

@@ -84,7 +84,8 @@ def _fitting(until, trace, plate, out):
 def _on_floor(part, launch, own, test, pictures, out):
     """Drop the part on a plane at rest, write and tell what becomes of it."""
     with held_back():
-        from feederscrew.output import columns, drop_sheets
+        from feederscrew.output import columns
+        from feederscrew.output.drop import files as drop_sheets
         from feederscrew.resting.aspects import find
 
     solid = out.part(part)
@@ -101,18 +102,18 @@ def _on_floor(part, launch, own, test, pictures, out):
 def _tested(solid, aspects, launch, own, run, out):
     """The drop test, with a bar where a person waits."""
     with held_back():
-        from feederscrew.resting.drop import report
+        from feederscrew.dropping import runs
 
     announce(out)
     with progress(out) as bar:
-        return report.test(solid, aspects, launch, own, progress=bar.reach, **run)
+        return runs.test(solid, aspects, launch, own, progress=bar.reach, **run)
 
 
 def announce(out):
     """Say so when the first drop on this machine must wait for the compiler."""
-    from feederscrew.resting.drop import report
+    from feederscrew.dropping import runs
 
-    if not report.compiled():
+    if not runs.compiled():
         out.say("Compiling the drop kernel, once on this machine: about twenty seconds.")
 
 

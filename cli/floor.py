@@ -27,8 +27,10 @@ def floor(part, aspect, heading, as_published, bowl, pictures, out):
     theta'' over the heading, as CSV and PNG.
     """
     from feederscrew.bowl import record, settings, texts
-    from feederscrew.motion.floor_analysis import analyse
-    from feederscrew.output import columns, floor_sheets, floor_tables
+    from feederscrew.output import columns
+    from feederscrew.output.floor import files as floor_sheets
+    from feederscrew.output.floor import tables as floor_tables
+    from feederscrew.studies.floor import analyse
 
     solid, given = out.part(part), settings(**bowl)
     conditions = columns.conditions(solid) | texts(given)

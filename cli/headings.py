@@ -23,8 +23,10 @@ def headings(part, aspect, bowl, pictures, out):
     headings.csv, headings.json and a picture of each aspect from above.
     """
     from feederscrew.bowl import record, settings, texts
-    from feederscrew.motion.headings_analysis import analyse
-    from feederscrew.output import columns, heading_sheets, heading_tables
+    from feederscrew.output import columns
+    from feederscrew.output.headings import files as heading_sheets
+    from feederscrew.output.headings import tables as heading_tables
+    from feederscrew.studies.headings import analyse
 
     solid, given = out.part(part), settings(**bowl)
     track = record(given).track

@@ -18,7 +18,8 @@ def inertia(part, out):
     input; what a card does not tell stays empty. With -o: inertia.csv, or inertia.json with
     --format json, and run.json.
     """
-    from feederscrew.output import columns, inertia_tables
+    from feederscrew.output import columns
+    from feederscrew.output.inertia import tables as inertia_tables
     from feederscrew.part.mass_balance import balance
 
     solid = out.part(part)

@@ -63,10 +63,10 @@ def stream(out, solid, track, path, aspect, heading):
     -------
     (Aspects, Orientations, (str, float))
     """
-    from feederscrew.motion import devices, rate
+    from feederscrew.rate import devices, queue
     from feederscrew.resting.aspects import find
 
     chain, found = devices.read(path), find(solid)
     out.warn(*devices.strangers(chain, found.names))
-    target = rate.wanted(solid, found, track, aspect, heading)
-    return found, rate.orientations(solid, found, track, chain), target
+    target = queue.wanted(solid, found, track, aspect, heading)
+    return found, queue.orientations(solid, found, track, chain), target

@@ -43,8 +43,10 @@ def plate(command):
 def run(part, plate, launch, own, test, pictures, out):
     """Put the part on each plate, write and tell what becomes of it."""
     with held_back():
-        from feederscrew.motion.plate import report
-        from feederscrew.output import columns, plate_sheets, plate_tables
+        from feederscrew.dropping.plate import runs
+        from feederscrew.output import columns
+        from feederscrew.output.plate import files as plate_sheets
+        from feederscrew.output.plate import tables as plate_tables
         from feederscrew.resting.aspects import find
 
     bowls, names, files, values = _bowls(plate)
@@ -56,7 +58,7 @@ def run(part, plate, launch, own, test, pictures, out):
     told = columns.conditions(solid) | values
     with out.folder(solid.name, {solid.source: solid.sha256} | files, told) as folder:
         with Progress(None, not out.quiet, "parts") as bar:
-            results = report.test(
+            results = runs.test(
                 solid, aspects, bowls, launch, own, **test, seconds=plate["seconds"], progress=bar.reach
             )
         document = plate_tables.document(solid, aspects, test["seed"], results, names)
@@ -91,7 +93,7 @@ def _bowls(plate):
 
 
 def _announce(out):
-    from feederscrew.motion.plate import rides
+    from feederscrew.dropping.plate import rides
 
     if not rides.compiled():
         out.say("Compiling the plate's kernel, once on this machine: about twenty seconds.")

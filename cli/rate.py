@@ -22,14 +22,15 @@ def rate(part, aspect, heading, rule, gap, fill, bowl, out):
     With -o: rate.json and orientations.csv, what each device does with each orientation.
     """
     from feederscrew import bowl as bowls
-    from feederscrew.motion import rate
-    from feederscrew.output import columns, rate_tables
+    from feederscrew.output import columns
+    from feederscrew.output.rate import tables as rate_tables
+    from feederscrew.rate import queue
 
     solid, feeder = out.part(part), bowls.read(**bowl)
     effective = columns.conditions(solid) | bowls.texts(bowls.settings(**bowl))
     with out.folder(solid.name, {solid.source: solid.sha256}, effective) as folder:
         aspects, known, target = orientation.stream(out, solid, feeder.track, bowl["path"], aspect, heading)
-        found = rate.rate(known, rate.velocity(feeder), target, rule, gap=gap, fill=fill)
+        found = queue.rate(known, queue.velocity(feeder), target, rule, gap=gap, fill=fill)
         document = columns.part(solid, aspects.warnings) | rate_tables.document(found, rule)
         out.warn(*aspects.warnings, *rate_tables.remarks(found))
         rate_tables.write(folder, document)

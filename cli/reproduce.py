@@ -17,7 +17,7 @@ def reproduce(out):
     With -o: DIR/thesis/ with a CSV for each item, a PNG for each figure, the findings, and one page
     to read from top to bottom, thesis.md and thesis.html.
     """
-    from feederscrew.output import thesis_files
+    from feederscrew.output.thesis import files as thesis_files
     from feederscrew.thesis import reproduction
 
     with out.step("tables and figures"):

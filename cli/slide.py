@@ -50,8 +50,8 @@ def slide(betas, as_published, bowl, pictures, out):
     each angle, and curves over all, as PNG.
     """
     from feederscrew.bowl import identity, name, record, settings, texts
-    from feederscrew.maps import slide
-    from feederscrew.output import slide_tables
+    from feederscrew.output.slide import tables as slide_tables
+    from feederscrew.studies.maps import slide
 
     given, path = settings(**bowl), bowl["path"]
     feeder = record(given)
@@ -59,7 +59,7 @@ def slide(betas, as_published, bowl, pictures, out):
     with out.folder(name(path), identity(path), texts(given)) as folder:
         maps = [slide(feeder, beta, as_published=as_published) for beta in angles]
         if folder:
-            from feederscrew.output import slide_sheets
+            from feederscrew.output.slide import files as slide_sheets
 
             slide_sheets.slides(folder, feeder, maps, pictures=pictures)
     out.say(*slide_tables.remarks(maps))

@@ -34,8 +34,11 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out):
     from above and from behind, as CSV and PNG.
     """
     from feederscrew.bowl import ranges, record, settings, texts
-    from feederscrew.motion.track_analysis import analyse
-    from feederscrew.output import columns, track_maps, track_sheets, track_tables
+    from feederscrew.output import columns
+    from feederscrew.output.track import files as track_sheets
+    from feederscrew.output.track import maps as track_maps
+    from feederscrew.output.track import tables as track_tables
+    from feederscrew.studies.track import analyse
 
     _fitting(spans)
     solid, given, varied = out.part(part), settings(**bowl), ranges(spans)

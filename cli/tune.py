@@ -28,15 +28,16 @@ def tune(part, target, aspect, heading, rule, gap, fill, bowl, out):
     With -o: tune.csv and tune.json.
     """
     from feederscrew import bowl as bowls
-    from feederscrew.motion import rate, tune
-    from feederscrew.output import columns, tune_tables
+    from feederscrew.output import columns
+    from feederscrew.output.rate import tune_tables
+    from feederscrew.rate import queue, tune
 
     solid, feeder = out.part(part), bowls.read(**bowl)
     effective = columns.conditions(solid) | bowls.texts(bowls.settings(**bowl))
     with out.folder(solid.name, {solid.source: solid.sha256}, effective) as folder:
         aspects, known, wanted = orientation.stream(out, solid, feeder.track, bowl["path"], aspect, heading)
         announce(out)
-        density = rate.parts_per_metre(known, wanted, rule, gap=gap, fill=fill)
+        density = queue.parts_per_metre(known, wanted, rule, gap=gap, fill=fill)
         frame = tune_tables.settings(tune.solutions(feeder, target, density), feeder, density)
         out.warn(*aspects.warnings)
         document = columns.part(solid, aspects.warnings) | {"settings": frame}

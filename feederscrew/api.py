@@ -10,20 +10,20 @@ from typing import IO, TYPE_CHECKING
 from feederscrew import bowl as _bowls
 from feederscrew import part as _parts
 from feederscrew.bowl import Bowl
+from feederscrew.conveying.answer import Answer, answer
 from feederscrew.errors import ConfigError, Faults, FeederError, MeshError
-from feederscrew.motion import rate as _rates
-from feederscrew.motion.conveying.answer import Answer, answer
-from feederscrew.motion.devices import Device
-from feederscrew.motion.rate import Rate
 from feederscrew.output import columns as _columns
 from feederscrew.part import Part
+from feederscrew.rate import queue as _rates
+from feederscrew.rate.devices import Device
+from feederscrew.rate.queue import Rate
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.posture import Posture, posture
 
 if TYPE_CHECKING:
-    from feederscrew.motion.plate.report import Shaken
+    from feederscrew.dropping.plate.runs import Shaken
+    from feederscrew.dropping.runs import Result
     from feederscrew.output.tables import pd
-    from feederscrew.resting.drop.report import Result
 
 __all__ = [
     "Answer", "Aspects", "Bowl", "ConfigError", "Faults", "FeederError", "MeshError", "Part", "Posture",
@@ -147,9 +147,9 @@ def drop(
     FeederError
         If the part has no shape, or a condition is no such quantity or out of range.
     """
-    from feederscrew.resting.drop import report
+    from feederscrew.dropping import runs
 
-    return report.test(part, find(part), launch, conditions, drops=drops, seed=seed, jobs=jobs)
+    return runs.test(part, find(part), launch, conditions, drops=drops, seed=seed, jobs=jobs)
 
 
 def shake(
@@ -189,9 +189,9 @@ def shake(
     FeederError
         As for ``drop``.
     """
-    from feederscrew.motion.plate import report
+    from feederscrew.dropping.plate import runs
 
-    return report.test(
+    return runs.test(
         part, find(part), bowls, launch, conditions, drops=drops, seconds=seconds, seed=seed, jobs=jobs
     )
 
@@ -258,7 +258,7 @@ def rate(
     rule : str
         Whose probabilities are taken.
     devices : sequence of Device
-        From ``feederscrew.motion.devices.read``.
+        From ``feederscrew.rate.devices.read``.
     gap : float [m]
         Between one part and the next.
     fill : float [1]

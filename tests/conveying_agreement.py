@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from feederscrew.motion.conveying import steady
-from feederscrew.motion.conveying.law import law
-from feederscrew.motion.conveying.motion import TALLY, at_rest, turn
+from feederscrew.conveying import steady
+from feederscrew.conveying.law import law
+from feederscrew.conveying.motion import TALLY, at_rest, turn
 
 LONGEST = 40  # periods the general solver is asked to follow
 

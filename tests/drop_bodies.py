@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
+from feederscrew.dropping.shape import shape_of
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting.drop.shape import shape_of
 
 CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2.0
 

@@ -9,12 +9,12 @@ from pathlib import Path
 from feederscrew import bowl as bowls
 from feederscrew.batch import listing
 from feederscrew.batch.task import Conditions, Request
+from feederscrew.conveying import answer
 from feederscrew.documents import raise_all
 from feederscrew.errors import ConfigError, FeederError
-from feederscrew.motion import devices
-from feederscrew.motion.conveying import answer
 from feederscrew.output.folder import safe_name
-from feederscrew.part.read_format import CARD, FORMATS
+from feederscrew.part.reading.formats import CARD, FORMATS
+from feederscrew.rate import devices
 
 MESHES = {suffix for name, known in FORMATS.items() if name != CARD for suffix in known.suffixes}
 CARDS = set(FORMATS[CARD].suffixes)

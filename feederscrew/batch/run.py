@@ -10,9 +10,10 @@ from feederscrew.batch.task import FAILED, Choices, Outcome, Task
 from feederscrew.batch.workers import Processes, processors
 from feederscrew.documents import hint
 from feederscrew.errors import ConfigError, FeederError
-from feederscrew.motion.rate import RULES
-from feederscrew.output import contact_sheet, tables
-from feederscrew.part import read
+from feederscrew.output import tables
+from feederscrew.output.batch import contact_sheet
+from feederscrew.part.reading import source
+from feederscrew.rate.queue import RULES
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +93,7 @@ class _UnderWay:
         """A task for each request that needs one, its file read only when the task is asked for."""
         for request in requests:
             try:
-                data = read.file(request.source).data
+                data = source.file(request.source).data
             except FeederError as fault:
                 unread = Task.of(request, self.choices, b"")
                 self.finish(Outcome.failed(unread, str(fault), final=False))

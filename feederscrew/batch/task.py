@@ -8,8 +8,8 @@ from importlib import metadata
 
 from feederscrew import __version__
 from feederscrew.bowl import Bowl
-from feederscrew.motion.devices import Device
 from feederscrew.output.folder import LIBRARIES
+from feederscrew.rate.devices import Device
 
 DONE, FAILED = "done", "failed"
 

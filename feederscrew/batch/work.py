@@ -6,11 +6,15 @@ import io
 import numpy as np
 
 from feederscrew.batch.task import DONE, Outcome
+from feederscrew.conveying import answer, sensitivity
 from feederscrew.errors import FeederError
-from feederscrew.motion import rate
-from feederscrew.motion.conveying import answer, sensitivity
-from feederscrew.output import columns, contact_sheet, convey_tables, rate_tables, sheets, tables
+from feederscrew.output import columns, tables
+from feederscrew.output.aspects import files as sheets
+from feederscrew.output.batch import contact_sheet
+from feederscrew.output.convey import tables as convey_tables
+from feederscrew.output.rate import tables as rate_tables
 from feederscrew.part import load
+from feederscrew.rate import queue
 from feederscrew.resting.aspects import find
 
 THUMBNAIL = "thumbnail.png"
@@ -88,7 +92,7 @@ def travel(conditions):
     bowl = conditions.bowl
     around = sensitivity.sensitivity(bowl), sensitivity.friction_doubt(bowl)
     document = convey_tables.document(bowl, answer.answer(bowl), *around)
-    return rate.velocity(bowl), document | {"bowl": dict(conditions.texts)}
+    return queue.velocity(bowl), document | {"bowl": dict(conditions.texts)}
 
 
 def _rate(part, found, velocity, task, files):
@@ -96,8 +100,8 @@ def _rate(part, found, velocity, task, files):
     if part.vertices is None:
         return {"note": "a part card has no outline: no rate"}
     conditions, rule = task.request.conditions, task.choices.rule
-    known = rate.orientations(part, found, conditions.bowl.track, conditions.chain)
-    document = rate_tables.document(rate.rate(known, velocity, most_frequent(known, rule), rule), rule)
+    known = queue.orientations(part, found, conditions.bowl.track, conditions.chain)
+    document = rate_tables.document(queue.rate(known, velocity, most_frequent(known, rule), rule), rule)
     rate_tables.write(files, columns.part(part, found.warnings) | document)
     wanted = ("aspect", "heading_deg", "pitch_mm", "p_orientation", "passes_devices")
     rates = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
@@ -108,11 +112,11 @@ def _drops(part, found, task, files):
     """The drop test, where it is asked for: its random numbers hang on the part's file alone."""
     if not task.choices.drops or part.vertices is None:
         return {}
-    from feederscrew.output import drop_sheets
-    from feederscrew.resting.drop import report
+    from feederscrew.dropping import runs
+    from feederscrew.output.drop import files as drop_sheets
 
     seed = int(task.sha256[:SEED_DIGITS], 16)
-    result = report.test(part, found, LAUNCH, {}, drops=task.choices.drops, seed=seed)
+    result = runs.test(part, found, LAUNCH, {}, drops=task.choices.drops, seed=seed)
     document = drop_sheets.document(part, found, result)
     drop_sheets.write(files, part, found, result, document, pictures=task.choices.pictures)
     first = int(np.argmax(result.tally.p))

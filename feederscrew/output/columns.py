@@ -3,7 +3,7 @@
 import numpy as np
 
 from feederscrew.output import tables
-from feederscrew.resting import recommended
+from feederscrew.resting.rules import recommended
 from feederscrew.units import factor
 
 MM, MM2, MM3 = factor("mm", "length"), factor("mm2", "area"), factor("mm3", "volume")

@@ -20,7 +20,7 @@ def part(file):
 
     Parameters
     ----------
-    file : feederscrew.part.read.File
+    file : feederscrew.part.reading.source.File
 
     Returns
     -------

@@ -6,13 +6,15 @@ from string import ascii_uppercase
 import numpy as np
 
 from feederscrew import check
+from feederscrew.geometry import compiled
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.moments import Moments
-from feederscrew.resting import compiled, rules, surface, tumbling_aspects, tumbling_walk
+from feederscrew.resting.basins.landscape import landscape
 from feederscrew.resting.classes import body_frame, classes
 from feederscrew.resting.faces import stable_faces, unstable_faces
-from feederscrew.resting.landscape import landscape
-from feederscrew.resting.recommended import Recommended
+from feederscrew.resting.rules import published, surface
+from feederscrew.resting.rules.recommended import Recommended
+from feederscrew.resting.tumbling import by_class, walk
 
 TIE = 1e-4  # probabilities that differ by less of themselves are equal but for rounding
 
@@ -37,7 +39,7 @@ class Aspects:
     barrier_energies: np.ndarray | None = None  # (A,) [J]
     tip_angles: np.ndarray | None = None  # (A,) [rad] of a floor that tips a part that does not slide
     recommended: Recommended | None = None  # the one answer to take; None for a card
-    ground: tumbling_aspects.Ground | None = None  # faces, basins and barriers behind the rows
+    ground: by_class.Ground | None = None  # faces, basins and barriers behind the rows
     warnings: tuple[str, ...] = ()
 
     @property
@@ -82,7 +84,7 @@ def find(part, *, as_published=False, unstable=False, exponent=surface.EXPONENTS
     chances = _probabilities(table, as_published)
     order = _ranked(table, chances["csa"], part, moments)
     named = _named(table, chances, order, _said(groups))
-    ground = tumbling_aspects.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
+    ground = by_class.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
     return _tumbled(named, ground, part, exponent)
 
 
@@ -90,12 +92,12 @@ def waits(part):
     """Whether `find` must compile first: on a machine's first large hull, for some seconds."""
     if part.hull is None:
         return False
-    return compiled.due(tumbling_walk.trace_saddles, 3 * len(part.hull.triangles))
+    return compiled.due(walk.trace_saddles, 3 * len(part.hull.triangles))
 
 
 def _tumbled(named, ground, part, exponent):
     """The record with all that exact tumbling adds to it."""
-    more = tumbling_aspects.exact(ground, part, named, exponent)
+    more = by_class.exact(ground, part, named, exponent)
     doubts = tuple(f"exact tumbling is doubtful: {doubt}" for doubt in more.doubts)
     return replace(
         named,
@@ -141,11 +143,11 @@ def _probabilities(table, as_published):
     faces, height, stable = table["faces"], table["heights"], table["stable"]
     counted = np.ones_like(faces) if as_published else faces
     weights = {
-        "pmi": rules.pmi(counted, table["polar_inertias"], height),
-        "csa": rules.csa(faces, table["solid_angles"], height),
-        "stability": rules.stability(faces, table["contact_areas"], height),
+        "pmi": published.pmi(counted, table["polar_inertias"], height),
+        "csa": published.csa(faces, table["solid_angles"], height),
+        "stability": published.stability(faces, table["contact_areas"], height),
     }
-    return {rule: rules.normalised(weight, stable) for rule, weight in weights.items()}
+    return {rule: published.normalised(weight, stable) for rule, weight in weights.items()}
 
 
 def _ranked(table, chance, part, moments):
@@ -211,9 +213,9 @@ def _from_card(part):
         return np.where(np.isnan(column(quantity)), height, column(quantity))
 
     weights = {
-        "pmi": rules.pmi(faces, column("polar_inertia"), height),
-        "csa": rules.csa(faces, column("solid_angle"), over("csa_height")),
-        "stability": rules.stability(faces, column("contact_area"), over("stability_height")),
+        "pmi": published.pmi(faces, column("polar_inertia"), height),
+        "csa": published.csa(faces, column("solid_angle"), over("csa_height")),
+        "stability": published.stability(faces, column("contact_area"), over("stability_height")),
     }
     return Aspects(
         names=tuple(row.name for row in rows),
@@ -227,5 +229,5 @@ def _from_card(part):
         solid_angles=check.frozen(np.where(in_sr, column("solid_angle"), np.nan)),
         polar_inertias=column("polar_inertia"),
         polygons=(np.empty((0, 3)),) * len(rows),
-        probabilities={k: check.frozen(rules.normalised(w, stable)) for k, w in weights.items()},
+        probabilities={k: check.frozen(published.normalised(w, stable)) for k, w in weights.items()},
     )

@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 
-from feederscrew.resting.landscape import angle
+from feederscrew.resting.basins.landscape import angle
 
 SAME_WAY = np.radians(3.0)  # a turned face lies on another when their normals agree this well
 SAME_SIZE = 0.007  # ... and their heights

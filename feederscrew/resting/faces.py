@@ -6,8 +6,8 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from feederscrew.resting.landscape import RIPPLE_OF_RADIUS, SMOOTH, angle, edges
-from feederscrew.resting.solid_angle import solid_angles
+from feederscrew.geometry.solid_angle import solid_angles
+from feederscrew.resting.basins.landscape import RIPPLE_OF_RADIUS, SMOOTH, angle, edges
 
 COARSE = 1.0 / np.cos(0.5 * SMOOTH) - 1.0  # the ripple a smooth edge leaves at most, as a share of the height
 CURVED = np.sinc(np.radians(15.0) / np.pi)  # mean resultant of normals over an arc of 30 deg; below: no plane

@@ -6,8 +6,8 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.errors import FeederError
+from feederscrew.geometry.polygons import centroid, outline, sides
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting.plan import centroid, outline, sides
 
 COINCIDE = 1e-5  # of the part's size: a contact centroid nearer to the foot gives no direction
 ALIKE = 1e-6  # of the part's size: sides whose lengths differ by less are equally long

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew import bowl
-from feederscrew.motion import track_analysis
+from feederscrew.studies import track as track_analysis
 from feederscrew.thesis import parts
 from feederscrew.thesis.finding import Finding
 from feederscrew.units import factor

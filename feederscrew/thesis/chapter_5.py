@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew import check
-from feederscrew.motion import limits
+from feederscrew.mechanics import limits
 
 GRAVITY = 9.8  # [m/s2] as chapter 5 has it
 FREQUENCY = 60.0  # [Hz] Figure 5-6

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.motion import limits
-from feederscrew.resting.deviation import deviation
+from feederscrew.mechanics import limits
+from feederscrew.resting.counts.deviation import deviation
 from feederscrew.thesis import chapter_5, figures, parts
 from feederscrew.thesis.cells import DIFFERS, EXACT, EXPLAINED
 from feederscrew.thesis.tables import table

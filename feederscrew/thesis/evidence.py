@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.resting.deviation import deviation
+from feederscrew.resting.counts.deviation import deviation
 from feederscrew.thesis import parts, t_shape
 from feederscrew.thesis.recompute import cells, rounded_shares
 from feederscrew.thesis.t_shape import RATIOS

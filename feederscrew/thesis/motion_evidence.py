@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.motion import limits
+from feederscrew.mechanics import limits
 from feederscrew.thesis import chapter_5
 
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from feederscrew.resting import rules
-from feederscrew.resting.deviation import deviation
+from feederscrew.resting.counts.deviation import deviation
+from feederscrew.resting.rules import published
 from feederscrew.thesis import digits, parts
 from feederscrew.thesis.cells import Cell, given
 from feederscrew.thesis.t_shape import RATIOS
@@ -57,7 +57,7 @@ def rounded_shares(ratio):
         np.round(aspects.heights / parts.MM, DIGITS),
     )
     ones = np.ones(len(heights))
-    return moments, heights, rules.normalised(rules.pmi(ones, moments, heights), ones > 0)
+    return moments, heights, published.normalised(published.pmi(ones, moments, heights), ones > 0)
 
 
 def _ngoi(printed):

@@ -9,9 +9,9 @@ from html import escape
 from importlib import resources
 from itertools import groupby
 
-from feederscrew.output.plots import DPI
 from feederscrew.output.report import blocks as kinds
 from feederscrew.output.report.blocks import cells
+from feederscrew.output.style import DPI
 
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
 CSS_DPI = 96  # pixels of a page to the inch

@@ -9,8 +9,8 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.settings import Setting
 from feederscrew.errors import FeederError
-from feederscrew.motion import devices
 from feederscrew.part.record import Part
+from feederscrew.rate import devices
 from feederscrew.resting import aspects
 from feederscrew.resting.posture import posture
 

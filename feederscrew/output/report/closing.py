@@ -4,10 +4,11 @@ import platform
 from importlib import metadata
 
 from feederscrew import __version__
-from feederscrew.output import slide_tables, tables
+from feederscrew.output import tables
 from feederscrew.output.folder import LIBRARIES
 from feederscrew.output.report.blocks import Code, Notes, Section, Table, Text
 from feederscrew.output.report.resting import numbers
+from feederscrew.output.slide import tables as slide_tables
 
 LIMITS = (
     "How often a part lands on an aspect: the rules compute from the part's shape and mass alone; only "

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.output import plots
+from feederscrew.output import style
 from feederscrew.units import factor
 
 MM = factor("mm", "length")
@@ -31,9 +31,9 @@ def tipping(names, shares, ways, title):
     -------
     Figure
     """
-    figure = plots.figure(6.0, 5.2)
+    figure = style.figure(6.0, 5.2)
     axes = figure.add_subplot()
-    axes.set_title(plots.words(title), loc="left", fontsize=10, color=plots.INK, fontweight="bold")
+    axes.set_title(style.words(title), loc="left", fontsize=10, color=style.INK, fontweight="bold")
     angles = np.pi / 2.0 - 2.0 * np.pi * np.arange(len(names)) / len(names)
     places = np.column_stack([np.cos(angles), np.sin(angles)])
     lowest = min((way.lift for way in ways if way.lift > 0.0), default=1.0)
@@ -66,6 +66,6 @@ def _arrow(axes, start, end, lift, lowest):
     beside = np.array([step[1], -step[0]]) * BEND  # of the middle control point of the arc
     x, y = start + TAIL * step + 2.0 * TAIL * (1.0 - TAIL) * beside
     axes.text(
-        x, y, f"{lift / MM:.3g}", fontsize=7, color=plots.INK, ha="center", va="center", zorder=2,
+        x, y, f"{lift / MM:.3g}", fontsize=7, color=style.INK, ha="center", va="center", zorder=2,
         bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},
     )  # fmt: skip

@@ -3,27 +3,15 @@
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew import maps
-from feederscrew.motion import rate as rates
-from feederscrew.motion.conveying import answer, sensitivity, trace
-from feederscrew.motion.floor_analysis import analyse as on_floor
-from feederscrew.motion.headings_analysis import analyse as against_wall
-from feederscrew.motion.track_analysis import analyse as on_track
-from feederscrew.output import (
-    convey_plots,
-    convey_tables,
-    floor_sheets,
-    floor_tables,
-    heading_sheets,
-    heading_tables,
-    plots,
-    rate_tables,
-    slide_sheets,
-    slide_tables,
-    track_maps,
-    track_sheets,
-    track_tables,
-)
+from feederscrew.conveying import answer, sensitivity, trace
+from feederscrew.output import style
+from feederscrew.output.convey import figures as convey_plots
+from feederscrew.output.convey import tables as convey_tables
+from feederscrew.output.floor import files as floor_sheets
+from feederscrew.output.floor import tables as floor_tables
+from feederscrew.output.headings import files as heading_sheets
+from feederscrew.output.headings import tables as heading_tables
+from feederscrew.output.rate import tables as rate_tables
 from feederscrew.output.report.blocks import (
     NOTHING,
     SHORT,
@@ -37,6 +25,16 @@ from feederscrew.output.report.blocks import (
     percent,
 )
 from feederscrew.output.report.kept import Kept
+from feederscrew.output.slide import files as slide_sheets
+from feederscrew.output.slide import tables as slide_tables
+from feederscrew.output.track import files as track_sheets
+from feederscrew.output.track import maps as track_maps
+from feederscrew.output.track import tables as track_tables
+from feederscrew.rate import queue as rates
+from feederscrew.studies import maps
+from feederscrew.studies.floor import analyse as on_floor
+from feederscrew.studies.headings import analyse as against_wall
+from feederscrew.studies.track import analyse as on_track
 from feederscrew.units import factor
 
 MM, DEG = factor("mm", "length"), factor("deg", "angle")
@@ -86,7 +84,7 @@ def convey(case):
         followed = trace.trace(found.setting)
         cycle = convey_plots.cycle(followed, bowl.drive.amplitude, found)
         alt = f"Plate and part: {convey_plots.cycle_title(followed, found)}"
-        blocks.append(Picture("convey.png", plots.png(cycle), alt))
+        blocks.append(Picture("convey.png", style.png(cycle), alt))
     blocks.append(_velocity_map(case))
     return Section(
         tuple(blocks),
@@ -186,7 +184,7 @@ def _velocity_map(case):
     if not np.isfinite(grid.values["velocity_mm_s"]).any():
         return Text("No drive of 5 to 60 deg and up to 2.5 times this stroke has a steady velocity here.")
     own = [np.array([drive.vibration_angle / DEG]), np.array([drive.amplitude / MM])]
-    drawn = plots.png(convey_plots.velocity_map(grid, own))
+    drawn = style.png(convey_plots.velocity_map(grid, own))
     return Picture("convey_map.png", drawn, "Velocity and regimes over vibration angle and amplitude")
 
 

@@ -3,15 +3,17 @@
 import numpy as np
 
 from feederscrew import units
-from feederscrew.output import columns, inertia_tables, plots, sheets, tables
+from feederscrew.output import columns, style, tables
+from feederscrew.output.aspects import files as sheets
 from feederscrew.output.columns import MM
+from feederscrew.output.inertia import tables as inertia_tables
 from feederscrew.output.report import graph
 from feederscrew.output.report.blocks import Notes, Picture, Section, Sheet, Table, Text, Tile, Views, percent
 from feederscrew.output.report.case import likeliest
 from feederscrew.output.report.kept import Kept
 from feederscrew.output.report.scene import scene
 from feederscrew.part.mass_balance import balance
-from feederscrew.resting import tumbling_aspects
+from feederscrew.resting.tumbling import by_class
 
 MOST_VIEWS = sheets.MOST
 CARD = "A part card is published data without a shape: there is nothing to draw or to turn."
@@ -58,14 +60,14 @@ def aspects(case):
 
 def tips(case):
     """The tipping graph, from exact tumbling."""
-    ground = tumbling_aspects.ground(case.part, case.found)
-    exact = tumbling_aspects.exact(ground, case.part, case.found)
+    ground = by_class.ground(case.part, case.found)
+    exact = by_class.exact(ground, case.part, case.found)
     shown = np.flatnonzero(case.found.stable)[: graph.MOST]
     names = [case.found.names[row] for row in shown]
     place = {row: k for k, row in enumerate(shown.tolist())}
     ways = [
-        tumbling_aspects.Transition(place[way.start], place[way.end], way.lift, way.axis)
-        for way in tumbling_aspects.transitions(ground)
+        by_class.Transition(place[way.start], place[way.end], way.lift, way.axis)
+        for way in by_class.transitions(ground)
         if way.start != way.end and way.start in place and way.end in place
     ]
     shares = exact.probabilities["quasistatic"][shown]
@@ -86,7 +88,7 @@ def tips(case):
         "which the part, let go without speed, ends there."
     )
     picture = Picture(
-        "tipping.png", plots.png(drawn), "Tipping graph: which aspect tips into which, and the lift it takes"
+        "tipping.png", style.png(drawn), "Tipping graph: which aspect tips into which, and the lift it takes"
     )
     return Section((lead, Table(table), picture), warnings=tuple(exact.doubts))
 
@@ -113,7 +115,7 @@ def _views(case, rows, kept):
 def _caption(found, row):
     kind = f"{found.kinds[row]} ×{found.faces[row]}" if found.stable[row] else "not stable"
     bars = [
-        (*plots.method(rule, place), float(values[row]))
+        (*style.method(rule, place), float(values[row]))
         for place, (rule, values) in enumerate(found.probabilities.items())
     ]
     return found.names[row], kind, tuple(bars) if found.stable[row] else ()

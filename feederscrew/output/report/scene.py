@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from feederscrew.output.columns import MM
-from feederscrew.output.stance import outermost, stance
+from feederscrew.output.solid.stance import outermost, stance
 
 MOST_FACETS = 200_000  # that a browser is shown
 FINEST = 2.0**10  # cells across the part of the first grid tried on a larger mesh

@@ -1,0 +1,109 @@
+"""The plain functions of this folder, compiled: many settings at a time, on every core."""
+
+import functools
+import hashlib
+import os
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.conveying import events, harmonic, law, motion, steady, waves
+from feederscrew.conveying.setting import Setting, checked
+from feederscrew.conveying.steady import COLUMNS, survey
+
+KERNEL = (
+    *(waves.height, waves.slope, waves.bends, waves.crest, waves.crossings, waves._insert, waves._zero),
+    *(harmonic.harmonic, harmonic.value, harmonic.peak, harmonic.after, harmonic.above),
+    *(harmonic.onward, harmonic.reached),
+    *(harmonic.gain, harmonic.travel, harmonic._beyond_sine, harmonic._beyond_cosine),
+    *(law.law, law.lift_wave, law.pull_wave, law._pull, law.throw_number, law.contact),
+    *(events.later, events.slip_end, events._stop, events.landing),
+    *(events._descent, events._beyond_bounce, events._dip),
+    *(motion.at_rest, motion.turn, motion.step, motion._ride, motion._slide, motion._fly, motion.land),
+    *(steady.settle, steady._repeats, steady.steady, steady._apart, steady._averages),
+    *(steady.survey, steady.regime, steady._nothing, steady._widen, steady.thrown, steady.plate_speed),
+)
+LOT = 256  # settings handed to a core at a time: their costs differ a hundredfold
+
+
+def sweep(settings, workers=None):
+    """Steady motion of many settings, as ``steady.survey`` finds it for one.
+
+    Parameters
+    ----------
+    settings : (N, 13) float
+        One ``Setting`` a row.
+    workers : int, optional
+        Threads; by default one a core.
+
+    Returns
+    -------
+    (N, 14) float
+        Rows as ``steady.survey`` fills them.
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong, an entry is not finite, or a row is no track.
+
+    Notes
+    -----
+    The first call on a machine compiles for some seconds and keeps the result on disk; ``compiled`` tells
+    whether that has been done.
+    """
+    settings = check.shaped("settings", settings, (-1, len(Setting._fields)))
+    for row in settings[np.unique(_suspects(settings))]:
+        checked(Setting(*row))
+    out = np.empty((len(settings), COLUMNS))
+    starts = range(0, len(settings), LOT)
+    run = _compiled()
+    run(settings[:0], out[:0])
+    with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
+        list(pool.map(lambda at: run(settings[at : at + LOT], out[at : at + LOT]), starts))
+    return out
+
+
+def compiled():
+    """Whether the compiled functions are already on disk, or numba is told not to compile."""
+    return not hasattr(_compiled(), "stats") or any(
+        Path(_compiled().stats.cache_path).glob(f"*{_fingerprint()}*.nbi")
+    )
+
+
+def _suspects(settings):
+    """Rows that could fail ``setting.checked``, found at once."""
+    s = Setting(*settings.T)
+    bad = (s.ratio <= 0.0) | (s.angle < 0.0) | (s.angle > np.pi / 2)
+    bad |= (s.kinetic > s.static) | (s.kinetic_back > s.static_back)
+    bad |= np.minimum(np.minimum(s.kinetic, s.kinetic_back), s.wall) < 0.0
+    bad |= (s.restitution < 0.0) | (s.restitution >= 1.0)
+    return np.flatnonzero(bad)
+
+
+def _fingerprint():
+    """Digest of the compiled sources: a changed source must not find what an older one left on disk."""
+    folder = Path(__file__).parent
+    sources = b"".join(path.read_bytes() for path in sorted(folder.glob("*.py")))
+    return hashlib.sha256(sources).hexdigest()[:12]
+
+
+@functools.cache
+def _compiled():
+    """The loop over settings, compiled with every function it reaches."""
+    from numba import njit
+    from numba.extending import register_jitable
+
+    for function in KERNEL:
+        register_jitable(error_model="numpy")(function)
+
+    _loop.__qualname__ = f"loop_{_fingerprint()}"  # names the files of the cache
+    return njit(cache=True, nogil=True, error_model="numpy")(_loop)
+
+
+def _loop(settings, out):
+    for row in range(len(settings)):
+        s = settings[row]
+        drive = s[10], s[11], s[12]
+        survey(Setting(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8], s[9], *drive), out[row])

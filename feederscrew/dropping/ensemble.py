@@ -1,0 +1,197 @@
+"""Many drops of one part: run on several cores, counted by face, with intervals."""
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.dropping.kernel import drop as kernel
+from feederscrew.dropping.launches import sample
+from feederscrew.dropping.pool import gather
+
+BATCH = 250  # drops a core takes at a time
+ROUND = 8 * BATCH  # drops between two looks at the intervals, whatever the number of jobs
+MOST = 1_000_000  # drops at which ``until`` gives up
+NORMAL = 1.959963984540054  # two-sided 95 % point
+
+
+@dataclass(frozen=True, eq=False)
+class Drops:
+    """What became of N drops, in the order of their seeds."""
+
+    faces: np.ndarray  # (N,) face each rests on, UNSETTLED for none
+    times: np.ndarray  # (N,) in units of sqrt(L / g)
+    energies: np.ndarray  # (N,) of the launch, in units of m g L
+    partial: bool  # stopped by the user before all were done
+
+
+@dataclass(frozen=True, eq=False)
+class Tally:
+    """Drops counted by class; A classes."""
+
+    counts: np.ndarray  # (A,) int
+    unsettled: int
+    p: np.ndarray  # (A,) [1] of all drops, the unsettled ones too
+    low: np.ndarray  # (A,) [1] ends of the 95 % Wilson interval
+    high: np.ndarray
+    widest: float  # [1] half the longest interval
+    gentle: np.ndarray  # (A,) [1] among the third of the drops launched with the least energy
+    violent: np.ndarray  # (A,) [1] ... with the most
+
+
+@dataclass(frozen=True, eq=False)
+class Aim:
+    """How narrow the 95 % intervals of all classes shall become."""
+
+    width: float  # [1] to either side
+    rows: np.ndarray  # (F,) class of each face
+    count: int  # classes
+
+    def widest(self, faces):
+        """Half the longest interval after drops on (N,) ``faces``."""
+        return half_width(*wilson(counted(faces, self.rows, self.count), len(faces)))
+
+    def needed(self, done, widest):
+        """How many drops it takes: ``done``, or an estimate, as intervals narrow with 1 / sqrt(N)."""
+        excess = (widest / self.width) ** 2
+        return done if excess <= 1.0 else ROUND * int(np.ceil(excess * done / ROUND))
+
+
+def drop(shape, launch, rng, *, count=None, aim=None, jobs=1, steps=None, progress=None):
+    """Drop a part again and again.
+
+    Parameters
+    ----------
+    shape : Shape
+    launch : Launch
+    rng : numpy.random.Generator
+        Drop n gets the n-th set of numbers: the outcome does not depend on ``jobs``.
+    count : int, optional
+        How many drops, above 0; with ``aim``, at most so many.
+    aim : Aim, optional
+        Looked at after every ROUND drops; once it is reached the run ends.
+    jobs : int
+        Cores to use.
+    steps : kernel.Steps, optional
+    progress : function, optional
+        Told after every batch how many drops are done, about how many there will be, and half the longest
+        interval so far: None without an ``aim`` and in its first round.
+
+    Returns
+    -------
+    Drops
+        After an interrupt from the keyboard, noted as ``partial``, the batches that were finished: a run
+        of so many drops gives the same.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If no batch was finished.
+    """
+    steps, count = steps or kernel.Steps(), MOST if count is None else int(count)
+
+    def starts(size):
+        return sample(launch, shape, size, rng)
+
+    work = partial(_rounds, partial(_batch, shape, steps), starts, count, aim, progress or _unheard)
+    done, interrupted = gather(work, jobs)
+    return Drops(*(check.frozen(np.concatenate(column)) for column in zip(*done)), interrupted)
+
+
+def tally(drops, rows, count):
+    """Count drops by class.
+
+    Parameters
+    ----------
+    drops : Drops
+    rows : (F,) int
+        Class of each face.
+    count : int
+        Classes.
+
+    Returns
+    -------
+    Tally
+    """
+    total = len(drops.faces)
+    counts = counted(drops.faces, rows, count)
+    low, high = wilson(counts, total)
+    order, third = np.argsort(drops.energies, kind="stable"), max(total // 3, 1)
+    ends = [counted(drops.faces[part], rows, count) / third for part in (order[:third], order[-third:])]
+    return Tally(
+        counts=check.frozen(counts),
+        unsettled=int(total - counts.sum()),
+        p=check.frozen(counts / total),
+        low=check.frozen(low),
+        high=check.frozen(high),
+        widest=half_width(low, high),
+        gentle=check.frozen(ends[0]),
+        violent=check.frozen(ends[1]),
+    )
+
+
+def counted(faces, rows, count):
+    """(A,) drops by class, from the (N,) faces they rest on."""
+    return np.bincount(rows[faces[faces != kernel.UNSETTLED]], minlength=count)
+
+
+def wilson(counts, total):
+    """Ends of the 95 % interval of a share, from counts.
+
+    Parameters
+    ----------
+    counts : (A,) int
+    total : int
+
+    Returns
+    -------
+    low, high : (A,) float [1]
+        They hold counts / total, and are not empty where a count is 0 or ``total``.
+
+    References
+    ----------
+    E. B. Wilson, "Probable inference, the law of succession, and statistical inference", J. Amer.
+    Statist. Assoc. 22, 209-212, 1927.
+    """
+    p, spread = np.asarray(counts) / total, NORMAL**2 / total
+    middle = (p + 0.5 * spread) / (1.0 + spread)
+    half = np.sqrt(spread * p * (1.0 - p) + 0.25 * spread**2) / (1.0 + spread)
+    return np.minimum(np.maximum(middle - half, 0.0), p), np.maximum(np.minimum(middle + half, 1.0), p)
+
+
+def half_width(low, high):
+    """Half the longest of some intervals."""
+    return float(0.5 * (high - low).max())
+
+
+def _rounds(batch, starts, count, aim, tell, begin):
+    """Begin round after round and wait for its batches, until there are enough."""
+    tasks, done, total, widest = [], 0, min(count, ROUND) if aim else count, None
+    while done < total:
+        sampled = starts(min(ROUND, count - done))
+        size = len(sampled.energies)
+        fresh = [begin(batch, sampled, slice(first, first + BATCH)) for first in range(0, size, BATCH)]
+        for task in fresh:
+            done += len(task.result()[0])
+            tell(done, total, widest)
+        tasks += fresh
+        if aim:
+            widest = aim.widest(np.concatenate([task.result()[0] for task in tasks]))
+            total = min(aim.needed(done, widest), count)
+            tell(done, total, widest)
+
+
+def _batch(shape, steps, starts, part):
+    """Faces, times and energies of some drops."""
+    energies = starts.energies[part]
+    faces, times = np.full(len(energies), kernel.UNSETTLED), np.zeros(len(energies))
+    kernel.settle_all(
+        shape, kernel.scratch(shape), starts.states[part], starts.restitutions[part],
+        starts.frictions[part], steps, faces, times,
+    )  # fmt: skip
+    return faces, times, energies
+
+
+def _unheard(*told):
+    """Progress that nobody wants to see."""

@@ -1,0 +1,1 @@
+"""Compiled motion of one rigid body on one plane."""

@@ -1,0 +1,125 @@
+"""Compiled drop: one body on a floor at rest, until its resting face is decided."""
+
+import math
+
+from feederscrew.dropping.kernel import body
+from feederscrew.dropping.kernel.body import VX, VY, VZ, W, Z
+from feederscrew.dropping.kernel.floor import at_rest
+from feederscrew.dropping.kernel.motion import Steps, approach, go_on, meet, scratch, start
+from feederscrew.geometry.compiled import compiled
+from feederscrew.resting.tumbling.walk import LOST, roll_from_corner, roll_from_facet
+
+__all__ = ["STEADY", "UNSETTLED", "Steps", "face_below", "scratch", "settle", "settle_all"]
+
+UNSETTLED = -1
+STILL = 1e-7  # kinetic energy below which a part does not move
+BALANCED = 32  # steps it must not move: at the turning point of a slow rocking it stands still for fewer
+STEADY = 0.3  # of the barrier: what a steadily rolling part may have beside its rolling energy
+
+
+@compiled
+def face_below(shape, turn, corner):
+    """Face the body would roll to if set down as it is."""
+    down = -turn[6], -turn[7], -turn[8]
+    facet = roll_from_facet(shape.edges, roll_from_corner(shape.edges, down, corner))
+    return shape.faces[facet] if facet != LOST else UNSETTLED
+
+
+@compiled
+def rolling_energy(shape, state, turn, face):
+    """Energy of rolling about the axis of a rolling face, which no impact turns into height."""
+    a = shape.axes[face]
+    x = turn[0] * a[0] + turn[1] * a[1] + turn[2] * a[2]
+    y = turn[3] * a[0] + turn[4] * a[1] + turn[5] * a[2]
+    flat = math.sqrt(x * x + y * y)
+    about = state[W] * a[0] + state[W + 1] * a[1] + state[W + 2] * a[2]
+    across = (state[VX] * y - state[VY] * x) / flat if flat > 0.5 else 0.0
+    moment = shape.inertia[0] * a[0] ** 2 + shape.inertia[1] * a[1] ** 2 + shape.inertia[2] * a[2] ** 2
+    return 0.5 * (moment * about**2 + across**2)
+
+
+@compiled
+def slides_flat(shape, state, turn, face, friction):
+    """True where the body lies flat on the floor and friction cannot tip it while it slides."""
+    around = state[W] * turn[6] + state[W + 1] * turn[7] + state[W + 2] * turn[8]
+    rocking = state[W] ** 2 + state[W + 1] ** 2 + state[W + 2] ** 2 - around**2
+    flat = state[Z] - shape.heights[face] < 2e-3 and rocking < 1e-4 and abs(state[VZ]) < 1e-2
+    return flat and friction * shape.heights[face] < 0.9 * shape.margins[face]
+
+
+@compiled
+def decided(shape, state, turn, corner, count, friction, quiet, steps):
+    """Face on which the body is bound to rest, ``quiet`` steps without motion; UNSETTLED if it can leave."""
+    total = body.energy(state, shape.inertia)
+    if total >= shape.ceiling and count < 2:
+        return UNSETTLED
+    face = face_below(shape, turn, corner)
+    if face == UNSETTLED:
+        return UNSETTLED
+    if quiet >= BALANCED:
+        return face  # balanced on an edge by rolling resistance
+    if not steps.early:
+        still = total - shape.heights[face] < min(1e-3, 0.02 * shape.barriers[face])
+        return face if still else UNSETTLED
+    above = total - shape.heights[face]
+    if above < shape.barriers[face] - steps.margin:
+        return face
+    if shape.rolls[face] and count >= 2:
+        above -= rolling_energy(shape, state, turn, face)
+        return face if above < STEADY * shape.barriers[face] - steps.margin else UNSETTLED
+    return face if count >= 3 and slides_flat(shape, state, turn, face, friction) else UNSETTLED
+
+
+@compiled
+def settle(shape, work, restitution, friction, steps):
+    """Follow one body until its face is decided.
+
+    Parameters
+    ----------
+    shape : Shape
+    work : Scratch
+        Its ``state`` holds the start, and the end afterwards; its ``trace`` is filled.
+    restitution, friction : float
+    steps : Steps
+
+    Returns
+    -------
+    face, time, rows of the trace filled
+    """
+    floor, time, rows, rests, quiet = at_rest(), 0.0, 0, 0, 0
+    corner, gap = start(shape, work)
+    while time < steps.longest:
+        if rows < len(work.trace):
+            record(work.trace, rows, time, work.state)
+            rows += 1
+        if gap > steps.tolerance:
+            corner, gap, dt = approach(shape, work, floor, time, corner, gap, steps)
+            time += dt
+            continue
+        count, rise, struck = meet(shape, work, corner, restitution, friction, steps)
+        rests = 0 if struck else rests + 1
+        quiet = quiet + 1 if body.moving_energy(work.state, shape.inertia) < STILL else 0
+        if rests % 8 == 0:
+            face = decided(shape, work.state, work.turn, corner, count, friction, quiet, steps)
+            if face != UNSETTLED:
+                return face, time, rows
+        corner, gap, dt = go_on(shape, work, floor, time, corner, gap, count, rise, friction, steps)
+        time += dt
+    return UNSETTLED, time, rows
+
+
+@compiled
+def record(trace, k, time, state):
+    """Write one row of a trace."""
+    trace[k, 0] = time
+    for j in range(body.STATE):
+        trace[k, 1 + j] = state[j]
+
+
+@compiled
+def settle_all(shape, work, starts, restitutions, frictions, steps, faces, times):
+    """Drop every row of (N, 13) starts; fills (N,) faces and times."""
+    for n in range(len(starts)):
+        for k in range(body.STATE):
+            work.state[k] = starts[n, k]
+        faces[n], times[n], _ = settle(shape, work, restitutions[n], frictions[n], steps)

@@ -1,0 +1,57 @@
+"""The bowl's drive as the drop kernel needs it."""
+
+import math
+from dataclasses import replace
+
+from feederscrew.conveying import answer
+from feederscrew.dropping.kernel.floor import Floor
+from feederscrew.dropping.kernel.motion import Steps
+
+PERIOD = 120  # steps of a period, at least: eight times as many change a flat part's velocity by 2 % at most
+FINER = 2.0  # than the steps of a drop
+SLOW = 0.1  # of the plate's greatest speed upwards: slower contacts do not rebound
+
+
+def floor_of(bowl, length):
+    """The plate that moves as the bowl's floor does; level, its x axis along the drive.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    length : float [m]
+        Of the part, cube root of its hull's volume.
+
+    Returns
+    -------
+    Floor
+    """
+    drive, time = bowl.drive, math.sqrt(length / bowl.gravity)
+    rate = 2.0 * math.pi * drive.frequency * time
+    return Floor(
+        rate=rate,
+        along=drive.amplitude * math.cos(drive.vibration_angle) / length,
+        up=drive.amplitude * math.sin(drive.vibration_angle) / length,
+        lead=-drive.phase,
+        second=drive.second_harmonic,
+        second_phase=drive.second_harmonic_phase,
+        step=2.0 * math.pi / rate / PERIOD,
+    )
+
+
+def steps_of(floor):
+    """Step sizes for a plate: finer than a drop's, and rebounds as slow as its own."""
+    usual = Steps()
+    return usual._replace(
+        flight=usual.flight / FINER,
+        contact=usual.contact / FINER,
+        tolerance=usual.tolerance / FINER,
+        sweeps=int(usual.sweeps * FINER),
+        threshold=min(usual.threshold, max(SLOW * floor.up * floor.rate, 1e-4)),
+    )
+
+
+def throw_number(bowl):
+    """Greatest downward acceleration of the level floor over gravity [1], as of the track that conveys."""
+    if bowl.drive.amplitude == 0.0:
+        return 0.0
+    return float(answer.throw_number(replace(bowl, track=replace(bowl.track, climb=0.0, bank=0.0))))

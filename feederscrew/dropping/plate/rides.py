@@ -1,0 +1,84 @@
+"""Many parts on one vibrating plate, on several cores."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.dropping.kernel import motion
+from feederscrew.dropping.kernel import ride as shaken
+from feederscrew.dropping.kernel.drop import UNSETTLED
+from feederscrew.dropping.pool import gather
+from feederscrew.geometry.compiled import on_disk
+
+BATCH = 10  # parts a core takes at a time
+
+
+@dataclass(frozen=True, eq=False)
+class Rides:
+    """Where each of N parts lay at each of K looks."""
+
+    faces: np.ndarray  # (N, K) face it lies on, UNSETTLED while it may be tipping over
+    places: np.ndarray  # (N, K, 2) of its centre of mass, in units of L
+    lost: int  # further parts, left out: their motion took far more steps than it should
+    partial: bool  # stopped by the user before all were done
+
+
+def ride(shape, floor, starts, looks, steps, *, jobs=1, progress=None):
+    """Follow parts on a plate.
+
+    Parameters
+    ----------
+    shape : Shape
+    floor : Floor
+    starts : feederscrew.dropping.launches.Starts
+        Of the N parts, relative to the plate.
+    looks : (K,) float
+        Times in units of sqrt(L / g), ascending.
+    steps : Steps
+    jobs : int
+        Cores to use; the outcome does not depend on it.
+    progress : function, optional
+        Told after every batch how many parts are done.
+
+    Returns
+    -------
+    Rides
+        After an interrupt from the keyboard, the batches that were finished, up to the first that was not:
+        a run of so many parts gives the same.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If no batch was finished.
+    """
+    _batch(shape, floor, starts, looks, steps, slice(0, 0))  # compiled here, if need be
+
+    def work(begin):
+        parts = [slice(first, first + BATCH) for first in range(0, len(starts.energies), BATCH)]
+        tasks, done = [begin(_batch, shape, floor, starts, looks, steps, part) for part in parts], 0
+        for task in tasks:
+            done += len(task.result()[0])
+            if progress:
+                progress(done)
+
+    results, partial = gather(work, jobs)
+    faces, places, whole = (np.concatenate(column) for column in zip(*results))
+    return Rides(check.frozen(faces[whole]), check.frozen(places[whole]), int((~whole).sum()), partial)
+
+
+def compiled():
+    """Whether the kernel of the plate is on disk already."""
+    return on_disk(shaken.ride_all)
+
+
+def _batch(shape, floor, starts, looks, steps, part):
+    """Faces and places of some parts, and whether every look was taken."""
+    states = starts.states[part]
+    faces = np.full((len(states), len(looks)), UNSETTLED)
+    places, taken = np.full((*faces.shape, 2), np.nan), np.zeros(len(states), int)
+    shaken.ride_all(
+        shape, motion.scratch(shape), floor, states, starts.restitutions[part], starts.frictions[part],
+        steps, looks, faces, places, taken,
+    )  # fmt: skip
+    return faces, places, taken == len(looks)

@@ -1,0 +1,126 @@
+"""A virtual dynamic bowl test of one part on one or several drives."""
+
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from feederscrew.bowl.record import Bowl
+from feederscrew.dropping import conditions
+from feederscrew.dropping.launches import sample
+from feederscrew.dropping.plate import drive
+from feederscrew.dropping.plate.occupancy import Occupancy, occupancy
+from feederscrew.dropping.plate.rides import ride
+from feederscrew.dropping.shape import shape_of_part
+from feederscrew.resting.tumbling.by_class import ground
+
+USUAL, SECONDS = 400, 5.0  # parts, and how long each is followed [s]
+SETTLING = 30.0  # before the count begins, in units of sqrt(L / g): the launch has died away
+LEAST, MOST = 8, 600  # looks at a part, one a period or one in so many
+
+
+@dataclass(frozen=True, eq=False)
+class Shaken:
+    """What parts did on one plate."""
+
+    bowl: Bowl
+    launch: dict  # name and ranges sampled, in the units of the shop
+    throw_number: float  # [1]
+    parts: int
+    seconds: float  # [s] counted for each part
+    occupancy: Occupancy
+    lost: int  # parts left out: their motion took far more steps than it should
+    partial: bool  # stopped by the user before all parts were done
+
+
+def test(part, aspects, bowls, preset, own, *, drops=None, seconds=None, seed=1, jobs=1, progress=None):
+    """Put parts on a vibrating plate, one at a time, and follow what they lie on.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    aspects : Aspects
+        Of that part.
+    bowls : sequence of Bowl
+        One plate each: the drive, its restitution, and the kinetic friction.
+    preset : str
+        A key of ``launch.PRESETS``: how the parts come onto the plate.
+    own : dict of str to (str or None)
+        Ranges that replace the preset's, and the bowl's restitution and friction.
+    drops : int, optional
+        Parts on each plate; the same launches on all.
+    seconds : float, optional [s]
+        How long each is followed.
+    seed, jobs : int
+        As for a drop test.
+    progress : function, optional
+        Told after every batch how many parts are done, on all plates together, and how many there will be.
+
+    Returns
+    -------
+    list of Shaken
+        One a bowl; fewer, the last of them partial, after an interrupt from the keyboard.
+
+    Raises
+    ------
+    FeederError
+        If the part has no shape, or an option is no such quantity or out of range.
+    KeyboardInterrupt
+        If nothing was finished.
+    """
+    found = ground(part, aspects)
+    shape, length = shape_of_part(part, found)
+    seconds = SECONDS if seconds is None else seconds
+    count, results = USUAL if drops is None else drops, []
+    plate = partial(_plate, found, aspects, shape, length, seconds)
+    for k, bowl in enumerate(bowls):
+        try:
+            tell = _after(k * count, len(bowls) * count, progress)
+            launch = _surfaced(conditions.launch_of(preset, length, own, bowl.gravity), bowl, own)
+            results.append(plate(bowl, launch, count, seed, jobs, tell))
+        except KeyboardInterrupt:
+            if not results:
+                raise
+            results[-1] = replace(results[-1], partial=True)
+        if results[-1].partial:
+            break
+    return results
+
+
+def _after(before, total, progress):
+    """``progress`` for parts that come after others; None without one."""
+    return progress and (lambda done: progress(before + done, total))
+
+
+def _surfaced(launch, bowl, own):
+    """The launch with the bowl's restitution and friction, where the user gave none."""
+    surface = {"restitution": bowl.restitution, "friction": bowl.friction.kinetic}
+    return replace(launch, **{key: (value, value) for key, value in surface.items() if own.get(key) is None})
+
+
+def _plate(found, aspects, shape, length, seconds, bowl, launch, count, seed, jobs, progress):
+    """The test on one plate."""
+    floor, unit = drive.floor_of(bowl, length), np.sqrt(length / bowl.gravity)
+    period = looks_apart(bowl.drive.frequency, seconds)
+    number = max(round(seconds / period), LEAST)
+    looks = (np.ceil(SETTLING * unit / period) + np.arange(number + 1)) * period / unit
+    starts = sample(launch, shape, count, np.random.default_rng(seed))
+    rides = ride(shape, floor, starts, looks, drive.steps_of(floor), jobs=jobs, progress=progress)
+    rng = np.random.default_rng((seed, len(rides.faces)))
+    seen = occupancy(rides.faces, length * rides.places[:, :, 0], found.rows, len(aspects.names), period, rng)
+    return Shaken(
+        bowl=bowl,
+        launch=conditions.described(launch, length, bowl.gravity),
+        throw_number=drive.throw_number(bowl),
+        parts=len(rides.faces),
+        seconds=number * period,
+        occupancy=seen,
+        lost=rides.lost,
+        partial=rides.partial,
+    )
+
+
+def looks_apart(frequency, seconds):
+    """Time between two looks [s]: whole periods of the drive, so that the plate always stands alike."""
+    return max(int(np.ceil(seconds * frequency / MOST)), 1) / frequency

@@ -1,0 +1,91 @@
+"""One drop test of one part, from its aspects to counts."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew.dropping import conditions, ensemble
+from feederscrew.dropping.ensemble import Aim, Drops, Tally
+from feederscrew.dropping.kernel import drop
+from feederscrew.dropping.launches import sample
+from feederscrew.dropping.shape import principal_axes, shape_of_part
+from feederscrew.dropping.traces import Trace, follow
+from feederscrew.geometry.compiled import on_disk
+from feederscrew.resting.tumbling.by_class import Ground, ground
+
+USUAL = 10_000  # drops, where the user names neither a number nor a width
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """A drop test and how to repeat it."""
+
+    launch: dict  # name and ranges sampled, in the units of the shop
+    seed: int
+    ground: Ground
+    drops: Drops
+    tally: Tally
+    aim: float | None = None  # [1] half-width the intervals were to reach
+    traces: tuple[Trace, ...] = ()  # of the first drops
+
+
+def test(part, aspects, preset, own, *, drops=None, until=None, seed=1, jobs=1, progress=None, traced=0):
+    """Drop a part and count the aspects it rests on.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    aspects : Aspects
+        Of that part.
+    preset : str
+        A key of ``launch.PRESETS``.
+    own : dict of str to (str or None)
+        Ranges that replace the preset's, as typed: see ``conditions.launch_of``.
+    drops : int, optional
+        How many; with ``until`` at most so many.
+    until : str, optional
+        Go on until every class's 95 % interval is this narrow to either side, '1%'.
+    seed : int
+    jobs : int
+        Cores to use; the counts do not depend on it.
+    progress : function, optional
+        As in ``ensemble.drop``.
+    traced : int
+        Of how many drops, from the first, the motion is kept as well.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    FeederError
+        If the part has no shape, or an option is no such quantity or out of range.
+    KeyboardInterrupt
+        If the user stops it before there is anything to count; later, the result is partial.
+    """
+    width = None if until is None else conditions.share(until, "--until")
+    found = ground(part, aspects)
+    shape, length = shape_of_part(part, found)
+    launch = conditions.launch_of(preset, length, own)
+    count = len(aspects.names)
+    dropped = ensemble.drop(
+        shape,
+        launch,
+        np.random.default_rng(seed),
+        count=USUAL if drops is None and until is None else drops,
+        aim=None if width is None else Aim(width, found.rows, count),
+        jobs=jobs,
+        progress=progress,
+    )
+    counted = ensemble.tally(dropped, found.rows, count)
+    starts = sample(launch, shape, min(traced, len(dropped.faces)), np.random.default_rng(seed))
+    traces = follow(shape, length, principal_axes(part.inertia)[1], starts, dropped, found.rows)
+    described = conditions.described(launch, length)
+    return Result(described, seed, found, dropped, counted, width, traces)
+
+
+def compiled():
+    """Whether the drop kernel is on disk already; else the first drop on a machine compiles it."""
+    return on_disk(drop.settle_all)

@@ -1,0 +1,138 @@
+"""What the drop kernel needs to know of a part, without dimensions."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.resting.basins import barriers
+from feederscrew.resting.tumbling.edges import Edges, half_edges, sinks
+from feederscrew.resting.tumbling.exact import tumble
+
+
+class Shape(NamedTuple):
+    """A convex body about its centre of mass, along its principal axes, in units of its own length.
+
+    A named tuple, so that compiled code can read it; V corners, F faces, M facets.
+    """
+
+    vertices: np.ndarray  # (V, 3)
+    links: np.ndarray  # (V + 1 + 2 E,) where each corner's neighbours start in this array; neighbours
+    inertia: np.ndarray  # (3,) principal moments at mass 1
+    radius: float  # largest distance of a corner
+    edges: Edges
+    faces: np.ndarray  # (M,) face of each facet the part rests on, -1 for the others
+    heights: np.ndarray  # (F,) of the centre of mass
+    barriers: np.ndarray  # (F,) lowest lift that tips the part off the face
+    margins: np.ndarray  # (F,) from the foot of the centre of mass to the nearest edge; 0 for a rolling face
+    rolls: np.ndarray  # (F,) bool
+    axes: np.ndarray  # (F, 3) axis of a rolling face
+    ceiling: float  # energy over which no face is decided
+
+
+def shape_of(hull, labels, mass, inertia, axes=None):
+    """Shape of a hull, and the length that makes it dimensionless.
+
+    Parameters
+    ----------
+    hull : Hull
+    labels : (T,) int
+        Face of each hull triangle, -1 for none.
+    mass : float [kg]
+    inertia : (3, 3) float [kg m2]
+        About the centre of mass, in the hull's axes.
+    axes : (F, 3) float, optional
+        Unit axis of each rolling face, NaN for flat ones; none rolls by default.
+
+    Returns
+    -------
+    shape : Shape
+    length : float [m]
+        Cube root of the hull's volume.
+    """
+    length, mass = float(np.cbrt(hull.volume)), check.positive("mass", mass)
+    moments, principal = principal_axes(check.shaped("inertia", inertia, (3, 3)))
+    edges = _turned(half_edges(hull), principal, length)
+    tumbling = tumble(hull)
+    tips = barriers.tipping(tumbling, labels)
+    lifts = barriers.barriers(tips) / length
+    heights = np.nan_to_num(tips.heights / length)
+    count = len(heights)
+    axes = np.full((count, 3), np.nan) if axes is None else check.frozen(np.array(axes, float))
+    rolls = np.isfinite(axes).all(axis=1)
+    shape = Shape(
+        vertices=edges.vertices,
+        links=check.frozen(_links(edges)),
+        inertia=check.frozen(moments / (mass * length**2)),
+        radius=hull.radius / length,
+        edges=edges,
+        faces=check.frozen(_faces(edges, tumbling, labels)),
+        heights=check.frozen(heights),
+        barriers=check.frozen(lifts),
+        margins=check.frozen(np.where(rolls, 0.0, _margins(edges, tumbling, labels, count))),
+        rolls=check.frozen(rolls),
+        axes=check.frozen(np.nan_to_num(axes) @ principal),
+        ceiling=float((heights + lifts).max()),
+    )
+    return shape, length
+
+
+def shape_of_part(part, found):
+    """Shape of a part and its length [m], from its faces.
+
+    Parameters
+    ----------
+    part : Part
+    found : Ground
+
+    Returns
+    -------
+    shape, length
+        As `shape_of`.
+    """
+    axes = np.array([face.axis for face in found.faces])
+    return shape_of(found.hull, found.labels, part.mass, part.inertia, axes)
+
+
+def principal_axes(inertia):
+    """Principal moments (3,), ascending, and a rotation (3, 3) whose columns are their axes."""
+    moments, principal = np.linalg.eigh(inertia)
+    return moments, principal * np.sign(np.linalg.det(principal))
+
+
+def _turned(edges, principal, length):
+    """Half-edges in principal axes and units of the length."""
+    scaled = {
+        "vertices": edges.vertices @ principal / length,
+        "normals": edges.normals @ principal,
+        "slopes": edges.slopes / length**2,
+        "sides": edges.sides / length**2,
+    }
+    return edges._replace(**{name: check.frozen(array) for name, array in scaled.items()})
+
+
+def _links(edges):
+    """Corners joined to each corner by an edge: where each list starts, then the lists."""
+    order = np.argsort(edges.origins, kind="stable")
+    count = len(edges.vertices) + 1
+    starts = np.searchsorted(edges.origins[order], np.arange(count))
+    return np.concatenate([starts + count, edges.targets[order]])
+
+
+def _faces(edges, tumbling, labels):
+    faces = np.full(len(edges.normals), barriers.UNNAMED)
+    faces[sinks(edges)] = barriers.named(tumbling, np.asarray(labels)[tumbling.sinks])
+    return faces
+
+
+def _margins(edges, tumbling, labels, count):
+    """(F,) distance from the foot to the nearest edge, over the sinks of each face."""
+    u, w = edges.vertices[edges.origins], edges.vertices[edges.targets]
+    levers = edges.sides / np.linalg.norm(w - u, axis=1)
+    by_facet = np.full(len(edges.normals), np.inf)
+    owners = np.repeat(edges.facets, 3)
+    np.minimum.at(by_facet, owners[edges.borders], levers[edges.borders])
+    margins = np.full(count, np.inf)
+    faces = _faces(edges, tumbling, labels)
+    np.minimum.at(margins, faces[faces >= 0], by_facet[faces >= 0])
+    return np.where(np.isfinite(margins), margins, 0.0)

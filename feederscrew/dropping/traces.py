@@ -1,0 +1,189 @@
+"""Single drops of a test, followed from the launch until the part lies still."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.constants import g
+from scipy.spatial.transform import Rotation
+
+from feederscrew import check
+from feederscrew.dropping.kernel import body, drop
+
+EVERY = 0.05  # sqrt(L / g) from one row that is kept to the next, at least
+MOST = 1000  # such rows; a longer drop has them further apart
+HITS = 250  # impacts that are kept, those that take most energy
+ROWS = 8192  # of a trace at first; a longer drop is followed again with twice as many
+STILL = 3e-3  # energy over a face's height at which a part lies still on it, contact tolerance included
+CHUNK = 256  # rows whose corners are looked at together
+TURNED = np.radians(90.0)  # of the underside, from which on a part has tumbled
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """Motion of one drop, N rows, some hundreds: at even times, before and after every impact, and the end.
+
+    Rows are steps of the simulation, and of free flight between two of them, about EVERY sqrt(L / g) apart,
+    further if there would be more than MOST; of more than HITS impacts those that take most energy. Positions
+    are of the centre of mass, over the plane z = 0; the launch is at x = y = 0.
+    """
+
+    number: int  # of the drop, from 1
+    face: int  # it is counted on, UNSETTLED for none
+    row: int  # class of that face, UNSETTLED for none
+    decided: float  # [s] when that face was certain, and the drop counted
+    still: bool  # followed until it lies still on that face; else it ends when that face is certain
+    times: np.ndarray  # (N,) [s]
+    positions: np.ndarray  # (N, 3) [m]
+    attitudes: np.ndarray  # (N, 4) quaternions w x y z, from the file's axes to the plane's
+    energies: np.ndarray  # (N,) [m] kinetic and of height, over m g
+    impacts: np.ndarray  # (N,) bool, a corner comes down: the state just before
+
+    @property
+    def turns(self):
+        """Rotations from the file's axes to the plane's."""
+        return Rotation.from_quat(np.roll(self.attitudes, -1, axis=1))
+
+    def tumbled(self):
+        """Whether the underside of the first impact is later turned by more than a quarter of a circle."""
+        down = self.turns.inv().apply([0.0, 0.0, -1.0])[np.argmax(self.impacts) :]
+        across = np.linalg.norm(np.cross(down, down[0]), axis=1)
+        return bool((np.arctan2(across, down @ down[0]) > TURNED).any())
+
+
+def follow(shape, length, principal, starts, drops, rows):
+    """Follow the first drops of a test once more.
+
+    Parameters
+    ----------
+    shape : Shape
+    length : float [m]
+        Of the shape.
+    principal : (3, 3) float
+        Its columns are the shape's axes along the file's: `shape.principal_axes`.
+    starts : Starts
+        Of the drops to follow.
+    drops : Drops
+        Their outcome, in the same order; there may be more.
+    rows : (F,) int
+        Class of each face.
+
+    Returns
+    -------
+    tuple of Trace
+
+    Notes
+    -----
+    A drop is counted once its face is certain, while the part still moves. The trace goes on until it lies
+    still. Should that be on another face, balanced on an edge, or never, as with a part that rolls on and on,
+    it ends where the drop was counted.
+    """
+    to_body = Rotation.from_matrix(principal.T)
+    second = np.sqrt(length / g)
+    traces = []
+    for k, state in enumerate(starts.states):
+        face, limits = int(drops.faces[k]), (starts.restitutions[k], starts.frictions[k])
+        states = _to_rest(shape, state, *limits, face)
+        still = states is not None
+        if not still:
+            _, states = _path(shape, state, *limits, drop.Steps())
+        states = _filled(shape, states)
+        energies = _energies(shape, states)
+        impacts = _strongest(_impacts(shape, states, drop.Steps()), energies)
+        kept = _kept(states[:, 0], impacts, drops.times[k])
+        states, energies, impacts = states[kept], energies[kept], impacts[kept]
+        turns = Rotation.from_quat(states[:, 1 + body.Q + np.array([1, 2, 3, 0])]) * to_body
+        traces.append(
+            Trace(
+                number=k + 1,
+                face=face,
+                row=int(rows[face]) if face != drop.UNSETTLED else drop.UNSETTLED,
+                decided=float(second * drops.times[k]),
+                still=still,
+                times=check.frozen(second * states[:, 0]),
+                positions=check.frozen(length * states[:, 1 : 1 + body.VX]),
+                attitudes=check.frozen(np.roll(turns.as_quat(), 1, axis=1)),
+                energies=check.frozen(length * energies),
+                impacts=check.frozen(impacts),
+            )
+        )
+    return tuple(traces)
+
+
+def telling(traces):
+    """The drop to show: the first that tumbled and lies still, else that tumbled, else the first."""
+    return min(traces, key=lambda trace: (not trace.tumbled(), not trace.still, trace.number))
+
+
+def _to_rest(shape, start, restitution, friction, face):
+    """Rows until the part lies still on a face; None if it does not."""
+    if face == drop.UNSETTLED:
+        return None
+    end, states = _path(shape, start, restitution, friction, drop.Steps(early=False))
+    lies = end == face and _energies(shape, states[-1:])[0] - shape.heights[face] < STILL
+    return states if lies else None
+
+
+def _filled(shape, states):
+    """Rows with further ones in long steps of free flight, at most EVERY apart."""
+    steps = np.diff(states[:, 0])
+    if not (steps > EVERY).any():
+        return states
+    rows = [states[:1]]
+    for before, after, step in zip(states, states[1:], steps):
+        count = int(np.ceil(step / EVERY))
+        between = np.repeat(before[None], count - 1, axis=0)
+        for row, dt in zip(between, step / count * np.arange(1, count)):
+            row[0] += dt
+            body.fly(row[1:], shape.inertia, dt)
+        rows += [between, after[None]]
+    return np.vstack(rows)
+
+
+def _path(shape, start, restitution, friction, steps):
+    """Face, and (N, 14) time and state at the start of every step and at the end."""
+    rows, used = ROWS // 2, None
+    while used is None or used == rows:
+        rows *= 2
+        work = drop.scratch(shape, rows=rows)
+        work.state[:] = start
+        face, time, used = drop.settle(shape, work, restitution, friction, steps)
+    steady = work.trace[:used][work.trace[:used, 0] < time]  # the end replaces a row of the same time
+    return face, np.vstack([steady, [time, *work.state]])
+
+
+def _impacts(shape, states, steps):
+    """(N,) bool, rows where a corner on the plane comes down fast enough to rebound."""
+    turns = Rotation.from_quat(states[:, 1 + body.Q + np.array([1, 2, 3, 0])])
+    up = turns.inv().apply([0.0, 0.0, 1.0])
+    speeds = np.cross(up, states[:, 1 + body.W : 1 + body.W + 3])
+    struck = np.zeros(len(states), bool)
+    for first in range(0, len(states), CHUNK):
+        part = slice(first, first + CHUNK)
+        gaps = states[part, 1 + body.Z, None] + up[part] @ shape.vertices.T
+        rising = states[part, 1 + body.VZ, None] + speeds[part] @ shape.vertices.T
+        struck[part] = ((gaps <= steps.tolerance) & (rising < -steps.threshold)).any(axis=1)
+    return struck
+
+
+def _strongest(impacts, energies):
+    """(N,) bool, of the rows of impacts the HITS that take most energy."""
+    rows = np.flatnonzero(impacts)
+    losses = energies[rows] - np.append(energies, energies[-1])[rows + 1]
+    kept = np.zeros(len(impacts), bool)
+    kept[rows[np.argsort(-losses, kind="stable")[:HITS]]] = True
+    return kept
+
+
+def _kept(times, impacts, decided):
+    """(N,) bool, the rows of a trace that are kept."""
+    steps = np.floor(times / max(EVERY, times[-1] / MOST))
+    kept = np.diff(steps, prepend=-1.0) > 0.0
+    kept[-1] = True
+    kept[np.searchsorted(times, decided).clip(max=len(times) - 1)] = True
+    return kept | impacts | np.roll(impacts, 1)
+
+
+def _energies(shape, states):
+    """(N,) total energy at mass 1 and gravity 1."""
+    velocities, rates = states[:, 1 + body.VX : 1 + body.Q], states[:, 1 + body.W :]
+    return 0.5 * (velocities**2).sum(axis=1) + 0.5 * rates**2 @ shape.inertia + states[:, 1 + body.Z]

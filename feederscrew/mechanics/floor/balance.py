@@ -1,0 +1,199 @@
+"""A part on the bowl floor: forces, acceleration and the line of action of the normal force.
+
+Body axes x', y' lie in the floor, z up; the thesis calls them Z', Y', X'. Angles run counter-clockwise
+seen from above: alpha is the drive's direction, theta the part's heading, both from a line in the bowl.
+Seen from the bowl, the drive is the force m A w^2 sin(w t) along (beta, alpha); at the upper reversal,
+w t = 90 deg, it points forward and up and the normal force is least.
+
+Every field of the Bowl may be an array; the results broadcast.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feederscrew.geometry.polygons import inset
+from feederscrew.mechanics import cycle
+from feederscrew.mechanics.floor.rolling import rolling
+
+STATES = ("stick", "slide", "hop", "tip")  # a state code is a place in this list
+STICK, SLIDE, HOP, TIP = range(len(STATES))
+UPPER_REVERSAL = 0.5 * np.pi
+ON_THE_LINE = 1e-9  # [m] a normal force this near the contact polygon's border does not tip the part
+
+
+@dataclass(frozen=True, eq=False)
+class FloorMotion:
+    """State of a part at one or many instants; vectors in body axes along the last axis."""
+
+    state: np.ndarray  # (...) int, places in STATES
+    normal_force: np.ndarray  # (...) [N], 0 while there is no contact
+    friction: np.ndarray  # (..., 2) [N] force of the floor on the part
+    acceleration: np.ndarray  # (..., 2) [m/s2] of the centre of mass relative to the bowl: V'_z, V'_y
+    turning: np.ndarray  # (...) [rad/s2] theta'', counter-clockwise
+    offset: np.ndarray  # (..., 2) [m] d, where the normal force acts, from the foot of the centre of mass
+    inside: np.ndarray  # (...) [m] of that point within the contact polygon; negative: it tips
+    limiting_friction: np.ndarray  # (...) [1] least static friction that holds the part; NaN without contact
+
+
+def drive_force(posture, bowl, heading, phase=UPPER_REVERSAL):
+    """Inertial force of the vibration on a part, as (..., 3) [N] along x', y', z.
+
+    Parameters
+    ----------
+    posture : Posture
+    bowl : Bowl
+    heading : array_like [rad]
+        theta.
+    phase : array_like [rad]
+        w t.
+    """
+    drive = bowl.drive
+    size = posture.mass * drive.amplitude * (2.0 * np.pi * drive.frequency) ** 2 * np.sin(phase)
+    level, turn = size * np.cos(drive.vibration_angle), drive.direction - heading
+    along = (level * np.cos(turn), level * np.sin(turn), size * np.sin(drive.vibration_angle))
+    return np.stack(np.broadcast_arrays(*along), axis=-1)
+
+
+def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0):
+    """What a part on the level bowl floor does at one phase of the vibration.
+
+    Parameters
+    ----------
+    posture : Posture
+        Its ``offset`` e is the lever by which the drive turns the part, a parameter of the published model:
+        the distance from the foot of the centre of mass to the centroid of the contact polygon. Inertia
+        itself acts at the centre of mass; with e = 0 nothing turns.
+    bowl : Bowl
+        Drive, friction and gravity; the floor is level.
+    heading : array_like [rad]
+        theta.
+    phase : array_like [rad]
+        w t; a quarter turn is the upper reversal.
+    moving : array_like
+        Sense of the part's sliding along the drive's direction, +1 or -1; 0 for a part at rest, which
+        breaks loose only against static friction. A rolling part is taken from rest.
+
+    Returns
+    -------
+    FloorMotion
+
+    Notes
+    -----
+    Friction is a vector against the sliding, so the factor cos(alpha - theta) of [4.27] is absent: the
+    thesis's form holds where a wall takes the force across. The normal force acts where it balances
+    friction's lever h: d = h R / N, and further by the products of inertia while the part turns.
+    """
+    force = drive_force(posture, bowl, heading, phase)
+    normal = posture.mass * bowl.gravity - force[..., 2]  # eq. [4.14]
+    contact = normal > 0.0
+    normal = np.where(contact, normal, 0.0)
+    law = _rolling if rolls(posture) else _flat
+    friction, acceleration, slides, needed = law(posture, bowl, heading, force[..., :2], normal, moving)
+    lever = np.where(slides & contact, posture.offset, 0.0)
+    turning = lever * force[..., 1] / posture.turning_inertia  # eq. [4.17]
+    offset = _offset(posture, friction, normal, turning)
+    inside = inset(posture.contact, offset)
+    state = np.where(slides, SLIDE, STICK)
+    state = np.where(inside < -ON_THE_LINE, TIP, state)
+    return FloorMotion(
+        state=np.where(contact, state, HOP),
+        normal_force=normal,
+        friction=friction,
+        acceleration=acceleration,
+        turning=turning,
+        offset=offset,
+        inside=inside,
+        limiting_friction=needed,
+    )
+
+
+def over_cycle(posture, bowl, heading, samples=cycle.SAMPLES):
+    """The same over one settled period.
+
+    Parameters
+    ----------
+    posture, bowl, heading
+        As for ``motion``; single values.
+    samples : int
+        N, of the period.
+
+    Returns
+    -------
+    tuple of FloorMotion of shape (N,), Cycle
+        The velocity is along the drive's direction. Flights are not followed: past the hop the state says
+        ``hop`` and the velocity is that of a part that keeps to the plane. A rolling part is not brought
+        to rest by friction: its velocity is the swing about whatever it began with.
+    """
+    phase, turn = cycle.phases(samples), bowl.drive.direction - heading
+    along = np.array([np.cos(turn), np.sin(turn)])
+    rest = motion(posture, bowl, heading, phase)
+    if rolls(posture):
+        return rest, cycle.swing(rest.acceleration @ along, 1.0 / bowl.drive.frequency)
+    ahead, back = (motion(posture, bowl, heading, phase, sense) for sense in (1.0, -1.0))
+    free = (rest.limiting_friction > bowl.friction.static) | (rest.normal_force == 0.0)
+    pushed = np.sin(phase) > 0.0
+    course = cycle.settle(
+        ahead.acceleration @ along,
+        back.acceleration @ along,
+        free & pushed,
+        free & ~pushed,
+        1.0 / bowl.drive.frequency,
+    )
+    return motion(posture, bowl, heading, phase, np.sign(course.velocity)), course
+
+
+def rolls(posture):
+    """Whether the part stands on a rolling aspect with an axis to roll about."""
+    return posture.kind == "rolling" and posture.axis is not None
+
+
+def regime(states):
+    """The state that names a whole cycle: contact lost, else tipping, else sliding, else sticking."""
+    present = set(np.ravel(states).tolist())
+    return next(STATES[code] for code in (HOP, TIP, SLIDE, STICK) if code in present)
+
+
+def stable_heading(posture, bowl):
+    """Heading [rad] to which the drive turns the part at the upper reversal; NaN where none is preferred."""
+    if not np.isfinite(posture.offset) or posture.offset == 0.0:
+        return np.full(np.shape(bowl.drive.direction), np.nan)[()]
+    return bowl.drive.direction + (0.0 if posture.offset > 0.0 else np.pi)
+
+
+def with_friction(bowl, friction):
+    """The bowl with one coefficient for sticking and sliding; the wall keeps its own."""
+    return replace(bowl, friction=replace(bowl.friction, static=friction, kinetic=friction))
+
+
+def _flat(posture, bowl, heading, push, normal, moving):
+    """Coulomb friction under a flat part: force, acceleration, whether it slides, friction needed."""
+    turn = np.asarray(bowl.drive.direction - heading)
+    along = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    size = (push * along).sum(axis=-1)  # negative in the half period that pushes back
+    needed = np.divide(
+        np.abs(size), normal, out=np.full(size.shape, np.nan), where=normal > 0.0
+    )  # eq. [4.28]
+    slides = (np.asarray(moving) != 0.0) | ~(needed <= bowl.friction.static)
+    sense = np.where(np.asarray(moving) == 0.0, np.sign(size), moving)
+    held = np.where(slides, sense * bowl.friction.kinetic * normal, size)  # eq. [4.26]
+    friction = -held[..., None] * along
+    return friction, (push + friction) / posture.mass, slides, needed
+
+
+def _rolling(posture, bowl, heading, push, normal, moving):
+    """The same for a part that rolls; it is taken from rest and its axes do not depend on the heading."""
+    found = rolling(posture, bowl.friction, push, normal)
+    return found.friction, found.acceleration, found.slips, found.limiting_friction
+
+
+def _offset(posture, friction, normal, turning):
+    """Where the normal force acts: moments about x' and y' through the centre of mass balance."""
+    products = np.where(np.isfinite(posture.inertia[2, :2]), posture.inertia[2, :2], 0.0)
+    across = np.array([-products[1], products[0]])
+    moment = -posture.height * friction + np.asarray(turning)[..., None] * across
+    where = np.broadcast_to((normal > 0.0)[..., None], moment.shape)
+    offset = np.divide(moment, normal[..., None], out=np.full(moment.shape, np.nan), where=where)
+    if rolls(posture):
+        return (offset @ posture.axis)[..., None] * posture.axis
+    return offset

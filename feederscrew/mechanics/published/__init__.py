@@ -1,0 +1,1 @@
+"""The thesis's equations of motion as printed, beside the complete ones."""

@@ -1,0 +1,1 @@
+"""A part on the track against the bowl wall."""

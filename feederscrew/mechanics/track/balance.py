@@ -1,0 +1,208 @@
+"""A part on the track against the bowl wall: reactions, acceleration and what gives way first.
+
+Seven unknowns stand against six equations: the normal force acts at a point (d_x, d_y) of the contact
+polygon. Sliding along X, Coulomb friction opposes the sliding, so R3 = 0 and d_y takes the moment about X
+that the thesis gives to R3. At rest friction is not determined; see ``track_system.held`` for our choice.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew.geometry.polygons import inset
+from feederscrew.mechanics import cycle
+from feederscrew.mechanics.floor.balance import HOP, ON_THE_LINE, SLIDE, STICK, TIP, UPPER_REVERSAL
+from feederscrew.mechanics.track import system
+from feederscrew.mechanics.track.frame import frame, loads
+
+PULL = 1e-9  # of the weight: a reaction more negative than this would be a pull
+NOISE = 1e-12  # of the weight: less than this is rounding
+PASSES = 3  # of the period, each with the speed of the one before in the centrifugal force
+
+
+@dataclass(frozen=True, eq=False)
+class TrackMotion:
+    """State of a part on the track at one or many instants; forces of the bowl on the part, in track axes."""
+
+    state: np.ndarray  # (...) int, places in floor.STATES
+    normal_force: np.ndarray  # (...) [N]; 0 while there is no contact
+    walls: np.ndarray  # (..., 2) [N] R1, R2; 0 where opened
+    closed: np.ndarray  # (..., 2) bool, whether each wall contact stays closed
+    radial_friction: np.ndarray  # (...) [N] R3, of the floor along Y
+    traction: np.ndarray  # (...) [N] R4, of the floor against motion along X
+    wall_friction: np.ndarray  # (..., 2) [N] R1f, R2f against motion along the wall
+    couple: np.ndarray  # (...) [N m] with which the floor keeps a part at rest from turning
+    acceleration: np.ndarray  # (..., 2) [m/s2] relative to the bowl along X and Y
+    turning: np.ndarray  # (...) [rad/s2] theta'', counter-clockwise; not 0 only where a contact has opened
+    offset: np.ndarray  # (..., 2) [m] d_x, d_y of the normal force from the foot of the centre of mass
+    inside: np.ndarray  # (...) [m] of that point within the contact polygon; negative: it tips
+    needed: (
+        np.ndarray
+    )  # (..., 3) [1] friction over normal force at the floor and the walls that holds it at rest
+    slides: np.ndarray  # (...) bool, also where the state says that it tips
+    load: np.ndarray  # (..., 3) [N] weight, drive and centrifugal force
+
+
+def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0):
+    """What a part on the track does at one phase of the vibration.
+
+    Parameters
+    ----------
+    seat : Seat
+        How it lies against the wall.
+    bowl : Bowl
+        Fields may be arrays, except the track's radius and the sign of its bank, which belong to the seat.
+    phase : array_like [rad]
+        w t; a quarter turn is the upper reversal.
+    moving : array_like
+        Sense of sliding along the track, +1 or -1; 0 for a part at rest.
+    speed : array_like [m/s]
+        Of that sliding, for the centrifugal force.
+
+    Returns
+    -------
+    TrackMotion
+        No reaction is negative: where a wall contact would have to pull, it is opened and the equations are
+        solved without it, the part then turning or leaving the wall.
+    """
+    axes = frame(bowl, seat.walls)
+    load = loads(seat, bowl, axes, phase, speed)
+    coefficients = bowl.friction
+    static, kinetic, wall = np.broadcast_arrays(
+        *map(np.asarray, (coefficients.static, coefficients.kinetic, coefficients.wall))
+    )
+    ratio = np.divide(wall, static, out=np.zeros(np.shape(static)), where=static > 0.0)
+
+    def holding(closed):
+        found = system.held(seat, axes, load, closed, ratio)
+        return vars(found) | {"wall_use": found.mobilised * ratio}
+
+    still = _chosen(holding, bowl.gravity)
+    needed = _needed(still, ratio)
+    moving = np.asarray(moving, dtype=float)
+    slides = (moving != 0.0) | ~(needed[..., 0] <= static)
+    sense = np.where(moving == 0.0, np.sign(still["mobilised"]), moving)
+    free = _course(load, moving, sense)
+
+    def sliding(closed):
+        """Along the track while a wall contact is closed; a part off the wall goes where it is pushed."""
+        course = sense[..., None] * system.AHEAD if any(closed) else free
+
+        def solve(use):
+            return system.sliding(seat, axes, load, closed, kinetic, use, course)
+
+        ahead = sense * wall if any(closed) else 0.0 * sense * wall
+        turns = (moving == 0.0) & (sum(closed) == 1)
+        use = system.wall_use(seat, axes, solve, closed, ahead, turns) if turns.any() else ahead
+        return vars(solve(use)) | {"wall_use": use}
+
+    slipping = _chosen(sliding, bowl.gravity) if slides.any() else still
+    found = {name: _where(slides, slipping[name], still[name]) for name in still}
+    return _motion(seat, found, slides, needed, load)
+
+
+def over_cycle(seat, bowl, samples=cycle.SAMPLES):
+    """The same over one settled period.
+
+    Parameters
+    ----------
+    seat, bowl
+        As for ``motion``; single values.
+    samples : int
+        N, of the period.
+
+    Returns
+    -------
+    tuple of TrackMotion of shape (N,), Cycle
+        Flights are not followed: past the hop the state says ``hop`` and the velocity is that of a part that
+        keeps to the track.
+    """
+    phase, speed = cycle.phases(samples), 0.0
+    for _ in range(PASSES):
+        ahead, back = (motion(seat, bowl, phase, sense, speed) for sense in (1.0, -1.0))
+        rest = motion(seat, bowl, phase, 0.0, speed)
+        loose = (rest.state == HOP) | ~(rest.needed[:, 0] <= bowl.friction.static)
+        onward = rest.acceleration[:, 0] > 0.0
+        course = cycle.settle(
+            ahead.acceleration[:, 0],
+            back.acceleration[:, 0],
+            loose & onward,
+            loose & ~onward,
+            1.0 / bowl.drive.frequency,
+        )
+        speed = course.velocity
+    return motion(seat, bowl, phase, np.sign(speed), speed), course
+
+
+def _course(load, moving, sense):
+    """Direction of sliding of a part that no wall holds: along the push at rest, else as it moves."""
+    push = load[..., :2]
+    size = np.hypot(push[..., 0], push[..., 1])
+    along = np.divide(push, size[..., None], out=np.zeros(push.shape), where=size[..., None] > 0.0)
+    return np.where((moving == 0.0)[..., None], along, sense[..., None] * system.AHEAD)
+
+
+def _chosen(solve, gravity):
+    """At each instant the solution with most closed contacts of which none pulls and no gap closes."""
+    least = -PULL * np.max(gravity)
+    chosen = {}
+    for closed in system.SETS:
+        found = solve(closed)
+        found = found | {"closed": np.broadcast_to(closed, found["walls"].shape)}
+        fits = (found["walls"] >= least).all(axis=-1) & (found["parting"] >= least).all(axis=-1)
+        if not chosen:
+            chosen, decided = found, fits
+            continue
+        chosen = {name: _where(decided, chosen[name], found[name]) for name in found}
+        decided = decided | fits
+        if decided.all():
+            break
+    return chosen
+
+
+def _needed(still, ratio):
+    """Friction over normal force that holds the part, at the floor and at each wall contact."""
+    size, normal = np.hypot(*np.moveaxis(still["friction"], -1, 0)), still["normal"]
+    floor = np.divide(size, normal, out=np.full(size.shape, np.nan), where=normal > 0.0)
+    wall = np.where(still["closed"], np.abs(still["mobilised"] * ratio)[..., None], 0.0)
+    return np.concatenate([floor[..., None], wall], axis=-1)
+
+
+def _motion(seat, found, slides, needed, load):
+    """The record, in newtons and metres, with what holds while there is no contact."""
+    mass, height = seat.mass, seat.height
+    contact = found["normal"] > 0.0
+    normal = np.where(contact, found["normal"], 0.0)
+    offset = np.divide(
+        height * found["moments"], normal[..., None],
+        out=np.full(found["moments"].shape, np.nan), where=contact[..., None],
+    )  # fmt: skip
+    inside = inset(seat.contact, offset)
+    walls = np.where(found["closed"] & contact[..., None], np.maximum(found["walls"], 0.0), 0.0)
+    state = np.where(inside < -ON_THE_LINE, TIP, np.where(slides, SLIDE, STICK))
+    friction = np.where(contact[..., None], found["friction"], 0.0)
+    noise = NOISE * np.linalg.norm(load, axis=-1)[..., None] / mass
+    walls, friction = (mass * np.where(np.abs(force) < noise, 0.0, force) for force in (walls, friction))
+    return TrackMotion(
+        state=np.where(contact, state, HOP),
+        normal_force=mass * normal,
+        walls=walls,
+        closed=found["closed"],
+        radial_friction=friction[..., 1],
+        traction=0.0 - friction[..., 0],
+        wall_friction=found["wall_use"][..., None] * walls,
+        couple=mass * height * found["couple"] * contact,
+        acceleration=np.where(contact[..., None], found["acceleration"], load[..., :2] / mass),
+        turning=found["turning"] / height * contact,
+        offset=offset,
+        inside=inside,
+        needed=np.where(contact[..., None], needed, np.nan),
+        slides=slides,
+        load=load,
+    )
+
+
+def _where(condition, first, second):
+    """np.where with the condition widened over trailing axes."""
+    wide = condition.reshape(condition.shape + (1,) * (np.ndim(first) - condition.ndim))
+    return np.where(wide, first, second)

@@ -1,0 +1,131 @@
+"""The part on the track for arrays of bowl settings: what a map over two of them shows."""
+
+from dataclasses import fields, is_dataclass, replace
+
+import numpy as np
+
+from feederscrew.bowl.record import Track
+from feederscrew.errors import FeederError
+from feederscrew.mechanics.floor.balance import HOP, STATES
+from feederscrew.mechanics.track import balance
+from feederscrew.mechanics.track.frame import card_seat, seat
+from feederscrew.mechanics.wall.headings import headings, laid, on_track
+
+REGIMES = (*STATES, "leaves the wall", "does not fit")  # a code is a place in this list
+LEAVES, UNFIT = len(STATES), len(STATES) + 1
+COLUMNS = (
+    "acceleration_x_m_s2", "normal_force_N", "wall_1_N", "wall_2_N",
+    "radial_friction_N", "traction_N", "normal_line_offset_m", "normal_line_offset_across_m",
+)  # fmt: skip
+ROUNDED = 12  # decimals that tell two radii, widths or banks apart
+
+
+def seated(posture, bowl, heading=None):
+    """How a part lies against the wall of a bowl.
+
+    Parameters
+    ----------
+    posture : Posture
+    bowl : Bowl
+        Single values of its track.
+    heading : float [rad], optional
+        As laid down; without one, the most frequent heading that stays on the track.
+
+    Returns
+    -------
+    tuple of Seat, Headings or None, int
+        The headings of the posture and the row taken; a part card has its printed seat only.
+
+    Raises
+    ------
+    FeederError
+        If the bowl is smaller than the part, the part falls off, or a card lacks what is asked.
+    """
+    if posture.corners is None:
+        return card_seat(posture), None, 0
+    found = headings(posture, bowl.track)
+    row = laid(found, heading)
+    return seat(posture, float(found.headings[row]), found.touching[row], bowl.track.bank), found, row
+
+
+def cells(posture, bowl, heading=None):
+    """The upper reversal at every cell of a map.
+
+    Parameters
+    ----------
+    posture : Posture
+    bowl : Bowl
+        Fields may be arrays that broadcast together.
+    heading : float [rad], optional
+        As for ``seated``.
+
+    Returns
+    -------
+    dict of str to array
+        Columns of the map and 'regime', places in ``REGIMES``; NaN where the part does not
+        fit; no acceleration where it hops.
+    """
+    shape = np.broadcast_shapes(*(np.shape(value) for _, _, value in _fields(bowl)))
+    found = {name: np.full(shape, np.nan) for name in COLUMNS} | {"regime": np.full(shape, UNFIT)}
+    for place, here in _seats(posture, bowl, heading, shape):
+        there = _answers(balance.motion(place, _picked(bowl, shape, here)))
+        for name, values in there.items():
+            found[name][here] = values
+    return found
+
+
+def _seats(posture, bowl, heading, shape):
+    """Each seat that occurs and the cells, (...) bool, where it does."""
+    names = ("climb", "bank", "radius", "width")
+    values = np.stack([np.broadcast_to(getattr(bowl.track, name), shape).ravel() for name in names])
+    kinds, place = np.unique(np.round(values, ROUNDED), axis=1, return_inverse=True)
+    groups, known = {}, {}
+    for k, kind in enumerate(kinds.T):
+        key, seat_there = _seat(posture, bowl, heading, Track(*kind), known)
+        if seat_there is not None:
+            groups.setdefault(key, (seat_there, []))[1].append(k)
+    for seat_there, members in groups.values():
+        yield seat_there, np.isin(place.reshape(shape), members)
+
+
+def _seat(posture, bowl, heading, there, known):
+    """A name for the seat on one track, and the seat; None where the part does not fit."""
+    if posture.corners is None:
+        return "card", card_seat(posture)
+    try:
+        if there.radius not in known:
+            known[there.radius] = headings(posture, there)
+        found = on_track(known[there.radius], posture, there)
+        row = laid(found, heading)
+    except FeederError:
+        return None, None
+    lean = float(np.sign(there.bank))
+    return (there.radius, row, lean), seat(posture, float(found.headings[row]), found.touching[row], lean)
+
+
+def _answers(found):
+    leaves = ~found.closed.any(axis=-1) & (found.state != HOP) & (found.acceleration[..., 1] > 0.0)
+    along = np.where(found.slides, found.acceleration[..., 0], 0.0)
+    along = np.where(found.state == HOP, np.nan, along)
+    walls, offsets = np.moveaxis(found.walls, -1, 0), np.moveaxis(found.offset, -1, 0)
+    values = (along, found.normal_force, *walls, found.radial_friction, found.traction, *offsets)
+    return dict(zip(COLUMNS, values)) | {"regime": np.where(leaves, LEAVES, found.state)}
+
+
+def _fields(bowl):
+    """Every field of a bowl: its section or '', its name, its value."""
+    for section in fields(bowl):
+        value = getattr(bowl, section.name)
+        if is_dataclass(value):
+            yield from ((section.name, inner.name, getattr(value, inner.name)) for inner in fields(value))
+        else:
+            yield "", section.name, value
+
+
+def _picked(bowl, shape, here):
+    """The bowl at chosen cells, every field a (cells,) array."""
+    changed = {}
+    for section, name, value in _fields(bowl):
+        changed.setdefault(section, {})[name] = np.broadcast_to(value, shape)[here]
+    top = changed.pop("")
+    return replace(bowl, **top, **{s: replace(getattr(bowl, s), **inner) for s, inner in changed.items()})

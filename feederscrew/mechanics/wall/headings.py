@@ -1,0 +1,247 @@
+"""How a part lies along the bowl wall: its stable headings, how often each comes, whether it stays on.
+
+Axes of the track: X ahead, Y from the wall towards the bowl's axis, Z up from the surface; the bowl climbs
+counter-clockwise seen from above. For a bowl that climbs clockwise take the mirror image of the part.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.errors import FeederError
+from feederscrew.geometry.polygons import inset, outline, sides, turned
+from feederscrew.mechanics.wall.outline import rests
+
+ALIKE = 1e-5  # of the outline's size: outlines that differ by less are the same
+NO_TURN = 1e-5  # [rad] files in single precision turn a part by a hundredth of it
+TIE = 1e-4  # shares that differ by less of themselves are equal but for rounding
+SAME = 1e-6  # of the outline's size: touching corners nearer than this are the same corner
+
+
+@dataclass(frozen=True, eq=False)
+class Headings:
+    """Every stable heading of one posture on one track, the most frequent first, equals from 0 on; M rows."""
+
+    aspect: str
+    headings: (
+        np.ndarray
+    )  # (M,) [rad] of the body's own direction, from the track's, counter-clockwise, 0 to 2 pi
+    shares: np.ndarray  # (M,) [1] of all directions of laying down
+    lowest: np.ndarray  # (M,) [rad] where the range of headings begins that settle there, 2 pi share wide
+    straight_shares: (
+        np.ndarray
+    )  # (M,) [1] of the corresponding heading at a straight wall; NaN for a round outline
+    lengths: np.ndarray  # (M,) [m] along the track
+    widths: np.ndarray  # (M,) [m] of the track it covers
+    distances: np.ndarray  # (M,) [m] from the foot of the centre of mass to the wall
+    overhangs: np.ndarray  # (M,) [m] beyond the track's free edge
+    falls_off: np.ndarray  # (M,) bool
+    touching: np.ndarray  # (M, 2, 2) [m] corners at the wall, trailing one first, in track axes from the foot
+    half_turns: np.ndarray  # (M,) int, the row with the same outline turned by half; -1 where there is none
+    mirrors: np.ndarray  # (M,) int, the row with the mirror image of the outline; -1 for none but itself
+    rounded: bool  # round in plan: it takes any heading
+
+
+def headings(posture, track):
+    """The stable headings of a part against the wall.
+
+    Parameters
+    ----------
+    posture : Posture
+        Of a part with an outline.
+    track : Track
+        Radius, width, bank and climb are used.
+
+    Returns
+    -------
+    Headings
+
+    Raises
+    ------
+    FeederError
+        If the bowl is smaller than the part, or the part is a card without an outline.
+    """
+    _check_fits(posture, track)
+    found, straight = rests(posture.outline, track.radius), rests(posture.outline, np.inf)
+    order = _ranked(found)
+    turn = _heading(found.outward[order])
+    halves = _apart(turn[:, None] + np.pi, turn) + np.pi * np.eye(len(turn))  # a row is not its own half turn
+    mirrored = _apart(np.pi - turn[:, None], turn)  # as the body's own axes are mirrored
+    shapes = [turned(posture.outline, angle) for angle in turn]
+    distances = found.distance[order]
+    widths = np.array([_width(shape, d, track.radius) for shape, d in zip(shapes, distances)])
+    nothing = np.zeros(len(turn))
+    geometry = Headings(
+        aspect=posture.name,
+        headings=check.frozen(turn),
+        shares=check.frozen(found.share[order]),
+        lowest=check.frozen(_heading(found.start[order] + 2.0 * np.pi * found.share[order])),
+        straight_shares=check.frozen(_at_straight(found.outward[order], straight)),
+        lengths=check.frozen(np.array([np.ptp(shape[:, 0]) for shape in shapes])),
+        widths=check.frozen(widths),
+        distances=check.frozen(distances),
+        overhangs=check.frozen(nothing),
+        falls_off=check.frozen(nothing > 0.0),
+        touching=check.frozen(turned(found.touching[order], turn[:, None])),
+        half_turns=check.frozen(_partners(shapes, lambda shape: -shape, halves)),
+        mirrors=check.frozen(_partners(shapes, lambda shape: shape * [-1.0, 1.0], mirrored)),
+        rounded=found.rounded,
+    )
+    return on_track(geometry, posture, track)
+
+
+def on_track(found, posture, track):
+    """The same headings on a track of other width, climb or bank, but of the same radius.
+
+    Parameters
+    ----------
+    found : Headings
+    posture : Posture
+    track : Track
+
+    Returns
+    -------
+    Headings
+        With its own overhangs and falls.
+    """
+    where = zip(found.headings, found.distances)
+    falls = np.array([_falls(posture, angle, distance, track) for angle, distance in where])
+    overhangs = np.maximum(found.widths - track.width, 0.0)
+    return replace(found, overhangs=check.frozen(overhangs), falls_off=check.frozen(falls))
+
+
+def laid(found, heading=None):
+    """The row of the heading a part ends in, laid on the track in any direction and pushed to the wall.
+
+    Parameters
+    ----------
+    found : Headings
+    heading : float [rad], optional
+        As laid down; without one, the most frequent heading that stays on the track.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    FeederError
+        If the part falls off the track in that heading, or in every one.
+    """
+    if heading is None:
+        if found.falls_off.all():
+            what = "the part falls off the track in every heading"
+            raise FeederError(f"aspect {found.aspect}", what, "give a wider track, or another aspect")
+        return int(np.argmin(found.falls_off))
+    row = _settled(found, heading)
+    if found.falls_off[row]:
+        what = f"the part needs {1e3 * found.widths[row]:.4g} mm of track and falls off"
+        where = f"aspect {found.aspect}, heading {np.degrees(found.headings[row]):.4g} deg"
+        raise FeederError(where, what, "give a wider track, or another heading")
+    return row
+
+
+def _settled(found, heading):
+    """The row whose range of headings holds one; on a border the one nearer in heading."""
+    beyond = np.mod(heading - found.lowest, 2.0 * np.pi) - 2.0 * np.pi * found.shares
+    return int(np.lexsort((_apart(found.headings, heading), beyond > 1e-9))[0])
+
+
+def _ranked(found):
+    """Places of the rests, the most frequent first; those of equal shares by their headings."""
+    order = np.argsort(-found.share)
+    share = found.share[order]
+    rank = np.zeros(len(order), dtype=int)
+    rank[order[1:]] = np.cumsum(share[:-1] - share[1:] > TIE * share[:-1])
+    return np.lexsort((_heading(found.outward), rank))
+
+
+def _apart(first, second):
+    """Angle between headings, 0 to pi."""
+    return np.abs(np.mod(first - second + np.pi, 2.0 * np.pi) - np.pi)
+
+
+def _check_fits(posture, track):
+    if len(posture.outline) == 0:
+        what = f"the card of aspect {posture.name} has no outline"
+        raise FeederError("part card", what, "give the part as a mesh")
+    across = np.linalg.norm(posture.outline[:, None] - posture.outline, axis=-1).max()
+    if np.min(track.radius) < across:
+        what = f"{1e3 * np.min(track.radius):.4g} mm is less than the part's {1e3 * across:.4g} mm across"
+        raise FeederError("track.radius", what, "give the radius of a bowl that holds the part")
+
+
+def _heading(outward):
+    """Turn that brings a body direction to the wall, at -Y; 0 to 2 pi, without the rounding of 0."""
+    turn = np.mod(-0.5 * np.pi - outward, 2.0 * np.pi)
+    return np.where(np.minimum(turn, 2.0 * np.pi - turn) < NO_TURN, 0.0, turn)
+
+
+def _at_straight(outward, straight):
+    """Shares at a straight wall of the rests whose range holds these directions; NaN of a round outline."""
+    if straight.rounded:
+        return np.full(len(outward), np.nan)
+    into = np.mod(outward[:, None] - straight.start, 2.0 * np.pi)
+    return straight.share[(into / (2.0 * np.pi * straight.share)).argmin(axis=1)]
+
+
+def _width(shape, to_wall, radius):
+    """Radial extent from the wall to the innermost point of an outline in track axes."""
+    if np.isinf(radius):
+        return to_wall + shape[:, 1].max()
+    centre = np.array([0.0, radius - to_wall])
+    along = sides(shape)
+    part = np.clip(((centre - shape) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
+    nearest = shape + part[:, None] * along - centre
+    return float(radius - np.hypot(*nearest.T).min())
+
+
+def _falls(posture, heading, to_wall, track):
+    """Whether the weight's line meets the surface outside what the track supports."""
+    supported = _on_track(turned(posture.contact, heading), to_wall, track)
+    if len(supported) < 3 or np.linalg.matrix_rank(supported - supported[0], tol=1e-12) < 2:
+        return True
+    slope = np.array([np.sin(track.climb), np.cos(track.climb) * np.sin(track.bank)])
+    foot = -posture.height * slope / (np.cos(track.climb) * np.cos(track.bank))
+    size = np.ptp(posture.outline, axis=0).max()
+    return bool(inset(outline(supported), foot) < -SAME * size)
+
+
+def _on_track(contact, to_wall, track):
+    """Corners of the part of a contact polygon that lies over the track."""
+    edge = track.radius - track.width
+    if edge <= 0.0:
+        return contact
+    centre = np.array([0.0, track.radius - to_wall])
+    kept = [contact[np.hypot(*(contact - centre).T) >= edge]]
+    for start, along in zip(contact, sides(contact)):
+        kept.append(start + _crossings(start - centre, along, edge)[:, None] * along)
+    return np.concatenate(kept)
+
+
+def _crossings(start, along, radius):
+    """Where a side crosses a circle about the origin, as shares of the side."""
+    a, b, c = along @ along, start @ along, start @ start - radius**2
+    root = b * b - a * c
+    if root <= 0.0:
+        return np.empty(0)
+    shares = (-b + np.sqrt(root) * np.array([-1.0, 1.0])) / a
+    return shares[(shares >= 0.0) & (shares <= 1.0)]
+
+
+def _partners(shapes, image, astray):
+    """For each outline the row that is its image, of several the least astray; -1 for none but itself."""
+    partner = np.full(len(shapes), -1)
+    for i, shape in enumerate(shapes):
+        like = [j for j, s in enumerate(shapes) if _alike(image(shape), s)]
+        partner[i] = min(like, key=lambda j: round(astray[i, j], 3), default=-1)
+    return np.where(partner == np.arange(len(shapes)), -1, partner)
+
+
+def _alike(first, second):
+    """Whether two outlines have the same corners."""
+    if len(first) != len(second):
+        return False
+    gap = np.linalg.norm(first[:, None] - second, axis=-1).min(axis=1).max()
+    return gap < ALIKE * np.abs(second).max()

@@ -1,0 +1,94 @@
+"""Many parts on one sheet, each as it rests on its first aspect."""
+
+import io
+from itertools import islice
+
+import numpy as np
+from matplotlib import image
+
+from feederscrew.output import style
+from feederscrew.output.solid import render, shading
+from feederscrew.output.solid.shading import Frame
+from feederscrew.output.solid.stance import outermost, stance
+
+PATTERN = "contact_sheet*.png"
+WIDTH, HEIGHT = 240, 180  # [px] of a thumbnail
+ROOM = 1.08  # of a thumbnail over the part in it
+ACROSS, DOWN = 5, 8  # thumbnails on a sheet
+TEXT, EDGE = 52, 20  # [px] under each thumbnail, round the sheet
+LETTERS = 26  # of a line of text
+
+
+def thumbnail(part, found):
+    """A small picture of a part on its most likely aspect.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    found : Aspects
+
+    Returns
+    -------
+    bytes
+        A PNG of ``WIDTH`` by ``HEIGHT`` pixels, the same for the same part.
+    """
+    solid = render.Solid(part.vertices, part.faces, part.centre_of_mass)
+    standing = stance(outermost(solid.points), found.normals[0], found.heights[0] / solid.size)
+    lowest, highest = standing.framed
+    pixel = ROOM * max((highest - lowest) / (WIDTH, HEIGHT))
+    left, bottom = 0.5 * (lowest + highest) - 0.5 * pixel * np.array([WIDTH, HEIGHT])
+    drawn = shading.picture(solid, standing, Frame(left, bottom, pixel, WIDTH, HEIGHT))
+    return _png(np.clip(drawn, 0.0, 1.0))
+
+
+def pages(tiles):
+    """Contact sheets of any number of parts.
+
+    Parameters
+    ----------
+    tiles : iterable of (bytes or None, str, str)
+        A thumbnail, or None, and two lines of text.
+
+    Yields
+    ------
+    (str, bytes)
+        Name and PNG of one sheet; none where no tile has a picture.
+    """
+    tiles, number = iter(tiles), 0
+    while batch := list(islice(tiles, ACROSS * DOWN)):
+        if any(tile[0] for tile in batch):
+            number += 1
+            yield f"contact_sheet{f'_{number}' if number > 1 else ''}.png", style.png(_sheet(batch))
+
+
+def _sheet(tiles):
+    columns, rows = min(ACROSS, len(tiles)), -(-len(tiles) // ACROSS)
+    width, height = 2 * EDGE + columns * WIDTH, 2 * EDGE + rows * (HEIGHT + TEXT)
+    figure = style.page(width, height)
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set_axis_off()
+    axes.set(xlim=(0, width), ylim=(0, height))
+    for place, tile in enumerate(tiles):
+        row, column = divmod(place, ACROSS)
+        _tile(figure, axes, EDGE + column * WIDTH, height - EDGE - (row + 1) * (HEIGHT + TEXT), tile)
+    return figure
+
+
+def _tile(figure, axes, left, bottom, tile):
+    """One thumbnail and its text, ``bottom`` being that of the text."""
+    picture, name, said = tile
+    if picture is not None:
+        figure.figimage(image.imread(io.BytesIO(picture)), left, bottom + TEXT)
+    middle, colour = left + WIDTH / 2, style.INK if picture is not None else style.ACCENT
+    for line, weight, y in ((name, "bold", 38), (said, "normal", 16)):
+        text = style.words(line if len(line) <= LETTERS else f"{line[: LETTERS - 3]}...")
+        axes.text(
+            middle, bottom + y, text, fontsize=7, fontweight=weight, color=colour, ha="center", va="center"
+        )
+
+
+def _png(pixels):
+    buffer = io.BytesIO()
+    image.imsave(buffer, pixels, format="png", metadata={"Software": None})
+    return buffer.getvalue()

@@ -1,0 +1,229 @@
+"""The part on the floor as tables and as a document, in the units of the shop."""
+
+import numpy as np
+
+from feederscrew.mechanics.floor.balance import HOP, ON_THE_LINE, STATES, regime, rolls, stable_heading
+from feederscrew.mechanics.published.comparison import FLOOR_TERMS
+from feederscrew.output import tables
+from feederscrew.units import factor
+
+MM = factor("mm", "length")
+EVERY = 5  # of the samples of a cycle, in tables and documents
+LABELS = {  # what people read
+    "normal_force_N": "normal force N",
+    "alignment_acceleration_rad_s2": "alignment acceleration theta''",
+    "stable_heading_deg": "stable heading",
+    "limiting_friction": "limiting friction",
+    "acceleration_y_m_s2": "acceleration across the heading, V'_y",
+    "acceleration_z_m_s2": "acceleration along the heading, V'_z",
+    "friction_N": "friction",
+    "greatest_friction_N": "greatest static friction, mu N",
+    "normal_line_offset_mm": "line of action of N, d along the heading",
+    "normal_line_offset_y_mm": "line of action of N, across the heading",
+    "tips": "tips",
+}
+
+
+def instant(found, posture, bowl):
+    """The upper reversal under the names of the JSON contract.
+
+    Parameters
+    ----------
+    found : FloorMotion or PrintedFloor
+        At one instant.
+    posture : Posture
+    bowl : Bowl
+
+    Returns
+    -------
+    dict
+    """
+    size = np.hypot(*found.acceleration)
+    return {
+        "normal_force_N": float(found.normal_force),
+        "alignment_acceleration_rad_s2": float(found.turning) + 0.0,
+        "stable_heading_deg": float(np.degrees(stable_heading(posture, bowl))),
+        "limiting_friction": float(found.limiting_friction),
+        "acceleration_y_m_s2": noiseless(found.acceleration[1], size),
+        "acceleration_z_m_s2": noiseless(found.acceleration[0], size),
+        **_offsets(found),
+        **_friction(found, bowl),
+        "tips": tips(getattr(found, "inside", np.nan)),
+        "state": STATES[int(found.state)],
+    }
+
+
+def over_cycle(found, course):
+    """One period as columns.
+
+    Parameters
+    ----------
+    found : FloorMotion of shape (N,)
+    course : Cycle
+
+    Returns
+    -------
+    dict of str to sequence
+    """
+    shown = slice(None, None, EVERY)
+    return {
+        "phase_deg": np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)[shown],
+        "state": [STATES[code] for code in found.state[shown]],
+        "normal_force_N": found.normal_force[shown],
+        "friction_z_N": found.friction[shown, 0],
+        "friction_y_N": found.friction[shown, 1],
+        "limiting_friction": found.limiting_friction[shown],
+        "acceleration_z_m_s2": found.acceleration[shown, 0],
+        "acceleration_y_m_s2": found.acceleration[shown, 1],
+        "alignment_acceleration_rad_s2": found.turning[shown] + 0.0,
+        "velocity_m_s": course.velocity[shown],
+        "normal_line_offset_mm": found.offset[shown, 0] / MM,
+        "normal_line_offset_y_mm": found.offset[shown, 1] / MM,
+        "tips": [tips(inside) for inside in found.inside[shown]],
+    }
+
+
+def document(found, settings, *, as_published=False):
+    """All of one floor analysis, for JSON.
+
+    Parameters
+    ----------
+    found : FloorAnalysis
+    settings : dict of str to str
+        The bowl's values in effect.
+    as_published : bool
+        Give the printed equations' upper reversal, and its difference from the complete one.
+
+    Returns
+    -------
+    dict
+    """
+    posture, bowl = found.posture, found.bowl
+    complete, printed = (instant(one, posture, bowl) for one in (found.now, found.printed))
+    told = {"difference": difference(printed, complete)} if as_published else {}
+    return {
+        "part": found.part.name,
+        "aspect": posture.name,
+        "kind": posture.kind,
+        "heading_deg": float(np.degrees(found.heading)),
+        "height_mm": posture.height / MM,
+        "drive_offset_mm": posture.offset / MM,
+        "turning_inertia_g_mm2": posture.turning_inertia / factor("g mm2", "inertia"),
+        "as_published": as_published,
+        "regime": regime(found.cycle.state),
+        "instant": printed if as_published else complete,
+        **told,
+        "mean_velocity_m_s": None if HOP in found.cycle.state else float(np.mean(found.course.velocity)),
+        "settled": found.course.settled,
+        "cycle": over_cycle(found.cycle, found.course),
+        "bowl": settings,
+    }
+
+
+def shown(document, format):
+    """What goes to stdout: the cycle as CSV; for people the upper reversal, or what print leaves out."""
+    if format == "csv":
+        return tables.frame(document["cycle"])
+    return document.get("difference", summary(document))
+
+
+def summary(document):
+    """The upper reversal, a row a quantity, for people."""
+    now = document["instant"]
+    rows = {label(name, text): now[name] for name, text in LABELS.items() if name in now}
+    rows |= {"state at the upper reversal": now["state"], "regime over the cycle": document["regime"]}
+    return tables.frame({"quantity": list(rows), "value": [shown_value(value) for value in rows.values()]})
+
+
+def difference(printed, complete, terms=FLOOR_TERMS):
+    """Printed against complete values, with the omitted term named.
+
+    Parameters
+    ----------
+    printed, complete : dict of str to float
+        Under the names of ``terms``.
+    terms : dict of str to str
+        Omitted term by quantity.
+
+    Returns
+    -------
+    DataFrame
+    """
+    rows = [(name, printed[name], complete[name], term) for name, term in terms.items()]
+    names, first, second, told = zip(*rows)
+    gap = np.array(first, dtype=float) - np.array(second, dtype=float)
+    alike = np.abs(gap) <= 1e-9 * np.maximum(np.abs(first), np.abs(second))
+    told = ["-" if same else term for same, term in zip(alike, told)]
+    return tables.frame(
+        {
+            "quantity": names,
+            "as_published": first,
+            "complete": second,
+            "difference": gap,
+            "omitted_term": told,
+        }
+    )
+
+
+def remarks(found):
+    """What a reader of a FloorAnalysis should know, a line each."""
+    posture, lines = found.posture, chosen(found)
+    if len(posture.contact) == 0:
+        lines.append("a part card has no contact polygon: whether it tips is not known")
+    if rolls(posture):
+        limit = float(found.now.limiting_friction)
+        lines.append(
+            f"rolling aspect: it rolls, and slips as well where static friction is below {limit:.3g}"
+        )
+    if HOP in found.cycle.state:
+        lines.append(
+            "the part loses contact within the cycle: its flight is not followed here, but by feeder convey"
+        )
+    if not np.isfinite(posture.offset):
+        lines.append(f"the card gives no drive offset for aspect {posture.name}: theta'' is not known")
+    return lines
+
+
+def chosen(found):
+    """Which aspect was taken, in one line, where none was asked for."""
+    return [f"Aspect {found.posture.name}, {found.why}"] if found.why else []
+
+
+def label(name, text):
+    """A quantity for people, its unit behind it."""
+    return text + next((f" [{unit}]" for end, unit in tables.UNITS.items() if name.endswith(end)), "")
+
+
+def shown_value(value):
+    """A number, text or verdict for people."""
+    if value is None or value != value:
+        return "-"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return value if isinstance(value, str) else "never" if np.isinf(value) else f"{value:.5g}"
+
+
+def noiseless(value, scale):
+    """Rounding of an exact nought as nought; ``scale`` is what it came out of."""
+    return 0.0 if abs(value) <= 1e-9 * max(abs(scale), 1e-12) else float(value)
+
+
+def tips(inside):
+    """True, false, or None where the contact polygon or the contact is missing."""
+    return None if np.isnan(inside) else bool(inside < -ON_THE_LINE)
+
+
+def _friction(found, bowl):
+    """Friction of the complete equations and the most that the floor gives; the print has no such vector."""
+    if not hasattr(found, "friction"):
+        return {}
+    limit = float(bowl.friction.static * found.normal_force)
+    return {"friction_N": float(np.hypot(*found.friction)), "greatest_friction_N": limit}
+
+
+def _offsets(found):
+    pair = np.broadcast_to(found.offset, (2,)) if np.ndim(found.offset) else (found.offset, np.nan)
+    return {
+        "normal_line_offset_mm": float(pair[0]) / MM,
+        "normal_line_offset_y_mm": float(pair[1]) / MM + 0.0,
+    }

@@ -1,0 +1,79 @@
+"""The tipping graph drawn: what a part tips into, and how high it must be lifted for it."""
+
+import numpy as np
+
+from feederscrew.output import style as plots
+from feederscrew.output.columns import MM
+
+MOST = 12  # aspects a picture can show
+CLEAR = 4.0  # [pt] between an arrow and a disc
+REACH = 1.45  # of the picture, where the ring of discs has radius 1
+
+
+def graph(title, aspects, ways, shares):
+    """Discs on a ring, one an aspect, joined by arrows that carry the lift in mm.
+
+    Parameters
+    ----------
+    title : str
+    aspects : Aspects
+    ways : sequence of Transition
+    shares : (A,) float [1]
+        Quasi-static probability; the area of a disc grows with it.
+
+    Returns
+    -------
+    Figure
+    """
+    figure = plots.figure(6.4, 6.4)
+    axes = figure.add_subplot()
+    axes.set_title(plots.words(f"{title}: lift to tip [mm]"), loc="left", fontsize=10, color=plots.INK)
+    shown = [k for k in range(len(aspects.names)) if np.isfinite(shares[k])][:MOST]
+    turn = np.pi / 2 - 2.0 * np.pi * np.arange(len(shown)) / max(len(shown), 1)
+    places = {k: np.array([np.cos(a), np.sin(a)]) for k, a in zip(shown, turn)}
+    sizes = 500.0 + 2500.0 * np.nan_to_num(shares)  # [pt2] squares about the discs
+    lowest = {}
+    for way in ways:
+        lowest[way.start] = min(way.lift, lowest.get(way.start, np.inf))
+    for way in ways:
+        if way.start in places and way.end in places:
+            ends = (places[way.start], sizes[way.start]), (places[way.end], sizes[way.end])
+            arrow(axes, *ends, way.lift, way.lift <= lowest[way.start])
+    for k, place in places.items():
+        axes.scatter(*place, s=sizes[k], color="white", edgecolor=plots.INK, zorder=3)
+        axes.annotate(
+            aspects.names[k], place, ha="center", va="center", fontsize=11, zorder=4, color=plots.INK
+        )
+    axes.set_xlim(-REACH, REACH)
+    axes.set_ylim(-REACH, REACH)
+    axes.set_aspect("equal")
+    axes.axis("off")
+    return figure
+
+
+def arrow(axes, begin, end, lift, easiest):
+    """One way between discs (place, size), bent so that the way back is beside it; the easiest stands out."""
+    (start, from_size), (end, to_size) = begin, end
+    colour = plots.ACCENT if easiest else plots.INK
+    style = {"arrowstyle": "->", "color": colour, "alpha": 1.0 if easiest else 0.45}
+    if np.allclose(start, end):
+        axes.annotate(_shown(lift), 1.32 * start, ha="center", va="center", fontsize=7, color=colour)
+        return
+    axes.annotate(
+        "",
+        end,
+        start,
+        arrowprops={
+            **style,
+            "connectionstyle": "arc3,rad=0.12",
+            "shrinkA": 0.5 * np.sqrt(from_size) + CLEAR,
+            "shrinkB": 0.5 * np.sqrt(to_size) + CLEAR,
+        },
+    )
+    along = end - start
+    side = np.array([along[1], -along[0]]) * 0.09
+    axes.annotate(_shown(lift), start + 0.36 * along + side, ha="center", fontsize=7, color=colour)
+
+
+def _shown(lift):
+    return f"{lift / MM:.3g}"

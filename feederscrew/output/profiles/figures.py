@@ -1,0 +1,154 @@
+"""Probability profiles side by side: charts of `compare`, and the one place for a profile's colour."""
+
+import numpy as np
+from matplotlib.patches import Patch
+
+from feederscrew.output import style
+
+RAMPS = {  # test series: one hue each, darker with the amplitude
+    "MDBT": ("#c3c8ce", "#8d97a2", "#545f6b"),
+    "MDFT": ("#e3c4d6", "#cc79a7", "#8f4a71"),
+}
+FIXED = {
+    "CSA_at_0.4": ("CSA at ratio 0.4", "#f3c565"),
+    "CSA_Table_3-1": ("CSA, Table 3-1", "#b67c00"),
+    "CSA_mixed_heights": ("CSA, mixed heights", "#f3c565"),
+    "experiment": ("experiment", "#545f6b"),
+}
+OWN = ("#545f6b", "#cc79a7", "#a9b3bd", "#8f4a71", "#7d6b5d", "#5b3a8e")  # a user's profiles, in turn
+BAR = 0.20  # [in] of paper a bar gets
+LEAST_ROOM = 0.17  # [in] of a bar below which its number is left out
+
+
+def look(name, place=0):
+    """Label and colour of a profile, the same in every chart.
+
+    Parameters
+    ----------
+    name : str
+        A rule in any case, 'MDBT_80', or a user's own.
+    place : int
+        Of a user's own profile among its like.
+
+    Returns
+    -------
+    label, colour : str
+    """
+    series, _, amplitude = name.rpartition("_")
+    if series in RAMPS and amplitude in ("78", "80", "82"):
+        return f"{series} {amplitude} %", RAMPS[series][("78", "80", "82").index(amplitude)]
+    if name in FIXED:
+        return FIXED[name]
+    if name.lower() in style.METHODS:
+        return style.method(name.lower())
+    return name.replace("_", " "), OWN[place % len(OWN)]
+
+
+def bars(axes, names, profiles, printed=None, room=BAR):
+    """Grouped bars on an Axes, with a tick where print has the number.
+
+    Parameters
+    ----------
+    axes : Axes
+        To draw on.
+    names : sequence of str
+        The A aspects.
+    profiles : dict of str to (A,) float [1]
+        By profile name.
+    printed : dict of str to (A,) float [1]
+        Published numbers of some of them.
+    room : float [in]
+        Width of paper a bar has.
+    """
+    places, width = np.arange(len(names)), 1.0 / (len(profiles) + 0.9)
+    for place, (name, values) in enumerate(profiles.items()):
+        label, colour = look(name, place)
+        x = places + (place - 0.5 * (len(profiles) - 1)) * width
+        axes.bar(x, 100.0 * values, 0.92 * width, color=colour, label=label)
+        if room >= LEAST_ROOM:
+            _numbers(axes, x, 100.0 * values, upright=room < 0.3)
+        if name in (printed or {}):
+            _ticks(axes, x, 100.0 * printed[name], width)
+    axes.set_xticks(places, names)
+    axes.tick_params(axis="x", length=0)
+    axes.set_xlim(-0.55, len(names) - 0.45)
+    axes.set_ylim(0.0, 114.0 * max(values.max() for values in profiles.values()))
+
+
+def comparison(title, names, measured, rules, compared):
+    """One chart a rule against everything measured, and the deviations of all pairs.
+
+    Parameters
+    ----------
+    title : str
+        The part's name.
+    names : sequence of str
+        The A aspects.
+    measured, rules : dict of str to (A,) float [1]
+    compared : dict of (str, str) to float [1]
+        Deviation of each pair of profiles.
+
+    Returns
+    -------
+    Figure
+    """
+    rows = max(len(rules), 1)
+    width = float(np.clip(len(names) * (len(measured) + 1.9) * BAR + 1.0, 4.2, 12.0))
+    side = max(3.4, 0.42 * (len(measured) + len(rules)) + 1.3)
+    figure = style.figure(width + side, max(2.2 * rows, side))
+    grid = figure.add_gridspec(rows, 2, width_ratios=(width, side))
+    charts = {name: {**measured, name: values} for name, values in rules.items()} or {title: measured}
+    room = (width - 1.0) / (len(names) * (len(measured) + 1.9))
+    for row, (rule, profiles) in enumerate(charts.items()):
+        axes = figure.add_subplot(grid[row, 0])
+        heading = f"{title}: {look(rule)[0]} and what was measured" if rules else title
+        style.tidy(axes, title=heading, x="aspect" if row == rows - 1 else "", y="share [%]", grid="y")
+        bars(axes, names, profiles, room=room)
+    _legend(figure, measured, rules)
+    _matrix(figure.add_subplot(grid[:, 1]), [*measured, *rules], compared)
+    return figure
+
+
+def _legend(figure, measured, rules):
+    """One entry a profile, whatever chart it stands in."""
+    looks = [look(name, place) for place, name in enumerate(measured)]
+    looks += [look(name, len(measured)) for name in rules]
+    handles = [Patch(color=colour, label=label) for label, colour in looks]
+    figure.legend(
+        handles=handles, loc="outside lower center", ncols=min(len(handles), 9), frameon=False, fontsize=8
+    )
+
+
+def _matrix(axes, names, compared):
+    """Deviations of all pairs as a table of shades."""
+    count = len(names)
+    values = np.full((count, count), np.nan)
+    for (first, second), value in compared.items():
+        i, j = sorted((names.index(first), names.index(second)))
+        values[j, i] = value
+    top = max(np.nanmax(values), 0.1)
+    axes.imshow(values, cmap="Blues", vmin=0.0, vmax=1.25 * top, aspect="equal")
+    for (j, i), value in np.ndenumerate(values):
+        if np.isfinite(value):
+            colour = "white" if value > 0.6 * top else style.INK
+            axes.text(i, j, f"{value:.3f}", ha="center", va="center", fontsize=7, color=colour)
+    labels = [look(name, place)[0] for place, name in enumerate(names)]
+    style.tidy(axes, title="Deviation between two profiles", grid="none")
+    axes.set_xticks(range(count - 1), labels[:-1], rotation=45, ha="right")
+    axes.set_yticks(range(1, count), labels[1:])
+    axes.set(xlim=(-0.5, count - 1.5), ylim=(count - 0.5, 0.5))
+    axes.tick_params(length=0)
+    axes.spines[:].set_visible(False)
+
+
+def _numbers(axes, x, percent, upright):
+    for at, value in zip(x, percent):
+        text = f"{value:.1f}"
+        axes.annotate(
+            text, (at, value), (0, 2), textcoords="offset points", ha="center", va="bottom", fontsize=6.5,
+            rotation=90 if upright else 0, color=style.INK,
+        )  # fmt: skip
+
+
+def _ticks(axes, x, percent, width):
+    axes.hlines(percent, x - 0.46 * width, x + 0.46 * width, color=style.INK, linewidth=1.1, zorder=3)

@@ -1,0 +1,264 @@
+"""Pictures of the sliding maps: surface, contour lines, regimes, and curves for an aligned part."""
+
+import matplotlib
+import numpy as np
+from matplotlib.colors import ListedColormap
+from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
+from scipy import ndimage
+
+from feederscrew.output import style
+from feederscrew.studies import maps
+
+ANGLE = "α − θ, from heading to drive [deg]"
+RATIO = "acceleration ratio G = A ω² / g [1]"
+FRICTION = "limiting friction μ [1]"
+HIGHEST = 2.0  # [1] friction at which pictures are cut: hardly any pair has more
+LEVELS = (0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 4.0)  # [1] of the contour lines
+REGIMES = {  # colour and label; what a designer wants is the strongest
+    "ride": ("#eef2f5", "rides"),
+    "forward": ("#79bfa4", "slips forward only"),
+    "backward": ("#e3a08a", "slips back only"),
+    "both": ("#f3dfae", "slips both ways"),
+    "hop": ("#e1e5e8", "hops"),
+}
+HATCH = "#b4bcc3"
+LETTER = (0.0125, 0.055)  # width of a letter and height of a line, over the picture's
+PICTURE = (721, 601)  # cells of a map that is drawn
+SHADES = "cividis"
+HALO = [withStroke(linewidth=2.5, foreground="white")]
+LABEL = {"fontsize": 8.5, "color": style.INK, "path_effects": HALO, "zorder": 4}
+
+
+def surface(slide):
+    """Limiting friction [4.27] over (alpha - theta, G), as Figures 5-2 to 5-4, up to friction 2.
+
+    Parameters
+    ----------
+    slide : SlideMap
+
+    Returns
+    -------
+    Figure
+    """
+    figure = style.figure(6.4, 5.2)
+    axes = figure.add_subplot(projection="3d", computed_zorder=False)
+    angles, ratios, friction = maps.sheet(slide.beta, HIGHEST, slide.grid.second.values[-1])
+    axes.plot_surface(
+        np.degrees(angles), ratios, friction, cmap=SHADES, vmin=0.0, vmax=HIGHEST,
+        rcount=61, ccount=61, edgecolor="white", linewidth=0.15, zorder=1,
+    )  # fmt: skip
+    own = maps.level_line(slide.beta, slide.friction, angles[:, 0])
+    own = np.where(own <= ratios.max(), own, np.nan)
+    label = f"static friction of this bowl, {slide.friction:g}: where the surface is above it, the part slips"
+    axes.plot(
+        np.degrees(angles[:, 0]),
+        own,
+        slide.friction,
+        color=style.ACCENT,
+        linewidth=1.8,
+        zorder=3,
+        label=label,
+    )
+    _dress_3d(axes, slide, ratios.max())
+    axes.legend(
+        fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(-0.01, 1.0), labelcolor=style.INK
+    )
+    return figure
+
+
+def contours(slide):
+    """Lines of equal limiting friction [4.27], as Figure 5-5, with the hop and the bowl's own point.
+
+    Parameters
+    ----------
+    slide : SlideMap
+        In the shape ``PICTURE``.
+
+    Returns
+    -------
+    Figure
+    """
+    figure, axes = _map_axes(slide, "Limiting friction")
+    shades = _shades(len(LEVELS))
+    for place, level in enumerate(LEVELS):
+        if abs(level - slide.friction) > 0.1 * level:
+            _level(axes, slide, level, (-22, -40)[place % 2], color=shades[place])
+    _level(axes, slide, slide.friction, 60, color=style.ACCENT, width=1.8, text="this bowl's μ = %g")
+    _hop_region(axes, slide, slide.level_hop)
+    _own_point(axes, np.degrees(slide.alpha_minus_theta), slide.ratio, f"this bowl, G = {slide.ratio:.3g}")
+    return figure
+
+
+def regimes(slide):
+    """What the bowl's own friction allows in each cell, with the bowl's own point.
+
+    Parameters
+    ----------
+    slide : SlideMap
+        In the shape ``PICTURE``.
+
+    Returns
+    -------
+    Figure
+    """
+    figure, axes = _map_axes(slide, f"Regimes at static friction {slide.friction:g}")
+    widest, top = axes.get_xlim()[1], axes.get_ylim()[1]
+    colours = ListedColormap([REGIMES[name][0] for name in slide.grid.names])
+    axes.imshow(
+        slide.grid.codes.T, cmap=colours, vmin=-0.5, vmax=len(REGIMES) - 0.5, interpolation="none",
+        origin="lower", aspect="auto", extent=(-widest, widest, 0, top),
+    )  # fmt: skip
+    _hop_region(axes, slide, slide.onsets["hop"])
+    unlabelled = [name for name in slide.grid.names if name != "hop" and not _label_region(axes, slide, name)]
+    _legend(figure, slide, unlabelled)
+    _own_point(axes, np.degrees(slide.alpha_minus_theta), slide.ratio, f"this bowl, G = {slide.ratio:.3g}")
+    return figure
+
+
+def curves(slides):
+    """Limiting friction of a part aligned with the drive over G, as Figure 5-1; [4.28].
+
+    Parameters
+    ----------
+    slides : sequence of SlideMap
+        One a vibration angle.
+
+    Returns
+    -------
+    Figure
+    """
+    figure = style.figure(6.4, 4.2)
+    axes = style.tidy(
+        figure.add_subplot(), title="Limiting friction of an aligned part, α = θ", x=RATIO, y=FRICTION
+    )
+    for slide, shade in zip(slides, _shades(len(slides))):
+        _curve(axes, slide, shade)
+    first = slides[0]
+    axes.axhline(first.friction, color=style.ACCENT, linewidth=1.0, alpha=0.7)
+    axes.plot([], [], color=style.INK, linestyle="--", linewidth=1.0, label="backward slip, this track")
+    axes.set(xlim=(0, _right_edge(slides)), ylim=(0, HIGHEST))
+    _own_point(
+        axes, first.ratio, first.friction, f"this bowl, G = {first.ratio:.3g}, μ = {first.friction:g}", drop=9
+    )
+    axes.legend(fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), labelcolor=style.INK)
+    return figure
+
+
+def _map_axes(slide, title):
+    figure = style.figure(6.4, 4.6)
+    title = f"{title}, β = {np.degrees(slide.beta):.6g}°"
+    axes = style.tidy(figure.add_subplot(), title=title, x=ANGLE, y=RATIO, grid="none")
+    widest = slide.grid.first.shown[-1]
+    axes.set(xlim=(-widest, widest), ylim=(0, slide.grid.second.values[-1]))
+    axes.set_xticks(np.linspace(-widest, widest, 7))
+    return figure, axes
+
+
+def _hop_region(axes, slide, start):
+    """Grey hatching from a G upward, where contact is lost, with its name."""
+    top = slide.grid.second.values[-1]
+    if start >= top:
+        return
+    with matplotlib.rc_context({"hatch.color": HATCH, "hatch.linewidth": 0.5}):
+        axes.axhspan(start, top, facecolor=REGIMES["hop"][0], hatch="////", linewidth=0, zorder=1.5)
+    axes.axhline(start, color=style.INK, linewidth=1.0, zorder=1.6)
+    x = -0.5 * axes.get_xlim()[1] if slide.ratio > start else 0.0  # beside the bowl's own point
+    axes.text(x, (start + top) / 2, "hops: no friction holds it", ha="center", va="center", **LABEL)
+
+
+def _own_point(axes, x, y, text, drop=0):
+    """The bowl's own operating point, named beside it."""
+    axes.plot(x, y, "o", markersize=7, color=style.ACCENT, markeredgecolor="white", zorder=5)
+    left = x <= np.mean(axes.get_xlim())
+    axes.annotate(
+        text, (x, y), (8 if left else -8, -drop), textcoords="offset points", ha="left" if left else "right",
+        va="center", fontsize=8, color=style.ACCENT, fontweight="bold", zorder=6,
+        bbox={"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1.0},
+    )  # fmt: skip
+
+
+def _label_region(axes, slide, name):
+    """Write the regime's name into its region, on two lines if need be; False if it has no room."""
+    inside = (slide.grid.codes == slide.grid.names.index(name)) & ~_taken(slide)
+    for text in (REGIMES[name][1], REGIMES[name][1].replace(" ", "\n", 1)):
+        lines = text.split("\n")
+        box = (
+            int(LETTER[0] * max(map(len, lines)) * inside.shape[0]),
+            int(LETTER[1] * len(lines) * inside.shape[1]),
+        )
+        room = ndimage.minimum_filter(inside, size=box, mode="constant", cval=False)
+        if room.any():
+            i, j = _most_central(room)
+            x, y = slide.grid.first.shown[i], slide.grid.second.values[j]
+            axes.text(x, y, text, ha="center", va="center", **LABEL)
+            return True
+    return False
+
+
+def _taken(slide):
+    """Cells that the bowl's own point and its name lie over."""
+    angles, ratios = slide.grid.first.shown, slide.grid.second.values
+    across = (np.asarray(angles) - np.degrees(slide.alpha_minus_theta)) / np.ptp(angles)
+    across = np.abs(across) if slide.alpha_minus_theta > 0.0 else across  # the name is on either side
+    up = np.abs(np.asarray(ratios) - slide.ratio) / np.ptp(ratios)
+    return ((across > -0.02) & (across < 0.27))[:, None] & (up < 0.03)
+
+
+def _most_central(room):
+    """The cell deepest in a region; among nearly as deep ones, the nearest to the middle."""
+    depth = ndimage.distance_transform_edt(np.pad(room, 1))[1:-1, 1:-1]
+    i, j = np.nonzero(depth >= 0.9 * depth.max())
+    best = np.abs(i - room.shape[0] // 2).argmin()
+    same = np.flatnonzero(i == i[best])
+    return i[best], j[same[len(same) // 2]]
+
+
+def _legend(figure, slide, names):
+    """Colours of the regimes that are on the map but too thin to be named there."""
+    shares = slide.grid.shares()
+    patches = [Patch(color=REGIMES[n][0], label=REGIMES[n][1]) for n in names if shares[n] > 0]
+    if patches:
+        figure.legend(
+            handles=patches, loc="outside lower left", ncols=len(patches), fontsize=8, frameon=False
+        )
+
+
+def _level(axes, slide, level, degrees, *, color, width=1.1, text="μ = %g"):
+    """One contour line with its value written at an angle; nothing where the map does not reach it."""
+    friction = slide.grid.values["mu_limit"]
+    if not np.nanmin(friction) < level < np.nanmax(friction):
+        return
+    x, y = slide.grid.first.shown, slide.grid.second.values
+    lines = axes.contour(x, y, friction.T, [level], colors=[color], linewidths=width)
+    place = degrees, maps.level_line(slide.beta, level, np.radians(degrees))
+    if place[1] < y[-1]:
+        axes.clabel(lines, fmt=text, fontsize=7, manual=[place])
+
+
+def _dress_3d(axes, slide, top):
+    title = f"Limiting friction, β = {np.degrees(slide.beta):.6g}°"
+    style.tidy(axes, title=title, x=ANGLE, y="G = A ω² / g [1]", grid="none")
+    axes.set_zlabel(FRICTION, fontsize=9, color=style.INK)
+    axes.set(xlim=(-90, 90), ylim=(0, top), zlim=(0, HIGHEST), xticks=np.arange(-90, 91, 30))
+    axes.tick_params(labelsize=8, colors=style.INK)
+    axes.set_box_aspect((1.25, 1.0, 0.8), zoom=1.0)
+    axes.view_init(elev=28, azim=-118)
+
+
+def _curve(axes, slide, shade):
+    """One angle: its forward limit [4.28] and, dashed, its backward limit."""
+    aligned, ratios = np.abs(slide.grid.first.values).argmin(), slide.grid.second.values
+    forward, backward = (slide.grid.values[name][aligned] for name in ("mu_limit", "mu_backward"))
+    axes.plot(ratios, forward, color=shade, linewidth=1.8, label=f"β = {np.degrees(slide.beta):.6g}°")
+    axes.plot(ratios, backward, color=shade, linewidth=1.0, linestyle="--")
+
+
+def _right_edge(slides):
+    """G that shows every curve up to the cut, and the bowl's own point."""
+    cuts = [float(maps.level_line(slide.beta, HIGHEST, 0.0)) for slide in slides]
+    return 1.1 * max([*cuts, slides[0].ratio])
+
+
+def _shades(count):
+    return matplotlib.colormaps[SHADES](np.linspace(0.05, 0.8, count))

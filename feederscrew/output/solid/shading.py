@@ -1,0 +1,150 @@
+"""From what the rays met to colours: light, drawn edges, the part's shadow on the floor."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import binary_dilation, gaussian_filter, map_coordinates
+
+from feederscrew.output.solid.render import AWAY, Camera
+
+SAMPLES = 3  # rays a pixel, each way
+PAPER = np.array([1.0, 1.0, 1.0])
+STEEL = np.array([0.72, 0.79, 0.86])
+PALE = np.array([0.86, 0.86, 0.86])  # of an aspect the part does not stay on
+EDGE = np.array([0.13, 0.17, 0.22])
+LIGHTS = (  # towards the light, across and up the image and to the viewer; and how strong it is
+    (np.array([-0.45, 0.60, 0.66]), 0.52),
+    (np.array([0.75, 0.05, 0.66]), 0.22),
+)
+AMBIENT = 0.42
+SHARP = np.cos(np.radians(24.0))  # a turn of the surface that is drawn as an edge
+STEP = 0.02  # [size] a jump in depth that is drawn as an outline
+FLOOR_GRID = 160  # cells each way of the shadow map
+SHADE = 0.42  # darkness of the floor where the part touches it
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """Where a picture lies in the image plane, in sizes of the solid."""
+
+    left: float
+    bottom: float
+    pixel: float  # edge of one pixel
+    columns: int
+    rows: int
+
+    @property
+    def extent(self):
+        """(left, right, bottom, top), as an image on axes wants it."""
+        return (
+            self.left,
+            self.left + self.columns * self.pixel,
+            self.bottom,
+            self.bottom + self.rows * self.pixel,
+        )
+
+    def positions(self, each=1):
+        """Image positions, ``each`` a pixel: across from the left, up from the top row down."""
+        step = self.pixel / each
+        across = self.left + (np.arange(self.columns * each) + 0.5) * step
+        up = self.bottom + (np.arange(self.rows * each)[::-1] + 0.5) * step
+        return across, up
+
+
+def picture(solid, stance, frame, colour=STEEL):
+    """The solid on the floor as an image.
+
+    Parameters
+    ----------
+    solid : Solid
+        What is seen.
+    stance : Stance
+        How it stands and from where it is seen.
+    frame : Frame
+        What part of the image plane is drawn.
+    colour : (3,) float
+        Of the solid, 0 to 1.
+
+    Returns
+    -------
+    (rows, columns, 3) float
+        Red, green and blue from 0 to 1, the top row first.
+    """
+    across, up = frame.positions(SAMPLES)
+    image = _floor(solid, stance, *frame.positions()).repeat(SAMPLES, axis=0).repeat(SAMPLES, axis=1)
+    box = _covered(stance.bounds, across, up)
+    depths, normals = stance.camera.cast(solid, across[box[1]], up[box[0]])
+    part = image[box]
+    met = np.isfinite(depths)
+    part[met] = _lit(normals[met], stance.camera, colour)
+    part[_edges(depths, normals, stance.camera, up[0] - up[1])] = EDGE
+    rows, columns = frame.rows, frame.columns
+    return image.reshape(rows, SAMPLES, columns, SAMPLES, 3).mean(axis=(1, 3)).clip(0.0, 1.0)
+
+
+def _covered(bounds, across, up):
+    """Rows and columns of samples round the part, with a rim for its outline."""
+    rim = 4.0 * (up[0] - up[1])
+    columns = np.flatnonzero((across > bounds[0, 0] - rim) & (across < bounds[1, 0] + rim))
+    rows = np.flatnonzero((up > bounds[0, 1] - rim) & (up < bounds[1, 1] + rim))
+    return slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+
+
+def _lit(normals, camera: Camera, colour):
+    """Colour of matt surfaces (N, 3) under the lights; a face seen from behind is lit as from the front."""
+    seen = normals @ np.column_stack([camera.right, camera.up, camera.back])
+    seen *= np.where(seen[:, 2:] < 0.0, -1.0, 1.0)
+    light = np.full(len(seen), AMBIENT)
+    for towards, strength in LIGHTS:
+        light += strength * np.clip(seen @ (towards / np.linalg.norm(towards)), 0.0, None)
+    return light[:, None] * colour
+
+
+def _edges(depths, normals, camera, step):
+    """Samples on an outline (two wide) or on a sharp edge (one wide)."""
+    met = np.isfinite(depths)
+    depths = np.where(met, depths, 2.0 * AWAY)
+    facing = np.maximum(np.abs(normals @ camera.back), 0.05)
+    slope = step * np.sqrt(1.0 - np.minimum(facing, 1.0) ** 2) / facing  # depth a flat surface gains a sample
+    outline, crease = np.zeros_like(met), np.zeros_like(met)
+    for axis in (0, 1):
+        near, far = (np.s_[:-1, :], np.s_[1:, :]) if axis == 0 else (np.s_[:, :-1], np.s_[:, 1:])
+        jump = np.abs(depths[near] - depths[far]) > STEP + 2.0 * np.maximum(slope[near], slope[far])
+        bend = np.einsum("rci,rci->rc", normals[near], normals[far]) < SHARP
+        both = met[near] & met[far]
+        outline[near] |= jump
+        outline[far] |= jump
+        crease[near] |= bend & both
+        crease[far] |= bend & both
+    return binary_dilation(outline) | crease
+
+
+def _floor(solid, stance, across, up):
+    """White paper with the soft shadow of the part."""
+    camera, axes = stance.camera, stance.floor_axes
+    start = camera.origins(across, up) @ axes.T  # in floor axes
+    towards = -camera.back @ axes.T
+    reach = (-stance.height - start[..., 2]) / towards[2]
+    spot = start[..., :2] + reach[..., None] * towards[:2]
+    shadow, lowest, cell = _shadow(solid, stance)
+    place = (spot - lowest) / cell
+    dark = map_coordinates(shadow, [place[..., 0], place[..., 1]], order=1, mode="constant")
+    return PAPER * (1.0 - dark[..., None])
+
+
+def _shadow(solid, stance):
+    """How dark each cell of the floor is: darkest where the part touches it, soft where it is high.
+
+    Returns the map, the position of its first cell and the size of a cell.
+    """
+    axes = stance.floor_axes
+    plan = stance.plan
+    lowest, highest = plan.min(axis=0), plan.max(axis=0)
+    cell = 1.6 * (highest - lowest).max() / FLOOR_GRID
+    lowest = 0.5 * (lowest + highest) - 0.5 * cell * (FLOOR_GRID - 1)
+    x, y = np.meshgrid(*(low + cell * np.arange(FLOOR_GRID) for low in lowest), indexing="ij")
+    spots = np.stack([x, y, np.full_like(x, -stance.height - 0.01)], axis=-1).reshape(-1, 3)
+    distances, _ = solid.hits(spots @ axes, axes[2])
+    cover = np.exp(-np.clip(distances - 0.01, 0.0, None) / 0.35).reshape(x.shape)
+    soft = 0.55 * gaussian_filter(cover, 2.0) + 0.45 * gaussian_filter(cover, 7.0)
+    return SHADE * soft, lowest, cell

@@ -1,0 +1,133 @@
+"""The files and documents of ``feeder reproduce``."""
+
+from feederscrew.output import style, tables
+from feederscrew.output.thesis import figures as thesis_plots
+from feederscrew.output.thesis import page as thesis_page
+from feederscrew.output.thesis import render as thesis_page_render
+from feederscrew.thesis.figures import FIGURES
+from feederscrew.thesis.findings import FINDINGS
+from feederscrew.thesis.reproduction import summary
+
+BY_NUMBER = {figure.number: figure for figure in FIGURES}
+
+
+def overview(items):
+    """One row an item: its cells by verdict.
+
+    Parameters
+    ----------
+    items : sequence of thesis.reproduction.Item
+
+    Returns
+    -------
+    DataFrame
+    """
+    counts = [summary(item) for item in items]
+    columns = {"item": [f"{item.kind} {item.id}" for item in items]}
+    columns |= {name: [count[name] for count in counts] for name in counts[0]}
+    return tables.frame(columns | {"findings": ["; ".join(item.findings) for item in items]})
+
+
+def document(items, files):
+    """The items as one JSON document.
+
+    Parameters
+    ----------
+    items : sequence of thesis.reproduction.Item
+    files : dict of str to sequence of str
+        Files written, by the item's stem.
+
+    Returns
+    -------
+    dict
+    """
+    listed = [
+        {
+            "id": item.id,
+            "kind": item.kind,
+            "caption": item.caption,
+            **summary(item),
+            "findings": item.findings,
+            "files": files.get(item.stem, []),
+        }
+        for item in items
+    ]
+    return {"items": listed, "findings": [_told(finding) for finding in FINDINGS]}
+
+
+def write(folder, items):
+    """Tables, pictures and the page.
+
+    Parameters
+    ----------
+    folder : ResultFolder
+    items : sequence of thesis.reproduction.Item
+
+    Returns
+    -------
+    dict of str to list of str
+        Files by the item's stem.
+    """
+    files, pictures = {}, {}
+    for item in items:
+        files[item.stem] = [f"{item.stem}.csv"]
+        if item.kind == "figure":
+            figure = BY_NUMBER[item.id]
+            pictures[f"{item.stem}.png"] = style.png(thesis_plots.drawn(figure))
+            files[item.stem] += [f"{item.stem}.png", f"{item.stem}_statements.csv"]
+            folder.write(f"{item.stem}.csv", tables.text(thesis_plots.numbers(figure), "csv"))
+            folder.write(f"{item.stem}_statements.csv", tables.text(statements(item), "csv"))
+        else:
+            folder.write(f"{item.stem}.csv", tables.text(cells(item), "csv"))
+    for name, content in pictures.items():
+        folder.write(name, content)
+    page = thesis_page.blocks(items)
+    folder.write("thesis.md", thesis_page_render.markdown(page))
+    folder.write("thesis.html", thesis_page_render.html(page, pictures))
+    folder.write("summary.csv", tables.text(overview(items), "csv"))
+    folder.write("findings.csv", tables.text(_findings(), "csv"))
+    return files
+
+
+def cells(item):
+    """Cells of a table: print, ours, deviation, verdict and finding.
+
+    Parameters
+    ----------
+    item : thesis.reproduction.Item
+
+    Returns
+    -------
+    DataFrame
+    """
+    entries = item.entries
+    columns = {name: [getattr(entry, name) for entry in entries] for name in ("row", "column", "published")}
+    columns["recomputed"] = [thesis_page.digits(entry, entry.recomputed) for entry in entries]
+    columns["deviation"] = [entry.deviation for entry in entries]
+    columns["verdict"] = [entry.verdict for entry in entries]
+    columns["explaining"] = [thesis_page.digits(entry, entry.explaining) for entry in entries]
+    return tables.frame(columns | {"finding": [entry.finding for entry in entries]})
+
+
+def statements(item):
+    """What print states on a figure, checked.
+
+    Parameters
+    ----------
+    item : thesis.reproduction.Item
+
+    Returns
+    -------
+    DataFrame
+    """
+    names = ("statement", "published", "recomputed", "verdict", "finding")
+    return tables.frame({name: [getattr(entry, name) for entry in item.entries] for name in names})
+
+
+def _findings():
+    told = [_told(finding) for finding in FINDINGS]
+    return tables.frame({name: [each[name] for each in told] for name in told[0]})
+
+
+def _told(finding):
+    return {"id": finding.id, "where": finding.where, "what": finding.what, "shown": finding.shown}

@@ -1,0 +1,222 @@
+"""The part on the track as tables and as a document, in the units of the shop."""
+
+import numpy as np
+
+from feederscrew.mechanics.floor.balance import HOP, STATES, regime
+from feederscrew.mechanics.published.comparison import TRACK_TERMS
+from feederscrew.output import tables
+from feederscrew.output.floor.tables import EVERY, MM, chosen, difference, label, noiseless, shown_value, tips
+
+CONTACTS = ("floor", "wall_1", "wall_2")
+TURNED = 1.0  # [deg] of heading: less is not worth a word
+LABELS = {
+    "normal_force_N": "normal force N",
+    "wall_1_N": "wall reaction R1, trailing contact",
+    "wall_2_N": "wall reaction R2, leading contact",
+    "radial_friction_N": "radial friction R3, away from the wall",
+    "traction_N": "traction R4, against motion ahead",
+    "normal_line_offset_mm": "line of action of N, d ahead",
+    "normal_line_offset_y_mm": "line of action of N, away from the wall",
+    "acceleration_x_m_s2": "acceleration along the track, V'_X",
+    "acceleration_y_m_s2": "acceleration away from the wall",
+    "turning_rad_s2": "turning off the wall",
+    "tips": "tips",
+}
+
+
+def instant(found):
+    """One instant under the names of the JSON contract; ``found`` is a TrackMotion of one instant."""
+    load = found.normal_force + abs(found.traction)
+    return {
+        "normal_force_N": float(found.normal_force),
+        "wall_1_N": noiseless(found.walls[0], load),
+        "wall_2_N": noiseless(found.walls[1], load),
+        "radial_friction_N": noiseless(found.radial_friction, load),
+        "traction_N": noiseless(found.traction, load),
+        "normal_line_offset_mm": noiseless(found.offset[0] / MM, 1.0),
+        "normal_line_offset_y_mm": noiseless(found.offset[1] / MM, 1.0),
+        "acceleration_x_m_s2": float(found.acceleration[0]),
+        "acceleration_y_m_s2": noiseless(found.acceleration[1], found.acceleration[0]),
+        "turning_rad_s2": noiseless(found.turning, found.acceleration[0] / MM),
+        "wall_1_friction_N": float(found.wall_friction[0]),
+        "wall_2_friction_N": float(found.wall_friction[1]),
+        "floor_couple_N_mm": float(found.couple) / MM,
+        "opened": opened(found.closed),
+        "tips": tips(found.inside),
+        "state": STATES[int(found.state)],
+    }
+
+
+def printed(found):
+    """The same of the printed equations; ``found`` is a PrintedTrack of one instant."""
+    return {
+        "normal_force_N": float(found.normal_force),
+        "wall_1_N": float(found.walls[0]),
+        "wall_2_N": float(found.walls[1]),
+        "radial_friction_N": float(found.radial_friction),
+        "traction_N": float(found.traction),
+        "normal_line_offset_mm": float(found.offset) / MM,
+        "acceleration_x_m_s2": float(found.acceleration),
+        "tips": None,
+        "state": "hop" if found.normal_force <= 0.0 else "slide" if found.slides else "stick",
+    }
+
+
+def over_cycle(found, course):
+    """One period as columns; ``found`` is a TrackMotion of shape (N,)."""
+    shown = slice(None, None, EVERY)
+    pairs = {"": found.walls, "_friction": found.wall_friction}
+    return {
+        "phase_deg": np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)[shown],
+        "state": [STATES[code] for code in found.state[shown]],
+        "normal_force_N": found.normal_force[shown],
+        **{f"wall_{k + 1}{name}_N": pair[shown, k] for name, pair in pairs.items() for k in (0, 1)},
+        "radial_friction_N": found.radial_friction[shown] + 0.0,
+        "traction_N": found.traction[shown],
+        "normal_line_offset_mm": found.offset[shown, 0] / MM,
+        "normal_line_offset_y_mm": found.offset[shown, 1] / MM,
+        "acceleration_x_m_s2": found.acceleration[shown, 0],
+        "acceleration_y_m_s2": found.acceleration[shown, 1],
+        "turning_rad_s2": found.turning[shown],
+        "floor_couple_N_mm": found.couple[shown] / MM,
+        "velocity_m_s": course.velocity[shown],
+        "friction_needed": found.needed[shown, 0],
+        "opened": [" ".join(opened(pair)) for pair in found.closed[shown]],
+        "tips": [tips(inside) for inside in found.inside[shown]],
+    }
+
+
+def document(found, settings, *, as_published=False):
+    """All of one track analysis, for JSON.
+
+    Parameters
+    ----------
+    found : TrackAnalysis
+    settings : dict of str to str
+        The bowl's values in effect.
+    as_published : bool
+        Give the printed equations' upper reversal, its difference from the complete one, and the terms that
+        make it.
+
+    Returns
+    -------
+    dict
+    """
+    complete, published = instant(found.now), printed(found.printed)
+    told = {}
+    if as_published:
+        terms = {
+            name: [getattr(term, name) for term in found.omitted]
+            for name in ("name", "equation", "value", "unit")
+        }
+        told = {
+            "difference": difference(published, complete, TRACK_TERMS),
+            "omitted_terms": tables.frame(terms),
+        }
+    return {
+        "part": found.part.name,
+        "aspect": found.posture.name,
+        "heading_deg": float(np.degrees(found.seat.heading)),
+        "height_mm": found.seat.height / MM,
+        "wall_contacts": _contacts(found),
+        "as_published": as_published,
+        "regime": regime(found.cycle.state),
+        "instant": published if as_published else complete,
+        **told,
+        "first_to_open": found.opening.contact,
+        "opens_at_drive_factor": found.opening.drive_factor,
+        "opens_at_reversal": found.opening.reversal,
+        "tipping_axis": _axis(found.opening),
+        "friction_needed": friction_needed(found.cycle),
+        "stays_on_wall": bool(found.cycle.closed.any(axis=-1).all()),
+        "bank_without_radial_friction_deg": float(np.degrees(found.bank_without_radial_friction)),
+        "mean_velocity_m_s": None if HOP in found.cycle.state else float(np.mean(found.course.velocity)),
+        "settled": found.course.settled,
+        "cycle": over_cycle(found.cycle, found.course),
+        "bowl": settings,
+    }
+
+
+def friction_needed(cycle):
+    """Greatest friction over normal force that holds the part at rest through the cycle, by contact."""
+    if not np.isfinite(cycle.needed).all():
+        return dict.fromkeys(CONTACTS, np.nan)
+    return dict(zip(CONTACTS, cycle.needed.max(axis=0).tolist()))
+
+
+def shown(document, format):
+    """What goes to stdout: the cycle as CSV; for people the upper reversal, or what print leaves out."""
+    if format == "csv":
+        return tables.frame(document["cycle"])
+    return document.get("difference", summary(document))
+
+
+def summary(document):
+    """What people want to know first, a row a quantity."""
+    now, needed = document["instant"], document["friction_needed"]
+    rows = {label(name, text): now[name] for name, text in LABELS.items() if name in now}
+    rows |= {
+        "state at the upper reversal": now["state"],
+        "regime over the cycle": document["regime"],
+        "heading [deg]": document["heading_deg"],
+        "first contact to open": document["first_to_open"],
+        "opens at this many times the drive": document["opens_at_drive_factor"],
+        "stays against the wall": document["stays_on_wall"],
+        **{f"friction needed to hold it, {name.replace('_', ' ')}": needed[name] for name in CONTACTS},
+        "bank without radial friction [deg]": document["bank_without_radial_friction_deg"],
+    }
+    return tables.frame({"quantity": list(rows), "value": [shown_value(value) for value in rows.values()]})
+
+
+def remarks(found):
+    """What a reader of a TrackAnalysis should know, a line each."""
+    lines, cycle = chosen(found), found.cycle
+    if len(found.seat.contact) == 0:
+        lines.append("a part card has no contact polygon: whether it tips is not known")
+    if HOP in cycle.state:
+        lines.append(
+            "the part loses contact within the cycle: its flight is not followed here, but by feeder convey"
+        )
+    if not cycle.closed.all():
+        share = 100.0 * np.mean(~cycle.closed.all(axis=-1))
+        lines.append(f"a wall contact is open for {share:.0f} % of the cycle: {_which(cycle.closed)}")
+    if found.posture.kind == "rolling":
+        lines.append("rolling aspect: held by the wall, its rolling about the axis is not followed")
+    turn = np.degrees(found.seat.twist(found.bowl.track.bank))
+    if abs(turn) > TURNED:
+        lines.append(
+            f"the wall contacts lie at different heights: banked, the part turns by about {turn:.2g} deg more"
+        )
+    if found.headings is not None and found.headings.overhangs[found.row] > 0.0:
+        lines.append(
+            f"the part overhangs the track's edge by {found.headings.overhangs[found.row] / MM:.3g} mm"
+        )
+    return lines
+
+
+def opened(closed):
+    """Names of the wall contacts that have opened."""
+    return [name for name, shut in zip(CONTACTS[1:], closed) if not shut]
+
+
+def _which(closed):
+    names = [name.replace("_", " ") for name, shut in zip(CONTACTS[1:], closed.T) if not shut.all()]
+    return " and ".join(names)
+
+
+def _contacts(found):
+    """Place of each wall contact from the foot of the centre of mass, and sigma."""
+    places = found.seat.walls + np.array([0.0, 0.0, found.seat.height])
+    sigma = np.degrees(np.arcsin(-found.seat.walls[:, 0] / found.bowl.track.radius))
+    return [
+        {"name": name, "place_mm": place / MM, "sigma_deg": float(angle)}
+        for name, place, angle in zip(CONTACTS[1:], places, sigma)
+    ]
+
+
+def _axis(opening):
+    return {
+        "point_mm": opening.point / MM,
+        "direction": opening.direction,
+        "pitch_mm": opening.pitch / MM,
+    }

@@ -1,0 +1,1 @@
+"""From velocity to well-oriented parts a minute."""

@@ -1,0 +1,62 @@
+"""Sinks that belong to no face of their own, and the faces that take them in."""
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from feederscrew.geometry.compiled import fitting
+from feederscrew.resting.basins import forest
+
+UNNAMED = forest.NAMELESS  # label of a hull triangle or a sink that belongs to no face
+TIE = 1e-6  # of the highest saddle: what rounding in a file leaves between the saddles of mirror twins
+
+
+def adopted(tumbling, labels, count):
+    """Parts of every sink's basin that belong to each face.
+
+    Parameters
+    ----------
+    tumbling : Tumbling
+    labels : (S,) int
+        Face of each sink; UNNAMED for a facet that noise or tessellation left.
+    count : int
+        Faces, with or without a sink.
+
+    Returns
+    -------
+    (S, F) sparse float [1]
+        Rows sum to 1. An unnamed sink joins the face behind the lowest saddle around it; where several
+        saddles are as low, as around a sink on a mirror plane, it is shared out among the faces behind them.
+
+    Raises
+    ------
+    ValueError
+        If no sink carries a label.
+    """
+    labels = np.asarray(labels)
+    own = np.flatnonzero(labels != UNNAMED)
+    if not len(own):
+        raise ValueError("no sink of the tumbling carries a label")
+    if len(own) == len(labels):
+        return _links(own, labels, (len(labels), count))
+    members, claims = _claims(tumbling, labels)
+    square = (len(labels), len(labels))
+    goes = _links(np.append(own, claims[:, 0]), np.append(own, claims[:, 1]), square)
+    while goes[:, np.unique(claims[:, 0])].nnz:
+        goes = goes @ goes  # twice as far along the chain of claims
+    faces = _links(own, labels[own], (len(labels), count))
+    return _links(np.arange(len(labels)), members, square) @ goes @ faces
+
+
+def _claims(tumbling, labels):
+    """(S,) the sink that stands for each, with which it is claimed; (C, 2) claimed and claiming ones."""
+    order = np.argsort(tumbling.saddle_heights, kind="stable")
+    pairs, tops = tumbling.pairs[order], tumbling.saddle_heights[order]
+    parent, claims = np.arange(len(labels)), np.empty_like(pairs)
+    adopt = fitting(forest.adopt, len(order))
+    made = adopt(pairs, tops, TIE * tops.max(initial=0.0), labels.copy(), parent, claims)
+    return forest.roots(parent), np.unique(claims[:made], axis=0)
+
+
+def _links(start, end, shape):
+    """Sparse matrix of equal parts, rows summing to 1, from each start to its ends."""
+    return csr_array((1.0 / np.bincount(start)[start], (start, end)), shape=shape)

@@ -1,0 +1,205 @@
+"""Barriers between resting faces: how high a part must be lifted to tip, and into what it tips."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.geometry.solid_angle import solid_angles
+from feederscrew.resting.basins import adoption
+
+UNNAMED = adoption.UNNAMED  # label of a hull triangle that belongs to no face
+
+
+@dataclass(frozen=True, eq=False)
+class Tipping:
+    """Exact tumbling gathered by face: F faces, B ways between two of them, the lowest of each pair."""
+
+    shares: np.ndarray  # (F,) [1] probability when every direction is equally likely
+    heights: np.ndarray  # (F,) [m] of the centre of mass, lowest sink of the face; NaN without a sink
+    pairs: np.ndarray  # (B, 2) faces on both sides, the smaller index first
+    tops: np.ndarray  # (B,) [m] height of the centre of mass on the way's saddle
+    axes: np.ndarray  # (B, 3) unit vector along the edge the part tips over
+    doubts: tuple[str, ...]  # of the tumbling
+
+
+def tipping(tumbling, labels):
+    """Basins and saddles of exact tumbling, gathered by face.
+
+    Parameters
+    ----------
+    tumbling : Tumbling
+    labels : (T,) int
+        Face of each hull triangle; UNNAMED for triangles of none. A sink of no face (a facet that noise
+        or tessellation left) joins the face behind the lowest saddle around it, or the faces behind
+        saddles as low as each other, in equal parts.
+
+    Returns
+    -------
+    Tipping
+
+    Raises
+    ------
+    ValueError
+        If no sink carries a label.
+    """
+    labels = np.asarray(labels)
+    basins = adoption.adopted(tumbling, labels[tumbling.sinks], labels.max() + 1)
+    heights = np.full(basins.shape[1], np.inf)
+    sinks = np.repeat(np.arange(basins.shape[0]), np.diff(basins.indptr))
+    np.minimum.at(heights, basins.indices, tumbling.heights[sinks])
+    saddles, faces = _between(basins, tumbling.pairs)
+    order = np.lexsort((tumbling.saddle_heights[saddles], faces[:, 1], faces[:, 0]))
+    order = order[faces[order, 0] != faces[order, 1]]
+    pairs, first = np.unique(faces[order], axis=0, return_index=True)
+    lowest = saddles[order][first]
+    return Tipping(
+        shares=check.frozen(tumbling.shares @ basins),
+        heights=check.frozen(np.where(np.isfinite(heights), heights, np.nan)),
+        pairs=check.frozen(pairs),
+        tops=check.frozen(tumbling.saddle_heights[lowest]),
+        axes=check.frozen(tumbling.saddle_axes[lowest]),
+        doubts=tumbling.doubts,
+    )
+
+
+def _between(basins, pairs):
+    """(N,) saddles and (N, 2) faces on both sides, smaller first: each way from a face to a face."""
+    many = np.diff(basins.indptr)[pairs]
+    ways = many.prod(axis=1)
+    saddles = np.repeat(np.arange(len(pairs)), ways)
+    step = np.arange(len(saddles)) - np.repeat(np.cumsum(ways) - ways, ways)
+    turn = np.column_stack(np.divmod(step, many[saddles, 1]))
+    return saddles, np.sort(basins.indices[basins.indptr[pairs[saddles]] + turn], axis=1)
+
+
+def rises(tips):
+    """(B, 2) [m] lift of the centre of mass on the way from the first face and from the second."""
+    return np.maximum(tips.tops[:, None] - tips.heights[tips.pairs], 0.0)
+
+
+def barriers(tips):
+    """(F,) [m] lowest lift that tips each face into another; infinite where nothing does."""
+    lowest = np.full(len(tips.shares), np.inf)
+    np.minimum.at(lowest, tips.pairs.ravel(), rises(tips).ravel())
+    return lowest
+
+
+def tip_angle(polygon, height):
+    """Tilt of the floor at which a part that does not slide tips over an edge of its contact polygon.
+
+    Parameters
+    ----------
+    polygon : (K, 3) float [m]
+        Corners about the centre of mass, counter-clockwise seen from outside.
+    height : float [m]
+        Of the centre of mass over them.
+
+    Returns
+    -------
+    float [rad]
+        Negative where the part does not even stand on a level floor.
+    """
+    _, across = _edge_levers(polygon)
+    return float(np.arctan2(across, height).min())
+
+
+def tilt_over(height, top):
+    """Tilt [rad] that brings a centre of mass at ``height`` [m] over a saddle at ``top`` [m]."""
+    return np.arctan2(np.sqrt(np.maximum(top**2 - height**2, 0.0)), height)
+
+
+def critical_solid_angle(polygon, height):
+    """Share of a face's solid angle left when the mean critical one is taken off.
+
+    Parameters
+    ----------
+    polygon : (K, 3) float [m]
+        Contact corners about the centre of mass, counter-clockwise seen from outside.
+    height : float [m]
+        Of the centre of mass.
+
+    Returns
+    -------
+    float [1]
+        (Q - mean over the edges of Q_crit) / Q. Q_crit of an edge is the solid angle of the polygon seen
+        from the centre of mass lifted, upright, to its distance from that edge: where it passes when the
+        part tips. The rule's weight is this times Q / h.
+
+    References
+    ----------
+    B. K. A. Ngoi, S. W. Lye, J. Chen, "Analysing the natural resting aspect of a component for automated
+    assembly", Int. J. Adv. Manuf. Technol. 11, 406-412, 1996, doi 10.1007/BF01178966: read in a
+    restatement only, the paper itself was not at hand.
+    """
+    normal, across = _edge_levers(polygon)
+    lifts = np.hypot(across, height) - height
+    fan = np.stack([np.broadcast_to(polygon[0], polygon[1:-1].shape), polygon[1:-1], polygon[2:]], axis=1)
+    lifted = fan + np.append(0.0, lifts)[:, None, None, None] * normal
+    seen = solid_angles(np.zeros(3), lifted.reshape(-1, 3, 3)).reshape(len(lifted), -1).sum(axis=1)
+    return float(1.0 - seen[1:].mean() / seen[0])
+
+
+def balance(tips):
+    """Energy-barrier method: shares that stay the same when every face keeps tipping into its neighbours.
+
+    Parameters
+    ----------
+    tips : Tipping
+
+    Returns
+    -------
+    (F,) float [1]
+        Stationary shares of the chain in which a face tips into each neighbour at a rate inverse to the
+        lift that takes. Zero for faces without a sink.
+
+    Notes
+    -----
+    Boothroyd and Redford balance the transitions between two aspects of prisms and cylinders, N_a / N_b =
+    E_a / E_b with E the energy to leave each; their book was not at hand. This is that balance on any
+    number of faces, with the saddle between two basins as the height the part must be lifted to.
+
+    References
+    ----------
+    G. Boothroyd, A. H. Redford, "Mechanized Assembly", McGraw-Hill, 1968.
+    """
+    count = len(tips.shares)
+    rates = np.zeros((count, count))
+    lift = np.maximum(rises(tips), 1e-12 * np.nanmax(tips.heights))
+    for k in (0, 1):
+        rates[tips.pairs[:, k], tips.pairs[:, 1 - k]] = 1.0 / lift[:, k]
+    flow = rates.T - np.diag(rates.sum(axis=1))
+    present = np.isfinite(tips.heights)
+    shares = np.zeros(count)
+    shares[present] = _stationary(flow[np.ix_(present, present)])
+    return shares
+
+
+def _stationary(flow):
+    """Shares (sum 1) that a rate matrix leaves alone; columns of ``flow`` sum to zero."""
+    scale = np.abs(np.diag(flow)).max()
+    if scale == 0.0:
+        return np.full(len(flow), 1.0 / len(flow))
+    system = np.vstack([flow / scale, np.ones(len(flow))])
+    right = np.zeros(len(system))
+    right[-1] = 1.0
+    shares = np.maximum(np.linalg.lstsq(system, right, rcond=None)[0], 0.0)
+    return shares / shares.sum()
+
+
+def _edge_levers(polygon):
+    """(3,) outward normal of a polygon and (K,) [m] distance of the foot inside each edge."""
+    ahead = np.roll(polygon, -1, axis=0)
+    normal = np.cross(polygon, ahead).sum(axis=0)
+    normal /= np.linalg.norm(normal)
+    edges = ahead - polygon
+    outward = np.cross(edges, normal)
+    return normal, np.einsum("ki,ki->k", polygon, outward) / np.linalg.norm(edges, axis=1)
+
+
+def named(tumbling, labels):
+    """(S,) label of each sink from its own (S,) label; an unnamed one takes that of the face it joins.
+
+    The first of the faces that share it, where they do.
+    """
+    return adoption.adopted(tumbling, labels, labels.max() + 1).argmax(axis=1)

@@ -1,0 +1,178 @@
+"""The height of the centre of mass over every way down: sinks, saddles and what lies between.
+
+H(n), the height of the centre of mass when direction n points down, has its minima at hull triangles. The
+way from one triangle to the next leads over their common edge; the lowest such ways make a tree, and
+cutting it at saddles that rise too little above the shallower side leaves one basin per resting place.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import minimum_spanning_tree
+
+from feederscrew.geometry.compiled import fitting
+from feederscrew.resting.basins import forest
+
+SMOOTH = np.radians(25.0)  # a sharper edge is meant: a bar of 12 sides (30 deg) has flats, one of 16 rolls
+RIPPLE_OF_RADIUS = 2e-3  # noise and tessellation leave barriers below this share of the part's radius ...
+RIPPLE_OF_HEIGHT = 2e-2  # ... and below this share of the height, or slender parts would lose their sides
+BARE = 1e-4  # of the radius, 1 um on a small part: a lower barrier holds nothing, however sharp its edge
+FLAT = 1e-6  # [rad] between halves of one strip
+SLIVER = 1e-3  # of the radius: a narrower triangle has no direction of its own
+
+
+@dataclass(frozen=True, eq=False)
+class Landscape:
+    """Basins of a hull; T triangles, B basins, R ripples."""
+
+    basins: np.ndarray  # (T,) the triangle at the bottom of each triangle's basin
+    sinks: np.ndarray  # (B,) those bottom triangles
+    ripples: np.ndarray  # (R, 2) sinks on either side of a smooth edge that were too deep to merge
+    rises: np.ndarray  # (R,) [1] height of the way over that edge, above the higher side, as a share of it
+    bends: np.ndarray  # (R,) [rad] between the lowest triangles on either side
+
+
+def edges(hull):
+    """Every edge of the hull once: (E, 2) triangles, (E, 2) corners."""
+    first = np.repeat(np.arange(len(hull.triangles)), 3)
+    second = hull.neighbours.ravel()
+    ends = np.stack([np.roll(hull.triangles, -1, axis=1), np.roll(hull.triangles, -2, axis=1)], axis=-1)
+    once = first < second
+    return np.column_stack([first, second])[once], ends.reshape(-1, 2)[once]
+
+
+def passes(hull, pairs, ends):
+    """Height of the centre of mass at the highest point of the way over each edge.
+
+    Tipping over an edge turns the part about it: the centre of mass climbs until it stands over the edge,
+    if that happens on the way, else the way is downhill and its top is the higher side.
+
+    Parameters
+    ----------
+    hull : Hull
+    pairs, ends : (E, 2) int
+        Triangles on either side and corners of each edge.
+
+    Returns
+    -------
+    (E,) float [m]
+    """
+    p, q = hull.vertices[ends[:, 0]], hull.vertices[ends[:, 1]]
+    along = q - p
+    length2 = np.maximum(_dot(along, along), np.finfo(float).tiny)
+    foot = p - along * (_dot(p, along) / length2)[:, None]  # of the centre of mass on the edge's line
+    n1, n2 = hull.normals[pairs[:, 0]], hull.normals[pairs[:, 1]]
+    turn = _dot(np.cross(n1, n2), along)
+    between = (_dot(np.cross(n1, foot), along) * turn > 0.0) & (_dot(np.cross(foot, n2), along) * turn > 0.0)
+    higher = hull.heights[pairs].max(axis=1)
+    return np.where(between, np.maximum(np.linalg.norm(foot, axis=1), higher), higher)
+
+
+def landscape(hull):
+    """Basins of the hull with ripples merged by persistence.
+
+    Parameters
+    ----------
+    hull : Hull
+
+    Returns
+    -------
+    Landscape
+        A triangle whose way down is cut off by a ripple (noise, a tessellated curve, the diagonal of a
+        flat face) belongs to the basin behind the ripple. A low barrier over a sharp edge, like the one
+        around the end of a slender pin, is no ripple.
+
+    References
+    ----------
+    H. Edelsbrunner, D. Letscher, A. Zomorodian, "Topological persistence and simplification", Discrete
+    Comput. Geom. 28, 511-533, 2002.
+    """
+    pairs, ends = edges(hull)
+    tops = passes(hull, pairs, ends)
+    ripple = np.minimum(RIPPLE_OF_RADIUS * hull.radius, RIPPLE_OF_HEIGHT * hull.heights)
+    nothing = np.full(len(hull.heights), BARE * hull.radius)
+    below = _downhill(hull, pairs, tops)
+    smooth = angle(*np.moveaxis(_broad_normals(hull, below)[pairs], 1, 0)) < SMOOTH
+    local = forest.roots(below)
+    basins, deep = _joined(hull, local, pairs[smooth], tops[smooth], ripple)
+    strips, way = local[pairs[smooth][deep]], tops[smooth][deep]
+    basins, _ = _joined(hull, basins, pairs, tops, nothing)
+    return Landscape(
+        basins=basins,
+        sinks=np.unique(basins),
+        ripples=basins[strips],
+        rises=way / hull.heights[basins[strips]].max(axis=1, initial=0.0) - 1.0,
+        bends=_bend(hull, strips),
+    )
+
+
+def angle(u, v):
+    """Angles between vectors (..., 3) [rad], true down to the smallest."""
+    return np.arctan2(np.linalg.norm(np.cross(u, v), axis=-1), np.sum(u * v, axis=-1))
+
+
+def _downhill(hull, pairs, tops):
+    """(T,) neighbour each triangle rolls to when no step may climb; itself where there is none."""
+    height = hull.heights
+    steps = np.concatenate([pairs, pairs[:, ::-1]])
+    falls = (height[steps[:, 1]] < height[steps[:, 0]]) & (np.tile(tops, 2) <= height[steps[:, 0]])
+    steps = steps[falls]
+    steps = steps[np.argsort(-height[steps[:, 1]], kind="stable")]
+    below = np.arange(len(height))
+    below[steps[:, 0]] = steps[:, 1]  # of several ways down the lowest is written last
+    return below
+
+
+def _bend(hull, pairs):
+    return angle(hull.normals[pairs[:, 0]], hull.normals[pairs[:, 1]])
+
+
+def _broad_normals(hull, below):
+    """(T, 3) normal of each triangle, of a sliver that of the first broad one on its way down.
+
+    A corner moved by noise, or a chamfer too small to see, leads round a sharp edge by gentle bends.
+    """
+    corners = hull.corners
+    sides = np.linalg.norm(np.roll(corners, -1, axis=1) - np.roll(corners, -2, axis=1), axis=2)
+    thin = 2.0 * hull.areas < SLIVER * hull.radius * sides.max(axis=1)
+    end = forest.roots(np.where(thin, below, np.arange(len(thin))))
+    still = np.flatnonzero(thin & (end == np.arange(len(thin))))  # no way down, or half of a flat strip
+    beside = hull.neighbours[still]
+    level = angle(hull.normals[still, None], hull.normals[beside]) < FLAT
+    best = np.where(thin[end[beside]], 0.0, np.where(level, np.inf, sides[still])).argmax(axis=1)
+    out = np.arange(len(thin))
+    out[still] = end[hull.neighbours[still, best]]
+    return hull.normals[out[end]]
+
+
+def _joined(hull, basins, pairs, tops, limit):
+    """Basins (T,) joined where the way between them rises by no more than the shallower one's limit.
+
+    Returns the new basins, and the edges (indices) of the lowest ways that rise by more.
+    """
+    sinks, place = np.unique(basins, return_inverse=True)
+    way = _lowest_ways(len(sinks), place[pairs], tops)
+    region, basin = np.arange(len(sinks)), np.arange(len(sinks))
+    standing = np.zeros(len(way), dtype=bool)
+    join = fitting(forest.join, 3 * len(basins))
+    join(hull.heights[sinks], limit[sinks], place[pairs[way]], tops[way], region, basin, standing)
+    return sinks[forest.roots(basin)][place], way[standing]
+
+
+def _lowest_ways(count, pairs, tops):
+    """Edges (indices, lowest first) that are the lowest ways between ``count`` sinks: a spanning forest."""
+    low, high = pairs.min(axis=1), pairs.max(axis=1)
+    order = np.lexsort((tops, high, low))
+    order = order[low[order] != high[order]]
+    key = low[order] * count + high[order]
+    first = np.diff(key, prepend=-1) != 0
+    key, order = key[first], order[first]
+    graph = coo_matrix((tops[order], (low[order], high[order])), shape=(count, count)).tocsr()
+    tree = minimum_spanning_tree(graph).tocoo()
+    way = order[np.searchsorted(key, tree.row.astype(np.int64) * count + tree.col)]
+    return way[np.argsort(tops[way], kind="stable")]
+
+
+def _dot(u, v):
+    return np.einsum("ei,ei->e", u, v)

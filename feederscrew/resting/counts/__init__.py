@@ -1,0 +1,1 @@
+"""Profiles that were measured, their comparison with the rules, and calibration from them."""

@@ -1,0 +1,203 @@
+"""How far two probability profiles are apart."""
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.resting.counts.profiles import Profile
+
+LEAST = 5.0  # expected count below which the chi-square distribution is no longer trusted
+
+
+@dataclass(frozen=True)
+class ChiSquare:
+    """Pearson's test; NaN where it cannot be made."""
+
+    statistic: float
+    degrees_of_freedom: int  # 0 where there is no test
+    p_value: float
+    joined: int = 0  # aspects counted as one because fewer than ``LEAST`` were expected
+
+
+NO_TEST = ChiSquare(np.nan, 0, np.nan)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two profiles and every measure between them."""
+
+    first: Profile
+    second: Profile
+    deviation: float
+    total_variation: float
+    chi_square: ChiSquare
+
+
+def deviation(first, second):
+    """Root mean square difference: the 'standard deviation' of Tables 3-12 and 3-13.
+
+    Parameters
+    ----------
+    first, second : (A,) float [1]
+        Probabilities or fractions by aspect.
+
+    Returns
+    -------
+    float [1]
+    """
+    first, second = _pair(first, second)
+    return float(np.sqrt(np.mean((first - second) ** 2)))
+
+
+def total_variation(first, second):
+    """Half the sum of absolute differences: the share of parts that would have to land elsewhere.
+
+    Parameters
+    ----------
+    first, second : (A,) float [1]
+        Probabilities or fractions by aspect.
+
+    Returns
+    -------
+    float [1]
+        From 0 to 1.
+    """
+    first, second = _pair(first, second)
+    return float(0.5 * np.abs(first - second).sum())
+
+
+def chi_square(counts, fractions):
+    """Whether counts may come from given probabilities (goodness of fit).
+
+    Parameters
+    ----------
+    counts : (A,) int
+        Observed, by aspect.
+    fractions : (A,) float [1]
+        Expected; scaled to the sum of the counts.
+
+    Returns
+    -------
+    ChiSquare
+        An aspect that was seen though its probability is 0 gives infinity and p = 0; one neither
+        seen nor expected is left out.
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong, an entry negative or a sum zero.
+
+    Notes
+    -----
+    Aspects of which fewer than ``LEAST`` are expected are joined, the weakest first, until the
+    group expects enough; ``joined`` says how many. Nothing is left to test with one group.
+
+    References
+    ----------
+    K. Pearson, "On the criterion that a given system of deviations ...", Phil. Mag. 50, 157-175, 1900.
+    W. G. Cochran, "Some methods for strengthening the common chi-square tests", Biometrics 10(4),
+    417-451, 1954.
+    """
+    counts, fractions = (_weights(values) for values in _pair(counts, fractions))
+    expected = counts.sum() * fractions / fractions.sum()
+    if counts[expected == 0.0].any():
+        return ChiSquare(np.inf, int(np.count_nonzero(counts + expected)) - 1, 0.0)
+    seen = expected > 0.0
+    return _test(counts[None, seen], expected[None, seen])
+
+
+def chi_square_between(first, second):
+    """Whether two sets of counts may come from the same probabilities (homogeneity).
+
+    Parameters
+    ----------
+    first, second : (A,) int
+        Observed, by aspect.
+
+    Returns
+    -------
+    ChiSquare
+        Aspects are joined as in ``chi_square``, by the lower of the two expected counts.
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong, an entry negative or a sum zero.
+    """
+    observed = np.array([_weights(values) for values in _pair(first, second)])
+    observed = observed[:, observed.any(axis=0)]
+    expected = np.outer(observed.sum(axis=1), observed.sum(axis=0)) / observed.sum()
+    return _test(observed, expected)
+
+
+def compare(profiles):
+    """Every measure between every two profiles.
+
+    Parameters
+    ----------
+    profiles : sequence of Profile
+        Over the same aspects in the same order.
+
+    Returns
+    -------
+    list of Comparison
+        In the order of the profiles; the chi-square test wherever one of the two holds counts.
+    """
+    return [
+        Comparison(
+            a,
+            b,
+            deviation(a.fractions, b.fractions),
+            total_variation(a.fractions, b.fractions),
+            _counted(a, b),
+        )
+        for a, b in combinations(profiles, 2)
+    ]
+
+
+def _counted(a, b):
+    if a.counted and b.counted:
+        return chi_square_between(a.values, b.values)
+    if a.counted:
+        return chi_square(a.values, b.fractions)
+    return chi_square(b.values, a.fractions) if b.counted else NO_TEST
+
+
+def _test(observed, expected):
+    """Pearson's statistic over groups that expect enough."""
+    from scipy.special import gammaincc
+
+    observed, expected, joined = _joined(observed, expected)
+    freedom = expected.shape[1] - 1
+    if freedom == 0:
+        return ChiSquare(np.nan, 0, np.nan, joined)
+    statistic = float(((observed - expected) ** 2 / expected).sum())
+    return ChiSquare(statistic, freedom, float(gammaincc(0.5 * freedom, 0.5 * statistic)), joined)
+
+
+def _joined(observed, expected):
+    """The weakest columns added up until each expects ``LEAST`` in every row."""
+    order = np.argsort(expected.min(axis=0), kind="stable")
+    observed, expected = observed[:, order], expected[:, order]
+    weak = int((expected.min(axis=0) < LEAST).sum())
+    if weak == 0:
+        return observed, expected, 0
+    enough = np.flatnonzero(expected.cumsum(axis=1).min(axis=0) >= LEAST)
+    last = max(weak, 1 + int(enough[0])) if len(enough) else expected.shape[1]
+    observed, expected = (
+        np.column_stack([table[:, :last].sum(axis=1), table[:, last:]]) for table in (observed, expected)
+    )
+    return observed, expected, last
+
+
+def _pair(first, second):
+    first = check.shaped("first", first, (-1,))
+    return first, check.shaped("second", second, first.shape)
+
+
+def _weights(values):
+    if (values < 0.0).any() or values.sum() <= 0.0:
+        raise ValueError("a profile has a negative entry or sums to zero")
+    return values

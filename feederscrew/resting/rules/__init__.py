@@ -1,0 +1,1 @@
+"""Rules that give the probability of each resting aspect, a module a family."""

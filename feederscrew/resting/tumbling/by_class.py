@@ -1,0 +1,188 @@
+"""Exact tumbling, barriers and the rules built on them, by class of resting aspect."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.constants import g
+
+from feederscrew import check
+from feederscrew.errors import MeshError
+from feederscrew.part.hull import Hull
+from feederscrew.resting.basins import barriers
+from feederscrew.resting.faces import Face
+from feederscrew.resting.rules import hops, published, surface
+from feederscrew.resting.rules.recommended import Recommended, closed_form
+from feederscrew.resting.tumbling.exact import tumble
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """The faces a part can rest on and how they hang together; F faces, T hull triangles."""
+
+    hull: Hull
+    faces: tuple[Face, ...]
+    rows: np.ndarray  # (F,) row of each face's class among the aspects
+    labels: np.ndarray  # (T,) face of each hull triangle, -1 for none
+    tips: barriers.Tipping
+
+
+@dataclass(frozen=True, eq=False)
+class Exact:
+    """What exact tumbling adds to the aspects, A rows; NaN where the part does not rest."""
+
+    probabilities: dict[str, np.ndarray]  # (A,) [1] 'quasistatic', 'crsa', 'barrier', 'surface', 'hops'
+    barriers: np.ndarray  # (A,) [m] lowest lift that tips the part; NaN where nothing does
+    barrier_energies: np.ndarray  # (A,) [J]
+    tip_angles: np.ndarray  # (A,) [rad] of the floor, at which a part that does not slide tips
+    recommended: Recommended  # the surface-weighted rule, with its interval
+    doubts: tuple[str, ...]  # self-checks of the tumbling that failed
+
+
+@dataclass(frozen=True)
+class Transition:
+    """The lowest way by which a part tips from one aspect into another (or into its equal)."""
+
+    start: int  # row of the aspect it leaves
+    end: int
+    lift: float  # [m]
+    axis: tuple[float, float, float]  # unit, along the edge it tips over, in the file's axes
+
+
+def grounded(hull, faces, rows):
+    """Exact basins and barriers of the faces a part rests on.
+
+    Parameters
+    ----------
+    hull : Hull
+    faces : sequence of Face
+        Stable ones.
+    rows : (F,) int
+        Row of each face's class among the aspects.
+
+    Returns
+    -------
+    Ground
+    """
+    labels = np.full(len(hull.triangles), barriers.UNNAMED)
+    for k, face in enumerate(faces):
+        labels[face.triangles] = k
+    tips = barriers.tipping(tumble(hull), labels)
+    return Ground(hull, tuple(faces), check.frozen(rows), check.frozen(labels), tips)
+
+
+def ground(part, aspects):
+    """Faces of a part matched to the rows of its aspects, with exact basins and barriers.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    aspects : Aspects
+        Of that part.
+
+    Returns
+    -------
+    Ground
+
+    Raises
+    ------
+    MeshError
+        If the part is a card without a shape.
+    """
+    if aspects.ground is None:
+        raise MeshError(part.source, "is a part card, it has no shape to tumble", "give a mesh file")
+    return aspects.ground
+
+
+def exact(found, part, aspects, exponent=surface.EXPONENTS["hard"]):
+    """Columns that exact tumbling adds to the aspects of a part.
+
+    Parameters
+    ----------
+    found : Ground
+    part : Part
+    aspects : Aspects
+    exponent : float [1]
+        Of the surface-weighted closed form.
+
+    Returns
+    -------
+    Exact
+    """
+    tips, count = found.tips, len(aspects.names)
+    lifts = barriers.barriers(tips)
+    weights = {
+        "quasistatic": tips.shares,
+        "crsa": np.array([_critical(face) for face in found.faces]),
+        "barrier": barriers.balance(tips),
+        "surface": surface.surface_weights(tips.shares, tips.heights, found.hull.radius, exponent),
+        "hops": hops.hop_shares(tips, found.hull.radius),
+    }
+    chances = {rule: _by_class(found, weight, aspects.stable) for rule, weight in weights.items()}
+    lowest = _lowest(found.rows, np.where(np.isfinite(lifts), lifts, np.nan), count)
+    angles = [_tip_angle(face, lift) for face, lift in zip(found.faces, lifts)]
+    return Exact(
+        probabilities=chances,
+        barriers=check.frozen(lowest),
+        barrier_energies=check.frozen(part.mass * g * lowest),
+        tip_angles=check.frozen(_lowest(found.rows, np.array(angles), count)),
+        recommended=_recommended(found, aspects.stable, chances, exponent),
+        doubts=tips.doubts,
+    )
+
+
+def _by_class(found, weights, stable):
+    """(A,) shares of the classes, from the (F,) weights of their faces."""
+    sums = np.bincount(found.rows, weights, minlength=len(stable))
+    return check.frozen(published.normalised(sums, stable))
+
+
+def _recommended(found, stable, chances, exponent):
+    """The surface-weighted rule, between all its surfaces and the cascade of hops."""
+    tips, radius = found.tips, found.hull.radius
+    others = [
+        _by_class(found, surface.surface_weights(tips.shares, tips.heights, radius, other), stable)
+        for other in surface.EXPONENTS.values()
+    ]
+    rule = f"surface, {surface.named(exponent)}"
+    return closed_form(rule, chances["surface"], [*others, chances["hops"]], stable)
+
+
+def transitions(found):
+    """The graph of what tips into what.
+
+    Parameters
+    ----------
+    found : Ground
+
+    Returns
+    -------
+    list of Transition
+        The lowest way of each ordered pair of classes, by row; into an equal face as well.
+    """
+    lifts, ways = barriers.rises(found.tips), {}
+    for pair, lift, axis in zip(found.rows[found.tips.pairs], lifts, found.tips.axes):
+        for start, end, up in ((*pair, lift[0]), (*pair[::-1], lift[1])):
+            way = Transition(int(start), int(end), float(up), tuple(axis.tolist()))
+            best = ways.setdefault((way.start, way.end), way)
+            if way.lift < best.lift:
+                ways[way.start, way.end] = way
+    return [ways[pair] for pair in sorted(ways)]
+
+
+def _critical(face):
+    """Weight of a face by the critical solid angle; of a rolling one, from its lowest strip."""
+    return barriers.critical_solid_angle(face.polygon, face.height) * face.solid_angle / face.height
+
+
+def _tip_angle(face, lift):
+    if face.kind == "flat":
+        return barriers.tip_angle(face.polygon, face.height)
+    return barriers.tilt_over(face.height, face.height + lift) if np.isfinite(lift) else np.nan
+
+
+def _lowest(rows, values, count):
+    """(A,) smallest value of each row's faces; NaN where there is none."""
+    lowest = np.full(count, np.inf)
+    np.fmin.at(lowest, rows, values)
+    return np.where(np.isfinite(lowest), lowest, np.nan)

@@ -1,0 +1,159 @@
+"""Half-edges of a convex hull and the signs that steer a part rolling on it.
+
+Half-edge 3 t + k of triangle t runs from its corner k + 1 to its corner k + 2, opposite corner k.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.geometry.compiled import fitting
+from feederscrew.resting.tumbling import walk
+
+COPLANAR = 1e-10  # [1] of the radius: depth below a neighbour's plane that is still the same facet
+SLIVER = 1e-9  # [1] of the radius: a triangle narrower than this has no plane of its own
+PLANE = 1e-14  # [1] error of a triangle's plane at the far end of the part, times its width over the radius
+
+
+class Edges(NamedTuple):
+    """Half-edges of a hull of T triangles, H = 3 T, and its facets of coplanar triangles.
+
+    A named tuple, so that compiled code can read it.
+    """
+
+    vertices: np.ndarray  # (V, 3) [m] about the centre of mass
+    origins: np.ndarray  # (H,) corner a half-edge starts from
+    targets: np.ndarray  # (H,) corner it ends at
+    twins: np.ndarray  # (H,) the same edge seen from the other side
+    facets: np.ndarray  # (T,) facet of each triangle
+    borders: np.ndarray  # (H,) bool: parts two facets
+    slopes: np.ndarray  # (H,) [m2] origin . (target - origin): negative where the foot is ahead
+    sides: np.ndarray  # (H,) [m2] not negative where the foot of the facet is inside this edge
+    normals: np.ndarray  # (M, 3) outward unit normals of the M facets
+    facet_edges: np.ndarray  # (M,) a bordering half-edge of each facet
+    vertex_edges: np.ndarray  # (V,) a half-edge leaving each corner, bordering where there is one
+
+
+def half_edges(hull):
+    """Half-edges of a hull with coplanar triangles merged into facets.
+
+    Parameters
+    ----------
+    hull : Hull
+        With the centre of mass strictly inside.
+
+    Returns
+    -------
+    Edges
+    """
+    twins = _twins(hull.neighbours)
+    facets = _facets(hull, twins)
+    origins = hull.triangles[:, [1, 2, 0]].ravel().astype(int)
+    targets = hull.triangles[:, [2, 0, 1]].ravel().astype(int)
+    normals = _facet_normals(hull, facets)
+    owners = np.repeat(facets, 3)
+    borders = owners != owners[twins]
+    slopes, sides = np.empty((2, len(owners)))
+    signs = fitting(walk.signs, len(owners))
+    signs(hull.vertices, normals, origins, targets, owners, slopes, sides)
+    by_facet, by_vertex = np.zeros(len(normals), int), np.zeros(len(hull.vertices), int)
+    edges = np.flatnonzero(borders)
+    by_facet[owners[edges]] = edges
+    by_vertex[origins] = np.arange(len(origins))
+    by_vertex[origins[edges]] = edges
+    arrays = {
+        "vertices": hull.vertices,
+        "origins": origins,
+        "targets": targets,
+        "twins": twins,
+        "facets": facets,
+        "borders": borders,
+        "slopes": slopes,
+        "sides": sides,
+        "normals": normals,
+        "facet_edges": by_facet,
+        "vertex_edges": by_vertex,
+    }
+    return Edges(**{name: check.frozen(array) for name, array in arrays.items()})
+
+
+def sinks(edges):
+    """(S,) facets that hold the foot of the centre of mass: the part rests on them."""
+    leaves = edges.borders & (edges.sides < 0.0)
+    stable = np.ones(len(edges.normals), bool)
+    stable[np.repeat(edges.facets, 3)[leaves]] = False
+    return np.flatnonzero(stable)
+
+
+def saddles(edges):
+    """(E,) half-edges, one of each pair, over which the part can be balanced.
+
+    The foot of the centre of mass lies between the two corners and neither facet rolls over the edge.
+    """
+    ahead = (edges.slopes <= 0.0) & (edges.sides >= 0.0) & edges.borders
+    one_of_two = np.arange(len(ahead)) < edges.twins
+    return np.flatnonzero(ahead & ahead[edges.twins] & one_of_two)
+
+
+def maxima(edges):
+    """(M,) corners on which the part can be balanced: no neighbour is further out along them."""
+    origins = edges.origins[edges.borders]
+    top = np.zeros(len(edges.vertices), bool)
+    top[origins] = True
+    top[origins[edges.slopes[edges.borders] > 0.0]] = False
+    return np.flatnonzero(top)
+
+
+def _twins(neighbours):
+    back = neighbours[neighbours] == np.arange(len(neighbours))[:, None, None]
+    return (3 * neighbours.astype(int) + back.argmax(axis=2)).ravel()
+
+
+def _facets(hull, twins):
+    """Facet of each triangle: triangles joined across flat edges."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    owners = np.repeat(np.arange(len(hull.triangles)), 3)
+    depths = np.empty(len(owners))
+    fill = fitting(walk.depths, len(owners))
+    fill(hull.vertices, hull.normals, hull.heights, hull.triangles.ravel(), twins, depths)
+    near = np.flatnonzero(np.minimum(depths, depths[twins]) <= COPLANAR * hull.radius)
+    if not len(near):
+        return np.arange(len(hull.triangles))
+    flat = near[_flat(hull, near, twins, depths)]
+    pairs = owners[flat], owners[twins[flat]]
+    joins = coo_array((np.ones(len(flat)), pairs), shape=2 * [len(hull.triangles)])
+    return connected_components(joins, directed=False)[1].astype(int)
+
+
+def _flat(hull, near, twins, depths):
+    """Which of some half-edges lie inside a facet.
+
+    Both triangles must lie in each other's plane as far as rounding lets that be known; a sliver joins the
+    neighbour across its longest edge only, or it would glue the facets on both its sides.
+    """
+    pairs = near // 3, twins[near] // 3
+    edges = near % 3, twins[near] % 3
+    inside, sliver = np.ones(len(near), bool), np.zeros(len(near), bool)
+    across = np.zeros(len(near), bool)
+    for triangle, edge, depth in zip(pairs, edges, (depths[near], depths[twins[near]])):
+        corners = hull.vertices[hull.triangles[triangle]]
+        lengths = np.linalg.norm(
+            corners[:, [2, 0, 1]] - corners[:, [1, 2, 0]], axis=2
+        )  # opposite each corner
+        width = 2.0 * hull.areas[triangle] / lengths.max(axis=1) / hull.radius
+        narrow = width < SLIVER
+        inside &= depth <= hull.radius * (COPLANAR + PLANE / np.maximum(width, SLIVER))
+        across |= narrow & (edge == lengths.argmax(axis=1))
+        sliver |= narrow
+    return across | (inside & ~sliver)
+
+
+def _facet_normals(hull, facets):
+    if len(hull.triangles) == facets.max() + 1:
+        return hull.normals
+    weighted = hull.areas[:, None] * hull.normals
+    sums = np.stack([np.bincount(facets, column) for column in weighted.T], axis=1)
+    return sums / np.linalg.norm(sums, axis=1, keepdims=True)

@@ -1,0 +1,136 @@
+"""Exact quasi-static tumbling: where a body set down without momentum comes to rest."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.geometry.compiled import fitting
+from feederscrew.resting.tumbling import edges as tumbling_edges
+from feederscrew.resting.tumbling import walk
+
+SPHERE = 4.0 * np.pi  # [sr]
+ROUNDING = 1e-6  # [1] what the shares may miss 1 by before the result is called doubtful
+
+
+@dataclass(frozen=True, eq=False)
+class Tumbling:
+    """Basins of the flow down the height of the centre of mass; S sinks, E saddles, M maxima.
+
+    Directions are "down" in the part's axes. A sink is a stable facet, a saddle an edge and a maximum
+    a corner over which the part can be balanced.
+    """
+
+    sinks: np.ndarray  # (S,) a hull triangle of each sink
+    normals: np.ndarray  # (S, 3) outward unit normal
+    heights: np.ndarray  # (S,) [m] of the centre of mass
+    areas: np.ndarray  # (S,) [sr] directions from which the part ends there
+    pairs: np.ndarray  # (E, 2) sinks on both sides of each saddle
+    saddle_heights: np.ndarray  # (E,) [m]
+    saddle_directions: np.ndarray  # (E, 3) unit
+    saddle_axes: np.ndarray  # (E, 3) unit, along the edge
+    maxima: np.ndarray  # (M,) hull corners
+    doubts: tuple[str, ...]  # self-checks that failed; empty for a result to trust
+
+    @property
+    def shares(self):
+        """(S,) [1] probability of each sink when every direction is equally likely."""
+        return self.areas / SPHERE
+
+
+def tumble(hull):
+    """Basins, saddles and maxima of the quasi-static flow on a convex hull.
+
+    Parameters
+    ----------
+    hull : Hull
+        With the centre of mass strictly inside.
+
+    Returns
+    -------
+    Tumbling
+        ``doubts`` names every self-check that failed: the areas fill the sphere, sinks - saddles +
+        maxima = 2, every walk falls from its saddle to a sink and rises from it to a maximum.
+
+    References
+    ----------
+    K. Goldberg, B. Mirtich, Y. Zhuang, J. Craig, B. Carlisle, J. Canny, "Part pose statistics:
+    estimators and experiments", IEEE Trans. Robot. Autom. 15(5), 849-857, 1999 (the model).
+    H. Baktash, N. Sharp, Q. Zhou, A. Jacobson, K. Crane, "Putting rigid bodies to rest", ACM Trans.
+    Graph. 44(4), 2025 (its Morse-Smale form; written here from the mathematics).
+    """
+    edges = tumbling_edges.half_edges(hull)
+    sinks, saddles = tumbling_edges.sinks(edges), tumbling_edges.saddles(edges)
+    maxima = tumbling_edges.maxima(edges)
+    feet = _feet(edges, saddles)
+    heights, saddle_heights = _facet_heights(edges, sinks), np.linalg.norm(feet, axis=1)
+    directions = feet / saddle_heights[:, None]
+    pairs, raw, arrived = _basins(edges, sinks, saddles, maxima, directions)
+    areas = _areas(raw)
+    falls = (pairs >= 0) & (heights[pairs] <= saddle_heights[:, None] + 1e-9 * hull.radius)
+    doubts = _doubts(areas, len(sinks) - len(saddles) + len(maxima), arrived and falls.all())
+    axes = edges.vertices[edges.targets[saddles]] - edges.vertices[edges.origins[saddles]]
+    return Tumbling(
+        sinks=check.frozen(edges.facet_edges[sinks] // 3),
+        normals=check.frozen(edges.normals[sinks]),
+        heights=check.frozen(heights),
+        areas=check.frozen(areas),
+        pairs=check.frozen(pairs),
+        saddle_heights=check.frozen(saddle_heights),
+        saddle_directions=check.frozen(directions),
+        saddle_axes=check.frozen(axes / np.linalg.norm(axes, axis=1, keepdims=True)),
+        maxima=check.frozen(maxima),
+        doubts=doubts,
+    )
+
+
+def _basins(edges, sinks, saddles, maxima, directions):
+    """(E, 2) sinks each saddle joins, (S,) boundary integrals of their basins, whether every walk arrived."""
+    tops = np.zeros(len(edges.vertices), bool)
+    tops[maxima] = True
+    pairs, peaks = np.empty((2, len(saddles), 2), int)
+    raw = np.zeros(len(edges.normals))
+    trace = fitting(walk.trace_saddles, len(edges.origins))
+    trace(edges, tops, saddles, directions, _gauges(edges.normals), pairs, peaks, raw)
+    rank = np.full(len(edges.normals) + 1, -1)  # the last entry stands for a lost walk
+    rank[sinks] = np.arange(len(sinks))
+    return rank[pairs], raw[sinks], bool((pairs >= 0).all() and (peaks >= 0).all())
+
+
+def _gauges(normals):
+    """(M, 3) unit vectors near the normals, off every symmetry plane a part may have."""
+    near = normals + 1e-3 * np.array([0.5377, -0.8339, 0.1246])
+    return near / np.linalg.norm(near, axis=1, keepdims=True)
+
+
+def _feet(edges, saddles):
+    """(E, 3) [m] feet of the centre of mass on the saddles' edges."""
+    u = edges.vertices[edges.origins[saddles]]
+    along = edges.vertices[edges.targets[saddles]] - u
+    return u - along * (edges.slopes[saddles] / np.einsum("ei,ei->e", along, along))[:, None]
+
+
+def _facet_heights(edges, facets):
+    corners = edges.vertices[edges.origins[edges.facet_edges[facets]]]
+    return np.einsum("si,si->s", edges.normals[facets], corners)
+
+
+def _areas(raw):
+    """Basin areas from boundary integrals: those that hold the point opposite their gauge lack 4 pi."""
+    if len(raw) == 1:
+        return np.array([SPHERE])
+    missing = round(1.0 - raw.sum() / SPHERE)
+    areas = raw.copy()
+    areas[np.argsort(raw, kind="stable")[: max(missing, 0)]] += SPHERE
+    return np.where((areas < 0.0) & (areas > -ROUNDING), 0.0, areas)
+
+
+def _doubts(areas, euler, arrived):
+    total = areas.sum() / SPHERE
+    found = {
+        f"the basins fill {total:.6g} of the sphere": abs(total - 1.0) > ROUNDING,
+        "a basin has a negative area": (areas < 0.0).any(),
+        f"sinks - saddles + maxima is {euler}, not 2": euler != 2,
+        "a walk from a saddle does not fall to a sink and rise to a maximum": not arrived,
+    }
+    return tuple(text for text, wrong in found.items() if wrong)

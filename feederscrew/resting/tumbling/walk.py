@@ -1,0 +1,239 @@
+"""Walks along the flow of a part that rolls without momentum.
+
+Directions are "down" in the part's axes, as tuples of three. Over corner v the flow leaves v along great
+circles; where the foot of the centre of mass lies between the two corners of an edge the flow gathers on
+the arc between the normals of its two facets.
+"""
+
+import math
+
+from feederscrew.geometry.compiled import compilable
+
+LOST = -1  # a walk that ends nowhere: the hull is not closed and convex
+
+
+@compilable
+def row(array, k):
+    """Row of an (N, 3) array as a tuple."""
+    return array[k, 0], array[k, 1], array[k, 2]
+
+
+@compilable
+def dot(a, b):
+    """Scalar product of two triples."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@compilable
+def triple(a, b, c):
+    """a . (b x c)."""
+    return (
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+        + a[1] * (b[2] * c[0] - b[0] * c[2])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
+    )
+
+
+@compilable
+def toward(a, b, step):
+    """Unit vector along a + step b."""
+    x, y, z = a[0] + step * b[0], a[1] + step * b[1], a[2] + step * b[2]
+    n = 1.0 / math.sqrt(x * x + y * y + z * z)
+    return n * x, n * y, n * z
+
+
+@compilable
+def signs(vertices, normals, origins, targets, owners, slopes, sides):
+    """Fill (H,) slopes and sides, as ``Edges`` has them, from each half-edge's corners and facet."""
+    for h in range(len(origins)):
+        u, w = row(vertices, origins[h]), row(vertices, targets[h])
+        slopes[h] = u[0] * (w[0] - u[0]) + u[1] * (w[1] - u[1]) + u[2] * (w[2] - u[2])
+        sides[h] = triple(row(normals, owners[h]), u, w)
+
+
+@compilable
+def depths(vertices, normals, heights, corners, twins, below):
+    """Fill (H,) [m]: how far the corner off each edge, of the neighbour, lies below the triangle's plane."""
+    for h in range(len(twins)):
+        t = h // 3
+        below[h] = heights[t] - dot(row(normals, t), row(vertices, corners[twins[h]]))
+
+
+@compilable
+def around_vertex(edges, h):
+    """Next half-edge leaving the same corner."""
+    return edges.twins[h + 2 if h % 3 == 0 else h - 1]
+
+
+@compilable
+def along_facet(edges, h):
+    """Next half-edge around the border of the same facet."""
+    h = h - 2 if h % 3 == 2 else h + 1
+    while not edges.borders[h]:
+        h = edges.twins[h]
+        h = h - 2 if h % 3 == 2 else h + 1
+    return h
+
+
+@compilable
+def exit_of(edges, facet):
+    """How the part leaves a facet: (half-edge, -1) over an edge, (-1, corner) over a corner, (-1, -1) not."""
+    start = h = edges.facet_edges[facet]
+    corner, nearest = -1, math.inf
+    leaves = False
+    for _ in range(len(edges.origins)):
+        if edges.sides[h] < 0.0:
+            leaves = True
+            if edges.slopes[h] <= 0.0 and edges.slopes[edges.twins[h]] <= 0.0:
+                return h, -1
+        u = row(edges.vertices, edges.origins[h])
+        if dot(u, u) < nearest:
+            nearest, corner = dot(u, u), edges.origins[h]
+        h = along_facet(edges, h)
+        if h == start:
+            break
+    return -1, corner if leaves else -1
+
+
+@compilable
+def next_corner(edges, x, corner, sign):
+    """Where the great circle through direction x and a corner leaves the corner's region.
+
+    ``sign`` is -1 down the flow, away from the corner, and +1 up it, towards the corner. Returns the
+    half-edge to the corner that takes over, or LOST, and the direction there.
+    """
+    v = row(edges.vertices, corner)
+    here = dot(x, v)
+    start = h = edges.vertex_edges[corner]
+    best, step = LOST, math.inf
+    for _ in range(len(edges.origins)):
+        slope = sign * edges.slopes[h]
+        if edges.borders[h] and slope > 0.0:
+            t = max(here - dot(x, row(edges.vertices, edges.targets[h])), 0.0) / slope
+            if t < step:
+                best, step = h, t
+        h = around_vertex(edges, h)
+        if h == start:
+            break
+    return best, toward(x, v, sign * step) if best != LOST else x
+
+
+@compilable
+def side_of(edges, h, x):
+    """Facet to which the part rolls from direction x on the arc of a half-edge."""
+    u, w = row(edges.vertices, edges.origins[h]), row(edges.vertices, edges.targets[h])
+    ahead = h if triple(x, u, w) >= 0.0 else edges.twins[h]
+    return edges.facets[ahead // 3]
+
+
+@compilable
+def roll_from_corner(edges, x, corner):
+    """Facet first reached by a part that rolls over a corner from direction x; LOST if none."""
+    for _ in range(len(edges.vertices)):
+        h, x = next_corner(edges, x, corner, -1.0)
+        if h == LOST:
+            return LOST
+        if edges.slopes[edges.twins[h]] <= 0.0:
+            return side_of(edges, h, x)
+        corner = edges.targets[h]
+    return LOST
+
+
+@compilable
+def roll_from_facet(edges, facet):
+    """Facet on which a part comes to rest that is set down on ``facet``; LOST if none."""
+    for _ in range(len(edges.normals) + 1):
+        if facet == LOST:
+            return LOST
+        h, corner = exit_of(edges, facet)
+        if h >= 0:
+            facet = edges.facets[edges.twins[h] // 3]
+        elif corner >= 0:
+            facet = roll_from_corner(edges, row(edges.normals, facet), corner)
+        else:
+            return facet
+    return LOST
+
+
+@compilable
+def support(edges, x, corner):
+    """Corner furthest along direction x, climbing from ``corner``."""
+    while True:
+        height = dot(x, row(edges.vertices, corner))
+        start = h = edges.vertex_edges[corner]
+        best = corner
+        while True:
+            other = dot(x, row(edges.vertices, edges.targets[h]))
+            if other > height:
+                height, best = other, edges.targets[h]
+            h = around_vertex(edges, h)
+            if h == start:
+                break
+        if best == corner:
+            return corner
+        corner = best
+
+
+@compilable
+def rolls(edges, directions, ends):
+    """Fill (N,) ends with the facet a part set down with each of (N, 3) directions down comes to rest on."""
+    corner = 0
+    for n in range(len(directions)):
+        x = row(directions, n)
+        corner = support(edges, x, corner)
+        ends[n] = roll_from_facet(edges, roll_from_corner(edges, x, corner))
+
+
+@compilable
+def triangle_area(a, b, c):
+    """Signed area [sr] of a spherical triangle of unit vectors, positive counter-clockwise from outside."""
+    return 2.0 * math.atan2(triple(a, b, c), 1.0 + dot(a, b) + dot(b, c) + dot(c, a))
+
+
+@compilable
+def climb(edges, tops, x, corner, left, right):
+    """Follow the flow back from direction x over a corner up to a maximum, one of the corners ``tops``.
+
+    Returns the maximum and the fans [sr] swept on the way, seen from ``left`` and from ``right``.
+    """
+    area_left = area_right = 0.0
+    for _ in range(len(edges.vertices)):
+        h, y = LOST, toward(row(edges.vertices, corner), x, 0.0)
+        if not tops[corner]:
+            h, y = next_corner(edges, x, corner, 1.0)
+        area_left += triangle_area(left, x, y)
+        area_right += triangle_area(right, x, y)
+        if h == LOST:
+            return corner if tops[corner] else LOST, area_left, area_right
+        x, corner = y, edges.targets[h]
+    return LOST, area_left, area_right
+
+
+@compilable
+def trace_saddles(edges, tops, saddles, directions, gauges, pairs, peaks, areas):
+    """Sinks joined by each saddle, and the boundary integral of every facet's basin.
+
+    Parameters
+    ----------
+    edges : Edges
+    tops : (V,) bool, the corners that are maxima
+    saddles : (E,) half-edges
+    directions : (E, 3) unit vectors, down on each saddle
+    gauges : (M, 3) unit vectors from which each facet's fan is swept
+    pairs : (E, 2) filled with the facets the part rolls to on the half-edge's left and right, or LOST
+    peaks : (E, 2) filled with the corners in which the walks back up end, or LOST
+    areas : (M,) [sr] zeros, to which each basin's area is added, or 4 pi less
+    """
+    for e in range(len(saddles)):
+        h, x = saddles[e], row(directions, e)
+        s = roll_from_facet(edges, edges.facets[h // 3])
+        t = roll_from_facet(edges, edges.facets[edges.twins[h] // 3])
+        pairs[e, 0], pairs[e, 1] = s, t
+        peaks[e, 0] = peaks[e, 1] = LOST
+        if s == LOST or t == LOST:
+            continue
+        left, right = row(gauges, s), row(gauges, t)
+        peaks[e, 0], back_s, back_t = climb(edges, tops, x, edges.origins[h], left, right)
+        peaks[e, 1], ahead_s, ahead_t = climb(edges, tops, x, edges.targets[h], left, right)
+        areas[s] += ahead_s - back_s
+        areas[t] += back_t - ahead_t

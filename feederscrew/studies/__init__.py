@@ -1,0 +1,1 @@
+"""One study a command: one function from inputs to one frozen record."""

@@ -1,0 +1,101 @@
+"""Everything ``feeder track`` finds of one part, in the order of the pipeline."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew.bowl.record import Bowl
+from feederscrew.mechanics import limits
+from feederscrew.mechanics.cycle import Cycle
+from feederscrew.mechanics.published import track as published_track
+from feederscrew.mechanics.published.comparison import Term, omitted_terms
+from feederscrew.mechanics.standing import standing
+from feederscrew.mechanics.track import balance
+from feederscrew.mechanics.track.cells import seated
+from feederscrew.mechanics.track.frame import Seat, bank_without_radial_friction
+from feederscrew.mechanics.track.opening import Opening, first_to_open
+from feederscrew.mechanics.wall.headings import Headings
+from feederscrew.part.record import Part
+from feederscrew.resting.posture import Posture
+
+LEVEL = {"magnet"}  # cards whose printed equations are in level axes, [4.57] to [4.62]
+
+
+@dataclass(frozen=True, eq=False)
+class TrackAnalysis:
+    """One part on one aspect against the wall of one bowl."""
+
+    part: Part
+    posture: Posture
+    bowl: Bowl
+    seat: Seat
+    headings: Headings | None  # None of a part card
+    row: int  # of the headings, the one taken
+    now: balance.TrackMotion  # at the upper reversal, from rest
+    printed: published_track.PrintedTrack  # the same by the printed equations
+    omitted: tuple[Term, ...]  # what these leave out
+    cycle: balance.TrackMotion  # over one settled period
+    course: Cycle
+    opening: Opening
+    bank_without_radial_friction: float  # [rad]
+    why: str | None = None  # this aspect; None where it was asked for
+
+
+def analyse(part, bowl, aspect=None, heading=None):
+    """A part on the track.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        Single values.
+    aspect : str, optional
+        Its name; without one, as ``standing`` chooses.
+    heading : float [rad], optional
+        As laid down: pushed to the wall, the part turns to the stable heading of that range. Without one,
+        the most frequent heading that stays on the track.
+
+    Returns
+    -------
+    TrackAnalysis
+
+    Raises
+    ------
+    FeederError
+        If there is no such aspect, the bowl is smaller than the part, the part falls off the track, or
+        the drive is not ``limits.plain``.
+    """
+    limits.plain(bowl)
+    posture, why = standing(part, aspect, "track")
+    seat, found, row = seated(posture, bowl, heading)
+    levers = _levers(part, posture, seat)
+    now = balance.motion(seat, bowl)
+    cycle, course = balance.over_cycle(seat, bowl)
+    return TrackAnalysis(
+        part=part,
+        posture=posture,
+        bowl=bowl,
+        seat=seat,
+        headings=found,
+        row=row,
+        now=now,
+        printed=published_track.motion(levers, bowl, seat.heading),
+        omitted=omitted_terms(seat, bowl, now, levers.offset),
+        cycle=cycle,
+        course=course,
+        opening=first_to_open(seat, bowl),
+        bank_without_radial_friction=bank_without_radial_friction(seat),
+        why=why,
+    )
+
+
+def _levers(part, posture, seat):
+    """Levers of the printed equations: the card's own, or the mesh's."""
+    axes = "level" if posture.corners is None and part.name in LEVEL else "tilted"
+    ahead = posture.offset * np.cos(seat.heading)
+    levers = published_track.levers(seat, float(ahead), axes)
+    return (
+        levers
+        if posture.corners is not None
+        else published_track.printed_levers(levers, posture.printed["track"])
+    )

@@ -1,0 +1,353 @@
+"""Many parts: how they are named, shared out, kept and taken up again."""
+
+import csv
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from feederscrew import batch
+from feederscrew.batch import store, task
+from feederscrew.batch import work as works
+from feederscrew.errors import FeederError
+from feederscrew.rate import queue
+
+ROOT = Path(__file__).parents[2]
+PARTS = ROOT / "parts"
+NUT = PARTS / "squarenut_m5.stl"
+TABLES_ONLY = batch.Choices(pictures=False)
+
+
+def block(path, x, y, z):
+    """A box with corners at the origin and (x, y, z) as an ASCII STL."""
+    corners = np.array([[i, j, k] for i in (0, x) for j in (0, y) for k in (0, z)], dtype=float)
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    text = "solid block\n"
+    for a, b, c, d in quads:
+        for triangle in ((a, b, c), (a, c, d)):
+            rows = "".join("vertex {} {} {}\n".format(*corners[k]) for k in triangle)
+            text += f"facet normal 0 0 0\nouter loop\n{rows}endloop\nendfacet\n"
+    Path(path).write_text(text + "endsolid block\n")
+
+
+def tree(root):
+    """Every file's bytes by its path."""
+    return {
+        p.relative_to(root).as_posix(): p.read_bytes() for p in sorted(Path(root).rglob("*")) if p.is_file()
+    }
+
+
+def asked(*sources, **options):
+    return batch.gather([str(source) for source in sources], **options)
+
+
+def ran(requests, out, jobs=2, **options):
+    options.setdefault("choices", TABLES_ONLY)
+    return batch.run(requests, out, workers=options.pop("workers", batch.Processes(jobs)), **options)
+
+
+def of(request, choices=TABLES_ONLY):
+    return task.Task.of(request, choices, Path(request.source).read_bytes())
+
+
+class Here:
+    """A crew without processes: the work is done where it is asked for."""
+
+    def __init__(self, stop_after=None):
+        self.done, self.stop_after = [], stop_after
+
+    def outcomes(self, tasks):
+        for each in tasks:
+            if len(self.done) == self.stop_after:
+                raise KeyboardInterrupt
+            self.done.append(each.request.name)
+            yield works.work(each)
+
+
+def dies_over_the_second(each):
+    """A worker that is killed by one part, whoever computes it."""
+    if each.request.name == "b":
+        os.kill(os.getpid(), signal.SIGKILL)
+    return task.Outcome.failed(each, "computed")
+
+
+@pytest.fixture
+def three(tmp_path):
+    """Three boxes in a folder, and the requests for them."""
+    folder = tmp_path / "in"
+    folder.mkdir()
+    for name, size in {"a": 3.0, "b": 5.0, "c": 7.0}.items():
+        block(folder / f"{name}.stl", 10.0, 6.0, size)
+    return asked(folder)
+
+
+def test_a_folder_gives_its_parts_by_name_and_leaves_other_files(tmp_path):
+    for name in ("b.stl", "a.STL", "notes.txt", ".hidden.stl"):
+        (tmp_path / name).write_bytes(NUT.read_bytes())
+    (tmp_path / "bowl.yaml").write_text("gravity: 9.81 m/s2\n")
+    (tmp_path / "card.yaml").write_bytes((PARTS / "magnet.yaml").read_bytes())
+    assert [request.name for request in asked(tmp_path)] == ["a", "b", "card"]
+
+
+def test_patterns_reach_into_folders_and_a_part_counts_once(tmp_path):
+    (tmp_path / "deep/deeper").mkdir(parents=True)
+    for name in ("deep/x.stl", "deep/deeper/y.stl"):
+        (tmp_path / name).write_bytes(b"x")
+    found = asked(f"{tmp_path}/**/*.stl", tmp_path / "deep/x.stl")
+    assert [Path(request.source).name for request in found] == ["y.stl", "x.stl"]
+
+
+@pytest.mark.parametrize(
+    ("names", "folders"),
+    [
+        (["1/nut.stl", "2/nut.stl"], ["nut", "nut-2"]),
+        (["1/nut.stl", "2/NUT.stl"], ["nut", "NUT-2"]),
+        (["1/nut.stl", "2/nut.stl", "nut-2.stl"], ["nut", "nut-3", "nut-2"]),
+        (["con.stl", "a:b.stl", "end. .stl"], ["con_", "a_b", "end"]),
+        (["1/\u00e9.stl", "2/e\u0301.stl"], ["\u00e9", "\u00e9-2"]),
+        ([f"{'n' * 200}.stl"], ["n" * 80]),
+    ],
+)
+def test_every_part_has_a_folder_of_its_own_on_any_system(names, folders):
+    assert [request.name for request in asked(*names)] == folders
+
+
+def test_several_bowls_multiply_the_parts(tmp_path):
+    for name in ("slow", "fast"):
+        (tmp_path / f"{name}.yaml").write_text("gravity: 9.81 m/s2\n")
+    (tmp_path / "fast.yaml").write_text("drive:\n  frequency: 90 Hz\n")
+    found = asked(NUT, configs=[str(tmp_path)])
+    assert [request.name for request in found] == ["squarenut_m5-fast", "squarenut_m5-slow"]
+    assert [round(request.conditions.bowl.drive.frequency) for request in found] == [90, 60]
+
+
+def test_a_list_gives_each_part_its_own_options(tmp_path):
+    (tmp_path / "fast.yaml").write_text("drive:\n  frequency: 90 Hz\n")
+    (tmp_path / "list.csv").write_text(
+        "part,density,units,config\n# a comment\nnut.stl,brass,in,\nsub/pin.stl,,,fast.yaml\n"
+    )
+    first, second = asked(tmp_path / "list.csv")
+    assert first.options == (("units", "in"), ("density", "brass"))
+    assert second.source == str(tmp_path / "sub/pin.stl")
+    assert round(second.conditions.bowl.drive.frequency) == 90
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("prt,density\n", "list.csv:1: has no column 'part' - begin with a line such as part,units,density,"),
+        ("part,densty\n", "list.csv:1: unknown column 'densty' - did you mean density?"),
+        (
+            "part,units\na.stl,mm,7\n",
+            "list.csv:2: has more cells than the first line - quote cells with commas",
+        ),
+        ("part,units\n,mm\n", "list.csv:2: names no part - fill its first column, or remove the line"),
+        ("part\n\xe9", "list.csv:2: byte 0xe9 is not UTF-8 - save the file as UTF-8 text"),
+        ('part\n"a', "list.csv: is not CSV (unexpected end of data) - check its quotes and commas"),
+    ],
+)
+def test_a_fault_of_a_list_names_its_line(tmp_path, monkeypatch, text, line):
+    monkeypatch.chdir(tmp_path)
+    Path("list.csv").write_bytes(text.encode("latin-1"))
+    with pytest.raises(FeederError) as fault:
+        asked("list.csv")
+    assert fault.value.lines[0].startswith(line)
+
+
+@pytest.mark.parametrize(
+    ("typed", "what"),
+    [("empty", "holds no part file"), ("empty/*.stl", "fits no file"), ("gone.csv", "no such file")],
+)
+def test_what_gives_no_part_is_told(tmp_path, monkeypatch, typed, what):
+    monkeypatch.chdir(tmp_path)
+    Path("empty").mkdir()
+    with pytest.raises(FeederError, match=what):
+        asked(typed)
+
+
+def test_a_bowl_that_cannot_convey_is_told_before_any_work():
+    with pytest.raises(FeederError, match="is 0 mm, so nothing moves"):
+        asked(NUT, overrides=["drive.amplitude=0 mm"])
+
+
+def test_the_key_hangs_on_everything_that_the_results_hang_on():
+    [request] = asked(NUT)
+    [other_bowl] = asked(NUT, overrides=["friction.wall=0.11"])
+    keys = {
+        of(request).key,
+        of(other_bowl).key,
+        of(request, batch.Choices(rule="csa", pictures=False)).key,
+        of(request, batch.Choices(drops=10, pictures=False)).key,
+        task.Task.of(request, TABLES_ONLY, b"other").key,
+    }
+    assert len(keys) == 5
+    assert of(request).key == of(asked(NUT)[0]).key
+
+
+def test_the_row_is_what_the_commands_say(run):
+    outcome = works.work(of(asked(NUT)[0]))
+    said = ["--aspect", outcome.row["aspect"], "--heading", f"{outcome.row['heading_deg']:.12f}deg"]
+    rates = json.loads(run("rate", NUT, *said, "--format", "json", "-q").stdout)
+    assert outcome.row["parts_per_minute"] == pytest.approx(rates["parts_per_minute"], rel=1e-9)
+    assert outcome.files["aspects.csv"].decode() == run("aspects", NUT, "--format", "csv", "-q").stdout
+
+
+def test_the_rate_is_of_the_orientation_that_leaves_most_often():
+    known = queue.Orientations(
+        aspects=("A", "A", "B"),
+        headings=np.array([0.0, 1.0, 2.0]),
+        heading_shares=np.array([0.5, 0.5, 1.0]),
+        lengths=np.array([1.0, 4.0, 1.0]),
+        widths=np.ones(3),
+        stations=("track",),
+        passes=np.array([[0.0], [1.0], [1.0]]),
+        rules={"pmi": np.array([0.6, 0.3, 0.1]), "csa": np.array([np.nan, np.nan, np.nan])},
+    )
+    assert works.most_frequent(known, "pmi") == ("B", 2.0)  # 0.1 / 1 beats 0.3 / 4; 0.6 never passes
+    assert works.most_frequent(known, "csa") == ("A", 0.0)
+
+
+def test_a_bug_on_one_part_is_a_reason_and_no_more(monkeypatch):
+    monkeypatch.setattr(works, "find", lambda part: 1 / 0)
+    outcome = works.work(of(asked(NUT)[0]))
+    assert (outcome.status, outcome.files) == ("failed", {})
+    assert outcome.reason == "unexpected ZeroDivisionError: division by zero - please report it"
+
+
+def test_one_process_and_two_write_the_same_bytes(tmp_path, three):
+    one, two = tmp_path / "one", tmp_path / "two"
+    ran(three, one, jobs=1, choices=batch.Choices())
+    ran(three, two, jobs=2, choices=batch.Choices())
+    assert tree(one) == tree(two)
+    assert {"summary.csv", "index.html", "contact_sheet.png", "parts/a/thumbnail.png"} <= set(tree(one))
+    page = (one / "index.html").read_text()
+    assert page.count("data:image/png;base64,") == 3
+    assert "http" not in page
+
+
+def test_a_bad_part_gets_a_row_with_its_reason(tmp_path, three):
+    (tmp_path / "in/b.stl").write_bytes(b"")
+    found = ran(asked(tmp_path / "in", "gone.stl"), tmp_path / "out")
+    rows = list(csv.DictReader(io.StringIO((tmp_path / "out/summary.csv").read_text())))
+    assert [row["status"] for row in rows] == ["done", "failed", "done", "failed"]
+    assert rows[1]["reason"] == f"{tmp_path}/in/b.stl: is empty - export the part again"
+    assert found.faults[1] == "gone.stl: no such file - check the path"
+
+
+def test_resume_repeats_only_what_is_missing_or_changed(tmp_path, three):
+    out = tmp_path / "out"
+    with pytest.raises(KeyboardInterrupt):
+        ran(three, out, workers=Here(stop_after=2))
+    assert not (out / "summary.csv").exists()
+    second, third, fourth = Here(), Here(), Here()
+    assert ran(three, out, workers=second, resume=True).kept == 2
+    assert second.done == ["c"]
+    whole = tree(out)
+    block(three[1].source, 1.0, 2.0, 3.0)
+    ran(three, out, workers=third, resume=True)
+    (out / "parts/a/aspects.csv").write_text("meddled with")
+    ran(three, out, workers=fourth, resume=True)
+    assert (third.done, fourth.done) == (["b"], ["a"])
+    assert {name for name, data in tree(out).items() if whole[name] != data} >= {"parts/b/aspects.csv"}
+    assert tree(out)["parts/a/aspects.csv"] == whole["parts/a/aspects.csv"]
+
+
+def test_a_part_whose_worker_dies_is_tried_again_then_told_and_tried_once_more_by_resume(tmp_path, three):
+    crew = batch.Processes(2, job=dies_over_the_second)
+    found = ran(three, tmp_path / "out", workers=crew)
+    reasons = [row["reason"] for row in found.rows]
+    assert (reasons[0], reasons[2]) == ("computed", "computed")
+    assert reasons[1].startswith("the process that computed it died each of 3 times")
+    again = Here()
+    ran(three, tmp_path / "out", workers=again, resume=True)
+    assert again.done == ["b"]
+
+
+def test_processes_are_replaced_after_some_parts(three):
+    tasks = [of(request) for request in three]
+    crew = batch.Processes(1, job=says_where, lifetime=2)
+    places = [outcome.reason for outcome in crew.outcomes(tasks)]
+    assert (places[0] == places[1], places[1] == places[2]) == (True, False)
+
+
+def says_where(each):
+    """The process that computes."""
+    return task.Outcome.failed(each, str(os.getpid()))
+
+
+def test_tasks_are_read_only_when_a_process_is_free(three):
+    taken = []
+
+    def reading():
+        for request in [*three, *three]:
+            taken.append(request.name)
+            yield of(request)
+
+    outcomes = batch.Processes(1, job=says_where).outcomes(reading())
+    next(outcomes)
+    assert len(taken) == 1
+    outcomes.close()
+
+
+def test_a_folder_of_other_things_is_refused(tmp_path, three):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out/thesis.pdf").write_text("mine")
+    with pytest.raises(FeederError, match=r"holds other files, such as thesis.pdf - give an empty folder"):
+        ran(three, tmp_path / "out", workers=Here())
+
+
+def test_two_batches_do_not_share_a_folder(tmp_path, three):
+    with (
+        store.Store(tmp_path / "out"),
+        pytest.raises(FeederError, match="another batch is at work in it - wait for it, or stop it"),
+    ):
+        ran(three, tmp_path / "out", workers=Here())
+
+
+def test_what_an_interrupted_run_left_is_cleared_away(tmp_path, three):
+    ran(three, tmp_path / "out", workers=Here())
+    whole = tree(tmp_path / "out")
+    (tmp_path / "out/.batch-abc/new").mkdir(parents=True)
+    (tmp_path / "out/.batch-abc/new/aspects.csv").write_text("half")
+    ran(three, tmp_path / "out", workers=Here(), resume=True)
+    assert tree(tmp_path / "out") == whole
+    assert not list((tmp_path / "out").glob(".batch-*"))
+
+
+def test_an_unknown_rule_is_a_near_miss(tmp_path, three):
+    with pytest.raises(FeederError, match=r"unknown rule 'pmj' - did you mean pmi\?"):
+        ran(three, tmp_path / "out", choices=batch.Choices(rule="pmj"))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+def test_killed_at_any_moment_and_resumed_it_ends_with_the_same_bytes(tmp_path):
+    folder, call = (
+        tmp_path / "in",
+        [sys.executable, "-c", "from feederscrew_cli.main import feeder; feeder()", "batch"],
+    )
+    folder.mkdir()
+    for number in range(30):
+        block(folder / f"block_{number}.stl", 4.0 + 0.5 * number, 6.0, 3.0)
+    rest = [str(folder), "--no-pictures", "-q", "-o"]
+    subprocess.run(
+        [*call, *rest, str(tmp_path / "whole"), "--jobs", "1"], check=True, cwd=ROOT, capture_output=True
+    )
+    for goal in (4, 11, 19):
+        child = subprocess.Popen(
+            [*call, *rest, str(tmp_path / "cut"), "--jobs", "2", "--resume"],
+            cwd=ROOT, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+        while len(list((tmp_path / "cut").glob("parts/*"))) < goal and child.poll() is None:
+            time.sleep(0.01)
+        os.killpg(child.pid, signal.SIGKILL)
+        assert child.wait() == -signal.SIGKILL
+    last = [*call, *rest, str(tmp_path / "cut"), "--jobs", "2", "--resume"]
+    subprocess.run(last, check=True, cwd=ROOT, capture_output=True)
+    assert tree(tmp_path / "cut") == tree(tmp_path / "whole")

@@ -1,0 +1,96 @@
+"""The same batch on a Dask cluster: the same bytes, and one line where it is lost."""
+
+import os
+import signal
+import subprocess
+import sys
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import pytest
+from test_batch import TABLES_ONLY, Here, asked, block, ran, three, tree  # noqa: F401
+
+from feederscrew import batch
+from feederscrew.batch import task
+from feederscrew.errors import FeederError
+
+distributed = pytest.importorskip("distributed", reason="needs the extra dist")
+ROOT = Path(__file__).parents[2]
+pytestmark = pytest.mark.filterwarnings("ignore")  # of the cluster's own libraries
+
+
+@contextmanager
+def cluster(folder, workers=2):
+    """A scheduler and workers as processes of their own; their address and the processes, scheduler first."""
+    place = Path(folder) / "scheduler.json"
+    settings = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "tests"), *sys.path])}
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": settings, "cwd": folder}
+    start = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--no-dashboard", "--port", "0"]
+    running = [subprocess.Popen([*start, "--host", "127.0.0.1", "--scheduler-file", str(place)], **quiet)]
+    worker = [
+        sys.executable,
+        "-m",
+        "distributed.cli.dask_worker",
+        "--no-dashboard",
+        "--nthreads",
+        "1",
+        "--no-nanny",
+    ]
+    running += [subprocess.Popen([*worker, "--scheduler-file", str(place)], **quiet) for _ in range(workers)]
+    try:
+        with distributed.Client(scheduler_file=str(place), timeout=60, set_as_default=False) as client:
+            client.wait_for_workers(workers, timeout=60)
+            yield client.scheduler.address, running
+    finally:
+        for process in running:
+            with suppress(OSError):
+                process.kill()
+            process.wait()
+
+
+def test_a_cluster_gives_the_bytes_of_the_processes_even_if_it_loses_a_worker(tmp_path, three):  # noqa: F811
+    for number in range(6):
+        block(tmp_path / f"in/more_{number}.stl", 5.0 + number, 4.0, 3.0)
+    requests = asked(tmp_path / "in")
+    ran(requests, tmp_path / "here", workers=Here())
+    with cluster(tmp_path) as (address, running):
+        finished = []
+
+        def lose_one(kept):
+            finished.append(kept)
+            if len(finished) == 2:
+                running[-1].send_signal(signal.SIGKILL)
+
+        ran(requests, tmp_path / "there", workers=batch.Cluster(address), tell=lose_one)
+    assert tree(tmp_path / "there") == tree(tmp_path / "here")
+
+
+def test_a_lost_scheduler_is_one_line_and_what_is_finished_is_kept(tmp_path, three):  # noqa: F811
+    with cluster(tmp_path) as (address, running), pytest.raises(FeederError) as fault:
+        ran(three, tmp_path / "out", workers=batch.Cluster(address), tell=lambda kept: running[0].kill())
+    assert fault.value.lines == (
+        f"{address}: the scheduler is lost - see to it, then start this command again with --resume:"
+        " what is finished is kept",
+    )
+    rest = Here()
+    ran(three, tmp_path / "out", workers=rest, resume=True)
+    assert len(rest.done) < 3
+
+
+def test_no_scheduler_is_one_line(tmp_path, three, monkeypatch):  # noqa: F811
+    monkeypatch.setattr("feederscrew.batch.cluster.PATIENCE", 1)
+    with pytest.raises(FeederError, match=r"^tcp://127.0.0.1:1: no scheduler answers"):
+        ran(three, tmp_path / "out", workers=batch.Cluster("tcp://127.0.0.1:1"))
+
+
+def test_what_is_no_address_is_one_line():
+    with pytest.raises(FeederError, match=r"^nonsense: is no address of a scheduler - write it as tcp://"):
+        list(batch.Cluster("nonsense").outcomes([]))
+
+
+def test_workers_of_another_version_are_refused(tmp_path, three, monkeypatch):  # noqa: F811
+    with cluster(tmp_path, workers=1) as (address, _):
+        monkeypatch.setattr(task, "LIBRARIES", ("numpy",))
+        with pytest.raises(FeederError, match=r"has another version of feederscrew - "):
+            monkeypatch.setattr("feederscrew.batch.cluster.__version__", "0.0.1")
+            ran(three, tmp_path / "out", workers=batch.Cluster(address), choices=TABLES_ONLY)

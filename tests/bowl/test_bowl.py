@@ -1,0 +1,328 @@
+"""Bowl files: defaults, overrides, origins, sweeps, and the exact line of every fault."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from feederscrew import bowl, units
+from feederscrew.bowl import documentation, schema
+from feederscrew.errors import FeederError
+from feederscrew.mechanics import limits
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def file(tmp_path, monkeypatch):
+    """Writes bowl.yaml into the working folder and names it as a user would."""
+    monkeypatch.chdir(tmp_path)
+
+    def write(text):
+        Path("bowl.yaml").write_text(text)
+        return "bowl.yaml"
+
+    return write
+
+
+def told(path, *overrides):
+    with pytest.raises(FeederError) as caught:
+        bowl.read(path, overrides)
+    return list(caught.value.lines)
+
+
+def test_the_defaults():
+    one = bowl.default()
+    assert one == bowl.read()
+    assert (one.drive.amplitude, one.drive.frequency) == (0.05e-3, 60.0)
+    assert one.drive.vibration_angle == math.radians(30)
+    assert one.friction.static == one.friction.kinetic == one.friction.wall == 0.6
+
+
+def test_the_defaults_keep_what_their_comment_promises():
+    one = bowl.default()
+    ratio = limits.acceleration_ratio(one.drive.amplitude, one.drive.frequency, one.gravity)
+    friction = one.friction.static * np.array([5 / 6, 1.0, 1.5])
+    codes = limits.regimes(ratio, one.drive.vibration_angle, friction, climb=one.track.climb)
+    assert codes.tolist() == [limits.FORWARD] * 3
+
+
+def test_the_template_holds_the_defaults(file):
+    path = file(documentation.template())
+    assert bowl.read(path) == bowl.default()
+    origins = {s.key.name: s.origin for s in bowl.settings(path)}
+    assert origins["drive.amplitude"] == "bowl.yaml:8"
+    assert origins["friction.kinetic"] == "as friction.static"
+
+
+def test_every_key_stands_in_the_template_with_its_meaning():
+    for key in schema.KEYS:
+        assert f"{key.word}: " in documentation.template()
+        assert key.meaning in documentation.template()
+
+
+def test_commented_keys_of_the_template_are_valid_once_uncommented(file):
+    text = documentation.template()
+    for key in ("kinetic", "wall", "static_backward", "kinetic_backward"):
+        text = text.replace(f"# {key}:", f"{key}:")
+    friction = bowl.read(file(text)).friction
+    assert (friction.static, friction.kinetic, friction.wall, *friction.backward) == (0.6,) * 5
+    assert friction.kinetic_backward == 0.6
+
+
+def test_the_shipped_files():
+    assert (ROOT / "configs/bowl.yaml").read_text() == documentation.template()
+    thesis = bowl.read(ROOT / "configs/thesis.yaml")
+    ratio = limits.acceleration_ratio(thesis.drive.amplitude, thesis.drive.frequency, thesis.gravity)
+    assert ratio == pytest.approx(7.25, abs=0.005)
+    assert math.degrees(math.asin(1 / ratio)) == pytest.approx(7.9, abs=0.05)
+
+
+def test_the_readme_has_the_table_of_keys():
+    readme = ROOT / "README.md"
+    if not readme.exists():
+        pytest.skip("no README yet")
+    assert documentation.markdown() in readme.read_text()
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("drive:\n  amplitud: 0.5 mm\n", "2:3: unknown key 'amplitud' - did you mean amplitude?"),
+        ("drve:\n  amplitude: 0.5 mm\n", "1:1: unknown key 'drve' - did you mean drive?"),
+        ("amplitude: 0.5 mm\n", "1:1: unknown key 'amplitude' - write amplitude below 'drive:'"),
+        ("drive.amplitude: 1 mm\n", "1:1: unknown key 'drive.amplitude' - write amplitude below 'drive:'"),
+        ("drive:\n  gravity: 9 m/s2\n", "2:3: unknown key 'gravity' - write gravity without indent"),
+        ("drive:\n  static: 0.4\n", "2:3: unknown key 'static' - write static below 'friction:'"),
+        ("drive:\n  frequency: 60\n", "2:14: drive.frequency: '60' has no unit - write 60 Hz"),
+        (
+            "drive:\n  vibration_angle: 20 mm\n",
+            "2:20: drive.vibration_angle: '20 mm' is a length, not an angle - give it in deg",
+        ),
+        ("friction:\n  static: 0,5\n", "2:11: friction.static: '0,5' has a comma - write 0.5"),
+        (
+            "friction:\n  static: yes\n",
+            "2:11: friction.static: 'yes' is not a number - write digits with a decimal point, as in 0.4",
+        ),
+        (
+            "friction:\n  static: .nan\n",
+            "2:11: friction.static: '.nan' is not a number - write digits with a decimal point, as in 0.4",
+        ),
+        (
+            "drive:\n  vibration_angle: 120 deg\n",
+            "2:20: drive.vibration_angle: '120 deg' is out of range - give 0 deg to 90 deg",
+        ),
+        ("restitution: -0.1\n", "1:14: restitution: '-0.1' is out of range - give 0 to 0.95"),
+        ("restitution: [0.1]\n", "1:14: restitution is a list - write one value, such as 0.2"),
+        ("restitution: {a: 1}\n", "1:14: restitution is a mapping - write one value, such as 0.2"),
+        ("gravity:\n", "1:9: gravity has no value - write 9.81 m/s2"),
+        ("drive: 60 Hz\n", "1:8: 'drive' is a section, not a value - indent its keys below 'drive:'"),
+        ("drive: [1]\n", "1:8: 'drive' is a section, not a value - indent its keys below 'drive:'"),
+        (
+            "friction:\n  static: 0.4\n  kinetic: 0.6\n",
+            "3:12: friction.kinetic 0.6 is above friction.static 0.4 (bowl.yaml:2:11)"
+            " - lower the kinetic coefficient or raise the static one",
+        ),
+        (
+            "friction:\n  kinetic: 0.7\n",
+            "2:12: friction.kinetic 0.7 is above friction.static 0.6 (default)"
+            " - lower the kinetic coefficient or raise the static one",
+        ),
+        (
+            "drive:\n  amplitude: 1 mm\n  peak_to_peak: 2 mm\n",
+            "3:3: drive.peak_to_peak and drive.amplitude are both given - keep one of them",
+        ),
+        ("gravity: 9 m/s2\ngravity: 8\n", "2:1: key 'gravity' is already in line 1 - keep one of them"),
+        ("gravity: &g 9.81 m/s2\n", "1:10: anchor '&g' is not allowed - write the value alone"),
+        ("drive:\n  <<: {frequency: 50 Hz}\n", "2:3: unknown key '<<' - known are amplitude, peak_to_peak, "
+         "frequency, vibration_angle, direction, phase, second_harmonic, second_harmonic_phase"),
+        ("- 1\n- 2\n", "1:1: no 'key: value' line - start from 'feeder config init'"),
+        ("just words\n", "1:1: no 'key: value' line - start from 'feeder config init'"),
+    ],
+)  # fmt: skip
+def test_a_fault_in_a_file(file, text, line):
+    assert told(file(text)) == [f"bowl.yaml:{line}"]
+
+
+def test_all_faults_of_a_file_and_of_set_in_one_go(file):
+    path = file("drive:\n  amplitud: 0.5 mm\n  frequency: 60\nfriction:\n  kinetic: yes\n  kinetic: 0.4\n")
+    lines = told(path, "gravity=9.81", "track.climb=50 deg")
+    assert [line.split(": ")[0] for line in lines] == [
+        *(f"bowl.yaml:{place}" for place in ("2:3", "3:14", "5:12", "6:3")),
+        "--set gravity",
+        "--set track.climb",
+    ]
+
+
+def test_an_empty_section_is_all_defaults(file):
+    assert bowl.read(file("drive:\nfriction:\n")) == bowl.default()
+
+
+@pytest.mark.parametrize(
+    ("override", "line"),
+    [
+        ("drive.frequency=50 mm", "drive.frequency: '50 mm' is a length, not a frequency - give it in Hz"),
+        ("frequency=50 Hz", "frequency: unknown key 'frequency' - did you mean drive.frequency?"),
+        ("gravity", "gravity: has no '=' - write KEY=VALUE, as in --set drive.frequency=\"50 Hz\""),
+        ("gravity=", "gravity: has no value - write 9.81 m/s2"),
+        (
+            "friction.kinetic=0.9",
+            "friction.kinetic: friction.kinetic 0.9 is above friction.static 0.6 (default)"
+            " - lower the kinetic coefficient or raise the static one",
+        ),
+    ],
+)  # fmt: skip
+def test_a_fault_in_set(override, line):
+    assert told(None, override) == [f"--set {line}"]
+
+
+def test_kinetic_above_static_across_file_and_set_is_told_once(file):
+    path = file("friction:\n  static: 0.6\n  kinetic: 0.5\n")
+    assert told(path, "friction.static=0.4") == [
+        "--set friction.static: friction.kinetic 0.5 is above friction.static 0.4 (bowl.yaml:3:12)"
+        " - lower the kinetic coefficient or raise the static one"
+    ]
+    assert len(told(None, "friction.kinetic=0.6", "friction.static=0.4")) == 1
+
+
+def test_set_goes_over_the_file_and_the_last_one_holds(file):
+    path = file("restitution: 0.1\n")
+    assert bowl.read(path, ["restitution=0.3", "restitution=0.0"]).restitution == 0.0
+    assert bowl.read(path, ["track.radius=100 m"]).track.radius == 100.0
+    assert bowl.read(path).restitution == 0.1
+
+
+def test_either_stroke_replaces_the_other(file):
+    assert (
+        bowl.read(file("drive:\n  amplitude: 0.5 mm\n"), ["drive.peak_to_peak=3 mm"]).drive.amplitude
+        == 1.5e-3
+    )
+    path = file("drive:\n  peak_to_peak: 0.5 mm\n")
+    assert bowl.read(path).drive.amplitude == 0.25e-3
+    assert bowl.read(path, ["drive.amplitude=3 mm"]).drive.amplitude == 3e-3
+    assert len(told(None, "drive.amplitude=1 mm", "drive.peak_to_peak=1 mm")) == 1
+
+
+def test_settings_tell_where_each_value_came_from(file):
+    path = file("drive:\n  peak_to_peak: 0.5 mm\n")
+    found = {s.key.name: (s.text, s.origin) for s in bowl.settings(path, ["friction.static=0.3"])}
+    assert found["drive.peak_to_peak"] == ("0.5 mm", "bowl.yaml:2")
+    assert found["drive.amplitude"] == ("0.25 mm", "from drive.peak_to_peak")
+    assert found["friction.static"] == ("0.3", "--set")
+    assert found["friction.kinetic"] == ("0.3", "as friction.static")
+    assert found["friction.wall"] == ("0.3", "as friction.kinetic")
+    assert found["gravity"] == ("9.81 m/s2", "default")
+
+
+def test_friction_down_the_track_follows_until_it_is_given():
+    one = bowl.read(None, ["friction.static=0.5", "friction.kinetic=0.4"])
+    assert one.friction.backward == (0.5, 0.4)
+    other = bowl.read(None, ["friction.static=0.5", "friction.static_backward=0.9"])
+    assert other.friction.backward == (0.9, 0.5)
+    assert replace(one.friction, static=0.7).backward == (0.7, 0.4)
+    origins = {s.key.name: (s.text, s.origin) for s in bowl.settings(None, ["friction.static=0.5"])}
+    assert origins["friction.kinetic_backward"] == ("0.5", "as friction.kinetic")
+
+
+def test_kinetic_above_static_down_the_track():
+    assert told(None, "friction.static_backward=0.5", "friction.kinetic_backward=0.7") == [
+        "--set friction.kinetic_backward: friction.kinetic_backward 0.7 is above "
+        "friction.static_backward 0.5 (--set friction.static_backward)"
+        " - lower the kinetic coefficient or raise the static one"
+    ]
+
+
+def test_a_missing_file_is_one_line():
+    assert told("nowhere.yaml") == ["nowhere.yaml: no such file - check the path"]
+
+
+def test_a_sweep_takes_its_followers_along():
+    swept = bowl.swept(
+        bowl.settings(None, ["drive.amplitude=1 mm"]),
+        {"friction.static": np.array([0.2, 0.4]), "drive.peak_to_peak": np.array([[1e-3], [2e-3]])},
+    )
+    assert swept.friction.wall.tolist() == [0.2, 0.4]
+    assert swept.drive.amplitude.tolist() == [[0.5e-3], [1e-3]]
+    assert swept.drive.frequency == 60.0
+
+
+def test_a_sweep_leaves_what_is_given_alone():
+    given = bowl.settings(None, ["friction.kinetic=0.1"])
+    assert bowl.swept(given, {"friction.static": np.array([0.2, 0.4])}).friction.kinetic == 0.1
+
+
+def test_ranges():
+    angle, stroke = bowl.ranges(["drive.vibration_angle=5:60:12", "drive.peak_to_peak = 0.1mm : 2 mm : 3"])
+    assert np.allclose(np.degrees(angle.values), np.arange(5, 61, 5), rtol=1e-15, atol=0)
+    assert stroke.values == pytest.approx((1e-4, 1.05e-3, 2e-3), rel=1e-15)
+    assert (angle.key.column, stroke.key.column) == ("vibration_angle_deg", "peak_to_peak_mm")
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("track.clim=1:2:3", "track.clim: unknown key 'track.clim' - did you mean track.climb?"),
+        (
+            "friction.static=0:1",
+            "friction.static: '0:1' is no range - write FROM:TO:COUNT, as in friction.static=0:10:20",
+        ),
+        (
+            "friction.static=0.3:0.30:5",
+            "friction.static: begins where it ends - give two different values, or --set the one",
+        ),
+        ("friction.static=0:1:1", "friction.static: '1' is no count - give a whole number from 2 to 2000"),
+        (
+            "friction.static=0:1:1e9",
+            "friction.static: '1e9' is no count - give a whole number from 2 to 2000",
+        ),
+        ("friction.static=0:11:5", "friction.static: '11' is out of range - give 0 to 10"),
+        (
+            "drive.frequency=1 mm:2:3",
+            "drive.frequency: '1 mm' is a length, not a frequency - give it in Hz",
+        ),
+    ],
+)
+def test_a_fault_in_a_range(text, line):
+    with pytest.raises(FeederError) as caught:
+        bowl.ranges([text])
+    assert caught.value.lines == (f"--vary {line}",)
+
+
+def test_one_field_is_varied_once():
+    with pytest.raises(FeederError) as caught:
+        bowl.ranges(["drive.amplitude=0:1:3", "drive.peak_to_peak=0:1:3"])
+    assert caught.value.lines == ("--vary drive.peak_to_peak: is varied twice - vary two different keys",)
+
+
+def test_the_schema_agrees_with_the_record():
+    assert bowl.texts(bowl.settings()).keys() == {key.name for key in schema.KEYS}
+    for key in schema.KEYS:
+        low, high = (units.quantity(text, key.dimension) for text in (key.lowest, key.highest))
+        default = next(s.value for s in bowl.settings() if s.key is key)
+        assert low <= default <= high
+
+
+def test_names_and_identities(file):
+    path = file("restitution: 0.1\n")
+    assert (bowl.name(), bowl.name("configs/thesis.yaml")) == ("defaults", "thesis")
+    assert bowl.identity() == {}
+    assert len(bowl.identity(path)["bowl.yaml"]) == 64
+
+
+@given(st.text(max_size=80))
+@settings(max_examples=100, deadline=None)
+def test_any_override_is_a_bowl_or_faults_of_one_line(text):
+    try:
+        assert bowl.read(None, [text, f"drive.amplitude={text}"])
+    except FeederError as error:
+        assert all("\n" not in line for line in error.lines)
+
+
+@given(st.floats(0.0, 90.0))
+def test_a_value_in_full_precision_comes_back(angle):
+    read = bowl.read(None, [f"drive.vibration_angle={angle!r} deg"])
+    assert read.drive.vibration_angle == angle * units.factor("deg", "angle")

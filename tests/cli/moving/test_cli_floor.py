@@ -1,0 +1,109 @@
+"""``feeder floor``: the contract of its JSON, its files, its faults."""
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapes
+
+PARTS = Path(__file__).parents[3] / "parts"
+BRACKET, CARD = PARTS / "lbracket_30x20x15.stl", PARTS / "arc_chute.yaml"
+INSTANT = (
+    "normal_force_N", "alignment_acceleration_rad_s2", "stable_heading_deg", "limiting_friction",
+    "acceleration_y_m_s2", "acceleration_z_m_s2", "normal_line_offset_mm", "tips",
+)  # fmt: skip
+GENTLE = ("--set", "drive.amplitude=0.05 mm", "--set", "drive.vibration_angle=20 deg")
+
+
+def document(run, *arguments):
+    result = run("floor", *arguments, "--format", "json")
+    assert result.exit_code == 0, result.output
+    return json.loads(result.stdout)
+
+
+def test_contract(run):
+    found = document(run, BRACKET, "--aspect", "A", "--heading", "30deg", *GENTLE)
+    assert set(INSTANT) <= set(found["instant"])
+    assert found["regime"] in ("stick", "slide", "hop", "tip")
+    assert found["heading_deg"] == pytest.approx(30)
+    lengths = {len(column) for column in found["cycle"].values()}
+    assert lengths == {72}
+    assert set(found["cycle"]["state"]) <= {"stick", "slide", "hop", "tip"}
+
+
+def test_upper_reversal_is_in_the_cycle(run):
+    found = document(run, BRACKET, *GENTLE)
+    place = found["cycle"]["phase_deg"].index(90.0)
+    assert found["cycle"]["normal_force_N"][place] == pytest.approx(found["instant"]["normal_force_N"])
+
+
+def test_a_card_does_not_know_whether_it_tips(run):
+    result = run("floor", CARD, "--aspect", "5", *GENTLE)
+    assert result.exit_code == 0
+    assert "a part card has no contact polygon: whether it tips is not known" in result.stderr
+    assert document(run, CARD, "--aspect", "5", *GENTLE)["instant"]["tips"] is None
+
+
+def test_as_published_names_the_omitted_terms(run):
+    found = document(run, CARD, "--aspect", "5", *GENTLE, "--set", "drive.direction=10 deg", "--as-published")
+    rows = {row["quantity"]: row for row in found["difference"]}
+    assert rows["normal_force_N"]["omitted_term"] == "-"
+    assert "a wall to take the force across" in rows["limiting_friction"]["omitted_term"]
+    assert found["instant"]["normal_line_offset_mm"] == rows["normal_line_offset_mm"]["as_published"]
+
+
+def test_csv_is_the_cycle(run):
+    rows = list(csv.DictReader(run("floor", BRACKET, *GENTLE, "--format", "csv").stdout.splitlines()))
+    assert len(rows) == 72
+    assert rows[18]["phase_deg"] == "90"
+
+
+def test_files(run, tmp_path):
+    result = run("floor", BRACKET, *GENTLE, "-o", "out")
+    assert result.exit_code == 0, result.output
+    names = {p.name for p in (tmp_path / "out/lbracket_30x20x15").iterdir()}
+    maps = {
+        f"floor_{kind}.{end}"
+        for kind in ("beta_friction", "frequency_amplitude", "heading")
+        for end in ("csv", "png")
+    }
+    assert names == maps | {"floor.json", "floor_cycle.csv", "floor_cycle.png", "floor_plan.png", "run.json"}
+    table = (tmp_path / "out/lbracket_30x20x15/floor_beta_friction.csv").read_text()
+    rows = list(csv.DictReader(table.splitlines()))
+    assert {"beta_deg", "friction", "acceleration_z_m_s2", "published_z_m_s2", "regime"} <= set(rows[0])
+
+
+def test_a_map_on_which_nothing_slides_is_drawn_and_said(run, tmp_path):
+    result = run("floor", BRACKET, "--set", "drive.amplitude=0 mm", "-o", "out")
+    assert result.exit_code == 0
+    assert "beta and friction: nothing slides anywhere on this map." in result.stderr
+    assert (tmp_path / "out/lbracket_30x20x15/floor_beta_friction.png").stat().st_size > 5000
+
+
+def test_a_turned_and_moved_file_changes_nothing(run, tmp_path, rng):
+    mesh = shapes.prism([(0, 0), (30, 0), (30, 5), (12, 5), (5, 14), (0, 14)], 7.0)
+    mesh.export(tmp_path / "straight.stl")
+    shapes.turned(mesh, rng).export(tmp_path / "turned.stl")
+    sets = (*GENTLE, "--set", "drive.direction=10 deg", "--set", "friction.static=0.3", "--heading", "25deg")
+    first, second = (document(run, name, "--aspect", "B", *sets) for name in ("straight.stl", "turned.stl"))
+    for name in INSTANT[:-1]:
+        assert second["instant"][name] == pytest.approx(first["instant"][name], rel=1e-4, abs=1e-9), name
+    assert np.allclose(first["cycle"]["velocity_m_s"], second["cycle"]["velocity_m_s"], rtol=1e-5, atol=1e-9)
+
+
+def test_an_unknown_aspect_names_those_that_exist(run, tmp_path):
+    result = run("floor", CARD, "--aspect", "Z", "-o", "out")
+    assert result.exit_code == 1
+    assert result.stderr.splitlines()[-1] == (
+        f"Error: {CARD}: there is no aspect 'Z' - choose one of 1, 2, 3, 4, 5"
+    )
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_heading_that_is_no_angle(run):
+    result = run("floor", BRACKET, "--heading", "north")
+    assert result.exit_code == 2
+    assert "'north' is not a number" in result.stderr
+    assert len(result.stderr.strip().splitlines()) == 1

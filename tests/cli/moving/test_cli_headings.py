@@ -1,0 +1,69 @@
+"""``feeder headings``: the contract of its JSON, its pictures, its faults."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapes
+
+PARTS = Path(__file__).parents[3] / "parts"
+BRACKET, CARD = PARTS / "lbracket_30x20x15.stl", PARTS / "arc_chute.yaml"
+CONTRACT = {"heading_deg", "share", "length_mm", "width_mm", "falls_off"}
+
+
+def rows(run, *arguments):
+    result = run("headings", *arguments, "--format", "json")
+    assert result.exit_code == 0, result.output
+    return json.loads(result.stdout)["headings"]
+
+
+def test_a_bar_at_a_straight_wall(run, tmp_path):
+    shapes.box(30, 10, 5).export(tmp_path / "bar.stl")
+    found = rows(run, "bar.stl", "--aspect", "A", "--set", "track.radius=100 m")
+    assert set(found[0]) >= CONTRACT
+    long_side = [row for row in found if row["length_mm"] == pytest.approx(30, rel=1e-3)]
+    assert sum(row["share"] for row in long_side) == pytest.approx(4 * np.arctan(3) / (2 * np.pi), rel=1e-6)
+    assert [row["half_turn_of_deg"] for row in long_side] == pytest.approx([180, 0], abs=1e-6)
+
+
+def test_every_aspect_has_shares_that_sum_to_one(run):
+    found = rows(run, BRACKET)
+    for name in {row["aspect"] for row in found}:
+        assert sum(row["share"] for row in found if row["aspect"] == name) == pytest.approx(1)
+    assert sum(row["aspect_share"] for row in found) == pytest.approx(1)
+
+
+def test_a_narrow_track_lets_the_part_fall(run):
+    wide, narrow = (rows(run, BRACKET, "--aspect", "A", "--set", f"track.width={w} mm") for w in (40, 12))
+    assert not any(row["falls_off"] for row in wide)
+    assert [row["heading_deg"] for row in narrow if row["falls_off"]] == pytest.approx([270])
+
+
+def test_files(run, tmp_path):
+    result = run("headings", BRACKET, "--aspect", "A", "-o", "out")
+    assert result.exit_code == 0, result.output
+    names = {p.name for p in (tmp_path / "out/lbracket_30x20x15").iterdir()}
+    assert names == {"headings.csv", "headings.json", "headings_A.png", "run.json"}
+
+
+def test_a_round_part_takes_any_heading(run):
+    result = run("headings", PARTS / "washer_m6.stl", "--aspect", "A")
+    assert result.exit_code == 0
+    assert "aspect A is round in plan: it takes any heading" in result.stderr
+
+
+def test_a_card_has_no_outline(run):
+    result = run("headings", CARD)
+    assert result.exit_code == 1
+    assert result.stderr.splitlines()[-1] == (
+        "Error: part card: the card of aspect 1 has no outline - give the part as a mesh"
+    )
+
+
+def test_an_unknown_aspect(run):
+    result = run("headings", BRACKET, "--aspect", "Q")
+    assert result.exit_code == 1
+    assert result.stderr.splitlines()[-1] == (
+        f"Error: {BRACKET}: there is no aspect 'Q' - choose one of A, B, C, D, E"
+    )

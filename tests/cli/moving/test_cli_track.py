@@ -1,0 +1,183 @@
+"""``feeder track``: the contract of its JSON, its maps and pictures, its faults."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+import shapes
+
+PARTS = Path(__file__).parents[3] / "parts"
+BRACKET, CARD, MAGNET = PARTS / "lbracket_30x20x15.stl", PARTS / "arc_chute.yaml", PARTS / "magnet.yaml"
+INSTANT = (
+    "normal_force_N", "wall_1_N", "wall_2_N", "radial_friction_N", "traction_N",
+    "normal_line_offset_mm", "acceleration_x_m_s2", "tips",
+)  # fmt: skip
+SETS = (
+    "--set", "drive.amplitude=0.05 mm", "--set", "drive.vibration_angle=20 deg",
+    "--set", "track.bank=10 deg", "--set", "friction.static=0.4",
+)  # fmt: skip
+
+
+def document(run, *arguments):
+    result = run("track", *arguments, "--format", "json")
+    assert result.exit_code == 0, result.output
+    return json.loads(result.stdout)
+
+
+def test_contract(run):
+    found = document(run, BRACKET, "--aspect", "A", *SETS)
+    assert set(INSTANT) <= set(found["instant"])
+    assert found["first_to_open"] in ("floor", "wall_1", "wall_2", "none")
+    assert set(found["tipping_axis"]) == {"point_mm", "direction", "pitch_mm"}
+    assert set(found["friction_needed"]) == {"floor", "wall_1", "wall_2"}
+    assert found["stays_on_wall"] is True
+    assert {len(column) for column in found["cycle"].values()} == {72}
+    assert min(found["cycle"]["wall_1_N"]) >= 0.0
+
+
+@pytest.mark.parametrize(("card", "aspect"), [(CARD, "5"), (MAGNET, "3")])
+def test_cards(run, card, aspect):
+    found = document(run, card, "--aspect", aspect, *SETS)
+    assert found["instant"]["tips"] is None
+    assert found["bank_without_radial_friction_deg"] == pytest.approx({"5": 64.22, "3": 57.12}[aspect])
+
+
+def test_as_published_lists_what_the_print_leaves_out(run):
+    found = document(run, CARD, "--aspect", "5", *SETS, "--as-published")
+    rows = {row["quantity"]: row for row in found["difference"]}
+    assert "radial gravity" in rows["wall_1_N"]["omitted_term"]
+    assert found["instant"]["wall_1_N"] == rows["wall_1_N"]["as_published"]
+    assert "4.33" in {term["equation"] for term in found["omitted_terms"]}
+
+
+def test_laid_at_a_heading_it_settles_in_that_range(run):
+    headings = [
+        document(run, BRACKET, "--aspect", "A", *SETS, "--heading", laid)["heading_deg"]
+        for laid in ("10deg", "170deg")
+    ]
+    assert headings == pytest.approx([2.1345, 177.8655], abs=1e-3)
+
+
+def test_map_over_any_two_keys(run):
+    result = run(
+        "track",
+        BRACKET,
+        *SETS,
+        "--vary",
+        "track.bank=0:20:3",
+        "--vary",
+        "friction.static=0.2:0.6:2",
+        "--format",
+        "csv",
+    )
+    rows = list(csv.DictReader(result.stdout.splitlines()))
+    assert len(rows) == 6
+    assert list(rows[0])[:2] == ["bank_deg", "static"]
+    one = document(run, BRACKET, *SETS, "--set", "friction.static=0.6", "--set", "track.bank=20 deg")
+    assert float(rows[-1]["normal_force_N"]) == pytest.approx(one["instant"]["normal_force_N"], rel=1e-5)
+
+
+def test_files(run, tmp_path):
+    result = run("track", BRACKET, *SETS, "-o", "out")
+    assert result.exit_code == 0, result.output
+    names = {p.name for p in (tmp_path / "out/lbracket_30x20x15").iterdir()}
+    assert names == {
+        "track.json", "track_cycle.csv", "track_cycle.png", "track_map.csv", "track_map.png",
+        "track_part.png", "run.json",
+    }  # fmt: skip
+
+
+def test_a_card_is_drawn_without_an_outline(run, tmp_path):
+    result = run("track", CARD, "--aspect", "5", *SETS, "-o", "out", "--as-published")
+    assert result.exit_code == 0, result.output
+    folder = tmp_path / "out/arc_chute"
+    assert (folder / "track_part.png").stat().st_size > 5000
+    assert (folder / "track_omitted_terms.csv").exists()
+
+
+def test_a_map_on_which_nothing_slides_is_said(run):
+    result = run(
+        "track",
+        BRACKET,
+        *SETS,
+        "--set",
+        "drive.amplitude=0 mm",
+        "--vary",
+        "track.bank=0:5:3",
+        "--vary",
+        "track.climb=0:2:3",
+    )
+    assert result.exit_code == 0
+    assert "nothing slides anywhere on the map" in result.stderr
+
+
+def test_a_turned_and_moved_file_changes_nothing(run, tmp_path, rng):
+    mesh = shapes.prism([(0, 0), (30, 0), (30, 5), (12, 5), (5, 14), (0, 14)], 7.0)
+    mesh.export(tmp_path / "straight.stl")
+    shapes.turned(mesh, rng).export(tmp_path / "turned.stl")
+    first, second = (document(run, name, "--aspect", "A", *SETS) for name in ("straight.stl", "turned.stl"))
+    for name in INSTANT[:-1]:
+        assert second["instant"][name] == pytest.approx(first["instant"][name], rel=1e-3, abs=1e-7), name
+    assert second["heading_deg"] == pytest.approx(first["heading_deg"], abs=1e-3)
+    assert second["first_to_open"] == first["first_to_open"]
+
+
+@pytest.mark.parametrize(
+    ("sets", "line"),
+    [
+        (
+            ("--set", "track.radius=15 mm"),
+            "Error: track.radius: 15 mm is less than the part's 33.54 mm across - "
+            "give the radius of a bowl that holds the part",
+        ),
+        (
+            ("--set", "track.width=2 mm"),
+            "Error: aspect A: the part falls off the track in every heading - "
+            "give a wider track, or another aspect",
+        ),
+        (
+            ("--set", "track.width=12 mm", "--heading", "270deg"),
+            "Error: aspect A, heading 270 deg: the part needs 30.19 mm of track and falls off - "
+            "give a wider track, or another heading",
+        ),
+    ],
+)
+def test_faults_are_one_line_and_leave_nothing(run, tmp_path, sets, line):
+    result = run("track", BRACKET, "--aspect", "A", *sets, "-o", "out")
+    assert result.exit_code == 1
+    assert result.stderr.splitlines()[-1] == line
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_card_without_track_data(run):
+    result = run("track", CARD, "--aspect", "1")
+    assert result.exit_code == 1
+    assert result.stderr.splitlines()[-1] == (
+        "Error: part card, aspect 1: the card has no wall_lever for this aspect in its track block"
+        " - choose the aspect that its track block names, or give the part as a mesh"
+    )
+
+
+def test_vary_is_given_twice(run):
+    result = run("track", BRACKET, "--vary", "track.bank=0:5:3")
+    assert result.exit_code == 2
+    assert "--vary is given 1 times - give it twice, for a map" in result.stderr
+
+
+def test_the_cycle_has_the_names_of_the_instant(run):
+    document = json.loads(run("track", BRACKET, "--format", "json").stdout)
+    assert set(document["instant"]) <= set(document["cycle"])
+
+
+def test_values_in_the_picture_do_not_cover_one_another(tmp_path):
+    from feederscrew import bowl, part
+    from feederscrew.output.track import figures as track_plots
+    from feederscrew.studies.track import analyse
+
+    figure = track_plots.part(analyse(part.load(BRACKET), bowl.default()), "bracket")
+    figure.canvas.draw()
+    for axes in figure.axes:
+        boxes = [text.get_window_extent() for text in axes.texts if text.get_text()]
+        clashes = [a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i]]
+        assert len(boxes) > 2 and not any(clashes)

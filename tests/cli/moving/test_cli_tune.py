@@ -1,0 +1,53 @@
+"""``feeder tune`` from the command line."""
+
+import json
+from pathlib import Path
+
+PART = Path(__file__).parents[3] / "parts" / "lbracket_30x20x15.stl"
+BOWL = ("--set", "drive.frequency=50 Hz", "--set", "restitution=0", "--set", "friction.static=0.4")
+
+
+def told(result):
+    return [line for line in result.stderr.splitlines() if not line.startswith("Compiling")]
+
+
+def test_a_setting_that_reaches_the_target(run):
+    result = run("tune", PART, "--aspect", "A", "--target", "12/min", *BOWL, "--format", "json")
+    settings = json.loads(result.stdout)["settings"]
+    assert all(abs(one["parts_per_minute"] - 12.0) < 1e-4 for one in settings)
+    first = settings[0]
+    amplitude = f"{first['key']}={first['value']!r} {first['unit']}"
+    back = run("rate", PART, "--aspect", "A", *BOWL, "--set", amplitude, "--format", "json")
+    assert abs(json.loads(back.stdout)["parts_per_minute"] - 12.0) < 1e-3
+
+
+def test_files(run):
+    run("tune", PART, "--aspect", "A", "--target", "12/min", *BOWL, "-o", "results")
+    assert {path.name for path in Path("results", PART.stem).iterdir()} == {
+        "tune.csv",
+        "tune.json",
+        "run.json",
+    }
+
+
+def test_an_unreachable_target_is_one_line(run):
+    result = run("tune", PART, "--aspect", "A", "--target", "100000/min", *BOWL)
+    assert result.exit_code == 1
+    (line,) = told(result)
+    assert line.startswith("Error: --target: no setting reaches 100000/min: the most is ")
+
+
+def test_a_target_without_unit(run):
+    result = run("tune", PART, "--aspect", "A", "--target", "120")
+    assert result.exit_code == 2
+    assert told(result)[0].startswith(
+        "Error: Invalid value for '--target': '120' has no unit - write 120 /min"
+    )
+
+
+def test_the_table_fits_a_terminal(run):
+    result = run("tune", PART, "--aspect", "A", "--target", "12/min", *BOWL)
+    lines = result.stdout.splitlines()
+    assert max(map(len, lines)) <= 110
+    assert lines[2].startswith("drive.amplitude ")
+    assert lines[0].endswith("to hop")

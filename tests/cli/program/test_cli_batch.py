@@ -1,0 +1,110 @@
+"""``feeder batch``: what it prints, writes and leaves with."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from feederscrew_cli import progress
+
+ROOT = Path(__file__).parents[3]
+NUT = ROOT / "parts/squarenut_m5.stl"
+WASHER = ROOT / "parts/washer_m6.stl"
+
+
+def test_a_batch_writes_a_summary_and_a_folder_a_part(run, tmp_path):
+    done = run("batch", NUT, WASHER, "-o", "out", "--jobs", "1", "--no-pictures", "--format", "csv")
+    assert done.exit_code == 0
+    assert done.stderr == "Wrote out (2 parts; open index.html)\n"
+    assert done.stdout == (tmp_path / "out/summary.csv").read_text()
+    assert sorted(p.name for p in (tmp_path / "out/parts").iterdir()) == ["squarenut_m5", "washer_m6"]
+    record = json.loads((tmp_path / "out/parts/washer_m6/run.json").read_text())["batch"]
+    assert set(record["files"]) == {
+        "aspects.csv",
+        "aspects.json",
+        "convey.json",
+        "orientations.csv",
+        "rate.json",
+    }
+    assert record["effective"]["drive.frequency"] == "60 Hz"
+
+
+def test_a_bad_part_is_one_line_and_status_1_and_resume_says_what_it_kept(run, tmp_path):
+    (tmp_path / "bad.stl").write_bytes(b"")
+    call = ("batch", NUT, "bad.stl", "-o", "out", "--jobs", "1", "--no-pictures")
+    done = run(*call)
+    assert done.exit_code == 1
+    assert done.stderr == (
+        "Error: bad.stl: is empty - export the part again\nWrote out (2 parts; open index.html)\n"
+    )
+    again = run(*call, "--resume")
+    assert again.exit_code == 1
+    assert "Wrote out (2 parts, 1 of them as they were; open index.html)\n" in again.stderr
+
+
+def test_drops_add_a_drop_test_with_a_seed_from_the_part(run, tmp_path):
+    done = run("batch", NUT, "-o", "out", "--jobs", "1", "--no-pictures", "--drops", "50", "--format", "json")
+    [row] = json.loads(done.stdout)["parts"]
+    assert row["drops"] == 50
+    dropped = json.loads((tmp_path / "out/parts/squarenut_m5/drop.json").read_text())
+    assert row["p_drop"] == max(aspect["p_drop"] for aspect in dropped["aspects"])
+    record = json.loads((tmp_path / "out/parts/squarenut_m5/run.json").read_text())["batch"]
+    assert dropped["seed"] == int(record["inputs"][0]["sha256"][:8], 16)
+
+
+def test_a_depfile_names_every_part(run, tmp_path):
+    run("batch", NUT, "-o", "out", "--jobs", "1", "--no-pictures", "-q", "--depfile", "all.d")
+    assert (tmp_path / "all.d").read_text() == f"out/summary.csv out/index.html: {NUT}\n{NUT}:\n"
+
+
+@pytest.mark.parametrize(
+    ("call", "status", "line"),
+    [
+        (["nut.stl"], 2, "Error: Missing option '-o' - say where the results go (see feeder batch --help)"),
+        (
+            ["nut.stl", "-o", "out", "--jobs", "0"],
+            2,
+            "'0' is no number of processes - give 1, 2, ... or auto",
+        ),
+        (
+            ["nut.stl", "-o", "out", "--rule", "scs"],
+            1,
+            "Error: --rule: unknown rule 'scs' - did you mean csa?",
+        ),
+        (["nut.stl", "-o", "out", "--set", "friction.wal=1"], 1, "did you mean friction.wall?"),
+    ],
+)
+def test_a_wrong_call_is_one_line(run, call, status, line):
+    done = run("batch", *call)
+    assert done.exit_code == status
+    assert line in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_progress_is_for_terminals_only(capsys):
+    with progress.Progress(2) as shown:
+        shown.tell(kept=False)
+    assert capsys.readouterr().err == ""
+
+
+def test_progress_tells_what_is_left(capsys, monkeypatch):
+    now = [0.0]
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
+    monkeypatch.setattr("time.time", lambda: now[0])
+    with progress.Progress(6) as shown:
+        shown.tell(kept=True)  # one part less to do
+        now[0] = 30.0
+        shown.tell(kept=False)
+    lines = capsys.readouterr().err.split("\r")
+    assert [line.strip("\n ").partition("]  ")[2] for line in lines if "]" in line] == [
+        "0/6",
+        "0/5",
+        "1/5  00:02:00\x1b[?25h",
+    ]
+
+
+def test_progress_of_parts_that_are_all_there(capsys, monkeypatch):
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
+    with progress.Progress(1) as shown:
+        shown.tell(kept=True)
+    assert "0/0" in capsys.readouterr().err

@@ -1,0 +1,62 @@
+"""``feeder doctor``: the installation, told without importing it."""
+
+import platform
+import tomllib
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+
+from feederscrew_cli import health
+
+SAID = ["click>=8", "numpy>=1", 'nowhere; extra == "dist"', 'click; extra == "step"', 'ruff; extra == "test"']
+
+
+@pytest.fixture
+def installation(monkeypatch):
+    monkeypatch.setattr(metadata, "requires", lambda name: SAID)
+
+
+def test_it_lists_versions_extras_kernels_and_completion(run, installation):
+    done = run("doctor")
+    assert (done.exit_code, done.stderr) == (0, "")
+    lines = [line.split(maxsplit=1) for line in done.stdout.splitlines() if line.startswith("  ")]
+    told = dict(lines)
+    assert told["numpy"] == metadata.version("numpy")
+    assert told["python"].startswith(platform.python_version())
+    assert told["dist"] == "missing nowhere: pip install 'feederscrew[dist]'"
+    assert told["step"] == f"click {metadata.version('click')}"
+    assert "test" not in told
+
+
+def test_every_extra_of_the_project_is_told_but_those_of_developers():
+    project = tomllib.loads((Path(__file__).parents[3] / "pyproject.toml").read_text())["project"]
+    needed, extras = health.requirements()
+    assert set(extras) == set(project["optional-dependencies"]) - set(health.DEVELOPERS)
+    assert len(needed) == len(project["dependencies"])
+
+
+def test_it_counts_the_kernels_of_the_folder_that_numba_is_told(monkeypatch, tmp_path):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    assert dict(health.kernels())["state"].startswith("none yet")
+    (tmp_path / "deep").mkdir()
+    (tmp_path / "deep/sweep.nbi").touch()
+    assert health.kernels() == [("state", "1 functions kept"), ("place", str(tmp_path))]
+
+
+@pytest.mark.parametrize(
+    ("shell", "line"),
+    [
+        ("/bin/zsh", 'eval "$(_FEEDER_COMPLETE=zsh_source feeder)" in ~/.zshrc'),
+        ("/usr/bin/fish", "_FEEDER_COMPLETE=fish_source feeder > ~/.config/fish/completions/feeder.fish"),
+        ("", "for bash, zsh and fish: see the README"),
+    ],
+)
+def test_it_knows_how_completion_is_turned_on(monkeypatch, shell, line):
+    monkeypatch.setenv("SHELL", shell)
+    assert health.completion() == line
+
+
+def test_no_color_is_respected(monkeypatch):
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert dict(health.report()["Shell"])["colours"] == "off: NO_COLOR is set"

@@ -1,0 +1,284 @@
+"""The program: its commands, its help and its one error fence."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import click
+import pytest
+from click.testing import CliRunner
+
+from feederscrew import __version__
+from feederscrew.errors import Faults, FeederError, MeshError
+from feederscrew.output import tables
+from feederscrew_cli import options
+from feederscrew_cli.main import Fence, feeder
+
+ROOT = Path(__file__).parents[3]
+HEAVY = {"numpy", "scipy", "trimesh", "pandas", "matplotlib", "numba", "embreex", "yaml"}
+
+
+def told(*arguments):
+    """A program of a few odd commands, run."""
+    return CliRunner().invoke(PROGRAM, list(arguments))
+
+
+@click.command()
+def bad():
+    """Example: feeder bad"""
+    raise MeshError("parts/a.stl", "is open", "close it")
+
+
+@click.command()
+def worse():
+    """Example: feeder worse"""
+    raise Faults(
+        [FeederError("b.yaml:2:3", "is odd", "mend it"), FeederError("b.yaml:4:1", "is odd", "mend it")]
+    )
+
+
+@click.command()
+def stop():
+    """Example: feeder stop"""
+    raise KeyboardInterrupt
+
+
+@click.command()
+def bug():
+    """Example: feeder bug"""
+    raise ZeroDivisionError
+
+
+@click.command()
+@options.output
+def speak(out):
+    """Example: feeder speak"""
+    out.warn("careful")
+    out.say("done")
+    out.detail("slowly")
+    with out.step("nothing"):
+        pass
+    out.show(tables.frame({"normal_x": [1.0], "height_mm": [2.0]}), {"height_mm": 2.0}, hidden=["normal_x"])
+
+
+@click.command()
+@options.part
+@options.bowl
+@options.output
+def put(part, bowl, out):
+    """Example: feeder put nut.stl -o results"""
+    with out.folder("nut", {part["source"]: "aa"}, {"bowl": bowl["overrides"]}) as folder:
+        out.warn("careful")
+        if folder:
+            folder.write("a.csv", "x\n")
+    out.json({"part": part, "bowl": bowl})
+
+
+EMPTY_PATHS = (  # and the option or argument that is to blame
+    (["aspects", ""], "PART"),
+    (["batch", ""], "PARTS..."),
+    (["aspects", "a.stl", "-o", ""], "-o' / '--output"),
+    (["report", "a.stl", "-o", ""], "-o' / '--output"),
+    (["aspects", "a.stl", "--depfile", ""], "--depfile"),
+    (["slide", "--config", ""], "--config"),
+    (["compare", "a.stl", "--with", ""], "--with"),
+    (["calibrate", "a.stl", "--with", ""], "--with"),
+)
+PROGRAM = Fence("feeder", commands=[bad, worse, stop, bug, speak, put])
+
+
+def test_a_fault_is_one_line_and_status_1():
+    done = told("bad")
+    assert (done.exit_code, done.stderr, done.stdout) == (1, "Error: parts/a.stl: is open - close it\n", "")
+
+
+def test_all_faults_of_a_file_are_told():
+    done = told("worse")
+    assert done.exit_code == 1
+    assert done.stderr == "Error: b.yaml:2:3: is odd - mend it\nError: b.yaml:4:1: is odd - mend it\n"
+
+
+def test_an_interrupt_is_one_line_and_status_130():
+    done = told("stop")
+    assert (done.exit_code, done.stderr.strip(), done.stdout) == (130, "Stopped.", "")
+
+
+def test_our_own_bug_keeps_its_traceback():
+    assert isinstance(told("bug").exception, ZeroDivisionError)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (["aspect"], "Error: No such command 'aspect'. Did you mean 'aspects'? (see feeder --help)"),
+        (["--versoin"], "Error: No such option '--versoin'. Did you mean '--version'? (see feeder --help)"),
+        (
+            ["aspects", "a.stl", "--densty", "steel"],
+            "Error: No such option '--densty'. Did you mean '--density'? (see feeder aspects --help)",
+        ),
+        (["aspects"], "Error: Missing argument 'PART'. (see feeder aspects --help)"),
+        (
+            ["aspects", "a.stl", "--units", "ft"],
+            "Error: Invalid value for '--units': 'ft' is not one of 'mm', 'cm', 'm', 'in'."
+            " (see feeder aspects --help)",
+        ),
+        (
+            ["aspects", "a.stl", "--format", "jsn"],
+            "Error: Invalid value for '--format': 'jsn' is not one of 'table', 'csv', 'json'."
+            " Did you mean 'json'? (see feeder aspects --help)",
+        ),
+        *(
+            (call, f"Error: Invalid value for '{name}': is empty - give a path (see feeder {call[0]} --help)")
+            for call, name in EMPTY_PATHS
+        ),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)
+def test_a_wrong_call_is_one_line_and_status_2(run, arguments, line):
+    done = run(*arguments)
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert done.stderr.splitlines() == [line.replace("feeder", feeder.name)]
+
+
+def test_talk_goes_to_stderr_and_data_to_stdout():
+    done = told("speak")
+    assert done.stderr == "Warning: careful\ndone\n"
+    assert done.stdout.split() == ["height", "[mm]", "2.000"]
+
+
+def test_quiet_and_verbose():
+    assert told("speak", "-q").stderr == ""
+    assert "slowly\nnothing: 0.00 s\n" in told("speak", "-v").stderr
+
+
+def test_csv_and_json_hide_no_column():
+    assert told("speak", "--format", "csv").stdout == "normal_x,height_mm\n1,2\n"
+    assert json.loads(told("speak", "--format", "json").stdout) == {"height_mm": 2.0}
+
+
+def test_shared_options_arrive_as_keywords(tmp_path):
+    call = ["put", "nut.stl", "--units", "in", "--set", "a=1", "--set", "b=2", "--centre-of-mass", "-1,2,3"]
+    assert json.loads(told(*call).stdout) == {
+        "part": {
+            "source": "nut.stl", "units": "in", "density": None,
+            "centre_of_mass": "-1,2,3", "allow_open": False,
+        },
+        "bowl": {"path": None, "overrides": ["a=1", "b=2"]},
+    }  # fmt: skip
+
+
+def test_a_run_into_a_folder_is_recorded_as_typed(tmp_path):
+    done = told("put", "nut.stl", "--set", "a=1", "-o", str(tmp_path / "res"))
+    assert done.stderr.endswith(f"Wrote {tmp_path / 'res/nut'} (a.csv, run.json)\n")
+    entry = json.loads((tmp_path / "res/nut/run.json").read_text())["put"]
+    assert entry["version"] == __version__
+    assert entry["arguments"] == ["put", "nut.stl", "--set", "a=1", "-o", str(tmp_path / "res")]
+    assert entry["effective"] == {"bowl": ["a=1"]}
+    assert entry["warnings"] == ["careful"]
+
+
+def test_without_o_nothing_is_written(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    told("put", "nut.stl")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_help_imports_no_heavy_library():
+    code = f"""
+import sys
+from click.testing import CliRunner
+from feederscrew_cli.main import feeder
+done = CliRunner().invoke(feeder, ["--help"])
+assert done.exit_code == 0 and "aspects" in done.stdout, done.output
+print(*sorted({HEAVY!r} & set(sys.modules)))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
+    assert (done.stderr, done.stdout.strip()) == ("", "")
+
+
+def test_version(run):
+    assert run("--version").stdout == f"feeder, version {__version__}\n"
+
+
+def test_feeder_alone_shows_its_commands(run):
+    done = run()
+    assert done.exit_code == 0
+    for name in feeder.commands:
+        assert f"  {name} " in done.stdout
+
+
+@pytest.mark.parametrize("name", list(feeder.commands))
+def test_every_command_is_shown_by_example(run, name):
+    command = feeder.commands[name]
+    for each in [command, *getattr(command, "commands", {}).values()]:
+        assert each.help.startswith(f"Example: feeder {name}"), each.name
+        assert each.short_help
+    lines = [line.strip() for line in run(name, "--help").stdout.splitlines() if line.strip()]
+    assert lines[1].startswith("Example: feeder")
+
+
+@pytest.mark.parametrize("name", list(feeder.commands))
+def test_every_command_is_in_the_readme(name):
+    assert f"feeder {name}" in (ROOT / "README.md").read_text()
+
+
+def test_a_closed_pipe_is_silent():
+    code = """
+import click
+from feederscrew_cli.main import Fence
+def talk():
+    for k in range(100_000):
+        click.echo("line")
+Fence("feeder", commands=[click.Command("talk", callback=talk)])(["talk"])
+"""
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT
+    ) as child:
+        assert child.stdout.readline() == "line\n"
+        child.stdout.close()
+        assert (child.wait(timeout=20), child.stderr.read()) == (141, "")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+def test_ctrl_c_stops_in_one_line():
+    code = """
+import click, time
+from feederscrew_cli.main import Fence
+def nap():
+    print("up", flush=True)
+    time.sleep(30)
+Fence("feeder", commands=[click.Command("nap", callback=nap)])(["nap"])
+"""
+    child = subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT
+    )
+    assert child.stdout.readline() == "up\n"
+    time.sleep(0.05)
+    child.send_signal(signal.SIGINT)
+    _, said = child.communicate(timeout=10)
+    assert (child.returncode, said.strip()) == (130, "Stopped.")
+
+
+def test_the_readme_says_what_the_program_says():
+    done = subprocess.run(
+        [sys.executable, "docs/readme.py", "--check"], capture_output=True, text=True, cwd=ROOT
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", ""), "run: make docs"
+
+
+@pytest.mark.parametrize(
+    ("call", "line"),
+    [
+        (("aspects", "--surface-exponent", "nan"), "'--surface-exponent': 'nan' is no number"),
+        (("drop", "--plate", "--seconds", "nan"), "'--seconds': 'nan' is no number"),
+        (("track", "--heading", "1e300"), "'--heading': '1e300' is out of range - stay within ten turns"),
+    ],
+)
+def test_a_number_that_is_none_is_a_wrong_call(run, call, line):
+    done = run(call[0], ROOT / "parts/washer_m6.stl", *call[1:])
+    assert done.exit_code == 2 and done.stdout == ""
+    assert done.stderr == f"Error: Invalid value for {line} (see feeder {call[0]} --help)\n"

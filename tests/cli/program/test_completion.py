@@ -1,0 +1,49 @@
+"""What the shell completes: asked as bash asks it."""
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from feederscrew.part import load
+from feederscrew.part.density import density
+from feederscrew.rate import queue
+from feederscrew.resting.aspects import find
+from feederscrew_cli.main import feeder
+
+BRACKET = Path(__file__).parents[3] / "parts/lbracket_30x20x15.stl"
+
+
+def completed(*words):
+    """What the last of these words is completed to."""
+    asked = {"_FEEDER_COMPLETE": "bash_complete", "COMP_WORDS": " ".join(words), "COMP_CWORD": len(words) - 1}
+    done = CliRunner().invoke(feeder, [], prog_name="feeder", env={k: str(v) for k, v in asked.items()})
+    return [line.partition(",")[2] for line in done.stdout.splitlines() if line]
+
+
+@pytest.mark.parametrize(
+    ("words", "found"),
+    [
+        (["slide", "--set", "drive.am"], ["drive.amplitude="]),
+        (["batch", "--set", "grav"], ["gravity="]),
+        (["convey", "--vary", "track.b"], ["track.bank="]),
+        (["track", "--vary", "friction.wa"], ["friction.wall="]),
+        (["rate", "--rule", "c"], ["csa", "crsa"]),
+        (["batch", "--rule", "q"], ["quasistatic"]),
+        (["aspects", "--density", "stainl"], ["stainless_steel", "stainless_steel_1.4401"]),
+        (["slide", "--set", "nothing"], []),
+    ],
+    ids=str,
+)
+def test_values_are_completed(words, found):
+    assert completed("feeder", *words) == found
+
+
+def test_a_completed_material_is_one_that_is_known():
+    names = completed("feeder", "aspects", "--density", "s")
+    assert names
+    assert all(density(name)[0] > 0.0 for name in names)
+
+
+def test_the_rules_completed_are_those_a_part_has_probabilities_of():
+    assert tuple(find(load(BRACKET)).chances) == queue.RULES

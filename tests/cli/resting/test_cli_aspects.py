@@ -1,0 +1,276 @@
+"""``feeder aspects``: its columns, its files, its warnings and errors."""
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapes
+
+PARTS = Path(__file__).parents[3] / "parts"
+COLUMNS = [
+    "aspect", "kind", "faces", "stable", "normal_x", "normal_y", "normal_z", "height_mm", "contact_area_mm2",
+    "solid_angle_sr", "polar_inertia_g_mm2", "p_pmi", "p_csa", "p_stability",
+]  # fmt: skip
+
+
+@pytest.fixture
+def stl(tmp_path):
+    """Write a box of 10 x 20 x 30 mm as an STL; its path."""
+    path = tmp_path / "box.stl"
+    shapes.box(10.0, 20.0, 30.0).export(path)
+    return path
+
+
+def document(done):
+    assert done.exit_code == 0, done.output
+    return json.loads(done.stdout)
+
+
+def test_csv_has_the_columns_of_the_contract(run, stl):
+    done = run("aspects", stl, "--format", "csv")
+    rows = list(csv.DictReader(io.StringIO(done.stdout)))
+    assert list(rows[0])[: len(COLUMNS)] == COLUMNS
+    assert [row["aspect"] for row in rows] == ["A", "B", "C"]
+    assert {row["faces"] for row in rows} == {"2"}
+
+
+def test_json_converts_to_mm_and_grams(run, stl):
+    told = document(run("aspects", stl, "--density", "2 g/cm3", "--format", "json"))
+    a, b, c = 10.0, 20.0, 30.0
+    mass = 2.0e-3 * a * b * c
+    assert told["part"] == "box"
+    assert told["units"] == "mm"
+    assert told["density_g_cm3"] == pytest.approx(2.0)
+    assert told["mass_g"] == pytest.approx(mass, rel=1e-6)
+    assert told["volume_mm3"] == pytest.approx(a * b * c, rel=1e-6)
+    assert told["centre_of_mass_mm"] == pytest.approx([0.0, 0.0, 0.0], abs=1e-6)
+    assert told["inertia_g_mm2"][0][0] == pytest.approx(mass * (b * b + c * c) / 12.0, rel=1e-6)
+    assert told["warnings"] == []
+    on_largest = told["aspects"][0]
+    assert list(on_largest)[: len(COLUMNS)] == COLUMNS
+    assert on_largest["height_mm"] == pytest.approx(5.0)
+    assert on_largest["contact_area_mm2"] == pytest.approx(600.0)
+    assert on_largest["polar_inertia_g_mm2"] == pytest.approx(mass * (b * b + c * c) / 12.0, rel=1e-6)
+    for rule in COLUMNS[-3:]:
+        assert sum(row[rule] for row in told["aspects"]) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_all_adds_the_unstable_facets_without_a_probability(run):
+    part = PARTS / "key_a_d12x20.stl"
+    stable = document(run("aspects", part, "--format", "json"))["aspects"]
+    every = document(run("aspects", part, "--all", "--format", "json"))["aspects"]
+    assert every[: len(stable)] == stable
+    assert len(every) > len(stable)
+    assert not any(row["stable"] or row["p_csa"] for row in every[len(stable) :])
+
+
+def test_as_published_counts_each_class_once(run):
+    part = PARTS / "squarenut_m5.stl"
+    plain = document(run("aspects", part, "--format", "json"))["aspects"]
+    once = document(run("aspects", part, "--as-published", "--format", "json"))["aspects"]
+    weights = [row["p_pmi"] / row["faces"] for row in plain]
+    assert [row["p_pmi"] for row in once] == pytest.approx([weight / sum(weights) for weight in weights])
+    assert [row["p_csa"] for row in once] == [row["p_csa"] for row in plain]
+
+
+def test_the_table_is_for_people(run, stl):
+    lines = run("aspects", stl).stdout.splitlines()
+    assert lines[0].split()[:4] == ["aspect", "kind", "faces", "stable"]
+    assert "normal" not in lines[0]
+    assert "[mm2]" in lines[1]
+    assert len(lines) == 5
+
+
+def test_o_writes_tables_pictures_and_the_record(run, tmp_path, stl):
+    done = run("aspects", stl, "-o", "res")
+    assert done.exit_code == 0, done.output
+    folder = tmp_path / "res/box"
+    names = {"aspects.csv", "aspects.json", "aspects.png", "probabilities.png", "run.json"}
+    assert {path.name for path in folder.iterdir()} == names
+    before = {path: path.read_bytes() for path in folder.iterdir()}
+    run("aspects", stl, "-o", "res")
+    assert {path: path.read_bytes() for path in folder.iterdir()} == before
+    record = json.loads((folder / "run.json").read_text())["aspects"]
+    assert record["effective"]["density_g_cm3"] == pytest.approx(7.85)
+    assert record["inputs"][0]["path"] == "../../box.stl"
+
+
+def test_no_pictures(run, tmp_path, stl):
+    run("aspects", stl, "-o", "res", "--no-pictures")
+    assert {path.name for path in (tmp_path / "res/box").iterdir()} == {
+        "aspects.csv",
+        "aspects.json",
+        "run.json",
+    }
+
+
+def test_a_part_card_has_no_picture_and_says_so(run, tmp_path):
+    done = run("aspects", PARTS / "arc_chute.yaml", "-o", "res")
+    assert done.exit_code == 0, done.output
+    assert "a part card has no shape to draw: no aspects.png" in done.stderr.splitlines()
+    assert not list((tmp_path / "res").rglob("aspects.png"))
+    assert len(list((tmp_path / "res").rglob("probabilities.png"))) == 1
+
+
+def test_more_rows_than_a_sheet_shows_are_said(run, monkeypatch, tmp_path):
+    monkeypatch.setattr("feederscrew.output.aspects.files.MOST", 2)
+    done = run("aspects", PARTS / "lbracket_30x20x15.stl", "-o", "res")
+    assert "aspects.png shows the first 2 of 5 rows" in done.stderr.splitlines()
+
+
+def test_standard_input(run, stl):
+    from_file = document(run("aspects", stl, "--format", "json"))
+    from_pipe = document(run("aspects", "-", "--format", "json", stdin=stl.read_bytes()))
+    assert from_pipe["aspects"] == from_file["aspects"]
+
+
+@pytest.mark.parametrize("content", [b"", b"solid", b"\x00" * 100])
+def test_a_broken_file_is_one_line_and_leaves_nothing(run, tmp_path, content):
+    (tmp_path / "bad.stl").write_bytes(content)
+    done = run("aspects", "bad.stl", "-o", "res")
+    assert (done.exit_code, done.stdout) == (1, "")
+    assert len(done.stderr.splitlines()) == 1
+    assert done.stderr.startswith("Error: bad.stl: ")
+    assert not (tmp_path / "res").exists()
+
+
+def test_a_folder_that_cannot_be_is_one_line(run, tmp_path, stl):
+    (tmp_path / "res").write_text("")
+    done = run("aspects", stl, "-o", "res")
+    assert (done.exit_code, done.stdout) == (1, "")
+    assert done.stderr == f"Error: {tmp_path / 'res'}: is a file, not a folder - give another folder to -o\n"
+
+
+def test_another_part_of_the_same_name_is_refused(run, tmp_path, stl):
+    run("aspects", stl, "-o", "res", "--no-pictures")
+    (tmp_path / "other").mkdir()
+    shapes.box(1.0, 2.0, 3.0).export(tmp_path / "other/box.stl")
+    done = run("aspects", "other/box.stl", "-o", "res", "--no-pictures")
+    assert (done.exit_code, done.stdout) == (1, "")
+    assert done.stderr.splitlines()[-1] == (
+        "Error: res/box: holds the results of another file, ../../box.stl"
+        " - give another folder to -o, or rename the file"
+    )
+
+
+def test_a_missing_file_is_one_line(run):
+    done = run("aspects", "none.stl")
+    assert (done.exit_code, done.stdout, len(done.stderr.splitlines())) == (1, "", 1)
+    assert done.stderr.startswith("Error: none.stl: ")
+
+
+def test_an_open_surface_is_labelled_everywhere(run, tmp_path):
+    mesh = shapes.box(10.0, 20.0, 30.0)
+    mesh.update_faces([True] * (len(mesh.faces) - 1) + [False])
+    mesh.export(tmp_path / "open.stl")
+    assert run("aspects", "open.stl").exit_code == 1
+    done = run("aspects", "open.stl", "--allow-open", "--format", "json")
+    told = document(done)
+    assert told["open_surface"] is True
+    assert {row["surface"] for row in told["aspects"]} == {"open"}
+    assert told["warnings"]
+    assert done.stderr.startswith("Warning: ")
+
+
+def test_exact_tumbling_joins_the_columns(run, stl):
+    rows = json.loads(run("aspects", stl, "--format", "json").stdout)["aspects"]
+    names = {"p_quasistatic", "p_crsa", "p_barrier", "p_surface", "barrier_mm", "barrier_uJ", "tip_angle_deg"}
+    assert names <= set(rows[0])
+    for row in rows:
+        share = row["faces"] * row["solid_angle_sr"] / (4 * np.pi)
+        assert row["p_quasistatic"] == pytest.approx(share, rel=1e-9)
+
+
+def test_a_soft_surface_is_quasistatic(run, stl):
+    for words in (("--surface", "soft"), ("--surface-exponent", "0")):
+        rows = json.loads(run("aspects", stl, "--format", "json", *words).stdout)["aspects"]
+        assert [row["p_surface"] for row in rows] == pytest.approx([row["p_quasistatic"] for row in rows])
+
+
+@pytest.mark.parametrize(
+    ("words", "told"), [((), "hard"), (("--surface", "soft"), "soft"), (("--surface-exponent", "0"), 0.0)]
+)
+def test_the_surface_is_recorded(run, stl, tmp_path, words, told):
+    assert run("aspects", stl, "-o", "res", "--no-pictures", *words).exit_code == 0
+    recorded = json.loads((tmp_path / "res" / "box" / "run.json").read_text())
+    assert recorded["aspects"]["effective"]["surface"] == told
+
+
+def test_a_failed_self_check_marks_every_row(run, stl, tmp_path, monkeypatch):
+    from feederscrew.resting.tumbling import exact
+
+    assert "doubtful" not in run("aspects", stl).output
+    monkeypatch.setattr(exact, "ROUNDING", -1.0)  # no sum is close enough to 1
+    line = "exact tumbling is doubtful: the basins fill 1 of the sphere"
+    done = run("aspects", stl, "--format", "json", "-o", "res", "--no-pictures")
+    assert document(done)["warnings"] == [line] and f"Warning: {line}" in done.stderr
+    assert {row["tumbling"] for row in document(done)["aspects"]} == {"doubtful"}
+    with (tmp_path / "res" / "box" / "aspects.csv").open() as file:
+        assert {row["tumbling"] for row in csv.DictReader(file)} == {"doubtful"}
+    assert line in (tmp_path / "res" / "box" / "run.json").read_text()
+    assert all(text.endswith("doubtful") for text in run("aspects", stl).stdout.splitlines()[-3:])
+
+
+@pytest.mark.parametrize("centre", ["5,0,0", "0,-10,0", "0,0,15.001", "100,0,0"])
+def test_a_centre_of_mass_on_or_outside_the_hull_is_one_line(run, stl, centre):
+    done = run("aspects", stl, "--centre-of-mass", centre)
+    line = "the centre of mass is not inside the part's convex hull - check --centre-of-mass and its units"
+    assert (done.exit_code, done.stdout) == (1, "")
+    assert done.stderr.splitlines() == [f"Error: {stl}: {line}"]
+
+
+def test_a_centre_of_mass_just_inside_is_computed(run, stl):
+    rows = document(run("aspects", stl, "--centre-of-mass", "4.99,0,0", "--format", "json"))["aspects"]
+    assert sum(row["p_quasistatic"] for row in rows) == pytest.approx(1.0, rel=1e-9)
+
+
+def test_the_graph_needs_a_folder(run, stl):
+    done = run("aspects", stl, "--graph")
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert "--graph writes files: give -o DIR as well" in done.stderr
+
+
+def test_the_graph_is_written(run, tmp_path, stl):
+    assert run("aspects", stl, "--graph", "-o", "res").exit_code == 0
+    assert (tmp_path / "res/box/graph.csv").read_text().startswith("from,to,barrier_mm")
+    assert (tmp_path / "res/box/graph.png").stat().st_size > 5000
+
+
+def test_a_drop_test_joins_the_columns(run, stl):
+    rows = json.loads(run("aspects", stl, "--drop", "300", "--format", "json", "-q").stdout)["aspects"]
+    assert sum(row["p_drop"] for row in rows) == pytest.approx(1.0, abs=0.05)
+    assert all(row["p_drop_low"] <= row["p_drop"] <= row["p_drop_high"] for row in rows)
+
+
+def test_one_answer_with_an_interval_comes_last(run, stl):
+    told = document(run("aspects", stl, "--format", "json"))
+    assert told["recommended"] == "surface, hard"
+    last = ["p_recommended", "p_recommended_low", "p_recommended_high"]
+    for row in told["aspects"]:
+        assert list(row)[-3:] == last
+        assert row["p_recommended"] == row["p_surface"]
+        assert 0.0 <= row[last[1]] <= row["p_quasistatic"] <= row[last[2]] <= 1.0
+
+
+def test_the_answer_is_the_drop_test_where_there_is_one(run, stl):
+    told = document(run("aspects", stl, "--drop", "300", "--format", "json", "-q"))
+    assert told["recommended"] == "drop, tumble"
+    for row in told["aspects"]:
+        assert row["p_recommended"] == row["p_drop"]
+        assert (
+            row["p_recommended_low"] <= row["p_drop_low"] <= row["p_drop_high"] <= row["p_recommended_high"]
+        )
+
+
+def test_a_card_has_no_answer_of_its_own(run):
+    told = document(run("aspects", PARTS / "arc_chute.yaml", "--format", "json"))
+    assert told["recommended"] is None
+    assert "p_recommended" not in told["aspects"][0]
+
+
+def test_the_answer_says_its_surface(run, stl):
+    for words, rule in ((("--surface", "soft"), "soft"), (("--surface-exponent", "1.5"), "exponent 1.5")):
+        assert document(run("aspects", stl, "--format", "json", *words))["recommended"] == f"surface, {rule}"

@@ -1,0 +1,143 @@
+"""``feeder compare``: measured aspects against the rules."""
+
+import csv
+import io
+import json
+
+import numpy as np
+import pytest
+
+from feederscrew.output import style
+from feederscrew.output.profiles import figures as profile_plots
+from feederscrew.thesis import tables
+
+CSV = ["first", "second", "deviation", "total_variation", "chi_square", "degrees_of_freedom", "p_value"]
+
+
+@pytest.fixture
+def card(request):
+    return request.config.rootpath / "parts" / "arc_chute.yaml"
+
+
+@pytest.fixture
+def measured(tmp_path):
+    """Table 3-4 as a user would type it."""
+    printed = tables.table("3-4")
+    lines = [",".join([name, *printed.rows[name].values()]) for name in printed.rows]
+    path = tmp_path / "measured.csv"
+    path.write_text("\n".join(["# Table 3-4", f"aspect,{','.join(printed.columns)}", *lines]) + "\n")
+    return path
+
+
+@pytest.fixture
+def counts(tmp_path):
+    path = tmp_path / "counts.csv"
+    path.write_text("aspect,drops\n1,20\n2,50\n3,40\n4,60\n5,130\n")
+    return path
+
+
+def rows(result):
+    return {(row["first"], row["second"]): row for row in csv.DictReader(io.StringIO(result.stdout))}
+
+
+def test_table_3_12_comes_out(run, card, measured):
+    result = run("compare", card, "--with", measured, "--format", "csv")
+    assert result.exit_code == 0, result.output
+    found = rows(result)
+    assert len(found) == 9 * 8 // 2
+    for name in tables.table("3-12").rows:
+        first, second = name.split(" - ")
+        row = found.get((first, second)) or found[(second, first)]
+        text = tables.table("3-12").text(name, "deviation")
+        assert row["deviation"].startswith(text.rstrip("0"))
+    assert result.stderr == (f"{measured}: fractions: MDBT_78, MDBT_80, MDBT_82, MDFT_78, MDFT_80, MDFT_82\n")
+
+
+def test_columns_and_empty_tests(run, card, measured):
+    result = run("compare", card, "--with", measured, "--format", "csv", "-q")
+    assert result.stdout.splitlines()[0].split(",") == CSV
+    assert all(row["p_value"] == "" and row["chi_square"] == "" for row in rows(result).values())
+    assert result.stderr == ""
+
+
+def test_counts_are_tested(run, card, counts):
+    document = json.loads(run("compare", card, "--with", counts, "--format", "json").stdout)
+    found = {(c["first"], c["second"]): c for c in document["comparisons"]}
+    assert found[("drops", "PMI")]["degrees_of_freedom"] == 4
+    assert 0.0 <= found[("drops", "PMI")]["p_value"] < 1e-4
+    assert found[("PMI", "CSA")]["p_value"] is None
+    kinds = {p["name"]: p["kind"] for p in document["profiles"]}
+    assert kinds == {"drops": "counts", "PMI": "rule", "CSA": "rule", "STABILITY": "rule"}
+    assert document["aspects"] == ["1", "2", "3", "4", "5"]
+
+
+def test_the_table_leaves_out_empty_columns(run, card, measured, counts):
+    assert "p value" not in run("compare", card, "--with", measured).stdout
+    assert "p value" in run("compare", card, "--with", counts).stdout
+
+
+def test_files(run, card, counts, tmp_path):
+    result = run("compare", card, "--with", counts, "-o", "out", "--format", "csv")
+    folder = tmp_path / "out" / "arc_chute"
+    assert (folder / "compare.csv").read_text() == result.stdout
+    assert (folder / "compare.png").stat().st_size > 5000
+    record = json.loads((folder / "run.json").read_text())["compare"]
+    assert len(record["inputs"]) == 2
+    first = (folder / "compare.png").read_bytes()
+    run("compare", card, "--with", counts, "-o", "out")
+    assert (folder / "compare.png").read_bytes() == first
+
+
+def test_no_pictures(run, card, counts, tmp_path):
+    run("compare", card, "--with", counts, "-o", "out", "--no-pictures")
+    names = {path.name for path in (tmp_path / "out" / "arc_chute").iterdir()}
+    assert names == {"compare.csv", "run.json"}
+
+
+def test_a_mesh_has_aspects_a_b_c(run, request, tmp_path):
+    part = request.config.rootpath / "parts" / "lbracket_30x20x15.stl"
+    names = [a["aspect"] for a in json.loads(run("aspects", part, "--format", "json").stdout)["aspects"]]
+    lines = [f"{name},{10 + k}" for k, name in enumerate(names)]
+    (tmp_path / "c.csv").write_text("\n".join(["aspect,drops", *lines]) + "\n")
+    result = run("compare", part, "--with", "c.csv", "--format", "csv")
+    assert result.exit_code == 0, result.output
+    assert ("drops", "CSA") in rows(result)
+
+
+def test_faults_are_one_line_each_and_nothing_is_written(run, card, tmp_path):
+    (tmp_path / "bad.csv").write_text("aspect,x\n1,2\n2,x\n9,1\n")
+    result = run("compare", card, "--with", "bad.csv", "-o", "out")
+    assert result.exit_code == 1
+    assert result.stderr.splitlines() == [
+        "Error: bad.csv:3: x: 'x' is not a number - write digits with a decimal point",
+        "Error: bad.csv:4: the part has no aspect '9' - known are 1, 2, 3, 4, 5",
+        "Error: bad.csv: has no row for aspect 3, 4, 5 - add it, 0 if never seen",
+    ]
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_call_without_counts_is_a_wrong_call(run, card):
+    result = run("compare", card)
+    assert result.exit_code == 2
+    assert "Missing option '--with'" in result.stderr
+
+
+def test_the_chart_draws_the_profiles():
+    measured = {"mine": np.array([0.5, 0.3, 0.2])}
+    rules = {"PMI": np.array([0.4, 0.4, 0.2]), "CSA": np.array([0.6, 0.2, 0.2])}
+    pairs = {("mine", "PMI"): 0.0816, ("mine", "CSA"): 0.0816, ("PMI", "CSA"): 0.163}
+    figure = profile_plots.comparison("bracket", "ABC", measured, rules, pairs)
+    pmi, csa, matrix = figure.axes
+    assert pmi.get_title(loc="left") == "bracket: PMI and what was measured"
+    assert [bar.get_height() for bar in pmi.containers[1]] == pytest.approx([40.0, 40.0, 20.0])
+    assert [bar.get_height() for bar in csa.containers[0]] == pytest.approx([50.0, 30.0, 20.0])
+    assert csa.get_ylabel() == "share [%]"
+    assert sorted(text.get_text() for text in matrix.texts) == ["0.082", "0.082", "0.163"]
+
+
+def test_a_profile_has_one_colour_everywhere():
+    assert profile_plots.look("PMI") == profile_plots.look("PMI", 5) == style.method("pmi")
+    assert profile_plots.look("MDBT_80", 0) == profile_plots.look("MDBT_80", 3)
+    colours = [profile_plots.look(f"MDBT_{amplitude}")[1] for amplitude in (78, 80, 82)]
+    assert len(set(colours)) == 3
+    assert profile_plots.look("my_test", 1)[0] == "my test"

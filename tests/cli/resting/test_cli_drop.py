@@ -1,0 +1,270 @@
+"""``feeder drop``: its columns, its files, its errors."""
+
+import contextlib
+import csv
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import shapes
+
+from feederscrew.dropping import ensemble
+from feederscrew.output.drop import files as drop_sheets
+from feederscrew_cli import interrupt, progress
+
+PARTS = Path(__file__).parents[3] / "parts"
+COLUMNS = ["aspect", "height_mm", "count", "p_drop", "p_drop_low", "p_drop_high", "p_gentle", "p_violent"]
+
+
+@pytest.fixture
+def stl(tmp_path):
+    path = tmp_path / "box.stl"
+    shapes.box(10.0, 13.0, 17.0).export(path)
+    return path
+
+
+def document(done):
+    assert done.exit_code == 0, done.output
+    return json.loads(done.stdout)
+
+
+def test_json_is_the_contract(run, stl):
+    told = document(run("drop", stl, "--drops", "600", "--seed", "7", "--format", "json"))
+    assert list(told)[:6] == ["part", "drops", "seed", "launch", "partial", "unsettled"]
+    assert told["drops"] == 600 and told["seed"] == 7 and told["launch"]["name"] == "tumble"
+    assert set(told["launch"]) == {
+        "name",
+        "height_mm",
+        "spin_rad_s",
+        "speed_mm_s",
+        "restitution",
+        "friction",
+        "forward",
+    }
+    assert [list(row) for row in told["aspects"]] == [COLUMNS] * 3
+    assert sum(row["count"] for row in told["aspects"]) + told["unsettled"] == 600
+    assert told["until"] is None and told["traces"] == []
+    wide = max(row["p_drop_high"] - row["p_drop_low"] for row in told["aspects"])
+    assert told["widest"] == pytest.approx(0.5 * wide)
+    assert all(row["p_drop_low"] <= row["p_drop"] <= row["p_drop_high"] for row in told["aspects"])
+
+
+def test_the_seed_and_not_the_jobs_decides(run, stl):
+    def call(seed, jobs):
+        rows = document(run("drop", stl, "--drops", 700, "--seed", seed, "--jobs", jobs, "--format", "json"))
+        return [row["count"] for row in rows["aspects"]]
+
+    assert call(1, 1) == call(1, 2) != call(2, 1)
+
+
+def test_the_files(run, stl, tmp_path):
+    done = run("drop", stl, "--drops", "300", "-o", "results")
+    assert done.exit_code == 0, done.output
+    folder = tmp_path / "results/box"
+    assert {path.name for path in folder.iterdir()} == {"drop.csv", "drop.json", "drop.png", "run.json"}
+    rows = list(csv.DictReader((folder / "drop.csv").read_text().splitlines()))
+    assert list(rows[0]) == COLUMNS and [row["aspect"] for row in rows] == ["A", "B", "C"]
+    before = (folder / "drop.png").read_bytes()
+    run("drop", stl, "--drops", "300", "-o", "results")
+    assert (folder / "drop.png").read_bytes() == before
+
+
+def test_until_narrows_the_intervals(run, stl):
+    told = document(run("drop", stl, "--until", "2%", "--format", "json"))
+    assert told["drops"] % 2000 == 0
+    assert max(row["p_drop_high"] - row["p_drop_low"] for row in told["aspects"]) <= 0.04
+
+
+def test_own_conditions_are_told(run, stl):
+    told = document(
+        run("drop", stl, "--drops", 50, "--height", "20 mm", "--friction", "0.3", "--format", "json")
+    )
+    assert told["launch"]["name"] == "own"
+    assert told["launch"]["height_mm"] == pytest.approx([20.0, 20.0])
+    assert told["launch"]["friction"] == [0.3, 0.3]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "line"),
+    [
+        (("--height", "20"), 1, "Error: --height: '20' has no unit - write 20 mm"),
+        (
+            ("--until", "90%"),
+            1,
+            "Error: --until: '90%' is out of range - stay from 0.0001 to 0.5 (for this part)",
+        ),
+        (("--launch", "kick"), 2, "Error: Invalid value for '--launch'"),
+        (("--drops", "0"), 2, "Error: Invalid value for '--drops'"),
+        (
+            ("--trace", "3"),
+            2,
+            "Error: --trace writes files: give -o DIR as well (see feeder drop --help)",
+        ),
+        (("--trace", "0", "-o", "out"), 2, "Error: Invalid value for '--trace'"),
+    ],
+)
+def test_faults_are_one_line(run, stl, arguments, status, line):
+    done = run("drop", stl, *arguments)
+    told = [each for each in done.stderr.splitlines() if not each.startswith("Compiling")]
+    assert done.exit_code == status and len(told) == 1 and told[0].startswith(line)
+    assert done.stdout == ""
+
+
+def test_a_card_cannot_be_dropped(run):
+    done = run("drop", PARTS / "arc_chute.yaml")
+    assert done.exit_code == 1 and "has no shape to tumble" in done.stderr
+
+
+def test_traces_are_written(run, stl, tmp_path):
+    call = ("drop", stl, "--drops", "40", "--trace", "3", "-o", "results", "--format", "json")
+    told = document(run(*call))
+    folder = tmp_path / "results/box"
+    names = ["drop.csv", "drop.json", "drop.png", "drop_trace.png", "drop_traces.csv", "run.json"]
+    assert sorted(path.name for path in folder.iterdir()) == names
+    rows = list(csv.DictReader((folder / "drop_traces.csv").read_text().splitlines()))
+    assert [each["drop"] for each in told["traces"]] == [1, 2, 3]
+    for each in told["traces"]:
+        mine = [row for row in rows if row["drop"] == str(each["drop"])]
+        assert {row["aspect"] for row in mine} == {each["aspect"]}
+        assert float(mine[-1]["time_s"]) >= each["counted_s"] and each["still"]
+    before = {name: (folder / name).read_bytes() for name in names[:-1]}
+    document(run(*call))
+    assert {name: (folder / name).read_bytes() for name in names[:-1]} == before
+    document(run(*call, "--no-pictures"))
+    assert sorted(path.name for path in folder.iterdir()) == [
+        name for name in names if not name.endswith(".png")
+    ]
+
+
+def test_no_more_drops_are_traced_than_there_are(run, stl, tmp_path):
+    told = document(run("drop", stl, "--drops", "2", "--trace", "5", "-o", "results", "--format", "json"))
+    assert [each["drop"] for each in told["traces"]] == [1, 2]
+
+
+def test_a_width_that_is_not_reached_is_said(run, stl):
+    done = run("drop", stl, "--drops", "500", "--until", "1%", "--format", "json")
+    told = document(done)
+    assert told["drops"] == 500 and told["until"] == 0.01 and not told["partial"]
+    line = f"Warning: after 500 drops the widest interval is {100 * told['widest']:.3g} % to either side, "
+    assert f"{line}not 1 % - give more --drops, or a wider --until\n" in done.stderr
+
+
+def test_until_gives_up_and_says_so(run, stl, monkeypatch):
+    monkeypatch.setattr(ensemble, "MOST", 2000)
+    done = run("drop", stl, "--until", "0.1%", "--format", "json")
+    assert document(done)["drops"] == 2000
+    assert "Warning: after 2000 drops the widest interval is" in done.stderr
+
+
+def test_drops_that_never_settle_are_told(run, stl):
+    done = run("drop", stl, "--drops", "3", "--restitution", "1", "--friction", "0", "--format", "json")
+    assert document(done)["unsettled"] == 3
+    assert "Warning: 3 of 3 drops came to rest on no aspect\n" in done.stderr
+
+
+def start(stl, folder, *more, **streams):
+    """The program on its own."""
+    call = [
+        sys.executable,
+        "-c",
+        "from feederscrew_cli.main import feeder; feeder()",
+        "drop",
+        stl,
+        "-o",
+        "results",
+        *more,
+    ]
+    return subprocess.Popen(
+        [str(each) for each in call],
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(PARTS.parent)},
+        stdout=subprocess.PIPE,
+        text=True,
+        **streams,
+    )
+
+
+def heard(terminal, until):
+    """What comes out of a terminal, up to a pattern or to the end."""
+    text = ""
+    with contextlib.suppress(OSError):  # how Linux says that nobody writes to it any more
+        while not re.search(until, text) and (more := os.read(terminal, 4096)):
+            text += more.decode()
+    return text
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no interrupt to send")
+def test_an_interrupt_prints_and_writes_what_is_there(run, stl, tmp_path):
+    import pty
+
+    terminal, stderr = pty.openpty()
+    call = ("--drops", "10000000", "--trace", "2", "--format", "csv", "--jobs", "1")
+    running = start(stl, tmp_path, *call, stderr=stderr)
+    os.close(stderr)
+    assert "1000/10000000" in heard(terminal, "] +1000/")
+    running.send_signal(signal.SIGINT)
+    err = heard(terminal, "Wrote .*\n").replace("\r\n", "\n")
+    os.close(terminal)
+    out, _ = running.communicate(timeout=60)
+    assert running.returncode == 0, err
+    folder = tmp_path / "results/box"
+    told = json.loads((folder / "drop.json").read_text())
+    assert f"Warning: partial: stopped after {told['drops']} drops\n" in err and "Traceback" not in err
+    assert told["partial"] and told["drops"] % 250 == 0 and len(told["traces"]) == 2
+    rows = list(csv.DictReader(out.splitlines()))
+    assert out == (folder / "drop.csv").read_text()
+    assert [row["partial"] for row in rows] == ["True"] * 3
+    assert sum(int(row["count"]) for row in rows) == told["drops"] - told["unsettled"]
+    assert "partial: stopped" in json.loads((folder / "run.json").read_text())["drop"]["warnings"][-1]
+    whole = document(run("drop", stl, "--drops", told["drops"], "--format", "json"))
+    assert [row["count"] for row in whole["aspects"]] == [int(row["count"]) for row in rows]
+
+
+def test_an_interrupt_before_the_first_drop_leaves_nothing(run, stl, tmp_path, monkeypatch):
+    def stop(*told):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(ensemble, "sample", stop)
+    done = run("drop", stl, "-o", "results")
+    assert done.exit_code == 130 and done.stdout == ""
+    assert done.stderr.strip() == "Stopped." and not (tmp_path / "results").exists()
+
+
+def test_an_interrupt_is_held_back_and_then_heard():
+    done = []
+    with pytest.raises(KeyboardInterrupt), interrupt.held_back():
+        signal.raise_signal(signal.SIGINT)
+        done.append("all")
+    assert done == ["all"] and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    with pytest.raises(KeyboardInterrupt), interrupt.held_back():
+        signal.raise_signal(signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
+        done.append("too much")
+    assert done == ["all"]
+
+
+def test_a_partial_test_is_labelled():
+    told = {"partial": True, "drops": 250, "unsettled": 0, "until": 0.01, "widest": 0.03}
+    assert drop_sheets.remarks(told) == ["partial: stopped after 250 drops"]
+
+
+def test_progress_grows_with_what_is_needed(capsys, monkeypatch):
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
+    with progress.Progress(None, what="drops") as shown:
+        shown.reach(2000, 2000)
+        shown.reach(2000, 8000, 0.021)
+        shown.reach(8000, 8000, 0.0099)
+    lines = [
+        line.partition("]  ")[2].split("\x1b")[0].strip() for line in capsys.readouterr().err.split("\r")
+    ]
+    assert [line for line in lines if line] == [
+        "0",
+        "2000/2000",
+        "2000/8000  widest interval ±2.1 %",
+        "8000/8000  widest interval ±0.99 %",
+    ]

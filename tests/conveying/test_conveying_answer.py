@@ -1,0 +1,264 @@
+"""From a bowl to an answer in SI units: published demonstration, radius, sensitivity, traces."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from feederscrew import bowl as bowls
+from feederscrew.conveying import answer, radius, sensitivity
+from feederscrew.conveying.setting import FLIGHT, PHASES, plain
+from feederscrew.conveying.trace import trace
+from feederscrew.errors import ConfigError
+from feederscrew.output.convey import figures as convey_plots
+
+DEG = np.pi / 180.0
+
+
+def bowl(*overrides):
+    return bowls.read(None, ("restitution=0", "track.climb=3 deg", "gravity=9.81 m/s2", *overrides))
+
+
+def driven(frequency, stroke, angle, friction):
+    return bowl(
+        f"drive.frequency={frequency} Hz",
+        f"drive.peak_to_peak={stroke} mm",
+        f"drive.vibration_angle={angle} deg",
+        f"friction.static={friction}",
+    )
+
+
+@pytest.mark.parametrize(
+    ("setting", "velocity", "half_digit"),
+    [
+        ((50, 1.0, 15, 0.2), -30, 0.5),
+        ((50, 1.0, 15, 0.4), 12.1, 0.05),
+        ((50, 1.0, 25, 0.4), 103.7, 0.05),
+        ((50, 2.0, 15, 0.2), 282, 0.5),
+        ((60, 1.5, 25, 0.2), -46, 0.5),
+        ((120, 0.3, 25, 0.4), 85, 0.5),
+    ],
+)
+def test_demonstration_velocities(setting, velocity, half_digit):
+    assert answer.answer(driven(*setting)).velocity * 1e3 == pytest.approx(velocity, abs=half_digit)
+
+
+def test_velocity_scales_with_stroke_frequency_and_gravity():
+    """v w / g depends on the ratio A w^2 / g alone."""
+    here = driven(50, 1.0, 25, 0.4)
+    drive = replace(here.drive, frequency=100.0, amplitude=here.drive.amplitude / 4.0)
+    assert answer.answer(replace(here, drive=drive)).velocity == pytest.approx(
+        answer.answer(here).velocity / 2.0
+    )
+    moon = replace(
+        here, gravity=here.gravity / 6.0, drive=replace(here.drive, amplitude=here.drive.amplitude / 6.0)
+    )
+    assert answer.answer(moon).velocity == pytest.approx(answer.answer(here).velocity / 6.0)
+
+
+def test_margins_and_limits():
+    found = answer.answer(driven(50, 0.1, 25, 0.4))
+    assert found.margins["hop"] == pytest.approx(1.0 - found.throw_number)
+    assert found.margins["forward"] == pytest.approx(0.4 - found.mu_forward)
+    assert found.regime == ("forward" if found.mu_backward <= 0.4 < found.mu_forward else found.regime)
+    assert sum(found.fractions.values()) == pytest.approx(1.0)
+
+
+def test_cells_are_the_answers():
+    settings = bowls.settings(None, ("drive.frequency=50 Hz",))
+    angles, strokes = np.array([15.0, 25.0])[:, None] * DEG, np.array([0.0, 0.2e-3, 0.5e-3])[None, :]
+    found = answer.cells(bowls.swept(settings, {"drive.vibration_angle": angles, "drive.amplitude": strokes}))
+    assert found["velocity"].shape == (2, 3)
+    assert (found["velocity"][:, 0] == 0.0).all()
+    one = bowls.read(
+        None, ("drive.frequency=50 Hz", "drive.vibration_angle=25 deg", "drive.amplitude=0.2 mm")
+    )
+    alone = answer.answer(one)
+    assert found["velocity"][1, 1] == pytest.approx(alone.velocity, rel=1e-12)
+    assert answer.REGIMES[found["regime"][1, 1]] == alone.regime
+    assert found["throw_number"][1, 1] == pytest.approx(alone.throw_number)
+
+
+def test_regime_of_a_climb_too_steep():
+    steep = bowl("track.climb=30 deg", "friction.static=0.3")
+    found = answer.answer(steep)
+    assert (found.status, found.regime) == ("no steady state", "no steady state")
+    assert np.isnan(found.velocity)
+
+
+def test_a_bank_with_a_smooth_wall_is_a_steeper_level_track():
+    """Only the gravity along the track and along its normal counts."""
+    climb, bank = 5 * DEG, 20 * DEG
+    level = driven(50, 0.6, 25, 0.3)
+    smooth = replace(level.friction, wall=0.0)
+    banked = replace(level, friction=smooth, track=replace(level.track, climb=climb, bank=bank))
+    share = np.hypot(np.sin(climb), np.cos(climb) * np.cos(bank))
+    steeper = replace(level.track, climb=np.arctan2(np.sin(climb), np.cos(climb) * np.cos(bank)))
+    same = replace(level, gravity=level.gravity * share, track=steeper)
+    assert answer.answer(banked).velocity == pytest.approx(answer.answer(same).velocity, rel=1e-12)
+
+
+def test_a_rough_wall_holds_a_sliding_part_back():
+    level = driven(50, 0.14, 25, 0.3)
+    banked = replace(level, track=replace(level.track, bank=10 * DEG))
+    rough = replace(banked, friction=replace(banked.friction, wall=0.6))
+    assert answer.answer(rough).fractions["stick"] > answer.answer(banked).fractions["stick"]
+
+
+@pytest.mark.parametrize(
+    ("overrides", "line"),
+    [
+        (("drive.amplitude=0 mm",), "drive.amplitude: is 0 mm, so nothing moves - give more than 0 mm"),
+        (
+            ("drive.direction=5 deg",),
+            "drive.direction: is not 0 deg, but a track can only convey along itself"
+            " - leave it out: it is for the floor (feeder floor)",
+        ),
+    ],
+)
+def test_bowls_that_convey_nothing(overrides, line):
+    with pytest.raises(ConfigError) as caught:
+        answer.answer(bowl(*overrides))
+    assert str(caught.value) == line
+
+
+def test_kinetic_above_static_within_a_map():
+    settings = bowls.settings(None, ("friction.kinetic=0.5",))
+    varied = bowls.swept(settings, {"friction.static": np.array([0.6, 0.4])})
+    with pytest.raises(ConfigError, match=r"friction\.kinetic: is above friction\.static"):
+        answer.cells(varied)
+
+
+def test_one_screw_moves_the_whole_bowl():
+    here = driven(50, 1.0, 25, 0.4)
+    inner = radius.at_radius(here, here.track.radius * np.array([0.5, 1.0]))
+    steepness = np.tan(inner.drive.vibration_angle + here.track.climb)
+    assert steepness[0] == pytest.approx(2.0 * steepness[1])
+    rise = inner.drive.amplitude * np.sin(inner.drive.vibration_angle + here.track.climb)
+    assert rise[0] == pytest.approx(rise[1])
+    assert inner.drive.amplitude[1] == pytest.approx(here.drive.amplitude)
+    assert inner.drive.vibration_angle[1] == pytest.approx(here.drive.vibration_angle)
+
+
+def test_sensitivity_is_a_difference_of_answers():
+    here = driven(50, 1.0, 25, 0.4)
+    nearby = sensitivity.sensitivity(here)
+    more = driven(50, 1.1, 25, 0.4)
+    assert nearby["amplitude"].more == pytest.approx(answer.answer(more).velocity)
+    assert nearby["friction"].less == pytest.approx(answer.answer(driven(50, 1.0, 25, 0.36)).velocity)
+    assert nearby["angle"].more == pytest.approx(answer.answer(driven(50, 1.0, 27.5, 0.4)).velocity)
+    assert sensitivity.friction_doubt(here).more == pytest.approx(
+        answer.answer(driven(50, 1.0, 25, 0.48)).velocity
+    )
+    assert sensitivity.Neighbours(0.9, 1.1).elasticity(1.0) == pytest.approx(1.0)
+    assert np.isnan(sensitivity.Neighbours(0.0, 0.1).elasticity(0.0))
+
+
+def test_validity_names_its_source_where_parts_hop():
+    hopping, sliding = driven(50, 1.0, 25, 0.4), driven(50, 0.1, 25, 0.4)
+    assert answer.SOURCE in answer.validity(answer.answer(hopping), hopping)
+    assert answer.SOURCE not in answer.validity(answer.answer(sliding), sliding)
+    # (0.5 mm 2 pi 50/s)^2 / (150 mm 9.81 m/s2) is 1.7 %
+    assert "1.7 % of the weight" in answer.validity(answer.answer(hopping), hopping)
+
+
+@pytest.mark.parametrize(
+    "setting", [plain(0.6, 0.5, 0.05, 0.3), plain(4.0, 0.6, 0.0, 0.3), plain(7.0, 0.6, 0.0, 0.3)]
+)
+def test_trace_is_one_cycle(setting):
+    drawn = trace(setting)
+    assert (np.diff(drawn.time) >= 0.0).all()
+    assert drawn.time[0] == 0.0
+    assert drawn.time[-1] == pytest.approx(round(drawn.time[-1]))
+    gap = drawn.part_normal - drawn.plate_normal
+    assert (gap > -1e-12).all()
+    assert (gap[drawn.phase != FLIGHT] == 0.0).all()
+    assert gap[-1] == pytest.approx(gap[0], abs=1e-9)
+    slip = drawn.part_along - drawn.plate_along
+    assert np.abs(np.diff(slip)[drawn.phase[1:] == PHASES.index("stick")]).max(initial=0.0) < 1e-12
+    # the slip over the cycle is the velocity
+    from feederscrew.conveying import steady
+
+    out = np.empty(steady.COLUMNS)
+    steady.survey(setting, out)
+    made = slip[-1] / (2.0 * np.pi * drawn.time[-1])
+    assert made == pytest.approx(out[steady.VELOCITY], rel=1e-9)
+
+
+def test_keys_of_the_drive_and_of_bristles_reach_the_kernel():
+    keys = ("drive.phase=20 deg", "drive.second_harmonic=0.3", "drive.second_harmonic_phase=40 deg")
+    setting = answer.answer(
+        bowl(*keys, "friction.static_backward=0.9", "friction.kinetic_backward=0.8")
+    ).setting
+    assert (setting.lead, setting.second, setting.second_phase) == pytest.approx((-20 * DEG, 0.3, 40 * DEG))
+    assert (setting.static, setting.static_back, setting.kinetic_back) == (0.6, 0.9, 0.8)
+
+
+@pytest.mark.parametrize("phase", [0, 20, 75])
+def test_half_a_turn_of_the_phase_sends_a_part_the_other_way_on_a_level_track(phase):
+    there, back = (
+        answer.answer(bowl("track.climb=0 deg", "drive.amplitude=0.1 mm", f"drive.phase={x} deg")).velocity
+        for x in (phase, phase - 180)
+    )
+    assert back == pytest.approx(-there, rel=1e-10)
+    assert abs(there) > 1e-4
+
+
+def test_a_cell_at_rest_has_no_throw_number():
+    strokes = np.array([[0.0, 0.05e-3]])
+    angles = np.radians([[20.0], [40.0]])
+    varied = {"drive.amplitude": strokes, "drive.vibration_angle": angles}
+    found = answer.cells(bowls.swept(bowls.settings(), varied))["throw_number"]
+    assert (found[:, 0] == 0.0).all()
+    assert (found[:, 1] > 0.1).all()
+
+
+def test_cells_and_answers_agree_on_an_uneven_drive():
+    keys = (
+        "drive.second_harmonic=0.3",
+        "drive.phase=30 deg",
+        "friction.static_backward=0.9",
+        "restitution=0",
+    )
+    settings = bowls.settings(None, keys)
+    strokes = np.array([0.03e-3, 0.05e-3, 0.2e-3])
+    found = answer.cells(bowls.swept(settings, {"drive.amplitude": strokes}))
+    for k, stroke in enumerate(strokes):
+        alone = answer.answer(bowls.read(None, (*keys, f"drive.amplitude={stroke * 1e3} mm")))
+        assert found["velocity"][k] == pytest.approx(alone.velocity, rel=1e-9)
+        assert answer.REGIMES[found["regime"][k]] == alone.regime
+        margins = alone.margins
+        if alone.regime != "hop":
+            assert (margins["forward"] < 0.0) == (alone.regime in ("forward", "both"))
+            assert (margins["backward"] < 0.0) == (alone.regime in ("backward", "both"))
+        assert found["throw_number"][k] == pytest.approx(alone.throw_number)
+
+
+def test_an_elliptical_drive_is_not_followed_inwards():
+    with pytest.raises(ConfigError, match="no screw motion"):
+        radius.inwards(bowl("drive.phase=20 deg"))
+
+
+def test_trace_of_an_uneven_drive_rests_on_its_plate():
+    setting = plain(1.0, 0.5, 0.05, 0.3)._replace(second=0.4, second_phase=1.0, lead=0.3)
+    drawn = trace(setting)
+    gap = drawn.part_normal - drawn.plate_normal
+    assert (gap > -1e-12).all()
+    turn = 2.0 * np.pi * drawn.time
+    plate = np.sin(0.5) * (np.sin(turn) + 0.4 * np.sin(2.0 * turn + 1.0))
+    np.testing.assert_allclose(drawn.plate_normal, plate, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "title"),
+    [
+        ((), "One steady cycle: 0.8642 mm/s"),
+        (("track.climb=40 deg",), "No steady state: 4 periods of a slide for ever"),
+        (("drive.amplitude=0.4 mm",), r"4 periods of a motion that does not repeat: \S+ mm/s on average"),
+        (("drive.amplitude=0.5 mm", "restitution=0.3"), r"4 of the 6 periods of a steady cycle: \S+ mm/s"),
+    ],
+)
+def test_title_of_a_cycle_says_what_is_shown(overrides, title):
+    found = answer.answer(bowls.read(None, overrides))
+    assert re.fullmatch(title, convey_plots.cycle_title(trace(found.setting), found))

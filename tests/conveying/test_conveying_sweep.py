@@ -1,0 +1,48 @@
+"""The compiled sweep: the same answers as the plain functions, faults named, sources traced."""
+
+import numpy as np
+import pytest
+from conveying_reference import random_settings
+
+from feederscrew.conveying import steady, sweep
+from feederscrew.conveying.setting import Setting, plain
+
+
+@pytest.fixture(scope="module")
+def settings():
+    box = random_settings(40, np.random.default_rng(8))
+    return np.array([plain(*row, restitution) for row in box for restitution in (0.0, 0.4)])
+
+
+def test_compiled_equals_plain(settings):
+    compiled = sweep.sweep(settings)
+    for row, setting in zip(compiled, settings, strict=True):
+        out = np.empty(steady.COLUMNS)
+        steady.survey(Setting(*setting.tolist()), out)
+        if out[steady.STATUS] == steady.PERIODIC and out[steady.HIGH] - out[steady.LOW] < 1e-9:
+            np.testing.assert_allclose(row, out, rtol=1e-9, atol=1e-11)
+
+
+def test_threads_change_nothing(settings):
+    many = np.tile(settings, (8, 1))
+    np.testing.assert_array_equal(sweep.sweep(many, workers=3), sweep.sweep(many, workers=1))
+
+
+def test_every_status():
+    rows = [plain(0.5, 0.5, 0.0, 0.3), plain(4.5, 0.5236, 0.0, 0.3, 0.6), plain(2.0, 0.5, 0.35, 0.3)]
+    found = sweep.sweep(np.array(rows))[:, steady.STATUS]
+    assert [steady.STATUSES[int(code)] for code in found] == list(steady.STATUSES)
+
+
+def test_a_compiled_kernel_is_kept(settings):
+    sweep.sweep(settings[:1])
+    assert sweep.compiled()
+
+
+def test_faults_of_a_row(settings):
+    wrong = settings.copy()
+    wrong[3, Setting._fields.index("kinetic")] = 2.0
+    with pytest.raises(ValueError, match="kinetic friction is above static"):
+        sweep.sweep(wrong)
+    with pytest.raises(ValueError, match="shape"):
+        sweep.sweep(settings[:, :5])

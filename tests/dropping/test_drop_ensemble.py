@@ -1,0 +1,220 @@
+"""Launches, many drops and their counts."""
+
+from concurrent.futures import wait
+
+import drop_bodies
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from scipy.stats import binom
+
+from feederscrew.dropping import conditions, ensemble
+from feederscrew.dropping.ensemble import Aim, Drops, drop, tally, wilson
+from feederscrew.dropping.kernel.drop import UNSETTLED
+from feederscrew.dropping.launches import PRESETS, sample
+from feederscrew.dropping.pool import gather
+from feederscrew.errors import ConfigError
+
+BOX, LENGTH = drop_bodies.box((1.0, 1.3, 1.7))
+ROWS = np.array([0, 0, 1, 1, 2, 2])
+NOTHING = dict.fromkeys(conditions.KEYS)
+
+
+def seeded(**more):
+    return drop(BOX, PRESETS["tumble"], np.random.default_rng(5), **more)
+
+
+def test_counts_do_not_depend_on_the_number_of_jobs():
+    one, three = seeded(count=2300, jobs=1), seeded(count=2300, jobs=3)
+    assert (one.faces == three.faces).all() and (one.times == three.times).all()
+
+
+def test_fewer_drops_are_the_first_of_many(monkeypatch):
+    few, many = seeded(count=300), seeded(count=2500)
+    assert (few.faces == many.faces[:300]).all()
+    monkeypatch.setattr(ensemble, "ROUND", 500)
+    assert (seeded(count=2500).faces == many.faces).all()
+
+
+def test_until_ends_when_every_interval_is_narrow():
+    aim = Aim(0.015, ROWS, 3)
+    drops = seeded(aim=aim)
+    counted = tally(drops, ROWS, 3)
+    assert counted.widest == 0.5 * (counted.high - counted.low).max() <= 0.015
+    assert len(drops.faces) > ensemble.ROUND and aim.widest(drops.faces[: -ensemble.ROUND]) > 0.015
+
+
+def test_until_gives_up_at_the_count():
+    assert len(seeded(aim=Aim(1e-3, ROWS, 3), count=2300).faces) == 2300
+
+
+def test_what_an_aim_needs():
+    aim = Aim(0.01, ROWS, 3)
+    assert aim.needed(4000, 0.01) == 4000
+    assert aim.needed(2000, 0.02) == 8000  # four times as many for half the width
+    assert aim.needed(2000, 0.0101) == 4000  # in whole rounds
+
+
+@pytest.mark.parametrize("jobs", [1, 3])
+@pytest.mark.parametrize("batches", [1, 5, 9])
+def test_an_interrupt_keeps_what_is_finished(jobs, batches):
+    """The batches done so far, as a shorter run gives them; those the others were at may come on top."""
+    told = []
+
+    def stop(done, total, widest):
+        told.append(done)
+        if len(told) == batches:
+            raise KeyboardInterrupt
+
+    drops = seeded(count=20_000, jobs=jobs, progress=stop)
+    count = len(drops.faces)
+    assert drops.partial and told[-1] == batches * ensemble.BATCH <= count < 20_000
+    assert count % ensemble.BATCH == 0
+    whole = seeded(count=count)
+    assert not whole.partial
+    for name in ("faces", "times", "energies"):
+        assert (getattr(drops, name) == getattr(whole, name)).all()
+
+
+def test_a_batch_that_failed_ends_what_is_kept():
+    """Of three batches the second has a fault: only the first counts, though the third is there."""
+
+    def work(begin):
+        tasks = [begin(lambda: "first"), begin(lambda: 1 / 0), begin(lambda: "third")]
+        wait(tasks)
+        raise KeyboardInterrupt
+
+    assert gather(work, 3) == (["first"], True)
+
+
+def test_an_interrupt_before_anything_is_there_is_passed_on(monkeypatch):
+    def stop(*told):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(ensemble, "sample", stop)
+    with pytest.raises(KeyboardInterrupt):
+        seeded(count=300)
+
+
+def test_a_fault_in_a_batch_is_told(monkeypatch):
+    def fail(*told):
+        raise ArithmeticError("here")
+
+    monkeypatch.setattr(ensemble.kernel, "settle_all", fail)
+    with pytest.raises(ArithmeticError, match="here"):
+        seeded(count=300)
+
+
+def test_progress_ends_at_the_count():
+    told = []
+    seeded(count=2300, progress=lambda *done: told.append(done))
+    assert told == [(done, 2300, None) for done in [*range(250, 2300, 250), 2300]]
+
+
+def test_progress_of_an_aim_ends_at_what_was_needed():
+    told = []
+    drops = seeded(aim=Aim(0.015, ROWS, 3), progress=lambda *done: told.append(done))
+    assert told[0] == (250, 2000, None)
+    done, total, widest = told[-1]
+    assert done == total == len(drops.faces) and widest <= 0.015
+    assert all(done <= total for done, total, _ in told)
+
+
+def test_a_tally_counts_every_drop_once():
+    faces = np.array([0, 1, 2, 5, UNSETTLED, 4, 0, 3, UNSETTLED])
+    energies = np.arange(9.0)
+    counted = tally(Drops(faces, np.zeros(9), energies, False), ROWS, 3)
+    assert counted.counts.tolist() == [3, 2, 2] and counted.unsettled == 2
+    assert counted.p.sum() == pytest.approx(7 / 9)
+    assert counted.gentle == pytest.approx([2 / 3, 1 / 3, 0]) and counted.violent == pytest.approx(
+        [1 / 3, 1 / 3, 0]
+    )
+
+
+def test_the_wilson_interval():
+    low, high = wilson(np.array([0, 10, 40]), 40)  # ends solve (p - x)^2 = z^2 x (1 - x) / n
+    for count, ends in ((10, (low[1], high[1])),):
+        for x in ends:
+            assert (count / 40 - x) ** 2 == pytest.approx(ensemble.NORMAL**2 * x * (1 - x) / 40)
+    assert low[0] == 0.0 and high[2] == 1.0 and high[0] > 0.0 and low[2] < 1.0
+
+
+def test_the_wilson_interval_covers_about_95_times_in_100():
+    counts = np.arange(201)
+    for p in (0.02, 0.2, 0.5):
+        low, high = wilson(counts, 200)
+        assert binom.pmf(counts, 200, p)[(low <= p) & (p <= high)].sum() == pytest.approx(0.95, abs=0.03)
+
+
+def test_every_drop_starts_at_its_fall_within_the_ranges(rng):
+    launch = PRESETS["tumble"]
+    starts = sample(launch, BOX, 500, rng)
+    speed = np.hypot(starts.states[:, 3], starts.states[:, 4])
+    spin = np.linalg.norm(starts.states[:, 10:], axis=1)
+    for values, (low, high) in (
+        (speed, launch.speed),
+        (spin, launch.spin),
+        (starts.frictions, launch.friction),
+    ):
+        assert (
+            low <= values.min() < low + 0.1 * (high - low)
+            and high - 0.1 * (high - low) < values.max() <= high
+        )
+
+
+def test_a_tumbling_launch_spins_the_way_it_would_roll(rng):
+    starts = sample(PRESETS["tumble"], BOX, 200, rng)
+    states = starts.states.copy()
+    turns = Rotation.from_quat(states[:, [7, 8, 9, 6]])
+    spin, ahead = turns.apply(states[:, 10:]), states[:, 3:6]
+    below = np.cross(spin, [0.0, 0.0, -1.0])  # the corner under the centre goes back
+    size = np.linalg.norm(spin, axis=1) * np.linalg.norm(ahead, axis=1)
+    assert np.einsum("ni,ni->n", below, ahead) == pytest.approx(-size)
+
+
+def test_attitudes_are_uniform(rng):
+    q = sample(PRESETS["drop"], BOX, 20000, rng).states[:, 6:10]
+    down = Rotation.from_quat(q[:, [1, 2, 3, 0]]).inv().apply([0.0, 0.0, 1.0]).T
+    assert np.abs(down.mean(axis=1)).max() < 0.02
+    assert down @ down.T / len(q) == pytest.approx(np.eye(3) / 3.0, abs=0.01)
+
+
+def test_own_conditions_replace_the_presets():
+    launch = conditions.launch_of("tumble", 0.01, NOTHING | {"fall": "20 mm", "friction": "0.2:0.3"})
+    assert launch.name == "own" and launch.fall == pytest.approx((2.0, 2.0))
+    assert launch.friction == (0.2, 0.3) and launch.spin == PRESETS["tumble"].spin
+    told = conditions.described(launch, 0.01)
+    assert told["height_mm"] == pytest.approx([20.0, 20.0]) and told["friction"] == [0.2, 0.3]
+    assert conditions.launch_of("drop", 0.01, NOTHING) == PRESETS["drop"]
+
+
+def test_units_cancel_in_described_conditions():
+    texts = NOTHING | {"spin": "30 rad/s", "speed": "0.4 m/s"}
+    for length in (0.002, 0.05):
+        told = conditions.described(conditions.launch_of("drop", length, texts), length)
+        assert told["spin_rad_s"] == pytest.approx([30.0, 30.0])
+        assert told["speed_mm_s"] == pytest.approx([400.0, 400.0])
+
+
+@pytest.mark.parametrize(
+    ("key", "text", "line"),
+    [
+        ("fall", "20", "--height: '20' has no unit - write 20 mm"),
+        (
+            "friction",
+            "0.5:0.2",
+            "--friction: '0.5:0.2' is no range - give one value, or the smaller and the larger as a:b",
+        ),
+        ("restitution", "1.5", "--restitution: '1.5' is out of range - stay from 0 to 1 (for this part)"),
+    ],
+)
+def test_conditions_that_are_none(key, text, line):
+    with pytest.raises(ConfigError) as fault:
+        conditions.launch_of("tumble", 0.01, NOTHING | {key: text})
+    assert str(fault.value) == line
+
+
+def test_a_width_that_is_none():
+    assert conditions.share("1%", "--until") == pytest.approx(0.01)
+    with pytest.raises(ConfigError, match="--until: '0%' is out of range"):
+        conditions.share("0%", "--until")

@@ -1,0 +1,182 @@
+"""The moving floor: its kinematics in closed form, and rides on it against the exact motion of a point."""
+
+import math
+
+import drop_bodies
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from feederscrew import bowl as bowls
+from feederscrew.conveying import answer
+from feederscrew.dropping.kernel import body, drop, floor, motion
+from feederscrew.dropping.kernel import ride as shaken
+from feederscrew.dropping.kernel.floor import Floor, at_rest
+from feederscrew.dropping.launches import PRESETS, sample
+from feederscrew.dropping.plate import drive
+
+BOX, _ = drop_bodies.box((1.0, 1.3, 1.7))
+PLATE, _ = drop_bodies.box((3.0, 3.0, 0.6))
+LENGTH = 0.01  # [m]
+ELLIPSE = Floor(3.0, 0.2, 0.1, 0.7, 0.3, -0.4, 0.01)
+
+
+def lying_flat(shape, turn=0.0):
+    """A state at rest on the largest face, relative to the floor."""
+    across = np.argmin(shape.vertices.max(axis=0))
+    upright = Rotation.align_vectors([[0.0, 0.0, 1.0]], [np.eye(3)[across]])[0]
+    state = np.zeros(body.STATE)
+    state[body.Q : body.Q + 4] = (Rotation.from_rotvec([0, 0, turn]) * upright).as_quat()[[3, 0, 1, 2]]
+    state[body.Z] = shape.vertices[:, across].max()
+    return state
+
+
+def ride(shape, plate, state, looks, friction, restitution=0.0, steps=None):
+    """Faces and places of one ride."""
+    work = motion.scratch(shape)
+    work.state[:] = state
+    faces, places = np.full(len(looks), -1), np.full((len(looks), 2), np.nan)
+    steps = steps or drive.steps_of(plate)
+    taken = shaken.ride(shape, work, plate, restitution, friction, steps, looks, faces, places)
+    assert taken == len(looks)
+    return faces, places
+
+
+@pytest.mark.parametrize("amplitude", [0.2, 0.1])
+def test_speed_is_the_slope_of_place(amplitude):
+    for time in np.linspace(0.0, 3.0, 7):
+        angle, step = 3.0 * time, 1e-6
+        ahead, behind = (floor.place(ELLIPSE, amplitude, angle + 3.0 * way * step) for way in (1, -1))
+        slope = (ahead - behind) / (2.0 * step)
+        assert floor.speed(ELLIPSE, amplitude, angle) == pytest.approx(slope, abs=1e-8)
+
+
+def test_flight_over_a_moving_floor_is_a_parabola_in_the_room():
+    """Seen from the room a flying part knows nothing of the floor."""
+    work, time = motion.scratch(BOX), 0.4
+    work.state[:] = sample(PRESETS["tumble"], BOX, 1, np.random.default_rng(2)).states[0]
+
+    def in_the_room(state, time):
+        at = 3.0 * time
+        place = [floor.place(ELLIPSE, 0.2, at + 0.7), 0.0, floor.place(ELLIPSE, 0.1, at)]
+        speed = [floor.speed(ELLIPSE, 0.2, at + 0.7), 0.0, floor.speed(ELLIPSE, 0.1, at)]
+        return state[:3] + place, state[3:6] + speed
+
+    start, speed = in_the_room(work.state, time)
+    begun = time
+    for dt in (0.03, 0.2, 0.17):
+        body.keep(work.state, work.saved)
+        motion.gap_after(BOX, work, ELLIPSE, time, 0, dt)
+        time += dt
+    gone = time - begun
+    place, now = in_the_room(work.state, time)
+    assert place == pytest.approx(start + gone * speed - [0.0, 0.0, 0.5 * gone**2], abs=1e-12)
+    assert now == pytest.approx(speed - [0.0, 0.0, gone], abs=1e-12)
+
+
+def test_a_floor_that_does_not_move_is_the_floor_of_a_drop_test():
+    """To the share of drops by which stopping early and running to rest may differ."""
+    starts = sample(PRESETS["tumble"], BOX, 150, np.random.default_rng(4))
+    faces, times = np.empty(150, int), np.empty(150)
+    given = starts.states, starts.restitutions, starts.frictions
+    drop.settle_all(BOX, drop.scratch(BOX), *given, drop.Steps(early=False, longest=60.0), faces, times)
+    seen, places = np.full((150, 1), -1), np.zeros((150, 1, 2))
+    shaken.ride_all(
+        BOX, motion.scratch(BOX), at_rest(), *given, drop.Steps(), np.array([60.0]), seen, places,
+        np.zeros(150, int),
+    )  # fmt: skip
+    assert (seen[:, 0] == faces).mean() >= 0.985
+
+
+def exact(bowl):
+    """Velocity of a point on the level floor, from event to event."""
+    return answer.answer(bowl).velocity
+
+
+def bowl_of(ratio, *more, degrees=20.0, friction=0.4, restitution=0.0):
+    """A level bowl with a peak acceleration of ``ratio`` g along its normal."""
+    stroke = ratio * 9.81 / (2.0 * math.pi * 60.0) ** 2 / math.sin(math.radians(degrees))
+    own = (
+        "drive.frequency=60 Hz", f"drive.amplitude={1e3 * stroke} mm",
+        f"drive.vibration_angle={degrees} deg", "track.climb=0 deg", f"friction.static={friction}",
+        f"restitution={restitution}", *more,
+    )  # fmt: skip
+    return bowls.record(bowls.settings(path=None, overrides=own))
+
+
+@pytest.mark.parametrize(
+    ("ratio", "more"),
+    [
+        (0.5, ()),
+        (0.9, ()),
+        (1.2, ()),  # hops
+        (2.5, ()),  # thrown
+        (0.7, ("drive.phase=40 deg",)),
+        (0.7, ("drive.phase=-40 deg",)),
+        (0.5, ("drive.second_harmonic=0.15", "drive.second_harmonic_phase=60 deg")),
+    ],
+)
+def test_a_flat_part_travels_like_a_point(ratio, more):
+    bowl = bowl_of(ratio, *more)
+    plate, unit = drive.floor_of(bowl, LENGTH), math.sqrt(LENGTH / bowl.gravity)
+    looks = np.array([40.0, 160.0]) / 60.0 / unit
+    quickest, speeds = 2.0 * math.pi * 60.0 * LENGTH * plate.along, []
+    for turn in (0.0, 0.4):
+        _, places = ride(PLATE, plate, lying_flat(PLATE, turn), looks, 0.4)
+        speeds.append(LENGTH * (places[1, 0] - places[0, 0]) / 2.0)
+    assert speeds == pytest.approx([exact(bowl)] * 2, abs=0.012 * quickest)
+
+
+def test_the_error_of_the_velocity_falls_with_the_steps():
+    bowl = bowl_of(0.9)
+    plate, unit = drive.floor_of(bowl, LENGTH), math.sqrt(LENGTH / bowl.gravity)
+    looks, steps = np.array([30.0, 60.0]) / 60.0 / unit, drive.steps_of(plate)
+    errors = []
+    for finer in (0.5, 4.0):
+        finest = steps._replace(
+            contact=steps.contact / finer, flight=steps.flight / finer, tolerance=steps.tolerance / finer,
+            threshold=steps.threshold / finer, sweeps=int(steps.sweeps * finer),
+        )  # fmt: skip
+        moving = plate._replace(step=plate.step / finer)
+        _, places = ride(PLATE, moving, lying_flat(PLATE), looks, 0.4, steps=finest)
+        errors.append(abs(LENGTH * (places[1, 0] - places[0, 0]) / 0.5 - exact(bowl)))
+    assert errors[1] < 0.5 * errors[0]
+
+
+def test_a_part_without_friction_stays_where_it_is_in_the_room():
+    """Below the hop nothing pushes it along: it stays in the room, and the floor moves below it."""
+    bowl = bowl_of(0.8)
+    plate, unit = drive.floor_of(bowl, LENGTH), math.sqrt(LENGTH / bowl.gravity)
+    state = lying_flat(PLATE)
+    state[body.VX] = -floor.speed(plate, plate.along, 0.0)
+    _, places = ride(PLATE, plate, state, np.arange(10, 60) / 60.0 / unit, 0.0)
+    assert np.abs(places[:, 0]).max() < 0.05 * plate.along
+
+
+@pytest.mark.parametrize("ratio", [0.5, 0.95])
+def test_below_the_hop_no_part_leaves_its_face(ratio):
+    plate = drive.floor_of(bowl_of(ratio), LENGTH)
+    for turn in (0.0, 1.1):
+        faces, _ = ride(PLATE, plate, lying_flat(PLATE, turn), np.arange(1.0, 90.0), 0.4)
+        assert len(set(faces)) == 1 and faces[0] != drop.UNSETTLED
+
+
+def test_a_part_near_its_edge_lies_on_no_face():
+    """Tilted almost over the lowest way out, it holds nearly the whole barrier: it may be tipping over."""
+    flat, least, work = lying_flat(BOX), BOX.barriers.min(), motion.scratch(BOX)
+
+    def seen(tilt, axis):
+        turn = Rotation.from_rotvec(tilt * np.array(axis)) * Rotation.from_quat(flat[[7, 8, 9, 6]])
+        work.state[:] = flat
+        work.state[body.Q : body.Q + 4] = turn.as_quat()[[3, 0, 1, 2]]
+        corner, gap = motion.start(BOX, work)
+        return shaken.lying(BOX, work.state, work.turn, corner), work.state[body.Z] - gap - flat[body.Z]
+
+    assert seen(0.0, (1, 0, 0))[0] != drop.UNSETTLED
+    for axis in ((1, 0, 0), (0, 1, 0)):
+        for tilt in np.linspace(0.02, 1.5, 40):
+            face, lift = seen(tilt, axis)
+            if face != drop.UNSETTLED:
+                assert lift - (BOX.heights[face] - flat[body.Z]) < shaken.SURE * BOX.barriers[face]
+        tipping = [lift for face, lift in (seen(t, axis) for t in np.linspace(0.0, 1.5, 40)) if face < 0]
+        assert tipping and max(tipping) > shaken.SURE * least

@@ -1,0 +1,227 @@
+"""Single drops followed from launch to rest."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapes
+from scipy.constants import g
+from scipy.spatial.transform import Rotation
+
+from feederscrew.dropping import runs, traces
+from feederscrew.dropping.traces import telling
+from feederscrew.output import style, tables
+from feederscrew.output.drop import trace_curve as drop_trace_curve
+from feederscrew.output.drop import trace_files as drop_trace_sheets
+from feederscrew.output.drop import trace_strip as drop_trace_strip
+from feederscrew.part import load
+from feederscrew.resting.aspects import find
+
+PARTS = Path(__file__).parents[2] / "parts"
+MM = 1e-3
+
+
+@pytest.fixture(scope="module")
+def bracket():
+    return followed(PARTS / "lbracket_30x20x15.stl")
+
+
+def followed(path, preset="tumble", count=8, drops=300, own=None, **more):
+    """A part, its aspects and a test of it with some traces."""
+    part = load(path)
+    aspects = find(part)
+    return part, aspects, runs.test(part, aspects, preset, own or {}, drops=drops, traced=count, **more)
+
+
+def corners(part, trace):
+    """(N, V, 3) [m] corners of the part over the plane, from its file's vertices."""
+    arms = part.vertices - part.centre_of_mass
+    return np.stack([turn.apply(arms) + place for turn, place in zip(trace.turns, trace.positions)])
+
+
+def test_the_quaternion_puts_the_files_part_on_the_plane(bracket):
+    part, _, result = bracket
+    tolerance = 3e-3 * np.cbrt(part.hull.volume)
+    for trace in result.traces:
+        lowest = corners(part, trace)[:, :, 2].min(axis=1)
+        assert lowest.min() > -tolerance
+        assert lowest[trace.impacts] == pytest.approx(0.0, abs=tolerance)
+        assert lowest[-1] == pytest.approx(0.0, abs=tolerance)
+
+
+def test_the_end_rests_on_a_facet_of_the_counted_class(bracket):
+    part, aspects, result = bracket
+    tolerance = 2e-3 * np.cbrt(part.hull.volume)
+    for trace in result.traces:
+        face = result.ground.faces[trace.face]
+        down = trace.turns[-1].apply(face.normal)
+        assert trace.still and result.ground.rows[trace.face] == trace.row
+        assert down == pytest.approx([0.0, 0.0, -1.0], abs=0.01)
+        assert trace.positions[-1, 2] == pytest.approx(aspects.heights[trace.row], abs=tolerance)
+        assert trace.energies[-1] == pytest.approx(aspects.heights[trace.row], abs=tolerance)
+
+
+def test_traces_are_of_the_first_drops_counted(bracket):
+    part, _, result = bracket
+    assert [trace.number for trace in result.traces] == list(range(1, 9))
+    assert [trace.face for trace in result.traces] == result.drops.faces[:8].tolist()
+    second = np.sqrt(np.cbrt(part.hull.volume) / g)
+    assert [trace.decided for trace in result.traces] == pytest.approx(second * result.drops.times[:8])
+    for trace in result.traces:
+        assert trace.decided in trace.times and trace.decided <= trace.times[-1]
+
+
+def test_a_part_falls_on_a_parabola_between_impacts(bracket):
+    for trace in bracket[2].traces:
+        first = np.argmax(trace.impacts)
+        time, place = trace.times[: first + 1], trace.positions[: first + 1]
+        assert place[0, :2] == pytest.approx([0.0, 0.0])
+        speed = place[-1, :2] / time[-1]
+        assert place[:, :2] == pytest.approx(time[:, None] * speed, abs=1e-9)
+        assert place[:, 2] == pytest.approx(place[0, 2] - 0.5 * g * time**2, abs=1e-9)
+        assert trace.energies[: first + 1] == pytest.approx(trace.energies[0], rel=1e-9)
+
+
+def test_energy_is_never_won_and_lost_at_impacts(bracket):
+    for trace in bracket[2].traces:
+        assert np.diff(trace.energies).max() < 1e-9 * trace.energies[0]
+        hits = np.flatnonzero(trace.impacts)
+        assert (trace.energies[hits + 1] < trace.energies[hits]).all()
+        assert trace.impacts[0] == np.False_ and (np.diff(trace.times) > 0.0).all()
+
+
+def test_turning_the_file_turns_the_attitudes_back(tmp_path):
+    box, turn = shapes.box(10.0, 13.0, 17.0), Rotation.random(random_state=7)
+    box.export(tmp_path / "box.stl")
+    _, aspects, result = followed(tmp_path / "box.stl", count=4, drops=4)
+    normals = np.eye(3)[[0, 1, 2]]
+    for trace in result.traces:
+        ends = np.abs(trace.turns[-1].apply(normals)[:, 2])
+        assert np.sort(ends) == pytest.approx([0.0, 0.0, 1.0], abs=0.01)
+        assert aspects.heights[trace.row] == pytest.approx(0.5 * MM * [10, 13, 17][np.argmax(ends)])
+    box.apply_transform(np.block([[turn.as_matrix(), np.zeros((3, 1))], [np.zeros(3), 1.0]]))
+    box.export(tmp_path / "turned.stl")
+    turned, aspects, result = followed(tmp_path / "turned.stl", count=4, drops=4)
+    for trace in result.traces:
+        ends = np.abs(trace.turns[-1].apply(turn.apply(normals))[:, 2])
+        assert aspects.heights[trace.row] == pytest.approx(0.5 * MM * [10, 13, 17][np.argmax(ends)], rel=1e-4)
+        assert corners(turned, trace)[:, :, 2].min() > -2e-5
+
+
+def test_a_part_let_fall_flat_lands_as_late_as_it_must(tmp_path):
+    shapes.box(10.0, 10.0, 10.0).export(tmp_path / "cube.stl")
+    own = {"fall": "30 mm"}
+    _, _, result = followed(tmp_path / "cube.stl", preset="drop", count=3, drops=3, own=own)
+    for trace in result.traces:
+        assert trace.times[np.argmax(trace.impacts)] == pytest.approx(np.sqrt(0.06 / g), rel=1e-3)
+
+
+def test_a_long_drop_stays_small():
+    _, aspects, result = followed(PARTS / "washer_m6.stl", count=6)
+    most = traces.MOST + 2 * traces.HITS + 3
+    assert max(len(trace.times) for trace in result.traces) <= most
+    assert max(trace.times[-1] for trace in result.traces) > 2.0
+    text = tables.text(drop_trace_sheets.table(aspects, result.traces), "csv")
+    assert len(text) < 150e3 * len(result.traces)
+
+
+@pytest.mark.parametrize("preset", ["place", "drop", "tumble"])
+def test_what_is_said_to_lie_still_lies_on_its_face(preset):
+    part, aspects, result = followed(PARTS / "squarenut_m5.stl", preset, count=60, drops=60)
+    tolerance = 4e-3 * np.cbrt(part.hull.volume)
+    still = [trace for trace in result.traces if trace.still]
+    assert len(still) > 0.9 * len(result.traces)
+    for trace in still:
+        assert trace.energies[-1] == pytest.approx(aspects.heights[trace.row], abs=tolerance)
+    for trace in set(result.traces) - set(still):
+        assert trace.times[-1] == trace.decided
+
+
+def test_rows_are_no_further_apart_than_promised(bracket):
+    second = np.sqrt(np.cbrt(bracket[0].hull.volume) / g)
+    _, _, calm = followed(PARTS / "lbracket_30x20x15.stl", "drop", count=4, drops=4)
+    for trace in (*bracket[2].traces, *calm.traces):
+        assert np.diff(trace.times).max() < 2.001 * traces.EVERY * second
+        first = np.argmax(trace.impacts)
+        time, height = trace.times[: first + 1], trace.positions[: first + 1, 2]
+        assert height == pytest.approx(height[0] - 0.5 * g * time**2, abs=1e-9)
+
+
+def test_a_drop_that_never_settles_has_no_class(tmp_path):
+    shapes.box(10.0, 13.0, 17.0).export(tmp_path / "box.stl")
+    own = {"restitution": "1", "friction": "0"}
+    part, aspects, result = followed(tmp_path / "box.stl", count=1, drops=2, own=own)
+    (trace,) = result.traces
+    assert result.tally.unsettled == 2
+    assert trace.row == trace.face == -1 and not trace.still
+    told = drop_trace_sheets.table(aspects, result.traces)
+    assert set(told["aspect"]) == {"none"} and told["event"].iloc[-1] != "still"
+    assert style.png(drop_trace_strip.strip(part, aspects, trace, "box"))
+
+
+def test_the_table_is_what_was_followed(bracket):
+    _, aspects, result = bracket
+    told = drop_trace_sheets.table(aspects, result.traces)
+    assert list(told) == [
+        "drop", "time_s", "x_mm", "y_mm", "z_mm", "q_w", "q_x", "q_y", "q_z", "energy_mm", "event", "aspect",
+    ]  # fmt: skip
+    for trace in result.traces:
+        mine = told[told["drop"] == trace.number]
+        assert len(mine) == len(trace.times) and set(mine["aspect"]) == {aspects.names[trace.row]}
+        assert mine["event"].iloc[0] == "launch" and mine["event"].iloc[-1] == "still"
+        assert mine["z_mm"].to_numpy() == pytest.approx(trace.positions[:, 2] / MM)
+        unit = mine[["q_w", "q_x", "q_y", "q_z"]].to_numpy()
+        assert np.linalg.norm(unit, axis=1) == pytest.approx(1.0)
+        assert np.einsum("ni,ni->n", unit[1:], unit[:-1]).min() > 0.0
+
+
+def test_the_same_seed_gives_the_same_bytes(bracket):
+    part, aspects, result = bracket
+    again = followed(PARTS / "lbracket_30x20x15.stl", drops=20, jobs=2)[2]
+    one, two = (tables.text(drop_trace_sheets.table(aspects, r.traces), "csv") for r in (result, again))
+    assert one == two
+    shown = telling(result.traces)
+    assert style.png(drop_trace_strip.strip(part, aspects, shown, "a")) == style.png(
+        drop_trace_strip.strip(part, aspects, telling(again.traces), "a")
+    )
+
+
+def test_the_drop_shown_tumbles_if_one_does(bracket):
+    _, _, result = bracket
+    shown = telling(result.traces)
+    assert shown.tumbled() and shown.still
+    assert not any(trace.tumbled() and trace.still for trace in result.traces[: shown.number - 1])
+    placed = followed(PARTS / "lbracket_30x20x15.stl", "place", own={"fall": "0.01 mm"})[2]
+    calm = [trace for trace in placed.traces if not trace.tumbled()]
+    assert telling(calm).number == calm[0].number
+
+
+def test_stills_go_from_the_first_impact_to_the_end(bracket):
+    _, aspects, result = bracket
+    for trace in result.traces:
+        rows = drop_trace_strip.chosen(trace, 12)
+        assert rows[0] == np.argmax(trace.impacts) and rows[-1] == len(trace.times) - 1
+        assert len(rows) == 12 and (np.diff(rows) > 0).all()
+        end = drop_trace_strip.said(trace, rows[-1], aspects.names, 0.0)
+        assert end == f"{1e3 * trace.times[-1]:.0f} ms, rests on {aspects.names[trace.row]}"
+        assert drop_trace_strip.said(trace, rows[0], aspects.names, 0.0).endswith("ms, hits")
+
+
+def test_the_curve_shows_energy_over_the_heights_it_comes_down_to(bracket):
+    _, aspects, result = bracket
+    trace = result.traces[0]
+    axes = style.figure().add_subplot()
+    drop_trace_curve.curve(axes, trace, aspects, drop_trace_strip.chosen(trace, 12))
+    assert axes.get_xlabel() == "time [ms]" and axes.get_ylabel() == "energy as height [mm]"
+    energy, height = axes.get_lines()[:2]
+    assert energy.get_ydata() == pytest.approx(trace.energies / MM)
+    assert (energy.get_ydata() >= height.get_ydata() - 1e-9).all()
+    saddle = next(line for line in drop_trace_curve.references(trace, aspects) if "tips" in line[1])
+    assert saddle[0] == pytest.approx((aspects.heights + aspects.barriers)[trace.row] / MM)
+
+
+@pytest.mark.parametrize(
+    ("longest", "step"), [(1.0, 1.0), (1.9, 1.0), (2.0, 2.0), (7.0, 5.0), (10.0, 10.0), (0.3, 0.2)]
+)
+def test_the_grid_has_round_steps(longest, step):
+    assert drop_trace_strip.grid_step(longest * MM) == pytest.approx(step * MM)

@@ -1,0 +1,245 @@
+"""Headings against the wall: closed forms, a brute-force search, what stays on the track."""
+
+import numpy as np
+import pytest
+from mechanics_samples import DEG, box_posture, rectangle
+
+from feederscrew.bowl.record import Track
+from feederscrew.errors import FeederError
+from feederscrew.geometry.polygons import outline, turned
+from feederscrew.mechanics.wall.headings import headings, laid
+from feederscrew.mechanics.wall.outline import axis_of_bowl, rests
+from feederscrew.resting.posture import Posture
+
+TRACK = Track(climb=0.0, bank=0.0, radius=0.15, width=0.025)
+
+
+def plan_posture(plan, height=2e-3):
+    """A flat plate of a given outline, standing on all of it."""
+    corners = np.array([[x, y, z] for x, y in plan for z in (0.0, 2 * height)])
+    return Posture("A", "flat", 0.01, height, np.eye(3) * 1e-7, plan, plan, 0.0, corners=corners)
+
+
+def by_search(corners, radius, count=40_000):
+    """Rests and shares on a fine circle of directions: where the bowl's axis is a local farthest point."""
+    angle = 2 * np.pi * np.arange(count) / count
+    along = corners @ np.array([np.cos(angle), np.sin(angle)])
+    if np.isinf(radius):
+        reach = -along.max(axis=0)
+    else:
+        square = radius**2 - (corners**2).sum(axis=1)[:, None]
+        reach = (np.sqrt(square + along**2) - along).min(axis=0)
+    tops = (reach > np.roll(reach, 1)) & (reach >= np.roll(reach, -1))
+    dips = (reach < np.roll(reach, 1)) & (reach <= np.roll(reach, -1))
+    borders = np.sort(angle[dips])
+    shares = np.mod(np.diff(np.append(borders, borders[0] + 2 * np.pi)), 2 * np.pi) / (2 * np.pi)
+    return angle[tops], shares
+
+
+@pytest.mark.parametrize("radius", [np.inf, 100.0, 0.15, 0.04])
+def test_shares_of_a_rectangle(radius):
+    """The corners' directions bound the ranges, whatever the radius: 4 atan(3) / 2 pi for the long sides."""
+    found = rests(rectangle(0.03, 0.01), radius)
+    assert len(found.share) == 4
+    assert np.sort(found.share)[2:].sum() == pytest.approx(4 * np.arctan(3) / (2 * np.pi), rel=1e-12)
+    assert found.share.sum() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("radius", [np.inf, 0.2, 0.06])
+@pytest.mark.parametrize("seed", range(6))
+def test_rests_match_a_search(seed, radius):
+    rng = np.random.default_rng(seed)
+    corners = outline(rng.uniform(-0.012, 0.012, (14, 2)))
+    corners = corners - corners.mean(axis=0)
+    found = rests(corners, radius, merge=0.0)
+    directions, shares = by_search(corners, radius)
+    assert np.sort(np.mod(found.outward, 2 * np.pi)) == pytest.approx(np.sort(directions), abs=5e-4)
+    assert np.sort(found.share) == pytest.approx(np.sort(shares), abs=2e-4)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_both_corners_touch_and_none_is_outside(seed):
+    rng = np.random.default_rng(seed)
+    corners = outline(rng.uniform(-0.01, 0.01, (20, 2)))
+    corners = corners - corners.mean(axis=0)
+    found = rests(corners, 0.05)
+    centre = axis_of_bowl(found.touching, 0.05)
+    np.testing.assert_allclose(np.linalg.norm(found.touching - centre[:, None], axis=-1), 0.05, rtol=1e-12)
+    farthest = np.linalg.norm(corners - centre[:, None], axis=-1).max(axis=1)
+    np.testing.assert_allclose(farthest, 0.05, rtol=1e-9)
+    np.testing.assert_allclose(0.05 - np.linalg.norm(centre, axis=1), found.distance, rtol=1e-9)
+
+
+def test_a_great_radius_is_a_straight_wall():
+    corners = outline(np.random.default_rng(1).uniform(-0.01, 0.01, (12, 2)))
+    corners = corners - corners.mean(axis=0)
+    curved, straight = rests(corners, 1e5), rests(corners, np.inf)
+    np.testing.assert_allclose(curved.outward, straight.outward, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(curved.share, straight.share, rtol=1e-12)
+
+
+def test_the_wall_bridges_a_blunt_corner():
+    """A corner that stands 0.05 mm out of a 30 mm side touches a straight wall, not a curved one."""
+    blunt = np.array([[-15, -5], [1, -5.05], [15, -5], [15, 5], [-15, 5]]) * 1e-3
+    straight, curved = rests(blunt, np.inf, merge=0.0), rests(blunt, 0.15, merge=0.0)
+    assert len(straight.share) == len(curved.share) == 4
+    long_side = curved.touching[np.argmin(np.abs(curved.outward + np.pi / 2))]
+    assert np.abs(long_side[:, 0]) == pytest.approx([0.015, 0.015])
+    assert (np.abs(straight.touching[..., 0] - 1e-3) < 1e-9).any()
+
+
+def test_a_round_outline_takes_any_heading():
+    angle = 2 * np.pi * np.arange(64) / 64
+    found = rests(0.01 * np.column_stack([np.cos(angle), np.sin(angle)]), 0.15)
+    assert found.rounded
+    assert found.share.tolist() == [1.0]
+
+
+def test_an_outline_without_the_foot_is_refused():
+    with pytest.raises(ValueError, match="does not hold the foot"):
+        rests(rectangle(0.01, 0.01, x=0.1), np.inf)
+
+
+def test_box_rows():
+    found = headings(box_posture(), TRACK)
+    assert np.degrees(found.headings) == pytest.approx([0, 180, 90, 270])
+    assert found.lengths == pytest.approx([0.03, 0.03, 0.01, 0.01])
+    depth = 0.15 - np.sqrt(0.15**2 - 0.015**2)
+    assert found.widths[:2] == pytest.approx([0.01 + depth] * 2)
+    assert found.half_turns.tolist() == [1, 0, 3, 2]
+
+
+def test_touching_corners_lie_on_the_wall_below():
+    """In track axes the wall is at -Y, the trailing contact first."""
+    found = headings(box_posture(), TRACK)
+    behind, ahead = found.touching[:, 0], found.touching[:, 1]
+    assert (behind[:, 0] < 0).all() and (ahead[:, 0] > 0).all()
+    assert (found.touching[..., 1] < 0).all()
+
+
+def test_a_mirror_image_is_another_heading():
+    """A scalene triangle's mirror image has the mirrored headings with the same shares."""
+    plan = np.array([[-10, -4], [14, -4], [-4, 8]]) * 1e-3
+    mirrored = (plan * [1, -1])[::-1]
+    first, second = headings(plan_posture(plan), TRACK), headings(plan_posture(mirrored), TRACK)
+    assert (first.mirrors == -1).all()
+    assert second.shares == pytest.approx(first.shares)
+    turned_back = np.mod(np.pi - first.headings, 2 * np.pi)
+    assert second.headings == pytest.approx(np.mod(turned_back, 2 * np.pi), abs=1e-9)
+
+
+def test_an_even_part_has_its_mirror_images_named():
+    plan = np.array([[-10, -4], [10, -4], [0, 9]]) * 1e-3
+    found = headings(plan_posture(plan - plan.mean(axis=0)), TRACK)
+    pairs = sorted(found.mirrors.tolist())
+    assert pairs == [-1, 1, 2]
+    assert (found.half_turns == -1).all()
+
+
+def test_turning_the_body_turns_the_headings():
+    plan = outline(np.random.default_rng(2).uniform(-0.01, 0.01, (9, 2)))
+    plan = plan - plan.mean(axis=0)
+    first, second = headings(plan_posture(plan), TRACK), headings(plan_posture(turned(plan, 0.4)), TRACK)
+    assert np.mod(first.headings - second.headings, 2 * np.pi) == pytest.approx([0.4] * len(first.headings))
+    assert second.widths == pytest.approx(first.widths)
+
+
+@pytest.mark.parametrize(("share", "falls"), [(0.999, True), (1.001, False)])
+def test_a_part_falls_once_its_foot_has_no_track_below(share, falls):
+    """The free edge curves away: the part's two ends carry it until their chord passes the foot."""
+    found = headings(box_posture(), TRACK)
+    distance = 0.005 + 0.15 - np.sqrt(0.15**2 - 0.015**2)
+    assert found.distances[0] == pytest.approx(distance)
+    least = 0.15 - np.hypot(0.15 - distance, 0.015)
+    narrow = headings(box_posture(), Track(0.0, 0.0, 0.15, share * least))
+    assert bool(narrow.falls_off[0]) is falls
+
+
+def test_bank_moves_the_weight_onto_the_track():
+    level, banked = (headings(box_posture(), Track(0.0, bank, 0.15, 0.0045)) for bank in (0.0, 15 * DEG))
+    assert level.falls_off[0]
+    assert not banked.falls_off[0]
+
+
+def test_overhang_is_what_the_track_lacks():
+    found = headings(box_posture(), Track(0.0, 0.0, 0.15, 0.02))
+    assert found.overhangs == pytest.approx(np.maximum(found.widths - 0.02, 0.0))
+
+
+def test_laid_anywhere_it_settles_in_its_range():
+    found = headings(box_posture(), TRACK)
+    border = np.degrees(np.arctan(3.0))
+    assert np.degrees(found.headings[laid(found, (border - 1) * DEG)]) == pytest.approx(0)
+    assert np.degrees(found.headings[laid(found, (border + 1) * DEG)]) == pytest.approx(90)
+    assert np.degrees(found.headings[laid(found, -170 * DEG)]) == pytest.approx(180)
+    assert laid(found) == 0
+
+
+def test_faults():
+    with pytest.raises(FeederError) as small:
+        headings(box_posture(), Track(0.0, 0.0, 0.02, 0.025))
+    assert str(small.value) == (
+        "track.radius: 20 mm is less than the part's 31.62 mm across - "
+        "give the radius of a bowl that holds the part"
+    )
+    narrow = headings(box_posture(), Track(0.0, 0.0, 0.15, 0.008))
+    with pytest.raises(FeederError) as falls:
+        laid(narrow, 90 * DEG)
+    assert str(falls.value) == (
+        "aspect A, heading 90 deg: the part needs 30.08 mm of track and falls off - "
+        "give a wider track, or another heading"
+    )
+    with pytest.raises(FeederError) as every:
+        laid(headings(box_posture(), Track(0.0, 0.0, 0.15, 0.002)))
+    assert str(every.value) == (
+        "aspect A: the part falls off the track in every heading - give a wider track, or another aspect"
+    )
+
+
+def test_an_even_end_is_shared_evenly():
+    """A blunt, faceted end has a shallow dip in its middle, which belongs to neither side."""
+    bend = np.linspace(-0.25, 0.25, 12)
+    end = 0.025 * np.column_stack([np.cos(bend), np.sin(bend)]) - [0.005, 0.0]
+    plan = np.concatenate([end, [[-0.012, 0.007], [-0.012, -0.007]]])
+    found = rests(plan, 0.15)
+    sides = found.share[np.abs(np.abs(found.outward) - np.pi / 2) < 0.5]
+    assert len(sides) == 2
+    assert sides[0] == pytest.approx(sides[1], rel=1e-9)
+
+
+def regular(count, error=0.0):
+    """A regular polygon with a side below, turned by a small error."""
+    angle = 2.0 * np.pi * np.arange(count) / count - np.pi / 2 + np.pi / count + error
+    return 0.01 * np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+@pytest.mark.parametrize("error", [0.0, 3e-7, -3e-7])
+@pytest.mark.parametrize(
+    ("count", "mirrors"),
+    [
+        (4, {0: 180, 90: None, 180: 0, 270: None}),
+        (6, {0: 180, 60: 120, 120: 60, 180: 0, 240: 300, 300: 240}),
+    ],
+)
+def test_equal_headings_come_from_0_on_whatever_the_rounding(count, mirrors, error):
+    """Every side of a regular polygon is as good; one is laid on 0, and rounding makes it no 360."""
+    plan = regular(count, error + 1e-9 * np.arange(count))
+    found = headings(plan_posture(plan), TRACK)
+    assert np.degrees(found.headings) == pytest.approx(list(mirrors), abs=1e-4)
+    named = [None if row < 0 else round(np.degrees(found.headings[row])) for row in found.mirrors]
+    assert named == list(mirrors.values())
+
+
+def test_the_more_frequent_heading_comes_first_by_more_than_rounding():
+    found = headings(plan_posture(rectangle(0.01 * (1.0 + 1e-6), 0.01)), TRACK)
+    assert np.degrees(found.headings) == pytest.approx([0, 90, 180, 270])
+    found = headings(plan_posture(rectangle(0.01, 0.011)), TRACK)
+    assert np.degrees(found.headings) == pytest.approx([90, 270, 0, 180])
+
+
+def test_a_half_turn_is_the_heading_half_a_turn_on():
+    """All six headings of a hexagon look alike from above."""
+    angle = np.pi / 3 * np.arange(6)
+    found = headings(plan_posture(0.01 * np.column_stack([np.cos(angle), np.sin(angle)])), TRACK)
+    away = np.abs(found.headings[found.half_turns] - found.headings)
+    assert away == pytest.approx([np.pi] * 6)

@@ -1,0 +1,323 @@
+"""The thesis's printed equations against the sum of wrenches, and the slips in print, each by its size."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mechanics_samples import DEG, bowl, box_posture, rectangle
+
+from feederscrew.mechanics.floor import balance
+from feederscrew.mechanics.published import floor as published_floor
+from feederscrew.mechanics.published import track as published_track
+from feederscrew.mechanics.published.comparison import FLOOR_TERMS, TRACK_TERMS, omitted_terms
+from feederscrew.mechanics.track import balance as track
+from feederscrew.mechanics.track.frame import frame, seat
+from feederscrew.part import load
+from feederscrew.resting.aspects import find
+from feederscrew.resting.posture import posture
+from feederscrew.screw import Wrench
+
+PARTS = Path(__file__).parents[2] / "parts"
+ASPECTS = {"arc_chute": "5", "magnet": "3"}
+
+
+@pytest.fixture(params=sorted(ASPECTS))
+def printed_card(request):
+    """Posture of a card on the aspect that chapter 4 analyses."""
+    part = load(PARTS / f"{request.param}.yaml")
+    return request.param, posture(part, find(part), ASPECTS[request.param])
+
+
+def at(point, force):
+    return Wrench(np.array(force), np.cross(point, force))
+
+
+def floor_wrench(h, e, d, push, weight, normal, friction, beta, turn):
+    """Sum over the printed levers, in the thesis's body axes: X up, Z' ahead, Y' from Z' on by theta."""
+    drive = push * np.array([np.sin(beta), np.cos(beta) * np.sin(turn), np.cos(beta) * np.cos(turn)])
+    return (
+        at([-h, 0, e], drive)
+        + at([-h, 0, d], [normal, 0, 0])
+        + at([-h, 0, 0], [0, -friction[0], -friction[1]])
+        + at([0, 0, 0], [-weight, 0, 0])
+    )
+
+
+def printed_floor_dual(h, e, d, push, normal, friction, beta, alpha, theta):
+    """Dual part of [4.13] and [4.43], the sign of R_y as in [4.19] and [4.43]."""
+    fixed = e * push * np.sin(beta) + h * push * np.cos(beta) * np.cos(alpha)
+    return np.array(
+        [
+            -e * push * np.cos(beta) * np.sin(alpha - theta),
+            -h * friction[1] + d * normal + np.cos(theta) * fixed,
+            h * friction[0] - np.sin(theta) * fixed,
+        ]
+    )
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_wrench_of_the_floor_4_13_and_4_43(printed_card, seed):
+    """All components but Y' and Z' of the moment, and these for alpha = theta = 0."""
+    _, card = printed_card
+    rng = np.random.default_rng(seed)
+    h, e, d = card.height, card.offset, rng.normal()
+    push, weight, normal = rng.uniform(0.5, 2, 3)
+    friction, beta, (alpha, theta) = rng.normal(size=2), rng.uniform(0, 1), rng.uniform(-1, 1, 2)
+    total = floor_wrench(h, e, d, push, weight, normal, friction, beta, alpha - theta)
+    across, along = push * np.cos(beta) * np.array([np.sin(alpha - theta), np.cos(alpha - theta)])
+    real = [push * np.sin(beta) + normal - weight, across - friction[0], along - friction[1]]
+    np.testing.assert_allclose(total.resultant, real, rtol=0, atol=1e-14)
+    assert total.moment[0] == pytest.approx(
+        printed_floor_dual(h, e, d, push, normal, friction, beta, alpha, theta)[0]
+    )
+    aligned = floor_wrench(h, e, d, push, weight, normal, friction, beta, 0.0)
+    want = printed_floor_dual(h, e, d, push, normal, friction, beta, 0.0, 0.0)
+    np.testing.assert_allclose(aligned.moment, want, rtol=1e-12, atol=1e-14)
+
+
+def test_erratum_floor_moment_is_projected_on_fixed_axes(printed_card):
+    """[4.13], [4.43]: factors cos(theta), sin(theta) stand where the body axes have alpha - theta."""
+    _, card = printed_card
+    h, e, push, beta, alpha, theta = card.height, card.offset, 1.3, 0.4, 0.5, 0.2
+    total = floor_wrench(h, e, 0.0, push, 0.0, 0.0, [0.0, 0.0], beta, alpha - theta).moment
+    printed = printed_floor_dual(h, e, 0.0, push, 0.0, [0.0, 0.0], beta, alpha, theta)
+    level, lift = push * np.cos(beta), push * np.sin(beta)
+    about_y = e * lift * (np.cos(theta) - 1) - h * level * np.sin(alpha) * np.sin(theta)
+    about_z = -e * lift * np.sin(theta) + h * level * (np.sin(alpha - theta) - np.sin(theta) * np.cos(alpha))
+    assert printed - total == pytest.approx([0.0, about_y, about_z], abs=1e-15)
+    assert np.abs(printed - total)[1:].min() > 1e-5
+
+
+def test_erratum_4_43_prints_alpha_plus_theta():
+    """[4.43], [4.46]: cos a cos t - sin a sin t is cos(a + t); the body axis needs cos(a - t)."""
+    alpha, theta = 0.5, 0.2
+    printed = np.cos(alpha) * np.cos(theta) - np.sin(alpha) * np.sin(theta)
+    assert printed == pytest.approx(np.cos(alpha + theta))
+    assert abs(printed - np.cos(alpha - theta)) > 0.1
+
+
+def test_alignment_coefficients_4_23_and_4_53(printed_card):
+    """0.033 = 3.15 / 95.32 and 0.0037 = 2.82 / 755.91, per g and mm."""
+    name, card = printed_card
+    coefficient = card.offset / card.turning_inertia * 1e-6  # [1/(g mm)]
+    digits = {"arc_chute": ("0.033", 3), "magnet": ("0.0037", 4)}[name]
+    assert f"{coefficient:.{digits[1]}f}" == digits[0]
+
+
+def test_published_floor_on_the_card(printed_card):
+    """[4.20], [4.23], [4.27], [4.16] with [4.26], each by hand."""
+    _, card = printed_card
+    settings = bowl(direction=10 * DEG)
+    found = published_floor.motion(card, settings, 4 * DEG)
+    push = 0.05e-3 * (2 * np.pi * 60) ** 2
+    normal = 9.81 - push * np.sin(20 * DEG)
+    across, ahead = (push * np.cos(20 * DEG) * f(6 * DEG) for f in (np.sin, np.cos))
+    assert found.normal_force == pytest.approx(card.mass * normal)
+    assert found.turning == pytest.approx(card.offset * card.mass * across / card.turning_inertia)
+    assert found.limiting_friction == pytest.approx(ahead / normal)
+    assert found.acceleration == pytest.approx([ahead - 0.3 * normal, across])
+    moment = card.offset * push * np.sin(20 * DEG) + card.height * push * np.cos(20 * DEG) * np.cos(10 * DEG)
+    assert found.offset == pytest.approx((card.height * 0.3 * normal - np.cos(4 * DEG) * moment) / normal)
+
+
+def test_aligned_print_and_complete_agree_but_for_the_line_of_action(printed_card):
+    _, card = printed_card
+    settings = bowl(direction=10 * DEG)
+    printed, complete = (f(card, settings, 10 * DEG) for f in (published_floor.motion, balance.motion))
+    for name in ("normal_force", "turning", "limiting_friction", "acceleration"):
+        np.testing.assert_allclose(getattr(printed, name), getattr(complete, name), rtol=1e-12, atol=1e-12)
+    gap = card.offset * np.sin(20 * DEG) + card.height * np.cos(20 * DEG) * np.cos(10 * DEG) * np.cos(
+        10 * DEG
+    )
+    ratio = 0.05e-3 * (2 * np.pi * 60) ** 2 / 9.81
+    want = -gap * ratio / (1 - ratio * np.sin(20 * DEG))
+    # the print's cos(theta) multiplies both terms
+    want += (1 - np.cos(10 * DEG)) * card.offset * np.sin(20 * DEG) * ratio / (1 - ratio * np.sin(20 * DEG))
+    assert printed.offset - complete.offset[0] == pytest.approx(want, rel=1e-9)
+
+
+def levers_of(name, card):
+    """The card's printed levers."""
+    told, axes = card.printed["track"], "level" if name == "magnet" else "tilted"
+    behind, ahead = told["wall_x"]
+    return published_track.Levers(
+        card.mass, card.height, card.offset, told["wall_lever"], told["wall_lever_angle"],
+        behind, ahead, told["wall_y"], told["wall_friction_y"], axes,
+    )  # fmt: skip
+
+
+def banked(vector, delta):
+    """Level components (X, across, up) as components along tilted axes."""
+    x, y, z = vector
+    c, s = np.cos(delta), np.sin(delta)
+    return np.array([x, y * c + z * s, z * c - y * s])
+
+
+def summed(lever, settings, heading, x):
+    """Sum over the printed contact points of a printed solution, in the tilted axes.
+
+    The print's axes are left-handed, ahead, from the wall, up: its moments are minus r x F.
+    """
+    h, e, delta, phi = lever.height, lever.offset, settings.track.bank, settings.track.climb
+    sigma = published_track.half_angle(lever, settings.track.radius)
+    raised = lever.wall * np.sin(lever.wall_angle - delta)
+    push = lever.mass * 0.05e-3 * (2 * np.pi * 60) ** 2
+    turn, beta = settings.drive.direction - heading, 20 * DEG
+    drive = push * np.array([np.cos(beta) * np.cos(turn), np.cos(beta) * np.sin(turn), np.sin(beta)])
+    level = at([e, 0, -h], drive)
+    for sign, place, reaction in ((1, -lever.behind, x.walls[0]), (-1, lever.ahead, x.walls[1])):
+        normal = reaction * np.array([sign * np.sin(sigma), np.cos(sigma), 0.0])
+        dragged = np.array([-settings.friction.wall * reaction, 0.0, 0.0])
+        level = (
+            level
+            + at([place, -lever.beside, raised], normal)
+            + at([place, -lever.friction_beside, raised], dragged)
+        )
+    tilted = (
+        at([x.offset, 0, -h], [0, 0, x.normal_force])
+        + at([0, 0, -h], [-x.traction, x.radial_friction, 0])
+        + at(
+            [0, 0, 0], banked([-lever.mass * 9.81 * np.sin(phi), 0, -lever.mass * 9.81 * np.cos(phi)], delta)
+        )
+    )
+    force = banked(level.resultant, delta) + tilted.resultant
+    return force, -(banked(level.moment, delta) + tilted.moment), (drive, raised)
+
+
+@pytest.mark.parametrize("delta", [0.0, 0.2, 0.5])
+def test_track_equations_follow_from_the_wrench_sum_but_for_three_slips(printed_card, delta):
+    """[4.32]-[4.37], [4.57]-[4.62]: left over are radial gravity, the drive about X, wall friction."""
+    name, card = printed_card
+    lever = levers_of(name, card)
+    settings = bowl(bank=delta, direction=15 * DEG, wall=0.2)
+    x = published_track.motion(lever, settings, 5 * DEG)
+    assert x.slides
+    assert x.traction == pytest.approx(0.3 * x.normal_force)
+    force, moment, (drive, raised) = summed(lever, settings, 5 * DEG, x)
+    radial = -lever.mass * 9.81 * np.cos(3 * DEG) * np.sin(delta) if lever.axes == "tilted" else 0.0
+    rate = np.array([lever.mass * float(x.acceleration), radial, 0.0])
+    size = lever.mass * 9.81
+    np.testing.assert_allclose(force, rate, rtol=0, atol=1e-12 * size)
+    dragged = 0.2 * x.walls.sum()
+    slips = banked([-lever.height * drive[1], raised * dragged, 0.0], delta)
+    np.testing.assert_allclose(moment, slips, rtol=0, atol=1e-12 * size * 0.03)
+    assert abs(drive[1] * lever.height) > 1e-3 * size * lever.height
+
+
+def test_erratum_4_33_leaves_out_radial_gravity():
+    """With it, a banked part without drive presses on the wall; as printed it does not."""
+    part = seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 1.0)
+    settings = bowl(amplitude=0.0, bank=20 * DEG, climb=0.0, static=0.0, kinetic=0.0, wall=0.0)
+    printed = published_track.motion(published_track.levers(part, 0.0), settings, 0.0)
+    complete = track.motion(part, settings)
+    assert printed.walls == pytest.approx([0.0, 0.0], abs=1e-15)
+    assert complete.walls.sum() == pytest.approx(0.01 * 9.81 * np.tan(20 * DEG) / np.cos(np.arcsin(0.1)))
+
+
+@pytest.mark.parametrize(("name", "bank"), [("arc_chute", 64.22), ("magnet", 57.12)])
+def test_no_radial_friction_at_the_printed_bank(name, bank):
+    part = load(PARTS / f"{name}.yaml")
+    lever = levers_of(name, posture(part, find(part), ASPECTS[name]))
+    found = published_track.motion(lever, bowl(bank=bank * DEG), 0.0)
+    assert abs(found.radial_friction) < 1e-12 * lever.mass * 9.81
+
+
+def test_erratum_the_remark_on_r3_prints_64_44():
+    part = load(PARTS / "arc_chute.yaml")
+    lever = levers_of("arc_chute", posture(part, find(part), "5"))
+    assert abs(published_track.motion(lever, bowl(bank=64.44 * DEG), 0.0).radial_friction) > 1e-6
+    assert np.degrees(lever.wall_angle) == pytest.approx(64.22)
+
+
+def test_erratum_4_36_loses_a_term_of_4_29():
+    """[4.36] is [4.29] with sin(delta) for cos(delta) in one term, and without the last one."""
+    delta, beta, turn, e, h = 0.3, 0.4, 0.2, 3.15, 3.31
+    full = e * np.sin(beta) * np.cos(delta) + h * np.cos(beta) * np.cos(turn) * np.cos(delta)
+    full -= e * np.cos(beta) * np.sin(turn) * np.sin(delta)  # [4.29]
+    printed = e * np.sin(beta) * np.cos(delta) + h * np.cos(beta) * np.cos(turn) * np.sin(delta)  # [4.36]
+    lost = h * np.cos(beta) * np.cos(turn) * (np.cos(delta) - np.sin(delta))
+    assert full - printed == pytest.approx(lost - e * np.cos(beta) * np.sin(turn) * np.sin(delta))
+    assert abs(full - printed) > 1.0
+
+
+def test_erratum_wall_friction_is_not_along_x():
+    """[4.32], [4.57]: each wall's tangent is turned by sigma and its friction has a radial part."""
+    part = seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 1.0)
+    courses = frame(bowl(climb=0.0, bank=0.0), part.walls).courses
+    assert courses[:, 0] == pytest.approx([np.cos(np.arcsin(0.1))] * 2)
+    assert courses[:, 1] == pytest.approx([-0.1, 0.1])
+
+
+def test_erratum_4_13_prints_the_moment_of_r_y_with_the_other_sign():
+    """-3.31 R_y there, +3.31 R_y in [4.19]: the wrench sum has the latter."""
+    total = floor_wrench(3.31, 0.0, 0.0, 0.0, 0.0, 0.0, [1.0, 0.0], 0.0, 0.0)
+    assert total.moment[2] == pytest.approx(3.31)
+
+
+def test_erratum_the_arc_chute_has_two_side_levers():
+    """4.05 mm with the reactions, 4.01 mm with their friction; and 3.48 mm by the polar lever."""
+    part = load(PARTS / "arc_chute.yaml")
+    lever = levers_of("arc_chute", posture(part, find(part), "5"))
+    assert (lever.beside, lever.friction_beside) == pytest.approx((4.05e-3, 4.01e-3))
+    assert lever.wall * np.cos(lever.wall_angle) == pytest.approx(3.484e-3, abs=1e-6)
+
+
+def test_printed_reactions_may_pull(printed_card):
+    """The print assumes contact: at the upper reversal its wall pulls, the complete equations open it."""
+    name, card = printed_card
+    printed = published_track.motion(levers_of(name, card), bowl(bank=0.0, direction=10 * DEG), 0.0)
+    assert printed.walls.sum() < 0.0
+
+
+def test_at_rest_the_printed_part_does_not_accelerate(printed_card):
+    name, card = printed_card
+    found = published_track.motion(levers_of(name, card), bowl(static=3.0, kinetic=3.0), 0.0)
+    assert not found.slides
+    assert found.acceleration == 0.0
+    assert found.traction < 3.0 * found.normal_force
+
+
+def test_omitted_terms_by_hand():
+    part, settings = seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 1.0), bowl()
+    terms = {t.name: t.value for t in omitted_terms(part, settings, track.motion(part, settings), 1e-3)}
+    weight, push = 0.01 * 9.81, 0.01 * 0.05e-3 * (2 * np.pi * 60) ** 2
+    assert terms["radial gravity, -m g cos(phi) sin(delta)"] == pytest.approx(
+        -weight * np.cos(3 * DEG) * np.sin(10 * DEG)
+    )
+    speed = 0.05e-3 * 2 * np.pi * 60 * np.cos(20 * DEG)
+    assert terms["centripetal force at mid-stroke"] == pytest.approx(0.01 * speed**2 / 0.15)
+    assert terms["moment of the drive about X"] == pytest.approx(0.0, abs=1e-12)
+    lifted = push * np.sin(20 * DEG) * np.cos(10 * DEG)
+    assert terms["drive at the contact plane, about Y"] == pytest.approx(
+        1e3 * (0.0025 * push * np.cos(20 * DEG) + 1e-3 * lifted)
+    )
+
+
+def test_centripetal_share_of_gravity():
+    """About 2 % of g at 0.5 mm, 50 Hz and 150 mm."""
+    settings = bowl(amplitude=0.5e-3, frequency=50.0, vibration_angle=0.0)
+    part = seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 1.0)
+    term = next(
+        t for t in omitted_terms(part, settings, track.motion(part, settings), 0.0) if "centripetal" in t.name
+    )
+    assert term.value / (0.01 * 9.81) == pytest.approx(0.0168, abs=5e-5)
+
+
+def test_every_contract_quantity_names_its_term():
+    from feederscrew.output.floor import tables as floor_tables
+    from feederscrew.output.track import tables as track_tables
+
+    extra = {"stable_heading_deg", "friction_N", "greatest_friction_N", "normal_line_offset_y_mm", "tips"}
+    told = set(floor_tables.LABELS) - extra
+    assert told == set(FLOOR_TERMS)
+    extra = {"normal_line_offset_y_mm", "acceleration_y_m_s2", "turning_rad_s2", "tips"}
+    assert set(track_tables.LABELS) - extra == set(TRACK_TERMS)
+
+
+def test_levers_of_a_mesh_are_its_contact_points():
+    part = seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 1.0)
+    lever = published_track.levers(part, 1e-3)
+    assert (lever.behind, lever.ahead, lever.beside) == pytest.approx((0.015, 0.015, 0.005))
+    assert lever.wall * np.sin(lever.wall_angle) == pytest.approx(0.0025)
+    assert replace(lever, axes="level").axes in published_track.AS_PRINTED

@@ -1,0 +1,84 @@
+"""Figures: their labels, their data, and the same bytes every time."""
+
+from itertools import pairwise
+
+import matplotlib.pyplot
+import numpy as np
+import pytest
+
+from feederscrew.output import style
+from feederscrew.output.aspects import bars
+
+NAMES = ["A", "B", "C"]
+PROFILES = {"pmi": np.array([0.5, 0.3, 0.2]), "csa": np.array([0.6, 0.4, np.nan])}
+
+
+def heights(axes):
+    return [bar.get_height() for bar in axes.patches]
+
+
+def test_bars_show_percentages_by_aspect_and_rule():
+    axes = bars.probabilities(NAMES, PROFILES, title="nut").axes[0]
+    assert heights(axes) == pytest.approx([50.0, 30.0, 20.0, 60.0, 40.0, 0.0])
+    assert [label.get_text() for label in axes.get_xticklabels()] == NAMES
+    assert [text.get_text() for text in axes.texts] == ["50.0", "30.0", "20.0", "60.0", "40.0"]
+    assert axes.get_legend_handles_labels()[1] == ["PMI", "CSA"]
+    assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_title(loc="left")) == (
+        "aspect",
+        "probability [%]",
+        "nut",
+    )
+
+
+def test_bars_of_one_aspect_stand_side_by_side():
+    axes = bars.probabilities(["A"], {"pmi": [1.0], "csa": [1.0], "stability": [1.0]}).axes[0]
+    left = [bar.get_x() for bar in axes.patches]
+    assert np.all(np.diff(left) >= axes.patches[0].get_width())
+
+
+def test_many_bars_keep_their_numbers_apart():
+    names = [chr(65 + k) for k in range(20)]
+    figure = bars.probabilities(names, {rule: np.full(20, 0.05) for rule in style.METHODS})
+    assert figure.get_figwidth() <= bars.WIDE
+    figure.draw_without_rendering()
+    boxes = [text.get_window_extent() for text in figure.axes[0].texts]
+    assert not any(a.overlaps(b) for a, b in pairwise(boxes))
+
+
+def test_the_numbers_stay_below_the_top():
+    figure = bars.probabilities(NAMES, PROFILES)
+    figure.draw_without_rendering()
+    top = figure.axes[0].get_window_extent().y1
+    assert all(text.get_window_extent().y1 <= top for text in figure.axes[0].texts)
+
+
+def test_the_same_figure_gives_the_same_bytes_and_no_version(tmp_path):
+    first, second = (style.png(bars.probabilities(NAMES, PROFILES)) for _ in range(2))
+    assert first == second
+    assert first.startswith(b"\x89PNG")
+    assert b"atplotlib" not in first
+    style.save(bars.probabilities(NAMES, PROFILES), tmp_path / "a.png")
+    assert (tmp_path / "a.png").read_bytes() == first
+
+
+def test_figures_leave_no_global_state():
+    style.png(bars.probabilities(NAMES, PROFILES))
+    assert matplotlib.pyplot.get_fignums() == []
+
+
+def test_methods_keep_their_colour_and_others_get_a_spare_one():
+    assert style.method("csa") == style.METHODS["csa"]
+    assert style.method("MDBT_80", 1) == ("MDBT 80", style.SPARE[1])
+    colours = [colour for _, colour in style.METHODS.values()]
+    assert len(set(colours)) == len(colours)
+
+
+def test_words_are_no_formulas_and_have_only_known_letters():
+    assert style.words("a$b µ°") == r"a\$b µ°"
+    assert style.words("部x\n") == "?x?"
+
+
+def test_tidy_labels_an_axes():
+    axes = style.tidy(style.figure().add_subplot(), title="t", x="x [mm]", y="y [N]", grid="none")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("x [mm]", "y [N]")
+    assert not axes.spines["top"].get_visible()

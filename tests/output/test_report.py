@@ -1,0 +1,269 @@
+"""The report as data and as text."""
+
+import base64
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from feederscrew.errors import FeederError
+from feederscrew.output import tables
+from feederscrew.output.report import Case, blocks, page, repeated
+from feederscrew.output.report.as_html import html
+from feederscrew.output.report.as_markdown import markdown
+from feederscrew.output.report.chapters import CHAPTERS
+from feederscrew.output.report.scene import reduced, scene
+from feederscrew.part import load
+from feederscrew.resting import aspects
+
+PARTS = Path(__file__).parents[2] / "parts"
+BRACKET = PARTS / "lbracket_30x20x15.stl"
+LIGHT = [chapter for chapter in CHAPTERS if chapter[0] in ("aspects", "part", "limits", "repeat")]
+OUTSIDE = re.compile(r"""(src|href)\s*=\s*["']?(https?:)?//""")
+
+
+@pytest.fixture(scope="module")
+def bracket():
+    return load(str(BRACKET))
+
+
+@pytest.fixture(scope="module")
+def light(bracket):
+    """A report of the bracket without what takes long."""
+    return page(Case.of(bracket, None, (), command="feeder report x.stl"), chapters=LIGHT)
+
+
+def decoded(text, kind):
+    return np.frombuffer(base64.b64decode(text), dtype=kind)
+
+
+@pytest.mark.parametrize("name", ["lbracket_30x20x15", "hexbolt_m8x25", "dowel_6x20"])
+def test_every_pose_stands_on_the_floor(name):
+    part = load(str(PARTS / f"{name}.stl"))
+    found = aspects.find(part)
+    told = scene(part, found, range(len(found.names)))
+    points = decoded(told["positions"], "<f4").reshape(-1, 3)
+    for kind, pose in zip(found.kinds, told["poses"]):
+        turn = Rotation.from_quat(pose["quaternion"])
+        contact = turn.apply(np.reshape(pose["contact"], (-1, 3)))[:, 2] + pose["height"]
+        lowest = (turn.apply(points)[:, 2] + pose["height"]).min()
+        ripple = (0.05 if kind == "rolling" else 1e-3) * pose[
+            "height"
+        ]  # a tessellated curve is higher at edges
+        assert np.abs(contact).max() < ripple
+        assert abs(lowest) < ripple
+
+
+def test_the_mesh_is_stored_once_and_whole(bracket):
+    found = aspects.find(bracket)
+    told = scene(bracket, found, range(2))
+    index = decoded(told["index"], "<u4").reshape(-1, 3)
+    assert len(index) == told["facets"] == told["all"] == len(bracket.faces)
+    corners = decoded(told["positions"], "<f4").reshape(-1, 3)[index]
+    six_volumes = np.linalg.det(corners.astype(float)).sum()
+    assert six_volumes / 6.0 == pytest.approx(bracket.volume * 1e9, rel=1e-5)
+    assert len(json.dumps(told)) < 1.5 * (4 * 3 * len(bracket.vertices) + 12 * len(index)) + 3000
+
+
+def test_shapes_and_probabilities_are_a_table_each(light):
+    """One table of both would be broader than a window."""
+    section = next(section for section in light.sections if section.anchor == "aspects")
+    shapes, chances = (block.frame for block in section.blocks if isinstance(block, blocks.Table))
+    assert list(shapes["aspect"]) == list(chances["aspect"])
+    assert {"height_mm", "contact_area_mm2", "barrier_mm", "tip_angle_deg"} <= set(shapes)
+    assert {"p_pmi", "p_csa", "p_surface"} <= set(chances)
+    assert all(name == "aspect" or name.startswith("p_") for name in chances)
+    assert not any(name.startswith("p_") for name in shapes)
+
+
+def sphere(rings):
+    """Corners and facets of a unit sphere."""
+    v, u = np.meshgrid(
+        np.linspace(0.0, np.pi, rings + 1), np.linspace(0.0, 2.0 * np.pi, 2 * rings, endpoint=False)
+    )
+    corners = np.stack([np.sin(v) * np.cos(u), np.sin(v) * np.sin(u), np.cos(v)], axis=-1).reshape(-1, 3)
+    i, j = (k.ravel() for k in np.meshgrid(np.arange(2 * rings), np.arange(rings), indexing="ij"))
+    at = lambda i, j: (i % (2 * rings)) * (rings + 1) + j  # noqa: E731
+    one, other = [at(i, j), at(i, j + 1), at(i + 1, j)], [at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)]
+    return corners, np.concatenate([np.column_stack(one), np.column_stack(other)])
+
+
+def test_a_large_mesh_is_reduced_to_its_shape():
+    corners, faces = sphere(120)
+    points, kept = reduced(corners, faces, most=10_000)
+    assert 2_000 < len(kept) <= 10_000
+    assert np.allclose(np.linalg.norm(points, axis=1), 1.0, rtol=0.02, atol=0)
+    assert np.linalg.det(points[kept]).sum() / 6.0 == pytest.approx(4.0 * np.pi / 3.0, rel=0.02)
+
+
+def test_a_small_mesh_is_left_alone():
+    corners, faces = sphere(6)
+    points, kept = reduced(corners, faces)
+    assert points is corners and kept is faces
+
+
+def test_a_simplified_view_says_so(bracket, monkeypatch):
+    monkeypatch.setattr("feederscrew.output.report.scene.reduced", lambda v, f: (v, f[:-2]))
+    made = page(Case.of(bracket, None, ()), chapters=LIGHT[:1])
+    count = len(bracket.faces)
+    assert f"a coarser surface of {count - 2} facets; every number is of all {count}" in html(made)
+
+
+def test_html_loads_nothing_from_outside(light):
+    text = html(light)
+    assert not OUTSIDE.search(text)
+    assert "default-src 'none'" in text
+    assert len(re.findall(r"https?://", text)) == 1  # the XHTML namespace, a name and no address
+    assert "The MIT License" in text and "three.js authors" in text
+
+
+def test_the_licence_and_sum_of_three_are_told():
+    import hashlib
+
+    folder = Path(blocks.__file__).parent
+    assert (
+        hashlib.sha256((folder / "three.js").read_bytes()).hexdigest()
+        in (folder / "three.README.md").read_text()
+    )
+
+
+def test_cells_of_the_sheet_are_those_of_the_csv(light):
+    sheet = next(b for s in light.sections for b in s.blocks if isinstance(b, blocks.Sheet))
+    inside = re.search(r'id="aspects.csv">(.*?)</table>', html(light), re.S).group(1)
+    rows = [re.findall(r"<t[hd]>(.*?)</t[hd]>", row) for row in re.findall(r"<tr>(.*?)</tr>", inside)]
+    assert "".join(",".join(row) + "\n" for row in rows) == sheet.csv
+
+
+def test_markdown_has_every_chapter_and_no_script(light):
+    text = markdown(light)
+    assert [line[3:] for line in text.splitlines() if line.startswith("## ")] == [
+        s.title for s in light.sections
+    ]
+    assert "![The part as it rests on each aspect](report/aspects.png)" in text
+    assert "| A | flat | 1 | yes | 4.651 | 450.0 | 3.699 | 1218 |" in text
+    assert "| A | 31.2 | 42.7 | 34.9 |" in text
+    assert "<script" not in text
+
+
+def test_a_chapter_that_cannot_be_computed_says_why(bracket):
+    made = page(
+        Case.of(bracket, None, ["track.radius=10 mm"]),
+        chapters=[c for c in CHAPTERS if c[0] in ("track", "rate")],
+    )
+    for section in made.sections:
+        (notes,) = section.blocks
+        assert notes.loud and len(notes.lines) == 1 and " - " in notes.lines[0]
+    assert made.warnings == tuple(f"{s.title}: {s.blocks[0].lines[0]}" for s in made.sections)
+    assert made.tiles == ()
+
+
+def test_our_own_bug_is_not_hidden(bracket):
+    def bug(case):
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        page(Case.of(bracket, None, ()), chapters=[("x", "X", bug)])
+
+
+def test_markup_in_names_is_text(bracket):
+    case = Case.of(replace(bracket, name="<b>|*x*", source="a`<i>.stl"), None, ())
+    made = page(case, chapters=[c for c in CHAPTERS if c[0] == "part"])
+    assert "<h1>&lt;b&gt;|*x*</h1>" in html(made) and "<i>" not in html(made)
+    assert markdown(made).startswith("# \\<b>\\|\\*x\\*\n")
+
+
+def test_a_part_card_has_no_views():
+    made = page(Case.of(load(str(PARTS / "magnet.yaml")), None, ()), chapters=LIGHT)
+    text = html(made)
+    assert "without a shape: there is nothing to draw or to turn" in text
+    assert "<canvas" not in text and "THREE" not in text
+
+
+def test_same_input_same_bytes(bracket, light):
+    again = page(Case.of(bracket, None, (), command="feeder report x.stl"), chapters=LIGHT)
+    assert html(again) == html(light)
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ({"aspect": "Q"}, f"{BRACKET}: there is no aspect 'Q' - choose one of A, B, C, D, E"),
+        (
+            {"rule": "guess"},
+            "--rule guess: has no probabilities of this part - choose one of pmi, csa, stability, "
+            "quasistatic, crsa, barrier, surface, hops, recommended",
+        ),
+    ],
+)
+def test_a_wrong_wish_is_a_fault_of_the_whole_report(bracket, given, line):
+    with pytest.raises(FeederError) as fault:
+        Case.of(bracket, None, (), **given)
+    assert str(fault.value) == line
+
+
+def test_repeated_leaves_out_where_and_how_loud():
+    typed = [
+        "report",
+        "a b.stl",
+        "-o",
+        "out",
+        "--set",
+        "drive.frequency=50 Hz",
+        "-q",
+        "--output=x",
+        "--aspect",
+        "B",
+    ]
+    assert repeated(typed) == "feeder report 'a b.stl' --set 'drive.frequency=50 Hz' --aspect B"
+
+
+def test_cells_for_people():
+    frame = tables.frame(
+        {
+            "aspect": ["A", None],
+            "faces": [2, 10],
+            "height_mm": [7.5, np.nan],
+            "p_csa": [0.5, 1e-15],
+            "fits": [True, False],
+        }
+    )
+    heads, numeric, rows = blocks.cells(frame)
+    assert heads[2:4] == [("height", "[mm]"), ("CSA", "[%]")]
+    assert numeric == [False, True, True, True, False]
+    assert rows == [("A", "2", "7.500", "50.0", "yes"), ("–", "10", "–", "1.00e-13", "no")]
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [(1193.4, "1193"), (0.17962, "0.180"), (9.9996, "10.0"), (0.0, "0"), (np.nan, "–"), (2e-7, "2.00e-07")],
+)
+def test_numbers_keep_three_digits(value, shown):
+    assert blocks.number(value, 3) == shown
+
+
+def test_a_bowl_too_steep_to_travel_is_told(bracket):
+    wanted = [chapter for chapter in CHAPTERS if chapter[0] in ("velocity", "rate")]
+    velocity, rate = page(Case.of(bracket, None, ["track.climb=40 deg"]), chapters=wanted).sections
+    assert "no steady state" in velocity.warnings[0]
+    assert velocity.tiles == (blocks.Tile("travels", "–", "no steady state"),)
+    assert velocity.blocks[-1].text.startswith("No drive of 5 to 60 deg")
+    assert rate.blocks[0].lines[0].startswith("track.climb: is steeper than friction holds")
+
+
+def test_a_part_with_a_shape_has_the_recommended_answer(bracket):
+    case = Case.of(bracket, None, ())
+    answer = case.found.recommended
+    (tile,) = page(case, chapters=LIGHT[:1]).tiles
+    assert tile.note.startswith(f"{100.0 * answer.p[case.row]:.3g} % of drops (")
+    assert tile.note.endswith(f" %), {answer.rule}")
+
+
+def test_the_likeliest_aspect_is_wanted_unless_another_is():
+    case = Case.of(load(str(PARTS / "magnet.yaml")), None, ())
+    assert case.aspect == "3"  # of a card in the order of its source, 11, 14 and 75 % by CSA
+    (tile,) = page(case, chapters=LIGHT[:1]).tiles
+    assert tile == blocks.Tile("rests most often on", "aspect 3", "42.8 to 74.7 % of drops, by 3 rules")

@@ -1,0 +1,160 @@
+"""The report in a browser: it loads without a fault, its views are drawn, turn and print."""
+
+import csv
+import io
+import json
+import re
+import shutil
+import subprocess
+from html import unescape
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from feederscrew.output import columns, tables
+from feederscrew.output.report import Case, page
+from feederscrew.output.report.as_html import html
+from feederscrew.output.report.chapters import CHAPTERS
+from feederscrew.part import load
+
+BRACKET = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
+BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+FLAGS = (
+    "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
+    "--disable-component-update --disable-sync --use-gl=angle --use-angle=swiftshader "
+    "--enable-unsafe-swiftshader --hide-scrollbars --window-size=1280,900 --virtual-time-budget=6000 "
+    "--enable-logging=stderr"
+).split()
+ADVICE = ("GL Driver Message", "will-read-frequently")  # about the speed of drawing without a graphics card
+PROBE = """<script>
+(() => {
+  const canvas = document.querySelector(".view canvas"), paper = canvas.getContext("2d");
+  const seen = () => {
+    const pixels = paper.getImageData(0, 0, canvas.width, canvas.height).data, place = [0, 0, 0];
+    for (let k = 0; k < pixels.length; k += 4) {
+      const steel = pixels[k + 3] > 250 && pixels[k + 2] - pixels[k] > 15;
+      if (!steel) continue;
+      place[0] += 1; place[1] += (k / 4) % canvas.width; place[2] += Math.floor(k / 4 / canvas.width);
+    }
+    return place.map((sum, k) => (k ? sum / place[0] : sum));
+  };
+  const drag = (kind, x, y) =>
+    canvas.dispatchEvent(new PointerEvent(kind, { clientX: x, clientY: y, pointerId: 1, bubbles: true }));
+  canvas.setPointerCapture = () => {};
+  const told = { start: seen() };
+  drag("pointerdown", 100, 100); drag("pointermove", 220, 130); drag("pointerup", 220, 130);
+  told.turned = seen();
+  canvas.dispatchEvent(new MouseEvent("dblclick"));
+  told.back = seen();
+  canvas.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowLeft" }));
+  told.key = seen();
+  canvas.parentElement.querySelector("button").click();
+  told.below = seen();
+  const rows = [...document.getElementById("aspects.csv").rows];
+  told.table = rows.map((row) => [...row.cells].map((cell) => cell.innerText));
+  told.views = document.querySelectorAll(".view canvas").length;
+  document.title = JSON.stringify(told);
+})();
+</script>
+</body>"""
+
+pytestmark = pytest.mark.skipif(BROWSER is None, reason="no Chromium here: install Debian's package chromium")
+
+
+@pytest.fixture(scope="module")
+def case():
+    return Case.of(load(str(BRACKET)), None, (), command="feeder report x.stl")
+
+
+@pytest.fixture(scope="module")
+def text(case):
+    """The page without the chapters that take long."""
+    wanted = [chapter for chapter in CHAPTERS if chapter[0] in ("aspects", "part", "limits", "repeat")]
+    return html(page(case, chapters=wanted))
+
+
+@pytest.fixture
+def visit(tmp_path):
+    """Load a page with one more flag; gives what came to stdout and the lines of the console."""
+
+    def call(text, *flags):
+        (tmp_path / "page.html").write_text(text, encoding="utf-8")
+        command = [
+            BROWSER,
+            *FLAGS,
+            f"--user-data-dir={tmp_path / 'profile'}",
+            *flags,
+            f"file://{tmp_path / 'page.html'}",
+        ]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+        lines = [
+            line
+            for line in done.stderr.splitlines()
+            if "CONSOLE" in line and not any(word in line for word in ADVICE)
+        ]
+        return done.stdout, lines
+
+    return call
+
+
+@pytest.fixture
+def told(visit, text):
+    """What the probe found out."""
+    dom, console = visit(text.replace("</body>", PROBE), "--dump-dom")
+    assert console == []
+    assert '<body class="has-views">' in dom and '<div id="views" hidden' not in dom
+    return json.loads(unescape(re.search(r"<title>(.*?)</title>", dom, re.S).group(1)))
+
+
+def test_views_are_drawn_and_turn(told, case):
+    assert told["views"] == len(case.found.names)
+    area = 680 * 544
+    for name in ("start", "turned", "key", "below"):
+        assert 0.03 * area < told[name][0] < 0.6 * area
+    assert told["back"] == told["start"]
+    for name in ("turned", "key", "below"):
+        assert abs(told[name][0] - told["start"][0]) > 0.01 * told["start"][0]
+
+
+def test_the_table_is_that_of_the_csv(told, case):
+    written = tables.text(columns.aspects(case.found, case.part), "csv")
+    assert told["table"] == list(csv.reader(io.StringIO(written)))
+
+
+def test_a_screenshot_shows_the_part(visit, text, tmp_path):
+    _, console = visit(text, f"--screenshot={tmp_path / 'seen.png'}")
+    assert console == []
+    pixels = np.asarray(Image.open(tmp_path / "seen.png").convert("RGB"), dtype=int)
+    assert pixels.shape[:2] == (900, 1280)
+    steel = (pixels[..., 2] - pixels[..., 0] > 15) & (pixels.min(axis=-1) > 110)
+    assert steel.mean() > 0.02
+    assert len(np.unique(pixels.reshape(-1, 3), axis=0)) > 500
+    orange = (pixels[..., 0] > 190) & (pixels[..., 2] < 130) & (pixels[..., 0] - pixels[..., 2] > 90)
+    assert orange.sum() > 100  # the contact polygon or the centre of mass
+
+
+def test_a_fault_of_the_page_is_seen(visit, text):
+    _, console = visit(text.replace("</body>", "<script>nothing.there()</script></body>"), "--dump-dom")
+    assert len(console) == 1 and "nothing is not defined" in console[0]
+
+
+def test_nothing_from_outside_may_load(visit, text):
+    outside = '<img src="http://localhost:9/x.png"></body>'
+    _, console = visit(text.replace("</body>", outside), "--dump-dom")
+    assert len(console) == 1 and "Content Security Policy" in console[0]
+
+
+def test_without_webgl_the_still_picture_stays(visit, text):
+    dom, console = visit(text, "--disable-3d-apis", "--dump-dom")
+    assert console == []
+    assert '<body class="has-views">' not in dom and '<div id="views" hidden' in dom
+
+
+def test_it_prints_on_a4(visit, text, tmp_path):
+    visit(text, "--no-pdf-header-footer", f"--print-to-pdf={tmp_path / 'page.pdf'}")
+    paper = (tmp_path / "page.pdf").read_bytes()
+    boxes = {tuple(map(float, box.split())) for box in re.findall(rb"/MediaBox \[([\d. ]+)\]", paper)}
+    assert len(boxes) == 1
+    assert next(iter(boxes)) == pytest.approx((0.0, 0.0, 595.3, 841.9), abs=1.0)

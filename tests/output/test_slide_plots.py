@@ -1,0 +1,118 @@
+"""What the sliding pictures show: labels, units, drawn data, the bowl's own point; the same bytes twice."""
+
+import math
+
+import numpy as np
+import pytest
+
+from feederscrew import bowl
+from feederscrew.output import style
+from feederscrew.output.slide import figures as slide_plots
+from feederscrew.studies import maps
+
+SMALL = (61, 51)  # cells, for speed
+
+
+def slide(beta=20, *overrides):
+    return maps.slide(bowl.read(None, overrides), math.radians(beta), shape=SMALL)
+
+
+def texts(figure):
+    """Every text of a figure that is not a tick."""
+    axes = figure.axes[0]
+    found = [t.get_text() for t in axes.texts]
+    legends = [axes.get_legend(), *figure.legends]
+    return found + [t.get_text() for legend in legends if legend for t in legend.get_texts()]
+
+
+def own_point(axes):
+    (marker,) = [line for line in axes.lines if line.get_marker() == "o"]
+    return marker.get_xydata()[0]
+
+
+def test_maps_name_their_axes_and_their_angle():
+    for draw in (slide_plots.contours, slide_plots.regimes):
+        axes = draw(slide()).axes[0]
+        assert axes.get_xlabel() == "α − θ, from heading to drive [deg]"
+        assert axes.get_ylabel() == "acceleration ratio G = A ω² / g [1]"
+        assert axes.get_title(loc="left").endswith("β = 20°")
+        assert (axes.get_xlim(), axes.get_ylim()) == ((-90, 90), (0, 4))
+
+
+def test_the_own_point_is_marked_where_the_bowl_works():
+    one = slide(20, "drive.direction=25 deg")
+    for draw in (slide_plots.contours, slide_plots.regimes):
+        figure = draw(one)
+        assert own_point(figure.axes[0]) == pytest.approx([25, one.ratio])
+        assert "this bowl, G = 0.724" in texts(figure)
+
+
+def test_the_regime_map_shows_its_codes_and_names_them():
+    one = slide(20)
+    figure = slide_plots.regimes(one)
+    (image,) = figure.axes[0].images
+    assert (np.asarray(image.get_array()) == one.grid.codes.T).all()
+    named = texts(figure)
+    for name, share in one.grid.shares().items():
+        label = "hops: no friction holds it" if name == "hop" else slide_plots.REGIMES[name][1]
+        assert (label in [text.replace("\n", " ") for text in named]) == (share > 0), name
+
+
+def test_the_hop_begins_at_its_ratio():
+    for draw, start in ((slide_plots.regimes, math.cos(math.radians(3))), (slide_plots.contours, 1.0)):
+        heights = [line.get_ydata()[0] for line in draw(slide(20)).axes[0].lines if line.get_marker() != "o"]
+        assert heights == pytest.approx([start / math.sin(math.radians(20))])
+
+
+def test_no_hop_is_drawn_where_none_is():
+    assert not any("hops" in text for text in texts(slide_plots.regimes(slide(0))))
+
+
+def test_contour_lines_follow_4_27_and_carry_their_values():
+    figure = slide_plots.contours(maps.slide(bowl.default(), math.radians(20), shape=slide_plots.PICTURE))
+    axes = figure.axes[0]
+    assert {"μ = 0.1", "μ = 1", "μ = 2", "this bowl's μ = 0.6"} <= set(texts(figure))
+    assert "μ = 0.6" not in texts(figure)
+    lines = {
+        c.levels[0]: np.concatenate([path.vertices for path in c.get_paths()])
+        for c in axes.collections
+        if hasattr(c, "levels")
+    }
+    angle, ratio = lines[1.0].T
+    inner = np.abs(angle) < 60
+    expected = maps.level_line(math.radians(20), 1.0, np.radians(angle[inner]))
+    assert ratio[inner] == pytest.approx(expected, rel=1e-3)
+
+
+def test_the_surface_is_cut_and_carries_the_bowls_friction():
+    figure = slide_plots.surface(slide(20))
+    axes = figure.axes[0]
+    assert axes.get_zlabel() == "limiting friction μ [1]"
+    assert axes.get_zlim() == (0, 2)
+    assert any("static friction of this bowl, 0.6" in text for text in texts(figure))
+    _, _, height = axes.lines[0].get_data_3d()
+    assert set(height) == {0.6}
+
+
+def test_curves_are_4_28_for_each_angle():
+    one, two = slide(10), slide(40)
+    axes = slide_plots.curves([one, two]).axes[0]
+    labels = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert labels == ["β = 10°", "β = 40°", "backward slip, this track"]
+    line = next(line for line in axes.lines if line.get_label() == "β = 40°")
+    ratio, friction = line.get_xydata()[np.isfinite(line.get_ydata())].T
+    b = math.radians(40)
+    assert friction == pytest.approx(ratio * math.cos(b) / (1 - ratio * math.sin(b)), rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("beta", [0, 1, 90])
+def test_extreme_angles_draw_without_a_warning(beta):
+    one = slide(beta, "friction.static=0", "drive.amplitude=0 mm")
+    for draw in (slide_plots.surface, slide_plots.contours, slide_plots.regimes):
+        assert style.png(draw(one))[:4] == b"\x89PNG"
+    assert style.png(slide_plots.curves([one]))[:4] == b"\x89PNG"
+
+
+def test_the_same_map_gives_the_same_bytes():
+    for draw in (slide_plots.contours, slide_plots.regimes):
+        assert style.png(draw(slide())) == style.png(draw(slide()))

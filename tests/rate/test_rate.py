@@ -1,0 +1,175 @@
+"""Parts per minute: the chain of factors, orientations that are one, devices and their faults."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.conveying import answer
+from feederscrew.errors import FeederError
+from feederscrew.rate import devices, queue
+from feederscrew.rate.queue import Range
+from feederscrew.resting.aspects import find
+
+BOWL = bowls.read(
+    None, ("drive.peak_to_peak=1 mm", "drive.frequency=50 Hz", "restitution=0", "friction.static=0.4")
+)
+STRAIGHT = replace(BOWL.track, radius=1e6, climb=0.0, bank=0.0, width=0.1)
+LSHAPE = [(0, 0), (30, 0), (30, 3), (3, 3), (3, 20), (0, 20)]
+
+
+def stream(mesh, track=STRAIGHT, chain=()):
+    part = shapes.part(mesh)
+    found = find(part)
+    return part, found, queue.orientations(part, found, track, chain)
+
+
+def chain(tmp_path, text):
+    path = tmp_path / "bowl.yaml"
+    path.write_text(text)
+    return devices.read(path)
+
+
+def test_range_multiplies_ends():
+    assert Range(2.0, 1.0, 3.0) * Range(5.0, 4.0, 6.0) * 2.0 == Range(20.0, 8.0, 36.0)
+
+
+def test_probabilities_of_all_orientations_sum_to_one():
+    _, _, known = stream(shapes.prism(LSHAPE, 15))
+    for chances in known.rules.values():
+        assert chances.sum() == pytest.approx(1.0, abs=1e-9)
+
+
+def test_headings_equal_under_a_turn_are_one():
+    # a box on each of three faces lies lengthwise or crosswise; either end ahead is the same
+    _, found, known = stream(shapes.box(10, 20, 30))
+    assert found.names == ("A", "B", "C")
+    assert known.aspects == ("A", "A", "B", "B", "C", "C")
+    assert sorted(np.round(known.lengths[:2] * 1e3, 9)) == [20.0, 30.0]
+    for pair in (0, 2, 4):
+        assert known.heading_shares[pair : pair + 2].sum() == pytest.approx(1.0, abs=1e-9)
+    # an L on its back does not map to itself by half a turn
+    _, _, bracket = stream(shapes.prism(LSHAPE, 15))
+    assert bracket.aspects.count("A") > 2
+
+
+def test_a_square_prism_has_one_heading_on_its_end():
+    _, found, known = stream(shapes.box(10, 10, 30))
+    end = found.names[int(np.argmax(found.heights))]
+    assert known.aspects.count(end) == 1
+
+
+def test_rate_is_the_product_of_its_chain():
+    part, found, known = stream(shapes.box(10, 20, 30))
+    target = queue.wanted(part, found, STRAIGHT, "A")
+    made = queue.rate(known, Range(0.1, 0.05, 0.2), target, "csa", gap=5e-3, fill=0.8)
+    row = made.row
+    assert made.pitch == pytest.approx(known.lengths[row] + 5e-3)
+    assert made.parts.value == pytest.approx(0.1 / made.pitch * known.rules["csa"][row] * 0.8)
+    assert made.parts.low <= made.parts.value <= made.parts.high
+    chances = [chance[row] for chance in known.rules.values()]
+    assert made.parts.high == pytest.approx(0.2 / made.pitch * max(chances) * 0.8)
+    assert made.purity == pytest.approx(known.rules["csa"][row])
+    density = queue.parts_per_metre(known, target, "csa", gap=5e-3, fill=0.8)
+    assert made.parts.value == pytest.approx(0.1 * density)
+
+
+def test_velocity_brackets_friction_and_starts():
+    found = queue.velocity(BOWL)
+    softer = answer.answer(answer.scaled(BOWL, friction=0.8)).velocity
+    assert found.value == pytest.approx(answer.answer(BOWL).velocity)
+    assert found.low <= min(softer, found.value)
+    assert found.high >= max(softer, found.value)
+
+
+def test_a_part_that_travels_back_gives_no_rate():
+    back = replace(BOWL, drive=replace(BOWL.drive, vibration_angle=np.radians(15)))
+    friction = replace(BOWL.friction, static=0.2, kinetic=0.2)
+    assert answer.answer(replace(back, friction=friction)).velocity < 0.0
+    assert queue.velocity(replace(back, friction=friction)).value == 0.0
+
+
+def test_no_steady_state_is_a_fault():
+    with pytest.raises(FeederError, match=r"track\.climb: is steeper than friction holds"):
+        queue.velocity(replace(BOWL, track=replace(BOWL.track, climb=0.6)))
+
+
+def test_rules_and_aspects_that_do_not_exist():
+    part, found, known = stream(shapes.box(10, 20, 30))
+    target = queue.wanted(part, found, STRAIGHT, "a")
+    with pytest.raises(FeederError) as caught:
+        queue.rate(known, Range(1, 1, 1), target, "guess")
+    assert str(caught.value).startswith("--rule guess: has no probabilities of this part - known are pmi, ")
+    with pytest.raises(FeederError, match="there is no aspect"):
+        queue.wanted(part, found, STRAIGHT, "Z")
+
+
+def test_heights_decide_wiper_and_bar(tmp_path):
+    found = chain(tmp_path, "devices:\n  - wiper: 20 mm\n  - height_bar: 19.9 mm\n")
+    _, _, known = stream(shapes.box(10, 20, 30), chain=found)
+    assert known.stations == ("track", "wiper", "height_bar")
+    assert known.passes[:, 0].tolist() == [1.0] * 6
+    assert known.passes[:, 1].tolist() == [1, 1, 1, 1, 0, 0]
+    assert known.passes[:, 2].tolist() == [1, 1, 0, 0, 0, 0]
+    assert known.through.tolist() == [1, 1, 0, 0, 0, 0]
+
+
+def test_width_and_centre_of_mass_decide_at_the_edge(tmp_path):
+    # crosswise the 10 x 20 x 30 box on A covers 30 mm, its centre of mass 15 mm from the wall
+    for width, kept in (("14.9 mm", 20.0), ("15.1 mm", None)):
+        _, _, known = stream(
+            shapes.box(10, 20, 30), chain=chain(tmp_path, f"devices:\n  - narrowed_track: {width}\n")
+        )
+        passing = known.widths[(known.passes[:, 1] == 1.0) & (np.array(known.aspects) == "A")] * 1e3
+        assert (
+            (sorted(passing) == pytest.approx([20.0, 30.0]))
+            if kept is None
+            else (passing == pytest.approx([kept]))
+        )
+    _, _, known = stream(
+        shapes.box(10, 20, 30), chain=chain(tmp_path, "devices:\n  - pressure_break: 20 mm\n")
+    )
+    np.testing.assert_array_equal(known.passes[:, 1] == 1.0, known.widths <= 20e-3 + 1e-9)
+
+
+def test_yield_by_aspect(tmp_path):
+    found = chain(tmp_path, "devices:\n  - yield:\n      a: 0.25\n      C: 0\n")
+    _, _, known = stream(shapes.box(10, 20, 30), chain=found)
+    assert known.passes[:, 1].tolist() == [0.25, 0.25, 1, 1, 0, 0]
+
+
+def test_what_never_leaves_the_bowl(tmp_path):
+    part, found, known = stream(shapes.box(10, 20, 30), chain=chain(tmp_path, "devices:\n  - wiper: 5 mm\n"))
+    target = queue.wanted(part, found, STRAIGHT, "A", heading=0.0)
+    made = queue.rate(known, Range(0.1, 0.1, 0.1), target, "pmi")
+    assert made.parts.value == 0.0
+    assert np.isnan(made.purity)
+    with pytest.raises(FeederError, match="never leaves the bowl - see the devices"):
+        queue.parts_per_metre(known, target, "pmi")
+
+
+def test_no_devices():
+    assert devices.read(None) == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("devices: 5 mm\n", "1:1: devices is not a list - write one '- wiper: 6 mm' a line"),
+        ("devices:\n  - wiper\n", "2:5: is no device - write one '- wiper: 6 mm' a line"),
+        ("devices:\n  - wipr: 6 mm\n", "2:5: unknown device 'wipr' - did you mean wiper?"),
+        ("devices:\n  - wiper: 6\n", "2:12: wiper: '6' has no unit - write 6 mm"),
+        ("devices:\n  - wiper: -6 mm\n", "2:12: wiper is -6 mm - give more than 0 mm"),
+        ("devices:\n  - yield:\n      A: 1.5\n", "3:10: yield of A is 1.5 - give 0 to 1"),
+        (
+            "devices:\n  - yield: 0.5\n",
+            "2:5: yield names no aspect - write below it one line an aspect, as 'A: 0.9'",
+        ),
+    ],
+)
+def test_faults_of_devices(tmp_path, text, line):
+    with pytest.raises(FeederError) as caught:
+        chain(tmp_path, text)
+    assert caught.value.lines == (f"{tmp_path}/bowl.yaml:{line}",)

@@ -1,0 +1,81 @@
+"""Settings that reach a rate: each one does, the gentle ones lead, and what cannot be reached is said."""
+
+import pytest
+
+from feederscrew import bowl as bowls
+from feederscrew.conveying import answer
+from feederscrew.errors import FeederError
+from feederscrew.rate import tune
+
+BOWL = bowls.read(
+    None,
+    (
+        "drive.frequency=50 Hz",
+        "drive.amplitude=0.1 mm",
+        "restitution=0",
+        "friction.static=0.4",
+        "track.climb=2 deg",
+    ),
+)
+PER_METRE = 10.0
+
+
+def test_each_solution_reaches_the_target():
+    found = tune.solutions(BOWL, 0.05, PER_METRE)
+    assert {one.key.name for one in found} >= {"drive.amplitude", "drive.frequency"}
+    for one in found:
+        again = answer.answer(tune.turned(BOWL, one.key, one.value))
+        assert again.velocity == pytest.approx(0.05 / PER_METRE, rel=1e-6)
+        assert again.regime == one.answer.regime
+
+
+def test_gentle_solutions_lead():
+    found = tune.solutions(BOWL, 0.4, PER_METRE)
+    orders = [one.order for one in found]
+    assert orders == sorted(orders)
+    assert tune.GENTLE.index("forward") < tune.GENTLE.index("both") < tune.GENTLE.index("hop")
+
+
+def test_only_the_knob_is_turned():
+    one = tune.solutions(BOWL, 0.05, PER_METRE)[0]
+    there = tune.turned(BOWL, one.key, one.value)
+    assert there.track == BOWL.track
+    assert getattr(there.drive, one.key.word) == one.value
+
+
+def test_an_unreachable_target_says_what_is_reached():
+    with pytest.raises(FeederError) as caught:
+        tune.solutions(BOWL, 100.0, PER_METRE)
+    line = str(caught.value)
+    assert line.startswith("--target: no setting reaches 6000/min: the most is ")
+    assert line.endswith("lower the target, or change two keys of the drive together")
+    most = float(line.split("the most is ")[1].split("/min")[0])
+    name, amplitude = line.split(", at ")[1].split(" mm")[0].split()
+    assert name == "drive.amplitude"
+    key = tune.BY_NAME[name]
+    there = answer.answer(tune.turned(BOWL, key, float(amplitude) * 1e-3))
+    assert there.velocity * PER_METRE * 60 == pytest.approx(most, rel=1e-2)
+    assert there.throw_number < tune.HIGHEST_THROW
+
+
+def test_a_climb_too_steep():
+    steep = bowls.read(None, ("track.climb=40 deg",))
+    with pytest.raises(FeederError, match=r"track\.climb: is steeper than friction holds - lower the climb"):
+        tune.solutions(steep, 0.1, PER_METRE)
+
+
+def test_a_part_that_only_travels_back():
+    flat = bowls.read(None, ("drive.vibration_angle=0 deg", "drive.amplitude=0.001 mm", "restitution=0"))
+    with pytest.raises(FeederError, match="no setting reaches 6/min: the part never travels up the track"):
+        tune.solutions(flat, 0.1, PER_METRE)
+
+
+def test_a_target_that_the_velocity_jumps_over():
+    bouncing = bowls.read(None, ())  # from rest its velocity jumps onto the regular bounce of a period
+    with pytest.raises(FeederError) as caught:
+        tune.solutions(bouncing, 0.866, PER_METRE)
+    line = str(caught.value)
+    assert line.startswith(
+        "--target: no setting gives 51.96/min: at drive.amplitude 0.3308 mm the rate jumps"
+    )
+    assert float(line.split(", to ")[1].split("/min")[0]) > 51.96

@@ -1,0 +1,165 @@
+"""Reading measured profiles: what a column is taken for, and every fault with its line."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from feederscrew.errors import FeederError
+from feederscrew.resting.counts import profiles
+
+NAMES = ("A", "B", "C")
+
+
+def parsed(text, names=NAMES):
+    return profiles.parse(text, "c.csv", names, taken=("PMI", "CSA"))
+
+
+def fault(text, names=NAMES):
+    with pytest.raises(FeederError) as caught:
+        parsed(text, names)
+    return list(caught.value.lines)
+
+
+def test_columns_come_in_the_order_of_the_aspects():
+    first, second = parsed("# mine\naspect,x,y\nC,5,0.2\n# between\nA,60,0.5\n\nB,35,0.3\n")
+    assert (first.name, first.kind, second.kind) == ("x", "counts", "fractions")
+    np.testing.assert_array_equal(first.values, [60, 35, 5])
+    np.testing.assert_allclose(first.fractions, [0.6, 0.35, 0.05], rtol=1e-15)
+    np.testing.assert_array_equal(second.fractions, [0.5, 0.3, 0.2])
+
+
+@pytest.mark.parametrize(
+    ("column", "kind"),
+    [
+        (("60", "35", "5"), "counts"),
+        (("0.6", "0.35", "0.05"), "fractions"),
+        (("60.0", "35", "5"), "percent"),
+        (("1", "0", "0"), "fractions"),
+        (("2", "0", "0"), "counts"),
+        (("1", "6", "92.9"), "percent"),
+        (("0.6", "0.35", "0.046"), "fractions"),
+        ((".6", "3.5e-1", "+0.05"), "fractions"),
+    ],
+)
+def test_what_a_column_is_taken_for(column, kind):
+    text = "aspect,x\n" + "".join(f"{name},{value}\n" for name, value in zip(NAMES, column))
+    assert parsed(text)[0].kind == kind
+
+
+def test_fractions_are_compared_as_printed():
+    (found,) = parsed("aspect,x\nA,0.6\nB,0.35\nC,0.046\n")
+    np.testing.assert_array_equal(found.fractions, [0.6, 0.35, 0.046])
+    with pytest.raises(ValueError, match="read-only"):
+        found.fractions[0] = 0.0
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        ("", ["c.csv: is empty - give a header 'aspect,counts' and one row an aspect"]),
+        ("# only\n", ["c.csv: is empty - give a header 'aspect,counts' and one row an aspect"]),
+        ("aspect\nA\n", ["c.csv:1: has no profile - give a header 'aspect,counts' and one row an aspect"]),
+        (
+            "part,x\nA,1\n",
+            [
+                "c.csv:1: the first column is 'part', not aspect - "
+                "give a header 'aspect,counts' and one row an aspect"
+            ],
+        ),
+        (
+            "aspect;x\nA;1\n",
+            ["c.csv:1: the columns are not separated by commas - separate them by commas"],
+        ),
+        ("#\naspect,x,x\n", ["c.csv:2: two columns are called 'x' - give each its own name"]),
+        ("aspect,x,\n", ["c.csv:1: a column has no name - give each its own name"]),
+        ("aspect,PMI\n", ["c.csv:1: column 'PMI' has the name of a rule - give it another name"]),
+        (
+            "aspect,x\nA,1\nB,2\nC,3\nF,4\n",
+            ["c.csv:5: the part has no aspect 'F' - known are A, B, C"],
+        ),
+        ("aspect,x\nA,1\nB,2\n", ["c.csv: has no row for aspect C - add it, 0 if never seen"]),
+        (
+            "aspect,x\nA,1\nB,2\nC,3\nA,4\n",
+            ["c.csv:5: aspect 'A' is already in line 2 - keep one of them"],
+        ),
+        (
+            "aspect,x\nA,1,7\nB,2\nC,3\n",
+            ["c.csv:2: has 2 values, the header names 1 - give one value a column"],
+        ),
+        (
+            "aspect,x\nA,one\nB,-2\nC,1e999\n",
+            [
+                "c.csv:2: x: 'one' is not a number - write digits with a decimal point",
+                "c.csv:3: x: '-2' is negative - give a number from 0",
+                "c.csv:4: x: '1e999' is too large - give a finite number",
+            ],
+        ),
+        (
+            'aspect,x\nA,"0,5"\nB,0.25\nC,0.25\n',
+            ["c.csv:2: x: '0,5' is not a number - write digits with a decimal point"],
+        ),
+        (
+            "aspect,x,y\nA,0.5,0\nB,0.3,0\nC,0.3,0\n",
+            [
+                "c.csv:1: column 'x' sums to 1.1 - "
+                "give whole counts, fractions that sum to 1 or percents that sum to 100",
+                "c.csv:1: column 'y' holds only zeros - give at least one count above 0",
+            ],
+        ),
+        (
+            "aspect,x\nA,nan\nB,0.5\nC,0.5\n",
+            ["c.csv:2: x: 'nan' is not a number - write digits with a decimal point"],
+        ),
+    ],
+)
+def test_a_fault_is_told_with_its_line(text, lines):
+    assert fault(text) == lines
+
+
+def test_a_near_miss_is_hinted_at():
+    assert fault("aspect,x\nside,1\nflatt,2\n", ("side", "flat"))[0].endswith("did you mean flat?")
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    with pytest.raises(FeederError, match=r"no.csv: no such file - check the path"):
+        profiles.read(tmp_path / "no.csv", NAMES)
+    with pytest.raises(FeederError, match=r"cannot be read \(Is a directory\)"):
+        profiles.read(tmp_path, NAMES)
+
+
+def test_bytes_that_are_no_text(tmp_path):
+    (tmp_path / "c.csv").write_bytes(b"aspect,x\nA,\xff\n")
+    with pytest.raises(FeederError, match=r"c.csv:2: byte 0xff is not UTF-8"):
+        profiles.read(tmp_path / "c.csv", NAMES)
+
+
+def test_a_spreadsheets_file_reads_as_well(tmp_path):
+    (tmp_path / "c.csv").write_bytes(b"\xef\xbb\xbfaspect,x\r\nA,1\r\nB,2\r\nC,3\r\n")
+    found = profiles.read(tmp_path / "c.csv", NAMES)
+    np.testing.assert_array_equal(found.profiles[0].values, [1, 2, 3])
+    assert len(found.sha256) == 64
+
+
+def test_what_columns_are_taken_for_is_said(tmp_path):
+    (tmp_path / "c.csv").write_text("aspect,n,p,q\nA,1,50.0,0.5\nB,2,25,0.25\nC,3,24.9,0.25\n")
+    where = str(tmp_path / "c.csv")
+    assert profiles.read(where, NAMES).notes == (
+        f"{where}: counts: n (sum 6)",
+        f"{where}: fractions: q",
+        f"{where}: percent: p (sum 99.9)",
+    )
+
+
+def test_a_rule_without_data_is_left_out():
+    chances = {"pmi": np.array([0.4, 0.6, np.nan]), "csa": np.array([np.nan] * 3)}
+    aspects = SimpleNamespace(probabilities=chances, stable=np.array([True, True, False]))
+    (found,) = profiles.of_rules(aspects)
+    assert (found.name, found.kind) == ("PMI", "rule")
+    np.testing.assert_array_equal(found.fractions, [0.4, 0.6])
+
+
+def test_of_a_drop_table_the_counts_are_taken():
+    text = "aspect,height_mm,count,p_drop,p_drop_low\nA,1.5,30,0.75,0.6\nB,2.5,10,0.25,0.1\n"
+    (found,) = profiles.parse(text, "drop.csv", ["B", "A"])
+    assert (found.name, found.kind, found.values.tolist()) == ("count", "counts", [10.0, 30.0])

@@ -1,0 +1,27 @@
+"""The published rules as formulas."""
+
+import numpy as np
+import pytest
+
+from feederscrew.resting.rules import published
+
+
+def test_each_rule_divides_its_quantity_by_the_height():
+    faces, height = np.array([1, 2]), np.array([2.0, 5.0])
+    for rule in published.RULES.values():
+        np.testing.assert_allclose(rule(faces, np.array([3.0, 4.0]), height), [1.5, 1.6])
+
+
+def test_unstable_aspects_are_left_out_and_the_rest_renormalised():
+    got = published.normalised(np.array([3.0, 9.0, 1.0]), np.array([True, False, True]))
+    assert got.tolist() == [0.75, 0.0, 0.25]
+
+
+def test_an_unknown_weight_leaves_no_probability():
+    assert np.isnan(published.normalised(np.array([3.0, np.nan]), np.array([True, True]))).all()
+
+
+@pytest.mark.parametrize("rule", published.RULES)
+def test_every_rule_names_its_source(rule):
+    text = published.RULES[rule].__doc__
+    assert "References" in text or "thesis" in text

@@ -1,0 +1,92 @@
+"""The surface-weighted closed form and its calibration."""
+
+import numpy as np
+import pytest
+
+from feederscrew.resting.counts.calibration import HIGHEST, calibrate
+from feederscrew.resting.rules.surface import EXPONENTS, surface_shares, surface_weights
+
+SHARES = np.array([0.5, 0.3, 0.15, 0.05])
+HEIGHTS = np.array([1.0, 1.4, 1.9, 2.5])
+RADIUS = 3.0
+
+
+def test_a_dead_landing_is_quasi_static():
+    assert surface_shares(SHARES, HEIGHTS, RADIUS, EXPONENTS["soft"]) == pytest.approx(SHARES)
+
+
+def test_a_harder_surface_favours_the_deeper_faces():
+    profiles = [
+        surface_shares(SHARES, HEIGHTS, RADIUS, EXPONENTS[name]) for name in ("soft", "medium", "hard")
+    ]
+    assert profiles[0][0] < profiles[1][0] < profiles[2][0]
+    assert all(profile.sum() == pytest.approx(1.0) for profile in profiles)
+
+
+def test_the_weight_is_the_power_of_the_depth():
+    weights = surface_weights(SHARES, HEIGHTS, RADIUS, 2.0)
+    assert weights[1] / weights[0] == pytest.approx(0.3 / 0.5 * (1.6 / 2.0) ** 2)
+
+
+def test_units_cancel():
+    first = surface_shares(SHARES, HEIGHTS, RADIUS, 1.3)
+    assert surface_shares(SHARES, 1e-3 * HEIGHTS, 1e-3 * RADIUS, 1.3) == pytest.approx(first, rel=1e-12)
+
+
+def test_a_face_nothing_rolls_to_stays_empty():
+    shares = surface_shares([1.0, 0.0], [1.0, np.nan], 2.0, 2.0)
+    assert shares.tolist() == [1.0, 0.0]
+
+
+def test_wrong_calls():
+    with pytest.raises(ValueError, match="radius"):
+        surface_weights(SHARES, HEIGHTS, 0.0, 1.0)
+    with pytest.raises(ValueError, match="exponent"):
+        surface_weights(SHARES, HEIGHTS, 3.0, np.nan)
+
+
+@pytest.mark.parametrize("exponent", [0.0, 0.8, 2.0])
+def test_expected_counts_give_their_exponent_back(exponent):
+    fit = calibrate(1e5 * surface_shares(SHARES, HEIGHTS, RADIUS, exponent), SHARES, HEIGHTS, RADIUS)
+    assert fit.exponent == pytest.approx(exponent, abs=1e-5)
+    assert fit.low < exponent < fit.high and not fit.bounded
+    assert fit.chi_square == pytest.approx(0.0, abs=1e-4) and fit.freedom == 2
+
+
+def test_the_interval_narrows_with_the_root_of_the_counts():
+    profile = surface_shares(SHARES, HEIGHTS, RADIUS, 1.0)
+    few, many = (calibrate(n * profile, SHARES, HEIGHTS, RADIUS) for n in (1e3, 1e5))
+    assert (few.high - few.low) / (many.high - many.low) == pytest.approx(10.0, rel=0.05)
+
+
+def test_the_interval_covers_the_truth_as_often_as_it_says():
+    rng = np.random.default_rng(5)
+    truth = surface_shares(SHARES, HEIGHTS, RADIUS, 1.5)
+    fits = [calibrate(rng.multinomial(400, truth), SHARES, HEIGHTS, RADIUS) for _ in range(200)]
+    assert 180 <= sum(fit.low <= 1.5 <= fit.high for fit in fits) <= 199
+    assert 0.35 < np.mean([fit.p_value for fit in fits]) < 0.65
+
+
+def test_counts_of_another_world_do_not_fit():
+    fit = calibrate([10, 10, 10, 970], SHARES, HEIGHTS, RADIUS)
+    assert fit.p_value < 1e-6
+
+
+def test_counts_on_one_aspect_only_bound_the_exponent_from_below():
+    fit = calibrate([1000, 0, 0, 0], SHARES, HEIGHTS, RADIUS)
+    assert fit.bounded and fit.high == HIGHEST and fit.low > 2.0
+
+
+@pytest.mark.parametrize(
+    ("counts", "shares", "heights", "words"),
+    [
+        ([1, -1], [0.5, 0.5], [1, 2], "negative"),
+        ([0, 0], [0.5, 0.5], [1, 2], "zero"),
+        ([1, 1], [1.0, 0.0], [1, 2], "no direction"),
+        ([1, 1], [0.5, 0.5], [2, 2], "the same"),
+        ([1, 1], [0.5, 0.5, 0.0], [1, 2, 3], "shape"),
+    ],
+)
+def test_counts_that_say_nothing(counts, shares, heights, words):
+    with pytest.raises(ValueError, match=words):
+        calibrate(counts, shares, heights, 3.0)

@@ -1,0 +1,180 @@
+"""Grids over two quantities, and the sliding map against [4.27] and its own regimes."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from feederscrew import bowl
+from feederscrew.mechanics import limits
+from feederscrew.studies import maps
+
+DEG = math.pi / 180.0
+
+
+def slide(beta, *overrides, **how):
+    return maps.slide(bowl.read(None, overrides), beta * DEG, **how)
+
+
+@pytest.fixture
+def grid():
+    first = maps.Axis("angle_deg", np.radians([0.0, 90.0]), DEG)
+    second = maps.Axis("ratio", np.array([1.0, 2.0, 3.0]))
+
+    def function(angle, ratio):
+        return {
+            "product": np.cos(angle) * ratio,
+            "hole": np.where(ratio > 2, np.nan, 0.0),
+            "regime": (ratio > 1) * 1,
+        }
+
+    return maps.evaluate(first, second, function, ("low", "high"))
+
+
+def test_a_grid_is_a_long_table(grid):
+    columns = grid.columns()
+    assert list(columns) == ["angle_deg", "ratio", "product", "hole", "regime"]
+    assert columns["angle_deg"].tolist() == pytest.approx([0, 0, 0, 90, 90, 90])
+    assert columns["ratio"].tolist() == [1, 2, 3, 1, 2, 3]
+    assert columns["product"].tolist() == pytest.approx([1, 2, 3, 0, 0, 0])
+    assert columns["regime"].tolist() == ["low", "high", "high"] * 2
+
+
+def test_a_grid_counts_what_it_lacks_and_holds(grid):
+    assert grid.unanswered("hole") == 2
+    assert grid.shares() == {"low": pytest.approx(1 / 3), "high": pytest.approx(2 / 3)}
+    with pytest.raises(ValueError, match="read-only"):
+        grid.values["product"][0, 0] = 1.0
+
+
+def test_a_range_of_the_bowl_becomes_an_axis():
+    (span,) = bowl.ranges(["drive.amplitude=0.1:0.3:3"])
+    axis = maps.axis(span)
+    assert axis.column == "amplitude_mm"
+    assert axis.values == pytest.approx([1e-4, 2e-4, 3e-4], rel=1e-14)
+    assert axis.shown == pytest.approx([0.1, 0.2, 0.3], rel=1e-14)
+
+
+@pytest.mark.parametrize("beta", [1, 5, 10, 20, 40, 60, 90])
+def test_every_map_reaches_past_the_hop_and_over_the_published_range(beta):
+    found = slide(beta)
+    assert found.grid.shares()["hop"] > 0.1
+    assert found.grid.first.shown[[0, -1]] == pytest.approx([-90, 90])
+    assert found.grid.second.values[0] == 0.0
+    assert found.grid.second.values[-1] >= 3.0
+
+
+def test_every_map_holds_the_bowls_own_point():
+    found = slide(20, "drive.amplitude=1 mm", "drive.direction=-120 deg")
+    assert found.grid.second.values[-1] > found.ratio > 14
+    assert found.grid.first.shown[0] == pytest.approx(-180)
+    assert found.regime == "hop"
+
+
+def test_ratios_print_as_round_numbers():
+    for beta in (3, 10, 20, 40):
+        ratios = slide(beta).grid.second.values
+        assert all(float(f"{ratio:.6g}") == ratio for ratio in ratios)
+
+
+def test_nothing_hops_at_zero_vibration_angle():
+    found = slide(0)
+    assert found.grid.shares()["hop"] == 0.0
+    assert found.onsets["hop"] == found.level_hop == math.inf
+    assert found.grid.unanswered("mu_limit") == 0
+
+
+@given(st.floats(0.5, 89.0))
+@settings(max_examples=20, deadline=None)
+def test_mu_limit_is_4_27_below_the_hop_and_nothing_past_it(beta):
+    columns = slide(beta).grid.columns()
+    ratio, angle = columns["acceleration_ratio"], columns["alpha_minus_theta_deg"] * DEG
+    hop = ratio * math.sin(beta * DEG) >= 1 - 1e-9
+    assert np.isnan(columns["mu_limit"][hop]).all()
+    assert (columns["regime"][hop] == "hop").all()
+    published = ratio * math.cos(beta * DEG) * np.cos(angle) / (1 - ratio * math.sin(beta * DEG))
+    assert columns["mu_limit"][~hop] == pytest.approx(published[~hop], rel=1e-9, abs=1e-12)
+
+
+def test_as_published_keeps_what_is_negative():
+    complete, published = (slide(20, as_published=flag).grid for flag in (False, True))
+    assert np.nanmin(complete.values["mu_limit"]) == 0.0
+    past = complete.codes == limits.HOP
+    at_pole_angle = np.isclose(np.abs(complete.first.shown), 90, rtol=1e-12, atol=0)
+    assert (published.values["mu_limit"][past & ~at_pole_angle[:, None]] < 0).all()
+    assert published.unanswered("mu_limit") == 0
+    below = ~np.isnan(complete.values["mu_limit"])
+    assert (published.values["mu_limit"][below] == complete.values["mu_limit"][below]).all()
+
+
+def test_as_published_leaves_the_pole_itself_empty():
+    # beta 30 deg and G = 2: 1 - G sin(beta) is zero but for rounding
+    grid = slide(30, as_published=True).grid
+    at_pole = grid.values["mu_limit"][:, np.flatnonzero(grid.second.values == 2.0)]
+    assert np.isnan(at_pole).all()
+
+
+def test_a_reversed_drive_swaps_forward_and_backward_on_a_level_track():
+    grid = slide(25, "drive.direction=180 deg", "track.climb=0 deg", "friction.static=0.4").grid
+    along, against = (grid.codes[np.flatnonzero(np.isclose(grid.first.shown, x))[0]] for x in (0, 180))
+    swap = np.array([limits.RIDE, limits.BACKWARD, limits.FORWARD, limits.BOTH, limits.HOP])
+    assert (along == swap[against]).all()
+    assert np.isnan(grid.values["mu_limit"][np.flatnonzero(np.isclose(grid.first.shown, 180))]).all()
+
+
+def test_regimes_follow_from_the_limits():
+    grid = slide(25, "track.bank=20 deg").grid
+    forward, backward = (grid.values[name] > 0.6 for name in ("mu_forward", "mu_backward"))
+    codes = np.where(
+        forward & backward, limits.BOTH, np.where(forward, limits.FORWARD, limits.BACKWARD * backward)
+    )
+    hops = grid.codes == limits.HOP
+    assert (grid.codes == codes)[~hops].all()
+    assert (
+        hops.any(axis=0).sum()
+        == (grid.second.values >= np.cos(20 * DEG) * np.cos(3 * DEG) / np.sin(25 * DEG)).sum()
+    )
+
+
+def test_the_bowls_own_point_is_a_cell_like_any_other():
+    found = slide(30)
+    nearest = np.abs(found.grid.second.values - found.ratio).argmin()
+    middle = len(found.grid.first.values) // 2
+    assert found.regime == limits.REGIMES[found.grid.codes[middle, nearest]] == "forward"
+    assert found.at_bowl["mu_limit"] == pytest.approx(
+        float(limits.published_limit(found.ratio, 30 * DEG)), rel=1e-9
+    )
+    assert found.onsets["forward"] < found.ratio < found.onsets["backward"] < found.onsets["hop"]
+
+
+def test_a_finer_map_covers_the_same_ground():
+    coarse, fine = slide(20), slide(20, shape=(7, 9))
+    assert fine.grid.codes.shape == (7, 9)
+    for axis in ("first", "second"):
+        ends = [getattr(one.grid, axis).values[[0, -1]] for one in (coarse, fine)]
+        assert ends[0] == pytest.approx(ends[1], rel=1e-15)
+
+
+def test_gravity_scales_out():
+    light = bowl.read(None, ["gravity=1.62 m/s2"])
+    there = dataclasses.replace(
+        light, drive=dataclasses.replace(light.drive, amplitude=light.drive.amplitude * 1.62 / 9.81)
+    )
+    assert maps.slide(there, 0.4).ratio == pytest.approx(slide(20).ratio, rel=1e-14)
+
+
+@given(st.floats(0.0, 90.0), st.floats(0.05, 2.0))
+@settings(max_examples=30, deadline=None)
+def test_the_surface_rises_from_zero_to_its_cut(beta, highest):
+    angles, ratios, friction = maps.sheet(beta * DEG, highest, 4.0)
+    assert (friction[:, 0] == 0).all()
+    assert friction.max() <= highest
+    assert (np.diff(friction, axis=1) >= 0).all()
+    assert ratios.max() <= 4.0
+    middle = len(angles) // 2
+    cut = maps.level_line(beta * DEG, highest, angles[middle, 0])
+    if cut < 4.0 and beta < 89.0:
+        assert friction[middle, -1] == pytest.approx(highest, rel=1e-9)
