@@ -10,7 +10,7 @@ def keys(context, option, typed):
 
 def rules(context, option, typed):
     """Rules whose probabilities a rate can take."""
-    from feederscrew.rate.queue import RULES
+    from feederscrew.rates.queue import RULES
 
     return [name for name in RULES if name.startswith(typed)]
 

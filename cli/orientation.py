@@ -63,7 +63,7 @@ def stream(out, solid, track, path, aspect, heading):
     -------
     (Aspects, Orientations, (str, float))
     """
-    from feederscrew.rate import devices, queue
+    from feederscrew.rates import devices, queue
     from feederscrew.resting.aspects import find
 
     chain, found = devices.read(path), find(solid)

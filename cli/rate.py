@@ -24,7 +24,7 @@ def rate(part, aspect, heading, rule, gap, fill, bowl, out):
     from feederscrew import bowl as bowls
     from feederscrew.output import columns
     from feederscrew.output.rate import tables as rate_tables
-    from feederscrew.rate import queue
+    from feederscrew.rates import queue
 
     solid, feeder = out.part(part), bowls.read(**bowl)
     effective = columns.conditions(solid) | bowls.texts(bowls.settings(**bowl))

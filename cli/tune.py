@@ -30,7 +30,7 @@ def tune(part, target, aspect, heading, rule, gap, fill, bowl, out):
     from feederscrew import bowl as bowls
     from feederscrew.output import columns
     from feederscrew.output.rate import tune_tables
-    from feederscrew.rate import queue, tune
+    from feederscrew.rates import queue, tune
 
     solid, feeder = out.part(part), bowls.read(**bowl)
     effective = columns.conditions(solid) | bowls.texts(bowls.settings(**bowl))

@@ -14,9 +14,9 @@ from feederscrew.conveying.answer import Answer, answer
 from feederscrew.errors import ConfigError, Faults, FeederError, MeshError
 from feederscrew.output import columns as _columns
 from feederscrew.part import Part
-from feederscrew.rate import queue as _rates
-from feederscrew.rate.devices import Device
-from feederscrew.rate.queue import Rate
+from feederscrew.rates import queue as _rates
+from feederscrew.rates.devices import Device
+from feederscrew.rates.queue import Rate
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.posture import Posture, posture
 
@@ -258,7 +258,7 @@ def rate(
     rule : str
         Whose probabilities are taken.
     devices : sequence of Device
-        From ``feederscrew.rate.devices.read``.
+        From ``feederscrew.rates.devices.read``.
     gap : float [m]
         Between one part and the next.
     fill : float [1]

@@ -8,7 +8,8 @@ import pytest
 ROOT = Path(__file__).parent.parent
 ORDER = [
     "errors", "check", "units", "documents",
-    "part", "resting", "bowl", "screw", "motion", "maps", "thesis", "output", "batch", "api",
+    "geometry", "part", "resting", "bowl", "screw", "mechanics", "conveying", "dropping",
+    "tooling", "rates", "machine", "studies", "thesis", "output", "batch", "api",
 ]  # fmt: skip
 DOORS = {
     "trimesh": {"feederscrew/part"},
@@ -17,6 +18,7 @@ DOORS = {
     "matplotlib": {"feederscrew/output"},
     "embreex": {"feederscrew/output"},
     "click": {"cli"},
+    "numba": {"feederscrew/geometry", "feederscrew/conveying"},
 }
 FILES = sorted([*ROOT.glob("feederscrew/**/*.py"), *ROOT.glob("cli/*.py")])
 

@@ -14,7 +14,7 @@ from feederscrew.documents import raise_all
 from feederscrew.errors import ConfigError, FeederError
 from feederscrew.output.folder import safe_name
 from feederscrew.part.reading.formats import CARD, FORMATS
-from feederscrew.rate import devices
+from feederscrew.rates import devices
 
 MESHES = {suffix for name, known in FORMATS.items() if name != CARD for suffix in known.suffixes}
 CARDS = set(FORMATS[CARD].suffixes)

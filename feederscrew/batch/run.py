@@ -13,7 +13,7 @@ from feederscrew.errors import ConfigError, FeederError
 from feederscrew.output import tables
 from feederscrew.output.batch import contact_sheet
 from feederscrew.part.reading import source
-from feederscrew.rate.queue import RULES
+from feederscrew.rates.queue import RULES
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from importlib import metadata
 from feederscrew import __version__
 from feederscrew.bowl import Bowl
 from feederscrew.output.folder import LIBRARIES
-from feederscrew.rate.devices import Device
+from feederscrew.rates.devices import Device
 
 DONE, FAILED = "done", "failed"
 

@@ -14,7 +14,7 @@ from feederscrew.output.batch import contact_sheet
 from feederscrew.output.convey import tables as convey_tables
 from feederscrew.output.rate import tables as rate_tables
 from feederscrew.part import load
-from feederscrew.rate import queue
+from feederscrew.rates import queue
 from feederscrew.resting.aspects import find
 
 THUMBNAIL = "thumbnail.png"

@@ -5,7 +5,7 @@ from feederscrew.bowl.schema import BY_NAME, KEYS, SECTIONS, rival
 from feederscrew.bowl.settings import Setting, default, effective, replaced
 from feederscrew.errors import ConfigError
 
-ELSEWHERE = ("devices",)  # read where they are used: feederscrew.rate.devices
+ELSEWHERE = ("devices",)  # read where they are used: feederscrew.rates.devices
 TOP_LEVEL = (*SECTIONS, *(key.name for key in KEYS if not key.section))
 
 

@@ -7,10 +7,10 @@ from pathlib import Path
 PLAIN = []  # functions that run as they stand and may be called from compiled ones, not yet registered
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
 SOURCES = (
-    "forest.py",
-    "tumbling_*.py",
-    "compiled.py",
-    *(f"drop/{name}.py" for name in ("body", "contact", "floor", "motion", "kernel", "shaken")),
+    "geometry/compiled.py",
+    "resting/basins/forest.py",
+    "resting/tumbling/*.py",
+    "dropping/kernel/*.py",
 )
 
 
@@ -73,6 +73,6 @@ def _options():
 @functools.cache
 def _fingerprint():
     """Digest of the compiled sources: a changed source must not find what an older one left on disk."""
-    here = Path(__file__).parent
-    files = sorted(path for pattern in SOURCES for path in here.glob(pattern))
+    library = Path(__file__).parents[1]
+    files = sorted(path for pattern in SOURCES for path in library.glob(pattern))
     return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:12]

@@ -17,7 +17,7 @@ from feederscrew import batch
 from feederscrew.batch import store, task
 from feederscrew.batch import work as works
 from feederscrew.errors import FeederError
-from feederscrew.rate import queue
+from feederscrew.rates import queue
 
 ROOT = Path(__file__).parents[2]
 PARTS = ROOT / "parts"

@@ -5,7 +5,7 @@ import numpy as np
 from feederscrew import units
 from feederscrew.conveying import answer, sensitivity
 from feederscrew.output import tables
-from feederscrew.rate.tune import turned
+from feederscrew.rates.tune import turned
 
 PER_MINUTE, MM_S = units.factor("/min", "rate"), units.factor("mm/s", "velocity")
 SEVERAL = ", several"  # velocities, depending on how the part arrives

@@ -10,7 +10,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.settings import Setting
 from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
-from feederscrew.rate import devices
+from feederscrew.rates import devices
 from feederscrew.resting import aspects
 from feederscrew.resting.posture import posture
 

@@ -30,7 +30,7 @@ from feederscrew.output.slide import tables as slide_tables
 from feederscrew.output.track import files as track_sheets
 from feederscrew.output.track import maps as track_maps
 from feederscrew.output.track import tables as track_tables
-from feederscrew.rate import queue as rates
+from feederscrew.rates import queue as rates
 from feederscrew.studies import maps
 from feederscrew.studies.floor import analyse as on_floor
 from feederscrew.studies.headings import analyse as against_wall

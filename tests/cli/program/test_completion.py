@@ -7,7 +7,7 @@ from click.testing import CliRunner
 
 from feederscrew.part import load
 from feederscrew.part.density import density
-from feederscrew.rate import queue
+from feederscrew.rates import queue
 from feederscrew.resting.aspects import find
 from feederscrew_cli.main import feeder
 

@@ -10,7 +10,7 @@ from feederscrew.documents import hint
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import turned
 from feederscrew.mechanics.wall.headings import headings, laid
-from feederscrew.rate import devices as tooling
+from feederscrew.rates import devices as tooling
 from feederscrew.resting.posture import posture
 
 RULES = (  # a rate can go by

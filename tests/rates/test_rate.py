@@ -9,8 +9,8 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
 from feederscrew.errors import FeederError
-from feederscrew.rate import devices, queue
-from feederscrew.rate.queue import Range
+from feederscrew.rates import devices, queue
+from feederscrew.rates.queue import Range
 from feederscrew.resting.aspects import find
 
 BOWL = bowls.read(

@@ -5,7 +5,7 @@ import pytest
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
 from feederscrew.errors import FeederError
-from feederscrew.rate import tune
+from feederscrew.rates import tune
 
 BOWL = bowls.read(
     None,

@@ -1,0 +1,100 @@
+"""What a subject offers of its study: files by name, each made only when it is asked for.
+
+Every folder of `feederscrew.output` has a function ``offers(study)``; folders, the report, the batch and the
+thesis page take from it what they show.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from feederscrew.output import tables
+
+
+@dataclass(frozen=True, eq=False)
+class Offer:
+    """One file: its name, how its content is made, and for a picture what it shows."""
+
+    name: str
+    make: Callable[[], str | bytes]
+    alt: str = ""
+
+    @property
+    def is_picture(self):
+        """Whether it is left out where no pictures are wanted."""
+        return self.name.endswith(".png")
+
+
+def table(name, make, *arguments, **keywords):
+    """Offer a CSV file.
+
+    Parameters
+    ----------
+    name : str
+        Of the file.
+    make : callable
+        Returns the frame, or its columns as a dict.
+    *arguments, **keywords
+        Handed to ``make``.
+    """
+    return Offer(name, lambda: tables.text(_framed(make(*arguments, **keywords)), "csv"))
+
+
+def document(name, make, *arguments, **keywords):
+    """Offer a JSON file; ``make`` returns the document."""
+    return Offer(name, lambda: tables.json_text(make(*arguments, **keywords)))
+
+
+def text(name, make, *arguments, **keywords):
+    """Offer a file of text or of bytes as ``make`` returns it."""
+    return Offer(name, partial(make, *arguments, **keywords))
+
+
+def picture(name, alt, draw, *arguments, **keywords):
+    """Offer a PNG; ``draw`` returns the figure, and its module is imported by whoever asks for it.
+
+    Parameters
+    ----------
+    name : str
+        Of the file.
+    alt : str
+        What it shows, in a few words.
+    draw : callable
+        Returns the figure.
+    *arguments, **keywords
+        Handed to ``draw``.
+    """
+
+    def make():
+        from feederscrew.output import style
+
+        return style.png(draw(*arguments, **keywords))
+
+    return Offer(name, make, alt)
+
+
+def write(folder, offered, *, pictures=True):
+    """Make every file offered and hand it to a folder.
+
+    Parameters
+    ----------
+    folder : ResultFolder or None
+        Nothing is made without one.
+    offered : iterable of Offer
+    pictures : bool
+        False for tables and documents only.
+    """
+    if folder is None:
+        return
+    for offer in offered:
+        if pictures or not offer.is_picture:
+            folder.write(offer.name, offer.make())
+
+
+def by_name(offered):
+    """Return the offers of a subject by the names of their files."""
+    return {offer.name: offer for offer in offered}
+
+
+def _framed(found):
+    return tables.frame(found) if isinstance(found, dict) else found
