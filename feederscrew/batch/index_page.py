@@ -1,39 +1,23 @@
 """One page over the whole batch, complete in itself: it opens without a network and moves with its folder."""
 
-import base64
-from html import escape
 from urllib.parse import quote
 
 from feederscrew.batch import summary
 from feederscrew.batch.store import PARTS
 from feederscrew.batch.task import DONE
 from feederscrew.batch.work import THUMBNAIL
+from feederscrew.output.page.blocks import Entry, Matrix, Page, Picture, Section
 
 NAME = "index.html"
 HEADINGS = (
-    "",
-    "part",
-    "bowl",
-    "mass [g]",
-    "aspects",
-    "leaves on",
-    "velocity [mm/s]",
-    "parts a minute",
+    "", "part", "bowl", "mass [g]", "aspects", "leaves on", "velocity [mm/s]", "parts a minute",
     "what to know",
-)
-STYLE = """
-body { font: 15px/1.4 system-ui, sans-serif; color: #22303c; margin: 2rem; }
-table { border-collapse: collapse; }
-th, td { text-align: left; padding: .3rem .8rem; border-bottom: 1px solid #d5dbe1; }
-td.number { text-align: right; font-variant-numeric: tabular-nums; }
-tr.failed td { color: #a33c00; }
-img { width: 120px; display: block; }
-@media print { body { margin: 0; font-size: 9pt; } tr { break-inside: avoid; } }
-"""
+)  # fmt: skip
+NUMBERS = Matrix(("all numbers",), ((Entry(summary.NAME, link=summary.NAME),),))
 
 
-def html(store, rows):
-    """The page.
+def page(store, rows):
+    """Build the page of a batch: a line a part, with its picture and a link to its folder.
 
     Parameters
     ----------
@@ -43,40 +27,30 @@ def html(store, rows):
 
     Returns
     -------
-    str
+    Page
     """
     failed = sum(row["status"] != DONE for row in rows)
-    told = f"{len(rows)} parts" + (f", {failed} of them failed" if failed else "")
-    head = "".join(f"<th>{heading}</th>" for heading in HEADINGS)
-    body = "\n".join(_row(store, row) for row in rows)
-    return (
-        f'<!DOCTYPE html>\n<html lang="en">\n<head><meta charset="utf-8"><title>{told}</title>\n'
-        f"<style>{STYLE}</style></head>\n<body>\n<h1>{told}</h1>\n"
-        f'<p>All numbers: <a href="{summary.NAME}">{summary.NAME}</a></p>\n'
-        f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>\n</body>\n</html>\n"
-    )
+    told = f"{len(rows)} part{'s' * (len(rows) != 1)}" + (f", {failed} of them failed" if failed else "")
+    lines = tuple(_row(store, row) for row in rows)
+    return Page(told, "", (Section((Matrix(HEADINGS, lines), NUMBERS)),))
 
 
 def _row(store, row):
-    link = f'<a href="{PARTS}/{quote(row["folder"])}/">{escape(row["folder"])}</a>'
-    said = escape("; ".join(filter(None, (row["reason"], row["note"], row["warnings"]))))
-    start = f"<td>{_picture(store, row)}</td><td>{link}</td><td>{escape(row['config'])}</td>"
+    said = "; ".join(filter(None, (row["reason"], row["note"], row["warnings"])))
+    folder = Entry(row["folder"], link=f"{PARTS}/{quote(row['folder'])}/")
+    start = (Entry("", picture=_picture(store, row)), folder, Entry(row["config"]))
     if row["status"] != DONE:
-        return f'<tr class="failed">{start}<td colspan="5">failed</td><td>{said}</td></tr>'
-    leaves = f"{row['aspect']} at {row['heading_deg']:.4g}&deg;" if row["aspect"] else "-"
-    cells = (row["mass_g"], row["aspects"], leaves, row["velocity_mm_s"], row["parts_per_minute"])
-    return f"<tr>{start}{''.join(map(_cell, cells))}<td>{said}</td></tr>"
+        return (*start, Entry("failed", "failed"), *[Entry("")] * 4, Entry(said, "failed"))
+    leaves = f"{row['aspect']} at {row['heading_deg']:.4g}\u00b0" if row["aspect"] else "-"
+    numbers = [_number(row[name]) for name in ("mass_g", "aspects")]
+    rates = [_number(row[name]) for name in ("velocity_mm_s", "parts_per_minute")]
+    return (*start, *numbers, Entry(leaves), *rates, Entry(said))
 
 
-def _cell(value):
-    if isinstance(value, str):
-        return f"<td>{value}</td>"
-    return f'<td class="number">{"-" if value is None else f"{value:.4g}"}</td>'
+def _number(value):
+    return Entry("-" if value is None else f"{value:.4g}", "number")
 
 
 def _picture(store, row):
-    picture = store.file(row["folder"], THUMBNAIL) if row["status"] == DONE else None
-    if picture is None:
-        return ""
-    data = base64.b64encode(picture).decode()
-    return f'<img src="data:image/png;base64,{data}" alt="{escape(row["folder"])} on aspect A">'
+    content = store.file(row["folder"], THUMBNAIL) if row["status"] == DONE else None
+    return None if content is None else Picture(THUMBNAIL, content, f"{row['folder']} on aspect A")

@@ -12,6 +12,7 @@ from feederscrew.documents import hint
 from feederscrew.errors import ConfigError, FeederError
 from feederscrew.output import tables
 from feederscrew.output.batch import contact_sheet
+from feederscrew.output.page.as_html import html
 from feederscrew.part.reading import source
 from feederscrew.rates.queue import RULES
 
@@ -116,7 +117,7 @@ def _finished(store, requests, kept):
     rows = summary.rows(store, requests)
     for name, page in contact_sheet.pages(summary.tiles(store, rows)):
         store.write(name, page)
-    store.write(index_page.NAME, index_page.html(store, rows))
+    store.write(index_page.NAME, html(index_page.page(store, rows)))
     store.write(summary.NAME, tables.text(summary.frame(rows), "csv"))  # last: it says that all is there
     return Batch(
         rows=rows,

@@ -12,10 +12,12 @@ from scipy.spatial.transform import Rotation
 
 from feederscrew.errors import FeederError
 from feederscrew.output import tables
-from feederscrew.output.report import Case, blocks, page, repeated
-from feederscrew.output.report.as_html import html
-from feederscrew.output.report.as_markdown import markdown
+from feederscrew.output.page import blocks, numbers
+from feederscrew.output.page.as_html import html
+from feederscrew.output.page.as_markdown import markdown
+from feederscrew.output.report import Case, page, repeated
 from feederscrew.output.report.chapters import CHAPTERS
+from feederscrew.output.report.files import BESIDE
 from feederscrew.output.report.scene import reduced, scene
 from feederscrew.part import load
 from feederscrew.resting import aspects
@@ -139,7 +141,7 @@ def test_cells_of_the_sheet_are_those_of_the_csv(light):
 
 
 def test_markdown_has_every_chapter_and_no_script(light):
-    text = markdown(light)
+    text = markdown(light, BESIDE)
     assert [line[3:] for line in text.splitlines() if line.startswith("## ")] == [
         s.title for s in light.sections
     ]
@@ -231,7 +233,7 @@ def test_cells_for_people():
             "fits": [True, False],
         }
     )
-    heads, numeric, rows = blocks.cells(frame)
+    heads, numeric, rows = numbers.cells(frame)
     assert heads[2:4] == [("height", "[mm]"), ("CSA", "[%]")]
     assert numeric == [False, True, True, True, False]
     assert rows == [("A", "2", "7.500", "50.0", "yes"), ("–", "10", "–", "1.00e-13", "no")]
@@ -242,7 +244,7 @@ def test_cells_for_people():
     [(1193.4, "1193"), (0.17962, "0.180"), (9.9996, "10.0"), (0.0, "0"), (np.nan, "–"), (2e-7, "2.00e-07")],
 )
 def test_numbers_keep_three_digits(value, shown):
-    assert blocks.number(value, 3) == shown
+    assert numbers.number(value, 3) == shown
 
 
 def test_a_bowl_too_steep_to_travel_is_told(bracket):

@@ -14,8 +14,8 @@ import pytest
 from PIL import Image
 
 from feederscrew.output import columns, tables
+from feederscrew.output.page.as_html import html
 from feederscrew.output.report import Case, page
-from feederscrew.output.report.as_html import html
 from feederscrew.output.report.chapters import CHAPTERS
 from feederscrew.part import load
 

@@ -7,9 +7,12 @@ import numpy as np
 import pytest
 
 from feederscrew.mechanics import limits
+from feederscrew.output import style
+from feederscrew.output.page.as_html import html
+from feederscrew.output.page.as_markdown import markdown
+from feederscrew.output.page.blocks import Entry, Heading, Links, Matrix, Page, Section
 from feederscrew.output.thesis import figures as thesis_plots
 from feederscrew.output.thesis import page as thesis_page
-from feederscrew.output.thesis import render as thesis_page_render
 from feederscrew.thesis import chapter_5, figures, reproduction
 from feederscrew.thesis.cells import DIFFERS, EXACT, EXPLAINED, Cell
 from feederscrew.thesis.claims import Claim, claims
@@ -23,6 +26,17 @@ BY_NUMBER = {figure.number: figure for figure in figures.FIGURES}
 @pytest.fixture(scope="module")
 def items():
     return reproduction.items()
+
+
+@pytest.fixture(scope="module")
+def page(items):
+    """The page, every figure on it a white one."""
+    white = style.png(style.page(2, 2))
+    return thesis_page.page(items, {f"{i.stem}.png": white for i in items if i.kind == "figure"})
+
+
+def blocks(page, kind):
+    return [block for section in page.sections for block in section.blocks if isinstance(block, kind)]
 
 
 def test_every_table_and_figure_is_an_item(items):
@@ -181,10 +195,8 @@ def test_numbers_of_a_figure_are_a_table(number):
     assert not frame.isna().any().any()
 
 
-def test_the_page_follows_the_thesis(items):
-    titles = [
-        b.text for b in thesis_page.blocks(items) if isinstance(b, thesis_page.Heading) and b.level == 3
-    ]
+def test_the_page_follows_the_thesis(items, page):
+    titles = [block.text for block in blocks(page, Heading)]
     order = [re.match(r"(Table|Figure) (\S+)\.", title) for title in titles]
     found = [(m[1].lower(), m[2]) for m in order if m]
     assert found == thesis_page.ORDER
@@ -192,9 +204,8 @@ def test_the_page_follows_the_thesis(items):
     assert titles[len(found) :] == [f"{f.id}: {f.where}" for f in FINDINGS]
 
 
-def test_chapter_4_names_each_equation_and_its_slip(items):
-    lists = [b for b in thesis_page.blocks(items) if isinstance(b, thesis_page.Bullets)]
-    told = {label: text for entry in lists for _, label, text in entry.entries}
+def test_chapter_4_names_each_equation_and_its_slip(page):
+    told = {label: text for links in blocks(page, Links) for _, label, text in links.entries}
     assert told["radial-gravity"].startswith("Equation [4.33]. ")
     assert told["alpha-plus-theta"].endswith("the print gives 0.766.")
 
@@ -208,32 +219,30 @@ def test_the_page_shows_print_and_ours(items):
     assert thesis_page.shown(Cell("a", "b", "1.2.3", 1.203, finding="x")) == "1.2.3 → 1.20"
 
 
-def test_markdown_links_lead_somewhere(items):
-    text = thesis_page_render.markdown(thesis_page.blocks(items))
+def test_markdown_links_lead_somewhere(items, page):
+    text = markdown(page)
     links, anchors = set(re.findall(r"\]\(#([\w-]+)\)", text)), set(re.findall(r'<a id="([\w-]+)">', text))
     assert links and links <= anchors
     assert "| 1 → 3.1 (1.5) |" in text
     assert re.findall(r"!\[.*\]\((.*)\)", text) == [i.stem + ".png" for i in items if i.kind == "figure"]
 
 
-def test_html_needs_no_other_file(items):
-    pictures = {f"{item.stem}.png": b"\x89PNG" for item in items if item.kind == "figure"}
-    text = thesis_page_render.html(thesis_page.blocks(items), pictures)
-    assert text.count("data:image/png;base64,iVBORw==") == len(pictures)
+def test_html_needs_no_other_file(items, page):
+    text = html(page)
+    assert text.count("data:image/png;base64,iVBORw") == sum(item.kind == "figure" for item in items)
     assert not re.search(r'(src|href)="(?!data:|#)', text)
     links, anchors = set(re.findall(r'href="#([\w-]+)"', text)), set(re.findall(r'id="([\w-]+)"', text))
     assert links and links <= anchors
 
 
 def test_html_escapes_what_markdown_may_say():
-    page = [thesis_page.Heading(1, "a < b"), thesis_page.Grid(("x",), ((("<b>", EXACT),),))]
-    text = thesis_page_render.html(page, {})
+    text = html(Page("a < b", "", (Section((Matrix(("x",), ((Entry("<b>", "exact"),),)),)),)))
     assert "<h1>a &lt; b</h1>" in text and '<td class="exact">&lt;b&gt;</td>' in text
 
 
 def test_tables_on_the_page_have_every_printed_row(items):
     for item in items:
         if item.kind == "table":
-            grid = next(b for b in thesis_page._item(item) if isinstance(b, thesis_page.Grid))
-            rows = [row[0][0] for row in grid.rows]
+            grid = next(block for block in thesis_page._item(item, {}) if isinstance(block, Matrix))
+            rows = [row[0].text for row in grid.rows]
             assert rows[: len(table(item.id).rows)] == list(table(item.id).rows)

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 from feederscrew import __version__
 from feederscrew.errors import FeederError
+from feederscrew.output.page.blocks import Notes, Page, Section
 from feederscrew.output.report import closing, moving, resting
-from feederscrew.output.report.blocks import Notes, Page, Section
 
 CHAPTERS = (  # anchor, title, what computes it
     ("aspects", "How it comes to rest", resting.aspects),
@@ -40,7 +40,7 @@ def page(case, step=nullcontext, chapters=CHAPTERS):
     """
     part, bowl = case.part, case.path or "the default bowl"
     sections = tuple(_chapter(case, *chapter, step) for chapter in chapters)
-    return Page(part.name, f"{part.material}, in {bowl} · feeder {__version__}", sections)
+    return Page(part.name, f"{part.material}, in {bowl} · feeder {__version__}", sections, "report")
 
 
 def _chapter(case, anchor, title, compute, step):

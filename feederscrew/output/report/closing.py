@@ -6,7 +6,7 @@ from importlib import metadata
 from feederscrew import __version__
 from feederscrew.output import tables
 from feederscrew.output.folder import LIBRARIES
-from feederscrew.output.report.blocks import Code, Notes, Section, Table, Text
+from feederscrew.output.page.blocks import Code, Notes, Section, Table, Text
 from feederscrew.output.report.resting import numbers
 from feederscrew.output.slide import tables as slide_tables
 

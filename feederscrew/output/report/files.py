@@ -1,10 +1,11 @@
 """A report as files."""
 
-from feederscrew.output.report.as_html import html
-from feederscrew.output.report.as_markdown import BESIDE, markdown
-from feederscrew.output.report.blocks import Picture, Sheet
+from feederscrew.output.page.as_html import html
+from feederscrew.output.page.as_markdown import markdown
+from feederscrew.output.page.blocks import Picture, Sheet
 
 FORMATS = ("html", "md")
+BESIDE = "report/"  # folder of the pictures, beside the text
 
 
 def write(folder, page, format):
@@ -20,10 +21,10 @@ def write(folder, page, format):
     if format == "html":
         folder.write("report.html", html(page))
         return
-    folder.write("report.md", markdown(page))
+    folder.write("report.md", markdown(page, BESIDE))
     for section in page.sections:
         for block in section.blocks:
             if isinstance(block, Picture):
-                folder.write(f"{BESIDE}/{block.file}", block.content)
+                folder.write(f"{BESIDE}{block.file}", block.content)
             elif isinstance(block, Sheet):
-                folder.write(f"{BESIDE}/{block.file}", block.csv)
+                folder.write(f"{BESIDE}{block.file}", block.csv)

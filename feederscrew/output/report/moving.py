@@ -11,19 +11,9 @@ from feederscrew.output.floor import files as floor_sheets
 from feederscrew.output.floor import tables as floor_tables
 from feederscrew.output.headings import files as heading_sheets
 from feederscrew.output.headings import tables as heading_tables
+from feederscrew.output.page.blocks import Notes, Picture, Section, Table, Text, Tile
+from feederscrew.output.page.numbers import NOTHING, SHORT, number, percent
 from feederscrew.output.rate import tables as rate_tables
-from feederscrew.output.report.blocks import (
-    NOTHING,
-    SHORT,
-    Notes,
-    Picture,
-    Section,
-    Table,
-    Text,
-    Tile,
-    number,
-    percent,
-)
 from feederscrew.output.report.kept import Kept
 from feederscrew.output.slide import files as slide_sheets
 from feederscrew.output.slide import tables as slide_tables

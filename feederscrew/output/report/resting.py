@@ -7,8 +7,9 @@ from feederscrew.output import columns, style, tables
 from feederscrew.output.aspects import files as sheets
 from feederscrew.output.columns import MM
 from feederscrew.output.inertia import tables as inertia_tables
+from feederscrew.output.page.blocks import Notes, Picture, Section, Sheet, Table, Text, Tile, Views
+from feederscrew.output.page.numbers import percent
 from feederscrew.output.report import graph
-from feederscrew.output.report.blocks import Notes, Picture, Section, Sheet, Table, Text, Tile, Views, percent
 from feederscrew.output.report.case import likeliest
 from feederscrew.output.report.kept import Kept
 from feederscrew.output.report.scene import scene

@@ -1,9 +1,10 @@
 """The files and documents of ``feeder reproduce``."""
 
 from feederscrew.output import style, tables
+from feederscrew.output.page.as_html import html
+from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.thesis import figures as thesis_plots
 from feederscrew.output.thesis import page as thesis_page
-from feederscrew.output.thesis import render as thesis_page_render
 from feederscrew.thesis.figures import FIGURES
 from feederscrew.thesis.findings import FINDINGS
 from feederscrew.thesis.reproduction import summary
@@ -81,9 +82,9 @@ def write(folder, items):
             folder.write(f"{item.stem}.csv", tables.text(cells(item), "csv"))
     for name, content in pictures.items():
         folder.write(name, content)
-    page = thesis_page.blocks(items)
-    folder.write("thesis.md", thesis_page_render.markdown(page))
-    folder.write("thesis.html", thesis_page_render.html(page, pictures))
+    page = thesis_page.page(items, pictures)
+    folder.write("thesis.md", markdown(page))
+    folder.write("thesis.html", html(page))
     folder.write("summary.csv", tables.text(overview(items), "csv"))
     folder.write("findings.csv", tables.text(_findings(), "csv"))
     return files

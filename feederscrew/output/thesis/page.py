@@ -1,15 +1,16 @@
-"""The thesis gone through on one page: what it says, built of blocks that `thesis_page_render` writes out."""
+"""The thesis gone through on one page."""
 
 import math
 from collections import Counter
-from dataclasses import dataclass
 
+from feederscrew.output.page.blocks import Entry, Heading, Links, Matrix, Page, Picture, Section, Text
 from feederscrew.thesis.cells import DIFFERS, EXACT, EXPLAINED, GIVEN
 from feederscrew.thesis.claims import Claim
 from feederscrew.thesis.findings import BY_ID, FINDINGS
 from feederscrew.thesis.reproduction import summary
 from feederscrew.thesis.tables import table
 
+MARKS = {EXACT: "exact", EXPLAINED: "explained", DIFFERS: "differs", GIVEN: "given"}  # of a cell, by verdict
 EXTRA = 1  # digits shown beyond the printed ones
 ORDER = [  # of the thesis: tables and figures as they follow each other
     *[("table", f"3-{n}") for n in range(1, 12)],
@@ -28,69 +29,38 @@ OPENING = (
     "explained: print → ours, and in brackets what a finding below the table makes of it. A cell in italics "
     "is given: measured, or read off a drawing that is lost. A cell marked DIFFERS has no explanation.",
 )
+CHAPTER_4_TITLE = "Chapter 4: inertial data, levers and equations"
 CHAPTER_4 = "Chapter 4 has no tables, but its data feed chapter 5. What checking them showed:"
 
 
-@dataclass(frozen=True)
-class Heading:
-    """A title; level 1 is the page's."""
-
-    level: int
-    text: str
-    anchor: str = ""
-
-
-@dataclass(frozen=True)
-class Paragraph:
-    """Running text."""
-
-    text: str
-
-
-@dataclass(frozen=True)
-class Bullets:
-    """Findings, or links to them: (anchor to link to, label, text)."""
-
-    entries: tuple[tuple[str, str, str], ...]
-
-
-@dataclass(frozen=True)
-class Grid:
-    """A table: its heads, and rows of (text, verdict); verdict '' for a row's name."""
-
-    heads: tuple[str, ...]
-    rows: tuple[tuple[tuple[str, str], ...], ...]
-
-
-@dataclass(frozen=True)
-class Picture:
-    """A figure, by the name of its file."""
-
-    file: str
-    alt: str
-
-
-def blocks(items):
-    """The whole page.
+def page(items, pictures):
+    """Build the page of the whole thesis.
 
     Parameters
     ----------
     items : sequence of thesis.reproduction.Item
+    pictures : dict of str to bytes
+        PNG of each figure, by file name.
 
     Returns
     -------
-    list of block
-        Heading, Paragraph, Bullets, Grid or Picture.
+    Page
     """
     by_key = {(item.kind, item.id): item for item in items}
-    page = [Heading(1, TITLE), *(Paragraph(text) for text in OPENING), Heading(2, "Summary")]
-    page += [Paragraph(_totals(items)), _summary(items)]
-    page.append(Heading(2, "Chapter 3: natural resting aspects"))
-    for key in ORDER:
-        if key == ("figure", "5-1"):
-            page += [*_chapter_4(items), Heading(2, "Chapter 5: simulation results")]
-        page += _item(by_key[key])
-    return [*page, Heading(2, "Findings and errata"), *_errata(items)]
+    shown = {key: _item(by_key[key], pictures) for key in ORDER}
+    third, fifth = ([b for key in ORDER if key[1][0] == n for b in shown[key]] for n in "35")
+    return Page(
+        TITLE,
+        "",
+        (
+            Section(tuple(Text(text) for text in OPENING)),
+            Section((Text(_totals(items)), _summary(items)), anchor="summary", title="Summary"),
+            Section(tuple(third), anchor="chapter-3", title="Chapter 3: natural resting aspects"),
+            Section(_chapter_4(items), anchor="chapter-4", title=CHAPTER_4_TITLE),
+            Section(tuple(fifth), anchor="chapter-5", title="Chapter 5: simulation results"),
+            Section(tuple(_errata(items)), anchor="findings", title="Findings and errata"),
+        ),
+    )
 
 
 def shown(entry):
@@ -124,9 +94,9 @@ def _summary(items):
     rows = []
     for item in items:
         counts = summary(item)
-        cells = [(str(counts[name]), "") for name in heads[2:]]
-        rows.append(((f"{item.kind.capitalize()} {item.id}", ""), (item.caption, ""), *cells))
-    return Grid(heads, tuple(rows))
+        cells = [Entry(str(counts[name]), "number") for name in heads[2:]]
+        rows.append((Entry(f"{item.kind.capitalize()} {item.id}"), Entry(item.caption), *cells))
+    return Matrix(heads, tuple(rows))
 
 
 def _totals(items):
@@ -137,13 +107,14 @@ def _totals(items):
     )
 
 
-def _item(item):
-    heading = Heading(3, f"{item.kind.capitalize()} {item.id}. {item.caption}", item.stem)
+def _item(item, pictures):
+    heading = Heading(f"{item.kind.capitalize()} {item.id}. {item.caption}", item.stem)
     if item.kind == "figure":
-        body = [Picture(f"{item.stem}.png", item.caption), _statements(item)]
+        file = f"{item.stem}.png"
+        body = [Picture(file, pictures[file], item.caption), _statements(item)]
     else:
         printed = table(item.id)
-        body = [Paragraph(f"Source: {printed.source}. Units: {printed.units}."), _cells(item, printed)]
+        body = [Text(f"Source: {printed.source}. Units: {printed.units}."), _cells(item, printed)]
     return [heading, *body, *_bearing(item.findings)]
 
 
@@ -153,8 +124,14 @@ def _cells(item, printed):
     rows = []
     for name in dict.fromkeys(entry.row for entry in item.entries):
         cells = [found.get((name, column)) for column in printed.columns]
-        rows.append(((name, ""), *[(shown(cell), cell.verdict) if cell else ("", "") for cell in cells]))
-    return Grid(("", *printed.columns), tuple(rows))
+        rows.append(
+            (Entry(name), *[_marked(shown(cell), cell.verdict) if cell else Entry("") for cell in cells])
+        )
+    return Matrix(("", *printed.columns), tuple(rows))
+
+
+def _marked(text, verdict):
+    return Entry(text, MARKS[verdict])
 
 
 def _statements(item):
@@ -162,39 +139,33 @@ def _statements(item):
     heads = ("what print states", "in print", "ours", "verdict")
     rows = [
         (
-            (claim.statement, ""),
-            (claim.published, ""),
-            (f"{claim.recomputed:.4g}", ""),
-            (claim.verdict, claim.verdict),
+            Entry(claim.statement),
+            Entry(claim.published),
+            Entry(f"{claim.recomputed:.4g}"),
+            _marked(claim.verdict, claim.verdict),
         )
         for claim in item.entries
         if isinstance(claim, Claim) and not math.isnan(claim.recomputed)
     ]
-    return Grid(heads, tuple(rows))
+    return Matrix(heads, tuple(rows))
 
 
 def _bearing(ids):
-    return [Bullets(tuple((id, id, BY_ID[id].what) for id in ids))] if ids else []
+    return [Links(tuple((id, id, BY_ID[id].what) for id in ids))] if ids else []
 
 
 def _chapter_4(items):
     """The findings that no table or figure carries."""
     carried = {id for item in items for id in item.findings}
     rest = [finding for finding in FINDINGS if finding.id not in carried or "4." in finding.where]
-    return [
-        Heading(2, "Chapter 4: inertial data, levers and equations"),
-        Paragraph(CHAPTER_4),
-        Bullets(tuple((one.id, one.id, f"{one.where}. {one.what} {one.shown}") for one in rest)),
-    ]
+    told = tuple((one.id, one.id, f"{one.where}. {one.what} {one.shown}") for one in rest)
+    return Text(CHAPTER_4), Links(told)
 
 
 def _errata(items):
     """Every finding, with its evidence and the items it bears on."""
     for finding in FINDINGS:
         on = [f"{item.kind} {item.id}" for item in items if finding.id in item.findings]
-        yield Heading(3, f"{finding.id}: {finding.where}", finding.id)
+        yield Heading(f"{finding.id}: {finding.where}", finding.id)
         bears = f" Bears on {', '.join(on)}." if on else ""
-        yield Paragraph(f"{finding.what} {finding.shown}{bears}")
-
-
-VERDICT_CLASSES = {EXACT: "exact", EXPLAINED: "explained", DIFFERS: "differs", GIVEN: "given", "": ""}
+        yield Text(f"{finding.what} {finding.shown}{bears}")

@@ -1,4 +1,4 @@
-"""A report as one HTML file that needs no other: style, viewer, mesh and pictures are inside."""
+"""A page as one HTML file that needs no other: style, viewer, mesh and pictures are inside."""
 
 import base64
 import csv
@@ -9,8 +9,8 @@ from html import escape
 from importlib import resources
 from itertools import groupby
 
-from feederscrew.output.report import blocks as kinds
-from feederscrew.output.report.blocks import cells
+from feederscrew.output.page import blocks as kinds
+from feederscrew.output.page.numbers import cells
 from feederscrew.output.style import DPI
 
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
@@ -41,7 +41,7 @@ def html(page):
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
             f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
-            f"<title>{escape(page.title)}: report</title>",
+            f"<title>{escape(': '.join(filter(None, (page.title, page.kind))))}</title>",
             f"<style>\n{_asset('page.css')}</style>\n</head>\n<body>",
             _head(page),
             *(_section(section) for section in page.sections),
@@ -52,7 +52,7 @@ def html(page):
 
 
 def _asset(name):
-    return resources.files("feederscrew.output.report").joinpath(name).read_text(encoding="utf-8")
+    return resources.files("feederscrew.output.page").joinpath(name).read_text(encoding="utf-8")
 
 
 def _scripts():
@@ -67,17 +67,24 @@ def _head(page):
         f"<small>{escape(tile.note)}</small></div>"
         for tile in page.tiles
     )
-    links = "\n".join(f'<a href="#{section.anchor}">{escape(section.title)}</a>' for section in page.sections)
+    titled = [section for section in page.sections if section.title]
+    links = "\n".join(f'<a href="#{section.anchor}">{escape(section.title)}</a>' for section in titled)
     warnings = _list(page.warnings, "loud") if page.warnings else ""
     return (
-        f"<header>\n<h1>{escape(page.title)}</h1>\n<p>{escape(page.subtitle)}</p>\n"
-        f'<div class="tiles">\n{tiles}\n</div>\n{warnings}\n<nav>\n{links}\n</nav>\n</header>'
+        f"<header>\n<h1>{escape(page.title)}</h1>\n"
+        + (f"<p>{escape(page.subtitle)}</p>\n" if page.subtitle else "")
+        + (f'<div class="tiles">\n{tiles}\n</div>\n' if tiles else "")
+        + f"{warnings}\n"
+        + (f"<nav>\n{links}\n</nav>\n" if titled else "")
+        + "</header>"
     )
 
 
 def _section(section):
     body = "\n".join(_run(*run) for run in groupby(section.blocks, _side_by_side))
-    return f'<section id="{section.anchor}">\n<h2>{escape(section.title)}</h2>\n{body}\n</section>'
+    anchor = f' id="{section.anchor}"' if section.anchor else ""
+    title = f"<h2>{escape(section.title)}</h2>\n" if section.title else ""
+    return f"<section{anchor}>\n{title}{body}\n</section>"
 
 
 def _side_by_side(block):
@@ -107,7 +114,13 @@ def _block(block):
             return _picture(block)
         case kinds.Views():
             return _views(block)
-    raise ValueError(f"{type(block).__name__} is no block of a report")
+        case kinds.Heading(text, anchor):
+            return f'<h3 id="{escape(anchor)}">{escape(text)}</h3>' if anchor else f"<h3>{escape(text)}</h3>"
+        case kinds.Links(entries):
+            return _links(entries)
+        case kinds.Matrix(heads, rows):
+            return _matrix(heads, rows)
+    raise ValueError(f"{type(block).__name__} is not a block of a page")
 
 
 def _picture(picture):
@@ -153,6 +166,28 @@ def _grid(marks, head, lines):
         f'<div class="wide"><table{marks}>\n<thead><tr>{head}</tr></thead>\n'
         f"<tbody>\n{body}\n</tbody>\n</table></div>"
     )
+
+
+def _links(entries):
+    lines = [
+        f'<li><a href="#{escape(to)}">{escape(label)}</a>: {escape(text)}</li>' for to, label, text in entries
+    ]
+    return '<ul class="notes">\n' + "\n".join(lines) + "\n</ul>"
+
+
+def _matrix(heads, rows):
+    head = "".join(f"<th>{escape(text)}</th>" for text in heads)
+    return _grid(' class="matrix"', head, [f"<tr>{''.join(map(_entry, row))}</tr>" for row in rows])
+
+
+def _entry(entry):
+    mark = f' class="{entry.mark}"' if entry.mark else ""
+    body = escape(entry.text)
+    if entry.picture:
+        body += f'<img src="{_data("image/png", entry.picture.content)}" alt="{escape(entry.picture.alt)}">'
+    if entry.link:
+        body = f'<a href="{escape(entry.link)}">{body}</a>'
+    return f"<td{mark}>{body}</td>"
 
 
 def _views(views):

@@ -1,17 +1,19 @@
-"""A report as Markdown."""
+"""A page as Markdown."""
 
-from feederscrew.output.report import blocks as kinds
-from feederscrew.output.report.blocks import cells
+from feederscrew.output.page import blocks as kinds
+from feederscrew.output.page.numbers import cells
 
-BESIDE = "report"  # folder of the pictures, beside the text
+ITALIC = "given"  # the mark of a cell that was not computed
 
 
-def markdown(page):
-    """The page as Markdown, without 3-D.
+def markdown(page, beside=""):
+    """Write a page as Markdown, without 3-D.
 
     Parameters
     ----------
     page : Page
+    beside : str
+        Folder of the pictures and tables, beside the text: 'report/', or '' for the same folder.
 
     Returns
     -------
@@ -23,11 +25,12 @@ def markdown(page):
     if warnings:
         parts += ["**To watch**", "\n".join(warnings)]
     for section in page.sections:
-        parts += [f"## {section.title}", *(_block(block) for block in section.blocks)]
+        title = f"## {section.title}" if section.title else ""
+        parts += [title, *(_block(block, beside) for block in section.blocks)]
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-def _block(block):
+def _block(block, beside):
     match block:
         case kinds.Text(text):
             return _plain(text)
@@ -38,12 +41,24 @@ def _block(block):
         case kinds.Table(frame):
             return _table(frame)
         case kinds.Sheet(file):
-            return f"[{file}]({BESIDE}/{file})"
-        case kinds.Picture(file, _, alt):
-            return f"![{alt}]({BESIDE}/{file})"
+            return f"[{file}]({beside}{file})"
+        case kinds.Picture(file=file, alt=alt):
+            return f"![{alt}]({beside}{file})"
         case kinds.Views():
             return ""
-    raise ValueError(f"{type(block).__name__} is no block of a report")
+        case kinds.Heading(text, anchor):
+            return (f'<a id="{anchor}"></a>\n\n' if anchor else "") + f"### {text}"
+        case kinds.Links(entries):
+            return "\n".join(f"- [{label}](#{anchor}): {text}" for anchor, label, text in entries)
+        case kinds.Matrix(heads, rows):
+            lines = [heads, ["---"] * len(heads), *([_entry(entry) for entry in row] for row in rows)]
+            return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+    raise ValueError(f"{type(block).__name__} is not a block of a page")
+
+
+def _entry(entry):
+    text = _plain(entry.text)
+    return f"*{text}*" if entry.mark == ITALIC else text
 
 
 def _table(frame):

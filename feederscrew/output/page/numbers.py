@@ -1,6 +1,4 @@
-"""What a report is made of; the two writers turn each kind into HTML or Markdown."""
-
-from dataclasses import dataclass
+"""Frames and numbers as people read them on a page."""
 
 import numpy as np
 import pandas as pd
@@ -12,104 +10,6 @@ SHORT = 3  # of a percentage, and at the head of the page
 PLAIN = (1e-4, 1e7)  # numbers outside are written with an exponent
 NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
 NOTHING = "–"
-
-
-@dataclass(frozen=True)
-class Text:
-    """A paragraph; ``quiet`` for what explains rather than tells."""
-
-    text: str
-    quiet: bool = False
-
-
-@dataclass(frozen=True)
-class Notes:
-    """Lines to be read one by one; ``loud`` for warnings."""
-
-    lines: tuple[str, ...]
-    loud: bool = False
-
-
-@dataclass(frozen=True)
-class Code:
-    """What one types."""
-
-    text: str
-
-
-@dataclass(frozen=True, eq=False)
-class Table:
-    """A frame for people."""
-
-    frame: pd.DataFrame
-    caption: str = ""
-
-
-@dataclass(frozen=True)
-class Sheet:
-    """A CSV file cell by cell, to copy from or to save."""
-
-    file: str
-    csv: str
-
-
-@dataclass(frozen=True)
-class Picture:
-    """A PNG; ``printed`` for one that stands in for the 3-D views on paper."""
-
-    file: str
-    content: bytes
-    alt: str
-    printed: bool = False
-
-
-@dataclass(frozen=True, eq=False)
-class Views:
-    """The part on each aspect, to be turned; ``scene`` is JSON for the viewer."""
-
-    scene: dict
-    captions: tuple[
-        tuple[str, str, tuple[tuple[str, str, float], ...]], ...
-    ]  # name, kind, (label, colour, share)
-
-
-@dataclass(frozen=True)
-class Tile:
-    """One answer at the head of the page."""
-
-    label: str
-    value: str
-    note: str
-
-
-@dataclass(frozen=True)
-class Section:
-    """A chapter of the page; its place and title are the page's to give."""
-
-    blocks: tuple
-    tiles: tuple[Tile, ...] = ()
-    warnings: tuple[str, ...] = ()
-    anchor: str = ""
-    title: str = ""
-
-
-@dataclass(frozen=True)
-class Page:
-    """A whole report."""
-
-    title: str
-    subtitle: str
-    sections: tuple[Section, ...]
-
-    @property
-    def tiles(self):
-        """The answers of all sections, in their order."""
-        return tuple(tile for section in self.sections for tile in section.tiles)
-
-    @property
-    def warnings(self):
-        """What a reader must not overlook, each line once."""
-        return tuple(dict.fromkeys(line for section in self.sections for line in section.warnings))
 
 
 def cells(frame):

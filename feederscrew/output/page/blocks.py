@@ -1,0 +1,137 @@
+"""What a page is made of; the two writers turn each kind of block into HTML or Markdown."""
+
+from dataclasses import dataclass
+
+import pandas as pd
+
+
+@dataclass(frozen=True)
+class Text:
+    """A paragraph; ``quiet`` for what explains rather than tells."""
+
+    text: str
+    quiet: bool = False
+
+
+@dataclass(frozen=True)
+class Notes:
+    """Lines to be read one by one; ``loud`` for warnings."""
+
+    lines: tuple[str, ...]
+    loud: bool = False
+
+
+@dataclass(frozen=True)
+class Code:
+    """What one types."""
+
+    text: str
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """A frame for people."""
+
+    frame: pd.DataFrame
+    caption: str = ""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A CSV file cell by cell, to copy from or to save."""
+
+    file: str
+    csv: str
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A PNG; ``printed`` for one that stands in for the 3-D views on paper."""
+
+    file: str
+    content: bytes
+    alt: str
+    printed: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Views:
+    """The part on each aspect, to be turned; ``scene`` is JSON for the viewer."""
+
+    scene: dict
+    captions: tuple[
+        tuple[str, str, tuple[tuple[str, str, float], ...]], ...
+    ]  # name, kind, (label, colour, share)
+
+
+@dataclass(frozen=True)
+class Heading:
+    """The title of a part of a section; ``anchor`` is where links lead."""
+
+    text: str
+    anchor: str = ""
+
+
+@dataclass(frozen=True)
+class Links:
+    """Lines that each lead to an anchor of the page: (anchor, label, text)."""
+
+    entries: tuple[tuple[str, str, str], ...]
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One cell of a `Matrix`: its text, a mark for the style sheet, and what lies behind it."""
+
+    text: str
+    mark: str = ""  # class names of the style sheet: 'number', 'exact', 'failed' ...
+    link: str = ""
+    picture: Picture | None = None
+
+
+@dataclass(frozen=True)
+class Matrix:
+    """A table whose cells are marked one by one."""
+
+    heads: tuple[str, ...]
+    rows: tuple[tuple[Entry, ...], ...]
+
+
+@dataclass(frozen=True)
+class Tile:
+    """One answer at the head of the page."""
+
+    label: str
+    value: str
+    note: str
+
+
+@dataclass(frozen=True)
+class Section:
+    """A chapter of the page; its place and title are the page's to give, '' for one without."""
+
+    blocks: tuple
+    tiles: tuple[Tile, ...] = ()
+    warnings: tuple[str, ...] = ()
+    anchor: str = ""
+    title: str = ""
+
+
+@dataclass(frozen=True)
+class Page:
+    """A whole page; ``kind`` is what its window is called after the title."""
+
+    title: str
+    subtitle: str
+    sections: tuple[Section, ...]
+    kind: str = ""
+
+    @property
+    def tiles(self):
+        """The answers of all sections, in their order."""
+        return tuple(tile for section in self.sections for tile in section.tiles)
+
+    @property
+    def warnings(self):
+        """What a reader must not overlook, each line once."""
+        return tuple(dict.fromkeys(line for section in self.sections for line in section.warnings))
