@@ -79,7 +79,8 @@ docs/drop.png: parts/$(BOLT).stl | $(READY)
 	$(FEEDER) drop $< --drops 1000 --trace 1 -o results --quiet > /dev/null
 	cp results/$(BOLT)/drop_trace.png $@
 
-fuzz: $(READY_TO_TEST) ## ten minutes of damaged files
+fuzz: $(READY_TO_TEST) ## 2,000 round bodies, then ten minutes of damaged files
+	PYTHONPATH=tests $(BIN)/python -m fuzz.rounds 2000
 	PYTHONPATH=tests $(BIN)/python -m fuzz 600
 
 clean: ## remove results and caches

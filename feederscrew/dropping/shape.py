@@ -62,7 +62,7 @@ def shape_of(hull, labels, mass, inertia, axes=None):
     rolls = np.isfinite(axes).all(axis=1)
     shape = Shape(
         vertices=edges.vertices,
-        links=check.frozen(_links(edges)),
+        links=check.frozen(_links(hull)),
         inertia=check.frozen(moments / (mass * length**2)),
         radius=hull.radius / length,
         edges=edges,
@@ -111,12 +111,13 @@ def _turned(edges, principal, length):
     return edges._replace(**{name: check.frozen(array) for name, array in scaled.items()})
 
 
-def _links(edges):
-    """Corners joined to each corner by an edge: where each list starts, then the lists."""
-    order = np.argsort(edges.origins, kind="stable")
-    count = len(edges.vertices) + 1
-    starts = np.searchsorted(edges.origins[order], np.arange(count))
-    return np.concatenate([starts + count, edges.targets[order]])
+def _links(hull):
+    """Corners joined to each corner by an edge of a triangle: where each list starts, then the lists."""
+    origins, targets = hull.triangles[:, [1, 2, 0]].ravel(), hull.triangles[:, [2, 0, 1]].ravel()
+    order = np.argsort(origins, kind="stable")
+    count = len(hull.vertices) + 1
+    starts = np.searchsorted(origins[order], np.arange(count))
+    return np.concatenate([starts + count, targets[order]]).astype(int)
 
 
 def _faces(edges, tumbling, labels):

@@ -9,7 +9,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.geometry.compiled import fitting
-from feederscrew.resting.tumbling import walk
+from feederscrew.resting.tumbling import borders, walk
 
 COPLANAR = 1e-10  # [1] of the radius: depth below a neighbour's plane that is still the same facet
 SLIVER = 1e-9  # [1] of the radius: a triangle narrower than this has no plane of its own
@@ -19,6 +19,7 @@ PLANE = 1e-14  # [1] error of a triangle's plane at the far end of the part, tim
 class Edges(NamedTuple):
     """Half-edges of a hull of T triangles, H = 3 T, and its facets of coplanar triangles.
 
+    Only half-edges on a border lead somewhere: from one corner of three facets or more to the next.
     A named tuple, so that compiled code can read it.
     """
 
@@ -28,11 +29,13 @@ class Edges(NamedTuple):
     twins: np.ndarray  # (H,) the same edge seen from the other side
     facets: np.ndarray  # (T,) facet of each triangle
     borders: np.ndarray  # (H,) bool: parts two facets
+    ahead: np.ndarray  # (H,) next border half-edge of the same facet
+    around: np.ndarray  # (H,) next border half-edge leaving the same corner
     slopes: np.ndarray  # (H,) [m2] origin . (target - origin): negative where the foot is ahead
     sides: np.ndarray  # (H,) [m2] not negative where the foot of the facet is inside this edge
     normals: np.ndarray  # (M, 3) outward unit normals of the M facets
     facet_edges: np.ndarray  # (M,) a bordering half-edge of each facet
-    vertex_edges: np.ndarray  # (V,) a half-edge leaving each corner, bordering where there is one
+    vertex_edges: np.ndarray  # (V,) a bordering half-edge leaving each corner, or one of a facet it lies on
 
 
 def half_edges(hull):
@@ -47,28 +50,29 @@ def half_edges(hull):
     -------
     Edges
     """
-    twins = _twins(hull.neighbours)
-    facets = _facets(hull, twins)
     origins = hull.triangles[:, [1, 2, 0]].ravel().astype(int)
     targets = hull.triangles[:, [2, 0, 1]].ravel().astype(int)
+    twins = _twins(hull.neighbours)
+    found = borders.borders(origins, targets, twins, np.repeat(_facets(hull, twins), 3))
+    facets, edges = found.facets[::3], np.flatnonzero(found.part)
     normals = _facet_normals(hull, facets)
-    owners = np.repeat(facets, 3)
-    borders = owners != owners[twins]
-    slopes, sides = np.empty((2, len(owners)))
-    signs = fitting(walk.signs, len(owners))
-    signs(hull.vertices, normals, origins, targets, owners, slopes, sides)
+    slopes, sides = np.empty((2, len(origins)))
+    signs = fitting(walk.signs, len(origins))
+    signs(hull.vertices, normals, origins, found.targets, found.facets, slopes, sides)
+    slopes = _one_way_out(slopes, sides, found)
     by_facet, by_vertex = np.zeros(len(normals), int), np.zeros(len(hull.vertices), int)
-    edges = np.flatnonzero(borders)
-    by_facet[owners[edges]] = edges
-    by_vertex[origins] = np.arange(len(origins))
+    by_facet[found.facets[edges]] = edges
+    by_vertex[origins] = by_facet[found.facets]
     by_vertex[origins[edges]] = edges
     arrays = {
         "vertices": hull.vertices,
         "origins": origins,
-        "targets": targets,
-        "twins": twins,
+        "targets": found.targets,
+        "twins": found.twins,
         "facets": facets,
-        "borders": borders,
+        "borders": found.part,
+        "ahead": found.ahead,
+        "around": found.around,
         "slopes": slopes,
         "sides": sides,
         "normals": normals,
@@ -76,6 +80,26 @@ def half_edges(hull):
         "vertex_edges": by_vertex,
     }
     return Edges(**{name: check.frozen(array) for name, array in arrays.items()})
+
+
+def _one_way_out(slopes, sides, found):
+    """(H,) [m2] slopes with which every facet is left over one edge, or over a corner.
+
+    The foot of the centre of mass lies nearest to one edge of a convex polygon. Where coplanar triangles
+    were merged, a corner may be reflex by the tolerance, and the foot lie inside both its edges; then it
+    is past the end of the further one, by as little.
+    """
+    exits = np.flatnonzero(found.part & (sides < 0.0) & (slopes <= 0.0) & (slopes[found.twins] <= 0.0))
+    facets, count = np.unique(found.facets[exits], return_counts=True)
+    slopes = slopes.copy()
+    for facet in facets[count > 1]:
+        several = exits[found.facets[exits] == facet]
+        lengths = -slopes[several] - slopes[found.twins[several]]  # squared
+        nearest = several[np.argmin(sides[several] ** 2 / lengths)]
+        for h in several[several != nearest]:
+            end = max(h, found.twins[h], key=slopes.__getitem__)
+            slopes[end] = np.finfo(float).tiny
+    return slopes
 
 
 def sinks(edges):

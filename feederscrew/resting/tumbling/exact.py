@@ -11,6 +11,7 @@ from feederscrew.resting.tumbling import walk
 
 SPHERE = 4.0 * np.pi  # [sr]
 ROUNDING = 1e-6  # [1] what the shares may miss 1 by before the result is called doubtful
+UNEVEN = 1e-7  # [1] of the radius: what the corners of a facet merged from needles may lie off its plane
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +68,7 @@ def tumble(hull):
     directions = feet / saddle_heights[:, None]
     pairs, raw, arrived = _basins(edges, sinks, saddles, maxima, directions)
     areas = _areas(raw)
-    falls = (pairs >= 0) & (heights[pairs] <= saddle_heights[:, None] + 1e-9 * hull.radius)
+    falls = (pairs >= 0) & (heights[pairs] <= saddle_heights[:, None] + UNEVEN * hull.radius)
     doubts = _doubts(areas, len(sinks) - len(saddles) + len(maxima), arrived and falls.all())
     axes = edges.vertices[edges.targets[saddles]] - edges.vertices[edges.origins[saddles]]
     return Tumbling(

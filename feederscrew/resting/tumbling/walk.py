@@ -60,22 +60,6 @@ def depths(vertices, normals, heights, corners, twins, below):
 
 
 @compilable
-def around_vertex(edges, h):
-    """Next half-edge leaving the same corner."""
-    return edges.twins[h + 2 if h % 3 == 0 else h - 1]
-
-
-@compilable
-def along_facet(edges, h):
-    """Next half-edge around the border of the same facet."""
-    h = h - 2 if h % 3 == 2 else h + 1
-    while not edges.borders[h]:
-        h = edges.twins[h]
-        h = h - 2 if h % 3 == 2 else h + 1
-    return h
-
-
-@compilable
 def exit_of(edges, facet):
     """How the part leaves a facet: (half-edge, -1) over an edge, (-1, corner) over a corner, (-1, -1) not."""
     start = h = edges.facet_edges[facet]
@@ -89,7 +73,7 @@ def exit_of(edges, facet):
         u = row(edges.vertices, edges.origins[h])
         if dot(u, u) < nearest:
             nearest, corner = dot(u, u), edges.origins[h]
-        h = along_facet(edges, h)
+        h = edges.ahead[h]
         if h == start:
             break
     return -1, corner if leaves else -1
@@ -108,11 +92,11 @@ def next_corner(edges, x, corner, sign):
     best, step = LOST, math.inf
     for _ in range(len(edges.origins)):
         slope = sign * edges.slopes[h]
-        if edges.borders[h] and slope > 0.0:
+        if slope > 0.0:
             t = max(here - dot(x, row(edges.vertices, edges.targets[h])), 0.0) / slope
             if t < step:
                 best, step = h, t
-        h = around_vertex(edges, h)
+        h = edges.around[h]
         if h == start:
             break
     return best, toward(x, v, sign * step) if best != LOST else x
@@ -127,8 +111,33 @@ def side_of(edges, h, x):
 
 
 @compilable
+def support(edges, x, corner):
+    """Corner furthest along direction x, climbing from ``corner``."""
+    while True:
+        height = dot(x, row(edges.vertices, corner))
+        start = h = edges.vertex_edges[corner]
+        best = corner
+        while True:
+            other = dot(x, row(edges.vertices, edges.targets[h]))
+            if other > height:
+                height, best = other, edges.targets[h]
+            h = edges.around[h]
+            if h == start:
+                break
+        if best == corner:
+            return corner
+        corner = best
+
+
+@compilable
 def roll_from_corner(edges, x, corner):
-    """Facet first reached by a part that rolls over a corner from direction x; LOST if none."""
+    """Facet first reached by a part that rolls over a corner from direction x; LOST if none.
+
+    A corner in the middle of a facet or an edge gives way to the lowest corner of the facet.
+    """
+    near = edges.origins[edges.vertex_edges[corner]]
+    if near != corner:
+        corner = support(edges, x, near)
     for _ in range(len(edges.vertices)):
         h, x = next_corner(edges, x, corner, -1.0)
         if h == LOST:
@@ -156,28 +165,9 @@ def roll_from_facet(edges, facet):
 
 
 @compilable
-def support(edges, x, corner):
-    """Corner furthest along direction x, climbing from ``corner``."""
-    while True:
-        height = dot(x, row(edges.vertices, corner))
-        start = h = edges.vertex_edges[corner]
-        best = corner
-        while True:
-            other = dot(x, row(edges.vertices, edges.targets[h]))
-            if other > height:
-                height, best = other, edges.targets[h]
-            h = around_vertex(edges, h)
-            if h == start:
-                break
-        if best == corner:
-            return corner
-        corner = best
-
-
-@compilable
 def rolls(edges, directions, ends):
     """Fill (N,) ends with the facet a part set down with each of (N, 3) directions down comes to rest on."""
-    corner = 0
+    corner = edges.origins[edges.facet_edges[0]]
     for n in range(len(directions)):
         x = row(directions, n)
         corner = support(edges, x, corner)
