@@ -10,9 +10,9 @@ def keys(context, option, typed):
 
 def rules(context, option, typed):
     """Rules whose probabilities a rate can take."""
-    from feederscrew.rates.queue import RULES
+    from feederscrew.resting.rules.registry import CHOICES
 
-    return [name for name in RULES if name.startswith(typed)]
+    return [name for name in CHOICES if name.startswith(typed)]
 
 
 def materials(context, option, typed):

@@ -14,7 +14,7 @@ from feederscrew.output import tables
 from feederscrew.output.batch import contact_sheet
 from feederscrew.output.page.as_html import html
 from feederscrew.part.reading import source
-from feederscrew.rates.queue import RULES
+from feederscrew.resting.rules.registry import CHOICES
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,8 +73,8 @@ def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda
         If the folder cannot be used or the scheduler is lost; what is finished is kept.
     """
     choices = choices or Choices()
-    if choices.rule not in RULES:
-        raise ConfigError("--rule", f"unknown rule {choices.rule!r}", hint(choices.rule, RULES))
+    if choices.rule not in CHOICES:
+        raise ConfigError("--rule", f"unknown rule {choices.rule!r}", hint(choices.rule, CHOICES))
     with Store(directory) as store:
         store.remove(summary.NAME, index_page.NAME, contact_sheet.PATTERN)
         under_way = _UnderWay(store, choices, resume, tell)

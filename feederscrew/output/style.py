@@ -7,21 +7,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.font_manager import findfont, get_font
 
+from feederscrew.resting.rules import registry
+
 DPI = 160
 MARGIN = 0.08  # [in] round the axes
 INK = "#22303c"  # text and axes
 FAINT = "#d5dbe1"  # grids and frames
 ACCENT = "#d55e00"  # what a picture is about: the contact polygon, the operating point
-METHODS = {  # label and colour of each rule; the colours keep apart for colour-blind eyes (Okabe and Ito)
-    "pmi": ("PMI", "#0072b2"),
-    "csa": ("CSA", "#e69f00"),
-    "stability": ("stability", "#009e73"),
-    "quasistatic": ("quasi-static", "#cc79a7"),
-    "crsa": ("CRSA", "#56b4e9"),
-    "barrier": ("barrier", "#8c8c8c"),
-    "surface": ("surface", "#d55e00"),
-    "hops": ("hops", "#5b3a8e"),
-}
 SPARE = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
 
 
@@ -78,7 +70,8 @@ def words(text):
 
 def method(name, place=0):
     """Label and colour of a rule or of a profile; ``place`` picks a spare colour for an unknown one."""
-    return METHODS.get(name, (name.replace("_", " "), SPARE[place % len(SPARE)]))
+    rule = registry.BY_NAME.get(name)
+    return (rule.label, rule.colour) if rule else (name.replace("_", " "), SPARE[place % len(SPARE)])
 
 
 def png(figure):

@@ -28,7 +28,6 @@ UNITS = {  # the end of a column's name, and how a heading writes it
     "_s": "s",
 }
 DIGITS = 4  # significant, in a table for people
-ABBREVIATIONS = ("pmi", "csa", "crsa")  # rules written in capitals
 NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
 
 
@@ -117,9 +116,16 @@ def heading(name):
         rule = name.removeprefix("p_").replace("_", " ")
         if rule.endswith((" low", " high")):
             return rule.rsplit(" ", 1)[1], "[%]"
-        return (rule.upper() if rule in ABBREVIATIONS else rule), "[%]"
+        return (rule.upper() if _is_abbreviation(rule) else rule), "[%]"
     ending = next((ending for ending in UNITS if name.endswith(ending) and name != ending), "")
     return name.removesuffix(ending).replace("_", " "), f"[{UNITS[ending]}]" if ending else ""
+
+
+def _is_abbreviation(name):
+    """Whether a rule is written in capitals."""
+    from feederscrew.resting.rules import registry
+
+    return name in registry.BY_NAME and registry.BY_NAME[name].is_abbreviation
 
 
 def is_share(name):

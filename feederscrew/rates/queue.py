@@ -13,9 +13,6 @@ from feederscrew.mechanics.wall.headings import headings, laid
 from feederscrew.rates import devices as tooling
 from feederscrew.resting.posture import posture
 
-RULES = (  # a rate can go by
-    "pmi", "csa", "stability", "quasistatic", "crsa", "barrier", "surface", "hops", "recommended",
-)  # fmt: skip
 SAME = 1e-3  # of the part's size: hulls whose corners differ by less are the same
 
 

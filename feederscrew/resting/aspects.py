@@ -12,7 +12,8 @@ from feederscrew.part.moments import Moments
 from feederscrew.resting.basins.landscape import landscape
 from feederscrew.resting.classes import body_frame, classes
 from feederscrew.resting.faces import stable_faces, unstable_faces
-from feederscrew.resting.rules import published, surface
+from feederscrew.resting.rules import published, registry, surface
+from feederscrew.resting.rules.quantities import ClassQuantities
 from feederscrew.resting.rules.recommended import Recommended
 from feederscrew.resting.tumbling import by_class, walk
 
@@ -139,14 +140,24 @@ def _clean(directions):
 
 
 def _probabilities(table, as_published):
-    """Probability of each class by every rule."""
-    faces, height, stable = table["faces"], table["heights"], table["stable"]
-    counted = np.ones_like(faces) if as_published else faces
-    weights = {
-        "pmi": published.pmi(counted, table["polar_inertias"], height),
-        "csa": published.csa(faces, table["solid_angles"], height),
-        "stability": published.stability(faces, table["contact_areas"], height),
-    }
+    """Probability of each class by every rule that weighs classes."""
+    faces, heights = table["faces"], table["heights"]
+    quantities = ClassQuantities(
+        faces=faces,
+        pmi_faces=np.ones_like(faces) if as_published else faces,
+        heights=heights,
+        csa_heights=heights,
+        stability_heights=heights,
+        polar_inertias=table["polar_inertias"],
+        solid_angles=table["solid_angles"],
+        contact_areas=table["contact_areas"],
+    )
+    return _normalised(quantities, table["stable"])
+
+
+def _normalised(quantities, stable):
+    """Probabilities by every rule that weighs classes."""
+    weights = registry.weights(quantities)
     return {rule: published.normalised(weight, stable) for rule, weight in weights.items()}
 
 
@@ -200,34 +211,45 @@ def _said(groups):
 def _from_card(part):
     """Aspects as the card's source gives them, by its own names and in its order."""
     rows = part.aspects
-
-    def column(quantity):
-        values = [getattr(row, quantity) for row in rows]
-        return check.frozen(np.array([np.nan if value is None else value for value in values], dtype=float))
-
-    height, faces = column("height"), np.array([row.faces for row in rows])
+    quantities, stable = _printed(rows), check.frozen(np.ones(len(rows), dtype=bool))
     in_sr = np.array([row.solid_angle_in_sr for row in rows])
-    stable, nothing = np.ones(len(rows), dtype=bool), np.full((len(rows), 3), np.nan)
-
-    def over(quantity):
-        return np.where(np.isnan(column(quantity)), height, column(quantity))
-
-    weights = {
-        "pmi": published.pmi(faces, column("polar_inertia"), height),
-        "csa": published.csa(faces, column("solid_angle"), over("csa_height")),
-        "stability": published.stability(faces, column("contact_area"), over("stability_height")),
-    }
+    nothing = check.frozen(np.full((len(rows), 3), np.nan))
     return Aspects(
         names=tuple(row.name for row in rows),
         kinds=("flat",) * len(rows),
-        faces=check.frozen(faces),
-        stable=check.frozen(stable),
-        normals=check.frozen(nothing),
-        axes=check.frozen(nothing),
-        heights=height,
-        contact_areas=column("contact_area"),
-        solid_angles=check.frozen(np.where(in_sr, column("solid_angle"), np.nan)),
-        polar_inertias=column("polar_inertia"),
+        faces=quantities.faces,
+        stable=stable,
+        normals=nothing,
+        axes=nothing,
+        heights=quantities.heights,
+        contact_areas=quantities.contact_areas,
+        solid_angles=check.frozen(np.where(in_sr, quantities.solid_angles, np.nan)),
+        polar_inertias=quantities.polar_inertias,
         polygons=(np.empty((0, 3)),) * len(rows),
-        probabilities={k: check.frozen(published.normalised(w, stable)) for k, w in weights.items()},
+        probabilities={k: check.frozen(p) for k, p in _normalised(quantities, stable).items()},
     )
+
+
+def _printed(rows):
+    """What the rows of a part card print; NaN where they are silent."""
+    faces, heights = check.frozen(np.array([row.faces for row in rows])), _column(rows, "height")
+    return ClassQuantities(
+        faces=faces,
+        pmi_faces=faces,
+        heights=heights,
+        csa_heights=_over(_column(rows, "csa_height"), heights),
+        stability_heights=_over(_column(rows, "stability_height"), heights),
+        polar_inertias=_column(rows, "polar_inertia"),
+        solid_angles=_column(rows, "solid_angle"),
+        contact_areas=_column(rows, "contact_area"),
+    )
+
+
+def _column(rows, quantity):
+    values = [getattr(row, quantity) for row in rows]
+    return check.frozen(np.array([np.nan if value is None else value for value in values], dtype=float))
+
+
+def _over(own, heights):
+    """Heights that a rule's own table gives, else those of the aspects."""
+    return check.frozen(np.where(np.isnan(own), heights, own))

@@ -8,6 +8,7 @@ import pytest
 
 from feederscrew.output import style
 from feederscrew.output.aspects import bars
+from feederscrew.resting.rules import registry
 
 NAMES = ["A", "B", "C"]
 PROFILES = {"pmi": np.array([0.5, 0.3, 0.2]), "csa": np.array([0.6, 0.4, np.nan])}
@@ -38,7 +39,7 @@ def test_bars_of_one_aspect_stand_side_by_side():
 
 def test_many_bars_keep_their_numbers_apart():
     names = [chr(65 + k) for k in range(20)]
-    figure = bars.probabilities(names, {rule: np.full(20, 0.05) for rule in style.METHODS})
+    figure = bars.probabilities(names, {rule: np.full(20, 0.05) for rule in registry.NAMES})
     assert figure.get_figwidth() <= bars.WIDE
     figure.draw_without_rendering()
     boxes = [text.get_window_extent() for text in figure.axes[0].texts]
@@ -67,10 +68,8 @@ def test_figures_leave_no_global_state():
 
 
 def test_methods_keep_their_colour_and_others_get_a_spare_one():
-    assert style.method("csa") == style.METHODS["csa"]
+    assert style.method("csa") == ("CSA", "#e69f00")
     assert style.method("MDBT_80", 1) == ("MDBT 80", style.SPARE[1])
-    colours = [colour for _, colour in style.METHODS.values()]
-    assert len(set(colours)) == len(colours)
 
 
 def test_words_are_no_formulas_and_have_only_known_letters():

@@ -6,8 +6,9 @@ import numpy as np
 from feederscrew.output import style
 from feederscrew.output.columns import MM
 from feederscrew.output.plate.tables import MM_S, travels
+from feederscrew.resting.rules import registry
 
-COLOURS = [colour for _, colour in style.METHODS.values()] + list(style.SPARE)
+COLOURS = [rule.colour for rule in registry.RULES] + list(style.SPARE)
 LABELLED = 0.02  # share of the parts from which an aspect carries its name, or a line in a trend
 APART = 0.012  # of the range of throw numbers: from one aspect's points to the next one's
 GREY = "#aab4bd"

@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.patches import Patch
 
 from feederscrew.output import style
+from feederscrew.resting.rules import registry
 
 RAMPS = {  # test series: one hue each, darker with the amplitude
     "MDBT": ("#c3c8ce", "#8d97a2", "#545f6b"),
@@ -39,7 +40,7 @@ def look(name, place=0):
         return f"{series} {amplitude} %", RAMPS[series][("78", "80", "82").index(amplitude)]
     if name in FIXED:
         return FIXED[name]
-    if name.lower() in style.METHODS:
+    if name.lower() in registry.BY_NAME:
         return style.method(name.lower())
     return name.replace("_", " "), OWN[place % len(OWN)]
 

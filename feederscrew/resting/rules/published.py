@@ -68,9 +68,6 @@ def stability(faces, contact_area, height):
     return faces * contact_area / height
 
 
-RULES = {"pmi": pmi, "csa": csa, "stability": stability}
-
-
 def normalised(weights, stable):
     """Probabilities of the stable aspects from their weights; the unstable ones have none.
 

@@ -10,7 +10,8 @@ from feederscrew.errors import MeshError
 from feederscrew.part.hull import Hull
 from feederscrew.resting.basins import barriers
 from feederscrew.resting.faces import Face
-from feederscrew.resting.rules import hops, published, surface
+from feederscrew.resting.rules import published, registry, surface
+from feederscrew.resting.rules.quantities import FaceQuantities
 from feederscrew.resting.rules.recommended import Recommended, closed_form
 from feederscrew.resting.tumbling.exact import tumble
 
@@ -30,7 +31,7 @@ class Ground:
 class Exact:
     """What exact tumbling adds to the aspects, A rows; NaN where the part does not rest."""
 
-    probabilities: dict[str, np.ndarray]  # (A,) [1] 'quasistatic', 'crsa', 'barrier', 'surface', 'hops'
+    probabilities: dict[str, np.ndarray]  # (A,) [1] by every rule that weighs faces
     barriers: np.ndarray  # (A,) [m] lowest lift that tips the part; NaN where nothing does
     barrier_energies: np.ndarray  # (A,) [J]
     tip_angles: np.ndarray  # (A,) [rad] of the floor, at which a part that does not slide tips
@@ -111,14 +112,7 @@ def exact(found, part, aspects, exponent=surface.EXPONENTS["hard"]):
     """
     tips, count = found.tips, len(aspects.names)
     lifts = barriers.barriers(tips)
-    weights = {
-        "quasistatic": tips.shares,
-        "crsa": np.array([_critical(face) for face in found.faces]),
-        "barrier": barriers.balance(tips),
-        "surface": surface.surface_weights(tips.shares, tips.heights, found.hull.radius, exponent),
-        "hops": hops.hop_shares(tips, found.hull.radius),
-    }
-    chances = {rule: _by_class(found, weight, aspects.stable) for rule, weight in weights.items()}
+    chances = _probabilities(found, aspects.stable, exponent)
     lowest = _lowest(found.rows, np.where(np.isfinite(lifts), lifts, np.nan), count)
     angles = [_tip_angle(face, lift) for face, lift in zip(found.faces, lifts)]
     return Exact(
@@ -129,6 +123,21 @@ def exact(found, part, aspects, exponent=surface.EXPONENTS["hard"]):
         recommended=_recommended(found, aspects.stable, chances, exponent),
         doubts=tips.doubts,
     )
+
+
+def _probabilities(found, stable, exponent):
+    """Probability of each class by every rule that weighs faces."""
+    tips = found.tips
+    quantities = FaceQuantities(
+        tips=tips,
+        faces=found.faces,
+        shares=tips.shares,
+        heights=tips.heights,
+        radius=found.hull.radius,
+        exponent=exponent,
+    )
+    weights = registry.weights(quantities)
+    return {rule: _by_class(found, weight, stable) for rule, weight in weights.items()}
 
 
 def _by_class(found, weights, stable):
@@ -168,11 +177,6 @@ def transitions(found):
             if way.lift < best.lift:
                 ways[way.start, way.end] = way
     return [ways[pair] for pair in sorted(ways)]
-
-
-def _critical(face):
-    """Weight of a face by the critical solid angle; of a rolling one, from its lowest strip."""
-    return barriers.critical_solid_angle(face.polygon, face.height) * face.solid_angle / face.height
 
 
 def _tip_angle(face, lift):

@@ -7,8 +7,8 @@ from click.testing import CliRunner
 
 from feederscrew.part import load
 from feederscrew.part.density import density
-from feederscrew.rates import queue
 from feederscrew.resting.aspects import find
+from feederscrew.resting.rules.registry import CHOICES
 from feederscrew_cli.main import feeder
 
 BRACKET = Path(__file__).parents[3] / "parts/lbracket_30x20x15.stl"
@@ -46,4 +46,4 @@ def test_a_completed_material_is_one_that_is_known():
 
 
 def test_the_rules_completed_are_those_a_part_has_probabilities_of():
-    assert tuple(find(load(BRACKET)).chances) == queue.RULES
+    assert tuple(find(load(BRACKET)).chances) == CHOICES

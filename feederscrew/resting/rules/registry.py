@@ -1,0 +1,119 @@
+"""Every probability rule, once.
+
+A rule is a function in a module of this folder and an entry here. Probabilities, tables, pictures, the
+choices of ``--rule`` and the table in ``docs/resting.md`` are made from these entries, in this order.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from feederscrew.resting.basins import barriers
+from feederscrew.resting.rules import hops, published, surface, tumbled
+from feederscrew.resting.rules.quantities import ClassQuantities, FaceQuantities
+
+RECOMMENDED = "recommended"  # the answer that is made from the rules; a name beside theirs
+
+
+@dataclass(frozen=True)
+class Rule:
+    """One rule: how it is called, how it is shown, and how it weighs."""
+
+    name: str  # in options and documents; its column is p_<name>
+    label: str  # in pictures; all capitals also in the headings of tables
+    colour: str  # the colours are told apart by colour-blind eyes (Okabe and Ito)
+    of: type  # whose quantities it weighs: ClassQuantities or FaceQuantities
+    needs: tuple[str, ...]  # names of these, in the order of the arguments of ``weights``
+    weights: Callable  # (A,) or (F,) weights, not normalised
+    meaning: str  # in a few words
+    use: str  # when to trust it
+    reference: str  # whose it is
+
+    @property
+    def column(self):
+        """Name of its column in tables."""
+        return f"p_{self.name}"
+
+    @property
+    def is_abbreviation(self):
+        """Whether its label is its name in capitals."""
+        return self.label == self.name.upper()
+
+    def weigh(self, quantities):
+        """Return the weights of the classes or of the faces.
+
+        Parameters
+        ----------
+        quantities : ClassQuantities or FaceQuantities
+            Of the kind the rule is ``of``.
+
+        Returns
+        -------
+        (A,) or (F,) float
+            Not normalised; NaN where a quantity is not known.
+        """
+        return self.weights(*(getattr(quantities, name) for name in self.needs))
+
+
+RULES = (
+    Rule(
+        "pmi", "PMI", "#0072b2",
+        ClassQuantities, ("pmi_faces", "polar_inertias", "heights"), published.pmi,
+        "polar moment of inertia over height", "to compare with published tables", "the thesis, section 3.1",
+    ),
+    Rule(
+        "csa", "CSA", "#e69f00",
+        ClassQuantities, ("faces", "solid_angles", "csa_heights"), published.csa,
+        "centroid solid angle over height", "to compare with published tables", "Ngoi, Lim and Lee (1995)",
+    ),
+    Rule(
+        "stability", "stability", "#009e73",
+        ClassQuantities, ("faces", "contact_areas", "stability_heights"), published.stability,
+        "contact area over height", "to compare with published tables", "Chua and Tay (1998)",
+    ),
+    Rule(
+        "quasistatic", "quasi-static", "#cc79a7",
+        FaceQuantities, ("tips",), tumbled.quasistatic,
+        "exact tumbling without momentum", "soft, dead landings", "own: exact basins",
+    ),
+    Rule(
+        "crsa", "CRSA", "#56b4e9",
+        FaceQuantities, ("faces",), tumbled.critical,
+        "critical solid angle", "hard surfaces, chunky parts", "Ngoi, Lye and Chen (1996), restated",
+    ),
+    Rule(
+        "barrier", "barrier", "#8c8c8c",
+        FaceQuantities, ("tips",), barriers.balance,
+        "balance of transitions over the energy barriers", "as a published method",
+        "Boothroyd and Redford (1968), restated",
+    ),
+    Rule(
+        "surface", "surface", "#d55e00",
+        FaceQuantities, ("shares", "heights", "radius", "exponent"), surface.surface_weights,
+        "tumbling, weighted for bounces", "hard surfaces; calibrate it with your own counts",
+        "own: see below",
+    ),
+    Rule(
+        "hops", "hops", "#5b3a8e",
+        FaceQuantities, ("tips", "radius"), hops.hop_shares,
+        "a cascade of hops over the barriers", "beside `p_surface`; parts with shallow faces",
+        "own: see below",
+    ),
+)  # fmt: skip
+BY_NAME = {rule.name: rule for rule in RULES}
+NAMES = tuple(BY_NAME)
+CHOICES = (*NAMES, RECOMMENDED)  # what a user may ask for
+
+
+def weights(quantities):
+    """Return the weights of every rule that weighs these quantities.
+
+    Parameters
+    ----------
+    quantities : ClassQuantities or FaceQuantities
+
+    Returns
+    -------
+    dict of str to (A,) or (F,) float
+        By the rules' names, in their order.
+    """
+    return {rule.name: rule.weigh(quantities) for rule in RULES if isinstance(quantities, rule.of)}
