@@ -36,37 +36,10 @@ CHAIN = (
 
 
 def chain(command):
-    """The wanted orientation, and what the rate hangs on.
+    """Add the options of the wanted orientation, and of what the rate depends on.
 
     The command receives ``aspect``, ``heading``, ``rule``, ``gap`` and ``fill``.
     """
     for option in reversed(CHAIN):
         command = option(command)
     return command
-
-
-def stream(out, solid, track, path, aspect, heading):
-    """The aspects of a part, every orientation of it on a track, and the wanted one.
-
-    Parameters
-    ----------
-    out : Output
-        Told of yields that are of no aspect of this part.
-    solid : Part
-    track : Track
-    path : str or None
-        Bowl file, for its devices.
-    aspect : str
-    heading : float [rad] or None
-
-    Returns
-    -------
-    (Aspects, Orientations, (str, float))
-    """
-    from feederscrew.rates import devices, queue
-    from feederscrew.resting.aspects import find
-
-    chain, found = devices.read(path), find(solid)
-    out.warn(*devices.strangers(chain, found.names))
-    target = queue.wanted(solid, found, track, aspect, heading)
-    return found, queue.orientations(solid, found, track, chain), target

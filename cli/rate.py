@@ -22,16 +22,19 @@ def rate(part, aspect, heading, rule, gap, fill, bowl, out):
     With -o: rate.json and orientations.csv, what each device does with each orientation.
     """
     from feederscrew import bowl as bowls
-    from feederscrew.output import columns
-    from feederscrew.output.rate import tables as rate_tables
-    from feederscrew.rates import queue
+    from feederscrew.output import columns, offers
+    from feederscrew.output.rate import files, tables
+    from feederscrew.rates import devices
+    from feederscrew.studies.rate import rate as study
 
-    solid, feeder = out.part(part), bowls.read(**bowl)
-    effective = columns.conditions(solid) | bowls.texts(bowls.settings(**bowl))
+    solid, settings, chain = out.part(part), bowls.settings(**bowl), devices.read(bowl["path"])
+    effective = columns.conditions(solid) | bowls.texts(settings)
     with out.folder(solid.name, {solid.source: solid.sha256}, effective) as folder:
-        aspects, known, target = orientation.stream(out, solid, feeder.track, bowl["path"], aspect, heading)
-        found = queue.rate(known, queue.velocity(feeder), target, rule, gap=gap, fill=fill)
-        document = columns.part(solid, aspects.warnings) | rate_tables.document(found, rule)
-        out.warn(*aspects.warnings, *rate_tables.remarks(found))
-        rate_tables.write(folder, document)
-        out.show(rate_tables.summary(document), document)
+        found = study(
+            solid, bowls.record(settings), aspect,
+            heading=heading, rule=rule, devices=chain, gap=gap, fill=fill,
+        )  # fmt: skip
+        document = tables.document(found)
+        out.warn(*found.warnings, *tables.remarks(found))
+        offers.write(folder, files.offers(found))
+        out.show(tables.summary(document), document)

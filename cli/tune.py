@@ -28,18 +28,19 @@ def tune(part, target, aspect, heading, rule, gap, fill, bowl, out):
     With -o: tune.csv and tune.json.
     """
     from feederscrew import bowl as bowls
-    from feederscrew.output import columns
-    from feederscrew.output.rate import tune_tables
-    from feederscrew.rates import queue, tune
+    from feederscrew.output import columns, offers
+    from feederscrew.output.tune import files, tables
+    from feederscrew.rates import devices
+    from feederscrew.studies.tune import tune as study
 
-    solid, feeder = out.part(part), bowls.read(**bowl)
-    effective = columns.conditions(solid) | bowls.texts(bowls.settings(**bowl))
+    solid, settings, chain = out.part(part), bowls.settings(**bowl), devices.read(bowl["path"])
+    effective = columns.conditions(solid) | bowls.texts(settings)
+    announce(out)
     with out.folder(solid.name, {solid.source: solid.sha256}, effective) as folder:
-        aspects, known, wanted = orientation.stream(out, solid, feeder.track, bowl["path"], aspect, heading)
-        announce(out)
-        density = queue.parts_per_metre(known, wanted, rule, gap=gap, fill=fill)
-        frame = tune_tables.settings(tune.solutions(feeder, target, density), feeder, density)
-        out.warn(*aspects.warnings)
-        document = columns.part(solid, aspects.warnings) | {"settings": frame}
-        tune_tables.write(folder, document)
-        out.show(frame if out.format == "csv" else tune_tables.summary(frame), document)
+        found = study(
+            solid, bowls.record(settings), aspect, target,
+            heading=heading, rule=rule, devices=chain, gap=gap, fill=fill,
+        )  # fmt: skip
+        out.warn(*found.warnings)
+        offers.write(folder, files.offers(found))
+        out.show(tables.shown(found, out.format), tables.document(found))

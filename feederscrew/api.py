@@ -14,11 +14,11 @@ from feederscrew.conveying.answer import Answer, answer
 from feederscrew.errors import ConfigError, Faults, FeederError, MeshError
 from feederscrew.output import columns as _columns
 from feederscrew.part import Part
-from feederscrew.rates import queue as _rates
 from feederscrew.rates.devices import Device
 from feederscrew.rates.queue import Rate
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.posture import Posture, posture
+from feederscrew.studies import rate as _rate
 
 if TYPE_CHECKING:
     from feederscrew.dropping.plate.runs import Shaken
@@ -268,7 +268,5 @@ def rate(
     -------
     Rate
     """
-    found = find_aspects(part)
-    known = _rates.orientations(part, found, bowl.track, devices)
-    target = _rates.wanted(part, found, bowl.track, aspect, heading)
-    return _rates.rate(known, _rates.velocity(bowl), target, rule, gap=gap, fill=fill)
+    study = _rate.rate(part, bowl, aspect, heading=heading, rule=rule, devices=devices, gap=gap, fill=fill)
+    return study.rate

@@ -8,18 +8,19 @@ import numpy as np
 from feederscrew.batch.task import DONE, Outcome
 from feederscrew.conveying import answer, sensitivity
 from feederscrew.errors import FeederError
-from feederscrew.output import columns, tables
+from feederscrew.output import columns, offers, tables
 from feederscrew.output.aspects import files as sheets
 from feederscrew.output.batch import contact_sheet
 from feederscrew.output.convey import tables as convey_tables
+from feederscrew.output.rate import files as rate_files
 from feederscrew.output.rate import tables as rate_tables
 from feederscrew.part import load
 from feederscrew.rates import queue
 from feederscrew.resting.aspects import find
+from feederscrew.studies.rate import rate
 
 THUMBNAIL = "thumbnail.png"
 LAUNCH = "tumble"  # as parts leave a bowl's floor
-ALIKE = 1.0 - 1e-9  # of the most frequent orientation: as frequent
 SEED_DIGITS = 8  # hexadecimal, of the file's sha256
 
 
@@ -59,7 +60,7 @@ def _results(task):
     sheets.aspects(files, part, found, document, pictures=choices.pictures)
     if choices.pictures and part.vertices is not None:
         files.write(THUMBNAIL, contact_sheet.thumbnail(part, found))
-    velocity, conveying = travel(request.conditions)
+    conveying = travel(request.conditions)
     files.write("convey.json", tables.json_text(conveying))
     row = {
         "config": request.conditions.name,
@@ -68,7 +69,7 @@ def _results(task):
         "aspects": int(found.stable.sum()),
         "velocity_mm_s": conveying["velocity_mm_s"],
         "regime": conveying["regime"],
-        **_rate(part, found, velocity, task, files),
+        **_rate(part, found, task, files),
         **_drops(part, found, task, files),
     }
     return Outcome(
@@ -88,21 +89,22 @@ def _results(task):
 
 @functools.lru_cache(maxsize=64)
 def travel(conditions):
-    """Velocity in a bowl and the document of ``convey.json``: the same for every part, a point mass."""
+    """Return the document of ``convey.json``: the same for every part, a point mass."""
     bowl = conditions.bowl
     around = sensitivity.sensitivity(bowl), sensitivity.friction_doubt(bowl)
+    queue.velocity(bowl)  # raises where there is no steady state
     document = convey_tables.document(bowl, answer.answer(bowl), *around)
-    return queue.velocity(bowl), document | {"bowl": dict(conditions.texts)}
+    return document | {"bowl": dict(conditions.texts)}
 
 
-def _rate(part, found, velocity, task, files):
+def _rate(part, found, task, files):
     """The rate of the orientation that leaves the bowl most often, for the summary."""
     if part.vertices is None:
         return {"note": "a part card has no outline: no rate"}
     conditions, rule = task.request.conditions, task.choices.rule
-    known = queue.orientations(part, found, conditions.bowl.track, conditions.chain)
-    document = rate_tables.document(queue.rate(known, velocity, most_frequent(known, rule), rule), rule)
-    rate_tables.write(files, columns.part(part, found.warnings) | document)
+    study = rate(part, conditions.bowl, rule=rule, devices=conditions.chain, aspects=found)
+    document = rate_tables.document(study)
+    offers.write(files, rate_files.offers(study))
     wanted = ("aspect", "heading_deg", "pitch_mm", "p_orientation", "passes_devices")
     rates = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
     return {"rule": rule, **{name: document[name] for name in (*wanted, *rates)}}
@@ -121,24 +123,3 @@ def _drops(part, found, task, files):
     drop_sheets.write(files, part, found, result, document, pictures=task.choices.pictures)
     first = int(np.argmax(result.tally.p))
     return {"drops": task.choices.drops, "drop_aspect": found.names[first], "p_drop": result.tally.p[first]}
-
-
-def most_frequent(known, rule):
-    """Aspect and heading of which most parts leave the bowl a minute.
-
-    Parameters
-    ----------
-    known : Orientations
-    rule : str
-        Whose probabilities are taken.
-
-    Returns
-    -------
-    (str, float [rad])
-        Where none leaves, the most likely to land in.
-    """
-    chance = np.nan_to_num(known.rules[rule])
-    leaving = chance * known.through / known.lengths
-    weight = leaving if leaving.any() else chance
-    row = int(np.argmax(weight >= ALIKE * weight.max()))  # the first of equals, whatever the rounding
-    return known.aspects[row], known.headings[row]

@@ -18,7 +18,6 @@ from feederscrew import batch
 from feederscrew.batch import store, task
 from feederscrew.batch import work as works
 from feederscrew.errors import FeederError
-from feederscrew.rates import queue
 
 ROOT = Path(__file__).parents[2]
 PARTS = ROOT / "parts"
@@ -198,21 +197,6 @@ def test_the_row_is_what_the_commands_say(run):
     rates = json.loads(run("rate", NUT, *said, "--format", "json", "-q").stdout)
     assert outcome.row["parts_per_minute"] == pytest.approx(rates["parts_per_minute"], rel=1e-9)
     assert outcome.files["aspects.csv"].decode() == run("aspects", NUT, "--format", "csv", "-q").stdout
-
-
-def test_the_rate_is_of_the_orientation_that_leaves_most_often():
-    known = queue.Orientations(
-        aspects=("A", "A", "B"),
-        headings=np.array([0.0, 1.0, 2.0]),
-        heading_shares=np.array([0.5, 0.5, 1.0]),
-        lengths=np.array([1.0, 4.0, 1.0]),
-        widths=np.ones(3),
-        stations=("track",),
-        passes=np.array([[0.0], [1.0], [1.0]]),
-        rules={"pmi": np.array([0.6, 0.3, 0.1]), "csa": np.array([np.nan, np.nan, np.nan])},
-    )
-    assert works.most_frequent(known, "pmi") == ("B", 2.0)  # 0.1 / 1 beats 0.3 / 4; 0.6 never passes
-    assert works.most_frequent(known, "csa") == ("A", 0.0)
 
 
 def test_a_bug_on_one_part_is_a_reason_and_no_more(monkeypatch):

@@ -3,27 +3,18 @@
 import numpy as np
 
 from feederscrew import units
-from feederscrew.output import tables
+from feederscrew.output import columns, tables
 
 PER_MINUTE = units.factor("/min", "rate")
 MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
 
 
-def document(found, rule):
-    """A rate and every factor of its chain as the JSON document.
-
-    Parameters
-    ----------
-    found : Rate
-    rule : str
-        Whose probability was taken.
-
-    Returns
-    -------
-    dict
-    """
+def document(study):
+    """Return a RateStudy as the JSON document: the part, the rate and every factor of its chain."""
+    found, rule = study.rate, study.rule
     known, row = found.orientations, found.row
     return {
+        **columns.part(study.part, study.aspects.warnings),
         **_range("parts_per_minute", found.parts, PER_MINUTE),
         "aspect": known.aspects[row],
         "heading_deg": known.headings[row] / DEG,
@@ -43,7 +34,7 @@ def document(found, rule):
 
 
 def orientations(known, rule):
-    """What each station does with each orientation, as a frame: the matrix of the chain.
+    """Return what each station does with each orientation, as a frame: the matrix of the chain.
 
     Parameters
     ----------
@@ -68,7 +59,7 @@ def orientations(known, rule):
 
 
 def summary(document):
-    """The document as a frame for people: the chain from velocity to rate."""
+    """Return the document as a frame for people: the chain from velocity to rate."""
     d = document
     rows = [
         ("well-oriented parts per minute", _with_range(d, "parts_per_minute")),
@@ -83,8 +74,9 @@ def summary(document):
     return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
 
 
-def remarks(found):
-    """What a reader of a rate must not overlook, as a list of str."""
+def remarks(study):
+    """Return what a reader of a RateStudy must not overlook, a sentence each."""
+    found = study.rate
     if found.velocity.value <= 0.0:
         return ["the part does not travel up the track: see feeder convey"]
     if found.through == 0.0:
@@ -93,13 +85,6 @@ def remarks(found):
             f"the wanted orientation is returned by: {', '.join(name for name, p in stations if p == 0.0)}"
         ]
     return []
-
-
-def write(folder, document):
-    """Write the document and its matrix of devices, where there is a folder."""
-    if folder:
-        folder.write("rate.json", tables.json_text(document))
-        folder.write("orientations.csv", tables.text(document["orientations"], "csv"))
 
 
 def _range(name, found, unit):

@@ -20,10 +20,10 @@ from feederscrew.output.slide import tables as slide_tables
 from feederscrew.output.track import files as track_sheets
 from feederscrew.output.track import maps as track_maps
 from feederscrew.output.track import tables as track_tables
-from feederscrew.rates import queue as rates
 from feederscrew.studies import maps
 from feederscrew.studies.floor import analyse as on_floor
 from feederscrew.studies.headings import analyse as against_wall
+from feederscrew.studies.rate import rate as rate_study
 from feederscrew.studies.track import analyse as on_track
 from feederscrew.units import factor
 
@@ -143,11 +143,11 @@ def track(case):
 
 def rate(case):
     """Well-oriented parts a minute."""
-    known = rates.orientations(case.part, case.found, case.bowl.track, case.chain)
-    target = rates.wanted(case.part, case.found, case.bowl.track, case.aspect, case.heading)
-    speed = rates.velocity(case.bowl)
-    found = rates.rate(known, speed, target, case.rule, gap=case.gap, fill=case.fill)
-    document = rate_tables.document(found, case.rule)
+    found = rate_study(
+        case.part, case.bowl, case.aspect, heading=case.heading, rule=case.rule,
+        devices=case.chain, gap=case.gap, fill=case.fill, aspects=case.found,
+    )  # fmt: skip
+    document = rate_tables.document(found)
     lead = Text(
         "The chain from velocity to rate; the range in brackets is over all starts, friction a fifth "
         "off and every rule. The second table has what the track and each device do with each "

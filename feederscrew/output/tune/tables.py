@@ -1,39 +1,30 @@
 """Settings that reach a target as tables and documents."""
 
-import numpy as np
-
 from feederscrew import units
-from feederscrew.conveying import answer, sensitivity
-from feederscrew.output import tables
-from feederscrew.rates.tune import turned
+from feederscrew.output import columns, tables
 
 PER_MINUTE, MM_S = units.factor("/min", "rate"), units.factor("mm/s", "velocity")
 SEVERAL = ", several"  # velocities, depending on how the part arrives
 
 
-def settings(found, bowl, parts_per_metre):
-    """The solutions as a frame, the recommended one first.
+def document(study):
+    """Return a TuneStudy as the JSON document."""
+    return columns.part(study.part, study.aspects.warnings) | {"settings": settings(study)}
 
-    Parameters
-    ----------
-    found : list of Solution
-    bowl : Bowl
-    parts_per_metre : float [1/m]
-        Well-oriented parts per length of track.
-    """
-    rows = [_row(one, bowl, parts_per_metre) for one in found]
+
+def settings(study):
+    """Return the settings of a TuneStudy as a frame, the recommended one first."""
+    rows = [_row(one, study.parts_per_metre / PER_MINUTE) for one in study.settings]
     return tables.frame({name: [row[name] for row in rows] for name in rows[0]})
 
 
-def write(folder, document):
-    """Write the document and its table, where there is a folder."""
-    if folder:
-        folder.write("tune.json", tables.json_text(document))
-        folder.write("tune.csv", tables.text(document["settings"], "csv"))
+def shown(study, format):
+    """Return what a format prints: every column as CSV, for people no more than a terminal holds."""
+    return settings(study) if format == "csv" else summary(settings(study))
 
 
 def summary(frame):
-    """The solutions as a frame for people: no more than a terminal holds.
+    """Return the settings as a frame for people: no more than a terminal holds.
 
     Parameters
     ----------
@@ -60,21 +51,16 @@ def _between(row):
     return f"{row['parts_per_minute_low']:.4g} to {row['parts_per_minute_high']:.4g}"
 
 
-def _row(one, bowl, parts_per_metre):
-    found, key = one.answer, one.key
-    doubt = sensitivity.friction_doubt(turned(bowl, key, one.value))
-    slowest, fastest = (
-        np.nanmin([found.low, doubt.less, doubt.more]),
-        np.nanmax([found.high, doubt.less, doubt.more]),
-    )
-    per_minute = parts_per_metre / PER_MINUTE
+def _row(one, per_minute):
+    """Return one Tuned setting by column; ``per_minute`` are parts/min for each m/s of velocity."""
+    found, key = one.solution.answer, one.solution.key
     return {
         "key": key.name,
-        "value": one.value / units.factor(key.unit, key.dimension),
+        "value": one.solution.value / units.factor(key.unit, key.dimension),
         "unit": key.unit,
-        "parts_per_minute": found.velocity * per_minute,
-        "parts_per_minute_low": max(slowest, 0.0) * per_minute,
-        "parts_per_minute_high": max(fastest, 0.0) * per_minute,
+        "parts_per_minute": one.velocity.value * per_minute,
+        "parts_per_minute_low": one.velocity.low * per_minute,
+        "parts_per_minute_high": one.velocity.high * per_minute,
         "velocity_mm_s": found.velocity / MM_S,
         "regime": found.regime,
         "throw_number": found.throw_number,
@@ -82,5 +68,5 @@ def _row(one, bowl, parts_per_metre):
         "margin_forward": found.margins["forward"],
         "margin_backward": found.margins["backward"],
         "margin_hop": found.margins["hop"],
-        "several": bool(found.high - found.low > answer.COEXIST * found.speed),
+        "several": one.several,
     }

@@ -1,0 +1,104 @@
+"""The study of ``feeder tune``: settings of the drive that reach a wanted rate."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew.bowl.record import Bowl
+from feederscrew.conveying import answer, sensitivity
+from feederscrew.part.record import Part
+from feederscrew.rates import devices as chain
+from feederscrew.rates import queue
+from feederscrew.rates import tune as knobs
+from feederscrew.resting.aspects import Aspects, find
+
+
+@dataclass(frozen=True, eq=False)
+class Tuned:
+    """One setting that reaches the rate, with what it gives."""
+
+    solution: knobs.Solution
+    velocity: queue.Range  # [m/s] over all starts and for friction a fifth lower and higher; the low end >= 0
+    several: bool  # steady velocities, depending on how the part arrives
+
+
+@dataclass(frozen=True, eq=False)
+class TuneStudy:
+    """Every setting of one key of the drive that reaches a rate, the recommended one first."""
+
+    part: Part
+    bowl: Bowl
+    aspects: Aspects
+    devices: tuple[chain.Device, ...]
+    target: float  # [1/s] well-oriented parts
+    parts_per_metre: float  # [1/m] well-oriented parts on a length of track
+    settings: tuple[Tuned, ...]
+
+    @property
+    def warnings(self):
+        """What a user must not overlook, a sentence each: of the devices, then of the aspects."""
+        return (*chain.strangers(self.devices, self.aspects.names), *self.aspects.warnings)
+
+
+def tune(
+    part: Part,
+    bowl: Bowl,
+    aspect: str,
+    target: float,
+    *,
+    heading: float | None = None,
+    rule: str = "pmi",
+    devices: Sequence[chain.Device] = (),
+    gap: float = 0.0,
+    fill: float = 1.0,
+) -> TuneStudy:
+    """Study which amplitude, angle or frequency alone reaches a rate.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    bowl : Bowl
+    aspect : str
+        The one wanted.
+    target : float [1/s]
+        Well-oriented parts, above 0.
+    heading, rule, devices, gap, fill
+        As for ``rate``.
+
+    Returns
+    -------
+    TuneStudy
+
+    Raises
+    ------
+    FeederError
+        If the part never leaves in that orientation, or no setting reaches the rate.
+    """
+    found = find(part)
+    wanted = queue.wanted(part, found, bowl.track, aspect, heading)
+    known = queue.orientations(part, found, bowl.track, devices)
+    density = queue.parts_per_metre(known, wanted, rule, gap=gap, fill=fill)
+    return TuneStudy(
+        part=part,
+        bowl=bowl,
+        aspects=found,
+        devices=tuple(devices),
+        target=target,
+        parts_per_metre=density,
+        settings=tuple(_tuned(one, bowl) for one in knobs.solutions(bowl, target, density)),
+    )
+
+
+def _tuned(solution, bowl):
+    """Add to a solution what it gives if friction is a fifth lower or higher."""
+    found = solution.answer
+    doubt = sensitivity.friction_doubt(knobs.turned(bowl, solution.key, solution.value))
+    slowest = np.nanmin([found.low, doubt.less, doubt.more])
+    fastest = np.nanmax([found.high, doubt.less, doubt.more])
+    return Tuned(
+        solution=solution,
+        velocity=queue.Range(found.velocity, max(slowest, 0.0), max(fastest, 0.0)),
+        several=bool(found.high - found.low > answer.COEXIST * found.speed),
+    )
