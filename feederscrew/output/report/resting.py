@@ -7,7 +7,7 @@ from feederscrew.output import columns, style, tables
 from feederscrew.output.aspects import files as sheets
 from feederscrew.output.columns import MM
 from feederscrew.output.inertia import tables as inertia_tables
-from feederscrew.output.page.blocks import Notes, Picture, Section, Sheet, Table, Text, Tile, Views
+from feederscrew.output.page.blocks import CsvSheet, Notes, Picture, Section, Table, Text, Tile, Views
 from feederscrew.output.page.numbers import percent
 from feederscrew.output.report import graph
 from feederscrew.output.report.case import likeliest
@@ -96,7 +96,7 @@ def tips(case):
 
 def numbers(case):
     """The table of aspects cell by cell, as ``aspects.csv`` has it."""
-    return Sheet("aspects.csv", tables.text(columns.aspects(case.found, case.part), "csv"))
+    return CsvSheet("aspects.csv", tables.text(columns.aspects(case.found, case.part), "csv"))
 
 
 def _views(case, rows, kept):
