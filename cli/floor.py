@@ -27,17 +27,16 @@ def floor(part, aspect, heading, as_published, bowl, pictures, out):
     theta'' over the heading, as CSV and PNG.
     """
     from feederscrew.bowl import record, settings, texts
-    from feederscrew.output import columns
-    from feederscrew.output.floor import files as floor_sheets
-    from feederscrew.output.floor import tables as floor_tables
-    from feederscrew.studies.floor import analyse
+    from feederscrew.output import columns, offers
+    from feederscrew.output.floor import files, tables
+    from feederscrew.studies.floor import floor as study
 
     solid, given = out.part(part), settings(**bowl)
     conditions = columns.conditions(solid) | texts(given)
     with out.folder(solid.name, {solid.source: solid.sha256}, conditions) as folder:
-        found = analyse(solid, record(given), aspect, heading)
-        document = floor_tables.document(found, texts(given), as_published=as_published)
-        out.say(*floor_tables.remarks(found))
-        if folder:
-            out.say(*floor_sheets.floor(folder, found, document, pictures=pictures))
-    out.show(floor_tables.shown(document, out.format), document)
+        found = study(solid, record(given), aspect, heading)
+        out.say(*tables.remarks(found), *(tables.map_remarks(found) if folder else ()))
+        offered = files.offers(found, texts(given), as_published=as_published)
+        offers.write(folder, offered, pictures=pictures)
+    document = tables.document(found, texts(given), as_published=as_published)
+    out.show(tables.shown(document, out.format), document)

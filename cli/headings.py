@@ -23,18 +23,14 @@ def headings(part, aspect, bowl, pictures, out):
     headings.csv, headings.json and a picture of each aspect from above.
     """
     from feederscrew.bowl import record, settings, texts
-    from feederscrew.output import columns
-    from feederscrew.output.headings import files as heading_sheets
-    from feederscrew.output.headings import tables as heading_tables
-    from feederscrew.studies.headings import analyse
+    from feederscrew.output import columns, offers
+    from feederscrew.output.headings import files, tables
+    from feederscrew.studies.headings import headings as study
 
     solid, given = out.part(part), settings(**bowl)
-    track = record(given).track
     conditions = columns.conditions(solid) | texts(given)
     with out.folder(solid.name, {solid.source: solid.sha256}, conditions) as folder:
-        postures, found, chances = analyse(solid, track, aspect)
-        document = {"part": solid.name, "headings": heading_tables.rows(found, chances), "bowl": texts(given)}
-        out.say(*heading_tables.remarks(found, track))
-        if folder:
-            heading_sheets.headings(folder, solid, postures, found, track, document, pictures=pictures)
-    out.show(heading_tables.frame(document["headings"]), document, hidden=heading_tables.HIDDEN)
+        found = study(solid, record(given).track, aspect)
+        out.say(*tables.remarks(found))
+        offers.write(folder, files.offers(found, texts(given)), pictures=pictures)
+    out.show(tables.frame(found), tables.document(found, texts(given)), hidden=tables.HIDDEN)

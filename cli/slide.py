@@ -50,17 +50,13 @@ def slide(betas, as_published, bowl, pictures, out):
     each angle, and curves over all, as PNG.
     """
     from feederscrew.bowl import identity, name, record, settings, texts
-    from feederscrew.output.slide import tables as slide_tables
-    from feederscrew.studies.maps import slide
+    from feederscrew.output import offers
+    from feederscrew.output.slide import files, tables
+    from feederscrew.studies.slide import slide as study
 
     given, path = settings(**bowl), bowl["path"]
-    feeder = record(given)
-    angles = dict.fromkeys(betas or [feeder.drive.vibration_angle])
     with out.folder(name(path), identity(path), texts(given)) as folder:
-        maps = [slide(feeder, beta, as_published=as_published) for beta in angles]
-        if folder:
-            from feederscrew.output.slide import files as slide_sheets
-
-            slide_sheets.slides(folder, feeder, maps, pictures=pictures)
-    out.say(*slide_tables.remarks(maps))
-    out.show(slide_tables.frame(maps, out.format), slide_tables.document(maps, texts(given), as_published))
+        found = study(record(given), betas, as_published=as_published)
+        offers.write(folder, files.offers(found), pictures=pictures)
+    out.say(*tables.remarks(found))
+    out.show(tables.shown(found, out.format), tables.document(found, texts(given)))

@@ -88,6 +88,24 @@ def published_limit(ratio, beta, alpha_minus_theta=0.0):
         return ratio * np.cos(beta) * np.cos(alpha_minus_theta) / normal  # eq. [4.27]
 
 
+def published_ratio(friction, beta, alpha_minus_theta=0.0):
+    """Return the G at which [4.27] equals a friction.
+
+    Parameters
+    ----------
+    friction : array_like [1]
+    beta : array_like [rad]
+    alpha_minus_theta : array_like [rad]
+        Less than a quarter turn.
+
+    Returns
+    -------
+    array [1]
+    """
+    slope = np.cos(beta) * np.cos(alpha_minus_theta) + friction * np.sin(beta)
+    return friction / slope  # eq. [4.27], solved for G
+
+
 def throw_number(ratio, beta, climb=0.0, bank=0.0):
     """k = G sin(beta) / (cos(climb) cos(bank)) [1]; the part hops where it is above 1."""
     return ratio * np.sin(beta) / (np.cos(climb) * np.cos(bank))

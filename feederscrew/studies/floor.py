@@ -1,34 +1,100 @@
-"""Everything ``feeder floor`` finds of one part, in the order of the pipeline."""
+"""The study of ``feeder floor``: a part on one aspect in one heading on the floor of one bowl."""
 
 from dataclasses import dataclass
+
+import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.mechanics import limits
 from feederscrew.mechanics.cycle import Cycle
-from feederscrew.mechanics.floor import balance
-from feederscrew.mechanics.published import floor as published_floor
+from feederscrew.mechanics.floor import balance, cells
+from feederscrew.mechanics.published import floor as published
 from feederscrew.mechanics.standing import standing
 from feederscrew.part.record import Part
 from feederscrew.resting.posture import Posture
+from feederscrew.studies.grids import evaluate, span
+
+TOP_ANGLE, TOP_FRICTION = np.pi / 2.0, 1.0  # [rad], [1] as Figure 5-6
+LEAST_FREQUENCY, TOP_FREQUENCY, TOP_AMPLITUDE = 10.0, 120.0, 0.5e-3  # [Hz], [Hz], [m] as Figure 5-7, or more
+ROOM = 1.25  # a map reaches at least so far beyond the bowl's own point
 
 
 @dataclass(frozen=True, eq=False)
-class FloorAnalysis:
-    """One part on one aspect in one heading on the floor of one bowl."""
+class FloorStudy:
+    """What the part does at the upper reversal and over a cycle; maps on request."""
 
     part: Part
     posture: Posture
     bowl: Bowl
     heading: float  # [rad] theta
     now: balance.FloorMotion  # at the upper reversal, from rest
-    printed: published_floor.PrintedFloor  # the same by the printed equations
+    printed: published.PrintedFloor  # the same by the printed equations
     cycle: balance.FloorMotion  # over one settled period
     course: Cycle
     why: str | None = None  # this aspect; None where it was asked for
 
+    @property
+    def stable_heading(self):
+        """Return the heading [rad] that the part turns to while it slides; NaN for none."""
+        return balance.stable_heading(self.posture, self.bowl)
 
-def analyse(part, bowl, aspect=None, heading=0.0):
-    """A part on the bowl floor.
+    def over_angle_and_friction(self, count):
+        """Compute the upper reversal over vibration angle and friction, as Figure 5-6.
+
+        Parameters
+        ----------
+        count : int
+            Values of either quantity.
+
+        Returns
+        -------
+        Grid
+        """
+
+        def function(beta, mu):
+            return cells.over_angle_and_friction(self.posture, self.bowl, self.heading, beta, mu)
+
+        angle = span("beta_deg", 0.0, TOP_ANGLE, count, np.pi / 180.0)
+        friction = span("friction", 0.0, TOP_FRICTION, count)
+        return evaluate(angle, friction, function, cells.REGIMES)
+
+    def over_frequency_and_amplitude(self, count):
+        """Compute the upper reversal over frequency [Hz] and amplitude [mm], as Figure 5-7.
+
+        Parameters
+        ----------
+        count : int
+            Values of either quantity.
+
+        Returns
+        -------
+        Grid
+        """
+
+        def function(f, a):
+            return cells.over_frequency_and_amplitude(self.posture, self.bowl, self.heading, f, a)
+
+        highest = max(TOP_FREQUENCY, ROOM * self.bowl.drive.frequency)
+        widest = max(TOP_AMPLITUDE, ROOM * self.bowl.drive.amplitude)
+        frequency = span("frequency_Hz", LEAST_FREQUENCY, highest, count)
+        amplitude = span("amplitude_mm", 0.0, widest, count, 1e-3)
+        return evaluate(frequency, amplitude, function, cells.REGIMES)
+
+    def alignment(self):
+        """Compute theta'' over every heading, a degree apart.
+
+        Returns
+        -------
+        headings : (361,) float [rad]
+        found : dict of str to (361,) float
+            As ``mechanics.floor.cells.cells`` names them.
+        """
+        headings = np.radians(np.arange(-180.0, 181.0, 1.0))
+        return headings, cells.cells(self.posture, self.bowl, headings)
+
+
+def floor(part, bowl, aspect=None, heading=0.0):
+    """Study a part on the bowl floor.
 
     Parameters
     ----------
@@ -42,7 +108,7 @@ def analyse(part, bowl, aspect=None, heading=0.0):
 
     Returns
     -------
-    FloorAnalysis
+    FloorStudy
 
     Raises
     ------
@@ -52,13 +118,13 @@ def analyse(part, bowl, aspect=None, heading=0.0):
     limits.plain(bowl)
     stand, why = standing(part, aspect, "floor")
     cycle, course = balance.over_cycle(stand, bowl, heading)
-    return FloorAnalysis(
+    return FloorStudy(
         part=part,
         posture=stand,
         bowl=bowl,
         heading=heading,
         now=balance.motion(stand, bowl, heading),
-        printed=published_floor.motion(stand, bowl, heading),
+        printed=published.motion(stand, bowl, heading),
         cycle=cycle,
         course=course,
         why=why,

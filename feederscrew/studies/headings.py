@@ -1,12 +1,33 @@
-"""Everything ``feeder headings`` finds of one part, in the order of the pipeline."""
+"""The study of ``feeder headings``: how a part lies along the track's wall."""
 
-from feederscrew.mechanics.wall.headings import headings
+from dataclasses import dataclass
+
+from feederscrew.bowl.record import Track
+from feederscrew.mechanics.wall import headings as wall
+from feederscrew.part.record import Part
 from feederscrew.resting import aspects
-from feederscrew.resting.posture import posture
+from feederscrew.resting.posture import Posture, posture
 
 
-def analyse(part, track, aspect=None):
-    """The stable headings of a part's aspects.
+@dataclass(frozen=True, eq=False)
+class HeadingsStudy:
+    """The stable headings of a part on one or more aspects."""
+
+    part: Part
+    track: Track
+    postures: tuple[Posture, ...]
+    headings: tuple[wall.Headings, ...]  # one a posture
+    chances: dict[str, float]  # probability of each aspect of the part by CSA, the rule that ranks them
+
+    def only(self, aspect):
+        """Return the study of one of its aspects."""
+        kept = [k for k, one in enumerate(self.postures) if one.name == aspect]
+        postures, found = (tuple(many[k] for k in kept) for many in (self.postures, self.headings))
+        return HeadingsStudy(self.part, self.track, postures, found, self.chances)
+
+
+def headings(part, track, aspect=None):
+    """Study the stable headings of a part's aspects.
 
     Parameters
     ----------
@@ -14,12 +35,11 @@ def analyse(part, track, aspect=None):
         From a mesh.
     track : Track
     aspect : str, optional
-        Only this one.
+        Only this one; without it, every stable aspect.
 
     Returns
     -------
-    tuple of list of Posture, list of Headings, dict of str to float
-        And the probability of each aspect, by the rule that ranks them (CSA).
+    HeadingsStudy
 
     Raises
     ------
@@ -28,6 +48,11 @@ def analyse(part, track, aspect=None):
     """
     found = aspects.find(part)
     names = [name for name, stays in zip(found.names, found.stable) if stays] if aspect is None else [aspect]
-    postures = [posture(part, found, name) for name in names]
-    chances = dict(zip(found.names, found.probabilities["csa"].tolist()))
-    return postures, [headings(one, track) for one in postures], chances
+    postures = tuple(posture(part, found, name) for name in names)
+    return HeadingsStudy(
+        part=part,
+        track=track,
+        postures=postures,
+        headings=tuple(wall.headings(one, track) for one in postures),
+        chances=dict(zip(found.names, found.probabilities["csa"].tolist())),
+    )

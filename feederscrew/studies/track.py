@@ -1,4 +1,4 @@
-"""Everything ``feeder track`` finds of one part, in the order of the pipeline."""
+"""The study of ``feeder track``: a part on one aspect against the wall of one bowl."""
 
 from dataclasses import dataclass
 
@@ -22,8 +22,8 @@ LEVEL = {"magnet"}  # cards whose printed equations are in level axes, [4.57] to
 
 
 @dataclass(frozen=True, eq=False)
-class TrackAnalysis:
-    """One part on one aspect against the wall of one bowl."""
+class TrackStudy:
+    """What acts on the part at the upper reversal and over a cycle; maps on request."""
 
     part: Part
     posture: Posture
@@ -41,8 +41,8 @@ class TrackAnalysis:
     why: str | None = None  # this aspect; None where it was asked for
 
 
-def analyse(part, bowl, aspect=None, heading=None):
-    """A part on the track.
+def track(part, bowl, aspect=None, heading=None):
+    """Study a part on the track, against the wall.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def analyse(part, bowl, aspect=None, heading=None):
 
     Returns
     -------
-    TrackAnalysis
+    TrackStudy
 
     Raises
     ------
@@ -71,7 +71,7 @@ def analyse(part, bowl, aspect=None, heading=None):
     levers = _levers(part, posture, seat)
     now = balance.motion(seat, bowl)
     cycle, course = balance.over_cycle(seat, bowl)
-    return TrackAnalysis(
+    return TrackStudy(
         part=part,
         posture=posture,
         bowl=bowl,

@@ -6,15 +6,17 @@ import numpy as np
 import pytest
 
 from feederscrew import bowl
+from feederscrew.mechanics.limits import published_ratio
 from feederscrew.output import style
 from feederscrew.output.slide import figures as slide_plots
-from feederscrew.studies import maps
+from feederscrew.output.slide import files
+from feederscrew.studies.slide import sliding_map
 
 SMALL = (61, 51)  # cells, for speed
 
 
 def slide(beta=20, *overrides):
-    return maps.slide(bowl.read(None, overrides), math.radians(beta), shape=SMALL)
+    return sliding_map(bowl.read(None, overrides), math.radians(beta), shape=SMALL)
 
 
 def texts(figure):
@@ -69,7 +71,7 @@ def test_no_hop_is_drawn_where_none_is():
 
 
 def test_contour_lines_follow_4_27_and_carry_their_values():
-    figure = slide_plots.contours(maps.slide(bowl.default(), math.radians(20), shape=slide_plots.PICTURE))
+    figure = slide_plots.contours(sliding_map(bowl.default(), math.radians(20), shape=files.PICTURE))
     axes = figure.axes[0]
     assert {"μ = 0.1", "μ = 1", "μ = 2", "this bowl's μ = 0.6"} <= set(texts(figure))
     assert "μ = 0.6" not in texts(figure)
@@ -80,7 +82,7 @@ def test_contour_lines_follow_4_27_and_carry_their_values():
     }
     angle, ratio = lines[1.0].T
     inner = np.abs(angle) < 60
-    expected = maps.level_line(math.radians(20), 1.0, np.radians(angle[inner]))
+    expected = published_ratio(1.0, math.radians(20), np.radians(angle[inner]))
     assert ratio[inner] == pytest.approx(expected, rel=1e-3)
 
 

@@ -10,19 +10,20 @@ from hypothesis import strategies as st
 
 from feederscrew import bowl
 from feederscrew.mechanics import limits
-from feederscrew.studies import maps
+from feederscrew.studies import grids
+from feederscrew.studies.slide import sliding_map
 
 DEG = math.pi / 180.0
 
 
 def slide(beta, *overrides, **how):
-    return maps.slide(bowl.read(None, overrides), beta * DEG, **how)
+    return sliding_map(bowl.read(None, overrides), beta * DEG, **how)
 
 
 @pytest.fixture
 def grid():
-    first = maps.Axis("angle_deg", np.radians([0.0, 90.0]), DEG)
-    second = maps.Axis("ratio", np.array([1.0, 2.0, 3.0]))
+    first = grids.Axis("angle_deg", np.radians([0.0, 90.0]), DEG)
+    second = grids.Axis("ratio", np.array([1.0, 2.0, 3.0]))
 
     def function(angle, ratio):
         return {
@@ -31,7 +32,7 @@ def grid():
             "regime": (ratio > 1) * 1,
         }
 
-    return maps.evaluate(first, second, function, ("low", "high"))
+    return grids.evaluate(first, second, function, ("low", "high"))
 
 
 def test_a_grid_is_a_long_table(grid):
@@ -52,7 +53,7 @@ def test_a_grid_counts_what_it_lacks_and_holds(grid):
 
 def test_a_range_of_the_bowl_becomes_an_axis():
     (span,) = bowl.ranges(["drive.amplitude=0.1:0.3:3"])
-    axis = maps.axis(span)
+    axis = grids.axis(span)
     assert axis.column == "amplitude_mm"
     assert axis.values == pytest.approx([1e-4, 2e-4, 3e-4], rel=1e-14)
     assert axis.shown == pytest.approx([0.1, 0.2, 0.3], rel=1e-14)
@@ -163,18 +164,20 @@ def test_gravity_scales_out():
     there = dataclasses.replace(
         light, drive=dataclasses.replace(light.drive, amplitude=light.drive.amplitude * 1.62 / 9.81)
     )
-    assert maps.slide(there, 0.4).ratio == pytest.approx(slide(20).ratio, rel=1e-14)
+    assert sliding_map(there, 0.4).ratio == pytest.approx(slide(20).ratio, rel=1e-14)
 
 
 @given(st.floats(0.0, 90.0), st.floats(0.05, 2.0))
 @settings(max_examples=30, deadline=None)
 def test_the_surface_rises_from_zero_to_its_cut(beta, highest):
-    angles, ratios, friction = maps.sheet(beta * DEG, highest, 4.0)
+    one = slide(beta)
+    top = one.grid.second.values[-1]
+    angles, ratios, friction = one.sheet(highest)
     assert (friction[:, 0] == 0).all()
     assert friction.max() <= highest
     assert (np.diff(friction, axis=1) >= 0).all()
-    assert ratios.max() <= 4.0
+    assert ratios.max() <= top
     middle = len(angles) // 2
-    cut = maps.level_line(beta * DEG, highest, angles[middle, 0])
-    if cut < 4.0 and beta < 89.0:
+    cut = one.level_line(highest, angles[middle, 0])
+    if cut < top and beta < 89.0:
         assert friction[middle, -1] == pytest.approx(highest, rel=1e-9)

@@ -5,9 +5,15 @@ import numpy as np
 from feederscrew.mechanics.floor.balance import HOP, ON_THE_LINE, STATES, regime, rolls, stable_heading
 from feederscrew.mechanics.published.comparison import FLOOR_TERMS
 from feederscrew.output import tables
+from feederscrew.studies.floor import FloorStudy
 from feederscrew.units import factor
 
 MM = factor("mm", "length")
+COARSE = 46  # values of each quantity of a map in a table
+MAPS = {  # by the end of their file's name
+    "beta_friction": FloorStudy.over_angle_and_friction,
+    "frequency_amplitude": FloorStudy.over_frequency_and_amplitude,
+}
 EVERY = 5  # of the samples of a cycle, in tables and documents
 LABELS = {  # what people read
     "normal_force_N": "normal force N",
@@ -84,11 +90,11 @@ def over_cycle(found, course):
 
 
 def document(found, settings, *, as_published=False):
-    """All of one floor analysis, for JSON.
+    """Return all of one FloorStudy, for JSON.
 
     Parameters
     ----------
-    found : FloorAnalysis
+    found : FloorStudy
     settings : dict of str to str
         The bowl's values in effect.
     as_published : bool
@@ -166,7 +172,7 @@ def difference(printed, complete, terms=FLOOR_TERMS):
 
 
 def remarks(found):
-    """What a reader of a FloorAnalysis should know, a line each."""
+    """Return what a reader of a FloorStudy should know, a sentence each."""
     posture, lines = found.posture, chosen(found)
     if len(posture.contact) == 0:
         lines.append("a part card has no contact polygon: whether it tips is not known")
@@ -182,6 +188,30 @@ def remarks(found):
     if not np.isfinite(posture.offset):
         lines.append(f"the card gives no drive offset for aspect {posture.name}: theta'' is not known")
     return lines
+
+
+def map_cells(study, kind):
+    """Return a map of ``MAPS`` as columns."""
+    return MAPS[kind](study, COARSE).columns()
+
+
+def map_remarks(study):
+    """Return what a reader of the maps should know, a sentence each."""
+    return [line for kind, make in MAPS.items() for line in map_notes(kind, make(study, COARSE))]
+
+
+def map_notes(kind, grid):
+    """Return a sentence where nothing slides on a map."""
+    if STATES.index("slide") in grid.codes:
+        return []
+    return [f"{kind.replace('_', ' and ')}: nothing slides anywhere on this map."]
+
+
+def alignment(study):
+    """Return theta'' over every heading as columns."""
+    headings, cells = study.alignment()
+    names = ("alignment_acceleration_rad_s2", "published_alignment_rad_s2")
+    return {"heading_deg": np.degrees(headings), **{name: cells[name] for name in names}}
 
 
 def chosen(found):

@@ -1,31 +1,38 @@
 """What ``feeder headings`` leaves in its folder."""
 
-from feederscrew.output import style, tables
-from feederscrew.output.headings import figures as heading_plots
-from feederscrew.output.headings import tables as heading_tables
+from feederscrew.output import offers as offer
+from feederscrew.output.headings import tables
 
 
-def headings(folder, part, postures, found, track, document, *, pictures=True):
-    """Write the table and a picture an aspect.
+def offers(study, settings):
+    """Offer the files of a HeadingsStudy.
 
     Parameters
     ----------
-    folder : ResultFolder
-    part : Part
-    postures : sequence of Posture
-    found : sequence of Headings
-        One a posture.
-    track : Track
-    document : dict
-        Of the JSON file.
-    pictures : bool
-        Draw as well.
+    study : HeadingsStudy
+    settings : dict of str to str
+        The bowl's values in effect.
+
+    Returns
+    -------
+    list of Offer
     """
-    folder.write("headings.json", tables.json_text(document))
-    folder.write("headings.csv", tables.text(heading_tables.frame(document["headings"]), "csv"))
-    if not pictures:
-        return
-    for standing, one in zip(postures, found):
-        title = f"{part.name}, aspect {standing.name}: heading, share"
-        drawn = heading_plots.headings(standing, one, track, title)
-        folder.write(f"headings_{standing.name}.png", style.png(drawn))
+    return [
+        offer.document("headings.json", tables.document, study, settings),
+        offer.table("headings.csv", tables.frame, study),
+        *(
+            offer.picture(
+                f"headings_{one.name}.png", f"Stable headings of aspect {one.name} from above",
+                _draw, study, place,
+            )
+            for place, one in enumerate(study.postures)
+        ),
+    ]  # fmt: skip
+
+
+def _draw(study, place):
+    from feederscrew.output.headings import figures
+
+    posture = study.postures[place]
+    title = f"{study.part.name}, aspect {posture.name}: heading, share"
+    return figures.headings(posture, study.headings[place], study.track, title)

@@ -9,37 +9,40 @@ MM = factor("mm", "length")
 HIDDEN = ("contact_1_x_mm", "contact_1_y_mm", "contact_2_x_mm", "contact_2_y_mm")
 
 
-def rows(found, chances=None):
-    """Every stable heading of one or more aspects.
+def rows(study):
+    """Return every stable heading of a HeadingsStudy, one a dict, under the columns of ``headings.csv``."""
+    return [_row(one, row, study.chances) for one in study.headings for row in range(len(one.headings))]
+
+
+def frame(study):
+    """Return the rows of a HeadingsStudy as a frame."""
+    found = rows(study)
+    return tables.frame({name: [row[name] for row in found] for name in found[0]})
+
+
+def document(study, settings):
+    """Return a HeadingsStudy as the JSON document.
 
     Parameters
     ----------
-    found : sequence of Headings
-        One an aspect.
-    chances : dict of str to float, optional
-        Probability of each aspect.
+    study : HeadingsStudy
+    settings : dict of str to str
+        The bowl's values in effect.
 
     Returns
     -------
-    list of dict
-        One a heading, the columns of ``headings.csv``.
+    dict
     """
-    return [_row(one, row, chances or {}) for one in found for row in range(len(one.headings))]
+    return {"part": study.part.name, "headings": rows(study), "bowl": settings}
 
 
-def frame(rows):
-    """The rows as a table."""
-    return tables.frame({name: [row[name] for row in rows] for name in rows[0]})
-
-
-def remarks(found, track):
-    """What a reader of the headings should know, a line each."""
-    lines = []
-    for one in found:
+def remarks(study):
+    """Return what a reader of a HeadingsStudy should know, a sentence each."""
+    lines, width = [], study.track.width / MM
+    for one in study.headings:
         if one.rounded:
             lines.append(f"aspect {one.aspect} is round in plan: it takes any heading")
         if one.falls_off.all():
-            width = track.width / MM
             lines.append(f"aspect {one.aspect} falls off the track of {width:.4g} mm in every heading")
     return lines
 

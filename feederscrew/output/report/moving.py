@@ -7,23 +7,23 @@ from feederscrew.conveying import answer, sensitivity, trace
 from feederscrew.output import style
 from feederscrew.output.convey import figures as convey_plots
 from feederscrew.output.convey import tables as convey_tables
-from feederscrew.output.floor import files as floor_sheets
+from feederscrew.output.floor import files as floor_files
 from feederscrew.output.floor import tables as floor_tables
-from feederscrew.output.headings import files as heading_sheets
+from feederscrew.output.headings import files as heading_files
 from feederscrew.output.headings import tables as heading_tables
 from feederscrew.output.page.blocks import Notes, Picture, Section, Table, Text, Tile
 from feederscrew.output.page.numbers import NOTHING, SHORT, number, percent
 from feederscrew.output.rate import tables as rate_tables
 from feederscrew.output.report.kept import Kept
-from feederscrew.output.slide import files as slide_sheets
+from feederscrew.output.slide import files as slide_files
 from feederscrew.output.slide import tables as slide_tables
 from feederscrew.output.track import files as track_sheets
 from feederscrew.output.track import maps as track_maps
 from feederscrew.output.track import tables as track_tables
-from feederscrew.studies import maps
-from feederscrew.studies.floor import analyse as on_floor
-from feederscrew.studies.headings import analyse as against_wall
+from feederscrew.studies.floor import floor as floor_study
+from feederscrew.studies.headings import headings as headings_study
 from feederscrew.studies.rate import rate as rate_study
+from feederscrew.studies.slide import slide as slide_study
 from feederscrew.studies.track import analyse as on_track
 from feederscrew.units import factor
 
@@ -51,16 +51,9 @@ WORDS = {  # of a regime, for a tile
 
 def slide(case):
     """When a part slips, over its heading and the drive."""
-    kept, beta = Kept(), case.bowl.drive.vibration_angle
-    one = maps.slide(case.bowl, beta)
-    slide_sheets.slides(kept, case.bowl, [one])
-    pictures = [
-        *_pictures(kept, "slide_regimes", "Regimes of a part over its heading and the acceleration ratio"),
-        *_pictures(kept, "slide_contours", "Lines of equal limiting friction"),
-    ]
-    return Section(
-        (*_notes(slide_tables.remarks([one])), Table(slide_tables.summary([one])), *pictures),
-    )
+    study = slide_study(case.bowl)
+    pictures = _taken(slide_files.offers(study), "slide_regimes", "slide_contours")
+    return Section((*_notes(slide_tables.remarks(study)), Table(slide_tables.summary(study.maps)), *pictures))
 
 
 def convey(case):
@@ -85,15 +78,11 @@ def convey(case):
 
 def floor(case):
     """Forces and regimes on the bowl's floor."""
-    found, kept = on_floor(case.part, case.bowl, case.aspect, case.heading or 0.0), Kept()
-    document = floor_tables.document(found, bowls.texts(case.settings))
-    told = floor_sheets.floor(kept, found, document)
-    alts = {
-        "floor_plan": "The part from above, with the forces on it",
-        "floor_frequency_amplitude": "Acceleration along the heading over frequency and amplitude",
-        "floor_beta_friction": "Acceleration along the heading over vibration angle and friction",
-    }
-    pictures = [picture for name, alt in alts.items() for picture in _pictures(kept, name, alt)]
+    found, settings = floor_study(case.part, case.bowl, case.aspect, case.heading or 0.0), case.settings
+    document = floor_tables.document(found, bowls.texts(settings))
+    told = floor_tables.map_remarks(found)
+    offered = floor_files.offers(found, bowls.texts(settings))
+    pictures = _taken(offered, "floor_plan", "floor_frequency_amplitude", "floor_beta_friction")
     lead = Text(
         f"Aspect {found.posture.name}, heading {np.degrees(found.heading):.4g} deg, at the upper reversal of "
         "the drive; the maps show the same instant for other drives and other friction."
@@ -104,22 +93,15 @@ def floor(case):
 
 def headings(case):
     """How the part lies along the wall."""
-    track, kept = case.bowl.track, Kept()
-    postures, found, chances = against_wall(case.part, track)
-    rows = heading_tables.rows(found, chances)
-    own = [k for k, one in enumerate(postures) if one.name == case.aspect]
-    document = {"headings": rows}
-    heading_sheets.headings(
-        kept, case.part, [postures[k] for k in own], [found[k] for k in own], track, document
-    )
-    frame = heading_tables.frame(rows)[list(HEADINGS)].rename(columns=HEADINGS)
+    study = headings_study(case.part, case.bowl.track)
+    frame = heading_tables.frame(study)[list(HEADINGS)].rename(columns=HEADINGS)
     lead = Text(
         "The directions in which the part is stable when pushed against the wall, the share of all "
         "directions of laying down that ends in each, and the room it takes."
     )
-    pictures = _pictures(kept, "headings", f"Stable headings of aspect {case.aspect} from above")
-    lines = tuple(heading_tables.remarks(found, track))
-    return Section((lead, Table(frame), *pictures), warnings=lines)
+    own = heading_files.offers(study.only(case.aspect), bowls.texts(case.settings))
+    pictures = _taken(own, "headings")
+    return Section((lead, Table(frame), *pictures), warnings=tuple(heading_tables.remarks(study)))
 
 
 def track(case):
@@ -213,6 +195,16 @@ def _pictures(kept, start, alt):
         Picture(name, content, alt)
         for name, content in kept.items()
         if name.startswith(start) and name.endswith(".png")
+    ]
+
+
+def _taken(offered, *starts):
+    """Make the pictures whose files begin so, in that order."""
+    return [
+        Picture(one.name, one.make(), one.alt)
+        for start in starts
+        for one in offered
+        if one.is_picture and one.name.startswith(start)
     ]
 
 

@@ -8,7 +8,6 @@ from matplotlib.patheffects import withStroke
 from scipy import ndimage
 
 from feederscrew.output import style
-from feederscrew.studies import maps
 
 ANGLE = "α − θ, from heading to drive [deg]"
 RATIO = "acceleration ratio G = A ω² / g [1]"
@@ -24,7 +23,6 @@ REGIMES = {  # colour and label; what a designer wants is the strongest
 }
 HATCH = "#b4bcc3"
 LETTER = (0.0125, 0.055)  # width of a letter and height of a line, over the picture's
-PICTURE = (721, 601)  # cells of a map that is drawn
 SHADES = "cividis"
 HALO = [withStroke(linewidth=2.5, foreground="white")]
 LABEL = {"fontsize": 8.5, "color": style.INK, "path_effects": HALO, "zorder": 4}
@@ -43,12 +41,12 @@ def surface(slide):
     """
     figure = style.figure(6.4, 5.2)
     axes = figure.add_subplot(projection="3d", computed_zorder=False)
-    angles, ratios, friction = maps.sheet(slide.beta, HIGHEST, slide.grid.second.values[-1])
+    angles, ratios, friction = slide.sheet(HIGHEST)
     axes.plot_surface(
         np.degrees(angles), ratios, friction, cmap=SHADES, vmin=0.0, vmax=HIGHEST,
         rcount=61, ccount=61, edgecolor="white", linewidth=0.15, zorder=1,
     )  # fmt: skip
-    own = maps.level_line(slide.beta, slide.friction, angles[:, 0])
+    own = slide.level_line(slide.friction, angles[:, 0])
     own = np.where(own <= ratios.max(), own, np.nan)
     label = f"static friction of this bowl, {slide.friction:g}: where the surface is above it, the part slips"
     axes.plot(
@@ -73,7 +71,7 @@ def contours(slide):
     Parameters
     ----------
     slide : SlideMap
-        In the shape ``PICTURE``.
+        Of many cells.
 
     Returns
     -------
@@ -96,7 +94,7 @@ def regimes(slide):
     Parameters
     ----------
     slide : SlideMap
-        In the shape ``PICTURE``.
+        Of many cells.
 
     Returns
     -------
@@ -231,7 +229,7 @@ def _level(axes, slide, level, degrees, *, color, width=1.1, text="μ = %g"):
         return
     x, y = slide.grid.first.shown, slide.grid.second.values
     lines = axes.contour(x, y, friction.T, [level], colors=[color], linewidths=width)
-    place = degrees, maps.level_line(slide.beta, level, np.radians(degrees))
+    place = degrees, slide.level_line(level, np.radians(degrees))
     if place[1] < y[-1]:
         axes.clabel(lines, fmt=text, fontsize=7, manual=[place])
 
@@ -256,7 +254,7 @@ def _curve(axes, slide, shade):
 
 def _right_edge(slides):
     """G that shows every curve up to the cut, and the bowl's own point."""
-    cuts = [float(maps.level_line(slide.beta, HIGHEST, 0.0)) for slide in slides]
+    cuts = [float(slide.level_line(HIGHEST, 0.0)) for slide in slides]
     return 1.1 * max([*cuts, slides[0].ratio])
 
 

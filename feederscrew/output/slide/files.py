@@ -1,32 +1,42 @@
 """What ``feeder slide`` leaves in its folder."""
 
+from functools import cache, partial
+
 import numpy as np
 
-from feederscrew.output import style, tables
-from feederscrew.output.slide import figures as slide_plots
-from feederscrew.output.slide import tables as slide_tables
-from feederscrew.studies import maps
+from feederscrew.output import offers as offer
+from feederscrew.output.slide import tables
+
+PICTURE = (721, 601)  # cells of a map that is drawn
+ALTS = {
+    "surface": "Limiting friction over the heading and the acceleration ratio",
+    "contours": "Lines of equal limiting friction",
+    "regimes": "Regimes of a part over its heading and the acceleration ratio",
+}
 
 
-def slides(folder, bowl, found, *, pictures=True):
-    """Write the cells of every map and its pictures.
+def offers(study):
+    """Offer the files of a SlideStudy, as a list of Offer."""
+    fine = cache(partial(study.fine, PICTURE))  # once for all pictures
+    pictures = [
+        offer.picture(f"slide_{kind}_beta{np.degrees(one.beta):.6g}.png", alt, _draw, kind, fine, place)
+        for place, one in enumerate(study.maps)
+        for kind, alt in ALTS.items()
+    ]
+    return [
+        offer.table("slide.csv", tables.cells, study.maps),
+        *pictures,
+        offer.picture("slide_curves.png", "Limiting friction of an aligned part", _curves, fine),
+    ]
 
-    Parameters
-    ----------
-    folder : ResultFolder
-    bowl : Bowl
-    found : sequence of SlideMap
-        One a vibration angle.
-    pictures : bool
-        Draw as well.
-    """
-    folder.write("slide.csv", tables.text(slide_tables.cells(found), "csv"))
-    if not pictures:
-        return
-    fine = [maps.slide(bowl, one.beta, shape=slide_plots.PICTURE) for one in found]
-    for one in fine:
-        angle = f"beta{np.degrees(one.beta):.6g}"
-        folder.write(f"slide_surface_{angle}.png", style.png(slide_plots.surface(one)))
-        folder.write(f"slide_contours_{angle}.png", style.png(slide_plots.contours(one)))
-        folder.write(f"slide_regimes_{angle}.png", style.png(slide_plots.regimes(one)))
-    folder.write("slide_curves.png", style.png(slide_plots.curves(fine)))
+
+def _draw(kind, fine, place):
+    from feederscrew.output.slide import figures
+
+    return getattr(figures, kind)(fine()[place])
+
+
+def _curves(fine):
+    from feederscrew.output.slide import figures
+
+    return figures.curves(fine())

@@ -13,13 +13,13 @@ LIMITS = {  # what a summary says of each map, in this order
 ONSETS = {"forward": "G of forward slip", "backward": "G of backward slip", "hop": "G of the hop"}
 
 
-def frame(slides, format):
-    """What a format prints: every cell as CSV, a summary for people."""
-    return cells(slides) if format == "csv" else summary(slides)
+def shown(study, format):
+    """Return what a format prints of a SlideStudy: every cell as CSV, a summary for people."""
+    return cells(study.maps) if format == "csv" else summary(study.maps)
 
 
 def cells(slides):
-    """Every cell of every map, as a frame."""
+    """Return every cell of every SlideMap, as a frame."""
     parts = []
     for one in slides:
         columns = one.grid.columns()
@@ -29,7 +29,7 @@ def cells(slides):
 
 
 def summary(slides):
-    """What holds at the bowl's own point, a column a map, as a frame for people."""
+    """Return what holds at the bowl's own point, a column a map, as a frame for people."""
     first = slides[0]
     names = ["acceleration ratio G = A w2/g", "alpha - theta [deg]", "static friction", *LIMITS.values()]
     names += [*ONSETS.values(), "regime", *(f"share of the map: {name}" for name in first.grid.names)]
@@ -37,24 +37,27 @@ def summary(slides):
     return tables.frame({"at the bowl's own point": names, **columns})
 
 
-def document(slides, settings, as_published):
-    """The maps as one JSON document.
+def document(study, settings):
+    """Return a SlideStudy as the JSON document.
 
     Parameters
     ----------
-    slides : sequence of SlideMap
+    study : SlideStudy
     settings : dict of str to str
         The bowl's values in effect.
-    as_published : bool
-        Whether mu_limit keeps its negative branch.
+
+    Returns
+    -------
+    dict
     """
-    return {"bowl": settings, "as_published": as_published, "maps": [_map(one) for one in slides]}
+    maps = [_map(one) for one in study.maps]
+    return {"bowl": settings, "as_published": study.as_published, "maps": maps}
 
 
-def remarks(slides):
-    """What a reader of the maps should know, a line each."""
+def remarks(study):
+    """Return what a reader of a SlideStudy should know, a sentence each."""
     lines = []
-    for one in slides:
+    for one in study.maps:
         shares, beta = one.grid.shares(), f"beta = {np.degrees(one.beta):.6g} deg"
         empty, cells = one.grid.unanswered("mu_limit"), one.grid.codes.size
         if shares["hop"] == 0.0:
@@ -69,7 +72,7 @@ def remarks(slides):
 
 
 def settings(found):
-    """Bowl settings and where each came from, as a frame."""
+    """Return the bowl settings and where each came from, as a frame."""
     columns = {
         "key": [s.key.name for s in found],
         "value": [s.text for s in found],

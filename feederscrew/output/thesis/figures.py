@@ -3,11 +3,11 @@
 import matplotlib
 import numpy as np
 
+from feederscrew.mechanics.limits import published_ratio
 from feederscrew.output import style as plots
 from feederscrew.output import tables
 from feederscrew.output.profiles import figures as profile_plots
 from feederscrew.output.slide import figures as slide_plots
-from feederscrew.studies import maps
 from feederscrew.thesis import chapter_5, figures
 
 ASPECTS = (  # of the T shape, A to E: colour and dashes
@@ -180,7 +180,7 @@ def _contours(title, data, beta):
     shades = matplotlib.colormaps[SHADES](np.linspace(0.05, 0.75, len(levels)))
     angles = np.linspace(-89.9, 89.9, 361)
     for level, shade in zip(levels, shades):
-        ratios = maps.level_line(beta, level, np.radians(angles))
+        ratios = published_ratio(level, beta, np.radians(angles))
         axes.plot(angles, ratios, color=shade, linewidth=1.4)
         style = {"fontsize": 7.5, "ha": "center", "va": "center", "bbox": LABEL}
         axes.text(0.0, ratios[180], f"μ = {level:g}", color=shade, **style)

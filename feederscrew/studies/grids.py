@@ -1,0 +1,99 @@
+"""Grids over two quantities: values, regime codes, NaN where there is no answer."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew import check, units
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """One quantity of a grid and the values it takes."""
+
+    column: str  # in tables, with its unit: 'beta_deg'
+    values: np.ndarray  # (N,) in SI
+    unit: float = 1.0  # SI units in one unit of the column
+
+    @property
+    def shown(self):
+        """Return the values in the column's unit, (N,)."""
+        return self.values / self.unit
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Values at every pair of two axes, the first along axis 0."""
+
+    first: Axis
+    second: Axis
+    values: dict[str, np.ndarray]  # (N1, N2) by column name
+    codes: np.ndarray  # (N1, N2) places in ``names``
+    names: tuple[str, ...]  # of the regimes
+
+    def columns(self):
+        """Return the cells as columns of a table, the second axis running fastest."""
+        first, second = np.meshgrid(self.first.shown, self.second.shown, indexing="ij")
+        return {
+            self.first.column: first.ravel(),
+            self.second.column: second.ravel(),
+            **{name: array.ravel() for name, array in self.values.items()},
+            "regime": np.asarray(self.names)[self.codes.ravel()],
+        }
+
+    def shares(self):
+        """Return the fraction of the cells in each regime, by name."""
+        counts = np.bincount(self.codes.ravel(), minlength=len(self.names))
+        return {name: float(count / self.codes.size) for name, count in zip(self.names, counts)}
+
+    def unanswered(self, column):
+        """Return the number of cells without a value."""
+        return int(np.isnan(self.values[column]).sum())
+
+
+def axis(span):
+    """Return the Axis of a ``bowl.vary.Range``."""
+    key = span.key
+    return Axis(key.column, check.frozen(np.array(span.values)), units.factor(key.unit, key.dimension))
+
+
+def evaluate(first, second, function, names=()):
+    """Evaluate a function of two quantities on a grid.
+
+    Parameters
+    ----------
+    first, second : Axis
+    function : callable
+        Takes (N1, 1) and (1, N2) arrays in SI; returns arrays that broadcast to (N1, N2) by
+        column name, and under 'regime' the places in ``names``.
+    names : tuple of str
+        Of the regimes; without any, every code is 0.
+
+    Returns
+    -------
+    Grid
+    """
+    shape = (len(first.values), len(second.values))
+    found = function(first.values[:, None], second.values[None, :])
+    full = {name: check.frozen(np.broadcast_to(array, shape)) for name, array in found.items()}
+    codes = full.pop("regime", np.zeros(shape, dtype=int))
+    return Grid(first, second, full, codes, tuple(names) or ("",))
+
+
+def span(column, low, high, count, unit=1.0):
+    """Return the Axis of ``count`` evenly spaced values.
+
+    Parameters
+    ----------
+    column : str
+        Its name in tables, with its unit.
+    low, high : float [SI]
+    count : int
+    unit : float
+        SI units in one unit of the column.
+
+    Returns
+    -------
+    Axis
+    """
+    return Axis(column, check.frozen(np.linspace(low, high, count)), unit)
