@@ -37,6 +37,7 @@ class Answer:
     mu_forward: float  # least static friction without slip up the track; NaN past the hop
     mu_backward: float
     regime: str
+    runs_away: bool  # a part that once slides down the track fast enough does not stop again
 
     @property
     def margins(self):
@@ -201,4 +202,5 @@ def _answer(bowl, setting, out):
         mu_forward=mu_forward,
         mu_backward=mu_backward,
         regime=REGIMES[-1] if status == steady.NO_STEADY_STATE else REGIMES[int(out[steady.REGIME])],
+        runs_away=bool(out[steady.RUNAWAY]),
     )

@@ -22,6 +22,7 @@ class Law(NamedTuple):
     kinetic: float
     kinetic_back: float
     restitution: float
+    wall: float  # what the wall brakes a sliding part with; nothing while it flies
 
 
 def law(setting):
@@ -50,6 +51,7 @@ def law(setting):
         setting.kinetic,
         setting.kinetic_back,
         setting.restitution,
+        setting.wall * math.cos(setting.climb) * math.sin(setting.bank) / setting.ratio,
     )
 
 

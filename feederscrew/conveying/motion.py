@@ -9,7 +9,8 @@ from feederscrew.conveying.law import contact
 from feederscrew.conveying.setting import BACKWARD, FLIGHT, FORWARD, STICK, TURN
 
 TRAVEL, TIMES, LONGEST, HARDEST, FLIGHTS = 0, 1, 5, 6, 7  # places in a tally; TIMES holds one per phase
-TALLY = 8
+STOPS, UPWARD, DOWNWARD = 8, 9, 10  # how often it came to rest on the plate, and slid or landed each way
+TALLY = 11
 SETTLED = 1e-6  # [rad] a bounce that would last twice this ends endless bouncing: an error of second order
 EVENTS = 100_000  # in one period
 
@@ -37,9 +38,10 @@ def turn(rules, state, tally):
     ----------
     rules : Law
     state : State
-    tally : (8,) float
-        Way made [A], time in each phase [rad], longest flight [rad], hardest impact [A w], number of flights;
-        the one array that is added to in place, because the loops over it are compiled.
+    tally : (11,) float
+        Way made [A], time in each phase [rad], longest flight [rad], hardest impact [A w], number of flights,
+        of times at rest on the plate, of slips and landings up the track and of those down; the one array
+        that is added to in place, because the loops over it are compiled.
 
     Returns
     -------
@@ -75,6 +77,7 @@ def _ride(rules, state, tally):
     elif back == end:
         phase = BACKWARD
     tally[TIMES + STICK] += end - now
+    tally[STOPS] += 1.0
     return State(end, phase, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -87,10 +90,12 @@ def _slide(rules, state, tally):
     span, arc = end - now, onward(growth, now)
     tally[TRAVEL] += state.speed * span + sign * travel(arc, span)
     tally[TIMES + state.phase] += span
+    tally[UPWARD if state.phase == FORWARD else DOWNWARD] += 1.0
     speed = state.speed + sign * gain(arc, span)
     if lift == end:
         return State(end, FLIGHT, speed, 0.0, 0.0, 0.0)
     if stop == end:
+        tally[STOPS] += 1.0
         return State(end, contact(rules, end, 0.0), 0.0, 0.0, 0.0, 0.0)
     return State(end, state.phase, speed, 0.0, 0.0, 0.0)
 
@@ -111,7 +116,9 @@ def _fly(rules, state, tally):
     tally[LONGEST] = max(tally[LONGEST], aloft)
     tally[HARDEST] = max(tally[HARDEST], -rising)
     tally[FLIGHTS] += 1.0
-    return land(rules, end, speed, -rising)
+    landed = land(rules, end, speed, -rising)
+    tally[STOPS if landed.speed == 0.0 else (UPWARD if landed.speed > 0.0 else DOWNWARD)] += 1.0
+    return landed
 
 
 def land(rules, angle, speed, impact):

@@ -6,65 +6,35 @@ import numpy as np
 
 from feederscrew.conveying.harmonic import harmonic, peak, value
 from feederscrew.conveying.law import law, throw_number
-from feederscrew.conveying.motion import FLIGHTS, HARDEST, LONGEST, TALLY, TIMES, TRAVEL, State, at_rest, turn
+from feederscrew.conveying.motion import (
+    DOWNWARD,
+    FLIGHTS,
+    HARDEST,
+    LONGEST,
+    STOPS,
+    TALLY,
+    TIMES,
+    TRAVEL,
+    UPWARD,
+    State,
+    at_rest,
+    turn,
+)
 from feederscrew.conveying.setting import FLIGHT, TURN
+from feederscrew.conveying.settling import RUNS, settle
 from feederscrew.conveying.waves import Wave
 from feederscrew.mechanics import limits
 
 PERIODIC, AVERAGED, NO_STEADY_STATE = range(3)
 STATUSES = ("periodic", "averaged", "no steady state")
 STATUS, PERIOD, VELOCITY, LOW, HIGH, FRACTIONS = range(6)  # places in a row of results
-FLIGHT_TIME, IMPACT, HOPS, THROW, REGIME, COLUMNS = range(FRACTIONS + 4, FRACTIONS + 10)
-LONGEST_PERIOD = 32
-TRANSIENT = 400  # periods allowed before a motion counts as not periodic
-BLOCK, BLOCKS = 32, 8  # periods averaged then, and in how many lots their spread is taken
-SAME = 1e-12  # difference of two states at which the motion counts as repeating
-ALIKE = (
-    1e-8  # the same for a shorter period: a motion that closes in from alternate sides repeats doubly first
-)
-RUNAWAY = 20.0  # [A w] no steady motion is this fast: a part above it slides for ever
+FLIGHT_TIME, IMPACT, HOPS, THROW, REGIME, RUNAWAY, COLUMNS = range(FRACTIONS + 4, FRACTIONS + 11)
+BLOCK, BLOCKS = 32, 8  # periods averaged where there is no period, and in how many lots their spread is taken
+LOTS = 16  # averages taken of a part that would run away once it slid all the time, until it does
+ALIKE = 1e-8  # of two states: a motion that closes in from alternate sides repeats doubly first
 DROPS = (1.5,)  # flights [periods] of the drops among the starts
 BOUNCES = 3  # periods of the longest regular bounce among the starts
 OFF = 1.001  # such starts are this much too fast: exactly on it, even an unstable bounce would last
-
-
-def settle(rules, state):
-    """Follow a part until its state repeats every q periods of the drive, twice in a row.
-
-    Parameters
-    ----------
-    rules : Law
-    state : State
-
-    Returns
-    -------
-    (State, int)
-        State at the start of a period of the drive; q, or 0 where none up to 32 was found.
-    """
-    tally = np.zeros(TALLY)
-    history = np.full((LONGEST_PERIOD + 1, 3), np.inf)
-    streak = np.zeros(LONGEST_PERIOD + 1, dtype=np.int64)
-    for count in range(TRANSIENT):
-        state = turn(rules, state, tally)
-        period = _repeats(history, streak, count, state)
-        if period:
-            return state, period
-    return state, 0
-
-
-def _repeats(history, streak, count, state):
-    """Periods after which the state came back for the second time running, or 0; notes the state."""
-    for q in range(1, min(count, LONGEST_PERIOD) + 1):
-        then = (count - q) % (LONGEST_PERIOD + 1)
-        apart = abs(state.speed - history[then, 0])
-        if apart <= SAME:
-            apart = max(abs(state.height - history[then, 1]), abs(state.rising - history[then, 2]))
-        streak[q] = streak[q] + 1 if apart <= SAME else 0
-        if streak[q] == 2:
-            return q
-    row = count % (LONGEST_PERIOD + 1)
-    history[row, 0], history[row, 1], history[row, 2] = state.speed, state.height, state.rising
-    return 0
 
 
 def steady(rules, state, out):
@@ -74,27 +44,71 @@ def steady(rules, state, out):
     ----------
     rules : Law
     state : State
-    out : (14,) float
+    out : (15,) float
         Filled with status, period, velocity and its spread [A w], fraction of the time in each phase,
         longest flight [periods], hardest impact [A w], flights a period.
     """
     state, repeat = settle(rules, state)
-    start, period = state, repeat
-    tally, way = np.zeros(TALLY), 0.0
-    length = repeat if repeat else BLOCK * BLOCKS
-    block = repeat if repeat else BLOCK
-    low, high = math.inf, -math.inf
-    for count in range(1, length + 1):
+    if repeat == RUNS:
+        _nothing(out)
+    elif repeat:
+        _cycle(rules, state, repeat, out)
+    else:
+        _long_run(rules, state, out)
+
+
+def _cycle(rules, state, repeat, out):
+    """Averages over the periods after which the motion repeats; the least of them is its period."""
+    tally, start, period = np.zeros(TALLY), state, repeat
+    for count in range(1, repeat + 1):
         state = turn(rules, state, tally)
         if count < period and repeat % count == 0 and _apart(state, start) <= ALIKE:
             period = count
-        if count % block == 0:
-            velocity = (tally[TRAVEL] - way) / (block * TURN)
+    out[STATUS], out[PERIOD] = PERIODIC, period
+    _averages(out, tally, float(repeat))
+    out[LOW] = out[HIGH] = out[VELOCITY]
+
+
+def _long_run(rules, state, out):
+    """Averages over lots of periods, unless the part slides through them all and gets faster."""
+    for _ in range(LOTS):
+        tally, way, first = np.zeros(TALLY), 0.0, state.speed
+        low, high = math.inf, -math.inf
+        for _ in range(BLOCKS):
+            for _ in range(BLOCK):
+                state = turn(rules, state, tally)
+            velocity = (tally[TRAVEL] - way) / (BLOCK * TURN)
             way, low, high = tally[TRAVEL], min(low, velocity), max(high, velocity)
-    runaway = not repeat and abs(state.speed) > RUNAWAY
-    out[STATUS] = PERIODIC if repeat else (NO_STEADY_STATE if runaway else AVERAGED)
-    out[PERIOD], out[LOW], out[HIGH] = period, low, high
-    _averages(out, tally, float(length))
+        out[STATUS], out[PERIOD], out[LOW], out[HIGH] = AVERAGED, 0.0, low, high
+        _averages(out, tally, float(BLOCK * BLOCKS))
+        if _slid(tally) and (state.speed - first) * state.speed > 0.0:
+            _nothing(out)
+            break
+        if escape(rules, out[FRACTIONS + FLIGHT]) <= 0.0:
+            break
+
+
+def _slid(tally):
+    """Whether the part slid one way whenever it touched the plate."""
+    return tally[STOPS] == 0.0 and (tally[UPWARD] == 0.0) != (tally[DOWNWARD] == 0.0)
+
+
+def escape(rules, aloft):
+    """Greatest growth of the speed of a part that slides all the time, up or down the track.
+
+    Parameters
+    ----------
+    rules : Law
+    aloft : float [1]
+        Share of the time in flight, in which the wall does not brake.
+
+    Returns
+    -------
+    float [A w a radian of the drive]
+        Positive where a part that once slides fast enough gets faster without end. Impacts pass on what the
+        weight would have in the time of the flight, so on an unbanked track flight does not matter.
+    """
+    return max(rules.slip.level, rules.slip_back.level) + rules.wall * aloft
 
 
 def _apart(one, other):
@@ -115,19 +129,18 @@ def survey(setting, out):
     Parameters
     ----------
     setting : Setting
-    out : (14,) float
+    out : (15,) float
         As ``steady`` fills it from rest, its spread widened to all starts; NaN without a steady state.
-        Then the throw number and the regime.
+        Then the throw number, the regime, and whether a part that slides fast enough runs away: 1 or 0.
     """
     rules = law(setting)
     out[THROW], out[REGIME] = throw_number(rules), regime(rules)
-    if rules.slip.level >= 0.0 or rules.slip_back.level >= 0.0:
-        _nothing(out)
-        return
     steady(rules, at_rest(rules), out)
     if out[STATUS] == NO_STEADY_STATE:
-        _nothing(out)
-    elif setting.restitution > 0.0:
+        out[RUNAWAY] = 1.0
+        return
+    out[RUNAWAY] = 1.0 if escape(rules, out[FRACTIONS + FLIGHT]) > 0.0 else 0.0
+    if setting.restitution > 0.0:
         _widen(rules, out)
 
 
@@ -150,7 +163,10 @@ def _widen(rules, out):
         state = thrown(rules, start)
         if state.rising > 0.0:
             steady(rules, state, other)
-            out[LOW], out[HIGH] = min(out[LOW], other[LOW]), max(out[HIGH], other[HIGH])
+            if other[STATUS] == NO_STEADY_STATE:
+                out[RUNAWAY] = 1.0
+            else:
+                out[LOW], out[HIGH] = min(out[LOW], other[LOW]), max(out[HIGH], other[HIGH])
 
 
 def thrown(rules, start):

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from feederscrew import check
-from feederscrew.conveying import events, harmonic, law, motion, steady, waves
+from feederscrew.conveying import events, harmonic, law, motion, settling, steady, waves
 from feederscrew.conveying.setting import Setting, checked
 from feederscrew.conveying.steady import COLUMNS, survey
 
@@ -22,8 +22,27 @@ KERNEL = (
     *(events.later, events.slip_end, events._stop, events.landing),
     *(events._descent, events._beyond_bounce, events._dip),
     *(motion.at_rest, motion.turn, motion.step, motion._ride, motion._slide, motion._fly, motion.land),
-    *(steady.settle, steady._repeats, steady.steady, steady._apart, steady._averages),
-    *(steady.survey, steady.regime, steady._nothing, steady._widen, steady.thrown, steady.plate_speed),
+    *(settling.settle, settling._afresh, settling._slid, settling._repeats, settling._grows),
+    *(
+        settling._period_of_normal,
+        settling._hasten,
+        settling._closed_in,
+        settling._gained,
+        settling._at_speed,
+        settling._on,
+        settling._runs,
+    ),
+    *(steady.steady, steady._cycle, steady._long_run, steady._slid, steady.escape),
+    *(
+        steady._apart,
+        steady._averages,
+        steady.survey,
+        steady.regime,
+        steady._nothing,
+        steady._widen,
+        steady.thrown,
+        steady.plate_speed,
+    ),
 )
 LOT = 256  # settings handed to a core at a time: their costs differ a hundredfold
 
@@ -40,7 +59,7 @@ def sweep(settings, workers=None):
 
     Returns
     -------
-    (N, 14) float
+    (N, 15) float
         Rows as ``steady.survey`` fills them.
 
     Raises

@@ -9,7 +9,7 @@ from feederscrew.conveying.harmonic import onward, travel
 from feederscrew.conveying.law import law
 from feederscrew.conveying.motion import TALLY, TRAVEL, at_rest, step
 from feederscrew.conveying.setting import FLIGHT, FORWARD, STICK, TURN
-from feederscrew.conveying.steady import settle
+from feederscrew.conveying.settling import settle
 
 SHOWN = 4  # periods at most
 SAMPLES = 240  # a period; every phase has at least a few
@@ -42,7 +42,7 @@ def trace(setting):
     rules = law(setting)
     state, period = settle(rules, at_rest(rules))
     pieces, tally = [], np.zeros(TALLY)
-    for count in range(min(period or SHOWN, SHOWN)):
+    for count in range(min(period, SHOWN) if period > 0 else SHOWN):
         while state.angle < TURN:
             before = tally[TRAVEL]
             after = step(rules, state, tally)

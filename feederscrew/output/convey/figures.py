@@ -61,7 +61,7 @@ def cycle_title(trace, found):
     """What of a motion a trace shows, and how fast it is."""
     shown, velocity = round(trace.time[-1]), f"{found.velocity * 1e3:.4g} mm/s"
     if found.status == "no steady state":
-        return f"No steady state: {shown} periods of a slide for ever"
+        return f"No steady state: {shown} periods of a slide that does not stop"
     if found.status == "averaged":
         return f"{shown} periods of a motion that does not repeat: {velocity} on average"
     if shown < found.period:

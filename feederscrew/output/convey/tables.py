@@ -10,6 +10,13 @@ from feederscrew.studies import maps
 
 MM_S = units.factor("mm/s", "velocity")
 VELOCITIES = {"velocity": "velocity_mm_s", "low": "velocity_low_mm_s", "high": "velocity_high_mm_s"}
+NO_STEADY_STATE = (
+    "no steady state: the part slides down the track without stopping, and no velocity is steady"
+)
+RUNS_AWAY = (
+    "this velocity is reached from rest; a part that once slides down fast enough does not stop again: "
+    "the climb is steeper than kinetic friction"
+)
 LIMITS = {"forward": "slip up the track", "backward": "slip down the track"}
 
 
@@ -34,6 +41,7 @@ def document(bowl, found, nearby, doubt):
         "period": found.period,
         **{column: getattr(found, name) / MM_S for name, column in VELOCITIES.items()},
         "regime": found.regime,
+        "runs_away": found.runs_away,
         "acceleration_ratio": found.setting.ratio,
         "throw_number": found.throw_number,
         "mu_forward": found.mu_forward,
@@ -87,8 +95,10 @@ def remarks(document):
     said = []
     low, high = document["velocity_low_mm_s"], document["velocity_high_mm_s"]
     if document["status"] == "no steady state":
-        said.append("no steady state: the climb is steeper than friction holds, and the part slides for ever")
-    elif document["status"] == "averaged":
+        return [NO_STEADY_STATE]
+    if document["runs_away"]:
+        said.append(RUNS_AWAY)
+    if document["status"] == "averaged":
         said.append(f"not periodic: an average; its spread is {_range(low, high)} mm/s")
     elif high - low > answer.COEXIST * abs(high):
         said.append(f"several steady velocities, {_range(low, high)} mm/s, depending on how the part arrives")

@@ -62,7 +62,7 @@ def test_no_steady_state_is_an_answer_and_a_warning(run):
     assert document["status"] == "no steady state"
     assert document["velocity_mm_s"] is None
     assert told(result) == [
-        "Warning: no steady state: the climb is steeper than friction holds, and the part slides for ever"
+        "Warning: no steady state: the part slides down the track without stopping, and no velocity is steady"
     ]
 
 

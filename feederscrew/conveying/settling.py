@@ -1,0 +1,185 @@
+"""Where a motion settles: after how many periods it repeats, or that it slides on and never does."""
+
+import numpy as np
+
+from feederscrew.conveying.law import contact
+from feederscrew.conveying.motion import DOWNWARD, STOPS, TALLY, UPWARD, State, turn
+from feederscrew.conveying.setting import FLIGHT
+
+LONGEST_PERIOD = 32
+TRANSIENT = 400  # periods followed before a motion is hastened, or counts as not periodic
+SAME = 1e-12  # difference of two states at which the motion counts as repeating
+RUNS = -1  # in place of a period: the part slides on without stopping and does not slow down
+LEAPS = 200  # of a motion that closes in slowly
+CLOSE = 1e-13  # [A w] width of the bracket of its speed at which it is found
+FASTEST = 1e6  # [A w] no bracket is sought beyond
+
+
+def settle(rules, state):
+    """Follow a part until its state repeats every q periods of the drive, twice in a row.
+
+    Parameters
+    ----------
+    rules : Law
+    state : State
+
+    Returns
+    -------
+    (State, int)
+        State at the start of a period of the drive; q, ``RUNS``, or 0 where none up to 32 was found.
+
+    Notes
+    -----
+    What a part does along the normal does not depend on its speed along the track. Once the former repeats
+    every q periods, and the part has slid through q periods without stopping or turning round and is no
+    slower after them, the next q periods add as much: it slides on and never settles.
+    """
+    tally = np.zeros(TALLY)
+    history = np.full((LONGEST_PERIOD + 1, 3), np.inf)
+    streak = np.zeros(LONGEST_PERIOD + 1, dtype=np.int64)
+    sliding, sense = 0, 0.0
+    for count in range(TRANSIENT):
+        state = _afresh(rules, state, tally)
+        sliding, sense = _slid(tally, sliding, sense)
+        period = _repeats(history, streak, count, state)
+        if period:
+            return state, RUNS if sliding >= period and sense != 0.0 else period
+        if sense != 0.0 and _grows(history, count, state, sliding, sense):
+            return state, RUNS
+    return _hasten(rules, state, _period_of_normal(history, TRANSIENT - 1))
+
+
+def _afresh(rules, state, tally):
+    """The state a period on; stops and contacts are counted from nothing."""
+    tally[STOPS], tally[UPWARD], tally[DOWNWARD] = 0.0, 0.0, 0.0
+    return turn(rules, state, tally)
+
+
+def _slid(tally, sliding, sense):
+    """Periods for which a part has now slid without stopping or turning round, and which way."""
+    up, down = tally[UPWARD] > 0.0, tally[DOWNWARD] > 0.0
+    if tally[STOPS] > 0.0 or (up and down):
+        return 0, 0.0
+    now = 1.0 if up else (-1.0 if down else 0.0)
+    if now * sense < 0.0:
+        return 1, now
+    return sliding + 1, sense if now == 0.0 else now
+
+
+def _repeats(history, streak, count, state):
+    """Periods after which the state came back for the second time running, or 0; notes the state."""
+    for q in range(1, min(count, LONGEST_PERIOD) + 1):
+        then = (count - q) % (LONGEST_PERIOD + 1)
+        apart = abs(state.speed - history[then, 0])
+        if apart <= SAME:
+            apart = max(abs(state.height - history[then, 1]), abs(state.rising - history[then, 2]))
+        streak[q] = streak[q] + 1 if apart <= SAME else 0
+        if streak[q] == 2:
+            return q
+    row = count % (LONGEST_PERIOD + 1)
+    history[row, 0], history[row, 1], history[row, 2] = state.speed, state.height, state.rising
+    return 0
+
+
+def _grows(history, count, state, sliding, sense):
+    """Whether a part that has slid for some periods comes back along the normal, but faster."""
+    for q in range(1, min(count, sliding, LONGEST_PERIOD) + 1):
+        then = (count - q) % (LONGEST_PERIOD + 1)
+        if max(abs(state.height - history[then, 1]), abs(state.rising - history[then, 2])) <= SAME:
+            return sense * (state.speed - history[then, 0]) > SAME
+    return False
+
+
+def _period_of_normal(history, count):
+    """Periods after which the motion along the normal repeats, twice in a row; 0 where it does not."""
+    size = LONGEST_PERIOD + 1
+    for q in range(1, LONGEST_PERIOD):
+        apart = 0.0
+        for back in range(2):
+            now, then = (count - back) % size, (count - back - q) % size
+            apart = max(apart, abs(history[now, 1] - history[then, 1]))
+            apart = max(apart, abs(history[now, 2] - history[then, 2]))
+        if apart <= SAME:
+            return q
+    return 0
+
+
+def _hasten(rules, state, period):
+    """Find the steady motion of a part whose motion along the normal repeats, but whose speed changes slowly.
+
+    Parameters
+    ----------
+    rules : Law
+    state : State
+    period : int
+        Of the motion along the normal; 0 for none.
+
+    Returns
+    -------
+    (State, int)
+        As ``settle`` returns them.
+
+    Notes
+    -----
+    Over whole periods the speed is carried on by a function of one number that keeps the order of speeds, so
+    it tends to the first fixed point in its way: that is bracketed by doubling the step, then closed in on
+    by the secant rule in its Illinois form.
+    """
+    tally = np.zeros(TALLY)
+    step = _gained(rules, state, period, tally) if period else 0.0
+    if step == 0.0:
+        return state, period
+    near, rise, far, fall = state.speed, step, state.speed, step
+    while fall * rise > 0.0:
+        near, rise = far, fall
+        far = near + step
+        fall = _gained(rules, _at_speed(rules, state, far), period, tally)
+        if (_runs(tally) and fall * rise > 0.0 and fall * far > 0.0) or abs(step) > FASTEST:
+            return state, RUNS
+        step *= 2.0
+    far = _closed_in(rules, state, period, (near, rise, far, fall))
+    return _at_speed(rules, state, far), period
+
+
+def _closed_in(rules, state, period, bracket):
+    """The speed that a period does not change, between two of which one grows and the other does not."""
+    tally, side = np.zeros(TALLY), 0
+    near, rise, far, fall = bracket
+    for _ in range(LEAPS):
+        if abs(far - near) <= CLOSE or fall == 0.0:
+            break
+        middle = far - fall * (far - near) / (fall - rise)
+        gained = _gained(rules, _at_speed(rules, state, middle), period, tally)
+        if gained * rise > 0.0:
+            near, rise = middle, gained
+            fall = 0.5 * fall if side == 1 else fall
+            side = 1
+        else:
+            far, fall = middle, gained
+            rise = 0.5 * rise if side == -1 else rise
+            side = -1
+    return far
+
+
+def _gained(rules, state, periods, tally):
+    """Speed gained in some periods [A w]."""
+    return _on(rules, state, periods, tally).speed - state.speed
+
+
+def _at_speed(rules, state, speed):
+    """The state at another speed along the track."""
+    phase = FLIGHT if state.phase == FLIGHT else contact(rules, state.angle, speed)
+    return State(state.angle, phase, speed, state.height, state.rising, state.aloft)
+
+
+def _on(rules, state, periods, tally):
+    """The state after some periods, stops and contacts counted."""
+    tally[STOPS], tally[UPWARD], tally[DOWNWARD] = 0.0, 0.0, 0.0
+    for _ in range(periods):
+        state = turn(rules, state, tally)
+    return state
+
+
+def _runs(tally):
+    """Whether a part slid all the time, and one way."""
+    return tally[STOPS] == 0.0 and (tally[UPWARD] > 0.0) != (tally[DOWNWARD] > 0.0)

@@ -1,0 +1,120 @@
+"""Whether there is a steady state: states and thresholds on both sides, and motions that settle slowly."""
+
+import math
+
+import numpy as np
+import pytest
+
+from feederscrew.conveying import settling, steady
+from feederscrew.conveying.law import law
+from feederscrew.conveying.motion import TALLY, at_rest, turn
+from feederscrew.conveying.setting import FLIGHT, FORWARD, STICK, Setting, plain
+
+DEG = math.pi / 180.0
+
+
+def surveyed(setting):
+    out = np.empty(steady.COLUMNS)
+    steady.survey(setting, out)
+    return out
+
+
+def sticky(ratio, angle, climb, static, kinetic, restitution=0.0):
+    """Unbanked, with a kinetic friction of its own; angles in degrees."""
+    here = plain(ratio, angle * DEG, climb * DEG, static, restitution)
+    return here._replace(kinetic=kinetic, kinetic_back=kinetic)
+
+
+def banked(ratio, climb, kinetic, wall, bank=10.0, restitution=0.0):
+    return plain(ratio, 30 * DEG, climb, kinetic, restitution)._replace(bank=bank * DEG, wall=wall)
+
+
+def speeds(setting, count):
+    """Speed along the track at the start of each period [A w]."""
+    rules = law(setting)
+    state, tally, found = at_rest(rules), np.zeros(TALLY), []
+    for _ in range(count):
+        state = turn(rules, state, tally)
+        found.append(state.speed)
+    return np.array(found)
+
+
+def test_between_kinetic_and_static_friction_a_gentle_drive_lets_it_ride():
+    found = surveyed(sticky(0.1812, 30, 6, 0.6, 0.08))
+    assert found[steady.STATUS] == steady.PERIODIC
+    assert found[steady.VELOCITY] == 0.0
+    assert found[steady.FRACTIONS + STICK] == pytest.approx(1.0)
+    assert found[steady.RUNAWAY] == 1.0  # pushed, it slides down: the climb is steeper than kinetic friction
+
+
+def test_between_kinetic_and_static_friction_a_part_may_stick_and_slip_up():
+    found = surveyed(sticky(0.773, 38.6, 7.6, 0.581, 0.057))
+    assert found[steady.VELOCITY] == pytest.approx(0.264, abs=2e-3)
+    assert found[steady.FRACTIONS + STICK] == pytest.approx(0.47, abs=1e-2)
+    assert found[steady.FRACTIONS + FORWARD] == pytest.approx(0.53, abs=1e-2)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.3])
+def test_a_climb_steeper_than_static_friction_has_none(restitution):
+    found = surveyed(sticky(2.0, 30, 20, 0.3, 0.2, restitution))
+    assert found[steady.STATUS] == steady.NO_STEADY_STATE
+    assert np.isnan(found[: steady.STATUS]).all()
+    assert np.isnan(found[steady.VELOCITY : steady.THROW]).all()
+
+
+@pytest.mark.parametrize(("beyond", "status"), [(-1e-3, steady.PERIODIC), (1e-3, steady.NO_STEADY_STATE)])
+def test_both_sides_of_one_friction(beyond, status):
+    """With static and kinetic friction alike, climbs up to the angle of friction have a steady state."""
+    setting = plain(0.9, 30 * DEG, math.atan(0.3 * (1.0 + beyond)), 0.3)
+    assert surveyed(setting)[steady.STATUS] == status
+    assert surveyed(setting)[steady.RUNAWAY] == float(beyond > 0.0)
+
+
+def test_both_sides_of_the_wall_that_does_not_brake_in_flight():
+    """Where kinetic friction on floor and wall would hold, but not without the wall's share of the flight."""
+    climb, kinetic = 0.1, 0.08
+    aloft = surveyed(banked(4.0, climb, kinetic, 3.0))[steady.FRACTIONS + FLIGHT]
+    excess = math.sin(climb) - kinetic * math.cos(climb) * math.cos(10 * DEG)
+    least = excess / (math.cos(climb) * math.sin(10 * DEG) * (1.0 - aloft))  # that holds a part that slides
+    assert aloft > 0.5
+    assert (
+        law(banked(4.0, climb, kinetic, 0.99 * least)).slip_back.level < 0.0
+    )  # it would hold without flight
+    assert surveyed(banked(4.0, climb, kinetic, 1.01 * least))[steady.STATUS] == steady.PERIODIC
+    lost = banked(4.0, climb, kinetic, 0.99 * least)
+    assert surveyed(lost)[steady.STATUS] == steady.NO_STEADY_STATE
+    late = speeds(lost, 3000)[-100:]
+    assert (np.diff(late) < 0.0).all()
+
+
+def test_a_velocity_that_keeps_growing_is_no_average():
+    """A motion without a period along the normal, which runs away by its trend."""
+    setting = Setting(2.96, 30 * DEG, 5.6 * DEG, 10 * DEG, 0.1, 0.09, 0.1, 0.09, 0.3, 0.7)
+    assert surveyed(setting)[steady.STATUS] == steady.NO_STEADY_STATE
+    held = surveyed(setting._replace(climb=2 * DEG))
+    assert held[steady.STATUS] == steady.AVERAGED
+    assert held[steady.RUNAWAY] == 0.0
+
+
+def test_a_frictionless_level_track_decides_no_velocity():
+    assert surveyed(plain(0.5, 30 * DEG, 0.0, 0.0))[steady.STATUS] == steady.NO_STEADY_STATE
+
+
+@pytest.mark.parametrize("friction", [0.02, 0.002, 0.0002])
+def test_a_start_from_rest_that_settles_slowly_settles(friction):
+    """The speed that closes in over thousands of periods is a fixed point, found at once."""
+    setting = plain(0.9 / math.sin(5 * DEG), 5 * DEG, 0.0, friction)._replace(lead=-1.2)
+    rules = law(setting)
+    state, period = settling.settle(rules, at_rest(rules))
+    assert period == 1
+    assert turn(rules, state, np.zeros(TALLY)).speed == pytest.approx(state.speed, rel=0, abs=1e-12)
+    other = at_rest(rules)._replace(speed=-state.speed)
+    again, _ = settling.settle(rules, other._replace(phase=2 if other.speed < 0.0 else 1))
+    assert again.speed == pytest.approx(state.speed, rel=0, abs=1e-8)
+
+
+def test_what_settles_slowly_is_what_patience_finds():
+    setting = plain(0.9 / math.sin(5 * DEG), 5 * DEG, 0.0, 0.02)._replace(lead=-1.2)
+    rules = law(setting)
+    found, _ = settling.settle(rules, at_rest(rules))
+    assert speeds(setting, 12_000)[-1] == pytest.approx(found.speed, rel=0, abs=1e-9)
