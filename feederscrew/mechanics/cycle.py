@@ -1,12 +1,25 @@
-"""Velocity of a part that sticks and slips on a surface shaken along one line, over one settled period."""
+"""Velocity of a part that sticks and slips on a surface shaken along one line, over one settled period.
 
+A slip is followed from the phase at which it breaks loose to the one at which it stops, each found as a root;
+between them the velocity is integrated by steps of fourth order, halved wherever the acceleration has a kink.
+"""
+
+import itertools
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew import check
+
 SAMPLES = 360  # of one period
-MOST_PERIODS = 200
-SETTLED = 1e-9  # of the greatest speed: a period that changes less has settled
+TURN = 2.0 * math.pi
+PATIENCE = 8  # periods followed before the settled one is sought by its velocity at phase 0
+DOUBLINGS = 40  # of the step that brackets it
+CLOSE = 1e-12  # of the greatest speed gained in a period: a velocity this near is found
+KINK = 1e-11  # the same: halves of a step that differ by more are halved again
+HALVINGS = 14
+STEPS = 60
 
 
 @dataclass(frozen=True, eq=False)
@@ -14,49 +27,49 @@ class Cycle:
     """One period, N samples from phase 0."""
 
     velocity: np.ndarray  # (N, ...) [m/s] relative to the surface
+    mean: float  # [m/s] of the whole period, not of the samples
     settled: bool  # whether the period repeats itself
 
 
 def phases(samples=SAMPLES):
     """Phases w t of one period, (samples,) [rad]; the upper reversal is at a quarter."""
-    return 2.0 * np.pi * np.arange(samples) / samples
+    return TURN * np.arange(samples) / samples
 
 
-def settle(forward, backward, starts_forward, starts_backward, period):
+def settle(acceleration, windows, period, samples=SAMPLES):
     """Follow a part from rest until its velocity repeats every period.
 
     Parameters
     ----------
-    forward, backward : (N, ...) float [m/s2]
-        Relative acceleration while it slips forward and backward, at ``phases(N)``.
-    starts_forward, starts_backward : (N, ...) bool
-        Whether a part at rest breaks loose.
+    acceleration : callable
+        Of phase [rad], velocity [m/s] and sense of sliding, +1 or -1: relative to the surface [m/s2].
+    windows : sequence of (float, float, float)
+        Phases from which and to which a part at rest breaks loose, from 0 to 2 pi, ascending, and its sense.
     period : float [s]
+    samples : int
+        Of the period that is handed back.
 
     Returns
     -------
     Cycle
+        Not settled where the part gets faster with every period.
 
     Notes
     -----
-    Trapezoidal steps; a slip that ends within a step ends at rest. The mean velocity converges with the
-    square of the step.
+    The velocity after a period is a function of that before it which keeps their order, so from rest it tends
+    to the first velocity that it leaves as it is.
     """
-    step = period / len(forward)
-    gain = step * 0.5 * (forward + np.roll(forward, -1, axis=0))
-    loss = step * 0.5 * (backward + np.roll(backward, -1, axis=0))
-    velocity = np.zeros(forward.shape)
-    now = np.zeros(forward.shape[1:])
-    for _ in range(MOST_PERIODS):
-        before = now
-        for k in range(len(forward)):
-            velocity[k] = now
-            now = _stepped(now, gain[k], loss[k], starts_forward[k], starts_backward[k])
-        settled = np.abs(now - before).max() <= SETTLED * np.abs(velocity).max()
-        if settled:
-            break
-    velocity.setflags(write=False)
-    return Cycle(velocity, bool(settled))
+    ride = _Ride(acceleration, tuple(windows), period / TURN, samples)
+    speed, scale = 0.0, 0.0
+    for _ in range(PATIENCE):
+        velocity, mean = ride.over(speed)
+        scale = max(scale, float(np.ptp(velocity)))
+        if abs(velocity[-1] - speed) <= CLOSE * scale:
+            return Cycle(check.frozen(velocity[:-1]), mean, True)
+        speed = float(velocity[-1])
+    start, settled = _steady(lambda speed: float(ride.over(speed)[0][-1]) - speed, speed, CLOSE * scale)
+    velocity, mean = ride.over(start)
+    return Cycle(check.frozen(velocity[:-1]), mean, settled)
 
 
 def swing(acceleration, period):
@@ -76,17 +89,130 @@ def swing(acceleration, period):
     gain = period / len(acceleration) * 0.5 * (acceleration + np.roll(acceleration, -1, axis=0))
     velocity = np.cumsum(gain - np.mean(gain, axis=0), axis=0)
     velocity = np.roll(velocity, 1, axis=0)
-    return Cycle(velocity - np.mean(velocity, axis=0), True)
+    return Cycle(velocity - np.mean(velocity, axis=0), 0.0, True)
 
 
-def mean(values):
-    """Mean over one period of samples along axis 0; exact for the trapezoidal rule."""
-    return np.mean(values, axis=0)
+def _steady(gained, begun, close):
+    """The velocity that a period does not change, and whether there is one; ``gained`` is what it adds."""
+    near, rise = begun, gained(begun)
+    step, far, fall = rise, near, rise
+    for _ in range(DOUBLINGS):
+        if fall * rise <= 0.0:
+            return _closed_in(gained, (near, rise, far, fall), close), True
+        near, rise = far, fall
+        far, step = far + step, 2.0 * step
+        fall = gained(far)
+    return begun, False
 
 
-def _stepped(now, gain, loss, starts_forward, starts_backward):
-    """Velocity one step on."""
-    onward = (now > 0.0) | ((now == 0.0) & starts_forward)
-    back = ~onward & ((now < 0.0) | ((now == 0.0) & starts_backward))
-    slipped = np.where(onward, np.maximum(now + gain, 0.0), np.minimum(now + loss, 0.0))
-    return np.where(onward | back, slipped, 0.0)
+def _closed_in(gained, bracket, close):
+    """The root between two velocities, by the secant rule in its Illinois form."""
+    near, rise, far, fall = bracket
+    side = 0
+    for _ in range(STEPS):
+        if abs(far - near) <= close or fall == 0.0:
+            break
+        middle = far - fall * (far - near) / (fall - rise)
+        found = gained(middle)
+        if found * rise > 0.0:
+            near, rise, fall, side = middle, found, 0.5 * fall if side == 1 else fall, 1
+        else:
+            far, fall, rise, side = middle, found, 0.5 * rise if side == -1 else rise, -1
+    return far
+
+
+class _Ride:
+    """One period after another of a part under a given acceleration."""
+
+    def __init__(self, acceleration, windows, pace, samples):
+        self.windows, self.samples = windows, samples
+        self.gain = lambda phase, speed, sense: pace * acceleration(phase, speed, sense)  # a radian
+        self.kink = KINK * pace * max(abs(acceleration(0.25 * TURN * k, 0.0, 1.0)) for k in range(4))
+
+    def over(self, speed):
+        """Velocities at the samples and at the end of a period that begins with one, and their mean."""
+        grid = [TURN * k / self.samples for k in range(self.samples + 1)]
+        found, way = [speed], 0.0
+        for start, end in itertools.pairwise(grid):
+            speed, more = self._between(speed, start, end)
+            way += more
+            found.append(speed)
+        return np.array(found), way / TURN
+
+    def _between(self, speed, start, end):
+        """Velocity at the end of a stretch, and the way made in it, times the pace of the phase."""
+        way, now = 0.0, start
+        while now < end:
+            if speed == 0.0:
+                now, until, sense = self._loose(now, end)
+            else:
+                until, sense = now, math.copysign(1.0, speed)
+            if now >= end:
+                break
+            speed, more, now = self._slip(speed, now, end, until, sense)
+            way += more
+        return speed, way
+
+    def _loose(self, now, end):
+        """Where a part at rest breaks loose within a stretch, how long it is loose there, and its sense."""
+        for start, stop, sense in self.windows:
+            if now < stop and start < end:
+                return max(now, start), min(stop, end), sense
+        return end, end, 0.0
+
+    def _slip(self, speed, now, end, until, sense):
+        """Velocity, way and phase where a slip stops or the stretch ends."""
+        span = end - now
+        after, way = self._step(now, span, speed, sense)
+        low = until - now
+        if sense * after > 0.0:
+            low = self._slowest(now, span, speed, sense) if speed != 0.0 else span
+            if low >= span or sense * self._step(now, low, speed, sense)[0] > 0.0:
+                return after, way, end
+            low, span = 0.0, low
+        elif speed == 0.0 and sense * self._step(now, low, 0.0, sense)[0] <= 0.0:
+            return 0.0, 0.0, end  # it breaks loose another way than along the line
+        span = self._stop(now, low, span, speed, sense)
+        return 0.0, self._step(now, span, speed, sense)[1], now + span
+
+    def _slowest(self, now, span, speed, sense):
+        """Span after which a slip that slows down and then gets faster is slowest; else all of it."""
+        if sense * self.gain(now, speed, sense) >= 0.0 or sense * self.gain(now + span, speed, sense) <= 0.0:
+            return span
+        low, high = 0.0, span
+        for _ in range(STEPS):
+            middle = 0.5 * (low + high)
+            slows = sense * self.gain(now + middle, speed, sense) < 0.0
+            low, high = (middle, high) if slows else (low, middle)
+        return high
+
+    def _stop(self, now, low, high, speed, sense):
+        """Span after which a slip stops, between one at which it slides and one at which it would not."""
+        for _ in range(STEPS):
+            middle = 0.5 * (low + high)
+            if not low < middle < high:
+                break
+            slides = sense * self._step(now, middle, speed, sense)[0] > 0.0
+            low, high = (middle, high) if slides else (low, middle)
+        return low
+
+    def _step(self, now, span, speed, sense, depth=0):
+        """Velocity and way after a span, by one step or, where two halves differ from it, by theirs."""
+        half = 0.5 * span
+        whole, _ = self._once(now, span, speed, sense)
+        middle, way = self._once(now, half, speed, sense)
+        after, more = self._once(now + half, half, middle, sense)
+        if abs(after - whole) <= self.kink * span or depth >= HALVINGS:
+            return after, way + more
+        middle, way = self._step(now, half, speed, sense, depth + 1)
+        after, more = self._step(now + half, half, middle, sense, depth + 1)
+        return after, way + more
+
+    def _once(self, now, span, speed, sense):
+        """One step of the classical Runge-Kutta rule for the velocity and its integral."""
+        half = 0.5 * span
+        a = self.gain(now, speed, sense)
+        b = self.gain(now + half, speed + half * a, sense)
+        c = self.gain(now + half, speed + half * b, sense)
+        d = self.gain(now + span, speed + span * c, sense)
+        return speed + span / 6.0 * (a + 2.0 * (b + c) + d), span * (speed + span / 6.0 * (a + b + c))

@@ -8,6 +8,7 @@ w t = 90 deg, it points forward and up and the normal force is least.
 Every field of the Bowl may be an array; the results broadcast.
 """
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -127,20 +128,40 @@ def over_cycle(posture, bowl, heading, samples=cycle.SAMPLES):
     """
     phase, turn = cycle.phases(samples), bowl.drive.direction - heading
     along = np.array([np.cos(turn), np.sin(turn)])
-    rest = motion(posture, bowl, heading, phase)
     if rolls(posture):
+        rest = motion(posture, bowl, heading, phase)
         return rest, cycle.swing(rest.acceleration @ along, 1.0 / bowl.drive.frequency)
-    ahead, back = (motion(posture, bowl, heading, phase, sense) for sense in (1.0, -1.0))
-    free = (rest.limiting_friction > bowl.friction.static) | (rest.normal_force == 0.0)
-    pushed = np.sin(phase) > 0.0
-    course = cycle.settle(
-        ahead.acceleration @ along,
-        back.acceleration @ along,
-        free & pushed,
-        free & ~pushed,
-        1.0 / bowl.drive.frequency,
-    )
+    course = cycle.settle(_slips(bowl), _loose(bowl), 1.0 / bowl.drive.frequency, samples)
     return motion(posture, bowl, heading, phase, np.sign(course.velocity)), course
+
+
+def _slips(bowl):
+    """Acceleration [m/s2] of a sliding flat part as a function of phase, speed and sense."""
+    push, lift = _reversal(bowl)
+
+    def acceleration(phase, speed, sense):
+        s = math.sin(phase)
+        return push * s - sense * bowl.friction.kinetic * max(bowl.gravity - lift * s, 0.0)
+
+    return acceleration
+
+
+def _loose(bowl):
+    """Phases within which a flat part at rest breaks loose, as ``cycle.settle`` takes them; eq. [4.28]."""
+    (push, lift), mu, found = _reversal(bowl), bowl.friction.static, []
+    for sense, start in ((1.0, 0.0), (-1.0, math.pi)):
+        gain = push + sense * mu * lift
+        onset = math.asin(mu * bowl.gravity / gain) if gain > mu * bowl.gravity else math.inf
+        if onset < math.inf:
+            found.append((start + onset, start + math.pi - onset, sense))
+    return found
+
+
+def _reversal(bowl):
+    """Acceleration [m/s2] of the drive at its reversal, along the floor and up."""
+    drive = bowl.drive
+    size = drive.amplitude * (2.0 * math.pi * drive.frequency) ** 2
+    return size * math.cos(drive.vibration_angle), size * math.sin(drive.vibration_angle)
 
 
 def rolls(posture):

@@ -2,7 +2,7 @@
 
 Seven unknowns stand against six equations: the normal force acts at a point (d_x, d_y) of the contact
 polygon. Sliding along X, Coulomb friction opposes the sliding, so R3 = 0 and d_y takes the moment about X
-that the thesis gives to R3. At rest friction is not determined; see ``track_system.held`` for our choice.
+that the thesis gives to R3. At rest friction is not determined; see ``system.held`` for our choice.
 """
 
 from dataclasses import dataclass
@@ -12,12 +12,11 @@ import numpy as np
 from feederscrew.geometry.polygons import inset
 from feederscrew.mechanics import cycle
 from feederscrew.mechanics.floor.balance import HOP, ON_THE_LINE, SLIDE, STICK, TIP, UPPER_REVERSAL
-from feederscrew.mechanics.track import system
+from feederscrew.mechanics.track import sliding, system
 from feederscrew.mechanics.track.frame import frame, loads
 
 PULL = 1e-9  # of the weight: a reaction more negative than this would be a pull
 NOISE = 1e-12  # of the weight: less than this is rounding
-PASSES = 3  # of the period, each with the speed of the one before in the centrifugal force
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,24 +66,14 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0):
     """
     axes = frame(bowl, seat.walls)
     load = loads(seat, bowl, axes, phase, speed)
-    coefficients = bowl.friction
-    static, kinetic, wall = np.broadcast_arrays(
-        *map(np.asarray, (coefficients.static, coefficients.kinetic, coefficients.wall))
-    )
-    ratio = np.divide(wall, static, out=np.zeros(np.shape(static)), where=static > 0.0)
-
-    def holding(closed):
-        found = system.held(seat, axes, load, closed, ratio)
-        return vars(found) | {"wall_use": found.mobilised * ratio}
-
-    still = _chosen(holding, bowl.gravity)
-    needed = _needed(still, ratio)
+    static, kinetic, wall = _coefficients(bowl)
+    still, needed = _still(seat, bowl, axes, load)
     moving = np.asarray(moving, dtype=float)
     slides = (moving != 0.0) | ~(needed[..., 0] <= static)
     sense = np.where(moving == 0.0, np.sign(still["mobilised"]), moving)
     free = _course(load, moving, sense)
 
-    def sliding(closed):
+    def sliding_on(closed):
         """Along the track while a wall contact is closed; a part off the wall goes where it is pushed."""
         course = sense[..., None] * system.AHEAD if any(closed) else free
 
@@ -96,9 +85,22 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0):
         use = system.wall_use(seat, axes, solve, closed, ahead, turns) if turns.any() else ahead
         return vars(solve(use)) | {"wall_use": use}
 
-    slipping = _chosen(sliding, bowl.gravity) if slides.any() else still
+    slipping = _chosen(sliding_on, bowl.gravity) if slides.any() else still
     found = {name: _where(slides, slipping[name], still[name]) for name in still}
     return _motion(seat, found, slides, needed, load)
+
+
+def needed_at_rest(seat, bowl, phase):
+    """Friction over normal force that holds a part at rest, (..., 3) [1]: floor and walls.
+
+    Parameters
+    ----------
+    seat, bowl, phase
+        As for ``motion``.
+    """
+    axes = frame(bowl, seat.walls)
+    still, needed = _still(seat, bowl, axes, loads(seat, bowl, axes, phase))
+    return np.where(still["normal"][..., None] > 0.0, needed, np.nan)
 
 
 def over_cycle(seat, bowl, samples=cycle.SAMPLES):
@@ -117,21 +119,34 @@ def over_cycle(seat, bowl, samples=cycle.SAMPLES):
         Flights are not followed: past the hop the state says ``hop`` and the velocity is that of a part that
         keeps to the track.
     """
-    phase, speed = cycle.phases(samples), 0.0
-    for _ in range(PASSES):
-        ahead, back = (motion(seat, bowl, phase, sense, speed) for sense in (1.0, -1.0))
-        rest = motion(seat, bowl, phase, 0.0, speed)
-        loose = (rest.state == HOP) | ~(rest.needed[:, 0] <= bowl.friction.static)
-        onward = rest.acceleration[:, 0] > 0.0
-        course = cycle.settle(
-            ahead.acceleration[:, 0],
-            back.acceleration[:, 0],
-            loose & onward,
-            loose & ~onward,
-            1.0 / bowl.drive.frequency,
-        )
-        speed = course.velocity
-    return motion(seat, bowl, phase, np.sign(speed), speed), course
+    slips = sliding.acceleration(seat, bowl, frame(bowl, seat.walls), -PULL * bowl.gravity)
+    loose = sliding.windows(
+        lambda phase: motion(seat, bowl, phase),
+        lambda phase: needed_at_rest(seat, bowl, phase)[..., 0],
+        bowl.friction.static,
+    )
+    course = cycle.settle(slips, loose, 1.0 / bowl.drive.frequency, samples)
+    speed = course.velocity
+    return motion(seat, bowl, cycle.phases(samples), np.sign(speed), speed), course
+
+
+def _coefficients(bowl):
+    """Static, kinetic and wall friction, of one shape."""
+    friction = bowl.friction
+    return np.broadcast_arrays(*map(np.asarray, (friction.static, friction.kinetic, friction.wall)))
+
+
+def _still(seat, bowl, axes, load):
+    """The part at rest as ``system.held`` has it, and the friction that holds it there."""
+    static, _, wall = _coefficients(bowl)
+    ratio = np.divide(wall, static, out=np.zeros(np.shape(static)), where=static > 0.0)
+
+    def holding(closed):
+        found = system.held(seat, axes, load, closed, ratio)
+        return vars(found) | {"wall_use": found.mobilised * ratio}
+
+    still = _chosen(holding, bowl.gravity)
+    return still, _needed(still, ratio)
 
 
 def _course(load, moving, sense):

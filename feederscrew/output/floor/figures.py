@@ -82,10 +82,10 @@ def cycle(found, course, title):
     )
     plots.tidy(lower, x="phase ωt [deg]; upper reversal at 90°", y="velocity [mm/s]")
     lower.plot(phase, course.velocity / MM, color=MOTION)
-    lower.axhline(np.mean(course.velocity) / MM, color=MOTION, linestyle="--", linewidth=0.9)
+    lower.axhline(course.mean / MM, color=MOTION, linestyle="--", linewidth=0.9)
     lower.axhline(0, color=plots.INK, linewidth=0.8)
     lower.text(
-        2, np.mean(course.velocity) / MM, f" mean {np.mean(course.velocity) / MM:.3g} mm/s",
+        2, course.mean / MM, f" mean {course.mean / MM:.3g} mm/s",
         fontsize=8, color=MOTION, va="bottom",
     )  # fmt: skip
     for axes in (upper, lower):

@@ -119,7 +119,7 @@ def document(found, settings, *, as_published=False):
         "regime": regime(found.cycle.state),
         "instant": printed if as_published else complete,
         **told,
-        "mean_velocity_m_s": None if HOP in found.cycle.state else float(np.mean(found.course.velocity)),
+        "mean_velocity_m_s": mean_velocity(found),
         "settled": found.course.settled,
         "cycle": over_cycle(found.cycle, found.course),
         "bowl": settings,
@@ -212,6 +212,11 @@ def alignment(study):
     headings, cells = study.alignment()
     names = ("alignment_acceleration_rad_s2", "published_alignment_rad_s2")
     return {"heading_deg": np.degrees(headings), **{name: cells[name] for name in names}}
+
+
+def mean_velocity(found):
+    """Of the cycle [m/s]; None where the part hops, or gets faster with every period."""
+    return None if HOP in found.cycle.state or not found.course.settled else found.course.mean
 
 
 def chosen(found):

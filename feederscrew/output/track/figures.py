@@ -75,9 +75,7 @@ def cycle(found, course, title):
         middle.plot(phase, found.walls[:, k], color=color, label=f"R{k + 1}")
     middle.plot(phase, found.radial_friction, color=NORMAL, linestyle="--", label="R3")
     plots.tidy(lower, x="phase ωt [deg]; upper reversal at 90°", y="velocity [mm/s]")
-    lower.plot(
-        phase, course.velocity / MM, color="#2f7d5b", label=f"mean {np.mean(course.velocity) / MM:.3g} mm/s"
-    )
+    lower.plot(phase, course.velocity / MM, color="#2f7d5b", label=f"mean {course.mean / MM:.3g} mm/s")
     for axes in (upper, middle, lower):
         phase_axis(axes)
         axes.axhline(0, color=plots.INK, linewidth=0.8)

@@ -5,7 +5,17 @@ import numpy as np
 from feederscrew.mechanics.floor.balance import HOP, STATES, regime
 from feederscrew.mechanics.published.comparison import TRACK_TERMS
 from feederscrew.output import tables
-from feederscrew.output.floor.tables import EVERY, MM, chosen, difference, label, noiseless, shown_value, tips
+from feederscrew.output.floor.tables import (
+    EVERY,
+    MM,
+    chosen,
+    difference,
+    label,
+    mean_velocity,
+    noiseless,
+    shown_value,
+    tips,
+)
 
 CONTACTS = ("floor", "wall_1", "wall_2")
 TURNED = 1.0  # [deg] of heading: less is not worth a word
@@ -130,7 +140,7 @@ def document(found, settings, *, as_published=False):
         "friction_needed": friction_needed(found.cycle),
         "stays_on_wall": bool(found.cycle.closed.any(axis=-1).all()),
         "bank_without_radial_friction_deg": float(np.degrees(found.bank_without_radial_friction)),
-        "mean_velocity_m_s": None if HOP in found.cycle.state else float(np.mean(found.course.velocity)),
+        "mean_velocity_m_s": mean_velocity(found),
         "settled": found.course.settled,
         "cycle": over_cycle(found.cycle, found.course),
         "bowl": settings,
