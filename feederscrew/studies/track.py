@@ -1,16 +1,17 @@
 """The study of ``feeder track``: a part on one aspect against the wall of one bowl."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.mechanics import limits
 from feederscrew.mechanics.cycle import Cycle
+from feederscrew.mechanics.floor.balance import SLIDE, STICK, TIP
 from feederscrew.mechanics.published import track as published_track
 from feederscrew.mechanics.published.comparison import Term, omitted_terms
 from feederscrew.mechanics.standing import standing
-from feederscrew.mechanics.track import balance
+from feederscrew.mechanics.track import balance, equilibrium
 from feederscrew.mechanics.track.cells import seated
 from feederscrew.mechanics.track.frame import Seat, bank_without_radial_friction
 from feederscrew.mechanics.track.opening import Opening, first_to_open
@@ -38,6 +39,7 @@ class TrackStudy:
     course: Cycle
     opening: Opening
     bank_without_radial_friction: float  # [rad]
+    held_across: bool  # at rest, by friction that the reactions of ``now`` do not show
     why: str | None = None  # this aspect; None where it was asked for
 
 
@@ -69,7 +71,7 @@ def track(part, bowl, aspect=None, heading=None):
     posture, why = standing(part, aspect, "track")
     seat, found, row = seated(posture, bowl, heading)
     levers = _levers(part, posture, seat)
-    now = balance.motion(seat, bowl)
+    now, held_across = _from_rest(seat, bowl)
     cycle, course = balance.over_cycle(seat, bowl)
     return TrackStudy(
         part=part,
@@ -85,8 +87,17 @@ def track(part, bowl, aspect=None, heading=None):
         course=course,
         opening=first_to_open(seat, bowl),
         bank_without_radial_friction=bank_without_radial_friction(seat),
+        held_across=held_across,
         why=why,
     )
+
+
+def _from_rest(seat, bowl):
+    """The upper reversal from rest, and whether the part is held though the least friction would not do."""
+    now = balance.motion(seat, bowl)
+    if now.state not in (SLIDE, TIP) or not equilibrium.exists(seat, bowl):
+        return now, False
+    return replace(balance.motion(seat, bowl, held=True), state=np.array(STICK)), True
 
 
 def _levers(part, posture, seat):

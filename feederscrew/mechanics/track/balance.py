@@ -42,7 +42,7 @@ class TrackMotion:
     load: np.ndarray  # (..., 3) [N] weight, drive and centrifugal force
 
 
-def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0):
+def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=False):
     """What a part on the track does at one phase of the vibration.
 
     Parameters
@@ -57,6 +57,8 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0):
         Sense of sliding along the track, +1 or -1; 0 for a part at rest.
     speed : array_like [m/s]
         Of that sliding, for the centrifugal force.
+    held : bool
+        Keep a part at rest even where the least friction that holds it is more than there is.
 
     Returns
     -------
@@ -69,7 +71,7 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0):
     static, kinetic, wall = _coefficients(bowl)
     still, needed = _still(seat, bowl, axes, load)
     moving = np.asarray(moving, dtype=float)
-    slides = (moving != 0.0) | ~(needed[..., 0] <= static)
+    slides = (moving != 0.0) | ~((needed[..., 0] <= static) | held)
     sense = np.where(moving == 0.0, np.sign(still["mobilised"]), moving)
     free = _course(load, moving, sense)
 

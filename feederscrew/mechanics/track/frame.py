@@ -139,7 +139,8 @@ def frame(bowl, walls):
     ahead = banked(np.cos(phi), 0.0, -np.sin(phi))  # level
     radial = banked(0.0, 1.0, 0.0)
     drive = banked(np.cos(beta) * np.cos(alpha), np.cos(beta) * np.sin(alpha), np.sin(beta))
-    sine = -walls[:, 0] / radius[..., None]  # of sigma, positive at the trailing contact
+    behind = -np.einsum("...i,ki->...k", ahead, walls)  # of the centre of mass, level: climb and bank count
+    sine = behind / radius[..., None]  # of sigma, positive at the trailing contact
     cosine = np.sqrt(1.0 - sine**2)
     normals = cosine[..., None] * radial[..., None, :] + sine[..., None] * ahead[..., None, :]
     level = cosine[..., None] * ahead[..., None, :] - sine[..., None] * radial[..., None, :]

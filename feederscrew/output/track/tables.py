@@ -18,6 +18,10 @@ from feederscrew.output.floor.tables import (
 )
 
 CONTACTS = ("floor", "wall_1", "wall_2")
+HELD_ACROSS = (
+    "at rest at the upper reversal, friction across the track or up the wall can hold the part; by the least "
+    "friction along the track, which the reactions show and the cycle follows, it would slide"
+)
 TURNED = 1.0  # [deg] of heading: less is not worth a word
 LABELS = {
     "normal_force_N": "normal force N",
@@ -138,6 +142,7 @@ def document(found, settings, *, as_published=False):
         "opens_at_reversal": found.opening.reversal,
         "tipping_axis": _axis(found.opening),
         "friction_needed": friction_needed(found.cycle),
+        "held_across": found.held_across,
         "stays_on_wall": bool(found.cycle.closed.any(axis=-1).all()),
         "bank_without_radial_friction_deg": float(np.degrees(found.bank_without_radial_friction)),
         "mean_velocity_m_s": mean_velocity(found),
@@ -183,6 +188,8 @@ def remarks(found):
     lines, cycle = chosen(found), found.cycle
     if len(found.seat.contact) == 0:
         lines.append("a part card has no contact polygon: whether it tips is not known")
+    if found.held_across:
+        lines.append(HELD_ACROSS)
     if HOP in cycle.state:
         lines.append(
             "the part loses contact within the cycle: its flight is not followed here, but by feeder convey"
