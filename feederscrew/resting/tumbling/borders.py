@@ -1,18 +1,18 @@
 """Borders of the facets of a hull: straight edges between corners at which three facets or more meet.
 
-Noise in a file leaves corners on the edge between two facets, and needles: triangles whose corners are the
-ends of one edge and such a corner between them. Coplanar triangles are merged within a tolerance, so a needle
-may be left with neighbours on two sides only. No convex body has such corners or such facets, and the walks
-of `tumbling.walk` rely on that. Arrays have one entry for each of the H half-edges of the triangles.
+The walks of `tumbling.walk` rely on a convex body: convex facets, three of them or more at each corner, three
+corners or more to each facet. Noise in a file leaves corners on the edge between two facets, needles
+(triangles whose corners are the ends of one edge and such a corner between them), and planes of which some
+triangles are coplanar within the tolerance of merging and others are not. Arrays have one entry for each of
+the H half-edges of the triangles.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from feederscrew.resting.basins import forest
-
 FEWEST = 3  # facets at a corner
+STRAIGHT = 1e-9  # [1] of the radius: what a corner may lie behind the line between its neighbours
 
 
 class Borders(NamedTuple):
@@ -33,28 +33,36 @@ class Borders(NamedTuple):
         return around
 
 
-def borders(origins, targets, twins, facets):
+def borders(hull, origins, targets, twins, facets):
     """Return the borders between facets, as a convex body has them.
 
     Parameters
     ----------
+    hull : Hull
     origins, targets, twins : (H,) int
-        Half-edges of triangles: 3 t to 3 t + 2 run around triangle t.
+        Its half-edges: 3 t to 3 t + 2 run around triangle t.
     facets : (H,) int
         Facet of coplanar triangles each half-edge belongs to.
 
     Returns
     -------
     Borders
-        Every corner with three edges or more, every facet likewise. A facet that has no border left (a
-        needle on an edge) has become part of the facet beside it; facets are numbered without gaps.
+        Every corner with three edges or more, every facet likewise and convex; facets are numbered
+        without gaps. A facet that would not be convex is left in triangles, and one left with two edges
+        (a needle) becomes part of its neighbour.
     """
+    facets = _convex(hull, origins, twins, facets)
+    while True:
+        found = _straightened(origins, _bordered(targets, twins, facets))
+        needles = _of_two_edges(found)
+        if not len(needles):
+            return found._replace(facets=np.unique(facets, return_inverse=True)[1].ravel())
+        facets = _joined(facets, facets[needles], facets[found.twins[needles]])
+
+
+def _bordered(targets, twins, facets):
     part = facets != facets[twins]
-    found = Borders(targets, twins, part, _ahead(twins, part), facets)
-    found = _straightened(origins, found)
-    while len(needles := _of_two_edges(found)):
-        found = _straightened(origins, _closed_up(found, needles))
-    return found._replace(facets=np.unique(found.facets, return_inverse=True)[1].ravel())
+    return Borders(targets, twins, part, _ahead(twins, part), facets)
 
 
 def _ahead(twins, part):
@@ -68,36 +76,46 @@ def _ahead(twins, part):
     return ahead
 
 
+def _convex(hull, origins, twins, facets):
+    """(H,) facets, those with a reflex corner taken apart into their triangles."""
+    targets, single = origins[twins], np.arange(len(facets)) // 3
+    while True:
+        found = _bordered(targets, twins, facets)
+        merged = np.bincount(facets[::3])[facets] > 1
+        edges = np.flatnonzero(found.part & merged)
+        corner = hull.vertices[targets[edges]]
+        before, after = hull.vertices[origins[edges]], hull.vertices[targets[found.ahead[edges]]]
+        turn = (np.cross(corner - before, after - corner) * _normals(hull, facets)[facets[edges]]).sum(axis=1)
+        reflex = turn < -STRAIGHT * hull.radius * np.sqrt(((after - before) ** 2).sum(axis=1))
+        if not reflex.any():
+            return facets
+        apart = np.isin(facets, facets[edges[reflex]])
+        facets = np.unique(np.where(apart, facets.max() + 1 + single, facets), return_inverse=True)[1].ravel()
+
+
+def _normals(hull, facets):
+    """(M, 3) unit normals of the facets, by the areas of their triangles."""
+    weighted = hull.areas[:, None] * hull.normals
+    sums = np.stack([np.bincount(facets[::3], column) for column in weighted.T], axis=1)
+    return sums / np.maximum(np.sqrt((sums**2).sum(axis=1)), np.finfo(float).tiny)[:, None]
+
+
 def _straightened(origins, found):
     """Borders with one edge where several met at corners of two facets."""
     valence = np.bincount(origins[found.part], minlength=origins.max() + 1)
-    passing = found.part & (valence[found.targets] < FEWEST)
+    passing = found.part & (valence[found.targets] < FEWEST)  # ends at a corner of two facets
     if not passing.any():
         return found
-    starts = np.flatnonzero(found.part & (valence[origins] >= FEWEST))
-    last, going, closed = starts.copy(), np.flatnonzero(passing[starts]), found.part.copy()
-    closed[starts] = False
+    starts = np.flatnonzero(found.part & ~passing[found.twins])
+    last, going = starts.copy(), np.flatnonzero(passing[starts])
     while len(going):
         last[going] = found.ahead[last[going]]
-        closed[last[going]] = False
         going = going[passing[last[going]]]
     targets, twins, ahead = (array.copy() for array in (found.targets, found.twins, found.ahead))
     targets[starts], twins[starts], ahead[starts] = targets[last], twins[last], ahead[last]
     part = np.zeros_like(found.part)
     part[starts] = True
-    return Borders(targets, twins, part, ahead, _without_islands(found, part, np.flatnonzero(closed)))
-
-
-def _without_islands(found, part, rims):
-    """(H,) facets, those within another one joined to it; ``rims`` are half-edges around such islands."""
-    if not len(rims):
-        return found.facets
-    rooted = np.zeros(found.facets.max() + 1, bool)
-    rooted[found.facets[part]] = True
-    absorbed = np.arange(len(rooted))
-    inner, outer = found.facets[rims], found.facets[found.twins[rims]]
-    absorbed[inner[~rooted[inner]]] = outer[~rooted[inner]]
-    return forest.roots(absorbed)[found.facets]
+    return Borders(targets, twins, part, ahead, found.facets)
 
 
 def _of_two_edges(found):
@@ -106,12 +124,11 @@ def _of_two_edges(found):
     return edges[(found.ahead[found.ahead[edges]] == edges) & (edges < found.ahead[edges])]
 
 
-def _closed_up(found, needles):
-    """Borders with one edge for both edges of each needle, and the needle part of a neighbour."""
-    twins, part, facets = found.twins.copy(), found.part.copy(), found.facets.copy()
-    for h in needles:
-        first, second = twins[h], twins[found.ahead[h]]
-        twins[first], twins[second] = second, first
-        part[[h, found.ahead[h]]] = False
-        facets[facets == facets[h]] = facets[first]
-    return found._replace(twins=twins, part=part, facets=facets)
+def _joined(facets, first, second):
+    """(H,) facets, each of ``first`` joined with that of ``second``."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    count = facets.max() + 1
+    links = coo_array((np.ones(len(first)), (first, second)), shape=(count, count))
+    return connected_components(links, directed=False)[1].astype(int)[facets]

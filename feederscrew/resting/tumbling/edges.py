@@ -53,7 +53,7 @@ def half_edges(hull):
     origins = hull.triangles[:, [1, 2, 0]].ravel().astype(int)
     targets = hull.triangles[:, [2, 0, 1]].ravel().astype(int)
     twins = _twins(hull.neighbours)
-    found = borders.borders(origins, targets, twins, np.repeat(_facets(hull, twins), 3))
+    found = borders.borders(hull, origins, targets, twins, np.repeat(_facets(hull, twins), 3))
     facets, edges = found.facets[::3], np.flatnonzero(found.part)
     normals = _facet_normals(hull, facets)
     slopes, sides = np.empty((2, len(origins)))
@@ -83,23 +83,45 @@ def half_edges(hull):
 
 
 def _one_way_out(slopes, sides, found):
-    """(H,) [m2] slopes with which every facet is left over one edge, or over a corner.
+    """(H,) [m2] slopes with which every facet is left one way: over one edge, over one corner, or not at all.
 
-    The foot of the centre of mass lies nearest to one edge of a convex polygon. Where coplanar triangles
-    were merged, a corner may be reflex by the tolerance, and the foot lie inside both its edges; then it
-    is past the end of the further one, by as little.
+    The foot of the centre of mass lies nearest to one place of a convex polygon. Where a corner of the
+    border lies on or, by rounding, behind the line between its neighbours, the signs may name two places or
+    none: the nearest is taken, and at the others the foot is past the corner on the other side of it.
     """
-    exits = np.flatnonzero(found.part & (sides < 0.0) & (slopes <= 0.0) & (slopes[found.twins] <= 0.0))
-    facets, count = np.unique(found.facets[exits], return_counts=True)
-    slopes = slopes.copy()
-    for facet in facets[count > 1]:
-        several = exits[found.facets[exits] == facet]
-        lengths = -slopes[several] - slopes[found.twins[several]]  # squared
-        nearest = several[np.argmin(sides[several] ** 2 / lengths)]
-        for h in several[several != nearest]:
-            end = max(h, found.twins[h], key=slopes.__getitem__)
-            slopes[end] = np.finfo(float).tiny
+    edges = np.flatnonzero(found.part)
+    before = np.zeros_like(found.ahead)
+    before[found.ahead[edges]] = edges
+    slopes, leaves = slopes.copy(), sides[edges] < 0.0
+    over_edge = leaves & (slopes[edges] <= 0.0) & (slopes[found.twins[edges]] <= 0.0)
+    over_corner = (slopes[edges] > 0.0) & (slopes[found.twins[before[edges]]] > 0.0)
+    facet = found.facets[edges]
+    ways, unstable = np.bincount(facet, over_edge * 1 + over_corner), np.bincount(facet, leaves) > 0
+    for doubtful in np.flatnonzero(ways != unstable):
+        own = facet == doubtful
+        over = edges[own & over_edge].tolist(), edges[own & over_corner].tolist()
+        _settle(slopes, sides, found.twins, before, over, edges[own & leaves].tolist())
     return slopes
+
+
+def _settle(slopes, sides, twins, before, over, leaving):
+    """Change signs of slopes (in place) so that a facet is left over the nearest of several places.
+
+    ``over`` holds half-edges to be left over and half-edges leaving corners to be left over; ``leaving`` all
+    with the foot beyond them.
+    """
+
+    def away(h, past):
+        return (sides[h] ** 2 + past * slopes[h] ** 2) / -(slopes[h] + slopes[twins[h]])
+
+    places = sorted([(away(h, 0.0), 0, h) for h in over[0]] + [(away(h, 1.0), 1, h) for h in over[1]])
+    if leaving and not places:
+        end = min((max(h, twins[h], key=slopes.__getitem__) for h in leaving), key=slopes.__getitem__)
+        slopes[end] = 0.0
+    for _, corner, h in places[1:] if leaving else places:
+        ends = (h, twins[before[h]]) if corner else (h, twins[h])
+        end = min(ends, key=lambda end: abs(slopes[end]))
+        slopes[end] = -np.finfo(float).tiny if corner else np.finfo(float).tiny
 
 
 def sinks(edges):
@@ -176,8 +198,9 @@ def _flat(hull, near, twins, depths):
 
 
 def _facet_normals(hull, facets):
+    """(M, 3) unit normals of the facets, by the areas of their triangles."""
     if len(hull.triangles) == facets.max() + 1:
-        return hull.normals
+        return hull.normals[np.argsort(facets)]
     weighted = hull.areas[:, None] * hull.normals
     sums = np.stack([np.bincount(facets, column) for column in weighted.T], axis=1)
     return sums / np.linalg.norm(sums, axis=1, keepdims=True)
