@@ -38,9 +38,16 @@ UNITS = {  # dimension: {unit: SI units in it}, the unit we suggest first
     },
     "inertia": {"g mm2": 1e-9, "kg m2": 1.0, "kg mm2": 1e-6, "g cm2": 1e-7, "kg cm2": 1e-4},
     "force": {"N": 1.0, "mN": 1e-3, "kN": 1e3},
+    "stress": {"MPa": 1e6, "GPa": 1e9, "Pa": 1.0, "N/mm2": 1e6},
+    "stiffness": {"N/mm": 1e3, "N/m": 1.0, "kN/m": 1e3},
+    "count": {"": 1.0},
+    "supply": {"Hz full wave": 2.0, "Hz half wave": 1.0},  # mains: hertz of the drive in one of the supply
     "energy": {"J": 1.0, "mJ": 1e-3, "uJ": 1e-6},
 }
-SPELLINGS = {"°": "deg", "degree": "deg", "degrees": "deg", "µm": "um", "μm": "um", "inch": "in", '"': "in"}
+SPELLINGS = {
+    **{"°": "deg", "degree": "deg", "degrees": "deg", "µm": "um", "μm": "um", "inch": "in", '"': "in"},
+    **{f"Hz {wave}{end}": f"Hz {wave} wave" for wave in ("full", "half") for end in ("", "-wave", "wave")},
+}
 NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![\d._,+-])", re.ASCII)
 COMMA = re.compile(r"[+-]?\d+,\d+", re.ASCII)
 PLAIN = str.maketrans({"²": "2", "³": "3", "^": None, "*": " ", "·": " ", "\N{MINUS SIGN}": "-"})
@@ -127,7 +134,7 @@ def _without_comma(plain):
 
 def _wrong_unit(text, unit, dimension, suggest):
     known = next((other for other, units in UNITS.items() if unit in units), None)
-    if dimension == "number":
+    if dimension in ("number", "count"):
         what = f"{shown(text)} has a unit, and this is a plain number"
         return QuantityError(what, "write the number alone") if known else _no_number(text)
     if unit == "":

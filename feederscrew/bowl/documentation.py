@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from feederscrew.bowl.schema import BY_NAME, KEYS, rival
-from feederscrew.bowl.settings import default
+from feederscrew.bowl.schema import BY_NAME, KEYS, OPTIONAL, rival
+from feederscrew.bowl.settings import OF_THE_MACHINE, default
 from feederscrew.errors import FeederError
 
 WHY = """\
@@ -24,7 +24,7 @@ def template():
     for key in KEYS:
         if key.section != section:
             section = key.section
-            lines += ["", f"{section}:"] if section else [""]
+            lines += ["", *_opening(section)] if section else [""]
         lines.append(_template_line(key))
     return "\n".join(lines) + "\n"
 
@@ -55,15 +55,26 @@ def markdown():
     )
 
 
+def _opening(section):
+    """The line that opens a section; an optional one stands behind comment signs."""
+    if section not in OPTIONAL:
+        return [f"{section}:"]
+    return ["# Take the '# ' away from these lines to describe your own drive unit.", f"# {section}:"]
+
+
 def _template_line(key):
     """'amplitude: 0.05 mm  # ...'; a key that follows another stands behind a comment sign."""
-    indent, follows = "  " if key.section else "", key.default in BY_NAME
-    text = f"{indent}{'# ' if follows else ''}{key.word}: {default(key).text}"
+    indent, follows = "  " if key.section else "", key.default in BY_NAME or key.name in OF_THE_MACHINE
+    behind = "# " if follows or key.section in OPTIONAL else ""
+    before, after = (behind, indent) if key.section in OPTIONAL else (indent, behind)
+    text = f"{before}{after}{key.word}: {default(key).text}"
     left_out = f" (left out: {_default_for_people(key)})" if follows else ""
     return f"{text:<25}  # {key.meaning}{left_out}"
 
 
 def _default_for_people(key):
+    if key.name in OF_THE_MACHINE:
+        return f"{key.default}, or from machine"
     if key.default not in BY_NAME:
         return key.default
     return f"as {key.default}" if rival(key) is None else f"from {key.default}"

@@ -67,6 +67,8 @@ def checked(key, text, where, *, bare=False):
     if not low <= value <= high:
         what = f"{subject}{units.shown(text)} is out of range"
         raise ConfigError(where, what, f"give {key.lowest} to {key.highest}")
+    if key.dimension == "count" and value % 1.0:
+        raise ConfigError(where, f"{subject}{units.shown(text)} is not a whole number", "give 9 or 10")
     return Setting(key, " ".join(text.split()), value, where)
 
 

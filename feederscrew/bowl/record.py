@@ -44,6 +44,64 @@ class Track:
 
 
 @dataclass(frozen=True)
+class Machine:
+    """What is under the bowl: two masses on inclined leaf springs."""
+
+    bowl_mass: float  # [kg] of everything above the springs, tooling included, parts not
+    bowl_inertia: float  # [kg m2] of the same, about the bowl's axis
+    base_mass: float  # [kg] of everything below the springs
+    base_inertia: float  # [kg m2]
+    spring_radius: float  # [m] of the springs' circle
+    spring_angle: float  # [rad] of the motion at the springs, from the horizontal
+    leaf_width: float  # [m]
+    leaf_thickness: float  # [m]
+    leaf_length: float  # [m] free, between the clamps
+    leaf_modulus: float  # [Pa]
+    leaves: float  # of all banks together
+    damping: float  # [1] of the critical one
+    supply: float  # [Hz] at which the supply drives the bowl
+
+
+@dataclass(frozen=True)
+class Sizing:
+    """Rules of thumb of the trade, each with its source in the schema."""
+
+    least_diameter: float  # [m]
+    diameter_per_length: float  # [1]
+    diameter_per_width: float  # [1]
+    greatest_diameter: float  # [m]
+    diameter_step: float  # [m]
+    least_climb: float  # [rad]
+    clearance: float  # [1] of the part's width
+    least_clearance: float  # [m]
+    greatest_clearance: float  # [m]
+    headroom: float  # [1] of the part's height
+    depth: float  # [1] of the diameter
+    fill_height: float  # [1] of the depth
+    packing: float  # [1]
+    carried: float  # [1] of the fill's mass
+    hopper_interval: float  # [s]
+    controller: float  # [1]
+    retune: float  # [1]
+    least_detuning: float  # [1]
+    greatest_detuning: float  # [1]
+    greatest_acceleration: float  # [1] of gravity
+    greatest_stroke: float  # [m] peak to peak
+    fatigue_stress: float  # [Pa]
+    half_wave_diameter: float  # [m]
+    spring_radius: float  # [1] of the bowl's radius
+    least_spring_angle: float  # [rad]
+    greatest_spring_angle: float  # [rad]
+    base_mass: float  # [1] of the bowl's mass
+    sheet: float  # [m]
+    sheet_density: float  # [kg/m3]
+    tooling_mass: float  # [1] of the bare bowl's mass
+    slowest: float  # [m/s]
+    fastest: float  # [m/s]
+    handbook_speed: float  # [m/s]
+
+
+@dataclass(frozen=True)
 class Bowl:
     """Drive, surface and track of one bowl."""
 
@@ -52,3 +110,5 @@ class Bowl:
     track: Track
     restitution: float  # [1] of an impact on the track
     gravity: float  # [m/s2]
+    machine: Machine | None = None  # None only of a record made by hand
+    sizing: Sizing | None = None

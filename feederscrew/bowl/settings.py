@@ -3,11 +3,14 @@
 import dataclasses
 from dataclasses import dataclass
 
-from feederscrew import units
-from feederscrew.bowl.record import Bowl, Drive, Friction, Track
-from feederscrew.bowl.schema import BY_NAME, KEYS, Key, rival
+import numpy as np
 
-RECORDS = {"drive": Drive, "friction": Friction, "track": Track}
+from feederscrew import units
+from feederscrew.bowl.direction import vibration_angle
+from feederscrew.bowl.record import Bowl, Drive, Friction, Machine, Sizing, Track
+from feederscrew.bowl.schema import BY_NAME, KEYS, OPTIONAL, Key, rival
+
+RECORDS = {"drive": Drive, "friction": Friction, "track": Track, "machine": Machine, "sizing": Sizing}
 FOLLOWING = {
     f"{name}.{field.name}"
     for name, kind in RECORDS.items()
@@ -87,8 +90,21 @@ def swept(settings, values):
 
 
 def texts(settings):
-    """The settings by key name, as text: what run.json records."""
-    return {s.key.name: s.text for s in settings}
+    """The settings by key name, as text: what run.json records; without an optional section not given."""
+    told = {s.key.section for s in settings if s.given}
+    silent = [name for name in OPTIONAL if name not in told]
+    return {s.key.name: s.text for s in settings if s.key.section not in silent}
+
+
+def has_machine(given):
+    """Whether a key of ``machine`` is among those given.
+
+    Parameters
+    ----------
+    given : dict of str to Setting
+        By key name.
+    """
+    return any(name.startswith("machine.") for name in given)
 
 
 def default(key):
@@ -107,6 +123,8 @@ def _effective(key, given):
         return given[key.name]
     if replaced(key, given) or key.default == getattr(rival(key), "name", None):
         return _converted(key, _effective(rival(key), given))
+    if key.name in OF_THE_MACHINE and OF_THE_MACHINE[key.name](given):
+        return _of_the_machine(key, given)
     if key.default in BY_NAME:
         source = _effective(BY_NAME[key.default], given)
         return Setting(key, source.text, source.value, f"as {key.default}", given=False)
@@ -118,3 +136,25 @@ def _converted(key, source):
     value = source.value * source.key.share / key.share
     text = f"{value / units.factor(key.unit, key.dimension):.6g} {key.unit}" if source.text else ""
     return Setting(key, text, value, f"from {source.key.name}", given=False)
+
+
+def _of_the_machine(key, given):
+    """The value that a machine's springs or its supply give to a key of the drive."""
+    if key.name == "drive.frequency":
+        supply = _effective(BY_NAME["machine.supply"], given)
+        return _derived(key, supply.value, "from machine.supply")
+    names = [one.name for one in KEYS if one.section == "machine"]
+    machine = Machine(**{name.partition(".")[2]: _effective(BY_NAME[name], given).value for name in names})
+    radius, climb = (_effective(BY_NAME[name], given).value for name in ("track.radius", "track.climb"))
+    return _derived(key, vibration_angle(machine, radius, climb), "from machine")
+
+
+def _derived(key, value, where):
+    shown = "" if np.ndim(value) else f"{value / units.factor(key.unit, key.dimension):.6g} {key.unit}"
+    return Setting(key, shown, value, where, given=False)
+
+
+OF_THE_MACHINE = {  # keys of the drive that a machine gives, and when
+    "drive.vibration_angle": has_machine,
+    "drive.frequency": lambda given: "machine.supply" in given,
+}

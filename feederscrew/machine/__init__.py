@@ -1,0 +1,1 @@
+"""The machine under the bowl: two masses on leaf springs, their tuning, and the size of a bowl for a part."""

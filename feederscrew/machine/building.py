@@ -1,0 +1,57 @@
+"""A drive unit for a bowl of a given size, where the user has none: masses from sheet, springs by rule."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from feederscrew.bowl.direction import shares
+
+
+def machine_for(bowl, size, given):
+    """Return the machine under a bowl, what the user gave of it kept.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its machine, its rules, and the vibration angle wanted at the track.
+    size : Size
+    given : set of str
+        Fields of the machine that the user gave.
+
+    Returns
+    -------
+    Machine
+    """
+    rules, radius = bowl.sizing, 0.5 * size.diameter
+    mass, inertia = _bowl(radius, size, rules)
+    guess = {
+        "bowl_mass": mass,
+        "bowl_inertia": inertia,
+        "base_mass": rules.base_mass * mass,
+        "base_inertia": rules.base_mass * inertia,
+        "spring_radius": rules.spring_radius * radius,
+    }
+    made = replace(bowl.machine, **{name: value for name, value in guess.items() if name not in given})
+    if "spring_angle" in given:
+        return made
+    return replace(made, spring_angle=_spring_angle(bowl.drive.vibration_angle + size.climb, radius, made, rules))
+
+
+def _bowl(radius, size, rules):
+    """Mass and inertia of floor, wall and track of sheet, with tooling and frame [kg], [kg m2]."""
+    weight = rules.sheet * rules.sheet_density  # [kg/m2]
+    floor = weight * np.pi * radius**2
+    wall = weight * 2.0 * np.pi * radius * size.depth
+    inside = max(radius - size.track_width, 0.0)
+    track = weight * np.pi * (radius**2 - inside**2) * (size.turns if np.isfinite(size.turns) else 1.0)
+    inertia = 0.5 * floor * radius**2 + wall * radius**2 + 0.5 * track * (radius**2 + inside**2)
+    extra = 1.0 + rules.tooling_mass
+    return float(extra * (floor + wall + track)), float(extra * inertia)
+
+
+def _spring_angle(wanted, radius, machine, rules):
+    """Angle of the springs, in whole degrees, that moves the bowl at its track in a wanted direction."""
+    rise, turn = shares(machine)
+    angle = np.arctan(np.tan(wanted) * radius / machine.spring_radius * turn / rise)
+    whole = np.radians(np.round(np.degrees(angle)))
+    return float(np.clip(whole, rules.least_spring_angle, rules.greatest_spring_angle))

@@ -1,0 +1,101 @@
+"""What a designer must not overlook in a machine: each line says where, what and what to change."""
+
+import numpy as np
+
+from feederscrew.bowl.direction import vibration_angle
+from feederscrew.errors import FeederError
+from feederscrew.machine import speeds
+from feederscrew.machine.stroke import greatest_amplitude
+
+MM, MPA = 1e-3, 1e6
+APART = np.radians(0.5)  # angles this near are the same
+
+
+def remarks(sheet):
+    """Return the remarks on a machine.
+
+    Parameters
+    ----------
+    sheet : MachineSheet
+
+    Returns
+    -------
+    tuple of str
+    """
+    found = [*_tuning(sheet), *_stress(sheet), *_stroke(sheet), *_angle(sheet), *_fill(sheet)]
+    if sheet.order is not None:
+        found += _size(sheet)
+    lines = [str(one) for one in found]
+    return (*lines, *speeds.remark(sheet.answer.velocity, sheet.bowl.sizing))
+
+
+def _tuning(sheet):
+    rules, drive = sheet.bowl.sizing, sheet.stroke.frequency
+    natural, where = f"the natural frequency {sheet.springs.natural_frequency:.4g} Hz", "machine.leaves"
+    better = f": {_named(sheet.sets)}" if sheet.sets else ""
+    window = f"{100 * rules.least_detuning:.3g} to {100 * rules.greatest_detuning:.3g} %"
+    if sheet.detuning <= 0.0:
+        mend = f"add leaves or take thicker ones{better}"
+        yield FeederError(where, f"{natural} is below the drive's {drive:.4g} Hz", mend)
+    elif sheet.detuning < rules.least_detuning:
+        what = f"{natural} is {100 * sheet.detuning:.2g} % above the drive: the stroke hangs on every gram"
+        yield FeederError(where, what, f"add leaves, to come {window} above it{better}")
+    elif sheet.detuning > rules.greatest_detuning:
+        what = f"{natural} is {100 * sheet.detuning:.3g} % above the drive: the magnet works in vain"
+        yield FeederError(where, what, f"take leaves away, to come {window} above it{better}")
+
+
+def _named(sets):
+    """The set of fewest leaves of each of the first thicknesses."""
+    first = {}
+    for one in sets:
+        first.setdefault(one.thickness, f"{one.leaves} of {one.thickness / MM:g} mm")
+    return " or ".join(list(first.values())[:3])
+
+
+def _stress(sheet):
+    most = sheet.bowl.sizing.fatigue_stress
+    if sheet.stress > most:
+        what = f"the leaves bend to {sheet.stress / MPA:.4g} MPa, beyond their fatigue stress {most / MPA:.4g} MPa"
+        yield FeederError("machine.leaf_thickness", what, "take more and thinner leaves, or longer ones")
+
+
+def _stroke(sheet):
+    most = greatest_amplitude(sheet.bowl)
+    if sheet.bowl.drive.amplitude > most * (1.0 + 1e-9):
+        there = f"{2.0 * sheet.bowl.drive.amplitude / MM:.4g} mm peak to peak at {sheet.stroke.frequency:.4g} Hz"
+        what = f"{there} is more than drives are built for"
+        yield FeederError("drive.amplitude", what, f"give at most {most / MM:.3g} mm, or a lower frequency")
+
+
+def _angle(sheet):
+    bowl = sheet.bowl
+    by_springs = vibration_angle(bowl.machine, bowl.track.radius, bowl.track.climb)
+    if sheet.has_machine and abs(by_springs - bowl.drive.vibration_angle) > APART:
+        given, springs = np.degrees(bowl.drive.vibration_angle), np.degrees(by_springs)
+        what = f"is {given:.4g} deg as given, and the springs make it {springs:.4g} deg at the track"
+        yield FeederError("drive.vibration_angle", what, "leave it out, to go by the springs")
+
+
+def _fill(sheet):
+    full, drive = sheet.emptying.natural_frequencies[0], sheet.stroke.frequency
+    if sheet.detuning > 0.0 and full <= drive:
+        holds = sheet.emptying.levels[sheet.emptying.natural_frequencies > drive].max(initial=0.0)
+        what = f"a full bowl's natural frequency {full:.4g} Hz is below the drive's {drive:.4g} Hz"
+        mend = f"fill it to {100 * holds:.2g} % at most from a hopper, or control the amplitude"
+        yield FeederError("sizing.fill_height", what, mend)
+
+
+def _size(sheet):
+    size = sheet.order.size
+    rule, least = max(size.least.items(), key=lambda one: one[1])
+    if size.diameter < least * (1.0 - 1e-9):
+        what = f"{500 * size.diameter:.4g} mm is less than {500 * least:.4g} mm ({rule})"
+        yield FeederError("track.radius", what, "give a larger bowl")
+    if not size.climb < sheet.order.steepest:
+        climb, most = np.degrees(size.climb), np.degrees(sheet.order.steepest)
+        what = f"{climb:.3g} deg is steeper than friction carries at this stroke ({most:.3g} deg)"
+        yield FeederError("track.climb", what, "lower it or raise the friction")
+    if size.pitch < sheet.order.lying.tallest + sheet.bowl.sizing.sheet:
+        what = f"a turn rises {size.pitch / MM:.4g} mm, less than the part stands high"
+        yield FeederError("track.climb", what, "climb more steeply, or step the bowl outwards at each turn")

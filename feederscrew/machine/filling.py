@@ -1,0 +1,89 @@
+"""Parts in the bowl: how many, how heavy, and what their mass does to the stroke as the bowl empties."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.machine.springs import gain, springs
+
+LEVELS = 21  # of the curve, from full to empty
+
+
+@dataclass(frozen=True)
+class Fill:
+    """A full bowl."""
+
+    volume: float  # [m3] that the parts take up, gaps included
+    mass: float  # [kg] of the parts
+    inertia: float  # [kg m2] of the parts about the bowl's axis, spread evenly over its floor
+
+
+@dataclass(frozen=True, eq=False)
+class Emptying:
+    """A bowl from full to empty; N levels."""
+
+    levels: np.ndarray  # (N,) [1] of the full bowl, from 1 to 0
+    masses: np.ndarray  # (N,) [kg] in the bowl
+    natural_frequencies: np.ndarray  # (N,) [Hz]
+    gains: np.ndarray  # (N,) [1]
+    strokes: np.ndarray  # (N,) [1] over that of the empty bowl, the controller left alone
+    controlled: np.ndarray  # (N,) [1] the same under amplitude control, as far as the controller reaches
+
+
+def full(radius, depth, density, rules):
+    """Compute the fill of a full bowl.
+
+    Parameters
+    ----------
+    radius, depth : float [m]
+        Of the bowl.
+    density : float [kg/m3]
+        Of one part.
+    rules : Sizing
+
+    Returns
+    -------
+    Fill
+    """
+    volume = np.pi * radius**2 * depth * rules.fill_height
+    mass = volume * rules.packing * density
+    return Fill(volume, mass, 0.5 * mass * radius**2)
+
+
+def loaded(machine, fill, share):
+    """Return the machine with a share of a fill vibrating with its bowl."""
+    mass = machine.bowl_mass + share * fill.mass
+    return replace(machine, bowl_mass=mass, bowl_inertia=machine.bowl_inertia + share * fill.inertia)
+
+
+def emptying(machine, frequency, fill, rules):
+    """Compute what becomes of the stroke as a bowl empties.
+
+    Parameters
+    ----------
+    machine : Machine
+        Empty.
+    frequency : float [Hz]
+        Of the drive.
+    fill : Fill
+    rules : Sizing
+        Its share of the fill that is carried, and its setting of the controller.
+
+    Returns
+    -------
+    Emptying
+
+    Notes
+    -----
+    The force of the magnet and the damping ratio stay as they are; the damping that parts add is left out,
+    so that a stroke near resonance is less than the one here.
+    """
+    levels = np.linspace(1.0, 0.0, LEVELS)
+    natural = np.array(
+        [springs(loaded(machine, fill, rules.carried * u)).natural_frequency for u in levels]
+    )
+    gains = gain(frequency, natural, machine.damping)
+    strokes = gains / gains[-1]
+    reach = np.minimum(1.0, strokes / rules.controller)
+    return Emptying(*(check.frozen(a) for a in (levels, levels * fill.mass, natural, gains, strokes, reach)))

@@ -1,0 +1,151 @@
+"""The bowl that a part needs: diameter, width and climb of the track, turns."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew.bowl.record import Track
+from feederscrew.errors import FeederError
+from feederscrew.motion.headings import headings
+from feederscrew.resting.posture import posture
+
+STRAIGHT = Track(climb=0.0, bank=0.0, radius=1e3, width=1.0)  # [m] a wall without a bend
+ROUNDS = 200  # of a search that halves its error in each
+SETTLED = 1e-12  # [m]
+
+
+@dataclass(frozen=True)
+class Lying:
+    """A part on its stable aspects along a straight wall."""
+
+    longest: float  # [m] along the wall, of every stable orientation
+    tallest: float  # [m]
+    length: float  # [m] along the wall, of the longest orientation that is wanted
+    width: float  # [m] from the wall, of the widest orientation that is wanted
+
+
+@dataclass(frozen=True)
+class Size:
+    """Bowl and track."""
+
+    diameter: float  # [m]
+    least: dict[str, float]  # [m] diameter that each rule asks for
+    track_width: float  # [m]
+    clearance: float  # [m] play of the part across the track
+    bend: float  # [m] l^2 / (4 R): its sagitta on both sides
+    climb: float  # [rad]
+    depth: float  # [m] rise of the track
+    turns: float
+    pitch: float  # [m] rise of one turn
+
+
+def lying(part, aspects, wanted=None):
+    """Compute the room a part takes along a wall.
+
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+        Of that part.
+    wanted : (str, float [rad]), optional
+        Aspect and heading that shall leave the bowl; without it, every stable orientation.
+
+    Returns
+    -------
+    Lying
+
+    Raises
+    ------
+    FeederError
+        If the part is a card without an outline.
+    """
+    stood = [posture(part, aspects, aspects.names[row]) for row in np.flatnonzero(aspects.stable)]
+    found = [headings(one, STRAIGHT) for one in stood]
+    rows = [(one.aspect, *row) for one in found for row in zip(one.headings, one.lengths, one.widths)]
+    counted = rows if wanted is None else [_nearest(rows, *wanted)]
+    return Lying(
+        longest=float(max(row[2] for row in rows)),
+        tallest=float(max(np.max(one.corners[:, 2]) for one in stood)),
+        length=float(max(row[2] for row in counted)),
+        width=float(max(row[3] for row in counted)),
+    )
+
+
+def size(part, given, rules, *, diameter=None, width=None, climb=None):
+    """Compute the bowl that holds and carries a part.
+
+    Parameters
+    ----------
+    part : Lying
+    given : str
+        What a fault names: the part's file.
+    rules : Sizing
+    diameter, width : float [m], optional
+        Those of a bowl that exists.
+    climb : float [rad], optional
+
+    Returns
+    -------
+    Size
+
+    Raises
+    ------
+    FeederError
+        If it takes a bowl that nobody builds, or the given one is smaller than the part.
+    """
+    play = float(np.clip(rules.clearance * part.width, rules.least_clearance, rules.greatest_clearance))
+    least = _diameters(part, play, rules, width)
+    across = _rounded_up(max(least.values()), rules.diameter_step) if diameter is None else diameter
+    _check_diameter(across, part, given, rules, fixed=diameter is not None)
+    bend = part.length**2 / (2.0 * across)
+    wide = part.width + play + bend if width is None else width
+    depth = rules.depth * across
+    rise = rules.headroom * part.tallest + rules.sheet
+    angle = max(rules.least_climb, np.arctan(rise / (np.pi * across))) if climb is None else climb
+    pitch = np.pi * across * np.tan(angle)
+    turns = depth / pitch if pitch > 0.0 else np.nan
+    return Size(across, least, wide, play, bend, float(angle), depth, float(turns), float(pitch))
+
+
+def _diameters(part, play, rules, width):
+    """The diameter that each rule asks for [m]; width and bend of the track hang on each other."""
+    least = {
+        "no bowl is smaller": rules.least_diameter,
+        "length of the part": rules.diameter_per_length * part.longest,
+    }
+    if width is not None:
+        room = width - part.width - play
+        least["width of the track"] = rules.diameter_per_width * width
+        least["bend on this track"] = part.length**2 / (2.0 * room) if room > 0.0 else np.inf
+        return least
+    across = max(least.values())
+    for _ in range(ROUNDS):
+        before = across
+        wide = part.width + play + part.length**2 / (2.0 * across)
+        across = max(*least.values(), rules.diameter_per_width * wide)
+        if abs(across - before) < SETTLED:
+            break
+    return least | {"width of the track": rules.diameter_per_width * wide}
+
+
+def _check_diameter(across, part, given, rules, *, fixed):
+    if across > rules.greatest_diameter:
+        needs = "a track as narrow as this one" if np.isinf(across) else f"a bowl of {1e3 * across:.4g} mm"
+        what = f"needs {needs}, and bowls end at {1e3 * rules.greatest_diameter:.4g} mm"
+        if np.isinf(across):
+            what = f"needs {1e3 * part.width:.4g} mm of track and its play, more than track.width"
+        mend = "widen the track" if np.isinf(across) else "feed it from a step or belt feeder"
+        raise FeederError(given, what, mend)
+    if fixed and across < 2.0 * part.longest:
+        what = f"{500.0 * across:.4g} mm is too small for a part {1e3 * part.longest:.4g} mm long"
+        raise FeederError("track.radius", what, "leave it out, to have the bowl sized")
+
+
+def _nearest(rows, aspect, heading):
+    """The row of an aspect whose heading is nearest to one."""
+    own = [row for row in rows if row[0] == aspect]
+    return min(own, key=lambda row: abs((row[1] - heading + np.pi) % (2.0 * np.pi) - np.pi))
+
+
+def _rounded_up(value, step):
+    return float(np.ceil(value / step - 1e-9) * step)

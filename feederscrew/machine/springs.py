@@ -1,0 +1,136 @@
+"""Bowl and base on inclined leaf springs: stiffness, effective mass, natural frequency, gain.
+
+The base stands on soft rubber feet, taken as free. Every formula is of small motions of two rigid bodies
+between which the leaves leave one way to move: rise and turn together, in the direction of the springs.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feederscrew.bowl.direction import shares
+
+POISSON = 0.3  # [1] of steel; the twist of a leaf depends on it through G / E = 1 / (2 (1 + nu))
+
+
+@dataclass(frozen=True)
+class Springs:
+    """What the leaves make of bowl and base."""
+
+    leaf_stiffness: float  # [N/m] of one leaf, both ends guided
+    stiffness: float  # [N/m] of all leaves, their twist included
+    twist: float  # [1] stiffness with twist over that without
+    effective_mass: float  # [kg] that moves against the springs
+    effective_mass_held: float  # [kg] the same with the base held fast
+    natural_frequency: float  # [Hz]
+    natural_frequency_without_twist: float  # [Hz]
+    natural_frequency_held: float  # [Hz] without twist, the base held fast
+
+
+def springs(machine):
+    """Compute what the springs of a machine make of it.
+
+    Parameters
+    ----------
+    machine : Machine
+
+    Returns
+    -------
+    Springs
+    """
+    leaf = leaf_stiffness(machine)
+    plain, twisted = machine.leaves * leaf, twist(machine)
+    mass, held = effective_mass(machine), effective_mass(held_fast(machine))
+    return Springs(
+        leaf_stiffness=leaf,
+        stiffness=plain * twisted,
+        twist=twisted,
+        effective_mass=mass,
+        effective_mass_held=held,
+        natural_frequency=natural_frequency(plain * twisted, mass),
+        natural_frequency_without_twist=natural_frequency(plain, mass),
+        natural_frequency_held=natural_frequency(plain, held),
+    )
+
+
+def leaf_stiffness(machine):
+    """Return the stiffness of one leaf with both ends guided, E b t^3 / L^3 [N/m]."""
+    ratio = machine.leaf_thickness / machine.leaf_length
+    return machine.leaf_modulus * machine.leaf_width * ratio**3
+
+
+def leaf_stress(machine, amplitude):
+    """Return the amplitude of bending stress in a leaf, 3 E t delta / L^2.
+
+    Parameters
+    ----------
+    machine : Machine
+    amplitude : float [m]
+        Half the stroke between bowl and base, at the springs and along their motion.
+
+    Returns
+    -------
+    float [Pa]
+    """
+    return 3.0 * machine.leaf_modulus * machine.leaf_thickness * amplitude / machine.leaf_length**2
+
+
+def twist(machine):
+    """Return by how much the twist of its leaves stiffens a bank, 1 + (G / 3 E) (L / r_s)^2 cos^2 psi [1].
+
+    Notes
+    -----
+    The leaf is taken to twist by the whole turn of the bowl. By the turn's component along the leaf alone the
+    last factor would be cos^4 psi, a few per mille of the frequency less. In-plane bending of a leaf whose
+    clamps turn with the bowl is left out: a clamp is far softer than a leaf is in its own plane.
+    """
+    lever = machine.leaf_length / machine.spring_radius * np.cos(machine.spring_angle)
+    return 1.0 + lever**2 / (6.0 * (1.0 + POISSON))
+
+
+def effective_mass(machine):
+    """Return the mass that moves against the springs [kg].
+
+    Parameters
+    ----------
+    machine : Machine
+
+    Returns
+    -------
+    float [kg]
+        m1 m2 / (m1 + m2) sin^2 psi + [I1 I2 / (I1 + I2)] / r_s^2 cos^2 psi.
+    """
+    rise, turn = shares(machine)
+    along = machine.bowl_mass * rise * np.sin(machine.spring_angle) ** 2
+    around = machine.bowl_inertia * turn * (np.cos(machine.spring_angle) / machine.spring_radius) ** 2
+    return float(along + around)
+
+
+def held_fast(machine):
+    """Return the machine on a base that does not move."""
+    return replace(machine, base_mass=1e12 * machine.bowl_mass, base_inertia=1e12 * machine.bowl_inertia)
+
+
+def natural_frequency(stiffness, mass):
+    """Return sqrt(K / m) / (2 pi) [Hz]; arrays broadcast."""
+    return np.sqrt(stiffness / mass) / (2.0 * np.pi)
+
+
+def gain(frequency, natural, damping):
+    """Return the stroke over that of the same force at rest.
+
+    Parameters
+    ----------
+    frequency, natural : array_like [Hz]
+        Of the drive, and of the machine.
+    damping : float [1]
+        Of the critical damping.
+
+    Returns
+    -------
+    array_like [1]
+        1 / sqrt((1 - q^2)^2 + (2 zeta q)^2), q = f / f_n; infinite at resonance without damping.
+    """
+    q = np.asarray(frequency) / np.asarray(natural)
+    with np.errstate(divide="ignore"):
+        return 1.0 / np.hypot(1.0 - q**2, 2.0 * damping * q)

@@ -1,0 +1,121 @@
+"""The stroke that brings a wanted number of parts a minute."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feederscrew import units
+from feederscrew.errors import FeederError
+from feederscrew.machine.stroke import greatest_amplitude
+from feederscrew.motion import rate
+from feederscrew.motion.conveying import answer
+
+STEPS = 160  # strokes that are looked at
+HALVINGS = 40
+CLIMBS = 30  # halvings of the search for the steepest climb
+STEEPEST = np.radians(45.0)
+
+
+@dataclass(frozen=True)
+class Flow:
+    """What leaves the bowl, for one metre of track."""
+
+    parts: float  # [1/m] counted parts on a length of track
+    share: float  # [1] of all parts that climb the track, those that are counted
+    length: float  # [m] mean length along the track of a part
+
+
+def flow(found, rule, *, target=None, gap=0.0, fill=1.0):
+    """Compute how many parts a length of track delivers.
+
+    Parameters
+    ----------
+    found : Orientations
+        On the track, through the devices.
+    rule : str
+        Whose probabilities are taken.
+    target : (str, float [rad]), optional
+        Aspect and heading that count; without it, every orientation that stays on the track and that the
+        devices let pass.
+    gap : float [m]
+    fill : float [1]
+
+    Returns
+    -------
+    Flow
+
+    Raises
+    ------
+    FeederError
+        If nothing leaves.
+    """
+    chances = found.rules[rule] / np.nansum(found.rules[rule])
+    if target is not None:
+        parts = rate.parts_per_metre(found, target, rule, gap=gap, fill=fill)
+        row = list(zip(found.aspects, found.headings)).index(target)
+        return Flow(parts, float(chances[row] * found.through[row]), float(found.lengths[row]))
+    share = float(np.nansum(chances * found.through))
+    if not share > 0.0:
+        raise FeederError("devices", "let no part pass", "see what each returns in feeder rate")
+    length = float(np.nansum(chances * found.lengths))
+    return Flow(fill * share / (length + gap), share, length)
+
+
+def amplitude_for(bowl, velocity):
+    """Return the smallest stroke at which a part travels at least so fast.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its amplitude is not used.
+    velocity : float [m/s]
+
+    Returns
+    -------
+    (float [m], float [m/s]) or None, and the fastest of all: (float [m/s], float [m])
+        Amplitude and velocity there; None where no stroke that drives are built for does.
+    """
+    amplitudes = greatest_amplitude(bowl) * np.arange(1, STEPS + 1) / STEPS
+    speeds = np.array([_speed(bowl, one) for one in amplitudes])
+    best = int(np.argmax(speeds))
+    fastest = float(speeds[best]), float(amplitudes[best])
+    above = np.flatnonzero(speeds >= velocity)
+    if not above.size:
+        return None, fastest
+    low, high = (amplitudes[above[0] - 1] if above[0] else 0.0), amplitudes[above[0]]
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if _speed(bowl, middle) >= velocity else (middle, high)
+    return (float(high), float(_speed(bowl, high))), fastest
+
+
+def steepest(bowl):
+    """Return the climb up to which a part travels, the springs left as they are [rad]; NaN for none."""
+    upright = bowl.drive.vibration_angle + bowl.track.climb
+
+    def travels(climb):
+        drive = replace(bowl.drive, vibration_angle=max(upright - climb, 0.0))
+        there = replace(bowl, drive=drive, track=replace(bowl.track, climb=climb))
+        return answer.answer(there).velocity > 0.0
+
+    low, high = 0.0, min(STEEPEST, upright)
+    if not travels(low):
+        return float("nan")
+    for _ in range(CLIMBS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if travels(middle) else (low, middle)
+    return low
+
+
+def unreachable(target, parts_per_metre, fastest):
+    """Return the fault that no stroke brings so many parts, and what the most is."""
+    minute = units.factor("/min", "rate")
+    speed, amplitude = fastest
+    most = f"{max(speed, 0.0) * parts_per_metre / minute:.4g}/min at {2e3 * amplitude:.3g} mm peak to peak"
+    what = f"no bowl reaches {target / minute:.6g}/min of this part: the most is {most}"
+    return FeederError("--target", what, "split it over several bowls or tracks, or let more orientations pass")
+
+
+def _speed(bowl, amplitude):
+    found = answer.answer(replace(bowl, drive=replace(bowl.drive, amplitude=float(amplitude))))
+    return found.velocity if np.isfinite(found.velocity) else -np.inf

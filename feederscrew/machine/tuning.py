@@ -1,0 +1,122 @@
+"""Sets of leaf springs: what one leaf more or less does, and which sets tune a bowl to its drive."""
+
+from dataclasses import dataclass, replace
+
+from feederscrew.machine.springs import gain, leaf_stress, natural_frequency, springs
+
+THICKNESSES = (1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3, 5e-3, 6e-3)  # [m] that makers stock
+THICKER = 0.5e-3  # [m] step of the same
+MOST = 60  # leaves of one set
+
+
+@dataclass(frozen=True)
+class LeafSet:
+    """A number of leaves of one thickness in the machine."""
+
+    name: str  # what it is beside the set in use
+    thickness: float  # [m]
+    leaves: int
+    natural_frequency: float  # [Hz]
+    by_square: float  # [Hz] the same where a leaf's force is reckoned with t^2, as RNA does
+    detuning: float  # [1] natural frequency above the drive
+    gain: float  # [1]
+    stress: float  # [Pa] amplitude, at the stroke in use
+
+
+def leaf_set(machine, frequency, amplitude, *, leaves, thickness, name=""):
+    """Compute what other leaves of the same width and length do.
+
+    Parameters
+    ----------
+    machine : Machine
+    frequency : float [Hz]
+        Of the drive.
+    amplitude : float [m]
+        At the springs, for the stress.
+    leaves : int
+    thickness : float [m]
+    name : str
+
+    Returns
+    -------
+    LeafSet
+    """
+    other = replace(machine, leaves=leaves, leaf_thickness=thickness)
+    found, here = springs(other), springs(machine)
+    square = leaves / machine.leaves * (thickness / machine.leaf_thickness) ** 2
+    return LeafSet(
+        name=name,
+        thickness=thickness,
+        leaves=int(leaves),
+        natural_frequency=float(found.natural_frequency),
+        by_square=float(natural_frequency(here.stiffness * square, here.effective_mass)),
+        detuning=float(found.natural_frequency / frequency - 1.0),
+        gain=float(gain(frequency, found.natural_frequency, machine.damping)),
+        stress=float(leaf_stress(other, amplitude)),
+    )
+
+
+def changes(machine, frequency, amplitude):
+    """Return the set in use beside one leaf more, one less and leaves 0.5 mm thicker.
+
+    Parameters
+    ----------
+    machine : Machine
+    frequency, amplitude
+        As for ``leaf_set``.
+
+    Returns
+    -------
+    tuple of LeafSet
+    """
+    n, t = int(machine.leaves), machine.leaf_thickness
+    rows = [("as it is", n, t), ("one leaf more", n + 1, t), ("one leaf less", n - 1, t)]
+    rows.append(("leaves 0.5 mm thicker", n, t + THICKER))
+    return tuple(
+        leaf_set(machine, frequency, amplitude, leaves=leaves, thickness=thickness, name=name)
+        for name, leaves, thickness in rows
+        if leaves > 0
+    )
+
+
+def sets(machine, frequency, amplitude, rules):
+    """Return the sets that put the natural frequency a few per cent above the drive.
+
+    Parameters
+    ----------
+    machine : Machine
+    frequency, amplitude
+        As for ``leaf_set``.
+    rules : Sizing
+        Its least and greatest detuning.
+
+    Returns
+    -------
+    tuple of LeafSet
+        Thin leaves first; empty where no whole number of leaves does.
+    """
+    stocked = sorted({*THICKNESSES, machine.leaf_thickness})
+    found = (
+        leaf_set(machine, frequency, amplitude, leaves=n, thickness=t)
+        for t in stocked
+        for n in range(1, MOST + 1)
+    )
+    return tuple(one for one in found if rules.least_detuning <= one.detuning <= rules.greatest_detuning)
+
+
+def chosen(found, rules):
+    """Return the set to build in: within its fatigue stress, the one with the most room for the fill.
+
+    Parameters
+    ----------
+    found : sequence of LeafSet
+        From ``sets``.
+    rules : Sizing
+
+    Returns
+    -------
+    LeafSet or None
+        Of the highest natural frequency, because parts in the bowl only lower it; None where none holds.
+    """
+    lasting = [one for one in found if one.stress <= rules.fatigue_stress]
+    return max(lasting, key=lambda one: (one.detuning, -one.leaves), default=None)

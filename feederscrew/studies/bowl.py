@@ -1,0 +1,249 @@
+"""``feeder bowl``: the machine under a bowl, and the bowl for a part and a rate."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feederscrew import bowl as bowls
+from feederscrew import check
+from feederscrew.bowl.direction import vibration_angle
+from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.schema import BY_NAME
+from feederscrew.bowl.settings import default
+from feederscrew.errors import FeederError
+from feederscrew.machine import building, checks, filling, sizing, throughput, tuning
+from feederscrew.machine.springs import Springs, gain, leaf_stress, springs
+from feederscrew.machine.stroke import Stroke, angles, greatest_amplitude, stroke
+from feederscrew.motion import rate
+from feederscrew.motion.conveying import answer
+from feederscrew.part.record import Part
+from feederscrew.resting import aspects
+
+STEEL = 7850.0  # [kg/m3] of a fill without a part
+FULL_WAVE = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class Order:
+    """The part, what is wanted of it, and the bowl for it."""
+
+    part: Part
+    target: float  # [1/s]
+    wanted: tuple[str, float] | None  # aspect and heading [rad] that count; None: whatever passes
+    rule: str  # whose probabilities were taken
+    lying: sizing.Lying
+    size: sizing.Size
+    steepest: float  # [rad] climb up to which the part travels
+    flow: throughput.Flow
+    hopper: float  # [m3]
+    handbook: float  # [1/s] the handbook's estimate for the same share
+
+
+@dataclass(frozen=True, eq=False)
+class MachineSheet:
+    """A machine and what it does; with an order, that of the sized bowl."""
+
+    bowl: Bowl
+    has_machine: bool  # a key of ``machine`` was given
+    springs: Springs
+    stroke: Stroke
+    answer: answer.Answer  # how a part travels
+    detuning: float  # [1] natural frequency above the drive
+    gain: float  # [1]
+    stress: float  # [Pa] amplitude in a leaf
+    force: float  # [N] amplitude along the springs' motion that keeps the stroke
+    radii: np.ndarray  # (N,) [m]
+    angles: np.ndarray  # (N,) [rad] of the motion to the horizontal
+    changes: tuple[tuning.LeafSet, ...]
+    sets: tuple[tuning.LeafSet, ...]
+    fill: filling.Fill
+    emptying: filling.Emptying
+    velocities: np.ndarray  # (M,) [m/s] at each level of the emptying bowl, the controller left alone
+    controlled: np.ndarray  # (M,) [m/s] the same under amplitude control
+    order: Order | None
+
+    @property
+    def remarks(self):
+        """What must not be overlooked, a tuple of str."""
+        return checks.remarks(self)
+
+    def rates(self, velocities):
+        """Counted parts [1/s] at velocities; of a sheet with an order."""
+        return np.maximum(velocities, 0.0) * self.order.flow.parts
+
+
+def machine(settings):
+    """Compute what a machine does with the bowl of a file.
+
+    Parameters
+    ----------
+    settings : tuple of Setting
+
+    Returns
+    -------
+    MachineSheet
+        Without an order.
+    """
+    bowl = answer.conveying(bowls.record(settings))
+    return _sheet(bowl, settings, 2.0 * bowl.sizing.depth * bowl.track.radius, STEEL, None)
+
+
+def bowl(settings, part, target, chain=(), *, aspect=None, heading=None, rule="pmi", gap=0.0, fill=1.0):
+    """Compute the bowl, the drive and the stroke that bring a part at a rate.
+
+    Parameters
+    ----------
+    settings : tuple of Setting
+        What is given of track, drive and machine is kept; the rest is sized.
+    part : Part
+    target : float [1/s]
+        Counted parts.
+    chain : sequence of Device
+    aspect : str, optional
+        That counts; without it, every orientation that stays on the track and passes the devices.
+    heading : float [rad], optional
+        As for ``rate.wanted``.
+    rule : str
+    gap : float [m]
+    fill : float [1]
+
+    Returns
+    -------
+    MachineSheet
+        With its order.
+
+    Raises
+    ------
+    FeederError
+        If no bowl is so large, or none reaches the target.
+    """
+    plain, found = answer.conveying(bowls.record(settings)), aspects.find(part)
+    _check_rule(rule, found)
+    straight = replace(sizing.STRAIGHT, climb=plain.track.climb)
+    wanted = None if aspect is None else rate.wanted(part, found, straight, aspect, heading)
+    lying = sizing.lying(part, found, wanted)
+    size = _size(lying, part, plain, settings)
+    track = replace(plain.track, radius=0.5 * size.diameter, width=size.track_width, climb=size.climb)
+    if wanted is not None:
+        wanted = rate.wanted(part, found, track, *wanted)
+    known = rate.orientations(part, found, track, chain)
+    flow = throughput.flow(known, rule, target=wanted, gap=gap, fill=fill)
+    driven = _driven(replace(plain, track=track), size, settings, target, flow)
+    order = Order(
+        part=part,
+        target=target,
+        wanted=wanted,
+        rule=rule,
+        lying=lying,
+        size=size,
+        steepest=throughput.steepest(driven),
+        flow=flow,
+        hopper=target * plain.sizing.hopper_interval * part.volume / plain.sizing.packing,
+        handbook=plain.sizing.handbook_speed * flow.share / flow.length,
+    )
+    return _sheet(driven, settings, size.depth, part.mass / part.volume, order)
+
+
+def _check_rule(rule, found):
+    if rule not in found.chances:
+        known = ", ".join(found.chances)
+        raise FeederError(f"--rule {rule}", "has no probabilities of this part", f"choose one of {known}")
+
+
+def _given(settings, section=""):
+    """Words of the keys of a section that the user gave."""
+    return {s.key.word for s in settings if s.given and s.key.section == section}
+
+
+def _size(lying, part, plain, settings):
+    """The size of the bowl; what the file says of its track is kept."""
+    said, track = _given(settings, "track"), plain.track
+    return sizing.size(
+        lying,
+        part.source,
+        plain.sizing,
+        diameter=2.0 * track.radius if "radius" in said else None,
+        width=track.width if "width" in said else None,
+        climb=track.climb if "climb" in said else None,
+    )
+
+
+def _driven(plain, size, settings, target, flow):
+    """The bowl with machine, frequency and the smallest stroke that reaches the target."""
+    angle_given = "vibration_angle" in _given(settings, "drive")
+    angle = plain.drive.vibration_angle if angle_given else default(BY_NAME["drive.vibration_angle"]).value
+    wanted = replace(plain, drive=replace(plain.drive, vibration_angle=angle))
+    under = building.machine_for(wanted, size, _given(settings, "machine"))
+    if not angle_given:
+        angle = float(vibration_angle(under, plain.track.radius, plain.track.climb))
+    fastest = []
+    for frequency in _frequencies(plain, settings):
+        drive = replace(plain.drive, vibration_angle=angle, frequency=frequency)
+        made = replace(plain, drive=drive, machine=replace(under, supply=frequency))
+        found, best = throughput.amplitude_for(made, target / flow.parts)
+        if found is not None:
+            made = replace(made, drive=replace(drive, amplitude=found[0]))
+            return replace(made, machine=_tuned(made, settings))
+        fastest.append(best)
+    raise throughput.unreachable(target, flow.parts, max(fastest))
+
+
+def _frequencies(bowl, settings):
+    """The drive's frequency as given; else that of the size, then the other wave of the mains."""
+    if "frequency" in _given(settings, "drive") or "supply" in _given(settings, "machine"):
+        return (bowl.drive.frequency,)
+    mains = bowl.machine.supply / FULL_WAVE
+    large = 2.0 * bowl.track.radius > bowl.sizing.half_wave_diameter
+    return (mains, FULL_WAVE * mains) if large else (FULL_WAVE * mains, mains)
+
+
+def _tuned(bowl, settings):
+    """The machine with the leaves that tune it, unless the user gave their number."""
+    if "leaves" in _given(settings, "machine"):
+        return bowl.machine
+    at_springs, rules = stroke(bowl).springs, bowl.sizing
+    found = tuning.sets(bowl.machine, bowl.drive.frequency, at_springs, rules)
+    if "leaf_thickness" in _given(settings, "machine"):
+        found = tuple(one for one in found if one.thickness == bowl.machine.leaf_thickness)
+    best = tuning.chosen(found, rules) or min(found, key=lambda one: one.stress, default=None)
+    if best is None:
+        return bowl.machine
+    return replace(bowl.machine, leaves=float(best.leaves), leaf_thickness=best.thickness)
+
+
+def _sheet(bowl, settings, depth, density, order):
+    """Everything of a bowl with its machine."""
+    under, rules, moved = bowl.machine, bowl.sizing, stroke(bowl)
+    made = springs(under)
+    magnified = float(gain(moved.frequency, made.natural_frequency, under.damping))
+    fill = filling.full(bowl.track.radius, depth, density, rules)
+    emptied = filling.emptying(under, moved.frequency, fill, rules)
+    radii, turned = angles(under, bowl.track)
+    return MachineSheet(
+        bowl=bowl,
+        has_machine=bool(_given(settings, "machine")),
+        springs=made,
+        stroke=moved,
+        answer=answer.answer(bowl),
+        detuning=made.natural_frequency / moved.frequency - 1.0,
+        gain=magnified,
+        stress=float(leaf_stress(under, moved.springs)),
+        force=float(made.stiffness * moved.springs / magnified),
+        radii=check.frozen(radii),
+        angles=check.frozen(turned),
+        changes=tuning.changes(under, moved.frequency, moved.springs),
+        sets=tuning.sets(under, moved.frequency, moved.springs, rules),
+        fill=fill,
+        emptying=emptied,
+        velocities=_velocities(bowl, emptied.strokes),
+        controlled=_velocities(bowl, emptied.controlled),
+        order=order,
+    )
+
+
+def _velocities(bowl, strokes):
+    """Velocity at multiples of the bowl's stroke [m/s]; its stroke ends where the magnet would strike."""
+    most = max(greatest_amplitude(bowl), bowl.drive.amplitude)
+    amplitudes = np.minimum(bowl.drive.amplitude * strokes, most)
+    drives = [replace(bowl.drive, amplitude=float(one)) for one in amplitudes]
+    return check.frozen(np.array([answer.answer(replace(bowl, drive=drive)).velocity for drive in drives]))
