@@ -23,6 +23,7 @@ COMMANDS = {
     "convey": "feederscrew_cli.convey",
     "rate": "feederscrew_cli.rate",
     "tune": "feederscrew_cli.tune",
+    "bowl": "feederscrew_cli.bowl",
     "floor": "feederscrew_cli.floor",
     "track": "feederscrew_cli.track",
     "headings": "feederscrew_cli.headings",

@@ -32,12 +32,17 @@ class Number(click.FloatRange):
         return number if number == number else self.fail(f"{value!r} is no number", param, ctx)
 
 
-def part(command):
+def optional_part(command):
+    """As ``part``, but PART may be left out: its ``source`` is None then."""
+    return part(command, required=False)
+
+
+def part(command, *, required=True):
     """PART and how to read it; the command receives the keywords of ``feederscrew.part.load``."""
     keywords = ("source", "units", "density", "centre_of_mass", "allow_open")
     return stacked(
         packed(command, "part", keywords),
-        click.argument("source", metavar="PART", type=FILE),
+        click.argument("source", metavar="PART" if required else "[PART]", type=FILE, required=required),
         click.option("--units", type=UNITS, help="Length unit of the file (STL has none).  [default: mm]"),
         click.option(
             "--density",

@@ -103,6 +103,7 @@ SIZING = (
         "makers' strokes: 2.0 mm at 50 Hz, 1.5 at 60, 0.6 at 100, 0.4 at 120 are 10.1 to 12.1",
     ),
     _rule("greatest_stroke", "length", "0.01 mm", "40 mm", "3 mm", "peak to peak", "Eriez: never above"),
+    _rule("leaves", "count", "1", "500", "9", "usual number of leaves: three banks of three", ASSUMED),
     _rule(
         "fatigue_stress", "stress", "1 MPa", "2000 MPa", "250 MPa",
         "amplitude of bending stress that a clamped leaf bears without end",

@@ -34,7 +34,9 @@ def machine_for(bowl, size, given):
     made = replace(bowl.machine, **{name: value for name, value in guess.items() if name not in given})
     if "spring_angle" in given:
         return made
-    return replace(made, spring_angle=_spring_angle(bowl.drive.vibration_angle + size.climb, radius, made, rules))
+    return replace(
+        made, spring_angle=_spring_angle(bowl.drive.vibration_angle + size.climb, radius, made, rules)
+    )
 
 
 def _bowl(radius, size, rules):

@@ -63,7 +63,9 @@ def _stress(sheet):
 def _stroke(sheet):
     most = greatest_amplitude(sheet.bowl)
     if sheet.bowl.drive.amplitude > most * (1.0 + 1e-9):
-        there = f"{2.0 * sheet.bowl.drive.amplitude / MM:.4g} mm peak to peak at {sheet.stroke.frequency:.4g} Hz"
+        there = (
+            f"{2.0 * sheet.bowl.drive.amplitude / MM:.4g} mm peak to peak at {sheet.stroke.frequency:.4g} Hz"
+        )
         what = f"{there} is more than drives are built for"
         yield FeederError("drive.amplitude", what, f"give at most {most / MM:.3g} mm, or a lower frequency")
 

@@ -80,9 +80,7 @@ def emptying(machine, frequency, fill, rules):
     so that a stroke near resonance is less than the one here.
     """
     levels = np.linspace(1.0, 0.0, LEVELS)
-    natural = np.array(
-        [springs(loaded(machine, fill, rules.carried * u)).natural_frequency for u in levels]
-    )
+    natural = np.array([springs(loaded(machine, fill, rules.carried * u)).natural_frequency for u in levels])
     gains = gain(frequency, natural, machine.damping)
     strokes = gains / gains[-1]
     reach = np.minimum(1.0, strokes / rules.controller)

@@ -4,9 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew import check
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
-from feederscrew.motion.headings import headings
+from feederscrew.geometry.polygons import turned
+from feederscrew.mechanics.wall.headings import headings
 from feederscrew.resting.posture import posture
 
 STRAIGHT = Track(climb=0.0, bank=0.0, radius=1e3, width=1.0)  # [m] a wall without a bend
@@ -39,6 +41,15 @@ class Size:
     pitch: float  # [m] rise of one turn
 
 
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """One part against the wall, seen from above; x ahead, y from the wall inwards, about its centre of mass."""
+
+    outline: np.ndarray  # (J, 2) [m]
+    to_wall: float  # [m] from the foot of the centre of mass
+    length: float  # [m] along the wall
+
+
 def lying(part, aspects, wanted=None):
     """Compute the room a part takes along a wall.
 
@@ -69,6 +80,16 @@ def lying(part, aspects, wanted=None):
         length=float(max(row[2] for row in counted)),
         width=float(max(row[3] for row in counted)),
     )
+
+
+def shape(part, aspects, track, wanted=None):
+    """Return the wanted orientation on a track, or else the most frequent heading of the first aspect."""
+    name = aspects.names[int(np.flatnonzero(aspects.stable)[0])] if wanted is None else wanted[0]
+    stood = posture(part, aspects, name)
+    found = headings(stood, track)
+    row = 0 if wanted is None else int(np.argmin(np.abs(found.headings - wanted[1])))
+    outline = check.frozen(turned(stood.outline, found.headings[row]))
+    return Shape(outline, float(found.distances[row]), float(found.lengths[row]))
 
 
 def size(part, given, rules, *, diameter=None, width=None, climb=None):

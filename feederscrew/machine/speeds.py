@@ -24,4 +24,6 @@ def remark(velocity, rules):
         return []
     between = f"{rules.slowest / MM_S:.4g} to {rules.fastest / MM_S:.4g} mm/s"
     side = "slower" if velocity < rules.slowest else "faster"
-    return [f"{velocity / MM_S:.3g} mm/s is {side} than bowls run ({between}): check stroke, angle and friction"]
+    return [
+        f"{velocity / MM_S:.3g} mm/s is {side} than bowls run ({between}): check stroke, angle and friction"
+    ]

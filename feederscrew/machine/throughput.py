@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew import units
+from feederscrew.conveying import answer
 from feederscrew.errors import FeederError
 from feederscrew.machine.stroke import greatest_amplitude
-from feederscrew.motion import rate
-from feederscrew.motion.conveying import answer
+from feederscrew.rates import queue
 
-STEPS = 160  # strokes that are looked at
+STEPS = 120  # strokes that are looked at
 HALVINGS = 40
 CLIMBS = 30  # halvings of the search for the steepest climb
 STEEPEST = np.radians(45.0)
@@ -51,7 +51,7 @@ def flow(found, rule, *, target=None, gap=0.0, fill=1.0):
     """
     chances = found.rules[rule] / np.nansum(found.rules[rule])
     if target is not None:
-        parts = rate.parts_per_metre(found, target, rule, gap=gap, fill=fill)
+        parts = queue.parts_per_metre(found, target, rule, gap=gap, fill=fill)
         row = list(zip(found.aspects, found.headings)).index(target)
         return Flow(parts, float(chances[row] * found.through[row]), float(found.lengths[row]))
     share = float(np.nansum(chances * found.through))
@@ -62,7 +62,7 @@ def flow(found, rule, *, target=None, gap=0.0, fill=1.0):
 
 
 def amplitude_for(bowl, velocity):
-    """Return the smallest stroke at which a part travels at least so fast.
+    """Return the smallest stroke from which on a part travels at least so fast.
 
     Parameters
     ----------
@@ -72,21 +72,39 @@ def amplitude_for(bowl, velocity):
 
     Returns
     -------
-    (float [m], float [m/s]) or None, and the fastest of all: (float [m/s], float [m])
+    (float [m], float [m/s]) or None
         Amplitude and velocity there; None where no stroke that drives are built for does.
+    (float [m/s], float [m])
+        The fastest of all, and its amplitude.
+
+    Notes
+    -----
+    Where a part hops, velocity does not only grow with the stroke. A stroke is preferred from which on the
+    velocity holds over the range that is tuned with the controller; where there is none, the smallest stroke
+    that is fast enough is taken.
     """
     amplitudes = greatest_amplitude(bowl) * np.arange(1, STEPS + 1) / STEPS
     speeds = np.array([_speed(bowl, one) for one in amplitudes])
     best = int(np.argmax(speeds))
     fastest = float(speeds[best]), float(amplitudes[best])
-    above = np.flatnonzero(speeds >= velocity)
-    if not above.size:
+    first = _first(amplitudes, speeds >= velocity, 1.0 + bowl.sizing.retune)
+    if first is None:
         return None, fastest
-    low, high = (amplitudes[above[0] - 1] if above[0] else 0.0), amplitudes[above[0]]
+    low, high = (amplitudes[first - 1] if first else 0.0), amplitudes[first]
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if _speed(bowl, middle) >= velocity else (middle, high)
     return (float(high), float(_speed(bowl, high))), fastest
+
+
+def _first(amplitudes, fast, reach):
+    """The first place from which on all is fast up to ``reach`` times as far; else the first fast one."""
+    places = np.flatnonzero(fast)
+    for place in places:
+        around = (amplitudes >= amplitudes[place]) & (amplitudes <= reach * amplitudes[place])
+        if fast[around].all():
+            return place
+    return places[0] if places.size else None
 
 
 def steepest(bowl):
@@ -113,7 +131,9 @@ def unreachable(target, parts_per_metre, fastest):
     speed, amplitude = fastest
     most = f"{max(speed, 0.0) * parts_per_metre / minute:.4g}/min at {2e3 * amplitude:.3g} mm peak to peak"
     what = f"no bowl reaches {target / minute:.6g}/min of this part: the most is {most}"
-    return FeederError("--target", what, "split it over several bowls or tracks, or let more orientations pass")
+    return FeederError(
+        "--target", what, "split it over several bowls or tracks, or let more orientations pass"
+    )
 
 
 def _speed(bowl, amplitude):

@@ -105,7 +105,7 @@ def sets(machine, frequency, amplitude, rules):
 
 
 def chosen(found, rules):
-    """Return the set to build in: within its fatigue stress, the one with the most room for the fill.
+    """Return the set to build in: within its fatigue stress, with room for the fill, of a usual number.
 
     Parameters
     ----------
@@ -116,7 +116,10 @@ def chosen(found, rules):
     Returns
     -------
     LeafSet or None
-        Of the highest natural frequency, because parts in the bowl only lower it; None where none holds.
+        In the upper half of the range where one is, because parts in the bowl only lower its natural
+        frequency; of these the one with about the usual number of leaves. None where none holds.
     """
     lasting = [one for one in found if one.stress <= rules.fatigue_stress]
-    return max(lasting, key=lambda one: (one.detuning, -one.leaves), default=None)
+    middle = 0.5 * (rules.least_detuning + rules.greatest_detuning)
+    high = [one for one in lasting if one.detuning >= middle]
+    return min(high or lasting, key=lambda one: abs(one.leaves - rules.leaves), default=None)

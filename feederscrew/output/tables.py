@@ -7,6 +7,13 @@ import numpy as np
 import pandas as pd
 
 UNITS = {  # the end of a column's name, and how a heading writes it
+    "_n_per_mm": "N/mm",
+    "_per_minute": "1/min",
+    "_percent": "%",
+    "_kg_m2": "kg m2",
+    "_mpa": "MPa",
+    "_kg": "kg",
+    "_hz": "Hz",
     "_g_mm2": "g mm2",
     "_kg_m3": "kg/m3",
     "_g_cm3": "g/cm3",

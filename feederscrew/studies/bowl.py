@@ -10,13 +10,13 @@ from feederscrew.bowl.direction import vibration_angle
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.schema import BY_NAME
 from feederscrew.bowl.settings import default
+from feederscrew.conveying import answer
 from feederscrew.errors import FeederError
 from feederscrew.machine import building, checks, filling, sizing, throughput, tuning
 from feederscrew.machine.springs import Springs, gain, leaf_stress, springs
 from feederscrew.machine.stroke import Stroke, angles, greatest_amplitude, stroke
-from feederscrew.motion import rate
-from feederscrew.motion.conveying import answer
 from feederscrew.part.record import Part
+from feederscrew.rates import queue
 from feederscrew.resting import aspects
 
 STEEL = 7850.0  # [kg/m3] of a fill without a part
@@ -37,6 +37,7 @@ class Order:
     flow: throughput.Flow
     hopper: float  # [m3]
     handbook: float  # [1/s] the handbook's estimate for the same share
+    shape: sizing.Shape  # one part on the track, to draw
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +57,7 @@ class MachineSheet:
     angles: np.ndarray  # (N,) [rad] of the motion to the horizontal
     changes: tuple[tuning.LeafSet, ...]
     sets: tuple[tuning.LeafSet, ...]
+    depth: float  # [m] of the bowl
     fill: filling.Fill
     emptying: filling.Emptying
     velocities: np.ndarray  # (M,) [m/s] at each level of the emptying bowl, the controller left alone
@@ -102,7 +104,7 @@ def bowl(settings, part, target, chain=(), *, aspect=None, heading=None, rule="p
     aspect : str, optional
         That counts; without it, every orientation that stays on the track and passes the devices.
     heading : float [rad], optional
-        As for ``rate.wanted``.
+        As for ``queue.wanted``.
     rule : str
     gap : float [m]
     fill : float [1]
@@ -120,13 +122,13 @@ def bowl(settings, part, target, chain=(), *, aspect=None, heading=None, rule="p
     plain, found = answer.conveying(bowls.record(settings)), aspects.find(part)
     _check_rule(rule, found)
     straight = replace(sizing.STRAIGHT, climb=plain.track.climb)
-    wanted = None if aspect is None else rate.wanted(part, found, straight, aspect, heading)
+    wanted = None if aspect is None else queue.wanted(part, found, straight, aspect, heading)
     lying = sizing.lying(part, found, wanted)
     size = _size(lying, part, plain, settings)
     track = replace(plain.track, radius=0.5 * size.diameter, width=size.track_width, climb=size.climb)
     if wanted is not None:
-        wanted = rate.wanted(part, found, track, *wanted)
-    known = rate.orientations(part, found, track, chain)
+        wanted = queue.wanted(part, found, track, *wanted)
+    known = queue.orientations(part, found, track, chain)
     flow = throughput.flow(known, rule, target=wanted, gap=gap, fill=fill)
     driven = _driven(replace(plain, track=track), size, settings, target, flow)
     order = Order(
@@ -140,6 +142,7 @@ def bowl(settings, part, target, chain=(), *, aspect=None, heading=None, rule="p
         flow=flow,
         hopper=target * plain.sizing.hopper_interval * part.volume / plain.sizing.packing,
         handbook=plain.sizing.handbook_speed * flow.share / flow.length,
+        shape=sizing.shape(part, found, track, wanted),
     )
     return _sheet(driven, settings, size.depth, part.mass / part.volume, order)
 
@@ -233,6 +236,7 @@ def _sheet(bowl, settings, depth, density, order):
         angles=check.frozen(turned),
         changes=tuning.changes(under, moved.frequency, moved.springs),
         sets=tuning.sets(under, moved.frequency, moved.springs, rules),
+        depth=depth,
         fill=fill,
         emptying=emptied,
         velocities=_velocities(bowl, emptied.strokes),
@@ -244,6 +248,7 @@ def _sheet(bowl, settings, depth, density, order):
 def _velocities(bowl, strokes):
     """Velocity at multiples of the bowl's stroke [m/s]; its stroke ends where the magnet would strike."""
     most = max(greatest_amplitude(bowl), bowl.drive.amplitude)
-    amplitudes = np.minimum(bowl.drive.amplitude * strokes, most)
+    amplitudes, again = np.unique(np.minimum(bowl.drive.amplitude * strokes, most), return_inverse=True)
     drives = [replace(bowl.drive, amplitude=float(one)) for one in amplitudes]
-    return check.frozen(np.array([answer.answer(replace(bowl, drive=drive)).velocity for drive in drives]))
+    speeds = np.array([answer.answer(replace(bowl, drive=drive)).velocity for drive in drives])
+    return check.frozen(speeds[again])

@@ -1,0 +1,75 @@
+"""``feeder bowl``."""
+
+import click
+
+from feederscrew_cli import options, orientation
+from feederscrew_cli.quantity import Quantity
+
+TARGET = click.option(
+    "--target",
+    type=Quantity("rate", positive=True),
+    metavar="RATE",
+    help="Parts that shall leave: 120/min.  [needed with PART]",
+)
+ASPECT = click.option(
+    "--aspect",
+    metavar="NAME",
+    help="Aspect that counts.  [default: every one that passes the track and the devices]",
+)
+
+
+def _wanted(command):
+    """The options of ``orientation.CHAIN``, none of them required."""
+    for option in reversed((TARGET, ASPECT, *orientation.CHAIN[1:])):
+        command = option(command)
+    return command
+
+
+@click.command(short_help="Size the bowl for a part and a rate; its springs, tuning and drift.")
+@options.optional_part
+@_wanted
+@options.bowl
+@options.pictures
+@options.output
+def bowl(part, target, bowl, pictures, out, **wanted):
+    """Example: feeder bowl parts/lbracket_30x20x15.stl --target 60/min -o results
+
+    With PART and --target: diameter, track, climb, turns, fill, hopper, drive, stroke and leaf springs that
+    bring the rate through the devices of the bowl file, and the sheet that a quotation asks for.
+
+    Without PART: the machine of the bowl file (section 'machine'): natural frequency, gain, leaf stress,
+    vibration angle over the radius, sets of leaves that tune it, and what it does from full to empty.
+
+    What the bowl file says of track, drive and machine is kept; section 'sizing' has the rules of thumb.
+    With -o: bowl.json, bowl.csv, bowl_angles.csv, bowl_leaves.csv, bowl_leaf_changes.csv,
+    bowl_emptying.csv and bowl.png.
+    """
+    from feederscrew import bowl as bowls
+    from feederscrew.output import columns, machine, offers
+    from feederscrew.output.machine import tables
+    from feederscrew.rates import devices
+    from feederscrew.studies import bowl as study
+
+    _fitting(part, target)
+    settings, path = bowls.settings(**bowl), bowl["path"]
+    solid = out.part(part) if part["source"] else None
+    identity = {solid.source: solid.sha256} if solid else {}
+    effective = (columns.conditions(solid) if solid else {}) | bowls.texts(settings)
+    name = solid.name if solid else bowls.name(path)
+    with out.folder(name, identity | bowls.identity(path), effective) as folder:
+        found = (
+            study.bowl(settings, solid, target, devices.read(path), **wanted)
+            if solid
+            else study.machine(settings)
+        )
+        out.warn(*found.remarks)
+        offers.write(folder, machine.offers(found), pictures=pictures)
+        out.show(tables.summary(found), tables.document(found))
+
+
+def _fitting(part, target):
+    """Wrong calls."""
+    if part["source"] and target is None:
+        raise click.UsageError("PART is given without --target - give the rate as well: --target 120/min")
+    if target is not None and not part["source"]:
+        raise click.UsageError("--target is given without PART - name the part's file")

@@ -1,0 +1,248 @@
+"""The bowl from above and in section, in one scale, and what it does from full to empty."""
+
+import numpy as np
+from matplotlib.patches import Circle, Polygon, Rectangle, Wedge
+
+from feederscrew.output import style
+from feederscrew.output.machine.sheet import DEG, MM, PER_MINUTE
+
+WIDE, HIGH = 1760, 1500  # [px] of the page
+SHEET, TRACK, FLOOR, FILL, BASE = "#22303c", "#b9cbd8", "#eef2f5", "#e9d9b6", "#c9d0d6"
+STEEL, FREE, HELD = "#7d8b97", "#d55e00", "#0072b2"
+ROOM = 1.34  # of the bowl's radius, shown to each side
+SMALL, TINY = 8.5, 7.5  # [pt]
+BANKS = 3  # of leaves, as drawn
+DIMENSION = {"arrowstyle": "<->", "color": style.INK, "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
+LEADER = {"arrowstyle": "-", "color": style.INK, "linewidth": 0.7, "shrinkA": 1, "shrinkB": 0}
+
+
+def bowl(study):
+    """Draw a bowl with its machine.
+
+    Parameters
+    ----------
+    study : MachineSheet
+
+    Returns
+    -------
+    Figure
+    """
+    page = style.page(WIDE, HIGH)
+    _title(page, study)
+    half = ROOM * study.bowl.track.radius / MM
+    above, section = page.add_axes((0.015, 0.40, 0.475, 0.50)), page.add_axes((0.51, 0.40, 0.475, 0.50))
+    share = 0.50 * HIGH / (0.475 * WIDE)
+    for axes in (above, section):
+        axes.set_axis_off()
+        axes.set(xlim=(-half, half), ylim=(-half * share, half * share))
+    _from_above(above, study, half * share)
+    _in_section(section, study, half * share)
+    _curves(page, study)
+    return page
+
+
+def _title(page, study):
+    words, moved = "The machine of this bowl", study.stroke
+    if study.order is not None:
+        rate = study.order.target / PER_MINUTE
+        words = f"{style.words(study.order.part.name)}: a bowl for {rate:.4g} parts a minute"
+    facts = (
+        f"{moved.frequency:.4g} Hz, {moved.peak_to_peak / MM:.3g} mm peak to peak, "
+        f"{1e3 * study.answer.velocity:.3g} mm/s"
+    )
+    page.text(0.02, 0.965, words, fontsize=14, fontweight="bold", color=style.INK, va="center")
+    page.text(
+        0.02,
+        0.935,
+        f"{facts}; both views in one scale, sizes in mm",
+        fontsize=9.5,
+        color=style.INK,
+        va="center",
+    )
+
+
+def _from_above(axes, study, half):
+    """Wall, track, floor, the springs' circle and the part on the track."""
+    track, machine = study.bowl.track, study.bowl.machine
+    radius, width, at = track.radius / MM, track.width / MM, machine.spring_radius / MM
+    axes.add_patch(Circle((0, 0), radius - width, facecolor=FLOOR, edgecolor=STEEL, linewidth=0.8))
+    axes.add_patch(Wedge((0, 0), radius, 0, 360, width=width, facecolor=TRACK, edgecolor="none"))
+    axes.add_patch(Circle((0, 0), radius, fill=False, edgecolor=SHEET, linewidth=2.2))
+    axes.add_patch(Circle((0, 0), at, fill=False, edgecolor=STEEL, linewidth=0.9, linestyle=(0, (5, 3))))
+    for place in np.radians(90 + 360 / BANKS * np.arange(BANKS)):
+        _bank(axes, at, place, machine.leaf_width / MM)
+    _parts(axes, study, radius)
+    _way(axes, radius - 0.5 * width)
+    _across(axes, -radius, radius, -radius - 0.10 * half, f"D {2 * radius:.4g}", radius)
+    axes.annotate(
+        f"track {width:.3g}", (radius - 0.5 * width, 0), (0.50 * radius, -0.13 * radius), fontsize=SMALL,
+        ha="center", va="center", color=style.INK, arrowprops=LEADER,
+    )  # fmt: skip
+    axes.text(0, 0, f"springs on\nradius {at:.4g}", fontsize=SMALL, color=style.INK, ha="center", va="center")
+    axes.text(-ROOM * radius, half, "from above", fontsize=10, fontweight="bold", color=style.INK, va="top")
+
+
+def _bank(axes, radius, place, width):
+    """One bank of leaves, seen from above: its width lies along the radius."""
+    outward, along = np.array([np.cos(place), np.sin(place)]), np.array([-np.sin(place), np.cos(place)])
+    corners = [
+        radius * outward + x * 0.5 * width * outward + y * 0.1 * width * along
+        for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    ]
+    axes.add_patch(Polygon(corners, closed=True, facecolor=STEEL, edgecolor=SHEET, linewidth=0.7))
+
+
+def _parts(axes, study, radius):
+    """The part along the wall, as often as it fits on a quarter of the track."""
+    if study.order is None:
+        return
+    outline, to_wall, length = (
+        study.order.shape.outline / MM,
+        study.order.shape.to_wall / MM,
+        study.order.shape.length / MM,
+    )
+    step = 1.12 * length / radius
+    first = np.radians(118)
+    for place in first + step * np.arange(max(1, int(np.radians(118) / step))):
+        outward, ahead = np.array([np.cos(place), np.sin(place)]), np.array([-np.sin(place), np.cos(place)])
+        corners = np.outer(radius - to_wall - outline[:, 1], outward) + np.outer(outline[:, 0], ahead)
+        axes.add_patch(
+            Polygon(corners, closed=True, facecolor="#f2c48f", edgecolor=SHEET, linewidth=0.7, zorder=3)
+        )
+
+
+def _way(axes, radius):
+    """An arrow the way the parts climb: counter-clockwise."""
+    turn = np.radians(np.linspace(28, 78, 40))
+    axes.plot(radius * np.cos(turn), radius * np.sin(turn), color=style.INK, linewidth=1.1)
+    end, before = turn[-1], turn[-4]
+    axes.annotate(
+        "", (radius * np.cos(end + 0.03), radius * np.sin(end + 0.03)),
+        (radius * np.cos(before), radius * np.sin(before)),
+        arrowprops={"arrowstyle": "-|>", "color": style.INK, "linewidth": 1.1},
+    )  # fmt: skip
+
+
+def _in_section(axes, study, half):
+    """Wall, turns of the track, fill, springs and base."""
+    track, machine, rules = study.bowl.track, study.bowl.machine, study.bowl.sizing
+    radius, width, depth = track.radius / MM, track.width / MM, study.depth / MM
+    sheet, leaf = rules.sheet / MM, machine.leaf_length / MM * np.cos(machine.spring_angle)
+    base = min(0.42 * radius, 0.9 * half)
+    foot = -0.5 * (depth + base + leaf) + base + leaf  # the bowl's floor, so that all stands in the middle
+    level = rules.fill_height * depth
+    axes.add_patch(Rectangle((-radius, foot), 2 * radius, level, facecolor=FILL, edgecolor="none"))
+    _turns(axes, study, radius, width, foot, depth, sheet)
+    axes.add_patch(Rectangle((-radius, foot - sheet), 2 * radius, sheet, color=SHEET))
+    for side in (-1, 1):
+        axes.add_patch(
+            Rectangle((side * radius - (side < 0) * sheet, foot - sheet), sheet, depth + sheet, color=SHEET)
+        )
+        _leaves(axes, side * machine.spring_radius / MM, foot - sheet, machine)
+    reach = 1.25 * machine.spring_radius / MM
+    axes.add_patch(Rectangle((-reach, foot - leaf - base), 2 * reach, base, facecolor=BASE, edgecolor=STEEL))
+    axes.text(
+        0, foot - leaf - 0.5 * base, _base(machine), fontsize=SMALL, color=style.INK, ha="center", va="center"
+    )
+    axes.text(0, foot - 0.5 * leaf, _set(machine), fontsize=SMALL, color=style.INK, ha="center", va="center")
+    axes.text(0, foot + 0.5 * level, _full(study), fontsize=SMALL, color=style.INK, ha="center", va="center")
+    _upright(axes, radius, foot, depth)
+    axes.text(0, foot + depth, _climb(study), fontsize=SMALL, color=style.INK, ha="center", va="top")
+    axes.text(-ROOM * radius, half, "in section", fontsize=10, fontweight="bold", color=style.INK, va="top")
+
+
+def _turns(axes, study, radius, width, foot, depth, sheet):
+    """The track cut at both sides, half a turn higher on the left."""
+    rise = np.pi * 2.0 * radius * np.tan(study.bowl.track.climb)
+    for side, start in ((1, 0.0), (-1, 0.5)):
+        for height in rise * (start + np.arange(60)) if rise > 0.0 else (0.0,):
+            if height > depth + 1e-9:
+                break
+            left = radius - width if side > 0 else -radius
+            axes.add_patch(
+                Rectangle(
+                    (left, foot + height - sheet),
+                    width,
+                    sheet,
+                    facecolor=STEEL,
+                    edgecolor=SHEET,
+                    linewidth=0.5,
+                )
+            )
+
+
+def _leaves(axes, place, top, machine):
+    """A bank of leaves at its tilt, drawn three leaves thick."""
+    tilt, length = machine.spring_angle, machine.leaf_length / MM
+    lean = 0.5 * length * np.sin(tilt)
+    for step in (-1, 0, 1):
+        x = place + 2.2 * step * machine.leaf_thickness / MM
+        axes.plot([x - lean, x + lean], [top - length * np.cos(tilt), top], color=SHEET, linewidth=1.4)
+
+
+def _base(machine):
+    return f"base {machine.base_mass:.3g} kg\n{machine.base_inertia:.3g} kg m²"
+
+
+def _set(machine):
+    leaf = (
+        f"{machine.leaf_width / MM:.3g} x {machine.leaf_thickness / MM:.3g} x {machine.leaf_length / MM:.3g}"
+    )
+    return f"{machine.leaves:.0f} leaves {leaf}\nat {machine.spring_angle / DEG:.3g}°"
+
+
+def _full(study):
+    return f"full {study.fill.mass:.3g} kg"
+
+
+def _climb(study):
+    track, rise = study.bowl.track, 2.0 * np.pi * study.bowl.track.radius * np.tan(study.bowl.track.climb)
+    turns = study.depth / rise if rise > 0.0 else np.nan
+    said = f"climb {track.climb / DEG:.3g}°, {turns:.3g} turns" if np.isfinite(turns) else "level track"
+    return f"{said}\nbowl {study.bowl.machine.bowl_mass:.3g} kg, {study.bowl.machine.bowl_inertia:.3g} kg m²"
+
+
+def _across(axes, left, right, y, text, radius):
+    for x in (left, right):
+        axes.plot([x, x], [0, y - 0.02 * radius], color=style.INK, linewidth=0.5, zorder=0)
+    axes.annotate("", (left, y), (right, y), arrowprops=DIMENSION)
+    axes.text(
+        0, y, text, fontsize=10, color=style.INK, ha="center", va="center",
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5},
+    )  # fmt: skip
+
+
+def _upright(axes, radius, foot, depth):
+    x = 1.13 * radius
+    for y in (foot, foot + depth):
+        axes.plot([radius, x + 0.02 * radius], [y, y], color=style.INK, linewidth=0.5, zorder=0)
+    axes.annotate("", (x, foot), (x, foot + depth), arrowprops=DIMENSION)
+    axes.text(x + 0.03 * radius, foot + 0.5 * depth, f"{depth:.3g}", fontsize=9, color=style.INK, va="center")
+
+
+def _curves(page, study):
+    """Rate or velocity, and natural frequency, from a full bowl to an empty one."""
+    left, right = page.add_axes((0.065, 0.065, 0.41, 0.27)), page.add_axes((0.565, 0.065, 0.41, 0.27))
+    fill = 100.0 * study.emptying.levels
+    ordered = study.order is not None
+    free, held = (
+        study.rates(v) / PER_MINUTE if ordered else 1e3 * v for v in (study.velocities, study.controlled)
+    )
+    what = "Parts a minute as the bowl empties" if ordered else "Velocity as the bowl empties [mm/s]"
+    style.tidy(left, title=what, x="fill [%]")
+    left.plot(fill, free, color=FREE, marker="o", markersize=3, label="amplitude left alone")
+    left.plot(fill, held, color=HELD, linewidth=1.8, label="amplitude controlled")
+    left.set(
+        xlim=(103, -3),
+        ylim=(min(0.0, 1.05 * np.nanmin(free)), 1.22 * max(np.nanmax(free), np.nanmax(held), 1e-9)),
+    )
+    left.legend(fontsize=8, frameon=False, loc="upper right", labelcolor=style.INK, ncols=2)
+    style.tidy(right, title="Natural frequency as the bowl empties [Hz]", x="fill [%]")
+    natural, drive = study.emptying.natural_frequencies, study.stroke.frequency
+    right.plot(fill, natural, color=style.INK, linewidth=1.8)
+    right.axhline(drive, color=style.ACCENT, linewidth=1.2, linestyle="--")
+    low, high = min(natural.min(), drive), max(natural.max(), drive)
+    right.set(xlim=(103, -3), ylim=(low - 0.25 * (high - low), high + 0.15 * (high - low)))
+    right.text(
+        100, drive - 0.04 * (high - low), f"drive {drive:.4g} Hz", fontsize=8, color=style.ACCENT, va="top"
+    )

@@ -1,0 +1,134 @@
+"""The sheet of a machine and the sheet that a quotation asks for: one line a quantity, in plain text."""
+
+from feederscrew import units
+
+MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
+N_MM, MPA = units.factor("N/mm", "stiffness"), units.factor("MPa", "stress")
+PER_MINUTE, LITRE = units.factor("/min", "rate"), units.factor("l", "volume")
+GRAM, GRAM_CM3 = units.factor("g", "mass"), units.factor("g/cm3", "density")
+
+
+def quotation(study):
+    """Return the lines that a maker asks for: part, rate, orientation, bowl, drive.
+
+    Parameters
+    ----------
+    study : MachineSheet
+        With an order.
+
+    Returns
+    -------
+    list of dict
+        'quantity' and 'value', both text.
+    """
+    return _lines([*_part(study), *_rates(study), *_bowl(study), *_drive(study), *_springs(study)])
+
+
+def machine(study):
+    """Return the lines of a machine without an order, as ``quotation`` does."""
+    return _lines([*_springs(study), *_readings(study), *_travel(study), *_full(study)])
+
+
+def _lines(pairs):
+    return [{"quantity": quantity, "value": value} for quantity, value in pairs]
+
+
+def _part(study):
+    part, room = study.order.part, study.order.lying
+    size = " x ".join(f"{side / MM:.4g}" for side in sorted(_box(part), reverse=True))
+    yield "part", part.name
+    yield "material, density [g/cm3]", f"{part.material}, {part.mass / part.volume / GRAM_CM3:.4g}"
+    yield "mass [g], volume [mm3]", f"{part.mass / GRAM:.4g}, {part.volume / MM**3:.5g}"
+    yield "size [mm]", f"{size}; at most {room.longest / MM:.4g} along the wall, {room.tallest / MM:.4g} high"
+
+
+def _box(part):
+    return part.vertices.max(axis=0) - part.vertices.min(axis=0)
+
+
+def _rates(study):
+    asked = study.order
+    rates = study.rates(study.velocities) / PER_MINUTE
+    yield "rate asked for [1/min]", f"{asked.target / PER_MINUTE:.6g}"
+    yield "rate at this stroke [1/min]", f"{study.rates(study.answer.velocity) / PER_MINUTE:.4g}"
+    yield "rate from full to empty [1/min]", f"{rates[0]:.4g} to {rates[-1]:.4g}, amplitude left alone"
+    yield "handbook, 1500 E / l [1/min]", f"{asked.handbook / PER_MINUTE:.4g}"
+    yield "orientation that counts", _orientation(asked)
+
+
+def _orientation(asked):
+    share = f"{100 * asked.flow.share:.3g} % of the parts ({asked.rule})"
+    if asked.wanted is None:
+        return f"every one that passes track and devices, {share}"
+    return f"aspect {asked.wanted[0]} at {asked.wanted[1] / DEG:.3g} deg, {share}"
+
+
+def _bowl(study):
+    size, rules = study.order.size, study.bowl.sizing
+    rule = max(size.least, key=size.least.get)
+    least = f"{size.least[rule] / MM:.4g} by: {rule}"
+    play = f"play {size.clearance / MM:.3g}, bend {size.bend / MM:.3g}"
+    yield "bowl diameter [mm]", f"{size.diameter / MM:.4g} (least {least})"
+    yield "bowl depth [mm]", f"{size.depth / MM:.4g}"
+    yield "track width [mm]", f"{size.track_width / MM:.4g} (part {study.order.lying.width / MM:.4g}, {play})"
+    yield "climb [deg]", f"{size.climb / DEG:.3g} (friction carries {study.order.steepest / DEG:.3g})"
+    yield "turns", f"{size.turns:.3g}, each rises {size.pitch / MM:.3g} mm"
+    yield from _full(study)
+    hours = rules.hopper_interval / units.factor("min", "time")
+    yield "hopper [l]", f"{study.order.hopper / LITRE:.3g}, filled every {hours:.4g} min"
+
+
+def _full(study):
+    rules, fill, under = study.bowl.sizing, study.fill, study.bowl.machine
+    third = abs(rules.fill_height - 1.0 / 3.0) < 1e-3
+    share = "a third" if third else f"{100 * rules.fill_height:.3g} %"
+    yield "full bowl [kg]", f"{fill.mass:.3g} in {fill.volume / LITRE:.3g} l, {share} of the depth"
+    mass = under.bowl_mass + rules.carried * fill.mass
+    inertia = under.bowl_inertia + rules.carried * fill.inertia
+    yield "on the springs, empty", f"{under.bowl_mass:.3g} kg, {under.bowl_inertia:.3g} kg m2"
+    yield "on the springs, full", f"{mass:.3g} kg, {inertia:.3g} kg m2"
+
+
+def _drive(study):
+    rules = study.bowl.sizing
+    yield "drive [Hz]", f"{study.stroke.frequency:.4g}"
+    yield from _readings(study)
+    yield from _travel(study)
+    low, high = (rules.controller + sign * rules.retune for sign in (-1.0, 1.0))
+    yield "tune again outside [%]", f"{100 * low:.3g} to {100 * high:.3g} of the controller, at that rate"
+
+
+def _readings(study):
+    moved, rules = study.stroke, study.bowl.sizing
+    full = moved.peak_to_peak / rules.controller / MM
+    at = f"at {100 * rules.controller:.3g} % of the controller, {full:.3g} at 100 %"
+    yield "stroke, as on a sticker [mm]", f"{moved.peak_to_peak / MM:.3g} {at}"
+    parts = f"rms {moved.rms:.3g}, horizontal {moved.horizontal:.3g}, vertical {moved.vertical:.3g}"
+    yield "accelerometer [m/s2]", f"{moved.acceleration:.3g} peak; {parts}"
+    ratio = moved.acceleration / study.bowl.gravity
+    yield "G, throw number", f"{ratio:.3g}, {study.answer.throw_number:.3g}"
+
+
+def _travel(study):
+    found, drive = study.answer, study.bowl.drive
+    yield "vibration angle at the track [deg]", f"{drive.vibration_angle / DEG:.3g}"
+    yield "velocity [mm/s]", f"{found.velocity / MM_S:.3g}, {found.regime}"
+    yield "hardest impact [mm/s]", f"{found.hardest_impact / MM_S:.3g}"
+
+
+def _springs(study):
+    made, under = study.springs, study.bowl.machine
+    leaf = " x ".join(
+        f"{side / MM:.3g}" for side in (under.leaf_width, under.leaf_thickness, under.leaf_length)
+    )
+    yield "leaves", f"{under.leaves:.0f} of {leaf} mm, {made.leaf_stiffness / N_MM:.5g} N/mm each"
+    place = f"radius {under.spring_radius / MM:.4g} mm, {under.spring_angle / DEG:.3g} deg"
+    yield "springs", f"{place}, {made.stiffness / N_MM:.5g} N/mm with twist"
+    held = f"base held {made.effective_mass_held:.4g}"
+    yield "effective mass [kg]", f"{made.effective_mass:.4g} ({held})"
+    plain = f"without twist {made.natural_frequency_without_twist:.4g}"
+    yield "natural frequency [Hz]", f"{made.natural_frequency:.4g} ({plain})"
+    yield "above the drive [%], gain", f"{100 * study.detuning:.3g}, {study.gain:.3g}"
+    most = study.bowl.sizing.fatigue_stress / MPA
+    yield "leaf stress [MPa]", f"{study.stress / MPA:.3g} (bears {most:.4g})"
+    yield "force of the magnet [N]", f"{study.force:.3g}"

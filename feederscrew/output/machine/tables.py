@@ -1,0 +1,185 @@
+"""A machine and a bowl as tables and documents."""
+
+import numpy as np
+
+from feederscrew import units
+from feederscrew.output import tables
+from feederscrew.output.machine import sheet as sheets
+
+MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
+N_MM, MPA = units.factor("N/mm", "stiffness"), units.factor("MPa", "stress")
+PER_MINUTE, LITRE = units.factor("/min", "rate"), units.factor("l", "volume")
+
+
+def document(study):
+    """Return everything of a machine as the JSON document.
+
+    Parameters
+    ----------
+    study : MachineSheet
+
+    Returns
+    -------
+    dict
+    """
+    return {
+        **({} if study.order is None else order(study)),
+        **_springs(study),
+        **_stroke(study),
+        "angle_by_radius": angles(study),
+        "leaf_changes": leaf_sets(study.changes),
+        "leaf_sets": leaf_sets(study.sets),
+        "full_bowl": {
+            "volume_l": study.fill.volume / LITRE,
+            "mass_kg": study.fill.mass,
+            "inertia_kg_m2": study.fill.inertia,
+            "mass_carried_kg": study.fill.mass * study.bowl.sizing.carried,
+        },
+        "emptying": emptying(study),
+        "remarks": list(study.remarks),
+    }
+
+
+def order(study):
+    """Return what an order asked for and what was sized for it, as a dict."""
+    asked, size, room = study.order, study.order.size, study.order.lying
+    wanted = (None, None) if asked.wanted is None else (asked.wanted[0], asked.wanted[1] / DEG)
+    rates, held = (study.rates(v) / PER_MINUTE for v in (study.velocities, study.controlled))
+    return {
+        "target_per_minute": asked.target / PER_MINUTE,
+        "parts_per_minute": float(study.rates(study.answer.velocity)) / PER_MINUTE,
+        "rate_full_bowl": rates[0],
+        "rate_empty_bowl": rates[-1],
+        "rate_full_bowl_controlled": held[0],
+        "rate_empty_bowl_controlled": held[-1],
+        "handbook_per_minute": asked.handbook / PER_MINUTE,
+        **dict(zip(("aspect", "heading_deg"), wanted)),
+        "rule": asked.rule,
+        "share_counted": asked.flow.share,
+        "mean_length_mm": asked.flow.length / MM,
+        "longest_mm": room.longest / MM,
+        "tallest_mm": room.tallest / MM,
+        "part_width_mm": room.width / MM,
+        "bowl_diameter_mm": size.diameter / MM,
+        "least_diameters_mm": {rule: least / MM for rule, least in size.least.items()},
+        "track_width_mm": size.track_width / MM,
+        "clearance_mm": size.clearance / MM,
+        "bend_mm": size.bend / MM,
+        "climb_deg": size.climb / DEG,
+        "steepest_climb_deg": asked.steepest / DEG,
+        "turns": size.turns,
+        "turn_rise_mm": size.pitch / MM,
+        "bowl_depth_mm": size.depth / MM,
+        "hopper_l": asked.hopper / LITRE,
+        "sheet": sheets.quotation(study),
+    }
+
+
+def _springs(study):
+    made, machine = study.springs, study.bowl.machine
+    return {
+        "leaf_stiffness_n_per_mm": made.leaf_stiffness / N_MM,
+        "leaves": int(machine.leaves),
+        "leaf_width_mm": machine.leaf_width / MM,
+        "leaf_thickness_mm": machine.leaf_thickness / MM,
+        "leaf_length_mm": machine.leaf_length / MM,
+        "stiffness_n_per_mm": made.stiffness / N_MM,
+        "stiffness_with_over_without_twist": made.twist,
+        "bowl_mass_kg": machine.bowl_mass,
+        "bowl_inertia_kg_m2": machine.bowl_inertia,
+        "base_mass_kg": machine.base_mass,
+        "base_inertia_kg_m2": machine.base_inertia,
+        "spring_radius_mm": machine.spring_radius / MM,
+        "spring_angle_deg": machine.spring_angle / DEG,
+        "effective_mass_kg": made.effective_mass,
+        "effective_mass_base_held_kg": made.effective_mass_held,
+        "natural_frequency_hz": made.natural_frequency,
+        "natural_frequency_without_twist_hz": made.natural_frequency_without_twist,
+        "natural_frequency_base_held_hz": made.natural_frequency_held,
+        "drive_frequency_hz": study.stroke.frequency,
+        "above_drive_percent": 100.0 * study.detuning,
+        "gain": study.gain,
+        "leaf_amplitude_mm": study.stroke.springs / MM,
+        "leaf_stress_mpa": study.stress / MPA,
+        "fatigue_stress_mpa": study.bowl.sizing.fatigue_stress / MPA,
+        "drive_force_n": study.force,
+    }
+
+
+def _stroke(study):
+    moved, found, bowl = study.stroke, study.answer, study.bowl
+    return {
+        "controller_percent": 100.0 * bowl.sizing.controller,
+        "peak_to_peak_mm": moved.peak_to_peak / MM,
+        "peak_to_peak_full_controller_mm": moved.peak_to_peak / bowl.sizing.controller / MM,
+        "sticker_mm": moved.peak_to_peak / MM,
+        "accelerometer_m_s2": {
+            "peak": moved.acceleration,
+            "rms": moved.rms,
+            "peak_horizontal": moved.horizontal,
+            "peak_vertical": moved.vertical,
+        },
+        "acceleration_ratio": moved.acceleration / bowl.gravity,
+        "throw_number": found.throw_number,
+        "vibration_angle_deg": bowl.drive.vibration_angle / DEG,
+        "velocity_mm_s": found.velocity / MM_S,
+        "regime": found.regime,
+        "hardest_impact_mm_s": found.hardest_impact / MM_S,
+    }
+
+
+def angles(study):
+    """Return the vibration angle over the radius as a frame: to the horizontal, and to the track."""
+    return tables.frame(
+        {
+            "radius_mm": study.radii / MM,
+            "vibration_angle_deg": study.angles / DEG,
+            "to_the_track_deg": (study.angles - study.bowl.track.climb) / DEG,
+        }
+    )
+
+
+def leaf_sets(found):
+    """Return sets of leaves as a frame.
+
+    Parameters
+    ----------
+    found : sequence of LeafSet
+    """
+    named = {"change": [one.name for one in found]} if any(one.name for one in found) else {}
+    return tables.frame(
+        named
+        | {
+            "leaf_thickness_mm": [one.thickness / MM for one in found],
+            "leaves": [one.leaves for one in found],
+            "natural_frequency_hz": [one.natural_frequency for one in found],
+            "by_t_squared_hz": [one.by_square for one in found],
+            "above_drive_percent": [100.0 * one.detuning for one in found],
+            "gain": [one.gain for one in found],
+            "leaf_stress_mpa": [one.stress / MPA for one in found],
+        }
+    )
+
+
+def emptying(study):
+    """Return the bowl from full to empty as a frame, with rates where parts are counted."""
+    found = study.emptying
+    columns = {
+        "fill_percent": 100.0 * found.levels,
+        "parts_kg": found.masses,
+        "natural_frequency_hz": found.natural_frequencies,
+        "gain": found.gains,
+        "stroke_over_that_of_the_empty_bowl": found.strokes,
+        "velocity_mm_s": study.velocities / MM_S,
+        "velocity_controlled_mm_s": study.controlled / MM_S,
+    }
+    if study.order is not None:
+        columns["rate_per_minute"] = study.rates(study.velocities) / PER_MINUTE
+        columns["rate_controlled_per_minute"] = study.rates(study.controlled) / PER_MINUTE
+    return tables.frame({name: np.asarray(values) for name, values in columns.items()})
+
+
+def summary(study):
+    """Return the record as a frame for people: the quotation sheet, or the machine."""
+    rows = sheets.quotation(study) if study.order is not None else sheets.machine(study)
+    return tables.frame({name: [row[name] for row in rows] for name in ("quantity", "value")})
