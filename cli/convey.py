@@ -61,6 +61,7 @@ def _fitting(spans, curve):
 def _point(settings, picture_folder, folder, out):
     from feederscrew import bowl as bowls
     from feederscrew.conveying import answer, sensitivity, trace
+    from feederscrew.machine import speeds
     from feederscrew.output import tables
     from feederscrew.output.convey import tables as convey_tables
 
@@ -68,7 +69,7 @@ def _point(settings, picture_folder, folder, out):
     found = answer.answer(bowl)
     around = sensitivity.sensitivity(bowl), sensitivity.friction_doubt(bowl)
     document = convey_tables.document(bowl, found, *around) | {"bowl": bowls.texts(settings)}
-    out.warn(*convey_tables.remarks(document))
+    out.warn(*convey_tables.remarks(document), *speeds.remark(found.velocity, bowl.sizing))
     if folder:
         folder.write("convey.json", tables.json_text(document))
     if picture_folder:

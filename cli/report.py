@@ -3,10 +3,17 @@
 import click
 
 from feederscrew_cli import options, orientation, talk
+from feederscrew_cli.quantity import Quantity
 
 WANTED = (
     click.option("--aspect", metavar="NAME", help="Aspect to leave the bowl on.  [default: the likeliest]"),
     *orientation.CHAIN[1:],
+    click.option(
+        "--target",
+        type=Quantity("rate", positive=True),
+        metavar="RATE",
+        help="Size a bowl for this rate as well: 120/min.",
+    ),
 )
 PLACE = (
     click.option(

@@ -56,7 +56,8 @@ def _named(sets):
 def _stress(sheet):
     most = sheet.bowl.sizing.fatigue_stress
     if sheet.stress > most:
-        what = f"the leaves bend to {sheet.stress / MPA:.4g} MPa, beyond their fatigue stress {most / MPA:.4g} MPa"
+        beyond = f"beyond their fatigue stress {most / MPA:.4g} MPa"
+        what = f"the leaves bend to {sheet.stress / MPA:.4g} MPa, {beyond}"
         yield FeederError("machine.leaf_thickness", what, "take more and thinner leaves, or longer ones")
 
 

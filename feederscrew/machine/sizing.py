@@ -43,7 +43,7 @@ class Size:
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """One part against the wall, seen from above; x ahead, y from the wall inwards, about its centre of mass."""
+    """One part against the wall, seen from above; x ahead, y inwards, from its centre of mass."""
 
     outline: np.ndarray  # (J, 2) [m]
     to_wall: float  # [m] from the foot of the centre of mass

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
+from feederscrew.machine import speeds
 from feederscrew.part.record import Part
 from feederscrew.rates import devices as chain
 from feederscrew.rates import queue
@@ -27,8 +28,9 @@ class RateStudy:
 
     @property
     def warnings(self):
-        """What a user must not overlook, a sentence each: of the devices, then of the aspects."""
-        return (*chain.strangers(self.devices, self.aspects.names), *self.aspects.warnings)
+        """What a user must not overlook, a sentence each: of the devices, the aspects, the velocity."""
+        odd = speeds.remark(self.rate.velocity.value, self.bowl.sizing)
+        return (*chain.strangers(self.devices, self.aspects.names), *self.aspects.warnings, *odd)
 
 
 def rate(

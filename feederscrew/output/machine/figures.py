@@ -74,8 +74,10 @@ def _from_above(axes, study, half):
     _parts(axes, study, radius)
     _way(axes, radius - 0.5 * width)
     _across(axes, -radius, radius, -radius - 0.10 * half, f"D {2 * radius:.4g}", radius)
+    turn = np.radians(-38)
+    on_track = (radius - 0.5 * width) * np.array([np.cos(turn), np.sin(turn)])
     axes.annotate(
-        f"track {width:.3g}", (radius - 0.5 * width, 0), (0.50 * radius, -0.13 * radius), fontsize=SMALL,
+        f"track {width:.3g}", on_track, (1.08 * radius, -0.80 * radius), fontsize=SMALL,
         ha="center", va="center", color=style.INK, arrowprops=LEADER,
     )  # fmt: skip
     axes.text(0, 0, f"springs on\nradius {at:.4g}", fontsize=SMALL, color=style.INK, ha="center", va="center")
@@ -146,7 +148,10 @@ def _in_section(axes, study, half):
     )
     axes.text(0, foot - 0.5 * leaf, _set(machine), fontsize=SMALL, color=style.INK, ha="center", va="center")
     axes.text(0, foot + 0.5 * level, _full(study), fontsize=SMALL, color=style.INK, ha="center", va="center")
-    _upright(axes, radius, foot, depth)
+    _upright(axes, 1, radius, foot, foot + depth)
+    rise = np.tan(track.climb) * 2.0 * np.pi * radius
+    if 0.0 < 1.5 * rise <= depth:
+        _upright(axes, -1, radius, foot + 0.5 * rise, foot + 1.5 * rise)
     axes.text(0, foot + depth, _climb(study), fontsize=SMALL, color=style.INK, ha="center", va="top")
     axes.text(-ROOM * radius, half, "in section", fontsize=10, fontweight="bold", color=style.INK, va="top")
 
@@ -212,12 +217,15 @@ def _across(axes, left, right, y, text, radius):
     )  # fmt: skip
 
 
-def _upright(axes, radius, foot, depth):
-    x = 1.13 * radius
-    for y in (foot, foot + depth):
-        axes.plot([radius, x + 0.02 * radius], [y, y], color=style.INK, linewidth=0.5, zorder=0)
-    axes.annotate("", (x, foot), (x, foot + depth), arrowprops=DIMENSION)
-    axes.text(x + 0.03 * radius, foot + 0.5 * depth, f"{depth:.3g}", fontsize=9, color=style.INK, va="center")
+def _upright(axes, side, radius, low, high):
+    """A height beside the wall, on the right (1) or on the left (-1)."""
+    x = side * 1.13 * radius
+    for y in (low, high):
+        axes.plot([side * radius, x + 0.02 * side * radius], [y, y], color=style.INK, linewidth=0.5, zorder=0)
+    axes.annotate("", (x, low), (x, high), arrowprops=DIMENSION)
+    way = "left" if side > 0 else "right"
+    place = (x + 0.03 * side * radius, 0.5 * (low + high))
+    axes.text(*place, f"{high - low:.3g}", fontsize=9, color=style.INK, va="center", ha=way)
 
 
 def _curves(page, study):

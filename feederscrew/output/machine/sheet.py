@@ -110,10 +110,17 @@ def _readings(study):
 
 
 def _travel(study):
-    found, drive = study.answer, study.bowl.drive
-    yield "vibration angle at the track [deg]", f"{drive.vibration_angle / DEG:.3g}"
+    found, bowl = study.answer, study.bowl
+    upright = (bowl.drive.vibration_angle + bowl.track.climb) / DEG
+    yield (
+        "vibration angle [deg]",
+        f"{bowl.drive.vibration_angle / DEG:.3g} to the track, {upright:.3g} to the horizontal",
+    )
     yield "velocity [mm/s]", f"{found.velocity / MM_S:.3g}, {found.regime}"
     yield "hardest impact [mm/s]", f"{found.hardest_impact / MM_S:.3g}"
+    if study.order is None:
+        speeds = (study.velocities[0] / MM_S, study.velocities[-1] / MM_S)
+        yield "velocity from full to empty [mm/s]", "{:.3g} to {:.3g}, amplitude left alone".format(*speeds)
 
 
 def _springs(study):
@@ -130,5 +137,25 @@ def _springs(study):
     yield "natural frequency [Hz]", f"{made.natural_frequency:.4g} ({plain})"
     yield "above the drive [%], gain", f"{100 * study.detuning:.3g}, {study.gain:.3g}"
     most = study.bowl.sizing.fatigue_stress / MPA
+    yield from _other_leaves(study)
     yield "leaf stress [MPa]", f"{study.stress / MPA:.3g} (bears {most:.4g})"
     yield "force of the magnet [N]", f"{study.force:.3g}"
+
+
+def _other_leaves(study):
+    """What other sets of leaves do; makers who reckon with t^2 beside beam theory's t^3."""
+    for one in study.changes[1:]:
+        found = f"{one.natural_frequency:.4g} Hz, gain {one.gain:.3g}"
+        thicker = one.thickness != study.bowl.machine.leaf_thickness
+        yield one.name, f"{found} by t^3; {one.by_square:.4g} Hz by RNA's t^2" if thicker else found
+    rules = study.bowl.sizing
+    window = f"{100 * rules.least_detuning:.3g} to {100 * rules.greatest_detuning:.3g} %"
+    yield f"leaves that tune it {window}", _few(study.sets)
+
+
+def _few(sets):
+    """Up to five sets, of each thickness the one with the fewest leaves."""
+    first = {}
+    for one in sets:
+        first.setdefault(one.thickness, f"{one.leaves} of {one.thickness / MM:g} mm")
+    return ", ".join(list(first.values())[:5]) or "none of this width and length"

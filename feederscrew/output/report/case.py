@@ -35,10 +35,23 @@ class Case:
     fill: float  # [1]
     inputs: dict[str, str] = field(default_factory=dict)  # sha256 by path
     command: str = ""  # that repeats it
+    target: float | None = None  # [1/s] that a bowl is sized for
+    counted: str | None = None  # aspect that counts for it; None: whatever passes
 
     @classmethod
     def of(
-        cls, part, path, overrides, *, aspect=None, heading=None, rule="pmi", gap=0.0, fill=1.0, command=""
+        cls,
+        part,
+        path,
+        overrides,
+        *,
+        aspect=None,
+        heading=None,
+        rule="pmi",
+        gap=0.0,
+        fill=1.0,
+        command="",
+        target=None,
     ):
         """Everything that can be wrong with the inputs, found before anything is computed.
 
@@ -56,6 +69,8 @@ class Case:
         fill : float [1]
         command : str
             That repeats it.
+        target : float [1/s], optional
+            Rate that a bowl is sized for.
 
         Returns
         -------
@@ -85,6 +100,8 @@ class Case:
             fill=fill,
             inputs={part.source: part.sha256} | bowls.identity(path),
             command=command,
+            target=target,
+            counted=aspect,
         )
 
     @property

@@ -6,7 +6,7 @@ from dataclasses import replace
 from feederscrew import __version__
 from feederscrew.errors import FeederError
 from feederscrew.output.page.blocks import Notes, Page, Section
-from feederscrew.output.report import closing, moving, resting
+from feederscrew.output.report import closing, driving, moving, resting
 
 CHAPTERS = (  # anchor, title, what computes it
     ("aspects", "How it comes to rest", resting.aspects),
@@ -14,6 +14,7 @@ CHAPTERS = (  # anchor, title, what computes it
     ("headings", "How it lies along the wall", moving.headings),
     ("velocity", "How fast it travels", moving.convey),
     ("rate", "How many leave a minute", moving.rate),
+    ("bowl", "The bowl and its drive", driving.bowl),
     ("track", "On the track, against the wall", moving.track),
     ("floor", "On the bowl floor", moving.floor),
     ("slip", "When a part slips", moving.slide),
@@ -39,16 +40,17 @@ def page(case, step=nullcontext, chapters=CHAPTERS):
     Page
     """
     part, bowl = case.part, case.path or "the default bowl"
-    sections = tuple(_chapter(case, *chapter, step) for chapter in chapters)
-    return Page(part.name, f"{part.material}, in {bowl} · feeder {__version__}", sections, "report")
+    sections = (_chapter(case, *chapter, step) for chapter in chapters)
+    told = tuple(section for section in sections if section is not None)
+    return Page(part.name, f"{part.material}, in {bowl} · feeder {__version__}", told, "report")
 
 
 def _chapter(case, anchor, title, compute, step):
-    """The chapter, or the reason there is none."""
+    """The chapter, or the reason there is none; None where it was not asked for."""
     try:
         with step(title):
             found = compute(case)
     except FeederError as fault:
         told = tuple(f"{title}: {line}" for line in fault.lines)
         found = Section((Notes(fault.lines, loud=True),), warnings=told)
-    return replace(found, anchor=anchor, title=title)
+    return None if found is None else replace(found, anchor=anchor, title=title)

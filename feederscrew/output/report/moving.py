@@ -4,6 +4,7 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer, sensitivity, trace
+from feederscrew.machine import speeds
 from feederscrew.output import style
 from feederscrew.output.convey import figures as convey_plots
 from feederscrew.output.convey import tables as convey_tables
@@ -72,7 +73,7 @@ def convey(case):
     return Section(
         tuple(blocks),
         tiles=(_velocity_tile(document),),
-        warnings=tuple(convey_tables.remarks(document)),
+        warnings=(*convey_tables.remarks(document), *speeds.remark(found.velocity, bowl.sizing)),
     )
 
 
@@ -138,7 +139,7 @@ def rate(case):
     return Section(
         (lead, Table(rate_tables.summary(document)), Table(document["orientations"])),
         tiles=(_rate_tile(document),),
-        warnings=tuple(rate_tables.remarks(found)),
+        warnings=(*rate_tables.remarks(found), *speeds.remark(speed.value, case.bowl.sizing)),
     )
 
 

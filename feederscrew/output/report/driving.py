@@ -1,0 +1,49 @@
+"""The bowl that a part needs, or the machine of the bowl file."""
+
+from feederscrew.output import offers
+from feederscrew.output.machine import offers as machine_files
+from feederscrew.output.machine import tables
+from feederscrew.output.page.blocks import SHORT, Notes, Picture, Section, Table, Text, Tile, number
+from feederscrew.studies import bowl as studies
+
+SIZED = (
+    "The bowl that brings the rate asked for, by the rules of thumb of the section sizing: what the bowl file "
+    "says of track, drive and machine is kept. The lines are those that a maker asks for in a quotation."
+)
+GIVEN = "The springs, the tuning and the drift of the machine of the bowl file."
+
+
+def bowl(case):
+    """Bowl, springs and drift: of a target, or of the machine in the bowl file; None without either."""
+    if case.target is not None:
+        found = studies.bowl(
+            *(case.settings, case.part, case.target, case.chain),
+            **{"aspect": case.counted, "heading": case.heading if case.counted else None},
+            **{"rule": case.rule, "gap": case.gap, "fill": case.fill},
+        )
+    elif any(s.given and s.key.section == "machine" for s in case.settings):
+        found = studies.machine(case.settings)
+    else:
+        return None
+    drawn = offers.by_name(machine_files(found))["bowl.png"]
+    sized = found.order is not None
+    blocks = (
+        Text(SIZED if sized else GIVEN),
+        *((Notes(found.remarks),) if found.remarks else ()),
+        Picture(drawn.name, drawn.make(), drawn.alt),
+        Table(tables.summary(found)),
+        Table(tables.leaf_sets(found.changes)),
+        Table(tables.leaf_sets(found.sets)),
+        Table(tables.emptying(found)),
+    )
+    return Section(blocks, tiles=(_tile(found),), warnings=found.remarks)
+
+
+def _tile(found):
+    if found.order is None:
+        above = number(100.0 * found.detuning, SHORT)
+        note = f"{above} % above the drive; gain {number(found.gain, SHORT)}"
+        return Tile("natural frequency", f"{number(found.springs.natural_frequency, SHORT)} Hz", note)
+    size, moved = found.order.size, found.stroke
+    note = f"track {1e3 * size.track_width:.3g} mm; {1e3 * moved.peak_to_peak:.3g} mm at {moved.frequency:.4g} Hz"
+    return Tile("needs a bowl of", f"{1e3 * size.diameter:.4g} mm", note)
