@@ -11,6 +11,7 @@ from feederscrew.bowl.record import Bowl, Drive, Friction, Machine, Sizing, Trac
 from feederscrew.bowl.schema import BY_NAME, KEYS, OPTIONAL, Key, rival
 
 RECORDS = {"drive": Drive, "friction": Friction, "track": Track, "machine": Machine, "sizing": Sizing}
+OF_THE_MACHINE = ("drive.vibration_angle", "drive.frequency")  # keys that a machine gives, where there is one
 FOLLOWING = {
     f"{name}.{field.name}"
     for name, kind in RECORDS.items()
@@ -123,7 +124,7 @@ def _effective(key, given):
         return given[key.name]
     if replaced(key, given) or key.default == getattr(rival(key), "name", None):
         return _converted(key, _effective(rival(key), given))
-    if key.name in OF_THE_MACHINE and OF_THE_MACHINE[key.name](given):
+    if key.name in OF_THE_MACHINE and has_machine(given):
         return _of_the_machine(key, given)
     if key.default in BY_NAME:
         source = _effective(BY_NAME[key.default], given)
@@ -152,9 +153,3 @@ def _of_the_machine(key, given):
 def _derived(key, value, where):
     shown = "" if np.ndim(value) else f"{value / units.factor(key.unit, key.dimension):.6g} {key.unit}"
     return Setting(key, shown, value, where, given=False)
-
-
-OF_THE_MACHINE = {  # keys of the drive that a machine gives, and when
-    "drive.vibration_angle": has_machine,
-    "drive.frequency": lambda given: "machine.supply" in given,
-}

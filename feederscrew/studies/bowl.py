@@ -86,7 +86,7 @@ def machine(settings):
     MachineSheet
         Without an order.
     """
-    bowl = answer.conveying(bowls.record(settings))
+    bowl = _on_its_springs(answer.conveying(bowls.record(settings)), settings)
     return _sheet(bowl, settings, 2.0 * bowl.sizing.depth * bowl.track.radius, STEEL, None)
 
 
@@ -145,6 +145,16 @@ def bowl(settings, part, target, chain=(), *, aspect=None, heading=None, rule="p
         shape=sizing.shape(part, found, track, wanted),
     )
     return _sheet(driven, settings, size.depth, part.mass / part.volume, order)
+
+
+def _on_its_springs(bowl, settings):
+    """The bowl at the frequency and angle of its machine, were it only the default one, unless given."""
+    made = {
+        "frequency": bowl.machine.supply,
+        "vibration_angle": float(vibration_angle(bowl.machine, bowl.track.radius, bowl.track.climb)),
+    }
+    said = _given(settings, "drive")
+    return replace(bowl, drive=replace(bowl.drive, **{k: v for k, v in made.items() if k not in said}))
 
 
 def _check_rule(rule, found):

@@ -7,8 +7,8 @@ from feederscrew.output.page.blocks import SHORT, Notes, Picture, Section, Table
 from feederscrew.studies import bowl as studies
 
 SIZED = (
-    "The bowl that brings the rate asked for, by the rules of thumb of the section sizing: what the bowl file "
-    "says of track, drive and machine is kept. The lines are those that a maker asks for in a quotation."
+    "The bowl that brings the rate asked for, by the rules of thumb of the section sizing: what the bowl "
+    "file says of track, drive and machine is kept. The lines are those that a maker asks for in a quotation."
 )
 GIVEN = "The springs, the tuning and the drift of the machine of the bowl file."
 
@@ -45,5 +45,6 @@ def _tile(found):
         note = f"{above} % above the drive; gain {number(found.gain, SHORT)}"
         return Tile("natural frequency", f"{number(found.springs.natural_frequency, SHORT)} Hz", note)
     size, moved = found.order.size, found.stroke
-    note = f"track {1e3 * size.track_width:.3g} mm; {1e3 * moved.peak_to_peak:.3g} mm at {moved.frequency:.4g} Hz"
+    stroke = f"{1e3 * moved.peak_to_peak:.3g} mm at {moved.frequency:.4g} Hz"
+    note = f"track {1e3 * size.track_width:.3g} mm; stroke {stroke}"
     return Tile("needs a bowl of", f"{1e3 * size.diameter:.4g} mm", note)
