@@ -3,7 +3,8 @@
 from feederscrew.output import offers
 from feederscrew.output.machine import offers as machine_files
 from feederscrew.output.machine import tables
-from feederscrew.output.page.blocks import SHORT, Notes, Picture, Section, Table, Text, Tile, number
+from feederscrew.output.page.blocks import Notes, Picture, Section, Table, Text, Tile
+from feederscrew.output.page.numbers import SHORT, number
 from feederscrew.studies import bowl as studies
 
 SIZED = (

@@ -139,7 +139,7 @@ def rate(case):
     return Section(
         (lead, Table(rate_tables.summary(document)), Table(document["orientations"])),
         tiles=(_rate_tile(document),),
-        warnings=(*rate_tables.remarks(found), *speeds.remark(speed.value, case.bowl.sizing)),
+        warnings=(*rate_tables.remarks(found), *speeds.remark(found.rate.velocity.value, case.bowl.sizing)),
     )
 
 
