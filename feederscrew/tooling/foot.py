@@ -1,0 +1,189 @@
+"""Feet and holes as the compiled verdict takes them."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from feederscrew import check
+
+SAGITTA = 2e-6  # [m] by which a hole's bulging edge may be seen too flat
+BEHIND = 1e-3  # [m] a hole that reaches the wall is cut on into it
+
+
+@dataclass(frozen=True, eq=False)
+class Footprint:
+    """What of a part touches the track, in track axes from the foot of the centre of mass."""
+
+    rings: tuple[np.ndarray, ...]  # (K, 2) [m] borders of areas, holes of them as rings of their own
+    edges: np.ndarray  # (E, 2, 2) [m] lines of contact
+    points: np.ndarray  # (P, 2) [m] points of contact
+
+    @cached_property
+    def corners(self):
+        """(V, 2) [m] every corner of it."""
+        return np.concatenate([*self.rings, self.edges.reshape(-1, 2), self.points])
+
+
+@dataclass(frozen=True, eq=False)
+class Hole:
+    """A hole in the track, unrolled: closed, without crossing itself."""
+
+    corners: np.ndarray  # (K, 2) [m] length along the wall, distance from the wall; counter-clockwise
+
+
+def standing(foot, distance, radius, shift=0.0):
+    """Return a foot about the bowl's axis.
+
+    Parameters
+    ----------
+    foot : Footprint
+    distance : float [m]
+        From the wall to the foot of the centre of mass.
+    radius : float [m]
+        Of the wall.
+    shift : float [m]
+        By which the weight meets the track nearer to the wall, on a banked track.
+
+    Returns
+    -------
+    passage.Foot
+    """
+    from feederscrew.tooling.kernel.passage import Foot
+
+    middle = radius - distance
+    starts = [ring for ring in foot.rings] + [foot.edges[:, 0]]
+    ends = [np.roll(ring, -1, axis=0) for ring in foot.rings] + [foot.edges[:, 1]]
+    start, end = np.concatenate(starts), np.concatenate(ends)
+    closed = np.arange(len(start)) < sum(len(ring) for ring in foot.rings)
+    kept = np.hypot(*(end - start).T) > 1e-12
+    start, end, closed = start[kept], end[kept], closed[kept]
+    along = (end - start) * [1.0, -1.0]
+    corners = np.column_stack([foot.corners[:, 0], middle - foot.corners[:, 1]])
+    return Foot(
+        sides=np.column_stack([start[:, 0], middle - start[:, 1], along]),
+        closed=closed.astype(np.int64),
+        corners=corners,
+        polar=np.column_stack([np.arctan2(*corners.T), np.hypot(*corners.T)]),
+        centre=middle + shift,
+        reach=float(np.hypot(corners[:, 0], corners[:, 1] - middle - shift).max()),
+    )
+
+
+def polygon(corners, radius):
+    """Return a hole about the bowl's axis from its unrolled polygon.
+
+    Parameters
+    ----------
+    corners : (K, 2) float [m]
+        Length along the wall and distance from the wall; straight edges when unrolled.
+    radius : float [m]
+        Of the wall.
+
+    Returns
+    -------
+    passage.Hole
+    """
+    from feederscrew.tooling.kernel.passage import Hole as Compiled
+
+    corners = _through_the_wall(_turned_left(check.shaped("corners", corners, (-1, 2))))
+    theta, r = corners[:, 0] / radius, radius - corners[:, 1]
+    rows = [_edge(*ends) for ends in zip(theta, r, np.roll(theta, -1), np.roll(r, -1))]
+    nodes = [np.column_stack([theta, r])[_reflex(corners)], *_bulging(corners, radius)]
+    return Compiled(edges=np.array(rows), nodes=np.concatenate(nodes).reshape(-1, 2))
+
+
+def gap(length, radius, width):
+    """Return a gap across the track: the edge left is radial, the edge met is parallel to it.
+
+    Parameters
+    ----------
+    length : float [m]
+    radius : float [m]
+        Of the wall.
+    width : float [m]
+        How far it reaches from the wall.
+
+    Returns
+    -------
+    passage.Hole
+    """
+    from feederscrew.tooling.kernel.passage import Hole as Compiled
+
+    low, high = max(radius - width, 1e-3 * radius, 1.000001 * length), radius + BEHIND
+    rows = [[0.0, 0.0, 0.0, 0.0, low, high, 0.0], [0.0, 0.0, 0.0, length, low, high, 0.0]]
+    inner = [1.0, 0.0, np.arcsin(length / low), 0.0, low, low, 1.0]
+    return Compiled(edges=np.array([*rows, inner]), nodes=np.empty((0, 2)))
+
+
+def scratch(foot, hole):
+    """Return arrays for the verdict of feet and holes no larger than these."""
+    from feederscrew.tooling.kernel.crossing import CUTS
+    from feederscrew.tooling.kernel.passage import DEPTH, Scratch
+
+    rows = 6 * len(foot.sides) * len(hole.edges) + 1
+    points = len(foot.corners) + rows + len(hole.nodes) + len(hole.edges)
+    return Scratch(
+        rows=np.empty((rows, 6)),
+        events=np.empty(2 * rows),
+        bounds=np.empty(2 * rows),
+        cuts=np.empty(CUTS),
+        keep=np.empty(len(foot.corners), dtype=np.int64),
+        active=np.empty(rows, dtype=np.int64),
+        points=np.empty((points, 2)),
+        others=np.empty((points, 2)),
+        waiting=np.empty((DEPTH, 2)),
+    )
+
+
+def least(foot, hole, work=None):
+    """Return the least margin [m] of a foot over a hole's passage, and the shift [rad] where it is."""
+    from feederscrew.tooling.kernel import passage
+
+    out = np.empty(2)
+    passage.least(foot, hole, work or scratch(foot, hole), out)
+    return float(out[0]), float(out[1])
+
+
+def _edge(theta0, r0, theta1, r1):
+    """One straight edge of the unrolled polygon as `crossing` has it; from a later to an earlier angle the
+    hole, on its left, lies nearer to the wall, and the track left beyond it bulges."""
+    if r0 == r1:
+        return [1.0, min(theta0, theta1), max(theta0, theta1), 0.0, r0, r0, float(theta1 < theta0)]
+    kappa = (theta1 - theta0) / (r1 - r0)
+    return [0.0, theta0 - kappa * r0, kappa, 0.0, min(r0, r1), max(r0, r1), float(theta1 < theta0)]
+
+
+def _turned_left(corners):
+    """The corners counter-clockwise, length along to the right and distance from the wall upwards."""
+    following = np.roll(corners, -1, axis=0)
+    twice = (corners[:, 0] * following[:, 1] - corners[:, 1] * following[:, 0]).sum()
+    return corners if twice > 0.0 else corners[::-1]
+
+
+def _through_the_wall(corners):
+    """The corners with every edge along the wall moved behind it."""
+    out = []
+    for (s0, y0), (s1, y1) in zip(corners, np.roll(corners, -1, axis=0)):
+        out.append((s0, y0))
+        if y0 <= 0.0 and y1 <= 0.0:
+            out += [(s0, min(y0, y1) - BEHIND), (s1, min(y0, y1) - BEHIND)]
+    return np.array(out)
+
+
+def _reflex(corners):
+    """Which corners of the hole point into it: there the track left has a corner."""
+    before, after = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners
+    return before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0] < 0.0
+
+
+def _bulging(corners, radius):
+    """Points along the edges beyond which the track left bulges, as (N, 2) arrays of theta and r."""
+    for start, end in zip(corners, np.roll(corners, -1, axis=0)):
+        if end[0] >= start[0]:
+            continue
+        r = max(radius - max(start[1], end[1]), 1e-3 * radius)
+        pieces = int(np.ceil(abs(end[0] - start[0]) * r / radius / np.sqrt(8.0 * r * SAGITTA)))
+        shares = np.arange(1, pieces)[:, None] / max(pieces, 1)
+        between = start + shares * (end - start)
+        yield np.column_stack([between[:, 0] / radius, radius - between[:, 1]])

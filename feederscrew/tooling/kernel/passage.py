@@ -1,0 +1,221 @@
+"""The least margin of a foot while a hole passes below it: exact from event to event."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from feederscrew.geometry.compiled import compiled
+from feederscrew.tooling.kernel.crossing import (
+    ALPHA,
+    ARC,
+    BULGE,
+    EDGE,
+    GAMMA,
+    HIGH,
+    KAPPA,
+    LOW,
+    PHI0,
+    PHI1,
+    SIDE,
+    place,
+    sort,
+    stretches,
+)
+from feederscrew.tooling.kernel.hull import inset
+
+CLOSE = 1e-8  # [m] to which the least margin within a piece is enclosed
+INSTANT = 1e-15  # [rad] a shorter piece is none
+DEPTH = 64  # pieces of a piece that wait at most
+
+
+class Foot(NamedTuple):
+    """What touches the track, about the bowl's axis: x ahead, q away from the axis."""
+
+    sides: np.ndarray  # (E, 4) [m] start and vector
+    closed: np.ndarray  # (E,) 1 where the side bounds an area
+    corners: np.ndarray  # (V, 2) [m]
+    polar: np.ndarray  # (V, 2) [rad, m] theta and r of the corners
+    centre: float  # [m] q of the foot of the centre of mass, at x = 0
+    reach: float  # [m] from there to the farthest corner
+
+
+class Hole(NamedTuple):
+    """What is cut out of the track, about the bowl's axis."""
+
+    edges: np.ndarray  # (M, 7) as `crossing` has them
+    nodes: np.ndarray  # (P, 2) [rad, m] points of its border that may be corners of what is left
+
+
+class Scratch(NamedTuple):
+    """Arrays the verdict works in."""
+
+    rows: np.ndarray  # (N, 6) stretches
+    events: np.ndarray  # (2 N,) [rad]
+    bounds: np.ndarray  # (2 N,) [m] the margin between two events is not less
+    cuts: np.ndarray  # (10,)
+    keep: np.ndarray  # (V,) int, corners with track below
+    active: np.ndarray  # (N,) int, stretches crossed now
+    points: np.ndarray  # (V + N + P + M, 2)
+    others: np.ndarray  # (V + N + P + M, 2)
+    waiting: np.ndarray  # (DEPTH, 2) [rad]
+
+
+@compiled
+def least(foot, hole, scratch, out):
+    """Fill the least margin over a passage and the shift of the hole at which it occurs.
+
+    Parameters
+    ----------
+    foot : Foot
+    hole : Hole
+    scratch : Scratch
+    out : (2,) float [m, rad]
+        To be filled.
+    """
+    for k in range(len(foot.corners)):
+        scratch.keep[k] = 1
+    count = _gather(foot, hole, scratch, 0.0, 0, False, scratch.points)
+    out[0], out[1] = inset(scratch.points, count, foot.reach), 0.0
+    number = _events(foot, hole, scratch)
+    for i in range(number - 1):
+        scratch.bounds[i] = math.inf
+        if scratch.events[i + 1] - scratch.events[i] > INSTANT:
+            active = _status(foot, hole, scratch, i)
+            scratch.bounds[i] = _ends(foot, hole, scratch, scratch.events[i], scratch.events[i + 1], active, out)
+    for i in range(number - 1):
+        if scratch.bounds[i] < out[0] - CLOSE:
+            _within(foot, hole, scratch, i, out)
+
+
+@compiled
+def _events(foot, hole, scratch):
+    """Fill the shifts at which a corner of either crosses the border of the other, sorted; their number."""
+    count = stretches(foot.sides, hole.edges, scratch.rows, scratch.cuts)
+    if count < len(scratch.rows):
+        scratch.rows[count, SIDE] = -1.0
+    for k in range(count):
+        scratch.events[2 * k] = scratch.rows[k, PHI0]
+        scratch.events[2 * k + 1] = scratch.rows[k, PHI1]
+    sort(scratch.events, 2 * count)
+    return 2 * count
+
+
+@compiled
+def _status(foot, hole, scratch, i):
+    """Fill which corners have track below and which stretches are crossed between two events; their number."""
+    phi = 0.5 * (scratch.events[i] + scratch.events[i + 1])
+    for k in range(len(foot.corners)):
+        scratch.keep[k] = 0 if _over(hole.edges, foot.polar[k, 0] - phi, foot.polar[k, 1]) else 1
+    active = 0
+    for k in range(len(scratch.rows)):
+        if scratch.rows[k, SIDE] < 0.0:
+            break
+        first, last = scratch.rows[k, PHI0], scratch.rows[k, PHI1]
+        if min(first, last) < phi < max(first, last):
+            scratch.active[active] = k
+            active += 1
+    return active
+
+
+@compiled
+def _over(edges, theta, radius):
+    """Whether a point is over the hole."""
+    inside = False
+    for j in range(len(edges)):
+        if edges[j, ARC] > 0.0 or not edges[j, LOW] <= radius < edges[j, HIGH]:
+            continue
+        bend = 0.0 if edges[j, GAMMA] == 0.0 else math.asin(min(edges[j, GAMMA] / radius, 1.0))
+        if edges[j, ALPHA] + edges[j, KAPPA] * radius + bend > theta:
+            inside = not inside
+    return inside
+
+
+@compiled
+def _ends(foot, hole, scratch, low, high, active, out):
+    """Margins at both ends of a piece, told to ``out``; return what the margin between is at least."""
+    first = _gather(foot, hole, scratch, low, active, True, scratch.points)
+    before = inset(scratch.points, first, foot.reach)
+    second = _gather(foot, hole, scratch, high, active, True, scratch.others)
+    after = inset(scratch.others, second, foot.reach)
+    _lower(out, before, low)
+    _lower(out, after, high)
+    way = 0.0
+    for k in range(active):
+        dx = scratch.points[k, 0] - scratch.others[k, 0]
+        way = max(way, math.hypot(dx, scratch.points[k, 1] - scratch.others[k, 1]))
+    if len(hole.nodes) > 0:
+        way = max(way, (high - low) * (foot.centre + foot.reach))
+    return 0.5 * (before + after - way)
+
+
+@compiled
+def _lower(out, margin, phi):
+    if margin < out[0]:
+        out[0], out[1] = margin, phi
+
+
+@compiled
+def _within(foot, hole, scratch, i, out):
+    """Halve a piece until no half of it can hold a lower margin."""
+    active = _status(foot, hole, scratch, i)
+    scratch.waiting[0, 0], scratch.waiting[0, 1] = scratch.events[i], scratch.events[i + 1]
+    left = 1
+    while left > 0:
+        left -= 1
+        low, high = scratch.waiting[left, 0], scratch.waiting[left, 1]
+        bound = _ends(foot, hole, scratch, low, high, active, out)
+        if bound >= out[0] - CLOSE or high - low <= INSTANT or left + 2 > DEPTH:
+            continue
+        middle = 0.5 * (low + high)
+        scratch.waiting[left, 0], scratch.waiting[left, 1] = low, middle
+        scratch.waiting[left + 1, 0], scratch.waiting[left + 1, 1] = middle, high
+        left += 2
+
+
+@compiled
+def _gather(foot, hole, scratch, phi, active, present, points):
+    """Fill the points whose hull is the supported area: crossings first; return their number."""
+    for k in range(active):
+        row = scratch.rows[scratch.active[k]]
+        side = foot.sides[int(row[SIDE])]
+        t = place(side, hole.edges[int(row[EDGE])], row, phi)
+        points[k, 0] = side[0] + t * side[2]
+        points[k, 1] = foot.centre - side[1] - t * side[3]
+    count = active
+    for k in range(len(foot.corners)):
+        if scratch.keep[k]:
+            points[count, 0] = foot.corners[k, 0]
+            points[count, 1] = foot.centre - foot.corners[k, 1]
+            count += 1
+    return _border(foot, hole, phi, points, count) if present else count
+
+
+@compiled
+def _border(foot, hole, phi, points, count):
+    """Add points of the hole's own border that lie under the foot."""
+    for k in range(len(hole.nodes)):
+        count = _under(foot, hole.nodes[k, 0] + phi, hole.nodes[k, 1], points, count)
+    for j in range(len(hole.edges)):  # of an arc the point nearest to the foot of the centre of mass
+        edge = hole.edges[j]
+        if edge[ARC] > 0.0 and edge[BULGE] > 0.0 and edge[ALPHA] + phi <= 0.0 <= edge[KAPPA] + phi:
+            count = _under(foot, 0.0, edge[LOW], points, count)
+    return count
+
+
+@compiled
+def _under(foot, theta, radius, points, count):
+    """Add a point if it lies under an area of the foot."""
+    x, q, inside = radius * math.sin(theta), radius * math.cos(theta), False
+    for k in range(len(foot.sides)):
+        if not foot.closed[k]:
+            continue
+        q0, q1 = foot.sides[k, 1], foot.sides[k, 1] + foot.sides[k, 3]
+        if (q0 > q) != (q1 > q):
+            share = (q - q0) / foot.sides[k, 3]
+            if foot.sides[k, 0] + share * foot.sides[k, 2] > x:
+                inside = not inside
+    if inside:
+        points[count, 0], points[count, 1] = x, foot.centre - q
+        count += 1
+    return count
