@@ -60,7 +60,10 @@ def standing(foot, distance, radius, shift=0.0):
     start, end, closed = start[kept], end[kept], closed[kept]
     along = (end - start) * [1.0, -1.0]
     corners = np.column_stack([foot.corners[:, 0], middle - foot.corners[:, 1]])
+    hull, insets = _hull(corners[:, 0], middle + shift - corners[:, 1])
     return Foot(
+        hull=hull,
+        insets=insets,
         sides=np.column_stack([start[:, 0], middle - start[:, 1], along]),
         closed=closed.astype(np.int64),
         corners=corners,
@@ -119,7 +122,7 @@ def gap(length, radius, width):
 def scratch(foot, hole):
     """Return arrays for the verdict of feet and holes no larger than these."""
     from feederscrew.tooling.kernel.crossing import CUTS
-    from feederscrew.tooling.kernel.passage import DEPTH, Scratch
+    from feederscrew.tooling.kernel.passage import Scratch
 
     rows = 6 * len(foot.sides) * len(hole.edges) + 1
     points = len(foot.corners) + rows + len(hole.nodes) + len(hole.edges)
@@ -127,12 +130,12 @@ def scratch(foot, hole):
         rows=np.empty((rows, 6)),
         events=np.empty(2 * rows),
         bounds=np.empty(2 * rows),
+        ends=np.empty((2 * rows, 2)),
         cuts=np.empty(CUTS),
         keep=np.empty(len(foot.corners), dtype=np.int64),
         active=np.empty(rows, dtype=np.int64),
         points=np.empty((points, 2)),
         others=np.empty((points, 2)),
-        waiting=np.empty((DEPTH, 2)),
     )
 
 
@@ -143,6 +146,36 @@ def least(foot, hole, work=None):
     out = np.empty(2)
     passage.least(foot, hole, work or scratch(foot, hole), out)
     return float(out[0]), float(out[1])
+
+
+def _hull(x, y):
+    """Corners of the convex hull about the origin, counter-clockwise, and the insets of its sides."""
+    points = np.column_stack([x, y])
+    order = convex(points)
+    if len(order) < 3:
+        return np.empty(0, dtype=np.int64), np.empty(0)
+    start = points[order]
+    along = np.roll(start, -1, axis=0) - start
+    return order, (start[:, 0] * along[:, 1] - start[:, 1] * along[:, 0]) / np.hypot(*along.T)
+
+
+def convex(points):
+    """Return the places (H,) of the corners of a convex hull, counter-clockwise; fewer than 3 of a line."""
+    order = np.lexsort((points[:, 1], points[:, 0]))
+    chains = []
+    for places in (order, order[::-1]):
+        chain = []
+        for k in places.tolist():
+            while len(chain) > 1 and _right(points[chain[-2]], points[chain[-1]], points[k]):
+                chain.pop()
+            chain.append(k)
+        chains += chain[:-1]
+    return np.array(chains, dtype=np.int64)
+
+
+def _right(a, b, c):
+    """Whether the way from a over b to c does not turn left."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) <= 1e-16
 
 
 def _edge(theta0, r0, theta1, r1):

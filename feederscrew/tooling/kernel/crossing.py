@@ -172,15 +172,27 @@ def place(side, edge, row, phi):
     below, above = row[PHI0] - phi, row[PHI1] - phi
     if below == 0.0 or above == 0.0 or (below > 0.0) == (above > 0.0):
         return low if abs(below) <= abs(above) else high
-    for turn in range(60):
-        t = low - below * (high - low) / (above - below) if turn % 3 < 2 else 0.5 * (low + high)
-        if not low < t < high:
-            t = 0.5 * (low + high)
+    t = low - below * (high - low) / (above - below)
+    for _ in range(60):
         value = shift(side, edge, t) - phi
-        if value == 0.0 or high - low < SHORT:
+        low, high = (t, high) if (value > 0.0) == (below > 0.0) else (low, t)
+        slope = _slope(side, edge, t)
+        step = -value / slope if slope != 0.0 else 0.0
+        if abs(step) < SHORT and slope != 0.0:
+            return min(max(t + step, low), high)
+        t = t + step if low < t + step < high and slope != 0.0 else 0.5 * (low + high)
+        if high - low < SHORT:
             return t
-        if (value > 0.0) == (below > 0.0):
-            low, below = t, value
-        else:
-            high, above = t, value
-    return 0.5 * (low + high)
+    return t
+
+
+@compiled
+def _slope(side, edge, t):
+    """Derivative of ``shift`` [rad] by the share of the side."""
+    x, q = side[0] + t * side[2], side[1] + t * side[3]
+    radius2 = x * x + q * q
+    outward, radius = x * side[2] + q * side[3], math.sqrt(radius2)
+    found = (side[2] * q - side[3] * x) / radius2 - edge[KAPPA] * outward / radius
+    if edge[GAMMA] == 0.0:
+        return found
+    return found + edge[GAMMA] * outward / (radius2 * math.sqrt(max(radius2 - edge[GAMMA] ** 2, TINY)))

@@ -9,6 +9,32 @@ LEVEL = 1e-16  # [m2] of a triangle: three points nearer to one line lie on it
 
 
 @compiled
+def _lowest(points, count):
+    """The point of least y, of several the one of least x."""
+    best = 0
+    for k in range(1, count):
+        lower = points[k, 1] < points[best, 1]
+        if lower or (points[k, 1] == points[best, 1] and points[k, 0] < points[best, 0]):
+            best = k
+    return best
+
+
+@compiled
+def _next(points, count, ax, ay):
+    """The corner of the hull that follows counter-clockwise, of several in line the farthest; -1 for none."""
+    best, bx, by, reach = -1, 0.0, 0.0, NEAR * NEAR
+    for k in range(count):
+        px, py = points[k, 0] - ax, points[k, 1] - ay
+        long2 = px * px + py * py
+        if long2 <= NEAR * NEAR:
+            continue
+        turn = bx * py - by * px
+        if best < 0 or turn < -LEVEL or (turn <= LEVEL and long2 > reach):
+            best, bx, by, reach = k, px, py, long2
+    return best
+
+
+@compiled
 def inset(points, count, far):
     """Return the signed distance of the origin to the border of the convex hull of points.
 
@@ -30,7 +56,7 @@ def inset(points, count, far):
     first = _lowest(points, count)
     here, line, away = first, math.inf, math.inf
     for _ in range(count + 1):
-        there = _next(points, count, here)
+        there = _next(points, count, points[here, 0], points[here, 1])
         if there < 0:
             return -math.hypot(points[here, 0], points[here, 1])
         ax, ay = points[here, 0], points[here, 1]
@@ -46,26 +72,57 @@ def inset(points, count, far):
 
 
 @compiled
-def _lowest(points, count):
-    """The point of least y, of several the one of least x."""
-    best = 0
-    for k in range(1, count):
-        lower = points[k, 1] < points[best, 1]
-        if lower or (points[k, 1] == points[best, 1] and points[k, 0] < points[best, 0]):
-            best = k
-    return best
+def inset_beside(points, count, foot, keep):
+    """Return the same of a foot of which some corners are kept, its own hull known.
+
+    Parameters
+    ----------
+    points : (N, 2) float [m]
+        The corners kept and the points that replace the others.
+    count : int
+    foot : Foot
+    keep : (V,) int
+        Which of its corners are kept.
+
+    Returns
+    -------
+    float [m]
+    """
+    total, first = len(foot.hull), -1
+    for k in range(total):
+        if keep[foot.hull[k]]:
+            first = k
+            break
+    if first < 0:
+        return inset(points, count, foot.reach)
+    line = math.inf
+    for step in range(total):
+        k = (first + step) % total
+        if not keep[foot.hull[k]]:
+            continue
+        last = k + 1
+        while not keep[foot.hull[last % total]]:
+            last += 1
+        found = foot.insets[k] if last == k + 1 else _between(points, count, foot, k, last % total)
+        if found < 0.0:
+            return inset(points, count, foot.reach)
+        line = min(line, found)
+    return line
 
 
 @compiled
-def _next(points, count, here):
-    """The corner of the hull that follows counter-clockwise, of several in line the farthest; -1 for none."""
-    best, bx, by, reach = -1, 0.0, 0.0, NEAR * NEAR
-    for k in range(count):
-        px, py = points[k, 0] - points[here, 0], points[k, 1] - points[here, 1]
-        long2 = px * px + py * py
-        if long2 <= NEAR * NEAR:
-            continue
-        turn = bx * py - by * px
-        if best < 0 or turn < -LEVEL or (turn <= LEVEL and long2 > reach):
-            best, bx, by, reach = k, px, py, long2
-    return best
+def _between(points, count, foot, k, last):
+    """The least line distance along the hull from one kept corner of the foot to the next, or less than 0."""
+    ax, ay = foot.corners[foot.hull[k], 0], foot.centre - foot.corners[foot.hull[k], 1]
+    ex, ey = foot.corners[foot.hull[last], 0], foot.centre - foot.corners[foot.hull[last], 1]
+    line = math.inf
+    for _ in range(count + 1):
+        there = _next(points, count, ax, ay)
+        if there < 0:
+            return -1.0
+        bx, by = points[there, 0], points[there, 1]
+        line = min(line, (ax * (by - ay) - ay * (bx - ax)) / math.sqrt((bx - ax) ** 2 + (by - ay) ** 2))
+        ax, ay = bx, by
+        if line < 0.0 or (abs(ax - ex) < NEAR and abs(ay - ey) < NEAR):
+            break
+    return line

@@ -22,11 +22,13 @@ from feederscrew.tooling.kernel.crossing import (
     sort,
     stretches,
 )
-from feederscrew.tooling.kernel.hull import inset
+from feederscrew.tooling.kernel.hull import inset_beside
 
-CLOSE = 1e-8  # [m] to which the least margin within a piece is enclosed
+CLOSE = 1e-9  # [m] a lower margin is looked for if it may be lower by more
 INSTANT = 1e-15  # [rad] a shorter piece is none
-DEPTH = 64  # pieces of a piece that wait at most
+SAMPLES = 4  # parts of a piece that may hold the least margin
+SECTIONS = 40
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 
 class Foot(NamedTuple):
@@ -37,6 +39,8 @@ class Foot(NamedTuple):
     corners: np.ndarray  # (V, 2) [m]
     polar: np.ndarray  # (V, 2) [rad, m] theta and r of the corners
     centre: float  # [m] q of the foot of the centre of mass, at x = 0
+    hull: np.ndarray  # (H,) int, corners of the convex hull, counter-clockwise seen from above
+    insets: np.ndarray  # (H,) [m] from the foot of the centre of mass to the line of the side behind each
     reach: float  # [m] from there to the farthest corner
 
 
@@ -53,12 +57,12 @@ class Scratch(NamedTuple):
     rows: np.ndarray  # (N, 6) stretches
     events: np.ndarray  # (2 N,) [rad]
     bounds: np.ndarray  # (2 N,) [m] the margin between two events is not less
+    ends: np.ndarray  # (2 N, 2) [m] the margin at both ends of what lies between two events
     cuts: np.ndarray  # (10,)
     keep: np.ndarray  # (V,) int, corners with track below
     active: np.ndarray  # (N,) int, stretches crossed now
     points: np.ndarray  # (V + N + P + M, 2)
     others: np.ndarray  # (V + N + P + M, 2)
-    waiting: np.ndarray  # (DEPTH, 2) [rad]
 
 
 @compiled
@@ -76,13 +80,14 @@ def least(foot, hole, scratch, out):
     for k in range(len(foot.corners)):
         scratch.keep[k] = 1
     count = _gather(foot, hole, scratch, 0.0, 0, False, scratch.points)
-    out[0], out[1] = inset(scratch.points, count, foot.reach), 0.0
+    out[0], out[1] = inset_beside(scratch.points, count, foot, scratch.keep), 0.0
     number = _events(foot, hole, scratch)
     for i in range(number - 1):
         scratch.bounds[i] = math.inf
         if scratch.events[i + 1] - scratch.events[i] > INSTANT:
             active = _status(foot, hole, scratch, i)
-            scratch.bounds[i] = _ends(foot, hole, scratch, scratch.events[i], scratch.events[i + 1], active, out)
+            low, high = scratch.events[i], scratch.events[i + 1]
+            scratch.bounds[i] = _ends(foot, hole, scratch, low, high, active, scratch.ends[i], out)
     for i in range(number - 1):
         if scratch.bounds[i] < out[0] - CLOSE:
             _within(foot, hole, scratch, i, out)
@@ -132,20 +137,19 @@ def _over(edges, theta, radius):
 
 
 @compiled
-def _ends(foot, hole, scratch, low, high, active, out):
+def _ends(foot, hole, scratch, low, high, active, ends, out):
     """Margins at both ends of a piece, told to ``out``; return what the margin between is at least."""
     first = _gather(foot, hole, scratch, low, active, True, scratch.points)
-    before = inset(scratch.points, first, foot.reach)
+    before = inset_beside(scratch.points, first, foot, scratch.keep)
     second = _gather(foot, hole, scratch, high, active, True, scratch.others)
-    after = inset(scratch.others, second, foot.reach)
+    after = inset_beside(scratch.others, second, foot, scratch.keep)
     _lower(out, before, low)
     _lower(out, after, high)
+    ends[0], ends[1] = before, after
     way = 0.0
     for k in range(active):
         dx = scratch.points[k, 0] - scratch.others[k, 0]
         way = max(way, math.hypot(dx, scratch.points[k, 1] - scratch.others[k, 1]))
-    if len(hole.nodes) > 0:
-        way = max(way, (high - low) * (foot.centre + foot.reach))
     return 0.5 * (before + after - way)
 
 
@@ -157,20 +161,45 @@ def _lower(out, margin, phi):
 
 @compiled
 def _within(foot, hole, scratch, i, out):
-    """Halve a piece until no half of it can hold a lower margin."""
+    """Look for a lower margin within a piece: some samples, then the golden section about the lowest."""
     active = _status(foot, hole, scratch, i)
-    scratch.waiting[0, 0], scratch.waiting[0, 1] = scratch.events[i], scratch.events[i + 1]
-    left = 1
-    while left > 0:
-        left -= 1
-        low, high = scratch.waiting[left, 0], scratch.waiting[left, 1]
-        bound = _ends(foot, hole, scratch, low, high, active, out)
-        if bound >= out[0] - CLOSE or high - low <= INSTANT or left + 2 > DEPTH:
-            continue
-        middle = 0.5 * (low + high)
-        scratch.waiting[left, 0], scratch.waiting[left, 1] = low, middle
-        scratch.waiting[left + 1, 0], scratch.waiting[left + 1, 1] = middle, high
-        left += 2
+    start, step = scratch.events[i], (scratch.events[i + 1] - scratch.events[i]) / SAMPLES
+    first, second = scratch.ends[i, 0], scratch.ends[i, 1]
+    lowest, at, before, after = math.inf, 0, first, second
+    last = first
+    for k in range(1, SAMPLES):
+        margin = _margin(foot, hole, scratch, start + k * step, active)
+        if margin < lowest:
+            lowest, at, before, after = margin, k, last, second
+        elif at == k - 1:
+            after = margin
+        last = margin
+    _lower(out, lowest, start + at * step)
+    dip = max(before, after) - lowest
+    if min(before, after) < lowest or dip < CLOSE or lowest - dip > out[0]:
+        return
+    low, high = start + (at - 1) * step, start + (at + 1) * step
+    first, second = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    here = _margin(foot, hole, scratch, first, active)
+    there = _margin(foot, hole, scratch, second, active)
+    for _ in range(SECTIONS):
+        if here < there:
+            high, second, there = second, first, here
+            first = high - GOLDEN * (high - low)
+            here = _margin(foot, hole, scratch, first, active)
+        else:
+            low, first, here = first, second, there
+            second = low + GOLDEN * (high - low)
+            there = _margin(foot, hole, scratch, second, active)
+        if here > out[0] + CLOSE and (high - low) * foot.centre < CLOSE:
+            break
+    _lower(out, min(here, there), first if here < there else second)
+
+
+@compiled
+def _margin(foot, hole, scratch, phi, active):
+    count = _gather(foot, hole, scratch, phi, active, True, scratch.points)
+    return inset_beside(scratch.points, count, foot, scratch.keep)
 
 
 @compiled
