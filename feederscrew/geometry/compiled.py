@@ -11,6 +11,7 @@ SOURCES = (
     "resting/basins/forest.py",
     "resting/tumbling/*.py",
     "dropping/kernel/*.py",
+    "tooling/kernel/*.py",
 )
 
 

@@ -8,6 +8,7 @@ from feederscrew import check
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import centroid, outline, sides
 from feederscrew.part.hull import convex_hull
+from feederscrew.part.record import Part
 
 COINCIDE = 1e-5  # of the part's size: a contact centroid nearer to the foot gives no direction
 ALIKE = 1e-6  # of the part's size: sides whose lengths differ by less are equally long
@@ -32,6 +33,14 @@ class Posture:
     axis: np.ndarray | None = None  # (2,) direction of the rolling axis in the floor
     printed: dict | None = None  # a card's 'floor' and 'track' data, in SI units
     corners: np.ndarray | None = None  # (V, 3) [m] hull corners, z from the floor; None of a card
+    solid: Part | None = None  # that stands so; None where only its plan is known
+    axes: np.ndarray | None = None  # (3, 3) [1] x, y, z of the posture as rows, in the file's axes
+
+    @property
+    def surface(self):
+        """Every corner (V, 3) of the part's mesh as it stands [m], z from the floor."""
+        body = self.solid.vertices - self.solid.centre_of_mass
+        return np.einsum("ij,vj->vi", self.axes, body) + [0.0, 0.0, self.height]
 
     @property
     def turning_inertia(self):
@@ -97,6 +106,8 @@ def _of_mesh(part, aspects, row):
         offset=offset if offset > COINCIDE * hull.radius else 0.0,
         axis=_rolling_axis(axes, aspects.axes[row]),
         corners=check.frozen(np.column_stack([corners[:, :2] @ turn.T, corners[:, 2]])),
+        solid=part,
+        axes=check.frozen(axes),
     )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import inset, outline, sides, turned
+from feederscrew.mechanics.wall import sameness
 from feederscrew.mechanics.wall.outline import rests
 
 ALIKE = 1e-5  # of the outline's size: outlines that differ by less are the same
@@ -28,7 +29,9 @@ class Headings:
         np.ndarray
     )  # (M,) [rad] of the body's own direction, from the track's, counter-clockwise, 0 to 2 pi
     shares: np.ndarray  # (M,) [1] of all directions of laying down
-    lowest: np.ndarray  # (M,) [rad] where the range of headings begins that settle there, 2 pi share wide
+    turns: np.ndarray  # (M,) int, how many turns about the vertical lay the part down the same way
+    ranges: np.ndarray  # (N, 2) [rad] where each range of headings begins that settle in a row, how wide it is
+    settles: np.ndarray  # (N,) int, the row they settle in
     straight_shares: (
         np.ndarray
     )  # (M,) [1] of the corresponding heading at a straight wall; NaN for a round outline
@@ -64,7 +67,7 @@ def headings(posture, track):
     """
     _check_fits(posture, track)
     found, straight = rests(posture.outline, track.radius), rests(posture.outline, np.inf)
-    order = _ranked(found)
+    order, first, shares = _distinct(posture, found)
     turn = _heading(found.outward[order])
     halves = _apart(turn[:, None] + np.pi, turn) + np.pi * np.eye(len(turn))  # a row is not its own half turn
     mirrored = _apart(np.pi - turn[:, None], turn)  # as the body's own axes are mirrored
@@ -75,9 +78,11 @@ def headings(posture, track):
     geometry = Headings(
         aspect=posture.name,
         headings=check.frozen(turn),
-        shares=check.frozen(found.share[order]),
-        lowest=check.frozen(_heading(found.start[order] + 2.0 * np.pi * found.share[order])),
-        straight_shares=check.frozen(_at_straight(found.outward[order], straight)),
+        shares=check.frozen(shares[order]),
+        turns=check.frozen(np.bincount(first, minlength=len(shares))[order]),
+        ranges=check.frozen(_ranges(found)),
+        settles=check.frozen(np.array([np.flatnonzero(order == one)[0] for one in first])),
+        straight_shares=check.frozen(_summed(_at_straight(found.outward, straight), first)[order]),
         lengths=check.frozen(np.array([np.ptp(shape[:, 0]) for shape in shapes])),
         widths=check.frozen(widths),
         distances=check.frozen(distances),
@@ -144,17 +149,42 @@ def laid(found, heading=None):
 
 def _settled(found, heading):
     """The row whose range of headings holds one; on a border the one nearer in heading."""
-    beyond = np.mod(heading - found.lowest, 2.0 * np.pi) - 2.0 * np.pi * found.shares
-    return int(np.lexsort((_apart(found.headings, heading), beyond > 1e-9))[0])
+    lowest, width = found.ranges.T
+    beyond = np.mod(heading - lowest, 2.0 * np.pi) - width
+    middle = _apart(lowest + 0.5 * width, heading)
+    return int(found.settles[np.lexsort((middle, beyond > 1e-9))[0]])
 
 
-def _ranked(found):
-    """Places of the rests, the most frequent first; those of equal shares by their headings."""
-    order = np.argsort(-found.share)
-    share = found.share[order]
+def _distinct(posture, found):
+    """Places of the rests that are each other's like under no turn, ranked; of each rest the like that
+    stands for it; the shares of all its likes together, at its place."""
+    order = _ranked(found.share, found.outward)
+    like = sameness.firsts(posture, _heading(found.outward[order]))
+    first = np.empty(len(order), dtype=int)
+    first[order] = order[like]
+    shares = _summed(found.share, first)
+    kept = np.unique(first)
+    return kept[_ranked(shares[kept], found.outward[kept])], first, shares
+
+
+def _summed(shares, first):
+    """Shares of all rests that one stands for, at its place."""
+    return np.bincount(first, shares, minlength=len(shares))
+
+
+def _ranges(found):
+    """(N, 2) [rad] where the range of headings of each rest begins, and how wide it is."""
+    width = 2.0 * np.pi * found.share
+    return np.column_stack([_heading(found.start + width), width])
+
+
+def _ranked(share, outward):
+    """Places of rests, the most frequent first; those of equal shares by their headings."""
+    order = np.argsort(-share)
+    ordered = share[order]
     rank = np.zeros(len(order), dtype=int)
-    rank[order[1:]] = np.cumsum(share[:-1] - share[1:] > TIE * share[:-1])
-    return np.lexsort((_heading(found.outward), rank))
+    rank[order[1:]] = np.cumsum(ordered[:-1] - ordered[1:] > TIE * ordered[:-1])
+    return np.lexsort((_heading(outward), rank))
 
 
 def _apart(first, second):
