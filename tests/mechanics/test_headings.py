@@ -1,7 +1,11 @@
 """Headings against the wall: closed forms, a brute-force search, what stays on the track."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+import shapes
+import trimesh
 from mechanics_samples import DEG, box_posture, rectangle
 
 from feederscrew.bowl.record import Track
@@ -9,14 +13,16 @@ from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import outline, turned
 from feederscrew.mechanics.wall.headings import headings, laid
 from feederscrew.mechanics.wall.outline import axis_of_bowl, rests
-from feederscrew.resting.posture import Posture
+from feederscrew.resting.aspects import find
+from feederscrew.resting.posture import Posture, posture
 
 TRACK = Track(climb=0.0, bank=0.0, radius=0.15, width=0.025)
 
 
 def plan_posture(plan, height=2e-3):
-    """A flat plate of a given outline, standing on all of it."""
+    """A flat plate of a given outline with a peg on it, so that no turn but the whole maps it to itself."""
     corners = np.array([[x, y, z] for x, y in plan for z in (0.0, 2 * height)])
+    corners = np.vstack([corners, [*(0.5 * plan[0] + 0.1 * plan[1]), 8 * height]])
     return Posture("A", "flat", 0.01, height, np.eye(3) * 1e-7, plan, plan, 0.0, corners=corners)
 
 
@@ -102,11 +108,13 @@ def test_an_outline_without_the_foot_is_refused():
 
 def test_box_rows():
     found = headings(box_posture(), TRACK)
-    assert np.degrees(found.headings) == pytest.approx([0, 180, 90, 270])
-    assert found.lengths == pytest.approx([0.03, 0.03, 0.01, 0.01])
+    assert np.degrees(found.headings) == pytest.approx([0, 90])  # half a turn maps a box to itself
+    assert found.turns.tolist() == [2, 2]
+    assert found.shares.sum() == pytest.approx(1.0)
+    assert found.lengths == pytest.approx([0.03, 0.01])
     depth = 0.15 - np.sqrt(0.15**2 - 0.015**2)
-    assert found.widths[:2] == pytest.approx([0.01 + depth] * 2)
-    assert found.half_turns.tolist() == [1, 0, 3, 2]
+    assert found.widths[0] == pytest.approx(0.01 + depth)
+    assert found.half_turns.tolist() == [-1, -1]
 
 
 def test_touching_corners_lie_on_the_wall_below():
@@ -171,7 +179,7 @@ def test_laid_anywhere_it_settles_in_its_range():
     border = np.degrees(np.arctan(3.0))
     assert np.degrees(found.headings[laid(found, (border - 1) * DEG)]) == pytest.approx(0)
     assert np.degrees(found.headings[laid(found, (border + 1) * DEG)]) == pytest.approx(90)
-    assert np.degrees(found.headings[laid(found, -170 * DEG)]) == pytest.approx(180)
+    assert np.degrees(found.headings[laid(found, -170 * DEG)]) == pytest.approx(0)
     assert laid(found) == 0
 
 
@@ -243,3 +251,27 @@ def test_a_half_turn_is_the_heading_half_a_turn_on():
     found = headings(plan_posture(0.01 * np.column_stack([np.cos(angle), np.sin(angle)])), TRACK)
     away = np.abs(found.headings[found.half_turns] - found.headings)
     assert away == pytest.approx([np.pi] * 6)
+
+
+def test_a_peg_tells_the_headings_of_a_square_apart():
+    plan = regular(4)
+    plate, pegged = plan_posture(plan), plan_posture(plan)
+    plate = replace(plate, corners=plate.corners[:-1])
+    assert headings(plate, TRACK).turns.tolist() == [4]
+    assert headings(pegged, TRACK).turns.tolist() == [1, 1, 1, 1]
+
+
+def test_a_hole_tells_headings_apart_that_the_hull_does_not():
+    """A bar with an off-centre hole: its hull looks the same after half a turn, the solid does not."""
+    bar = shapes.part(shapes.box(30, 10, 4))
+    drilled = trimesh.util.concatenate(shapes.box(30, 10, 4), _inside_out(shapes.box(4, 4, 3.9), (6.0, 0, 0)))
+    for part, turns in ((bar, 2), (shapes.part(drilled), 1)):
+        found = find(part)
+        assert set(headings(posture(part, found, "A"), TRACK).turns.tolist()) == {turns}
+
+
+def _inside_out(mesh, where):
+    mesh = mesh.copy()
+    mesh.apply_translation(where)
+    mesh.invert()
+    return mesh
