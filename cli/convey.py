@@ -38,14 +38,12 @@ def convey(bowl, spans, curve, pictures, out):
     settings, ranges, path = bowls.settings(**bowl), bowls.ranges(spans), bowl["path"]
     out = replace(out, command=WAYS[len(ranges)] if ranges else "convey radius" if curve else "convey")
     with out.folder(bowls.name(path), bowls.identity(path), bowls.texts(settings)) as folder:
-        if len(ranges) == 1:
-            _curve(settings, ranges[0], pictures and folder, folder, out)
-        elif ranges:
-            _map(settings, ranges, curve, pictures and folder, folder, out)
-        elif curve:
-            _inwards(bowls.record(settings), pictures and folder, folder, out)
+        if len(ranges) == 2:
+            _map(settings, ranges, curve, pictures, folder, out)
+        elif ranges or curve:
+            _curve(settings, ranges, pictures, folder, out)
         else:
-            _point(settings, pictures and folder, folder, out)
+            _point(settings, pictures, folder, out)
 
 
 def _fitting(spans, curve):
@@ -58,83 +56,44 @@ def _fitting(spans, curve):
         raise click.UsageError("--bowl goes with no --vary or with two - leave one of them out")
 
 
-def _point(settings, picture_folder, folder, out):
+def _point(settings, pictures, folder, out):
     from feederscrew import bowl as bowls
-    from feederscrew.conveying import answer, sensitivity, trace
-    from feederscrew.machine import speeds
-    from feederscrew.output import tables
-    from feederscrew.output.convey import tables as convey_tables
+    from feederscrew.output import offers
+    from feederscrew.output.convey import files, tables
+    from feederscrew.studies import convey as studies
 
-    bowl = bowls.record(settings)
-    found = answer.answer(bowl)
-    around = sensitivity.sensitivity(bowl), sensitivity.friction_doubt(bowl)
-    document = convey_tables.document(bowl, found, *around) | {"bowl": bowls.texts(settings)}
-    out.warn(*convey_tables.remarks(document), *speeds.remark(found.velocity, bowl.sizing))
-    if folder:
-        folder.write("convey.json", tables.json_text(document))
-    if picture_folder:
-        from feederscrew.output import style
-        from feederscrew.output.convey import figures as convey_plots
-
-        figure = convey_plots.cycle(trace.trace(found.setting), bowl.drive.amplitude, found)
-        folder.write("convey.png", style.png(figure))
-    out.show(convey_tables.summary(document), document)
+    found, texts = studies.convey(bowls.record(settings)), bowls.texts(settings)
+    document = tables.document(found) | {"bowl": texts}
+    out.warn(*tables.remarks(document), *found.warnings)
+    offers.write(folder, files.offers(found, texts), pictures=pictures)
+    out.show(tables.summary(document), document)
 
 
-def _map(settings, ranges, curve, picture_folder, folder, out):
-    from feederscrew import bowl as bowls
-    from feederscrew.output import tables
-    from feederscrew.output.convey import tables as convey_tables
+def _map(settings, ranges, curve, pictures, folder, out):
+    from feederscrew.output import offers
+    from feederscrew.output.convey import files, tables
+    from feederscrew.studies import convey as studies
 
     announce(out)
     with out.step("map"):
-        grid = convey_tables.grid(ranges, lambda values: bowls.swept(settings, values))
-    frame = convey_tables.cells(grid)
-    out.say(*convey_tables.map_remarks(grid))
-    if folder:
-        folder.write("convey_map.csv", tables.text(frame, "csv"))
-    if picture_folder:
-        from feederscrew.conveying import radius
-        from feederscrew.output import style
-        from feederscrew.output.convey import figures as convey_plots
-
-        line = convey_plots.on_axes(ranges, radius.inwards(bowls.record(settings))) if curve else None
-        folder.write("convey_map.png", style.png(convey_plots.velocity_map(grid, line)))
+        found = studies.velocity_map(settings, ranges, drawn="radius" if curve else None)
+    out.say(*tables.map_remarks(found))
+    offers.write(folder, files.map_offers(found), pictures=pictures)
+    frame = tables.cells(found)
     out.show(frame, {"cells": frame})
 
 
-def _curve(settings, span, picture_folder, folder, out):
+def _curve(settings, ranges, pictures, folder, out):
     from feederscrew import bowl as bowls
-    from feederscrew.output import tables
-    from feederscrew.output.convey import tables as convey_tables
+    from feederscrew.output import offers
+    from feederscrew.output.convey import files, tables
+    from feederscrew.studies import convey as studies
 
     announce(out)
-    frame = convey_tables.along_key(span, bowls.swept(settings, convey_tables.values(span)))
-    out.say(*convey_tables.curve_remarks(frame))
-    if folder:
-        folder.write("convey_curve.csv", tables.text(frame, "csv"))
-    if picture_folder:
-        from feederscrew.output import style
-        from feederscrew.output.convey import figures as convey_plots
-
-        folder.write("convey_curve.png", style.png(convey_plots.curve(frame, convey_tables.title(span))))
-    out.show(frame, {"cells": frame})
-
-
-def _inwards(bowl, picture_folder, folder, out):
-    from feederscrew.conveying import radius
-    from feederscrew.output import tables
-    from feederscrew.output.convey import tables as convey_tables
-
-    announce(out)
-    frame = convey_tables.along_radius(radius.inwards(bowl))
-    if folder:
-        folder.write("convey_radius.csv", tables.text(frame, "csv"))
-    if picture_folder:
-        from feederscrew.output import style
-        from feederscrew.output.convey import figures as convey_plots
-
-        folder.write("convey_radius.png", style.png(convey_plots.curve(frame, "Velocity over the radius")))
+    found = studies.curve(settings, *ranges) if ranges else studies.along_radius(bowls.record(settings))
+    out.say(*tables.curve_remarks(found))
+    offers.write(folder, files.curve_offers(found), pictures=pictures)
+    frame = tables.points(found)
     out.show(frame, {"cells": frame})
 
 

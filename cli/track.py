@@ -34,23 +34,22 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out):
     from above and from behind, as CSV and PNG.
     """
     from feederscrew.bowl import ranges, record, settings, texts
-    from feederscrew.output import columns
-    from feederscrew.output.track import files as track_sheets
-    from feederscrew.output.track import maps as track_maps
-    from feederscrew.output.track import tables as track_tables
-    from feederscrew.studies.track import analyse
+    from feederscrew.output import columns, offers
+    from feederscrew.output.track import files, map_tables, tables
+    from feederscrew.studies.track import track as study
 
     _fitting(spans)
     solid, given, varied = out.part(part), settings(**bowl), ranges(spans)
     conditions = columns.conditions(solid) | texts(given)
     with out.folder(solid.name, {solid.source: solid.sha256}, conditions) as folder:
-        found = analyse(solid, record(given), aspect, heading)
-        document = track_tables.document(found, texts(given), as_published=as_published)
-        grid = track_maps.grid(found.posture, given, varied, heading) if spans or folder else None
-        out.say(*track_tables.remarks(found), *(track_maps.remarks(grid) if grid else ()))
+        found = study(solid, record(given), aspect, heading)
+        grid = found.over(given, varied) if spans or folder else None
+        out.say(*tables.remarks(found), *(map_tables.remarks(grid) if grid else ()))
         if folder:
-            track_sheets.track(folder, found, document, grid, pictures=pictures)
-    out.show(track_maps.cells(grid) if spans else track_tables.shown(document, out.format), document)
+            offered = files.offers(found, texts(given), grid, as_published=as_published)
+            offers.write(folder, offered, pictures=pictures)
+    document = tables.document(found, texts(given), as_published=as_published)
+    out.show(map_tables.cells(grid) if spans else tables.shown(document, out.format), document)
 
 
 def _fitting(spans):

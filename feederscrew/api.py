@@ -10,7 +10,7 @@ from typing import IO, TYPE_CHECKING
 from feederscrew import bowl as _bowls
 from feederscrew import part as _parts
 from feederscrew.bowl import Bowl
-from feederscrew.conveying.answer import Answer, answer
+from feederscrew.conveying.answer import Answer
 from feederscrew.errors import ConfigError, Faults, FeederError, MeshError
 from feederscrew.output import columns as _columns
 from feederscrew.part import Part
@@ -18,6 +18,7 @@ from feederscrew.rates.devices import Device
 from feederscrew.rates.queue import Rate
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.posture import Posture, posture
+from feederscrew.studies import convey as _convey
 from feederscrew.studies import rate as _rate
 
 if TYPE_CHECKING:
@@ -230,7 +231,7 @@ def convey(bowl: Bowl) -> Answer:
     Answer
         Its velocity in m/s, status, regime and margins.
     """
-    return answer(bowl)
+    return _convey.convey(bowl).answer
 
 
 def rate(

@@ -6,7 +6,6 @@ import io
 import numpy as np
 
 from feederscrew.batch.task import DONE, Outcome
-from feederscrew.conveying import answer, sensitivity
 from feederscrew.errors import FeederError
 from feederscrew.output import columns, offers, tables
 from feederscrew.output.aspects import files as sheets
@@ -17,6 +16,7 @@ from feederscrew.output.rate import tables as rate_tables
 from feederscrew.part import load
 from feederscrew.rates import queue
 from feederscrew.resting.aspects import find
+from feederscrew.studies.convey import convey
 from feederscrew.studies.rate import rate
 
 THUMBNAIL = "thumbnail.png"
@@ -90,11 +90,8 @@ def _results(task):
 @functools.lru_cache(maxsize=64)
 def travel(conditions):
     """Return the document of ``convey.json``: the same for every part, a point mass."""
-    bowl = conditions.bowl
-    around = sensitivity.sensitivity(bowl), sensitivity.friction_doubt(bowl)
-    queue.velocity(bowl)  # raises where there is no steady state
-    document = convey_tables.document(bowl, answer.answer(bowl), *around)
-    return document | {"bowl": dict(conditions.texts)}
+    queue.velocity(conditions.bowl)  # raises where there is no steady state
+    return convey_tables.document(convey(conditions.bowl)) | {"bowl": dict(conditions.texts)}
 
 
 def _rate(part, found, task, files):

@@ -4,21 +4,23 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Bowl
 from feederscrew.mechanics import limits
 from feederscrew.mechanics.cycle import Cycle
 from feederscrew.mechanics.floor.balance import SLIDE, STICK, TIP
-from feederscrew.mechanics.published import track as published_track
+from feederscrew.mechanics.published import track as published
 from feederscrew.mechanics.published.comparison import Term, omitted_terms
 from feederscrew.mechanics.standing import standing
-from feederscrew.mechanics.track import balance, equilibrium
-from feederscrew.mechanics.track.cells import seated
+from feederscrew.mechanics.track import balance, cells, equilibrium
 from feederscrew.mechanics.track.frame import Seat, bank_without_radial_friction
 from feederscrew.mechanics.track.opening import Opening, first_to_open
 from feederscrew.mechanics.wall.headings import Headings
 from feederscrew.part.record import Part
 from feederscrew.resting.posture import Posture
+from feederscrew.studies import grids
 
+USUAL = ("track.bank=0deg:30deg:41", "track.climb=0deg:8deg:41")  # of a map
 LEVEL = {"magnet"}  # cards whose printed equations are in level axes, [4.57] to [4.62]
 
 
@@ -33,14 +35,38 @@ class TrackStudy:
     headings: Headings | None  # None of a part card
     row: int  # of the headings, the one taken
     now: balance.TrackMotion  # at the upper reversal, from rest
-    printed: published_track.PrintedTrack  # the same by the printed equations
+    printed: published.PrintedTrack  # the same by the printed equations
     omitted: tuple[Term, ...]  # what these leave out
     cycle: balance.TrackMotion  # over one settled period
     course: Cycle
     opening: Opening
     bank_without_radial_friction: float  # [rad]
     held_across: bool  # at rest, by friction that the reactions of ``now`` do not show
+    laid: float | None  # [rad] heading as laid down; None for the most frequent that stays on the track
     why: str | None = None  # this aspect; None where it was asked for
+
+    def over(self, settings, ranges=()):
+        """Compute the upper reversal at every pair of two values of the bowl.
+
+        Parameters
+        ----------
+        settings : tuple of Setting
+            Of the bowl; all but the two are kept.
+        ranges : sequence of Range
+            Two, or none for bank and climb.
+
+        Returns
+        -------
+        Grid
+            Columns as ``mechanics.track.cells`` names them, in SI; NaN where the part does not fit.
+        """
+        first, second = ranges or bowls.ranges(USUAL)
+
+        def function(x, y):
+            bowl = limits.plain(bowls.swept(settings, {first.key.name: x, second.key.name: y}))
+            return cells.cells(self.posture, bowl, self.laid)
+
+        return grids.evaluate(grids.axis(first), grids.axis(second), function, cells.REGIMES)
 
 
 def track(part, bowl, aspect=None, heading=None):
@@ -69,7 +95,7 @@ def track(part, bowl, aspect=None, heading=None):
     """
     limits.plain(bowl)
     posture, why = standing(part, aspect, "track")
-    seat, found, row = seated(posture, bowl, heading)
+    seat, found, row = cells.seated(posture, bowl, heading)
     levers = _levers(part, posture, seat)
     now, held_across = _from_rest(seat, bowl)
     cycle, course = balance.over_cycle(seat, bowl)
@@ -81,13 +107,14 @@ def track(part, bowl, aspect=None, heading=None):
         headings=found,
         row=row,
         now=now,
-        printed=published_track.motion(levers, bowl, seat.heading),
+        printed=published.motion(levers, bowl, seat.heading),
         omitted=omitted_terms(seat, bowl, now, levers.offset),
         cycle=cycle,
         course=course,
         opening=first_to_open(seat, bowl),
         bank_without_radial_friction=bank_without_radial_friction(seat),
         held_across=held_across,
+        laid=heading,
         why=why,
     )
 
@@ -104,9 +131,7 @@ def _levers(part, posture, seat):
     """Levers of the printed equations: the card's own, or the mesh's."""
     axes = "level" if posture.corners is None and part.name in LEVEL else "tilted"
     ahead = posture.offset * np.cos(seat.heading)
-    levers = published_track.levers(seat, float(ahead), axes)
+    levers = published.levers(seat, float(ahead), axes)
     return (
-        levers
-        if posture.corners is not None
-        else published_track.printed_levers(levers, posture.printed["track"])
+        levers if posture.corners is not None else published.printed_levers(levers, posture.printed["track"])
     )

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew import bowl
-from feederscrew.studies import track as track_analysis
+from feederscrew.studies.track import track
 from feederscrew.thesis import parts
 from feederscrew.thesis.finding import Finding
 from feederscrew.units import factor
@@ -19,9 +19,9 @@ MILLI = 1e-3
 def on_track():
     """The Arc Chute on its fifth aspect on a banked track, driven a little across it."""
     default = bowl.default()
-    drive, track = replace(default.drive, direction=BANK), replace(default.track, bank=BANK)
-    banked = replace(default, drive=drive, track=track)
-    return track_analysis.analyse(parts.card("arc_chute"), banked, "5")
+    drive, at_bank = replace(default.drive, direction=BANK), replace(default.track, bank=BANK)
+    banked = replace(default, drive=drive, track=at_bank)
+    return track(parts.card("arc_chute"), banked, "5")
 
 
 def _sizes(*names):

@@ -30,7 +30,9 @@ class Headings:
     )  # (M,) [rad] of the body's own direction, from the track's, counter-clockwise, 0 to 2 pi
     shares: np.ndarray  # (M,) [1] of all directions of laying down
     turns: np.ndarray  # (M,) int, how many turns about the vertical lay the part down the same way
-    ranges: np.ndarray  # (N, 2) [rad] where each range of headings begins that settle in a row, how wide it is
+    ranges: (
+        np.ndarray
+    )  # (N, 2) [rad] where each range of headings begins that settle in a row, how wide it is
     settles: np.ndarray  # (N,) int, the row they settle in
     straight_shares: (
         np.ndarray

@@ -9,7 +9,9 @@ from feederscrew.conveying.closed_forms import throw_of_flight
 from feederscrew.conveying.setting import PHASES
 from feederscrew.output import style
 from feederscrew.output.tables import heading
+from feederscrew.units import factor
 
+MM_S = factor("mm/s", "velocity")
 PHASE_COLOURS = {"stick": "#5c6b78", "forward": "#009e73", "backward": "#d55e00", "flight": "#0072b2"}
 PLATE = "#aab4bd"
 REGIMES = {  # colour and label; what a designer wants is the strongest
@@ -75,7 +77,7 @@ def velocity_map(grid, curve=None):
     Parameters
     ----------
     grid : Grid
-        Of ``convey_tables.grid``.
+        Of a ConveyMap.
     curve : two (N,) float, optional
         The operating points of one bowl over its radius, in the units of the axes.
 
@@ -103,7 +105,7 @@ def curve(frame, title):
     Parameters
     ----------
     frame : DataFrame
-        Of ``convey_tables.along_radius`` or ``along_key``.
+        Of ``tables.points``.
     title : str
 
     Returns
@@ -123,13 +125,13 @@ def curve(frame, title):
 
 
 def on_axes(spans, bowl):
-    """Operating points of a bowl over its radius in the units of a map's axes.
+    """Return operating points of a bowl in the units of a map's axes.
 
     Parameters
     ----------
     spans : two Range
     bowl : Bowl
-        Of ``radius.at_radius``.
+        One operating point, or arrays of them as of ``radius.at_radius``.
 
     Returns
     -------
@@ -139,12 +141,10 @@ def on_axes(spans, bowl):
     values = {"drive.vibration_angle": bowl.drive.vibration_angle, "drive.amplitude": bowl.drive.amplitude}
     if {span.key.field for span in spans} != set(values):
         return None
-    return tuple(values[span.key.field] / span.key.share / _unit(span.key) for span in spans)
+    return tuple(np.atleast_1d(values[span.key.field]) / span.key.share / _unit(span.key) for span in spans)
 
 
 def _unit(key):
-    from feederscrew.units import factor
-
     return factor(key.unit, key.dimension)
 
 
@@ -160,7 +160,7 @@ def _by_phase(axes, trace, way):
 def _velocity(figure, axes, grid):
     style.tidy(axes, title="Velocity [mm/s], from rest", grid="none")
     axes.set(xlabel=_label(grid.first), ylabel=_label(grid.second))
-    velocity = grid.values["velocity_mm_s"].T
+    velocity = grid.values["velocity"].T / MM_S
     known = velocity[np.isfinite(velocity)]
     lowest, highest = known.min(initial=0.0), known.max(initial=LEAST)
     largest = max(highest, -lowest)

@@ -4,9 +4,7 @@ import numpy as np
 
 from feederscrew import units
 from feederscrew.conveying import answer, sensitivity
-from feederscrew.conveying.steady import STATUSES
 from feederscrew.output import tables
-from feederscrew.studies import maps
 
 MM_S = units.factor("mm/s", "velocity")
 VELOCITIES = {"velocity": "velocity_mm_s", "low": "velocity_low_mm_s", "high": "velocity_high_mm_s"}
@@ -20,22 +18,9 @@ RUNS_AWAY = (
 LIMITS = {"forward": "slip up the track", "backward": "slip down the track"}
 
 
-def document(bowl, found, nearby, doubt):
-    """One operating point as the JSON document.
-
-    Parameters
-    ----------
-    bowl : Bowl
-    found : Answer
-    nearby : dict of str to Neighbours
-        From ``sensitivity.sensitivity``.
-    doubt : Neighbours
-        From ``sensitivity.friction_doubt``.
-
-    Returns
-    -------
-    dict
-    """
+def document(study):
+    """Return a ConveyStudy as the JSON document, without the bowl's values."""
+    found, change = study.answer, sensitivity.CHANGE
     return {
         "status": found.status,
         "period": found.period,
@@ -51,14 +36,14 @@ def document(bowl, found, nearby, doubt):
         "longest_flight_periods": found.longest_flight,
         "hardest_impact_mm_s": found.hardest_impact / MM_S,
         "flights_per_period": found.flights,
-        "sensitivity": {name: _changed(found, pair, sensitivity.CHANGE) for name, pair in nearby.items()},
-        "friction_doubt": _changed(found, doubt, sensitivity.FRICTION_DOUBT),
-        "validity": answer.validity(found, bowl),
+        "sensitivity": {name: _changed(found, pair, change) for name, pair in study.nearby.items()},
+        "friction_doubt": _changed(found, study.doubt, sensitivity.FRICTION_DOUBT),
+        "validity": study.validity,
     }
 
 
 def summary(document):
-    """The document of one operating point as a frame for people."""
+    """Return the document of one operating point as a frame for people."""
     rows = [
         ("velocity [mm/s]", _number(document["velocity_mm_s"])),
         ("lowest to highest [mm/s]", _range(document["velocity_low_mm_s"], document["velocity_high_mm_s"])),
@@ -105,54 +90,38 @@ def remarks(document):
     return said
 
 
-def cells(grid):
-    """The cells of a map as a frame.
-
-    Parameters
-    ----------
-    grid : Grid
-        Of ``map_columns``.
-    """
-    columns = grid.columns()
-    status = np.asarray(STATUSES)[columns.pop("status").astype(int)]
-    columns.pop("several")
-    regime = columns.pop("regime")
-    throw_number = columns.pop("throw_number")
-    return tables.frame(columns | {"regime": regime, "throw_number": throw_number, "status": status})
+def cells(study):
+    """Return the cells of a ConveyMap as a frame."""
+    columns = _in_mm_s(study.grid.columns())
+    for name in ("status", "several"):
+        columns.pop(name)
+    regime, throw_number = columns.pop("regime"), columns.pop("throw_number")
+    last = {"regime": regime, "throw_number": throw_number, "status": study.statuses.ravel()}
+    return tables.frame(columns | last)
 
 
-def grid(spans, bowl_at):
-    """Map of a bowl over two of its keys.
-
-    Parameters
-    ----------
-    spans : two Range
-    bowl_at : callable
-        The Bowl for a dict of key name to array.
-
-    Returns
-    -------
-    Grid
-        Velocities in mm/s.
-    """
-    first, second = spans
-
-    def evaluate(one, other):
-        return _in_mm_s(answer.cells(bowl_at({first.key.name: one, second.key.name: other})))
-
-    return maps.evaluate(maps.axis(first), maps.axis(second), evaluate, answer.REGIMES)
+def points(study):
+    """Return the points of a ConveyCurve as a frame."""
+    found = _in_mm_s(study.cells)
+    return tables.frame(
+        {
+            **{axis.column: axis.shown for axis in study.axes},
+            **{column: found[column] for column in VELOCITIES.values()},
+            "regime": np.asarray(answer.REGIMES)[found["regime"]],
+            "throw_number": found["throw_number"],
+            "status": study.statuses,
+        }
+    )
 
 
-def map_remarks(grid):
-    """How many cells of a map have no steady velocity, no period or several velocities."""
-    return _remarks(np.asarray(STATUSES)[grid.values["status"].astype(int)], grid.values["several"])
+def map_remarks(study):
+    """Return how many cells of a ConveyMap have no steady velocity, no period or several velocities."""
+    return _remarks(study.statuses, study.grid.values["several"])
 
 
-def curve_remarks(frame):
-    """The same of a curve, from its frame; it has several velocities where its range is not one point."""
-    low, high = frame["velocity_low_mm_s"], frame["velocity_high_mm_s"]
-    several = (frame["status"] == "periodic") & (high - low > answer.COEXIST * high.abs())
-    return _remarks(frame["status"].to_numpy(), several)
+def curve_remarks(study):
+    """Return the same of a ConveyCurve."""
+    return _remarks(study.statuses, study.several)
 
 
 def _remarks(status, several):
@@ -162,59 +131,6 @@ def _remarks(status, several):
         "several velocities": several.sum(),
     }
     return [f"{count} of {status.size} cells: {what}" for what, count in counts.items() if count]
-
-
-def along_radius(bowl):
-    """What a part does at each radius, as a frame.
-
-    Parameters
-    ----------
-    bowl : Bowl
-        Of ``radius.at_radius``.
-    """
-    mm = units.factor("mm", "length")
-    where = {
-        "radius_mm": bowl.track.radius / mm,
-        "vibration_angle_deg": np.degrees(bowl.drive.vibration_angle),
-        "amplitude_mm": bowl.drive.amplitude / mm,
-    }
-    return _along(where, bowl)
-
-
-def along_key(span, bowl):
-    """What a part does over one key of the bowl, as a frame.
-
-    Parameters
-    ----------
-    span : Range
-    bowl : Bowl
-        With that key varied.
-    """
-    axis = maps.axis(span)
-    return _along({axis.column: axis.shown}, bowl)
-
-
-def values(span):
-    """The values of a range by its key's name, as ``bowl.swept`` takes them."""
-    return {span.key.name: np.array(span.values)}
-
-
-def title(span):
-    """What a curve over a range is called."""
-    return f"Velocity over {span.key.name}"
-
-
-def _along(where, bowl):
-    found = _in_mm_s(answer.cells(bowl))
-    return tables.frame(
-        {
-            **where,
-            **{column: found[column] for column in VELOCITIES.values()},
-            "regime": np.asarray(answer.REGIMES)[found["regime"]],
-            "throw_number": found["throw_number"],
-            "status": np.asarray(STATUSES)[found["status"]],
-        }
-    )
 
 
 def _in_mm_s(found):

@@ -1,12 +1,13 @@
 """What the bowl does with the part: slip, velocity, the track, the rate."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew.conveying import answer, sensitivity, trace
 from feederscrew.machine import speeds
-from feederscrew.output import style
 from feederscrew.output.convey import figures as convey_plots
+from feederscrew.output.convey import files as convey_files
 from feederscrew.output.convey import tables as convey_tables
 from feederscrew.output.floor import files as floor_files
 from feederscrew.output.floor import tables as floor_tables
@@ -15,17 +16,17 @@ from feederscrew.output.headings import tables as heading_tables
 from feederscrew.output.page.blocks import Notes, Picture, Section, Table, Text, Tile
 from feederscrew.output.page.numbers import NOTHING, SHORT, number, percent
 from feederscrew.output.rate import tables as rate_tables
-from feederscrew.output.report.kept import Kept
 from feederscrew.output.slide import files as slide_files
 from feederscrew.output.slide import tables as slide_tables
-from feederscrew.output.track import files as track_sheets
-from feederscrew.output.track import maps as track_maps
+from feederscrew.output.track import files as track_files
+from feederscrew.output.track import map_tables
 from feederscrew.output.track import tables as track_tables
+from feederscrew.studies import convey as convey_study
 from feederscrew.studies.floor import floor as floor_study
 from feederscrew.studies.headings import headings as headings_study
 from feederscrew.studies.rate import rate as rate_study
 from feederscrew.studies.slide import slide as slide_study
-from feederscrew.studies.track import analyse as on_track
+from feederscrew.studies.track import track as track_study
 from feederscrew.units import factor
 
 MM, DEG = factor("mm", "length"), factor("deg", "angle")
@@ -59,16 +60,13 @@ def slide(case):
 
 def convey(case):
     """Operating point and velocity."""
-    bowl = case.bowl
-    found = answer.answer(bowl)
-    around = sensitivity.sensitivity(bowl), sensitivity.friction_doubt(bowl)
-    document = convey_tables.document(bowl, found, *around)
+    study = convey_study.convey(case.bowl)
+    document = convey_tables.document(study)
     blocks = [Table(convey_tables.summary(document))]
-    if found.status != "no steady state":
-        followed = trace.trace(found.setting)
-        cycle = convey_plots.cycle(followed, bowl.drive.amplitude, found)
-        alt = f"Plate and part: {convey_plots.cycle_title(followed, found)}"
-        blocks.append(Picture("convey.png", style.png(cycle), alt))
+    if study.answer.status != "no steady state":
+        (cycle,) = _taken(convey_files.offers(study, bowls.texts(case.settings)), "convey")
+        title = convey_plots.cycle_title(study.trace(), study.answer)
+        blocks.append(replace(cycle, alt=f"Plate and part: {title}"))
     blocks.append(_velocity_map(case))
     return Section(
         tuple(blocks),
@@ -107,17 +105,12 @@ def headings(case):
 
 def track(case):
     """Reactions on the track, against the wall."""
-    found, kept = on_track(case.part, case.bowl, case.aspect, case.heading), Kept()
-    document = track_tables.document(found, bowls.texts(case.settings))
-    grid = track_maps.grid(found.posture, case.settings, (), case.heading)
-    track_sheets.track(kept, found, document, grid)
-    alts = {
-        "track_part": "The part on the track from above and from behind, with the forces on it",
-        "track_map": "Acceleration along the track over bank and climb",
-        "track_cycle": "Reactions over one cycle",
-    }
-    pictures = [picture for name, alt in alts.items() for picture in _pictures(kept, name, alt)]
-    lines = _notes(track_tables.remarks(found) + track_maps.remarks(grid))
+    found = track_study(case.part, case.bowl, case.aspect, case.heading)
+    settings, grid = bowls.texts(case.settings), found.over(case.settings)
+    document = track_tables.document(found, settings)
+    offered = track_files.offers(found, settings, grid)
+    pictures = _taken(offered, "track_part", "track_map", "track_cycle")
+    lines = _notes(track_tables.remarks(found) + map_tables.remarks(grid))
     return Section(
         (*lines, Table(track_tables.summary(document)), *pictures),
         tiles=_heading_tiles(found),
@@ -153,12 +146,10 @@ def _velocity_map(case):
             f"drive.amplitude={0.02 * top:.4g}mm:{top:.4g}mm:{STROKES}",
         )
     )
-    grid = convey_tables.grid(spans, lambda values: bowls.swept(case.settings, values))
-    if not np.isfinite(grid.values["velocity_mm_s"]).any():
+    study = convey_study.velocity_map(case.settings, spans, drawn="point")
+    if not np.isfinite(study.grid.values["velocity"]).any():
         return Text("No drive of 5 to 60 deg and up to 2.5 times this stroke has a steady velocity here.")
-    own = [np.array([drive.vibration_angle / DEG]), np.array([drive.amplitude / MM])]
-    drawn = style.png(convey_plots.velocity_map(grid, own))
-    return Picture("convey_map.png", drawn, "Velocity and regimes over vibration angle and amplitude")
+    return _taken(convey_files.map_offers(study), "convey_map")[0]
 
 
 def _velocity_tile(document):
@@ -189,14 +180,6 @@ def _rate_tile(document):
         f"{number(document['parts_per_minute'], SHORT)} a minute",
         f"{low} to {high}; {what} ({document['rule']})",
     )
-
-
-def _pictures(kept, start, alt):
-    return [
-        Picture(name, content, alt)
-        for name, content in kept.items()
-        if name.startswith(start) and name.endswith(".png")
-    ]
 
 
 def _taken(offered, *starts):

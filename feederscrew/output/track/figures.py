@@ -23,7 +23,7 @@ def part(found, title):
 
     Parameters
     ----------
-    found : TrackAnalysis
+    found : TrackStudy
     title : str
 
     Returns

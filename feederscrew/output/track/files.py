@@ -2,40 +2,74 @@
 
 import numpy as np
 
-from feederscrew.output import style, tables
-from feederscrew.output.floor.map_figures import regime_map
-from feederscrew.output.track import figures as track_plots
-from feederscrew.output.track import maps as track_maps
+from feederscrew.output import offers as offer
+from feederscrew.output.track import map_tables, tables
+
+SHOWN = "acceleration_x_m_s2"
 
 
-def track(folder, found, document, grid, *, pictures=True):
-    """Write the cycle, the map and the pictures.
+def offers(study, settings, grid, *, as_published=False):
+    """Offer the files of a TrackStudy.
 
     Parameters
     ----------
-    folder : ResultFolder
-    found : TrackAnalysis
-    document : dict
-        Of the JSON file.
+    study : TrackStudy
+    settings : dict of str to str
+        The bowl's values in effect.
     grid : Grid
-    pictures : bool
-        Draw as well.
+        Of ``study.over``.
+    as_published : bool
+        As for ``tables.document``.
+
+    Returns
+    -------
+    list of Offer
     """
-    folder.write("track.json", tables.json_text(document))
-    folder.write("track_cycle.csv", tables.text(tables.frame(document["cycle"]), "csv"))
-    folder.write("track_map.csv", tables.text(track_maps.cells(grid), "csv"))
-    for name in ("difference", "omitted_terms"):
-        if name in document:
-            folder.write(f"track_{name}.csv", tables.text(document[name], "csv"))
-    if not pictures:
-        return
-    title = f"{found.part.name}, aspect {found.posture.name}, heading {np.degrees(found.seat.heading):.4g}°"
-    folder.write("track_part.png", style.png(track_plots.part(found, title)))
-    folder.write("track_cycle.png", style.png(track_plots.cycle(found.cycle, found.course, title)))
-    labels = tuple(" ".join(tables.heading(axis.column)) for axis in (grid.first, grid.second))
-    drawn = regime_map(
-        grid, track_maps.SHOWN, title=title, labels=labels,
+    differences = [
+        offer.table("track_difference.csv", tables.differences, study),
+        offer.table("track_omitted_terms.csv", tables.omitted_terms, study),
+    ]
+    return [
+        offer.document("track.json", tables.document, study, settings, as_published=as_published),
+        offer.table("track_cycle.csv", tables.over_cycle, study.cycle, study.course),
+        offer.table("track_map.csv", map_tables.cells, grid),
+        *(differences if as_published else []),
+        offer.picture(
+            "track_part.png",
+            "The part on the track from above and from behind, with the forces on it",
+            _part, study,
+        ),
+        offer.picture("track_cycle.png", "Reactions over one cycle", _cycle, study),
+        offer.picture("track_map.png", f"Acceleration along the track over {_axes(grid)}", _map, study, grid),
+    ]  # fmt: skip
+
+
+def _part(study):
+    from feederscrew.output.track import figures
+
+    return figures.part(study, _title(study))
+
+
+def _cycle(study):
+    from feederscrew.output.track import figures
+
+    return figures.cycle(study.cycle, study.course, _title(study))
+
+
+def _map(study, grid):
+    from feederscrew.output.floor.map_figures import regime_map
+
+    return regime_map(
+        grid, SHOWN, title=_title(study), labels=map_tables.labels(grid),
         value="acceleration V'_X at the upper reversal [m/s²]",
-        own=track_maps.own_point(grid, found.bowl), note=" ".join(track_maps.remarks(grid)),
+        own=map_tables.own_point(grid, study.bowl), note=" ".join(map_tables.remarks(grid)),
     )  # fmt: skip
-    folder.write("track_map.png", style.png(drawn))
+
+
+def _axes(grid):
+    return " and ".join(label.partition(" [")[0] for label in map_tables.labels(grid))
+
+
+def _title(study):
+    heading = f"{np.degrees(study.seat.heading):.4g}°"
+    return f"{study.part.name}, aspect {study.posture.name}, heading {heading}"

@@ -101,11 +101,11 @@ def over_cycle(found, course):
 
 
 def document(found, settings, *, as_published=False):
-    """All of one track analysis, for JSON.
+    """Return all of one TrackStudy, for JSON.
 
     Parameters
     ----------
-    found : TrackAnalysis
+    found : TrackStudy
     settings : dict of str to str
         The bowl's values in effect.
     as_published : bool
@@ -117,16 +117,7 @@ def document(found, settings, *, as_published=False):
     dict
     """
     complete, published = instant(found.now), printed(found.printed)
-    told = {}
-    if as_published:
-        terms = {
-            name: [getattr(term, name) for term in found.omitted]
-            for name in ("name", "equation", "value", "unit")
-        }
-        told = {
-            "difference": difference(published, complete, TRACK_TERMS),
-            "omitted_terms": tables.frame(terms),
-        }
+    told = {"difference": differences(found), "omitted_terms": omitted_terms(found)} if as_published else {}
     return {
         "part": found.part.name,
         "aspect": found.posture.name,
@@ -150,6 +141,17 @@ def document(found, settings, *, as_published=False):
         "cycle": over_cycle(found.cycle, found.course),
         "bowl": settings,
     }
+
+
+def differences(found):
+    """Return the printed against the complete upper reversal of a TrackStudy, as a frame."""
+    return difference(printed(found.printed), instant(found.now), TRACK_TERMS)
+
+
+def omitted_terms(found):
+    """Return the terms that the printed equations of a TrackStudy leave out, as a frame."""
+    names = ("name", "equation", "value", "unit")
+    return tables.frame({name: [getattr(term, name) for term in found.omitted] for name in names})
 
 
 def friction_needed(cycle):
@@ -184,7 +186,7 @@ def summary(document):
 
 
 def remarks(found):
-    """What a reader of a TrackAnalysis should know, a line each."""
+    """Return what a reader of a TrackStudy should know, a sentence each."""
     lines, cycle = chosen(found), found.cycle
     if len(found.seat.contact) == 0:
         lines.append("a part card has no contact polygon: whether it tips is not known")

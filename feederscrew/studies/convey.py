@@ -1,0 +1,171 @@
+"""The study of ``feeder convey``: how fast a part travels, at one point, along a curve, over a map."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from feederscrew import bowl as bowls
+from feederscrew import units
+from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.vary import Range
+from feederscrew.conveying import answer, radius, sensitivity, trace
+from feederscrew.conveying.steady import STATUSES
+from feederscrew.machine import speeds
+from feederscrew.studies import grids
+
+MM, DEG = units.factor("mm", "length"), units.factor("deg", "angle")
+
+
+@dataclass(frozen=True, eq=False)
+class ConveyStudy:
+    """One operating point of a bowl, and its neighbours."""
+
+    bowl: Bowl
+    answer: answer.Answer
+
+    @cached_property
+    def nearby(self):
+        """Velocities with each quantity ``sensitivity.CHANGE`` lower and higher, a dict of Neighbours."""
+        return sensitivity.sensitivity(self.bowl)
+
+    @cached_property
+    def doubt(self):
+        """Velocities for friction ``sensitivity.FRICTION_DOUBT`` lower and higher, Neighbours."""
+        return sensitivity.friction_doubt(self.bowl)
+
+    @property
+    def validity(self):
+        """What the answer leaves out, in one sentence."""
+        return answer.validity(self.answer, self.bowl)
+
+    @property
+    def warnings(self):
+        """What is odd about the velocity, a tuple of at most one sentence."""
+        return tuple(speeds.remark(self.answer.velocity, self.bowl.sizing))
+
+    def trace(self):
+        """Follow plate and part over one steady cycle, as a ``conveying.trace.Trace``."""
+        return trace.trace(self.answer.setting)
+
+
+@dataclass(frozen=True, eq=False)
+class ConveyCurve:
+    """What a part does along one quantity of the bowl; N points."""
+
+    kind: str  # 'curve' over a key, or 'radius'
+    over: str  # what varies: the key's name, or 'the radius'
+    axes: tuple[grids.Axis, ...]  # the quantity, then what follows from it; (N,) values each
+    cells: dict[str, np.ndarray]  # (N,) as ``conveying.answer.cells`` names them, in SI
+
+    @property
+    def statuses(self):
+        """Return the status of each point, (N,) of ``STATUSES``."""
+        return np.asarray(STATUSES)[self.cells["status"]]
+
+    @property
+    def several(self):
+        """Return where a part has several steady velocities, (N,) bool."""
+        spread, high = self.cells["high"] - self.cells["low"], np.abs(self.cells["high"])
+        return (self.statuses == "periodic") & (spread > answer.COEXIST * high)
+
+
+@dataclass(frozen=True, eq=False)
+class ConveyMap:
+    """What a part does over two keys of the bowl."""
+
+    ranges: tuple[Range, Range]
+    grid: grids.Grid  # velocities [m/s], several, throw_number [1], status; the codes are the regimes
+    line: Bowl | None  # operating points to be drawn over the map; None if not asked for
+
+    @property
+    def statuses(self):
+        """Return the status of each cell, (N1, N2) of ``STATUSES``."""
+        return np.asarray(STATUSES)[self.grid.values["status"].astype(int)]
+
+
+def convey(bowl):
+    """Study how a part travels on the track of a bowl.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Single values.
+
+    Returns
+    -------
+    ConveyStudy
+
+    Raises
+    ------
+    ConfigError
+        If the bowl cannot convey.
+    """
+    return ConveyStudy(bowl, answer.answer(bowl))
+
+
+def curve(settings, span):
+    """Study a bowl along one of its keys.
+
+    Parameters
+    ----------
+    settings : tuple of Setting
+    span : Range
+
+    Returns
+    -------
+    ConveyCurve
+    """
+    cells = answer.cells(bowls.swept(settings, {span.key.name: np.array(span.values)}))
+    return ConveyCurve("curve", span.key.name, (grids.axis(span),), cells)
+
+
+def along_radius(bowl):
+    """Study a bowl along its radius, inwards, where its angle is steeper.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Single values.
+
+    Returns
+    -------
+    ConveyCurve
+
+    Raises
+    ------
+    ConfigError
+        If the drive is elliptical.
+    """
+    there = radius.inwards(bowl)
+    axes = (
+        grids.Axis("radius_mm", there.track.radius, MM),
+        grids.Axis("vibration_angle_deg", there.drive.vibration_angle, DEG),
+        grids.Axis("amplitude_mm", there.drive.amplitude, MM),
+    )
+    return ConveyCurve("radius", "the radius", axes, answer.cells(there))
+
+
+def velocity_map(settings, ranges, *, drawn=None):
+    """Study a bowl over two of its keys.
+
+    Parameters
+    ----------
+    settings : tuple of Setting
+    ranges : two Range
+    drawn : str, optional
+        What is drawn over it: the bowl's own 'point', or its points along the 'radius'.
+
+    Returns
+    -------
+    ConveyMap
+    """
+    first, second = ranges
+
+    def function(one, other):
+        return answer.cells(bowls.swept(settings, {first.key.name: one, second.key.name: other}))
+
+    grid = grids.evaluate(grids.axis(first), grids.axis(second), function, answer.REGIMES)
+    bowl = bowls.record(settings)
+    line = radius.inwards(bowl) if drawn == "radius" else bowl
+    return ConveyMap((first, second), grid, line if drawn else None)
