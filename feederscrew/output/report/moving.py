@@ -71,7 +71,7 @@ def convey(case):
     return Section(
         tuple(blocks),
         tiles=(_velocity_tile(document),),
-        warnings=(*convey_tables.remarks(document), *speeds.remark(found.velocity, bowl.sizing)),
+        warnings=(*convey_tables.remarks(document), *study.warnings),
     )
 
 
