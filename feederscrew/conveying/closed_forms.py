@@ -99,6 +99,30 @@ def bounce_window(periods, restitution):
     return least, math.hypot(least, 2.0 * (1.0 + e * e) / (1.0 + e) ** 2)
 
 
+def elliptical_velocity(throw, steepness=0.0):
+    """Compute the velocity of an elliptical drive with a quarter period between its motions.
+
+    Parameters
+    ----------
+    throw : float [1]
+        Throw number k, at most 1.
+    steepness : float [1]
+        tan(climb) over friction.
+
+    Returns
+    -------
+    float
+        Over A w cos(angle), in the limit of small friction times tan(angle), the motion along the track ahead
+        of the one along the normal: cos a with a + k sin a = (pi/2)(1 + steepness).
+    """
+    wanted = 0.5 * math.pi * (1.0 + steepness)
+    low, high = 0.0, math.pi
+    while low < 0.5 * (low + high) < high:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if middle + throw * math.sin(middle) < wanted else (low, middle)
+    return math.cos(low)
+
+
 def velocity_bound(angle):
     """The plate's greatest speed along the track [A w]: no steady motion up a climb is faster."""
     return math.cos(angle)

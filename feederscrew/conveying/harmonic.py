@@ -7,6 +7,7 @@ from feederscrew.conveying import waves
 from feederscrew.conveying.setting import TURN
 
 SERIES = 0.5  # [rad] below it the integrals use their series: the differences would lose digits
+GRAZE = 1e-14  # of the swing: a level passed by less is not passed; its two zeros would round to one
 INF = math.inf
 
 
@@ -31,7 +32,7 @@ def harmonic(wave):
         bends = waves.bends(wave)
         up, down = waves.crossings(wave, bends, 1), waves.crossings(wave, bends, -1)
         return Harmonic(level, swing, phase, second, twice, (up[0], up[1]), (down[0], down[1]))
-    if abs(level) >= swing:
+    if abs(level) >= swing * (1.0 - GRAZE):
         return Harmonic(level, swing, phase, 0.0, 0.0, (INF, INF), (INF, INF))
     crossing = math.asin(-level / swing)
     rise, fall = (crossing - phase) % TURN, (math.pi - crossing - phase) % TURN

@@ -26,7 +26,7 @@ def test_a_smooth_wall_leaves_the_angle_of_friction(climb):
 
 
 def test_friction_across_the_track_wedges_the_part_against_a_rough_wall():
-    """Pushing to the wall costs friction of the floor and earns the wall's: sqrt(1 + mu_w^2) and more."""
+    """Pushing to the wall costs some of the friction of the floor and earns the wall's, and more."""
     climb = 20 * DEG
     gain = math.sqrt(1.0 + 0.5**2)
     for share, held in ((1.005, True), (0.9, False)):

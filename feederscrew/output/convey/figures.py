@@ -22,8 +22,8 @@ REGIMES = {  # colour and label; what a designer wants is the strongest
     "hop": ("#c9dcea", "hops"),
     "no steady state": ("#8c8c8c", "no steady state"),
 }
-BEST_THROW = 3.0  # [1] near here the velocity per stroke is greatest
-THROWS = {1.0: "hop", BEST_THROW: "best", round(throw_of_flight(1.0), 4): "one period"}
+FIRST_PEAK = 3.0  # [1] near here the velocity per stroke has its first peak, without rebound
+THROWS = {1.0: "hop", FIRST_PEAK: "first peak", round(throw_of_flight(1.0), 4): "one period"}
 HATCH = "////"
 LEAST = 1e-9  # [mm/s] a scale of velocities is at least this wide
 NOWHERE = "no steady velocity anywhere"
@@ -204,7 +204,7 @@ def _regimes(axes, grid):
 
 
 def _throws(axes, grid):
-    """Lines of equal throw number: the hop, the greatest velocity per stroke, a flight of one period."""
+    """Lines of equal throw number: the hop, the first peak of the velocity, a flight of one period."""
     throw = grid.values["throw_number"].T
     levels = [level for level in sorted(THROWS) if throw.min() < level < throw.max()]
     if levels:

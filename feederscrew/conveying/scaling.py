@@ -1,0 +1,66 @@
+"""The five numbers that decide how fast a part travels on an unbanked track with one coefficient of friction.
+
+Along the track lengths scale with the amplitude along it, along the normal with the amplitude there; friction
+couples the two by mu tan(beta) alone.
+"""
+
+import math
+from typing import NamedTuple
+
+from feederscrew import check
+from feederscrew.conveying.setting import plain
+
+
+class Numbers(NamedTuple):
+    """What v / (A w cos(beta)) depends on, and on nothing else."""
+
+    coupling: float  # mu tan(beta)
+    steepness: float  # tan(climb) / mu
+    throw: float  # throw number
+    restitution: float
+    phase: float = 0.0  # [rad] by which the motion along the normal leads the one along the track
+
+
+def numbers(setting):
+    """Return the five numbers of a setting.
+
+    Parameters
+    ----------
+    setting : Setting
+        Unbanked, harmonic, with one coefficient of friction above 0.
+
+    Returns
+    -------
+    Numbers
+    """
+    friction = setting.static
+    throw = setting.ratio * math.sin(setting.angle) / math.cos(setting.climb)
+    coupling, steepness = friction * math.tan(setting.angle), math.tan(setting.climb) / friction
+    return Numbers(coupling, steepness, throw, setting.restitution, -setting.lead)
+
+
+def with_numbers(found, friction):
+    """Return a setting with given numbers.
+
+    Parameters
+    ----------
+    found : Numbers
+        Coupling and throw number above 0.
+    friction : float [1]
+        Above 0: one of the many settings with these numbers.
+
+    Returns
+    -------
+    Setting
+
+    Raises
+    ------
+    ValueError
+        If one of them is not above 0.
+    """
+    check.positive("coupling", found.coupling)
+    check.positive("throw", found.throw)
+    angle = math.atan(found.coupling / check.positive("friction", friction))
+    climb = math.atan(found.steepness * friction)
+    ratio = found.throw * math.cos(climb) / math.sin(angle)
+    return plain(ratio, angle, climb, friction, found.restitution)._replace(lead=-found.phase)
