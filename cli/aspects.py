@@ -2,7 +2,7 @@
 
 import click
 
-from feederscrew_cli import options
+from feederscrew_cli import options, waiting
 
 SURFACES = click.Choice(["soft", "medium", "hard"])
 
@@ -32,22 +32,22 @@ def aspects(part, unstable, as_published, surface, surface_exponent, drops, grap
     PART is a mesh (STL, OBJ, PLY, OFF, GLB, 3MF, STEP), a part card (YAML), or - for standard
     input. With -o: aspects.csv, aspects.json, aspects.png, probabilities.png and run.json.
     """
-    from feederscrew.output import columns
-    from feederscrew.output.aspects import files as sheets
+    from feederscrew.output import columns, offers
+    from feederscrew.output.aspects import files, tables
 
     _files_wanted(graph, out)
     solid = out.part(part)
-    lands = surface if surface_exponent is None else surface_exponent
-    told = {"as_published": as_published, "unstable": unstable, "surface": lands}
-    with out.folder(
-        solid.name, {solid.source: solid.sha256}, columns.conditions(solid) | told | {"drops": drops}
-    ) as folder:
-        found = _found(solid, as_published, unstable, surface, surface_exponent, out)
-        tally = _dropped(solid, found, drops, out)
-        document = columns.document(found, solid, tally)
-        if folder:
-            out.say(*sheets.aspects(folder, solid, found, document, graph=graph, pictures=pictures))
-    out.show(document["aspects"], document, hidden=columns.HIDDEN)
+    chosen = {
+        "as_published": as_published,
+        "unstable": unstable,
+        "surface": surface if surface_exponent is None else surface_exponent,
+        "drops": drops,
+    }
+    with out.folder(solid.name, {solid.source: solid.sha256}, columns.conditions(solid) | chosen) as folder:
+        study = _study(solid, chosen, out)
+        offers.write(folder, files.offers(study, tipping=graph), pictures=pictures)
+        out.say(*tables.remarks(study) if folder and pictures else ())
+    out.show(tables.aspects(study), tables.document(study), hidden=tables.HIDDEN)
 
 
 def _files_wanted(graph, out):
@@ -55,29 +55,17 @@ def _files_wanted(graph, out):
         raise click.UsageError("--graph writes files: give -o DIR as well")
 
 
-def _found(solid, as_published, unstable, surface, own, out):
-    """The aspects, and what there is to say of them."""
-    with out.step("aspects"):
-        from feederscrew.resting.aspects import find, waits
-        from feederscrew.resting.rules.surface import EXPONENTS
+def _study(solid, chosen, out):
+    """The study, and what there is to say before and after it."""
+    from feederscrew.resting.aspects import waits
+    from feederscrew.studies.aspects import aspects as aspects_study
 
-        if waits(solid):
-            out.say("Compiling what large hulls need, once on this machine: about ten seconds.")
-        exponent = EXPONENTS[surface] if own is None else own
-        found = find(solid, unstable=unstable, as_published=as_published, exponent=exponent)
+    if waits(solid):
+        out.say("Compiling what large hulls need, once on this machine: about ten seconds.")
     out.say(f"Material: {solid.material}")
-    out.warn(*found.warnings)
-    return found
-
-
-def _dropped(solid, found, drops, out):
-    """Counts of a drop test with the usual launches; None without ``--drop``."""
-    if drops is None:
-        return None
-    from feederscrew.dropping import runs
-    from feederscrew.resting.rules.recommended import LAUNCH
-    from feederscrew_cli.drop import announce, progress
-
-    announce(out)
-    with progress(out) as bar:
-        return runs.test(solid, found, LAUNCH, {}, drops=drops, progress=bar.reach).tally
+    if chosen["drops"]:
+        waiting.drops(out)
+    with out.step("aspects"), waiting.bar(out, "drops") as bar:
+        study = aspects_study(solid, **chosen, progress=bar.reach)
+    out.warn(*study.aspects.warnings)
+    return study

@@ -18,14 +18,13 @@ def inertia(part, out):
     input; what a card does not tell stays empty. With -o: inertia.csv, or inertia.json with
     --format json, and run.json.
     """
-    from feederscrew.output import columns
-    from feederscrew.output.inertia import tables as inertia_tables
-    from feederscrew.part.mass_balance import balance
+    from feederscrew.output import columns, offers
+    from feederscrew.output.inertia import files, tables
+    from feederscrew.studies.inertia import inertia as inertia_study
 
     solid = out.part(part)
-    told = inertia_tables.document(solid, balance(solid))
+    study = inertia_study(solid)
     with out.folder(solid.name, {solid.source: solid.sha256}, columns.conditions(solid)) as folder:
         out.say(f"Material: {solid.material}")
-        if folder:
-            inertia_tables.write(folder, told, out.format)
-    out.show(inertia_tables.rows(told), told)
+        offers.write(folder, files.offers(study, out.format))
+    out.show(tables.rows(study), tables.document(study))

@@ -12,12 +12,13 @@ from feederscrew import part as _parts
 from feederscrew.bowl import Bowl
 from feederscrew.conveying.answer import Answer
 from feederscrew.errors import ConfigError, Faults, FeederError, MeshError
-from feederscrew.output import columns as _columns
+from feederscrew.output.aspects import tables as _tables
 from feederscrew.part import Part
 from feederscrew.rates.devices import Device
 from feederscrew.rates.queue import Rate
-from feederscrew.resting.aspects import Aspects, find
+from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture, posture
+from feederscrew.studies import aspects as _aspects
 from feederscrew.studies import convey as _convey
 from feederscrew.studies import rate as _rate
 
@@ -92,7 +93,7 @@ def find_aspects(part: Part, *, unstable: bool = False, as_published: bool = Fal
     -------
     Aspects
     """
-    return find(part, unstable=unstable, as_published=as_published)
+    return _aspects.aspects(part, unstable=unstable, as_published=as_published).aspects
 
 
 def aspects(part: Part, *, unstable: bool = False, as_published: bool = False) -> "pd.DataFrame":
@@ -109,7 +110,7 @@ def aspects(part: Part, *, unstable: bool = False, as_published: bool = False) -
     DataFrame
         The columns of ``aspects.csv``: mm, g, sr.
     """
-    return _columns.aspects(find_aspects(part, unstable=unstable, as_published=as_published), part)
+    return _tables.aspects(_aspects.aspects(part, unstable=unstable, as_published=as_published))
 
 
 def drop(
@@ -148,9 +149,9 @@ def drop(
     FeederError
         If the part has no shape, or a condition is no such quantity or out of range.
     """
-    from feederscrew.dropping import runs
+    from feederscrew.studies.drop import drop as study
 
-    return runs.test(part, find(part), launch, conditions, drops=drops, seed=seed, jobs=jobs)
+    return study(part, launch, conditions, drops=drops, seed=seed, jobs=jobs).result
 
 
 def shake(
@@ -190,11 +191,10 @@ def shake(
     FeederError
         As for ``drop``.
     """
-    from feederscrew.dropping.plate import runs
+    from feederscrew.studies.plate import plate as study
 
-    return runs.test(
-        part, find(part), bowls, launch, conditions, drops=drops, seconds=seconds, seed=seed, jobs=jobs
-    )
+    found = study(part, bowls, launch, conditions, drops=drops, seconds=seconds, seed=seed, jobs=jobs)
+    return list(found.plates)
 
 
 def read_bowl(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> Bowl:

@@ -8,14 +8,14 @@ import numpy as np
 from feederscrew.batch.task import DONE, Outcome
 from feederscrew.errors import FeederError
 from feederscrew.output import columns, offers, tables
-from feederscrew.output.aspects import files as sheets
+from feederscrew.output.aspects import files as aspects_files
 from feederscrew.output.batch import contact_sheet
 from feederscrew.output.convey import tables as convey_tables
 from feederscrew.output.rate import files as rate_files
 from feederscrew.output.rate import tables as rate_tables
 from feederscrew.part import load
 from feederscrew.rates import queue
-from feederscrew.resting.aspects import find
+from feederscrew.studies.aspects import aspects
 from feederscrew.studies.convey import convey
 from feederscrew.studies.rate import rate
 
@@ -55,9 +55,9 @@ def work(task):
 def _results(task):
     request, choices, files = task.request, task.choices, Files()
     part = load(request.source, **dict(request.options), stdin=io.BytesIO(task.data))
-    found = find(part)
-    document = columns.document(found, part)
-    sheets.aspects(files, part, found, document, pictures=choices.pictures)
+    study = aspects(part)
+    found = study.aspects
+    offers.write(files, aspects_files.offers(study), pictures=choices.pictures)
     if choices.pictures and part.vertices is not None:
         files.write(THUMBNAIL, contact_sheet.thumbnail(part, found))
     conveying = travel(request.conditions)
@@ -65,7 +65,7 @@ def _results(task):
     row = {
         "config": request.conditions.name,
         "material": part.material,
-        "mass_g": document["mass_g"],
+        "mass_g": part.mass / columns.GRAM,
         "aspects": int(found.stable.sum()),
         "velocity_mm_s": conveying["velocity_mm_s"],
         "regime": conveying["regime"],

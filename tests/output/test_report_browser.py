@@ -13,11 +13,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from feederscrew.output import columns, tables
+from feederscrew.output import tables
+from feederscrew.output.aspects import tables as aspects_tables
 from feederscrew.output.page.as_html import html
 from feederscrew.output.report import Case, page
 from feederscrew.output.report.chapters import CHAPTERS
 from feederscrew.part import load
+from feederscrew.studies.aspects import AspectsStudy
 
 BRACKET = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -119,7 +121,7 @@ def test_views_are_drawn_and_turn(told, case):
 
 
 def test_the_table_is_that_of_the_csv(told, case):
-    written = tables.text(columns.aspects(case.found, case.part), "csv")
+    written = tables.text(aspects_tables.aspects(AspectsStudy(case.part, case.found)), "csv")
     assert told["table"] == list(csv.reader(io.StringIO(written)))
 
 

@@ -1,58 +1,29 @@
-"""The tipping graph as a table and as files."""
+"""The files of the tipping graph."""
 
-import numpy as np
-from scipy.constants import g
-
-from feederscrew.output import tables
-from feederscrew.output.columns import MM, UJ
+from feederscrew.output import offers as offer
+from feederscrew.output.graph import tables
 
 
-def transitions(part, aspects, ways):
-    """The tipping graph, one row a way from one aspect into another or into its equal.
+def offers(study):
+    """Offer the table and the drawing of what tips into what.
 
     Parameters
     ----------
-    part : Part
-    aspects : Aspects
-    ways : sequence of Transition
+    study : AspectsStudy
 
     Returns
     -------
-    DataFrame
-        The columns of ``graph.csv``.
+    list of Offer
     """
-    axes = np.array([way.axis for way in ways]).reshape(-1, 3)
-    lifts = np.array([way.lift for way in ways], dtype=float)
-    return tables.frame(
-        {
-            "from": [aspects.names[way.start] for way in ways],
-            "to": [aspects.names[way.end] for way in ways],
-            "barrier_mm": lifts / MM,
-            "barrier_uJ": part.mass * g * lifts / UJ,
-            "axis_x": axes[:, 0],
-            "axis_y": axes[:, 1],
-            "axis_z": axes[:, 2],
-        }
-    )
+    alt = "Tipping graph: which aspect tips into which, and the lift it takes"
+    return [
+        offer.table("graph.csv", tables.transitions, study),
+        offer.picture("graph.png", alt, _graph, study),
+    ]
 
 
-def write(folder, part, aspects, ways, shares, *, pictures=True):
-    """The files of the tipping graph.
+def _graph(study):
+    from feederscrew.output.graph import figures
 
-    Parameters
-    ----------
-    folder : ResultFolder
-    part : Part
-    aspects : Aspects
-    ways : sequence of Transition
-    shares : (A,) float [1]
-        Quasi-static probabilities, for the size of the discs.
-    pictures : bool
-        False for the table only.
-    """
-    folder.write("graph.csv", tables.text(transitions(part, aspects, ways), "csv"))
-    if pictures:
-        from feederscrew.output import style
-        from feederscrew.output.graph import figures as graph_plots
-
-        folder.write("graph.png", style.png(graph_plots.graph(part.name, aspects, ways, shares)))
+    shares = study.aspects.probabilities["quasistatic"]
+    return figures.graph(study.part.name, study.aspects, study.transitions, shares)

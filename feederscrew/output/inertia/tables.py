@@ -9,20 +9,19 @@ AXES = "xyz"
 NOISE = 1e-8  # of the largest of a vector or matrix: rounding of the file, 0 in the table
 
 
-def document(solid, balance):
-    """Everything ``feeder inertia`` tells, under names that carry their units.
+def document(study):
+    """Return everything ``feeder inertia`` tells, under names that carry their units.
 
     Parameters
     ----------
-    solid : Part
-    balance : Balance
+    study : InertiaStudy
 
     Returns
     -------
     dict
         None where a part card is silent.
     """
-    told = columns.part(solid)
+    told, balance = columns.part(study.part), study.balance
     warnings = told.pop("warnings")
     return told | {
         "inertia_at_origin_g_mm2": balance.inertia_at_origin / G_MM2,
@@ -35,19 +34,19 @@ def document(solid, balance):
     }
 
 
-def rows(told):
-    """The numbers of a document, one a row.
+def rows(study):
+    """Return the numbers of a part, one a row.
 
     Parameters
     ----------
-    told : dict
-        From ``document``.
+    study : InertiaStudy
 
     Returns
     -------
     DataFrame
         Columns ``quantity`` and ``value``; NaN where a part card is silent.
     """
+    told = document(study)
     scalars = ("density_g_cm3", "mass_g", "volume_mm3", "hull_volume_mm3")
     listed = [
         *((name, told[name]) for name in scalars),
@@ -62,23 +61,6 @@ def rows(told):
         listed += _vector(axis, f"principal_axis_{number}_{{}}")
     quantities, values = zip(*listed)
     return tables.frame({"quantity": quantities, "value": [np.nan if v is None else v for v in values]})
-
-
-def write(folder, told, format):
-    """``inertia.json`` with the format 'json', else ``inertia.csv``.
-
-    Parameters
-    ----------
-    folder : ResultFolder
-    told : dict
-        From ``document``.
-    format : str
-        Of what is printed: 'table', 'csv' or 'json'.
-    """
-    if format == "json":
-        folder.write("inertia.json", tables.json_text(told))
-    else:
-        folder.write("inertia.csv", tables.text(rows(told), "csv"))
 
 
 def _in(value, unit):

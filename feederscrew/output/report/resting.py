@@ -3,20 +3,22 @@
 import numpy as np
 
 from feederscrew import units
-from feederscrew.output import columns, style, tables
-from feederscrew.output.aspects import files as sheets
+from feederscrew.output import style, tables
+from feederscrew.output.aspects import files as aspects_files
+from feederscrew.output.aspects import tables as aspects_tables
 from feederscrew.output.columns import MM
 from feederscrew.output.inertia import tables as inertia_tables
-from feederscrew.output.page.blocks import CsvSheet, Notes, Picture, Section, Table, Text, Tile, Views
+from feederscrew.output.offers import by_name
+from feederscrew.output.page.blocks import Notes, Picture, Section, Sheet, Table, Text, Tile, Views
 from feederscrew.output.page.numbers import percent
 from feederscrew.output.report import graph
 from feederscrew.output.report.case import likeliest
-from feederscrew.output.report.kept import Kept
 from feederscrew.output.report.scene import scene
-from feederscrew.part.mass_balance import balance
 from feederscrew.resting.tumbling import by_class
+from feederscrew.studies.aspects import AspectsStudy
+from feederscrew.studies.inertia import inertia
 
-MOST_VIEWS = sheets.MOST
+MOST_VIEWS = aspects_tables.MOST
 CARD = "A part card is published data without a shape: there is nothing to draw or to turn."
 SHOWN = (
     "density_g_cm3", "mass_g", "volume_mm3", "bounding_box_x_mm", "bounding_box_y_mm", "bounding_box_z_mm",
@@ -29,7 +31,7 @@ UJ = units.factor("uJ", "energy")
 def the_part(case):
     """Mass properties and warnings."""
     part = case.part
-    told = inertia_tables.rows(inertia_tables.document(part, balance(part)))
+    told = inertia_tables.rows(inertia(part))
     rows = told[told["quantity"].isin(SHOWN)].reset_index(drop=True)
     names = [" ".join(tables.heading(name)).strip() for name in rows["quantity"]]
     facts = tables.frame({"quantity": names, "value": rows["value"]})
@@ -40,16 +42,15 @@ def the_part(case):
 
 def aspects(case):
     """Views, tables and chart of the aspects: one table of shapes and heights, one of probabilities."""
-    part, found, kept = case.part, case.found, Kept()
-    table = columns.aspects(found, part)
-    said = sheets.aspects(kept, part, found, columns.part(part) | {"aspects": table})
+    part, found = case.part, case.found
+    study = AspectsStudy(part, found)
+    table, said = aspects_tables.aspects(study), aspects_tables.remarks(study)
+    offered = by_name(aspects_files.offers(study))
     rows = range(min(len(found.names), MOST_VIEWS))
-    views = (Text(CARD, quiet=True),) if part.vertices is None else (*_views(case, rows, kept),)
-    chart = Picture(
-        "probabilities.png", kept["probabilities.png"], "Probability of each aspect by every rule"
-    )
+    views = (Text(CARD, quiet=True),) if part.vertices is None else (*_views(case, rows, offered),)
+    chart = _picture(offered["probabilities.png"])
     lines = (Notes(tuple(said)),) if said and part.vertices is not None else ()
-    shown = table.drop(columns=[name for name in columns.NORMALS if name in table])
+    shown = table.drop(columns=[name for name in aspects_tables.NORMALS if name in table])
     chances = [name for name in shown if name.startswith("p_")]
     shapes = Table(shown.drop(columns=chances))
     return Section(
@@ -96,21 +97,27 @@ def tips(case):
 
 def numbers(case):
     """The table of aspects cell by cell, as ``aspects.csv`` has it."""
-    return CsvSheet("aspects.csv", tables.text(columns.aspects(case.found, case.part), "csv"))
+    return Sheet(
+        "aspects.csv", tables.text(aspects_tables.aspects(AspectsStudy(case.part, case.found)), "csv")
+    )
 
 
-def _views(case, rows, kept):
+def _views(case, rows, offered):
     """Turnable views, the picture that replaces them on paper, and what is simplified."""
     drawn = scene(case.part, case.found, rows)
     captions = tuple(_caption(case.found, row) for row in rows)
     yield Views(drawn, captions)
-    yield Picture("aspects.png", kept["aspects.png"], "The part as it rests on each aspect", printed=True)
+    yield _picture(offered["aspects.png"], printed=True)
     if drawn["facets"] < drawn["all"]:
         yield Text(
             f"The views show a coarser surface of {drawn['facets']} facets; "
             f"every number is of all {drawn['all']}.",
             quiet=True,
         )
+
+
+def _picture(offer, **keywords):
+    return Picture(offer.name, offer.make(), offer.alt, **keywords)
 
 
 def _caption(found, row):

@@ -24,7 +24,7 @@ SHADE = 0.42  # darkness of the floor where the part touches it
 
 
 @dataclass(frozen=True, eq=False)
-class Shot:
+class Frame:
     """Where a picture lies in the image plane, in sizes of the solid."""
 
     left: float
@@ -56,11 +56,11 @@ def picture(solid, stance, frame, colour=STEEL):
 
     Parameters
     ----------
-    solid : Rays
+    solid : Solid
         What is seen.
     stance : Stance
         How it stands and from where it is seen.
-    frame : Shot
+    frame : Frame
         What part of the image plane is drawn.
     colour : (3,) float
         Of the solid, 0 to 1.

@@ -17,7 +17,7 @@ def shells(edges, faces):
 
     Parameters
     ----------
-    edges : MeshEdges
+    edges : gate_edges.Edges
     faces : (F, 3) int
 
     Returns

@@ -1,0 +1,24 @@
+"""What a person is told who must wait: for the compiler, and how far a long run is."""
+
+from feederscrew_cli.progress import Progress
+
+
+def drops(out):
+    """Say so when the first drop on this machine must wait for the compiler."""
+    from feederscrew.dropping import runs
+
+    if not runs.compiled():
+        out.say("Compiling the drop kernel, once on this machine: about twenty seconds.")
+
+
+def plate(out):
+    """Say so when the first plate on this machine must wait for the compiler."""
+    from feederscrew.dropping.plate import rides
+
+    if not rides.compiled():
+        out.say("Compiling the plate's kernel, once on this machine: about twenty seconds.")
+
+
+def bar(out, what):
+    """Return a bar of the ``what`` that are done, where a person waits; hidden elsewhere."""
+    return Progress(None, not out.quiet, what)

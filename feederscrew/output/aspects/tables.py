@@ -1,0 +1,109 @@
+"""Resting aspects as a table and as a document."""
+
+import numpy as np
+
+from feederscrew.output import columns, tables
+from feederscrew.output.columns import DEG, G_MM2, MM, MM2, UJ
+
+MOST = 24  # rows that a picture shows
+NORMALS = ("normal_x", "normal_y", "normal_z")
+HIDDEN = (*NORMALS, "barrier_uJ", "p_hops")  # left out of the table for people
+
+
+def aspects(study):
+    """Return the classes of resting aspects, one row each.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+        An open surface is labelled in every row, and tumbling that fails a self-check.
+
+    Returns
+    -------
+    DataFrame
+        The columns of ``aspects.csv``.
+    """
+    found = study.aspects
+    return tables.frame(
+        {
+            "aspect": found.names,
+            "kind": found.kinds,
+            "faces": found.faces,
+            "stable": found.stable,
+            **dict(zip(NORMALS, found.normals.T)),
+            "height_mm": found.heights / MM,
+            "contact_area_mm2": found.contact_areas / MM2,
+            "solid_angle_sr": found.solid_angles,
+            "polar_inertia_g_mm2": found.polar_inertias / G_MM2,
+            **{f"p_{rule}": chance for rule, chance in found.probabilities.items()},
+            **_barriers(found),
+            **_interval("p_drop", study.tally),
+            **_interval("p_recommended", study.recommended),
+            **_labels("surface", "open", study.part.open_surface, len(found.names)),
+            **_labels("tumbling", "doubtful", study.doubtful, len(found.names)),
+        }
+    )
+
+
+def _barriers(found):
+    if found.barriers is None:
+        return {}
+    return {
+        "barrier_mm": found.barriers / MM,
+        "barrier_uJ": found.barrier_energies / UJ,
+        "tip_angle_deg": found.tip_angles / DEG,
+    }
+
+
+def _interval(name, answer):
+    """Probabilities with both ends of their interval; nothing where there are none."""
+    return {} if answer is None else {name: answer.p, f"{name}_low": answer.low, f"{name}_high": answer.high}
+
+
+def _labels(name, text, wanted, count):
+    """A column that says the same in every row, where that is to be said."""
+    return {name: [text] * count} if wanted else {}
+
+
+def document(study):
+    """Return all that is known of a part and its aspects.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+
+    Returns
+    -------
+    dict
+        That of `columns.part`; ``recommended``, the rule of the columns ``p_recommended...``, None for a
+        card; ``aspects``, the table.
+    """
+    answer = study.recommended
+    rule = None if answer is None else answer.rule
+    of_part = columns.part(study.part, study.aspects.warnings)
+    return of_part | {"recommended": rule, "aspects": aspects(study)}
+
+
+def profiles(study):
+    """Return the names of the stable aspects that a chart shows, and their probabilities by rule.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+
+    Returns
+    -------
+    names : list of str
+    profiles : dict of str to (A,) float [1]
+    """
+    found = study.aspects
+    stable = np.flatnonzero(found.stable)[:MOST]
+    return [found.names[row] for row in stable], {rule: p[stable] for rule, p in found.probabilities.items()}
+
+
+def remarks(study):
+    """Return what a user should know of pictures that are missing or not whole, a line each."""
+    count = len(study.aspects.names)
+    if study.part.vertices is None:
+        return ["a part card has no shape to draw: no aspects.png"]
+    return [f"aspects.png shows the first {MOST} of {count} rows"] if count > MOST else []

@@ -1,0 +1,86 @@
+"""The study of ``feeder drop``: a virtual drop test of one part on a hard plane."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from feederscrew.dropping import runs, traces
+from feederscrew.part.record import Part
+from feederscrew.resting.aspects import Aspects, find
+
+BESIDE = ("csa", "surface")  # rules that the drops are shown with
+
+
+@dataclass(frozen=True, eq=False)
+class DropStudy:
+    """How often one part came to rest on each of its aspects."""
+
+    part: Part
+    aspects: Aspects
+    result: runs.Result
+
+    @property
+    def rules(self):
+        """Probabilities (A,) by the rules that the drops are shown with."""
+        return {rule: self.aspects.probabilities[rule] for rule in BESIDE}
+
+    @property
+    def telling(self) -> traces.Trace:
+        """The followed drop to show: the first that tumbled and lies still, else tumbled, else the first."""
+        return traces.telling(self.result.traces)
+
+
+def drop(
+    part: Part,
+    launch: str = "tumble",
+    conditions: Mapping[str, str | None] | None = None,
+    *,
+    drops: int | None = None,
+    until: str | None = None,
+    seed: int = 1,
+    jobs: int = 1,
+    traced: int = 0,
+    progress=None,
+    aspects: Aspects | None = None,
+) -> DropStudy:
+    """Study on which aspects a part comes to rest when it is dropped again and again.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    launch : str
+        'place', 'drop' or 'tumble'.
+    conditions : dict of str to (str or None), optional
+        Ranges that replace the launch's, as typed: fall, spin, speed, restitution, friction.
+    drops : int, optional
+        How many; with ``until`` at most so many.
+    until : str, optional
+        Go on until every class's 95 % interval is this narrow to either side, '1%'.
+    seed : int
+        Of the random launches.
+    jobs : int
+        Cores to use; the counts do not depend on it.
+    traced : int
+        Of how many drops, from the first, the motion is kept as well.
+    progress : function, optional
+        As in ``ensemble.drop``.
+    aspects : Aspects, optional
+        Of the part, where they are known already.
+
+    Returns
+    -------
+    DropStudy
+
+    Raises
+    ------
+    FeederError
+        If the part has no shape, or a condition is not such a quantity or out of range.
+    KeyboardInterrupt
+        If the user stops it before there is anything to count; later, the result is partial.
+    """
+    found = find(part) if aspects is None else aspects
+    result = runs.test(
+        part, found, launch, dict(conditions or {}),
+        drops=drops, until=until, seed=seed, jobs=jobs, traced=traced, progress=progress,
+    )  # fmt: skip
+    return DropStudy(part, found, result)

@@ -1,0 +1,83 @@
+"""The study of ``feeder drop --plate``: a virtual dynamic bowl test of one part."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from feederscrew.bowl.record import Bowl
+from feederscrew.dropping.plate import runs
+from feederscrew.part.record import Part
+from feederscrew.resting.aspects import Aspects, find
+
+
+@dataclass(frozen=True, eq=False)
+class PlateStudy:
+    """How one part lay and travelled on the plates of one or several bowls."""
+
+    part: Part
+    aspects: Aspects
+    seed: int  # of the random launches
+    plates: tuple[runs.Shaken, ...]  # one a bowl; fewer, the last of them partial, after an interrupt
+    names: tuple[str, ...]  # of the bowl of each plate
+
+    @property
+    def partial(self) -> bool:
+        """Whether the user stopped it before all parts were done."""
+        return any(plate.partial for plate in self.plates)
+
+
+def plate(
+    part: Part,
+    bowls: Sequence[Bowl],
+    launch: str = "tumble",
+    conditions: Mapping[str, str | None] | None = None,
+    *,
+    names: Sequence[str] | None = None,
+    drops: int | None = None,
+    seconds: float | None = None,
+    seed: int = 1,
+    jobs: int = 1,
+    progress=None,
+) -> PlateStudy:
+    """Study what parts do on plates that vibrate with the drives of bowls.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    bowls : sequence of Bowl
+        One plate each: the drive, its restitution, and the kinetic friction.
+    launch : str
+        How the parts come onto the plate: 'place', 'drop' or 'tumble'.
+    conditions : dict of str to (str or None), optional
+        Ranges that replace the launch's, and the bowl's restitution and friction.
+    names : sequence of str, optional
+        Of the bowls; 'bowl' without them.
+    drops : int, optional
+        Parts on each plate; 400 without it.
+    seconds : float, optional [s]
+        How long each is followed; 5 without it.
+    seed : int
+        Of the random launches, the same on all plates.
+    jobs : int
+        Cores to use; the outcome does not depend on it.
+    progress : function, optional
+        Told after every batch how many parts are done, on all plates together, and how many there will be.
+
+    Returns
+    -------
+    PlateStudy
+
+    Raises
+    ------
+    FeederError
+        If the part has no shape, or a condition is not such a quantity or out of range.
+    KeyboardInterrupt
+        If nothing was finished.
+    """
+    found = find(part)
+    plates = runs.test(
+        part, found, bowls, launch, dict(conditions or {}),
+        drops=drops, seconds=seconds, seed=seed, jobs=jobs, progress=progress,
+    )  # fmt: skip
+    given = names or ["bowl"] * len(bowls)
+    return PlateStudy(part, found, seed, tuple(plates), tuple(given[: len(plates)]))

@@ -1,0 +1,45 @@
+"""The study of aspects: one record that commands, batch, report and library share."""
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew.errors import FeederError
+from feederscrew.output import offers
+from feederscrew.output.aspects import files, tables
+from feederscrew.part import load
+from feederscrew.studies.aspects import aspects
+
+CARD = "parts/arc_chute.yaml"
+
+
+def test_without_a_drop_test_the_closed_form_is_recommended():
+    study = aspects(shapes.part(shapes.box(10.0, 20.0, 30.0)), surface="soft")
+    assert study.tally is None
+    assert study.recommended is study.aspects.recommended
+    np.testing.assert_allclose(study.aspects.chances["surface"], study.aspects.chances["quasistatic"])
+    assert not study.doubtful
+
+
+def test_a_surface_may_be_named_or_a_number():
+    part = shapes.part(shapes.box(10.0, 20.0, 30.0))
+    named, number = (aspects(part, surface=surface).aspects for surface in ("medium", 1.2))
+    assert named.chances["surface"].tolist() == number.chances["surface"].tolist()
+
+
+def test_the_files_are_offered_and_made_only_when_asked_for(monkeypatch):
+    study = aspects(shapes.part(shapes.box(10.0, 20.0, 30.0)))
+    offered = offers.by_name(files.offers(study, tipping=True))
+    assert sorted(offered) == [
+        "aspects.csv", "aspects.json", "aspects.png", "graph.csv", "graph.png", "probabilities.png",
+    ]  # fmt: skip
+    assert all(offer.alt for offer in offered.values() if offer.is_picture)
+    assert offered["aspects.csv"].make().startswith("aspect,kind,faces,stable,")
+
+
+def test_a_card_offers_no_view_and_has_no_graph():
+    study = aspects(load(CARD))
+    assert "aspects.png" not in offers.by_name(files.offers(study))
+    assert tables.remarks(study) == ["a part card has no shape to draw: no aspects.png"]
+    with pytest.raises(FeederError, match="has no shape to tumble"):
+        study.transitions
