@@ -21,20 +21,14 @@ def calibrate(part, counts, out):
     The CSV is that of `feeder compare`: a line 'aspect,NAME,...', then one line an aspect; columns that
     hold whole numbers are counts. With -o: calibrate.csv, calibrate.json and run.json.
     """
-    from feederscrew.output import columns
-    from feederscrew.output.profiles import calibration_tables as calibrate_tables
-    from feederscrew.resting.aspects import find
-    from feederscrew.resting.counts import profiles
-    from feederscrew.resting.counts.calibration_file import fits
+    from feederscrew.output import columns, offers
+    from feederscrew.output.calibrate import files, tables
+    from feederscrew.studies.calibrate import calibrate as calibrate_study
 
     solid = out.part(part)
-    aspects = find(solid)
-    measured = profiles.read(counts, aspects.names)
-    found = fits(solid, aspects, measured)
-    out.warn(*calibrate_tables.remarks(found))
-    document = calibrate_tables.document(solid, aspects, found)
-    inputs = {solid.source: solid.sha256, measured.source: measured.sha256}
+    study = calibrate_study(solid, counts)
+    out.warn(*tables.remarks(study))
+    inputs = {each.source: each.sha256 for each in (solid, study.measured)}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
-        if folder:
-            calibrate_tables.write(folder, document)
-    out.show(document["calibrations"], document)
+        offers.write(folder, files.offers(study))
+    out.show(tables.exponents(study), tables.document(study))

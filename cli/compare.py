@@ -30,21 +30,15 @@ def compare(part, counts, as_published, pictures, out):
     or percents that sum to 100. Lines that begin with # are comments. Aspects of which fewer than five
     are expected are joined for the test. With -o: compare.csv, compare.png and run.json.
     """
-    from feederscrew.output import columns
-    from feederscrew.output.profiles import tables as profile_tables
-    from feederscrew.resting.aspects import find
-    from feederscrew.resting.counts import deviation, profiles
+    from feederscrew.output import columns, offers
+    from feederscrew.output.compare import files, tables
+    from feederscrew.studies.compare import compare as compare_study
 
     solid = out.part(part)
-    found = find(solid, as_published=as_published)
-    out.warn(*found.warnings)
-    rules = profiles.of_rules(found)
-    measured = profiles.read(counts, found.names, [rule.name for rule in rules])
-    every = (*measured.profiles, *rules)
-    compared, inputs = deviation.compare(every), {p.source: p.sha256 for p in (solid, measured)}
+    study = compare_study(solid, counts, as_published=as_published)
+    out.warn(*study.aspects.warnings)
+    inputs = {each.source: each.sha256 for each in (solid, study.measured)}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
-        out.say("\n".join(measured.notes))
-        if folder:
-            profile_tables.write(folder, solid.name, found.names, every, compared, pictures=pictures)
-    document = {"part": solid.name, **profile_tables.document(found.names, every, compared)}
-    out.show(profile_tables.comparisons(compared, out.format), document)
+        out.say("\n".join(study.measured.notes))
+        offers.write(folder, files.offers(study), pictures=pictures)
+    out.show(tables.comparisons(study), tables.document(study), hidden=tables.hidden(study))

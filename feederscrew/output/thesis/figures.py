@@ -6,7 +6,7 @@ import numpy as np
 from feederscrew.mechanics.limits import published_ratio
 from feederscrew.output import style as plots
 from feederscrew.output import tables
-from feederscrew.output.profiles import figures as profile_plots
+from feederscrew.output.compare import figures as profile_plots
 from feederscrew.output.slide import figures as slide_plots
 from feederscrew.thesis import chapter_5, figures
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from feederscrew.output import style
-from feederscrew.output.profiles import figures as profile_plots
+from feederscrew.output.compare import figures
 from feederscrew.thesis import tables
 
 CSV = ["first", "second", "deviation", "total_variation", "chi_square", "degrees_of_freedom", "p_value"]
@@ -126,7 +126,7 @@ def test_the_chart_draws_the_profiles():
     measured = {"mine": np.array([0.5, 0.3, 0.2])}
     rules = {"PMI": np.array([0.4, 0.4, 0.2]), "CSA": np.array([0.6, 0.2, 0.2])}
     pairs = {("mine", "PMI"): 0.0816, ("mine", "CSA"): 0.0816, ("PMI", "CSA"): 0.163}
-    figure = profile_plots.comparison("bracket", "ABC", measured, rules, pairs)
+    figure = figures.comparison("bracket", "ABC", measured, rules, pairs)
     pmi, csa, matrix = figure.axes
     assert pmi.get_title(loc="left") == "bracket: PMI and what was measured"
     assert [bar.get_height() for bar in pmi.containers[1]] == pytest.approx([40.0, 40.0, 20.0])
@@ -136,8 +136,8 @@ def test_the_chart_draws_the_profiles():
 
 
 def test_a_profile_has_one_colour_everywhere():
-    assert profile_plots.look("PMI") == profile_plots.look("PMI", 5) == style.method("pmi")
-    assert profile_plots.look("MDBT_80", 0) == profile_plots.look("MDBT_80", 3)
-    colours = [profile_plots.look(f"MDBT_{amplitude}")[1] for amplitude in (78, 80, 82)]
+    assert figures.look("PMI") == figures.look("PMI", 5) == style.method("pmi")
+    assert figures.look("MDBT_80", 0) == figures.look("MDBT_80", 3)
+    colours = [figures.look(f"MDBT_{amplitude}")[1] for amplitude in (78, 80, 82)]
     assert len(set(colours)) == 3
-    assert profile_plots.look("my_test", 1)[0] == "my test"
+    assert figures.look("my_test", 1)[0] == "my test"

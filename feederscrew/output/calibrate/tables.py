@@ -1,20 +1,23 @@
-"""Calibrations as tables and documents."""
+"""Calibrations as a table and as a document."""
 
 from feederscrew.output import tables
 
+UNLIKELY = 0.01  # p-value below which no exponent explains the counts
 
-def exponents(fits):
-    """One row a column of counts.
+
+def exponents(study):
+    """Return the exponents, one row a column of counts.
 
     Parameters
     ----------
-    fits : sequence of Fit
+    study : CalibrateStudy
 
     Returns
     -------
     DataFrame
         The columns of ``calibrate.csv``.
     """
+    fits = study.fits
     found = [fit.calibration for fit in fits]
     return tables.frame(
         {
@@ -30,42 +33,27 @@ def exponents(fits):
     )
 
 
-def document(part, aspects, fits):
-    """The calibration as one JSON document.
+def document(study):
+    """Return the calibration as one JSON document.
 
     Parameters
     ----------
-    part : Part
-    aspects : Aspects
-    fits : sequence of Fit
+    study : CalibrateStudy
 
     Returns
     -------
     dict
     """
-    fitted = {fit.name: dict(zip(aspects.names, fit.calibration.shares)) for fit in fits}
-    return {"part": part.name, "calibrations": exponents(fits), "p_surface": fitted}
+    fitted = {fit.name: dict(zip(study.aspects.names, fit.calibration.shares)) for fit in study.fits}
+    return {"part": study.part.name, "calibrations": exponents(study), "p_surface": fitted}
 
 
-def remarks(fits):
-    """What a user must know of a calibration, a line each."""
+def remarks(study):
+    """Return what a user must know of a calibration, a line each."""
     told = []
-    for fit in fits:
+    for fit in study.fits:
         if fit.calibration.bounded:
             told.append(f"{fit.name}: the counts leave the exponent open to one side")
-        if fit.calibration.p_value < 0.01:
+        if fit.calibration.p_value < UNLIKELY:
             told.append(f"{fit.name}: no exponent explains these counts (p {fit.calibration.p_value:.2g})")
     return told
-
-
-def write(folder, document):
-    """The files of ``feeder calibrate``.
-
-    Parameters
-    ----------
-    folder : ResultFolder
-    document : dict
-        From `document`.
-    """
-    folder.write("calibrate.csv", tables.text(document["calibrations"], "csv"))
-    folder.write("calibrate.json", tables.json_text(document))

@@ -1,4 +1,4 @@
-"""Probability profiles side by side: charts of `compare`, and the one place for a profile's colour."""
+"""Probability profiles side by side, and the one place for the colour of a profile."""
 
 import numpy as np
 from matplotlib.patches import Patch
