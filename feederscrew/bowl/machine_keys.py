@@ -38,7 +38,7 @@ MACHINE = (
         "from the bowl's axis to the middle of the springs",
     ),
     _machine(
-        "spring_angle", "angle", "1 deg", "89 deg", "20 deg",
+        "spring_angle", "angle", "1 deg", "89 deg", "30 deg",
         "of the motion at the springs, from the horizontal: the leaves' own tilt from the vertical",
     ),
     _machine("leaf_width", "length", "1 mm", "500 mm", "40 mm", "of one leaf"),

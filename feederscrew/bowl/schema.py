@@ -5,7 +5,7 @@ from feederscrew.bowl.machine_keys import MACHINE, SIZING
 
 KEYS = (
     Key(
-        "drive.amplitude", "drive.amplitude", "length", "0 mm", "20 mm", "0.05 mm",
+        "drive.amplitude", "drive.amplitude", "length", "0 mm", "20 mm", "0.21 mm",
         "half the peak-to-peak stroke, along the vibration direction",
     ),
     Key(
@@ -13,11 +13,11 @@ KEYS = (
         "the whole stroke, as the trade quotes it; write one of the two", 0.5,
     ),
     Key(
-        "drive.frequency", "drive.frequency", "frequency", "1 Hz", "1000 Hz", "60 Hz",
+        "drive.frequency", "drive.frequency", "frequency", "1 Hz", "1000 Hz", "50 Hz",
         "of the vibration: that of the mains, or twice as much where both half-waves pull",
     ),
     Key(
-        "drive.vibration_angle", "drive.vibration_angle", "angle", "0 deg", "90 deg", "30 deg",
+        "drive.vibration_angle", "drive.vibration_angle", "angle", "0 deg", "90 deg", "25 deg",
         "beta, from the floor or track surface up to the vibration direction",
     ),
     Key(

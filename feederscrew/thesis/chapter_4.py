@@ -15,10 +15,18 @@ BANK, TURN = np.radians(10.0), np.radians(20.0)  # [rad] delta (and alpha), thet
 MILLI = 1e-3
 
 
+PLAIN = ("drive.amplitude=0.05 mm", "drive.frequency=60 Hz", "drive.vibration_angle=30 deg")  # slips one way
+
+
+def plain_bowl():
+    """The bowl on which omitted terms are weighed: the part slips forward and never back."""
+    return bowl.read(None, PLAIN)
+
+
 @functools.cache
 def on_track():
     """The Arc Chute on its fifth aspect on a banked track, driven a little across it."""
-    default = bowl.default()
+    default = plain_bowl()
     drive, at_bank = replace(default.drive, direction=BANK), replace(default.track, bank=BANK)
     banked = replace(default, drive=drive, track=at_bank)
     return track(parts.card("arc_chute"), banked, "5")
@@ -31,7 +39,7 @@ def _sizes(*names):
     return {
         letter: abs(term.value) / (MILLI if term.unit == "N" else 1.0)
         for letter, term in zip("abc", chosen, strict=False)
-    } | {"weight": on_track().seat.mass * bowl.default().gravity / MILLI}
+    } | {"weight": on_track().seat.mass * plain_bowl().gravity / MILLI}
 
 
 def gravity():
@@ -64,7 +72,7 @@ def projection():
     """Lever of the drive's moment about Z' of [4.13] at alpha = theta: printed, and in body axes."""
     printed = parts.card("arc_chute").printed["floor"]
     e, h = (printed[key] / factor("mm", "length") for key in ("drive_offset", "centroid_height"))
-    beta = bowl.default().drive.vibration_angle
+    beta = plain_bowl().drive.vibration_angle
     level, lift = np.cos(beta), np.sin(beta)
     return {"printed": -np.sin(TURN) * (e * lift + h * level * np.cos(TURN)), "turn": np.degrees(TURN)}
 

@@ -71,7 +71,8 @@ def test_a_part_that_only_travels_back():
 
 
 def test_a_target_that_the_velocity_jumps_over():
-    bouncing = bowls.read(None, ())  # from rest its velocity jumps onto the regular bounce of a period
+    gentle = ("drive.amplitude=0.05 mm", "drive.frequency=60 Hz", "drive.vibration_angle=30 deg")
+    bouncing = bowls.read(None, gentle)  # from rest its velocity jumps onto the regular bounce of a period
     with pytest.raises(FeederError) as caught:
         tune.solutions(bouncing, 0.866, PER_METRE)
     line = str(caught.value)

@@ -1,0 +1,172 @@
+"""Leaf springs against printed values, closed forms and a time integration of two bodies."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from two_masses import amplitude, driven
+
+from feederscrew import bowl as bowls
+from feederscrew.bowl.direction import direction
+from feederscrew.machine import filling, stroke, tuning
+from feederscrew.machine.springs import gain, held_fast, leaf_stiffness, leaf_stress, springs, twist
+
+GIVEN = (
+    "machine.bowl_mass=6 kg", "machine.bowl_inertia=0.06 kg m2", "machine.base_mass=25 kg",
+    "machine.base_inertia=0.25 kg m2", "machine.spring_radius=90 mm", "machine.spring_angle=20 deg",
+    "machine.leaf_width=40 mm", "machine.leaf_thickness=2.5 mm", "machine.leaf_length=80 mm",
+    "machine.leaf_modulus=206 GPa", "machine.leaves=10", "machine.damping=0.01",
+)  # fmt: skip
+BOWL = bowls.read(None, GIVEN)
+MACHINE = BOWL.machine
+
+
+@pytest.mark.parametrize(
+    "thickness, stiffness", [(2.0, 128.75), (2.5, 251.46), (3.0, 434.53), (3.5, 690.02), (4.0, 1030.0)]
+)
+def test_the_stiffness_of_a_leaf(thickness, stiffness):
+    leaf = replace(MACHINE, leaf_thickness=1e-3 * thickness)
+    assert leaf_stiffness(leaf) / 1e3 == pytest.approx(stiffness, abs=0.005)
+
+
+@pytest.mark.parametrize("leaves, free, held", [(9, 99.1, 89.0), (10, 104.4, 93.8), (12, 114.4, 102.7)])
+def test_the_natural_frequency_of_sets_of_leaves(leaves, free, held):
+    found = springs(replace(MACHINE, leaves=leaves))
+    assert found.natural_frequency_without_twist == pytest.approx(free, abs=0.05)
+    assert found.natural_frequency_held == pytest.approx(held, abs=0.05)
+    assert found.effective_mass == pytest.approx(5.841, abs=5e-4)
+    assert found.effective_mass_held == pytest.approx(7.243, abs=5e-4)
+
+
+def test_the_stress_of_a_leaf():
+    assert leaf_stress(MACHINE, 0.35e-3) / 1e6 == pytest.approx(84.5, abs=0.05)
+
+
+def test_the_twist_of_steel_leaves():
+    """About 0.128 (L / r_s)^2 at a level drive."""
+    level = replace(MACHINE, spring_angle=0.0, spring_radius=MACHINE.leaf_length)
+    assert twist(level) == pytest.approx(1.128, abs=5e-4)
+    assert springs(MACHINE).natural_frequency / springs(
+        MACHINE
+    ).natural_frequency_without_twist == pytest.approx(np.sqrt(twist(MACHINE)), rel=1e-12)
+
+
+def test_the_angle_over_the_radius():
+    found = np.degrees(direction(MACHINE, np.array([0.05, 0.09, 0.15, 0.2])))
+    assert found == pytest.approx([33.2, 20.0, 12.3, 9.3], abs=0.05)
+    radii, angles = stroke.angles(MACHINE, BOWL.track)
+    assert {round(1e3 * r) for r in radii} >= {90, 150}
+    assert np.all(np.diff(angles) < 0.0)
+
+
+@pytest.mark.parametrize(
+    "natural, quality, factor", [(102.0, 23.0, 1.95), (105.0, 10.5, 1.38), (110.0, 5.7, 1.16)]
+)
+def test_the_gain_and_what_three_per_cent_of_mass_do(natural, quality, factor):
+    before, after = gain(100.0, np.array([natural, natural / np.sqrt(1.03)]), 0.01)
+    assert before == pytest.approx(quality, abs=0.05)
+    assert after / before == pytest.approx(factor, abs=0.005)
+
+
+def test_the_gain_at_its_ends():
+    assert gain(0.0, 100.0, 0.01) == 1.0
+    assert gain(100.0, 100.0, 0.01) == pytest.approx(50.0, rel=1e-12)
+    assert np.isinf(gain(100.0, 100.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    "frequency, stroke_mm, ratio", [(50, 2.0, 10.06), (60, 1.5, 10.87), (100, 0.6, 12.07), (120, 0.4, 11.59)]
+)
+def test_the_acceleration_of_the_makers_strokes(frequency, stroke_mm, ratio):
+    texts = (f"drive.frequency={frequency} Hz", f"drive.peak_to_peak={stroke_mm} mm")
+    one = bowls.read(None, texts)
+    assert stroke.stroke(one).acceleration / 9.81 == pytest.approx(ratio, abs=0.005)
+    assert one.drive.amplitude <= stroke.greatest_amplitude(one)
+
+
+@pytest.mark.parametrize("share", [0.0, 1.0])
+def test_gain_angle_and_drift_against_two_bodies_in_time(share):
+    """A bowl empty and full: the closed forms within 1e-6 of an integration of rise and turn."""
+    machine = replace(MACHINE, damping=0.04, base_inertia=0.4)
+    fill = filling.full(0.15, 0.09, 7850.0, BOWL.sizing)
+    machine = filling.loaded(machine, fill, share * BOWL.sizing.carried)
+    found, frequency, force = springs(machine), 100.0, 50.0
+    damping = 2.0 * machine.damping * np.sqrt(found.stiffness * found.effective_mass)
+    way, rise, turn = driven(machine, found.stiffness, damping, force, frequency, 90)
+    magnified = gain(frequency, found.natural_frequency, machine.damping)
+    assert amplitude(way) == pytest.approx(force / found.stiffness * magnified, rel=1e-6)
+    for radius in (0.09, 0.15):
+        tangent = amplitude(rise) / (radius * amplitude(turn))
+        assert tangent == pytest.approx(np.tan(direction(machine, radius)), rel=1e-6)
+
+
+def test_the_stroke_at_the_springs_is_the_one_that_moves_the_track():
+    """Rise and turn of the bowl give the way along the springs, base included."""
+    machine, moved = BOWL.machine, stroke.stroke(BOWL)
+    rise = BOWL.drive.amplitude * np.sin(moved.angle)
+    assert moved.springs * np.sin(machine.spring_angle) * 25 / 31 == pytest.approx(rise, rel=1e-9)
+    assert (moved.horizontal, moved.vertical) == pytest.approx(
+        (moved.acceleration * np.cos(moved.angle), moved.acceleration * np.sin(moved.angle))
+    )
+
+
+@given(factor=st.floats(0.1, 10.0))
+def test_a_machine_scaled_in_size_keeps_its_angles(factor):
+    """Lengths times s, masses times s^3, inertias times s^5: the frequency falls as 1 / s."""
+    large = replace(
+        MACHINE,
+        bowl_mass=MACHINE.bowl_mass * factor**3,
+        base_mass=MACHINE.base_mass * factor**3,
+        bowl_inertia=MACHINE.bowl_inertia * factor**5,
+        base_inertia=MACHINE.base_inertia * factor**5,
+        spring_radius=MACHINE.spring_radius * factor,
+        leaf_width=MACHINE.leaf_width * factor,
+        leaf_thickness=MACHINE.leaf_thickness * factor,
+        leaf_length=MACHINE.leaf_length * factor,
+    )
+    assert springs(large).natural_frequency * factor == pytest.approx(springs(MACHINE).natural_frequency)
+    assert direction(large, 0.1 * factor) == pytest.approx(direction(MACHINE, 0.1))
+
+
+def test_a_heavy_base_is_one_held_fast():
+    heavy = replace(MACHINE, base_mass=1e9, base_inertia=1e9)
+    assert springs(heavy).effective_mass == pytest.approx(
+        springs(held_fast(MACHINE)).effective_mass, rel=1e-7
+    )
+
+
+def test_a_leaf_by_the_cube_and_by_the_square():
+    """One leaf of 3.5 mm for two of 2.5: 2.744 by the cube, 1.96 by RNA's square."""
+    one = tuning.leaf_set(MACHINE, 100.0, 1e-4, leaves=10, thickness=3.5e-3)
+    here = springs(MACHINE).natural_frequency
+    assert (one.natural_frequency / here) ** 2 == pytest.approx(1.4**3, rel=1e-9)
+    assert (one.by_square / here) ** 2 == pytest.approx(1.4**2, rel=1e-9)
+
+
+def test_the_sets_that_tune():
+    found = tuning.sets(MACHINE, 100.0, 1e-4, BOWL.sizing)
+    assert all(0.03 <= one.detuning <= 0.08 for one in found)
+    assert (2.5e-3, 9) in {(one.thickness, one.leaves) for one in found}
+    names = [one.name for one in tuning.changes(MACHINE, 100.0, 1e-4)]
+    assert names == ["as it is", "one leaf more", "one leaf less", "leaves 0.5 mm thicker"]
+    assert len(tuning.changes(replace(MACHINE, leaves=1), 100.0, 1e-4)) == 3
+
+
+def test_a_weak_set_is_not_chosen():
+    rules = replace(BOWL.sizing, fatigue_stress=1.0)
+    assert tuning.chosen(tuning.sets(MACHINE, 100.0, 1e-4, rules), rules) is None
+
+
+def test_the_stroke_as_a_bowl_empties():
+    """From full to empty it falls, and amplitude control holds it while the controller reaches."""
+    fill = filling.full(0.15, 0.09, 7850.0, replace(BOWL.sizing, fill_height=1 / 3))
+    assert fill.volume == pytest.approx(np.pi * 0.15**2 * 0.03)
+    assert fill.mass == pytest.approx(fill.volume * 0.5 * 7850.0)
+    found = filling.emptying(replace(MACHINE, leaves=12), 100.0, fill, BOWL.sizing)
+    assert (found.levels[0], found.levels[-1], found.strokes[-1]) == (1.0, 0.0, 1.0)
+    assert np.all(np.diff(found.strokes) < 0.0) and np.all(found.controlled == 1.0)
+    below = filling.emptying(replace(MACHINE, leaves=6), 100.0, fill, BOWL.sizing)
+    assert below.strokes[0] < 1.0
+    assert below.controlled[0] == pytest.approx(min(1.0, below.strokes[0] / 0.8))
