@@ -92,7 +92,7 @@ def shape(part, aspects, track, wanted=None):
     return Shape(outline, float(found.distances[row]), float(found.lengths[row]))
 
 
-def size(part, given, rules, *, diameter=None, width=None, climb=None):
+def size(part, given, rules, *, sorts, diameter=None, width=None, climb=None):
     """Compute the bowl that holds and carries a part.
 
     Parameters
@@ -101,6 +101,8 @@ def size(part, given, rules, *, diameter=None, width=None, climb=None):
     given : str
         What a fault names: the part's file.
     rules : Sizing
+    sorts : bool
+        Whether a given width may be too little for some orientations, which then fall off it.
     diameter, width : float [m], optional
         Those of a bowl that exists.
     climb : float [rad], optional
@@ -115,7 +117,7 @@ def size(part, given, rules, *, diameter=None, width=None, climb=None):
         If it takes a bowl that nobody builds, or the given one is smaller than the part.
     """
     play = float(np.clip(rules.clearance * part.width, rules.least_clearance, rules.greatest_clearance))
-    least = _diameters(part, play, rules, width)
+    least = _diameters(part, play, rules, width, sorts)
     across = _rounded_up(max(least.values()), rules.diameter_step) if diameter is None else diameter
     _check_diameter(across, part, given, rules, fixed=diameter is not None)
     bend = part.length**2 / (2.0 * across)
@@ -128,7 +130,7 @@ def size(part, given, rules, *, diameter=None, width=None, climb=None):
     return Size(across, least, wide, play, bend, float(angle), depth, float(turns), float(pitch))
 
 
-def _diameters(part, play, rules, width):
+def _diameters(part, play, rules, width, sorts):
     """The diameter that each rule asks for [m]; width and bend of the track hang on each other."""
     least = {
         "no bowl is smaller": rules.least_diameter,
@@ -137,6 +139,8 @@ def _diameters(part, play, rules, width):
     if width is not None:
         room = width - part.width - play
         least["width of the track"] = rules.diameter_per_width * width
+        if sorts and room <= 0.0:
+            return least
         least["bend on this track"] = part.length**2 / (2.0 * room) if room > 0.0 else np.inf
         return least
     across = max(least.values())
@@ -150,13 +154,13 @@ def _diameters(part, play, rules, width):
 
 
 def _check_diameter(across, part, given, rules, *, fixed):
+    if np.isinf(across):
+        what = f"needs {1e3 * part.width:.4g} mm of track and its play, more than track.width"
+        raise FeederError(given, what, "widen the track, or leave track.width out")
     if across > rules.greatest_diameter:
-        needs = "a track as narrow as this one" if np.isinf(across) else f"a bowl of {1e3 * across:.4g} mm"
-        what = f"needs {needs}, and bowls end at {1e3 * rules.greatest_diameter:.4g} mm"
-        if np.isinf(across):
-            what = f"needs {1e3 * part.width:.4g} mm of track and its play, more than track.width"
-        mend = "widen the track" if np.isinf(across) else "feed it from a step or belt feeder"
-        raise FeederError(given, what, mend)
+        what = f"needs a bowl of {1e3 * across:.4g} mm, and none is larger than"
+        mend = "feed it from a step or belt feeder, or raise sizing.greatest_diameter"
+        raise FeederError(given, f"{what} {1e3 * rules.greatest_diameter:.4g} mm", mend)
     if fixed and across < 2.0 * part.longest:
         what = f"{500.0 * across:.4g} mm is too small for a part {1e3 * part.longest:.4g} mm long"
         raise FeederError("track.radius", what, "leave it out, to have the bowl sized")

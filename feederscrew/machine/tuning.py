@@ -6,7 +6,7 @@ from feederscrew.machine.springs import gain, leaf_stress, natural_frequency, sp
 
 THICKNESSES = (1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3, 5e-3, 6e-3)  # [m] that makers stock
 THICKER = 0.5e-3  # [m] step of the same
-MOST = 60  # leaves of one set
+FEWEST, MOST = 3, 60  # leaves of one set: a bowl stands on three banks at least
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ def sets(machine, frequency, amplitude, rules):
     found = (
         leaf_set(machine, frequency, amplitude, leaves=n, thickness=t)
         for t in stocked
-        for n in range(1, MOST + 1)
+        for n in range(FEWEST, MOST + 1)
     )
     return tuple(one for one in found if rules.least_detuning <= one.detuning <= rules.greatest_detuning)
 

@@ -124,7 +124,7 @@ def bowl(settings, part, target, chain=(), *, aspect=None, heading=None, rule="p
     straight = replace(sizing.STRAIGHT, climb=plain.track.climb)
     wanted = None if aspect is None else queue.wanted(part, found, straight, aspect, heading)
     lying = sizing.lying(part, found, wanted)
-    size = _size(lying, part, plain, settings)
+    size = _size(lying, part, plain, settings, sorts=wanted is None)
     track = replace(plain.track, radius=0.5 * size.diameter, width=size.track_width, climb=size.climb)
     if wanted is not None:
         wanted = queue.wanted(part, found, track, *wanted)
@@ -168,13 +168,14 @@ def _given(settings, section=""):
     return {s.key.word for s in settings if s.given and s.key.section == section}
 
 
-def _size(lying, part, plain, settings):
+def _size(lying, part, plain, settings, *, sorts):
     """The size of the bowl; what the file says of its track is kept."""
     said, track = _given(settings, "track"), plain.track
     return sizing.size(
         lying,
         part.source,
         plain.sizing,
+        sorts=sorts,
         diameter=2.0 * track.radius if "radius" in said else None,
         width=track.width if "width" in said else None,
         climb=track.climb if "climb" in said else None,

@@ -1,4 +1,4 @@
-"""Bowl and base as two rigid bodies with four coordinates, integrated in time; nothing of the closed forms."""
+"""Bowl and base as two rigid bodies that rise and turn, integrated in time: none of the closed forms."""
 
 import numpy as np
 from scipy.integrate import solve_ivp

@@ -36,7 +36,7 @@ def _lines(pairs):
 def _part(study):
     part, room = study.order.part, study.order.lying
     size = " x ".join(f"{side / MM:.4g}" for side in sorted(_box(part), reverse=True))
-    yield "part", part.name
+    yield "part, drawing", f"{part.name}, {part.source}"
     yield "material, density [g/cm3]", f"{part.material}, {part.mass / part.volume / GRAM_CM3:.4g}"
     yield "mass [g], volume [mm3]", f"{part.mass / GRAM:.4g}, {part.volume / MM**3:.5g}"
     yield "size [mm]", f"{size}; at most {room.longest / MM:.4g} along the wall, {room.tallest / MM:.4g} high"
@@ -91,11 +91,20 @@ def _full(study):
 
 def _drive(study):
     rules = study.bowl.sizing
-    yield "drive [Hz]", f"{study.stroke.frequency:.4g}"
+    yield "supply, drive [Hz]", _supply(study.stroke.frequency)
     yield from _readings(study)
     yield from _travel(study)
     low, high = (rules.controller + sign * rules.retune for sign in (-1.0, 1.0))
     yield "tune again outside [%]", f"{100 * low:.3g} to {100 * high:.3g} of the controller, at that rate"
+
+
+def _supply(frequency):
+    """The mains and waves that give a frequency."""
+    for mains in (50.0, 60.0):
+        for wave, times in (("half wave", 1.0), ("full wave", 2.0)):
+            if abs(frequency - times * mains) < 1e-6:
+                return f"{mains:.0f} Hz {wave}, {frequency:.4g}"
+    return f"frequency converter, {frequency:.4g}"
 
 
 def _readings(study):
