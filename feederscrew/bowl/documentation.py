@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from feederscrew.bowl.devices import KINDS, SECTION
 from feederscrew.bowl.schema import BY_NAME, KEYS, OPTIONAL, rival
 from feederscrew.bowl.settings import OF_THE_MACHINE, default
 from feederscrew.errors import FeederError
@@ -29,6 +30,8 @@ def template():
             section = key.section
             lines += ["", *_opening(section)] if section else [""]
         lines.append(_template_line(key))
+    lines += ["", f"# {SECTION}:  # along the track, in the order parts meet them"]
+    lines += [f"#   - {kind}: {one.example}  # {one.meaning}" for kind, one in KINDS.items()]
     return "\n".join(lines) + "\n"
 
 
@@ -63,6 +66,12 @@ def _opening(section):
     if section not in OPTIONAL:
         return [f"{section}:"]
     return ["# Take the '# ' away from these lines to describe your own drive unit.", f"# {section}:"]
+
+
+def devices_markdown():
+    """The kinds of devices as a Markdown table, for the README."""
+    head = "| Device | Example | Meaning |\n|---|---|---|\n"
+    return head + "".join(f"| `{name}` | `{one.example}` | {one.meaning} |\n" for name, one in KINDS.items())
 
 
 def _template_line(key):

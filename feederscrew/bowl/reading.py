@@ -1,12 +1,14 @@
 """Bowl files and --set, checked against the schema; every fault is told, each with its place."""
 
+import itertools
+
 from feederscrew import documents, units
+from feederscrew.bowl import devices
 from feederscrew.bowl.schema import BY_NAME, KEYS, SECTIONS, rival
-from feederscrew.bowl.settings import Setting, default, effective, replaced
+from feederscrew.bowl.settings import Setting, chain, default, effective, of_device, replaced
 from feederscrew.errors import ConfigError
 
-ELSEWHERE = ("devices",)  # read where they are used: feederscrew.rates.devices
-TOP_LEVEL = (*SECTIONS, *(key.name for key in KEYS if not key.section))
+TOP_LEVEL = (*SECTIONS, devices.SECTION, *(key.name for key in KEYS if not key.section))
 
 
 def settings(path=None, overrides=()):
@@ -22,7 +24,7 @@ def settings(path=None, overrides=()):
     Returns
     -------
     tuple of Setting
-        One a key, in the order of ``schema.KEYS``.
+        One a key, in the order of ``schema.KEYS``, then one a device.
 
     Raises
     ------
@@ -32,8 +34,14 @@ def settings(path=None, overrides=()):
     in_file, faults = ({}, []) if path is None else _from_file(path)
     typed = _from_overrides(overrides, faults)
     given = {name: s for name, s in in_file.items() if not replaced(s.key, typed)} | typed
-    documents.raise_all([*faults, *_kinetic_above_static(given)])
-    return effective(given)
+    found = effective(given)
+    faults += [*_kinetic_above_static(given), *devices.misplaced(chain(found), _width(found))]
+    documents.raise_all(faults)
+    return found
+
+
+def _width(found):
+    return next(s.value for s in found if s.key.name == "track.width")
 
 
 def checked(key, text, where, *, bare=False):
@@ -80,9 +88,13 @@ def _from_file(path):
     for entry in root.entries:
         if entry.key in SECTIONS:
             _read_section(entry, given, faults)
-        elif entry.key in TOP_LEVEL:
+        elif entry.key in BY_NAME:
             _read_value(BY_NAME[entry.key], entry, given, faults)
-        elif entry.key not in ELSEWHERE:
+        elif entry.key == devices.SECTION:
+            given |= {
+                s.key.name: s for s in map(of_device, itertools.count(1), devices.listed(entry, faults))
+            }
+        else:
             faults.append(_unknown(entry, "", TOP_LEVEL))
     return given, faults
 

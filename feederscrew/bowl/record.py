@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from feederscrew.bowl.devices import Device
+
 
 @dataclass(frozen=True)
 class Drive:
@@ -104,7 +106,7 @@ class Sizing:
 
 @dataclass(frozen=True)
 class Bowl:
-    """Drive, surface and track of one bowl."""
+    """Drive, surface, track and devices of one bowl."""
 
     drive: Drive
     friction: Friction
@@ -113,3 +115,5 @@ class Bowl:
     gravity: float  # [m/s2]
     machine: Machine | None = None  # None only of a record made by hand
     sizing: Sizing | None = None
+
+    devices: tuple[Device, ...] = ()  # along the track, in the order parts meet them

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew import units
+from feederscrew.bowl.devices import KINDS, SECTION
 from feederscrew.bowl.direction import vibration_angle
 from feederscrew.bowl.record import Bowl, Drive, Friction, Machine, Sizing, Track
 from feederscrew.bowl.schema import BY_NAME, KEYS, OPTIONAL, Key, rival
@@ -49,9 +50,22 @@ def effective(given):
     Returns
     -------
     tuple of Setting
-        One a key, in the order of ``schema.KEYS``.
+        One a key, in the order of ``schema.KEYS``, then one a device.
     """
-    return tuple(_effective(key, given) for key in KEYS)
+    keyed = tuple(_effective(key, given) for key in KEYS)
+    return (*keyed, *(s for name, s in given.items() if name not in BY_NAME))
+
+
+def of_device(place, device):
+    """Return a device as the Setting 'devices.1', for people: 'gap: 9 mm'."""
+    kind = KINDS[device.kind]
+    key = Key(f"{SECTION}.{place}", SECTION, kind.dimension, "", "", "", kind.meaning)
+    return Setting(key, f"{device.kind}: {device.text}", device, device.where)
+
+
+def chain(settings):
+    """Return the devices (Device, ...) among settings, in the order parts meet them."""
+    return tuple(s.value for s in settings if s.key.field == SECTION)
 
 
 def record(settings):
@@ -60,14 +74,19 @@ def record(settings):
     A field that may be None, 'as the other one', stays so until its key is given: a Bowl in which the other
     is replaced later must not keep the old value.
     """
-    fields = {s.key.field: s.value * s.key.share for s in settings}
-    fields |= {s.key.field: None for s in settings if s.key.field in FOLLOWING and not s.given}
+    keyed = [s for s in settings if s.key.field != SECTION]
+    fields = {s.key.field: s.value * s.key.share for s in keyed}
+    fields |= {s.key.field: None for s in keyed if s.key.field in FOLLOWING and not s.given}
     sections = {name: {} for name in RECORDS}
     for name, value in fields.items():
         section, _, word = name.rpartition(".")
         sections.setdefault(section, {})[word] = value
     top_level = sections.pop("")
-    return Bowl(**{name: RECORDS[name](**values) for name, values in sections.items()}, **top_level)
+    return Bowl(
+        **{name: RECORDS[name](**values) for name, values in sections.items()},
+        **top_level,
+        devices=chain(settings),
+    )
 
 
 def swept(settings, values):

@@ -1,0 +1,183 @@
+"""How the values of devices are written in a bowl file, and their faults."""
+
+from pathlib import Path
+
+from feederscrew import units
+from feederscrew.errors import ConfigError
+
+CORNER = "write [9 mm, 8 mm]"
+POLYGON = "write a list of three or more corners, as [[0 mm, 0 mm], [9 mm, 0 mm], [9 mm, 8 mm]]"
+
+
+def length(entry):
+    """Read a length above 0, as {'limit': m}."""
+    limit = _quantity(entry.value, entry.key, "length")
+    if limit <= 0.0:
+        what = f"{entry.key} is {units.one_line(entry.value.text)}"
+        raise ConfigError(entry.value.where, what, "give more than 0 mm")
+    return {"limit": limit}
+
+
+def span(entry):
+    """Read {from: 2 mm, to: 5 mm}, as {'span': (m, m)}."""
+    given = _mapping(entry, ("from", "to"), "write {from: 2 mm, to: 5 mm}")
+    first, last = (_quantity(given[name].value, f"slot {name}", "length") for name in ("from", "to"))
+    if not 0.0 <= first < last:
+        what = f"slot runs from {given['from'].value.text} to {given['to'].value.text}"
+        raise ConfigError(entry.value.where, what, "give from 0 mm or more to something larger")
+    return {"span": (first, last)}
+
+
+def shares(entry):
+    """Read the share that passes by aspect, as {'shares': ((aspect, 1), ...)}."""
+    if entry.value.kind != "mapping" or not entry.value.entries:
+        raise ConfigError(
+            entry.where, "yield names no aspect", "write below it one line an aspect, as 'A: 0.9'"
+        )
+    return {"shares": tuple((one.key, _share(one)) for one in entry.value.entries)}
+
+
+def polygon(entry):
+    """Read a polygon of lengths or the file that holds it, as {'corners': ((m, m), ...)}."""
+    if entry.value.kind == "mapping":
+        corners = _drawn(entry)
+    else:
+        corners = _corners(entry.value, entry.key)
+    return {"corners": simple(corners, entry.value.where, entry.key)}
+
+
+def opening(entry):
+    """Read a polygon of the opening, or {of: A@90, play: 0.2 mm}, as {'corners': ...} or {'like': ...}."""
+    if entry.value.kind != "mapping":
+        return polygon(entry)
+    given = _mapping(entry, ("of", "play"), "write {of: A@90, play: 0.2 mm}")
+    name, at, turn = given["of"].value.text.partition("@")
+    if not at or not name.strip():
+        what = f"{units.shown(given['of'].value.text)} is not an orientation"
+        raise ConfigError(given["of"].value.where, what, "write aspect@heading, as A@90")
+    heading = _parsed(f"{turn.strip().removesuffix('deg')} deg", given["of"].value.where, "heading", "angle")
+    play = _quantity(given["play"].value, "play", "length")
+    if play < 0.0:
+        raise ConfigError(given["play"].value.where, "play is negative", "give 0 mm or more")
+    return {"like": (name.strip(), heading, play)}
+
+
+def simple(corners, where, kind):
+    """Return the corners of a polygon that neither crosses itself nor has no area.
+
+    Parameters
+    ----------
+    corners : sequence of (float, float) [m]
+    where, kind : str
+        For the fault.
+
+    Returns
+    -------
+    tuple of (float, float)
+
+    Raises
+    ------
+    ConfigError
+    """
+    if len(corners) < 3:
+        raise ConfigError(where, f"{kind} has {len(corners)} corners", POLYGON)
+    size = max(max(abs(x), abs(y)) for x, y in corners)
+    if _crossed(corners):
+        raise ConfigError(where, f"{kind} crosses itself", "list the corners in order around it")
+    following = (*corners[1:], corners[0])
+    twice = sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(corners, following))
+    if abs(twice) <= 1e-9 * size**2:
+        raise ConfigError(where, f"{kind} has no area", "move a corner off the line through the others")
+    return tuple(corners)
+
+
+def written(node):
+    """Return a value on one line, as it may be written in a bowl file."""
+    if node.kind == "list":
+        return f"[{', '.join(written(item) for item in node.items)}]"
+    if node.kind == "mapping":
+        return f"{{{', '.join(f'{one.key}: {written(one.value)}' for one in node.entries)}}}"
+    return " ".join(node.text.split())
+
+
+def _mapping(entry, names, mend):
+    found = {one.key: one for one in entry.value.entries} if entry.value.kind == "mapping" else {}
+    for one in found.values():
+        if one.key not in names:
+            raise ConfigError(
+                one.where, f"unknown key {units.shown(one.key)}", f"known are {', '.join(names)}"
+            )
+    missing = [name for name in names if name not in found]
+    if missing:
+        raise ConfigError(entry.where, f"{entry.key} has no {missing[0]}", mend)
+    return found
+
+
+def _corners(node, kind):
+    if node.kind != "list":
+        raise ConfigError(node.where, f"{kind} is not a list of corners", POLYGON)
+    found = []
+    for item in node.items:
+        if item.kind != "list" or len(item.items) != 2:
+            raise ConfigError(item.where, f"is no corner of {kind}", CORNER)
+        found.append(tuple(_quantity(one, f"corner of {kind}", "length") for one in item.items))
+    return found
+
+
+def _drawn(entry):
+    """The one closed polyline of a layer of a DXF file in millimetres."""
+    given = _mapping(entry, ("dxf", "layer"), "write {dxf: tooling.dxf, layer: CUT}")
+    node, layer = given["dxf"].value, given["layer"].value.text
+    path = Path(node.text)
+    if not path.is_absolute():
+        path = Path(node.where.rsplit(":", 2)[0]).parent / path
+    from feederscrew.bowl import drawing
+
+    found = drawing.closed_polylines(path, layer, node.where)
+    if len(found) != 1:
+        what = f"layer {units.shown(layer)} of {path.name} holds {len(found)} closed polylines"
+        raise ConfigError(given["layer"].value.where, what, "give each cut_out a layer of its own")
+    return found[0]
+
+
+def _share(entry):
+    share = _quantity(entry.value, f"yield of {entry.key}", "number")
+    if not 0.0 <= share <= 1.0:
+        what = f"yield of {entry.key} is {units.one_line(entry.value.text)}"
+        raise ConfigError(entry.value.where, what, "give 0 to 1")
+    return share
+
+
+def _quantity(node, name, dimension):
+    if node.kind != "text":
+        raise ConfigError(node.where, f"{name} is a {node.kind}", "write one value")
+    return _parsed(node.text, node.where, name, dimension)
+
+
+def _parsed(text, where, name, dimension):
+    try:
+        return units.quantity(text, dimension)
+    except units.QuantityError as fault:
+        raise ConfigError(where, f"{name}: {fault.what}", fault.mend) from None
+
+
+def _crossed(corners):
+    """Whether two sides that are not neighbours meet, or two corners coincide."""
+    sides = list(zip(corners, (*corners[1:], corners[0])))
+    count = len(sides)
+    for i in range(count):
+        for j in range(i + 1, count):
+            if sides[i][0] == sides[j][0]:
+                return True
+            if (j - i) % count in (1, count - 1):
+                continue
+            if _meet(*sides[i], *sides[j]):
+                return True
+    return False
+
+
+def _meet(a, b, c, d):
+    def left(o, p, q):
+        return (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0])
+
+    return left(a, b, c) * left(a, b, d) <= 0.0 and left(c, d, a) * left(c, d, b) <= 0.0

@@ -1,0 +1,194 @@
+"""The devices along the track, as a bowl file lists them: one table of their kinds."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew import documents, units
+from feederscrew.bowl import device_values as values
+from feederscrew.errors import ConfigError
+
+SECTION = "devices"  # of a bowl file
+
+
+@dataclass(frozen=True)
+class DeviceKind:
+    """One kind of device: how it is written, what it means, what its value is."""
+
+    reader: Callable  # (entry, faults' name) -> what of Device's fields it gives
+    dimension: str  # 'length', 'span', 'polygon', 'opening', 'shares'
+    example: str  # as written after 'kind:'
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Device:
+    """One device of the chain."""
+
+    kind: str  # of KINDS
+    where: str  # 'bowl.yaml:20:5'
+    limit: float = np.nan  # [m] clearance, width or length
+    shares: tuple[tuple[str, float], ...] = ()  # of a yield: share that passes, by aspect
+    span: tuple[float, float] = ()  # [m] from the wall, of a slot
+    corners: tuple[tuple[float, float], ...] = ()  # [m] of a cut_out unrolled, of a profile (y, z)
+    like: tuple[str, float, float] = ()  # of a profile: aspect, heading [rad], play [m]
+    text: str = ""  # its value as written
+
+
+KINDS = {
+    "wiper": DeviceKind(
+        values.length, "length", "6 mm",
+        "blade at a clearance over the track; returns orientations that stand higher",
+    ),
+    "height_bar": DeviceKind(
+        values.length, "length", "6 mm",
+        "bar across the track at a clearance; returns orientations that stand higher",
+    ),
+    "narrowed_track": DeviceKind(
+        values.length, "length", "9 mm",
+        "track of a lesser width, a balcony; returns orientations whose foot of the centre of mass is not "
+        "supported",
+    ),
+    "pressure_break": DeviceKind(
+        values.length, "length", "10 mm",
+        "gap where the queue pushes parts off; returns orientations wider than the ledge left",
+    ),
+    "canyon": DeviceKind(
+        values.length, "length", "8 mm",
+        "strip of that width removed along the wall; returns orientations whose foot lies over it",
+    ),
+    "gap": DeviceKind(
+        values.length, "length", "9 mm",
+        "gap of that length across the track, its edges parallel, the one that is left radial",
+    ),
+    "slot": DeviceKind(
+        values.span, "span", "{from: 2 mm, to: 5 mm}",
+        "long hole along the track between two distances from the wall",
+    ),
+    "profile": DeviceKind(
+        values.opening, "opening", "{of: A@90, play: 0.2 mm}",
+        "gate with an opening: a polygon of distances from the wall and heights, or an orientation's own "
+        "outline with play",
+    ),
+    "cut_out": DeviceKind(
+        values.polygon, "polygon", "[[0 mm, 0 mm], [9 mm, 0 mm], [9 mm, 8 mm]]",
+        "hole in the track: lengths along the wall and distances from it, unrolled; or {dxf: file, layer: CUT}",
+    ),
+    "hold_down": DeviceKind(
+        values.length, "length", "6 mm",
+        "bar above the queue that keeps parts down; returns orientations that do not fit below",
+    ),
+    "rails": DeviceKind(
+        values.length, "length", "4.2 mm",
+        "slot of that width between two rails: headed parts hang in it by the head, others are returned if "
+        "they fall through",
+    ),
+    "step": DeviceKind(
+        values.length, "length", "4 mm",
+        "drop by a height on the next stretch of track: turns parts over, quasi-statically until a trial "
+        "confirms it",
+    ),
+    "tip": DeviceKind(
+        values.length, "length", "5 mm",
+        "ledge of that width over which parts tip to the free side: turns parts over, quasi-statically until a "
+        "trial confirms it",
+    ),
+    "yield": DeviceKind(
+        values.shares, "shares", "{A: 0.9}",
+        "share that passes, by aspect, as measured; aspects not named pass",
+    ),
+}  # fmt: skip
+
+
+def listed(entry, faults):
+    """Return the devices of a bowl file's list, in the order parts meet them.
+
+    Parameters
+    ----------
+    entry : Entry
+        ``devices:`` of the file.
+    faults : list of FeederError
+        What is wrong is added.
+
+    Returns
+    -------
+    tuple of Device
+    """
+    if entry.value.kind != "list":
+        faults.append(ConfigError(entry.where, "devices is not a list", "write one '- wiper: 6 mm' a line"))
+        return ()
+    found = []
+    for item in entry.value.items:
+        try:
+            found.append(_device(item))
+        except ConfigError as fault:
+            faults.append(fault)
+    return tuple(found)
+
+
+def misplaced(chain, width):
+    """Return the faults of devices that do not fit a track.
+
+    Parameters
+    ----------
+    chain : sequence of Device
+    width : float [m]
+        Of the track.
+
+    Returns
+    -------
+    list of ConfigError
+    """
+    return [fault for device in chain for fault in _misfit(device, width)]
+
+
+def strangers(chain, aspects):
+    """What is odd in a chain for one part: yields of aspects that it has not.
+
+    Parameters
+    ----------
+    chain : sequence of Device
+    aspects : sequence of str
+        Names of the part's aspects.
+
+    Returns
+    -------
+    list of str
+        One line each; the file may be meant for other parts as well, so it is no fault.
+    """
+    known = {name.casefold() for name in aspects}
+    return [
+        f"{device.where}: yield names aspect {units.shown(name)}, which this part has not"
+        for device in chain
+        for name, _ in device.shares
+        if name.casefold() not in known
+    ]
+
+
+def _device(item):
+    if item.kind != "mapping" or len(item.entries) != 1:
+        raise ConfigError(item.where, "is no device", "write one '- wiper: 6 mm' a line")
+    entry = item.entries[0]
+    if entry.key not in KINDS:
+        what = f"unknown device {units.shown(entry.key)}"
+        raise ConfigError(entry.where, what, documents.hint(entry.key, list(KINDS)))
+    return Device(entry.key, entry.where, text=values.written(entry.value), **KINDS[entry.key].reader(entry))
+
+
+def _misfit(device, width):
+    told, mend = f"the track is {1e3 * width:.4g} mm wide", "give a smaller one, or a wider track"
+    if device.kind == "canyon" and device.limit >= width:
+        yield ConfigError(device.where, f"canyon leaves no track: {told}", mend)
+    if device.kind == "rails" and device.limit >= width:
+        yield ConfigError(device.where, f"rails leave no track: {told}", mend)
+    if device.kind == "slot" and device.span[0] <= 0.0 and device.span[1] >= width:
+        yield ConfigError(device.where, f"slot leaves no track: {told}", mend)
+    if device.kind == "slot" and device.span[0] >= width:
+        yield ConfigError(device.where, f"slot lies beside the track: {told}", "move it onto the track")
+    if device.kind == "cut_out":
+        across = [y for _, y in device.corners]
+        if max(across) <= 0.0 or min(across) >= width:
+            yield ConfigError(
+                device.where, f"cut_out lies beside the track: {told}", "move it onto the track"
+            )
