@@ -1,5 +1,7 @@
 """``feeder report``."""
 
+import shlex
+
 import click
 
 from feederscrew_cli import options, orientation, talk
@@ -30,6 +32,10 @@ PLACE = (
 )  # fmt: skip
 
 
+TALK = {"-q", "--quiet", "-v", "--verbose"}
+FOLDER = {"-o", "--output"}
+
+
 def _all(decorators):
     """Several options as one decorator."""
 
@@ -58,13 +64,34 @@ def report(part, bowl, directory, format, quiet, verbose, **wanted):
     """
     from feederscrew.bowl import texts
     from feederscrew.output import columns
-    from feederscrew.output.report import Case, page, repeated, write
+    from feederscrew.output.report import page, write
+    from feederscrew.studies.report import report as study
 
     out = talk.Output.of(format=format, directory=directory, quiet=quiet, verbose=verbose)
     solid = out.part(part)
-    case = Case.of(solid, **bowl, **wanted, command=repeated(out.arguments))
-    effective = columns.conditions(solid) | texts(case.settings)
-    with out.folder(solid.name, case.inputs, effective) as folder:
-        made = page(case, out.step)
+    found = study(solid, **bowl, **wanted, command=repeated(out.arguments))
+    effective = columns.conditions(solid) | texts(found.settings)
+    with out.folder(solid.name, found.inputs, effective) as folder:
+        made = page(found, out.step)
         out.warn(*(line for line in made.warnings if line not in solid.warnings))
         write(folder, made, format)
+
+
+def repeated(arguments):
+    """Return the command line that gives the same page, wherever it is written.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        As typed.
+
+    Returns
+    -------
+    str
+    """
+    kept, skip = ["feeder"], False
+    for argument in arguments:
+        if not (skip or argument in TALK | FOLDER or argument.startswith(("--output=", "-o="))):
+            kept.append(argument)
+        skip = argument in FOLDER
+    return shlex.join(kept)

@@ -15,12 +15,14 @@ from feederscrew.output import tables
 from feederscrew.output.page import blocks, numbers
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
-from feederscrew.output.report import Case, page, repeated
+from feederscrew.output.report import page
 from feederscrew.output.report.chapters import CHAPTERS
 from feederscrew.output.report.files import BESIDE
 from feederscrew.output.report.scene import reduced, scene
 from feederscrew.part import load
 from feederscrew.resting import aspects
+from feederscrew.studies.report import report
+from feederscrew_cli.report import repeated
 
 PARTS = Path(__file__).parents[2] / "parts"
 BRACKET = PARTS / "lbracket_30x20x15.stl"
@@ -36,7 +38,7 @@ def bracket():
 @pytest.fixture(scope="module")
 def light(bracket):
     """A report of the bracket without what takes long."""
-    return page(Case.of(bracket, None, (), command="feeder report x.stl"), chapters=LIGHT)
+    return page(report(bracket, None, (), command="feeder report x.stl"), chapters=LIGHT)
 
 
 def decoded(text, kind):
@@ -110,7 +112,7 @@ def test_a_small_mesh_is_left_alone():
 
 def test_a_simplified_view_says_so(bracket, monkeypatch):
     monkeypatch.setattr("feederscrew.output.report.scene.reduced", lambda v, f: (v, f[:-2]))
-    made = page(Case.of(bracket, None, ()), chapters=LIGHT[:1])
+    made = page(report(bracket, None, ()), chapters=LIGHT[:1])
     count = len(bracket.faces)
     assert f"a coarser surface of {count - 2} facets; every number is of all {count}" in html(made)
 
@@ -153,7 +155,7 @@ def test_markdown_has_every_chapter_and_no_script(light):
 
 def test_a_chapter_that_cannot_be_computed_says_why(bracket):
     made = page(
-        Case.of(bracket, None, ["track.radius=10 mm"]),
+        report(bracket, None, ["track.radius=10 mm"]),
         chapters=[c for c in CHAPTERS if c[0] in ("track", "rate")],
     )
     for section in made.sections:
@@ -168,25 +170,25 @@ def test_our_own_bug_is_not_hidden(bracket):
         raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
-        page(Case.of(bracket, None, ()), chapters=[("x", "X", bug)])
+        page(report(bracket, None, ()), chapters=[("x", "X", bug)])
 
 
 def test_markup_in_names_is_text(bracket):
-    case = Case.of(replace(bracket, name="<b>|*x*", source="a`<i>.stl"), None, ())
+    case = report(replace(bracket, name="<b>|*x*", source="a`<i>.stl"), None, ())
     made = page(case, chapters=[c for c in CHAPTERS if c[0] == "part"])
     assert "<h1>&lt;b&gt;|*x*</h1>" in html(made) and "<i>" not in html(made)
     assert markdown(made).startswith("# \\<b>\\|\\*x\\*\n")
 
 
 def test_a_part_card_has_no_views():
-    made = page(Case.of(load(str(PARTS / "magnet.yaml")), None, ()), chapters=LIGHT)
+    made = page(report(load(str(PARTS / "magnet.yaml")), None, ()), chapters=LIGHT)
     text = html(made)
     assert "without a shape: there is nothing to draw or to turn" in text
     assert "<canvas" not in text and "THREE" not in text
 
 
 def test_same_input_same_bytes(bracket, light):
-    again = page(Case.of(bracket, None, (), command="feeder report x.stl"), chapters=LIGHT)
+    again = page(report(bracket, None, (), command="feeder report x.stl"), chapters=LIGHT)
     assert html(again) == html(light)
 
 
@@ -203,7 +205,7 @@ def test_same_input_same_bytes(bracket, light):
 )
 def test_a_wrong_wish_is_a_fault_of_the_whole_report(bracket, given, line):
     with pytest.raises(FeederError) as fault:
-        Case.of(bracket, None, (), **given)
+        report(bracket, None, (), **given)
     assert str(fault.value) == line
 
 
@@ -249,7 +251,7 @@ def test_numbers_keep_three_digits(value, shown):
 
 def test_a_bowl_too_steep_to_travel_is_told(bracket):
     wanted = [chapter for chapter in CHAPTERS if chapter[0] in ("velocity", "rate")]
-    velocity, rate = page(Case.of(bracket, None, ["track.climb=40 deg"]), chapters=wanted).sections
+    velocity, rate = page(report(bracket, None, ["track.climb=40 deg"]), chapters=wanted).sections
     assert "no steady state" in velocity.warnings[0]
     assert velocity.tiles == (blocks.Tile("travels", "–", "no steady state"),)
     assert velocity.blocks[-1].text.startswith("No drive of 5 to 60 deg")
@@ -257,15 +259,15 @@ def test_a_bowl_too_steep_to_travel_is_told(bracket):
 
 
 def test_a_part_with_a_shape_has_the_recommended_answer(bracket):
-    case = Case.of(bracket, None, ())
-    answer = case.found.recommended
+    case = report(bracket, None, ())
+    answer = case.resting.recommended
     (tile,) = page(case, chapters=LIGHT[:1]).tiles
     assert tile.note.startswith(f"{100.0 * answer.p[case.row]:.3g} % of drops (")
     assert tile.note.endswith(f" %), {answer.rule}")
 
 
 def test_the_likeliest_aspect_is_wanted_unless_another_is():
-    case = Case.of(load(str(PARTS / "magnet.yaml")), None, ())
+    case = report(load(str(PARTS / "magnet.yaml")), None, ())
     assert case.aspect == "3"  # of a card in the order of its source, 11, 14 and 75 % by CSA
     (tile,) = page(case, chapters=LIGHT[:1]).tiles
     assert tile == blocks.Tile("rests most often on", "aspect 3", "42.8 to 74.7 % of drops, by 3 rules")

@@ -16,10 +16,11 @@ from PIL import Image
 from feederscrew.output import tables
 from feederscrew.output.aspects import tables as aspects_tables
 from feederscrew.output.page.as_html import html
-from feederscrew.output.report import Case, page
+from feederscrew.output.report import page
 from feederscrew.output.report.chapters import CHAPTERS
 from feederscrew.part import load
 from feederscrew.studies.aspects import AspectsStudy
+from feederscrew.studies.report import report
 
 BRACKET = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -67,7 +68,7 @@ pytestmark = pytest.mark.skipif(BROWSER is None, reason="no Chromium here: insta
 
 @pytest.fixture(scope="module")
 def case():
-    return Case.of(load(str(BRACKET)), None, (), command="feeder report x.stl")
+    return report(load(str(BRACKET)), None, (), command="feeder report x.stl")
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +112,7 @@ def told(visit, text):
 
 
 def test_views_are_drawn_and_turn(told, case):
-    assert told["views"] == len(case.found.names)
+    assert told["views"] == len(case.resting.aspects.names)
     area = 680 * 544
     for name in ("start", "turned", "key", "below"):
         assert 0.03 * area < told[name][0] < 0.6 * area
@@ -121,7 +122,7 @@ def test_views_are_drawn_and_turn(told, case):
 
 
 def test_the_table_is_that_of_the_csv(told, case):
-    written = tables.text(aspects_tables.aspects(AspectsStudy(case.part, case.found)), "csv")
+    written = tables.text(aspects_tables.aspects(AspectsStudy(case.part, case.resting.aspects)), "csv")
     assert told["table"] == list(csv.reader(io.StringIO(written)))
 
 

@@ -1,7 +1,6 @@
 """One page on a part in a bowl: what is known of it, as an HTML file that needs no other, or as Markdown."""
 
-from feederscrew.output.report.case import Case, repeated
 from feederscrew.output.report.chapters import page
 from feederscrew.output.report.files import write
 
-__all__ = ["Case", "page", "repeated", "write"]
+__all__ = ["page", "write"]

@@ -29,7 +29,7 @@ def page(case, step=nullcontext, chapters=CHAPTERS):
 
     Parameters
     ----------
-    case : Case
+    case : ReportStudy
     step : callable
         Of a title; gives a context manager round the computation of that chapter.
     chapters : sequence

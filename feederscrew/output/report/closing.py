@@ -39,11 +39,11 @@ def repeat(case):
     """The inputs: command, files, bowl values, versions, and the table of aspects to the last digit."""
     hashes = tables.frame({"input": list(case.inputs), "sha256": list(case.inputs.values())})
     bowl = slide_tables.settings(case.settings)[["key", "value", "from", "meaning"]]
-    chain = [f"device {device.kind} ({device.where})" for device in case.chain]
+    chain = [f"device {device.kind} ({device.where})" for device in case.devices]
     names, versions = zip(*_versions())
     return Section(
         (
-            Code(case.command),
+            *((Code(case.command),) if case.command else ()),
             Text("The same program and inputs give this page again, byte for byte."),
             Table(hashes),
             Text("The bowl: every value in effect and where it came from."),

@@ -5,7 +5,6 @@ from feederscrew.output.machine import offers as machine_files
 from feederscrew.output.machine import tables
 from feederscrew.output.page.blocks import Notes, Picture, Section, Table, Text, Tile
 from feederscrew.output.page.numbers import SHORT, number
-from feederscrew.studies import bowl as studies
 
 SIZED = (
     "The bowl that brings the rate asked for, by the rules of thumb of the section sizing: what the bowl "
@@ -16,15 +15,8 @@ GIVEN = "The springs, the tuning and the drift of the machine of the bowl file."
 
 def bowl(case):
     """Bowl, springs and drift: of a target, or of the machine in the bowl file; None without either."""
-    if case.target is not None:
-        found = studies.bowl(
-            *(case.settings, case.part, case.target, case.chain),
-            **{"aspect": case.counted, "heading": case.heading if case.counted else None},
-            **{"rule": case.rule, "gap": case.gap, "fill": case.fill},
-        )
-    elif any(s.given and s.key.section == "machine" for s in case.settings):
-        found = studies.machine(case.settings)
-    else:
+    found = case.machine
+    if found is None:
         return None
     drawn = offers.by_name(machine_files(found))["bowl.png"]
     sized = found.order is not None

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew.machine import speeds
 from feederscrew.output.convey import figures as convey_plots
 from feederscrew.output.convey import files as convey_files
 from feederscrew.output.convey import tables as convey_tables
@@ -21,17 +20,9 @@ from feederscrew.output.slide import tables as slide_tables
 from feederscrew.output.track import files as track_files
 from feederscrew.output.track import map_tables
 from feederscrew.output.track import tables as track_tables
-from feederscrew.studies import convey as convey_study
-from feederscrew.studies.floor import floor as floor_study
-from feederscrew.studies.headings import headings as headings_study
-from feederscrew.studies.rate import rate as rate_study
-from feederscrew.studies.slide import slide as slide_study
-from feederscrew.studies.track import track as track_study
 from feederscrew.units import factor
 
 MM, DEG = factor("mm", "length"), factor("deg", "angle")
-ANGLES, STROKES = 56, 48  # cells of the velocity map
-LEAST_STROKE = 0.1 * MM  # the velocity map goes at least so far
 HEADINGS = {  # columns of the table, and their names here
     "aspect": "aspect",
     "heading_deg": "heading_deg",
@@ -53,14 +44,14 @@ WORDS = {  # of a regime, for a tile
 
 def slide(case):
     """When a part slips, over its heading and the drive."""
-    study = slide_study(case.bowl)
+    study = case.slide
     pictures = _taken(slide_files.offers(study), "slide_regimes", "slide_contours")
     return Section((*_notes(slide_tables.remarks(study)), Table(slide_tables.summary(study.maps)), *pictures))
 
 
 def convey(case):
     """Operating point and velocity."""
-    study = convey_study.convey(case.bowl)
+    study = case.convey
     document = convey_tables.document(study)
     blocks = [Table(convey_tables.summary(document))]
     if study.answer.status != "no steady state":
@@ -77,10 +68,10 @@ def convey(case):
 
 def floor(case):
     """Forces and regimes on the bowl's floor."""
-    found, settings = floor_study(case.part, case.bowl, case.aspect, case.heading or 0.0), case.settings
-    document = floor_tables.document(found, bowls.texts(settings))
+    found, settings = case.floor, bowls.texts(case.settings)
+    document = floor_tables.document(found, settings)
     told = floor_tables.map_remarks(found)
-    offered = floor_files.offers(found, bowls.texts(settings))
+    offered = floor_files.offers(found, settings)
     pictures = _taken(offered, "floor_plan", "floor_frequency_amplitude", "floor_beta_friction")
     lead = Text(
         f"Aspect {found.posture.name}, heading {np.degrees(found.heading):.4g} deg, at the upper reversal of "
@@ -92,7 +83,7 @@ def floor(case):
 
 def headings(case):
     """How the part lies along the wall."""
-    study = headings_study(case.part, case.bowl.track)
+    study = case.headings
     frame = heading_tables.frame(study)[list(HEADINGS)].rename(columns=HEADINGS)
     lead = Text(
         "The directions in which the part is stable when pushed against the wall, the share of all "
@@ -105,7 +96,7 @@ def headings(case):
 
 def track(case):
     """Reactions on the track, against the wall."""
-    found = track_study(case.part, case.bowl, case.aspect, case.heading)
+    found = case.track
     settings, grid = bowls.texts(case.settings), found.over(case.settings)
     document = track_tables.document(found, settings)
     offered = track_files.offers(found, settings, grid)
@@ -119,10 +110,7 @@ def track(case):
 
 def rate(case):
     """Well-oriented parts a minute."""
-    found = rate_study(
-        case.part, case.bowl, case.aspect, heading=case.heading, rule=case.rule,
-        devices=case.chain, gap=case.gap, fill=case.fill, aspects=case.found,
-    )  # fmt: skip
+    found = case.rate
     document = rate_tables.document(found)
     lead = Text(
         "The chain from velocity to rate; the range in brackets is over all starts, friction a fifth "
@@ -132,21 +120,13 @@ def rate(case):
     return Section(
         (lead, Table(rate_tables.summary(document)), Table(document["orientations"])),
         tiles=(_rate_tile(document),),
-        warnings=(*rate_tables.remarks(found), *speeds.remark(found.rate.velocity.value, case.bowl.sizing)),
+        warnings=(*rate_tables.remarks(found), *found.warnings),
     )
 
 
 def _velocity_map(case):
     """Velocity and regimes over vibration angle and stroke, with the bowl's own point."""
-    drive = case.bowl.drive
-    top = max(2.5 * drive.amplitude, LEAST_STROKE) / MM
-    spans = bowls.ranges(
-        (
-            f"drive.vibration_angle=5deg:60deg:{ANGLES}",
-            f"drive.amplitude={0.02 * top:.4g}mm:{top:.4g}mm:{STROKES}",
-        )
-    )
-    study = convey_study.velocity_map(case.settings, spans, drawn="point")
+    study = case.velocity_map
     if not np.isfinite(study.grid.values["velocity"]).any():
         return Text("No drive of 5 to 60 deg and up to 2.5 times this stroke has a steady velocity here.")
     return _taken(convey_files.map_offers(study), "convey_map")[0]

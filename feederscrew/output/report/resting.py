@@ -9,14 +9,11 @@ from feederscrew.output.aspects import tables as aspects_tables
 from feederscrew.output.columns import MM
 from feederscrew.output.inertia import tables as inertia_tables
 from feederscrew.output.offers import by_name
-from feederscrew.output.page.blocks import Notes, Picture, Section, Sheet, Table, Text, Tile, Views
+from feederscrew.output.page.blocks import CsvSheet, Notes, Picture, Section, Table, Text, Tile, Views
 from feederscrew.output.page.numbers import percent
 from feederscrew.output.report import graph
-from feederscrew.output.report.case import likeliest
 from feederscrew.output.report.scene import scene
 from feederscrew.resting.tumbling import by_class
-from feederscrew.studies.aspects import AspectsStudy
-from feederscrew.studies.inertia import inertia
 
 MOST_VIEWS = aspects_tables.MOST
 CARD = "A part card is published data without a shape: there is nothing to draw or to turn."
@@ -31,7 +28,7 @@ UJ = units.factor("uJ", "energy")
 def the_part(case):
     """Mass properties and warnings."""
     part = case.part
-    told = inertia_tables.rows(inertia(part))
+    told = inertia_tables.rows(case.inertia)
     rows = told[told["quantity"].isin(SHOWN)].reset_index(drop=True)
     names = [" ".join(tables.heading(name)).strip() for name in rows["quantity"]]
     facts = tables.frame({"quantity": names, "value": rows["value"]})
@@ -42,8 +39,8 @@ def the_part(case):
 
 def aspects(case):
     """Views, tables and chart of the aspects: one table of shapes and heights, one of probabilities."""
-    part, found = case.part, case.found
-    study = AspectsStudy(part, found)
+    part, study = case.part, case.resting
+    found = study.aspects
     table, said = aspects_tables.aspects(study), aspects_tables.remarks(study)
     offered = by_name(aspects_files.offers(study))
     rows = range(min(len(found.names), MOST_VIEWS))
@@ -62,10 +59,10 @@ def aspects(case):
 
 def tips(case):
     """The tipping graph, from exact tumbling."""
-    ground = by_class.ground(case.part, case.found)
-    exact = by_class.exact(ground, case.part, case.found)
-    shown = np.flatnonzero(case.found.stable)[: graph.MOST]
-    names = [case.found.names[row] for row in shown]
+    ground = by_class.ground(case.part, case.resting.aspects)
+    exact = by_class.exact(ground, case.part, case.resting.aspects)
+    shown = np.flatnonzero(case.resting.aspects.stable)[: graph.MOST]
+    names = [case.resting.aspects.names[row] for row in shown]
     place = {row: k for k, row in enumerate(shown.tolist())}
     ways = [
         by_class.Transition(place[way.start], place[way.end], way.lift, way.axis)
@@ -97,15 +94,13 @@ def tips(case):
 
 def numbers(case):
     """The table of aspects cell by cell, as ``aspects.csv`` has it."""
-    return Sheet(
-        "aspects.csv", tables.text(aspects_tables.aspects(AspectsStudy(case.part, case.found)), "csv")
-    )
+    return CsvSheet("aspects.csv", tables.text(aspects_tables.aspects(case.resting), "csv"))
 
 
 def _views(case, rows, offered):
     """Turnable views, the picture that replaces them on paper, and what is simplified."""
-    drawn = scene(case.part, case.found, rows)
-    captions = tuple(_caption(case.found, row) for row in rows)
+    drawn = scene(case.part, case.resting.aspects, rows)
+    captions = tuple(_caption(case.resting.aspects, row) for row in rows)
     yield Views(drawn, captions)
     yield _picture(offered["aspects.png"], printed=True)
     if drawn["facets"] < drawn["all"]:
@@ -131,17 +126,17 @@ def _caption(found, row):
 
 def _tile(case):
     """Which aspect, and how likely."""
-    first = case.aspect == likeliest(case.found)
+    first = case.aspect == case.likeliest
     return Tile("rests most often on" if first else "wanted", f"aspect {case.aspect}", _how_likely(case))
 
 
 def _how_likely(case):
     """The recommended answer with its interval; for a card, what its rules span."""
-    answer = case.found.recommended
+    answer = case.resting.aspects.recommended
     if answer is not None:
         share, low, high = (percent(ends[case.row]) for ends in (answer.p, answer.low, answer.high))
         return f"{share} % of drops ({low} to {high} %), {answer.rule}"
-    chances = {rule: values[case.row] for rule, values in case.found.probabilities.items()}
+    chances = {rule: values[case.row] for rule, values in case.resting.aspects.probabilities.items()}
     known = {rule: share for rule, share in chances.items() if np.isfinite(share)}
     if not known:
         return "no rule tells how often"

@@ -1,0 +1,188 @@
+"""The study of ``feeder report``: everything the other studies find of one part in one bowl, each on request."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from feederscrew import bowl as bowls
+from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.settings import Setting
+from feederscrew.errors import FeederError
+from feederscrew.part.record import Part
+from feederscrew.rates import devices
+from feederscrew.resting.aspects import find
+from feederscrew.resting.posture import posture
+from feederscrew.studies import bowl as machines
+from feederscrew.studies import convey
+from feederscrew.studies.aspects import AspectsStudy
+from feederscrew.studies.floor import floor
+from feederscrew.studies.headings import headings
+from feederscrew.studies.inertia import inertia
+from feederscrew.studies.rate import rate
+from feederscrew.studies.slide import slide
+from feederscrew.studies.track import track
+
+ANGLES, STROKES = 56, 48  # cells of the velocity map
+LEAST_STROKE = 0.1e-3  # [m] the velocity map goes at least so far
+ROOM = 2.5  # and to so many times the bowl's own stroke
+
+
+@dataclass(frozen=True, eq=False)
+class ReportStudy:
+    """A part, the aspect wanted of it, and a bowl, checked; every chapter's study when it is asked for."""
+
+    resting: AspectsStudy
+    settings: tuple[Setting, ...]
+    bowl: Bowl
+    path: str | None  # of the bowl file
+    devices: tuple[devices.Device, ...]
+    aspect: str  # the wanted one
+    likeliest: str  # by the rule that ranks them
+    heading: float | None  # [rad]
+    rule: str
+    gap: float  # [m]
+    fill: float  # [1]
+    target: float | None  # [1/s] that a bowl is sized for
+    counted: str | None  # aspect that counts for the target; None: whatever passes
+    inputs: dict[str, str] = field(default_factory=dict)  # sha256 by path
+    command: str = ""  # that repeats it
+
+    @property
+    def part(self) -> Part:
+        """The part."""
+        return self.resting.part
+
+    @property
+    def row(self) -> int:
+        """Of the wanted aspect."""
+        return self.resting.aspects.names.index(self.aspect)
+
+    @cached_property
+    def inertia(self):
+        """Mass properties, an InertiaStudy."""
+        return inertia(self.part)
+
+    @cached_property
+    def headings(self):
+        """The stable headings of every aspect, a HeadingsStudy."""
+        return headings(self.part, self.bowl.track)
+
+    @cached_property
+    def convey(self):
+        """Velocity at the bowl's own point, a ConveyStudy."""
+        return convey.convey(self.bowl)
+
+    @cached_property
+    def velocity_map(self):
+        """Velocity over vibration angle and stroke, with the bowl's own point, a ConveyMap."""
+        top = 1e3 * max(ROOM * self.bowl.drive.amplitude, LEAST_STROKE)
+        strokes = f"drive.amplitude={0.02 * top:.4g}mm:{top:.4g}mm:{STROKES}"
+        spans = bowls.ranges((f"drive.vibration_angle=5deg:60deg:{ANGLES}", strokes))
+        return convey.velocity_map(self.settings, spans, drawn="point")
+
+    @cached_property
+    def rate(self):
+        """Well-oriented parts, a RateStudy."""
+        return rate(
+            self.part, self.bowl, self.aspect, heading=self.heading, rule=self.rule,
+            devices=self.devices, gap=self.gap, fill=self.fill, aspects=self.resting.aspects,
+        )  # fmt: skip
+
+    @cached_property
+    def machine(self):
+        """The bowl for the target, or the machine of the bowl file; None without either."""
+        if self.target is not None:
+            wanted = {"aspect": self.counted, "heading": self.heading if self.counted else None}
+            return machines.bowl(
+                self.settings, self.part, self.target, self.devices,
+                **wanted, rule=self.rule, gap=self.gap, fill=self.fill,
+            )  # fmt: skip
+        given = any(s.given and s.key.section == "machine" for s in self.settings)
+        return machines.machine(self.settings) if given else None
+
+    @cached_property
+    def track(self):
+        """The part on the track, a TrackStudy."""
+        return track(self.part, self.bowl, self.aspect, self.heading)
+
+    @cached_property
+    def floor(self):
+        """The part on the floor, a FloorStudy."""
+        return floor(self.part, self.bowl, self.aspect, self.heading or 0.0)
+
+    @cached_property
+    def slide(self):
+        """The sliding map, a SlideStudy."""
+        return slide(self.bowl)
+
+
+def report(
+    part,
+    path=None,
+    overrides=(),
+    *,
+    aspect=None,
+    heading=None,
+    rule="pmi",
+    gap=0.0,
+    fill=1.0,
+    target=None,
+    command="",
+):
+    """Check everything that can be wrong with the inputs of a report, before anything long is computed.
+
+    Parameters
+    ----------
+    part : Part
+    path, overrides
+        As for ``bowl.read``.
+    aspect : str, optional
+        The wanted one; without it, the likeliest by the rule that ranks them (CSA).
+    heading : float [rad], optional
+    rule : str
+        Whose probabilities count for the rate.
+    gap : float [m]
+    fill : float [1]
+    target : float [1/s], optional
+        Rate that a bowl is sized for.
+    command : str
+        That repeats the report.
+
+    Returns
+    -------
+    ReportStudy
+
+    Raises
+    ------
+    FeederError
+        If there is no such aspect or rule, or the bowl file has faults.
+    """
+    settings = bowls.settings(path, overrides)
+    found = find(part)
+    if rule not in found.chances:
+        known = ", ".join(found.chances)
+        raise FeederError(f"--rule {rule}", "has no probabilities of this part", f"choose one of {known}")
+    first = likeliest(found)
+    return ReportStudy(
+        resting=AspectsStudy(part, found),
+        settings=settings,
+        bowl=bowls.record(settings),
+        path=path,
+        devices=tuple(devices.read(path)),
+        aspect=posture(part, found, first if aspect is None else aspect).name,
+        likeliest=first,
+        heading=heading,
+        rule=rule,
+        gap=gap,
+        fill=fill,
+        target=target,
+        counted=aspect,
+        inputs={part.source: part.sha256} | bowls.identity(path),
+        command=command,
+    )
+
+
+def likeliest(found):
+    """Return the aspect the part rests on most often by CSA; the first where no rule tells."""
+    return found.names[int(np.argmax(np.nan_to_num(found.probabilities["csa"])))]
