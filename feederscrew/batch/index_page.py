@@ -6,14 +6,14 @@ from feederscrew.batch import summary
 from feederscrew.batch.store import PARTS
 from feederscrew.batch.task import DONE
 from feederscrew.batch.work import THUMBNAIL
-from feederscrew.output.page.blocks import Entry, Matrix, Page, Picture, Section
+from feederscrew.output.page.blocks import MarkedCell, Matrix, Page, Picture, Section
 
 NAME = "index.html"
 HEADINGS = (
     "", "part", "bowl", "mass [g]", "aspects", "leaves on", "velocity [mm/s]", "parts a minute",
     "what to know",
 )  # fmt: skip
-NUMBERS = Matrix(("all numbers",), ((Entry(summary.NAME, link=summary.NAME),),))
+NUMBERS = Matrix(("all numbers",), ((MarkedCell(summary.NAME, link=summary.NAME),),))
 
 
 def page(store, rows):
@@ -37,18 +37,18 @@ def page(store, rows):
 
 def _row(store, row):
     said = "; ".join(filter(None, (row["reason"], row["note"], row["warnings"])))
-    folder = Entry(row["folder"], link=f"{PARTS}/{quote(row['folder'])}/")
-    start = (Entry("", picture=_picture(store, row)), folder, Entry(row["config"]))
+    folder = MarkedCell(row["folder"], link=f"{PARTS}/{quote(row['folder'])}/")
+    start = (MarkedCell("", picture=_picture(store, row)), folder, MarkedCell(row["config"]))
     if row["status"] != DONE:
-        return (*start, Entry("failed", "failed"), *[Entry("")] * 4, Entry(said, "failed"))
+        return (*start, MarkedCell("failed", "failed"), *[MarkedCell("")] * 4, MarkedCell(said, "failed"))
     leaves = f"{row['aspect']} at {row['heading_deg']:.4g}\u00b0" if row["aspect"] else "-"
     numbers = [_number(row[name]) for name in ("mass_g", "aspects")]
     rates = [_number(row[name]) for name in ("velocity_mm_s", "parts_per_minute")]
-    return (*start, *numbers, Entry(leaves), *rates, Entry(said))
+    return (*start, *numbers, MarkedCell(leaves), *rates, MarkedCell(said))
 
 
 def _number(value):
-    return Entry("-" if value is None else f"{value:.4g}", "number")
+    return MarkedCell("-" if value is None else f"{value:.4g}", "number")
 
 
 def _picture(store, row):

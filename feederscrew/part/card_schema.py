@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Key:
+class CardKey:
     """One key of a part card."""
 
     word: str
@@ -18,34 +18,34 @@ class Key:
 MATRIX = "three rows of three, as in [95.3 g mm2, 0 g mm2, -24.5 g mm2]"
 
 CARD = (
-    Key("mass", "mass", "1.98 g", required=True),
-    Key("centre_of_mass", "length", "[3.3 mm, 0 mm, 9 mm]", required=True, shape=(3,), positive=False),
-    Key("inertia", "inertia", MATRIX, required=True, shape=(3, 3), positive=False),
-    Key("aspects", "rows", "- {aspect: 1, height: 6.9 mm}", required=True),
-    Key("floor", "section", "{aspect: 1, drive_offset: 3.2 mm}"),
-    Key("track", "section", "{wall_lever: 8 mm, wall_lever_angle: 64 deg}"),
+    CardKey("mass", "mass", "1.98 g", required=True),
+    CardKey("centre_of_mass", "length", "[3.3 mm, 0 mm, 9 mm]", required=True, shape=(3,), positive=False),
+    CardKey("inertia", "inertia", MATRIX, required=True, shape=(3, 3), positive=False),
+    CardKey("aspects", "rows", "- {aspect: 1, height: 6.9 mm}", required=True),
+    CardKey("floor", "section", "{aspect: 1, drive_offset: 3.2 mm}"),
+    CardKey("track", "section", "{wall_lever: 8 mm, wall_lever_angle: 64 deg}"),
 )
 ASPECT = (
-    Key("aspect", "text", "1", required=True),
-    Key("height", "length", "6.9 mm", required=True),
-    Key("faces", "number", "2"),
-    Key("polar_inertia", "inertia", "90.8 g mm2"),
-    Key("contact_area", "area", "100 mm2"),
-    Key("solid_angle", "solid angle", "1.8 sr"),
-    Key("csa_height", "length", "10.1 mm"),
-    Key("stability_height", "length", "10.1 mm"),
+    CardKey("aspect", "text", "1", required=True),
+    CardKey("height", "length", "6.9 mm", required=True),
+    CardKey("faces", "number", "2"),
+    CardKey("polar_inertia", "inertia", "90.8 g mm2"),
+    CardKey("contact_area", "area", "100 mm2"),
+    CardKey("solid_angle", "solid angle", "1.8 sr"),
+    CardKey("csa_height", "length", "10.1 mm"),
+    CardKey("stability_height", "length", "10.1 mm"),
 )
 FLOOR = (
-    Key("aspect", "text", "5"),
-    Key("drive_offset", "length", "3.2 mm", positive=False),
-    Key("centroid_height", "length", "3.3 mm"),
-    Key("polar_inertia", "inertia", "95.3 g mm2"),
+    CardKey("aspect", "text", "5"),
+    CardKey("drive_offset", "length", "3.2 mm", positive=False),
+    CardKey("centroid_height", "length", "3.3 mm"),
+    CardKey("polar_inertia", "inertia", "95.3 g mm2"),
 )
 TRACK = (
     *FLOOR,
-    Key("wall_lever", "length", "8 mm"),
-    Key("wall_lever_angle", "angle", "64 deg"),
-    Key("wall_x", "length", "[6.7 mm, 9 mm]", shape=(2,)),
-    Key("wall_y", "length", "4 mm"),
-    Key("wall_friction_y", "length", "4 mm"),
+    CardKey("wall_lever", "length", "8 mm"),
+    CardKey("wall_lever_angle", "angle", "64 deg"),
+    CardKey("wall_x", "length", "[6.7 mm, 9 mm]", shape=(2,)),
+    CardKey("wall_y", "length", "4 mm"),
+    CardKey("wall_friction_y", "length", "4 mm"),
 )

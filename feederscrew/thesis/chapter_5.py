@@ -27,7 +27,7 @@ class Curves:
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
+class FigureGrid:
     """A value over two parameters."""
 
     x: np.ndarray  # (N,)
@@ -57,13 +57,13 @@ def limit_surface(number):
 
     Returns
     -------
-    Surface
+    FigureGrid
         x is alpha - theta [rad], y is G.
     """
     beta = np.radians(BETA_OF[number])
     values = limits.published_limit(RATIOS[:, None], beta, ANGLES)
     throw = np.broadcast_to(limits.throw_number(RATIOS[:, None], beta), values.shape)
-    return Surface(ANGLES, RATIOS, check.frozen(values), check.frozen(throw))
+    return FigureGrid(ANGLES, RATIOS, check.frozen(values), check.frozen(throw))
 
 
 def sliding_acceleration(acceleration, beta, friction, gravity=GRAVITY):
@@ -101,7 +101,7 @@ def figure_5_6():
     ratio = ratio_of_5_6()
     values = sliding_acceleration(ratio * GRAVITY, betas, frictions[:, None])
     throw = np.broadcast_to(limits.throw_number(ratio, betas), values.shape)
-    return Surface(betas, frictions, check.frozen(values), check.frozen(throw))
+    return FigureGrid(betas, frictions, check.frozen(values), check.frozen(throw))
 
 
 def figure_5_7():
@@ -109,4 +109,4 @@ def figure_5_7():
     frequencies, amplitudes = np.linspace(0.0, 100.0, 101), np.linspace(0.0, 1e-3, 51)
     ratio = limits.acceleration_ratio(amplitudes[:, None], frequencies, GRAVITY)
     values, throw = sliding_acceleration(ratio * GRAVITY, BETA, FRICTION), limits.throw_number(ratio, BETA)
-    return Surface(frequencies, amplitudes, check.frozen(values), check.frozen(throw))
+    return FigureGrid(frequencies, amplitudes, check.frozen(values), check.frozen(throw))

@@ -36,7 +36,7 @@ class Figure:
 
     number: str
     caption: str
-    data: Callable[[], object]  # Bars, ByRatio, chapter_5.Curves or chapter_5.Surface
+    data: Callable[[], object]  # Bars, ByRatio, chapter_5.Curves or chapter_5.FigureGrid
 
 
 def t_shape_profiles():

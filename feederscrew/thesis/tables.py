@@ -13,7 +13,7 @@ TOTAL = "total"
 
 
 @dataclass(frozen=True)
-class Table:
+class PrintedTable:
     """One table of the thesis; every cell is the text in print, '' where print leaves it blank."""
 
     number: str  # as the thesis counts: '3-9'
@@ -48,7 +48,7 @@ def table(number):
 
     Returns
     -------
-    Table
+    PrintedTable
     """
     lines = (resources.files("feederscrew.thesis") / "data" / _file(number)).read_text().splitlines()
     head = dict(line[2:].split(": ", 1) for line in lines if line.startswith("#"))
@@ -56,7 +56,7 @@ def table(number):
     keys = [name for name in reader.fieldnames if name in KEYS]
     columns = tuple(name for name in reader.fieldnames if name not in keys)
     rows = {" - ".join(row[key] for key in keys): {c: row[c] for c in columns} for row in reader}
-    return Table(head["table"], head["caption"], head["source"], head["units"], columns, rows)
+    return PrintedTable(head["table"], head["caption"], head["source"], head["units"], columns, rows)
 
 
 def _file(number):

@@ -40,7 +40,7 @@ def cylinder(sections):
 
 
 def solid_of(part):
-    return render.Solid(part.vertices, part.faces, part.centre_of_mass)
+    return render.Rays(part.vertices, part.faces, part.centre_of_mass)
 
 
 def standing(part, row=0):
@@ -103,7 +103,7 @@ def test_turning_and_moving_the_file_changes_no_outline(row):
 
 def test_background_is_paper_and_the_part_is_not():
     solid, stand, _ = standing(box())
-    frame = shading.Frame(-1.5, -1.5, 0.03, 100, 100)
+    frame = shading.Shot(-1.5, -1.5, 0.03, 100, 100)
     image = shading.picture(solid, stand, frame)
     assert image.shape == (100, 100, 3)
     assert image[0] == pytest.approx(1.0)
@@ -144,7 +144,7 @@ def test_a_coarse_prism_keeps_its_edges():
 def test_a_large_mesh_is_not_smoothed(monkeypatch):
     monkeypatch.setattr(smoothing, "MOST_FACETS", 10)
     assert smoothing.corner_normals(*cylinder(24)) is None
-    solid = render.Solid(*cylinder(24), centre=np.zeros(3))
+    solid = render.Rays(*cylinder(24), centre=np.zeros(3))
     _, normals = solid.hits([[3.0, 0.02, 0.3]], [-1.0, 0.0, 0.0])
     assert normals[0, 0] == pytest.approx(np.cos(np.pi / 24), rel=1e-6)
 

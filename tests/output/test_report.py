@@ -136,7 +136,7 @@ def test_the_licence_and_sum_of_three_are_told():
 
 
 def test_cells_of_the_sheet_are_those_of_the_csv(light):
-    sheet = next(b for s in light.sections for b in s.blocks if isinstance(b, blocks.Sheet))
+    sheet = next(b for s in light.sections for b in s.blocks if isinstance(b, blocks.CsvSheet))
     inside = re.search(r'id="aspects.csv">(.*?)</table>', html(light), re.S).group(1)
     rows = [re.findall(r"<t[hd]>(.*?)</t[hd]>", row) for row in re.findall(r"<tr>(.*?)</tr>", inside)]
     assert "".join(",".join(row) + "\n" for row in rows) == sheet.csv

@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew.output import style
 from feederscrew.output.solid import marks, render, shading
-from feederscrew.output.solid.shading import Frame
+from feederscrew.output.solid.shading import Shot
 from feederscrew.output.solid.stance import outermost, stance
 
 MOST_ACROSS = 4  # panels in a row
@@ -59,7 +59,7 @@ def aspects(part, found, rows):
     -------
     Figure
     """
-    solid = render.Solid(part.vertices, part.faces, part.centre_of_mass)
+    solid = render.Rays(part.vertices, part.faces, part.centre_of_mass)
     points = outermost(solid.points)
     stances = [stance(points, found.normals[row], found.heights[row] / solid.size) for row in rows]
     sheet = _sheet(stances, len(found.probabilities))
@@ -97,7 +97,7 @@ def _frame(sheet, standing):
     lowest, highest = standing.framed
     left = 0.5 * (lowest[0] + highest[0]) - 0.5 * width * sheet.pixel
     bottom = 0.5 * (lowest[1] + highest[1]) - 0.5 * height * sheet.pixel
-    return Frame(left, bottom, sheet.pixel, width, height)
+    return Shot(left, bottom, sheet.pixel, width, height)
 
 
 def _axes(figure, sheet, panel):

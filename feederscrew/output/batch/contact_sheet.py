@@ -33,7 +33,7 @@ def thumbnail(part, found):
     bytes
         A PNG of ``WIDTH`` by ``HEIGHT`` pixels, the same for the same part.
     """
-    solid = render.Solid(part.vertices, part.faces, part.centre_of_mass)
+    solid = render.Rays(part.vertices, part.faces, part.centre_of_mass)
     standing = stance(outermost(solid.points), found.normals[0], found.heights[0] / solid.size)
     lowest, highest = standing.framed
     pixel = ROOM * max((highest - lowest) / (WIDTH, HEIGHT))

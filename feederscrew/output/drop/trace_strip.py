@@ -10,7 +10,7 @@ from feederscrew.output import style as plots
 from feederscrew.output.columns import MM
 from feederscrew.output.drop import trace_curve as drop_trace_curve
 from feederscrew.output.solid import marks, render, shading
-from feederscrew.output.solid.shading import Frame
+from feederscrew.output.solid.shading import Shot
 from feederscrew.output.solid.stance import TURN, outermost, placed
 
 ACROSS, DOWN = 6, 2  # stills
@@ -33,7 +33,7 @@ FOOT = {"color": plots.INK, "linewidth": 0.7, "linestyle": (0, (3, 2)), "zorder"
 class Strip:
     """What all stills share; lengths in sizes of the solid."""
 
-    solid: render.Solid
+    solid: render.Rays
     trace: Trace
     places: np.ndarray  # (N, 3) centre of mass, by row of the trace
     heading: np.ndarray  # (3,) where the part goes, along the picture
@@ -74,7 +74,7 @@ def strip(part, aspects, trace, title):
     -------
     Figure
     """
-    solid = render.Solid(part.vertices, part.faces, part.centre_of_mass)
+    solid = render.Rays(part.vertices, part.faces, part.centre_of_mass)
     rows = chosen(trace, ACROSS * DOWN)
     laid, stances = _layout(solid, trace, rows)
     figure = plots.page(*laid.page)
@@ -155,7 +155,7 @@ def _layout(solid, trace, rows):
 def _still(axes, laid, standing, panel, row):
     """The part on its way, on a floor with a grid that stays where it is."""
     _, _, width, height = laid.place(panel)
-    frame = Frame(-0.5 * width * laid.pixel, laid.bottoms[panel], laid.pixel, width, height)
+    frame = Shot(-0.5 * width * laid.pixel, laid.bottoms[panel], laid.pixel, width, height)
     axes.imshow(_clear(laid.solid, standing, frame), extent=frame.extent, interpolation="nearest", zorder=3)
     place, to_file = laid.places[row], laid.trace.turns[row].inv()
     foot = np.linspace(place * [1.0, 1.0, 0.0], place, PIECES)

@@ -108,7 +108,7 @@ def _block(block):
             return f"<pre>{escape(text)}</pre>"
         case kinds.Table(frame):
             return _table(frame)
-        case kinds.Sheet(file, text):
+        case kinds.CsvSheet(file, text):
             return _sheet(file, text)
         case kinds.Picture():
             return _picture(block)

@@ -40,7 +40,7 @@ def _block(block, beside):
             return f"```sh\n{text}\n```"
         case kinds.Table(frame):
             return _table(frame)
-        case kinds.Sheet(file):
+        case kinds.CsvSheet(file):
             return f"[{file}]({beside}{file})"
         case kinds.Picture(file=file, alt=alt):
             return f"![{alt}]({beside}{file})"

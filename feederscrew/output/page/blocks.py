@@ -37,7 +37,7 @@ class Table:
 
 
 @dataclass(frozen=True)
-class Sheet:
+class CsvSheet:
     """A CSV file cell by cell, to copy from or to save."""
 
     file: str
@@ -80,7 +80,7 @@ class Links:
 
 
 @dataclass(frozen=True)
-class Entry:
+class MarkedCell:
     """One cell of a `Matrix`: its text, a mark for the style sheet, and what lies behind it."""
 
     text: str
@@ -94,7 +94,7 @@ class Matrix:
     """A table whose cells are marked one by one."""
 
     heads: tuple[str, ...]
-    rows: tuple[tuple[Entry, ...], ...]
+    rows: tuple[tuple[MarkedCell, ...], ...]
 
 
 @dataclass(frozen=True)

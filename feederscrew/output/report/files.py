@@ -2,7 +2,7 @@
 
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
-from feederscrew.output.page.blocks import Picture, Sheet
+from feederscrew.output.page.blocks import CsvSheet, Picture
 
 FORMATS = ("html", "md")
 BESIDE = "report/"  # folder of the pictures, beside the text
@@ -26,5 +26,5 @@ def write(folder, page, format):
         for block in section.blocks:
             if isinstance(block, Picture):
                 folder.write(f"{BESIDE}{block.file}", block.content)
-            elif isinstance(block, Sheet):
+            elif isinstance(block, CsvSheet):
                 folder.write(f"{BESIDE}{block.file}", block.csv)

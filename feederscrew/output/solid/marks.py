@@ -37,7 +37,7 @@ def contact(axes, solid, standing, polygon):
     ----------
     axes : Axes
         Over the picture.
-    solid : Solid
+    solid : Rays
         What hides it.
     standing : Stance
         How the solid stands and from where it is seen.
@@ -64,7 +64,7 @@ def rolling_axis(axes, solid, standing, direction):
     ----------
     axes : Axes
         Over the picture.
-    solid : Solid
+    solid : Rays
         What rolls; the line is a little longer.
     standing : Stance
         How it stands.

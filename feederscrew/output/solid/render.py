@@ -12,7 +12,7 @@ AWAY = 4.0  # sizes from the centre of mass to where rays start
 MISSED = -1
 
 
-class Solid:
+class Rays:
     """A surface about its centre of mass, scaled to unit size for the single precision of the caster.
 
     Parameters

@@ -24,7 +24,7 @@ SHADE = 0.42  # darkness of the floor where the part touches it
 
 
 @dataclass(frozen=True, eq=False)
-class Frame:
+class Shot:
     """Where a picture lies in the image plane, in sizes of the solid."""
 
     left: float
@@ -56,11 +56,11 @@ def picture(solid, stance, frame, colour=STEEL):
 
     Parameters
     ----------
-    solid : Solid
+    solid : Rays
         What is seen.
     stance : Stance
         How it stands and from where it is seen.
-    frame : Frame
+    frame : Shot
         What part of the image plane is drawn.
     colour : (3,) float
         Of the solid, 0 to 1.

@@ -3,7 +3,7 @@
 import math
 from collections import Counter
 
-from feederscrew.output.page.blocks import Entry, Heading, Links, Matrix, Page, Picture, Section, Text
+from feederscrew.output.page.blocks import Heading, Links, MarkedCell, Matrix, Page, Picture, Section, Text
 from feederscrew.thesis.cells import DIFFERS, EXACT, EXPLAINED, GIVEN
 from feederscrew.thesis.claims import Claim
 from feederscrew.thesis.findings import BY_ID, FINDINGS
@@ -94,8 +94,8 @@ def _summary(items):
     rows = []
     for item in items:
         counts = summary(item)
-        cells = [Entry(str(counts[name]), "number") for name in heads[2:]]
-        rows.append((Entry(f"{item.kind.capitalize()} {item.id}"), Entry(item.caption), *cells))
+        cells = [MarkedCell(str(counts[name]), "number") for name in heads[2:]]
+        rows.append((MarkedCell(f"{item.kind.capitalize()} {item.id}"), MarkedCell(item.caption), *cells))
     return Matrix(heads, tuple(rows))
 
 
@@ -125,13 +125,16 @@ def _cells(item, printed):
     for name in dict.fromkeys(entry.row for entry in item.entries):
         cells = [found.get((name, column)) for column in printed.columns]
         rows.append(
-            (Entry(name), *[_marked(shown(cell), cell.verdict) if cell else Entry("") for cell in cells])
+            (
+                MarkedCell(name),
+                *[_marked(shown(cell), cell.verdict) if cell else MarkedCell("") for cell in cells],
+            )
         )
     return Matrix(("", *printed.columns), tuple(rows))
 
 
 def _marked(text, verdict):
-    return Entry(text, MARKS[verdict])
+    return MarkedCell(text, MARKS[verdict])
 
 
 def _statements(item):
@@ -139,9 +142,9 @@ def _statements(item):
     heads = ("what print states", "in print", "ours", "verdict")
     rows = [
         (
-            Entry(claim.statement),
-            Entry(claim.published),
-            Entry(f"{claim.recomputed:.4g}"),
+            MarkedCell(claim.statement),
+            MarkedCell(claim.published),
+            MarkedCell(f"{claim.recomputed:.4g}"),
             _marked(claim.verdict, claim.verdict),
         )
         for claim in item.entries

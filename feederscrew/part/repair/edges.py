@@ -7,7 +7,7 @@ import numpy as np
 
 
 @dataclass(frozen=True, eq=False)
-class Edges:
+class MeshEdges:
     """The E edges of F facets; each facet has three sides, side s being one of facet s // 3."""
 
     corners: int  # how many there are: V
@@ -62,7 +62,7 @@ def table(faces, corners):
 
     Returns
     -------
-    Edges
+    MeshEdges
     """
     tails, heads = faces, faces[:, [1, 2, 0]]
     keys = np.minimum(tails, heads) * corners + np.maximum(tails, heads)
@@ -73,7 +73,7 @@ def table(faces, corners):
     start = np.flatnonzero(np.concatenate([[True], keys[1:] != keys[:-1]]))
     count = np.diff(start, append=len(keys))
     net = count - 2 * np.add.reduceat(back, start)
-    return Edges(corners, keys[start], order, start, count, net)
+    return MeshEdges(corners, keys[start], order, start, count, net)
 
 
 def components(i, j, count):

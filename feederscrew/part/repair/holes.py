@@ -22,7 +22,7 @@ def holes(vertices, edges):
     Parameters
     ----------
     vertices : (V, 3) float [unit of the file]
-    edges : gate_edges.Edges
+    edges : MeshEdges
         Not closed.
 
     Returns

@@ -27,7 +27,7 @@ def mended(vertices, faces, tolerance, where):
     Returns
     -------
     vertices, faces : as above
-    edges : gate_edges.Edges
+    edges : MeshEdges
         Closed if the repairs were enough.
     said : tuple of str
         What was done, a sentence each.

@@ -17,7 +17,7 @@ def shells(edges, faces):
 
     Parameters
     ----------
-    edges : gate_edges.Edges
+    edges : MeshEdges
     faces : (F, 3) int
 
     Returns
