@@ -6,6 +6,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.dropping.kernel import body
+from feederscrew.geometry import vectors
 
 DRAWS = 11  # uniform numbers a drop takes: 3 attitude, 3 spin, 2 drift, fall, restitution, friction
 
@@ -72,13 +73,13 @@ def sample(launch, shape, count, rng):
     spin, drift = _between(launch.spin, u[:, 3]), _between(launch.speed, u[:, 6])
     states[:, body.Q : body.Q + 4] = attitude
     down = _in_body(attitude, np.array([[0.0, 0.0, 1.0]]))
-    states[:, body.Z] = fall - (down @ shape.vertices.T).min(axis=1)
+    states[:, body.Z] = fall - vectors.product(down, shape.vertices.T).min(axis=1)
     ahead = np.stack([np.cos(2.0 * np.pi * u[:, 7]), np.sin(2.0 * np.pi * u[:, 7])], axis=1)
     states[:, body.VX : body.VX + 2] = drift[:, None] * ahead
     across = np.column_stack([-ahead[:, 1], ahead[:, 0], np.zeros(count)])
     axes = _in_body(attitude, across) if launch.forward else _directions(u[:, 4], u[:, 5])
     states[:, body.W : body.W + 3] = spin[:, None] * axes
-    turning = 0.5 * (states[:, body.W : body.W + 3] ** 2 @ shape.inertia)
+    turning = 0.5 * (vectors.product(states[:, body.W : body.W + 3] ** 2, shape.inertia))
     return Starts(
         states=check.frozen(states),
         restitutions=check.frozen(_between(launch.restitution, u[:, 9])),

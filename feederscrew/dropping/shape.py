@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from feederscrew import check
+from feederscrew.geometry import vectors
 from feederscrew.resting.basins import barriers
 from feederscrew.resting.tumbling.edges import Edges, half_edges, sinks
 from feederscrew.resting.tumbling.exact import tumble
@@ -71,7 +72,7 @@ def shape_of(hull, labels, mass, inertia, axes=None):
         barriers=check.frozen(lifts),
         margins=check.frozen(np.where(rolls, 0.0, _margins(edges, tumbling, labels, count))),
         rolls=check.frozen(rolls),
-        axes=check.frozen(np.nan_to_num(axes) @ principal),
+        axes=check.frozen(vectors.product(np.nan_to_num(axes), principal)),
         ceiling=float((heights + lifts).max()),
     )
     return shape, length
@@ -96,15 +97,15 @@ def shape_of_part(part, found):
 
 def principal_axes(inertia):
     """Principal moments (3,), ascending, and a rotation (3, 3) whose columns are their axes."""
-    moments, principal = np.linalg.eigh(inertia)
-    return moments, principal * np.sign(np.linalg.det(principal))
+    moments, principal = vectors.eigen(inertia)
+    return moments, principal * np.sign(vectors.determinant(principal))
 
 
 def _turned(edges, principal, length):
     """Half-edges in principal axes and units of the length."""
     scaled = {
-        "vertices": edges.vertices @ principal / length,
-        "normals": edges.normals @ principal,
+        "vertices": vectors.product(edges.vertices, principal) / length,
+        "normals": vectors.product(edges.normals, principal),
         "slopes": edges.slopes / length**2,
         "sides": edges.sides / length**2,
     }

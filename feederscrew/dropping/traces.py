@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from feederscrew import check
 from feederscrew.dropping.kernel import body, drop
+from feederscrew.geometry import vectors
 
 EVERY = 0.05  # sqrt(L / g) from one row that is kept to the next, at least
 MOST = 1000  # such rows; a longer drop has them further apart
@@ -47,7 +48,7 @@ class Trace:
         """Whether the underside of the first impact is later turned by more than a quarter of a circle."""
         down = self.turns.inv().apply([0.0, 0.0, -1.0])[np.argmax(self.impacts) :]
         across = np.linalg.norm(np.cross(down, down[0]), axis=1)
-        return bool((np.arctan2(across, down @ down[0]) > TURNED).any())
+        return bool((np.arctan2(across, vectors.product(down, down[0])) > TURNED).any())
 
 
 def follow(shape, length, principal, starts, drops, rows):
@@ -159,8 +160,8 @@ def _impacts(shape, states, steps):
     struck = np.zeros(len(states), bool)
     for first in range(0, len(states), CHUNK):
         part = slice(first, first + CHUNK)
-        gaps = states[part, 1 + body.Z, None] + up[part] @ shape.vertices.T
-        rising = states[part, 1 + body.VZ, None] + speeds[part] @ shape.vertices.T
+        gaps = states[part, 1 + body.Z, None] + vectors.product(up[part], shape.vertices.T)
+        rising = states[part, 1 + body.VZ, None] + vectors.product(speeds[part], shape.vertices.T)
         struck[part] = ((gaps <= steps.tolerance) & (rising < -steps.threshold)).any(axis=1)
     return struck
 
@@ -186,4 +187,5 @@ def _kept(times, impacts, decided):
 def _energies(shape, states):
     """(N,) total energy at mass 1 and gravity 1."""
     velocities, rates = states[:, 1 + body.VX : 1 + body.Q], states[:, 1 + body.W :]
-    return 0.5 * (velocities**2).sum(axis=1) + 0.5 * rates**2 @ shape.inertia + states[:, 1 + body.Z]
+    turning = 0.5 * vectors.product(rates**2, shape.inertia)
+    return 0.5 * (velocities**2).sum(axis=1) + turning + states[:, 1 + body.Z]

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew import check
+from feederscrew.geometry import vectors
 
 SAME = 1e-6  # [1] principal moments closer than this, by the largest, count as equal
 
@@ -59,8 +60,9 @@ def solid(corners):
     near, (a, b, c), six = _spanned(corners)
     volume = float(six.sum()) / 6.0
     total = a + b + c
-    first = six @ total / 24.0
-    second = sum((p * six[:, None]).T @ p for p in (a, b, c, total)) / 120.0  # integral of x x^T
+    first = vectors.product(six, total) / 24.0
+    parts = [vectors.product((p * six[:, None]).T, p) for p in (a, b, c, total)]
+    second = sum(parts) / 120.0  # integral of x x^T
     offset = first / volume if volume else np.zeros(3)
     second = second - volume * np.outer(offset, offset)
     return Solid(volume, near + offset, np.trace(second) * np.eye(3) - second)
@@ -106,7 +108,7 @@ def shifted(inertia, mass, offset):
     """
     offset = check.shaped("offset", offset, (3,))
     return check.shaped("inertia", inertia, (3, 3)) + mass * (
-        offset @ offset * np.eye(3) - np.outer(offset, offset)
+        vectors.dot(offset, offset) * np.eye(3) - np.outer(offset, offset)
     )
 
 
@@ -126,7 +128,7 @@ def principal(inertia):
         One axis a row, right-handed. The largest component of the first two is positive; where moments
         are equal, and any axes would do, those nearest to the file's.
     """
-    moments, columns = np.linalg.eigh(check.shaped("inertia", inertia, (3, 3)))
+    moments, columns = vectors.eigen(check.shaped("inertia", inertia, (3, 3)))
     same = np.diff(moments) <= SAME * abs(moments[2])
     axes = columns.T
     if same.all():
@@ -142,8 +144,7 @@ def principal(inertia):
 def _across(axis):
     """Two unit vectors across an axis, the first as near to a file axis as can be."""
     nearest = np.eye(3)[np.argmin(np.abs(axis).round(9))]
-    first = nearest - (nearest @ axis) * axis
-    first /= np.linalg.norm(first)
+    first = vectors.unit(nearest - vectors.dot(nearest, axis) * axis)
     return first, np.cross(axis, first)
 
 

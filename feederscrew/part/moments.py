@@ -14,9 +14,6 @@ WAYS = np.array(
 )
 SMALL = 0.08  # of the part: on facets with shorter edges a rule of second order will do
 BLOCK = 1 << 15  # points at a time: what a processor's cache holds
-STRIP = (
-    1 << 9
-)  # points in one matrix product: too few to be shared out to threads, which wait when others run
 
 
 class Moments:
@@ -112,9 +109,7 @@ def _integrals(points, faces):
 
 def _products(left, right):
     """Sums (20, 20) over the points of every product of a row of one with a row of the other."""
-    whole = left.shape[1] // STRIP * STRIP
-    a, b = (side[:, :whole].reshape(len(side), -1, STRIP).swapaxes(0, 1) for side in (left, right))
-    return (a @ b.swapaxes(1, 2)).sum(axis=0) + left[:, whole:] @ right[:, whole:].T
+    return np.einsum("an,bn->ab", left, right)
 
 
 def _monomials(points):

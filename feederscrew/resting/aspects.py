@@ -6,7 +6,7 @@ from string import ascii_uppercase
 import numpy as np
 
 from feederscrew import check
-from feederscrew.geometry import compiled
+from feederscrew.geometry import compiled, vectors
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.moments import Moments
 from feederscrew.resting.basins.landscape import landscape
@@ -112,6 +112,11 @@ def _tumbled(named, ground, part, exponent):
     )
 
 
+def _about(axis, inertia):
+    """Moment of inertia about a unit axis."""
+    return vectors.dot(vectors.product(axis, inertia), axis)
+
+
 def _geometry(groups, part):
     """Columns of the table in the order of the groups; a class's numbers are its faces' means."""
 
@@ -119,7 +124,7 @@ def _geometry(groups, part):
         return np.array([np.mean([getattr(face, quantity) for face in group]) for group in groups])
 
     shown = [max(group, key=lambda face: tuple(np.round(face.normal, 6))) for group in groups]
-    polar = [np.mean([face.normal @ part.inertia @ face.normal for face in group]) for group in groups]
+    polar = [np.mean([_about(face.normal, part.inertia) for face in group]) for group in groups]
     return {
         "kinds": [group[0].kind for group in groups],
         "faces": np.array([len(group) for group in groups]),
@@ -173,7 +178,7 @@ def _ranked(table, chance, part, moments):
         return order
     rank = np.empty(len(order), dtype=int)
     rank[order] = np.cumsum(~tied)
-    direction = np.round(table["normals"] @ body_frame(part, moments), 3)
+    direction = np.round(vectors.product(table["normals"], body_frame(part, moments)), 3)
     height = np.round(table["heights"] / table["heights"].max(), 4)
     return np.lexsort((*-direction.T, height, rank))
 

@@ -4,6 +4,7 @@ from itertools import product
 
 import numpy as np
 
+from feederscrew.geometry import vectors
 from feederscrew.resting.basins.landscape import angle
 
 SAME_WAY = np.radians(3.0)  # a turned face lies on another when their normals agree this well
@@ -35,7 +36,7 @@ def classes(faces, part, moments):
     if alike.sum() == len(faces):
         return label
     for rotation in symmetries(faces, part, moments):
-        turned = normals @ rotation.T
+        turned = vectors.product(normals, rotation.T)
         near = angle(turned[:, None], normals[None]) < SAME_WAY
         near &= alike
         for i, j in np.argwhere(near):
@@ -83,13 +84,13 @@ def body_frame(part, moments):
     (3, 3) float [1]
         Axes as columns. Where the part is symmetric its own axes are not told apart, and the file's decide.
     """
-    _, axes = np.linalg.eigh(part.inertia)
+    _, axes = vectors.eigen(part.inertia)
     skew = moments.directional(axes.T)[:, 2]
     clear = np.abs(skew) > moments.error
     largest = axes[np.argmax(np.abs(axes), axis=0), np.arange(3)]
     axes = axes * np.where(clear, np.sign(skew), np.sign(largest))
     if clear.sum() == 2:  # the third follows: a mirror plane leaves no skew across it, but a hand
-        axes[:, ~clear] *= np.linalg.det(axes)
+        axes[:, ~clear] *= vectors.determinant(axes)
     return axes
 
 
@@ -111,7 +112,7 @@ def _by_landmarks(faces):
     rarest = np.lexsort((-heights, like.sum(axis=1), ~flat))
     rarest = rarest[flat[rarest]]
     for a, b in ((a, b) for a in rarest[:1] for b in rarest[1:]):
-        if np.linalg.norm(np.cross(normals[a], normals[b])) > np.sin(SAME_WAY):
+        if vectors.length(np.cross(normals[a], normals[b])) > np.sin(SAME_WAY):
             return _carrying(normals, a, b, np.flatnonzero(like[a] & flat), np.flatnonzero(like[b] & flat))
     return None
 
@@ -120,7 +121,7 @@ def _carrying(normals, a, b, a_images, b_images):
     """(N, 3, 3) rotations taking normals a, b to every pair of images that keeps their angle."""
     start, between = _frame(normals[a], normals[b]), angle(normals[a], normals[b])
     turns = [
-        _frame(normals[c], normals[d]) @ start.T
+        vectors.product(_frame(normals[c], normals[d]), start.T)
         for c, d in product(a_images, b_images)
         if abs(angle(normals[c], normals[d]) - between) < SAME_WAY and (c, d) != (a, b)
     ]
@@ -129,8 +130,7 @@ def _carrying(normals, a, b, a_images, b_images):
 
 def _half_turns(axis, moments):
     """Half turns about axes across ``axis``: the likeliest, where the solid changes least."""
-    u = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    u /= np.linalg.norm(u)
+    u = vectors.unit(np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))]))
     v = np.cross(axis, u)
 
     def turns(phases):
@@ -143,18 +143,17 @@ def _half_turns(axis, moments):
         best, width = phases[np.argmin(moments.mismatch(turns(phases)))], width / 20
     across = turns(np.array([best]))
     along = 2.0 * np.outer(axis, axis) - np.eye(3)
-    return np.concatenate([across, along[None], across @ along])
+    return np.concatenate([across, along[None], vectors.product(across, along)])
 
 
 def _principal(part):
     """Half turns about the principal axes: all there are where the principal moments differ."""
-    axes = np.linalg.eigh(part.inertia)[1].T
+    axes = vectors.eigen(part.inertia)[1].T
     return 2.0 * axes[:, :, None] * axes[:, None, :] - np.eye(3)
 
 
 def _frame(first, second):
     """(3, 3) right-handed axes as columns: along first, and in the plane of both."""
     z = first
-    y = np.cross(first, second)
-    y /= np.linalg.norm(y)
+    y = vectors.unit(np.cross(first, second))
     return np.column_stack([np.cross(y, z), y, z])

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from feederscrew.geometry import vectors
 from feederscrew.geometry.solid_angle import solid_angles
 from feederscrew.resting.basins.landscape import RIPPLE_OF_RADIUS, SMOOTH, angle, edges
 
@@ -142,7 +143,7 @@ def _rocks(hull, side, sink):
     flat = share[angle(normals, hull.normals[sink]) < 0.5 * SMOOTH].sum()
     if len(side) < FEWEST or flat > 0.5 or not _curved(hull, side):
         return False
-    across = np.linalg.eigvalsh(np.cov(normals.T, aweights=share))
+    across = vectors.eigen(vectors.covariance(normals, share))[0]
     if across[0] >= STRAIGHT * across[1]:
         return False
     strips = np.unique(normals.round(2), axis=0, return_inverse=True)[1].ravel()
@@ -154,9 +155,8 @@ def _round(hull, triangles):
     """Whether triangles touch one cylinder, cone or ball, wherever its middle is."""
     weights, height = np.sqrt(hull.areas[triangles]), hull.heights[triangles]
     around = np.column_stack([np.ones(len(triangles)), hull.normals[triangles]])
-    fit = np.linalg.lstsq(around * weights[:, None], height * weights, rcond=1e-6)[0]
-    off = (around @ fit - height) * weights
-    return bool(np.linalg.norm(off) < EQUAL * height.mean() * np.linalg.norm(weights))
+    off = vectors.misfit(around * weights[:, None], height * weights)
+    return bool(vectors.length(off) < EQUAL * height.mean() * vectors.length(weights))
 
 
 def _plane(hull, sink, members):
@@ -171,7 +171,7 @@ def _plane(hull, sink, members):
     largest = near[np.argmax(hull.areas[near])]
     depth, areas = _depth(hull, largest, near), hull.areas[near]
     inside = depth <= hull.radius * np.array(TIGHTEST_FIRST)[:, None]
-    held = inside @ areas
+    held = vectors.product(inside, areas)
     shared = held / areas.sum() - 0.1 * (inside.sum(axis=1) < 2)  # one triangle is a plane by itself
     good = (shared[:-1] >= 0.5) & (held[1:] <= 1.02 * held[:-1])
     inside = inside[np.argmax(good)] if good.any() else np.ones(len(near), dtype=bool)
@@ -180,11 +180,12 @@ def _plane(hull, sink, members):
 
 def _depth(hull, plane, members):
     """How far the corners of each member lie off the plane of one triangle [m]."""
-    return np.abs(hull.corners[members] @ hull.normals[plane] - hull.heights[plane]).max(axis=1)
+    depth = vectors.product(hull.corners[members], hull.normals[plane])
+    return np.abs(depth - hull.heights[plane]).max(axis=1)
 
 
 def _off_plane(hull, members, normal):
-    depth = hull.corners[members] @ normal
+    depth = vectors.product(hull.corners[members], normal)
     return np.abs(depth - depth.mean()).max(axis=1)
 
 
@@ -194,8 +195,7 @@ def _describe(hull, triangles, lowest, stable):
     curved = _curved(hull, triangles)
     foot = _plane(hull, lowest, triangles) if curved else triangles
     weights = np.maximum(hull.areas[foot], np.finfo(float).tiny)
-    normal = weights @ hull.normals[foot]
-    normal /= np.linalg.norm(normal)
+    normal = vectors.unit(vectors.product(weights, hull.normals[foot]))
     return Face(
         kind="rolling" if curved else "flat",
         stable=stable,
@@ -212,11 +212,11 @@ def _describe(hull, triangles, lowest, stable):
 
 def _axis(normals, weights):
     """Axis of the cylinder or cone with these normals: all make one angle with it; NaN for a ball."""
-    spread = np.cov(normals.T, aweights=np.maximum(weights, weights.max() * 1e-12))
-    values, vectors = np.linalg.eigh(spread)
+    spread = vectors.covariance(normals, np.maximum(weights, weights.max() * 1e-12))
+    values, axes = vectors.eigen(spread)
     if values[0] > 0.2 * values[1]:
         return np.full(3, np.nan)
-    axis = vectors[:, 0]
+    axis = axes[:, 0]
     return axis * np.sign(axis[np.argmax(np.abs(axis))])
 
 
@@ -225,9 +225,8 @@ def _outline(points, normal):
     from scipy.spatial import ConvexHull, QhullError
 
     first = np.eye(3)[np.argmin(np.abs(normal))]
-    u = np.cross(normal, first)
-    u /= np.linalg.norm(u)
-    plane = np.column_stack([points @ u, points @ np.cross(normal, u)])
+    u = vectors.unit(np.cross(normal, first))
+    plane = vectors.product(points, np.column_stack([u, np.cross(normal, u)]))
     try:
         return points[ConvexHull(plane).vertices]
     except QhullError:  # a contact line: a sliver of the hull
@@ -236,7 +235,7 @@ def _outline(points, normal):
 
 def _curved(hull, triangles):
     areas = hull.areas[triangles]
-    return np.linalg.norm(areas @ hull.normals[triangles]) < CURVED * areas.sum()
+    return vectors.length(vectors.product(areas, hull.normals[triangles])) < CURVED * areas.sum()
 
 
 def _spread(normals):

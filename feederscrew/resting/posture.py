@@ -6,6 +6,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.errors import FeederError
+from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import centroid, outline, sides
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.record import Part
@@ -86,26 +87,27 @@ def _of_mesh(part, aspects, row):
     hull = convex_hull(part.vertices, part.centre_of_mass, part.source)
     upright = _upright(-aspects.normals[row])
     height = float(aspects.heights[row])
-    corners = hull.vertices @ upright.T + [0.0, 0.0, height]
-    contact = (aspects.polygons[row] @ upright.T)[::-1, :2]  # from below it runs the other way
+    corners = vectors.product(hull.vertices, upright.T)
+    corners[:, 2] += height
+    contact = vectors.product(aspects.polygons[row], upright.T)[::-1, :2]  # from below it runs the other way
     offset = float(np.hypot(*centroid(contact)))
     shape = outline(corners[:, :2])
     ahead = _forward(contact, shape, corners, hull.radius)
     turn = np.array([ahead, [-ahead[1], ahead[0]]])
     axes = np.eye(3)
     axes[:2, :2] = turn
-    axes = axes @ upright
+    axes = vectors.product(axes, upright)
     return Posture(
         name=aspects.names[row],
         kind=aspects.kinds[row],
         mass=part.mass,
         height=height,
-        inertia=check.frozen(axes @ part.inertia @ axes.T),
-        contact=check.frozen(contact @ turn.T),
-        outline=check.frozen(shape @ turn.T),
+        inertia=check.frozen(vectors.product(vectors.product(axes, part.inertia), axes.T)),
+        contact=check.frozen(vectors.product(contact, turn.T)),
+        outline=check.frozen(vectors.product(shape, turn.T)),
         offset=offset if offset > COINCIDE * hull.radius else 0.0,
         axis=_rolling_axis(axes, aspects.axes[row]),
-        corners=check.frozen(np.column_stack([corners[:, :2] @ turn.T, corners[:, 2]])),
+        corners=check.frozen(np.column_stack([vectors.product(corners[:, :2], turn.T), corners[:, 2]])),
         solid=part,
         axes=check.frozen(axes),
     )
@@ -114,8 +116,7 @@ def _of_mesh(part, aspects, row):
 def _upright(up):
     """Rows x, y, z of some axes with z along ``up``."""
     beside = np.eye(3)[np.argmin(np.abs(up))]
-    x = np.cross(beside, up)
-    x /= np.linalg.norm(x)
+    x = vectors.unit(np.cross(beside, up))
     return np.array([x, np.cross(up, x), up])
 
 
@@ -133,7 +134,7 @@ def _forward(contact, shape, corners, size):
 
 def _lopsidedness(along, corners):
     """Odd moments of the corners about one direction: tells equal sides apart however the file is turned."""
-    x, y = corners[:, :2] @ along, corners[:, :2] @ [-along[1], along[0]]
+    x, y = vectors.product(corners[:, :2], np.column_stack([along, (-along[1], along[0])])).T
     z = corners[:, 2]
     moments = [
         np.mean(x**3),
@@ -149,7 +150,7 @@ def _lopsidedness(along, corners):
 def _rolling_axis(axes, direction):
     if not np.isfinite(direction).all():
         return None
-    flat = (axes @ direction)[:2]
+    flat = vectors.product(axes, direction)[:2]
     return check.frozen(flat / np.hypot(*flat))
 
 

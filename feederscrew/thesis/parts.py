@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew import check
+from feederscrew.geometry import vectors
 from feederscrew.part import mass
 from feederscrew.part.record import CardAspect, Part
 from feederscrew.resting.aspects import find
@@ -50,7 +51,7 @@ def t_aspects(ratio):
     found = find(t_part(ratio), as_published=True)
     wanted = np.array(list(t_shape.ASPECTS.values()))
     folded = np.column_stack([np.abs(found.normals[:, 0]), found.normals[:, 1], np.abs(found.normals[:, 2])])
-    rows = (wanted @ folded.T).argmax(axis=1)
+    rows = (vectors.product(wanted, folded.T)).argmax(axis=1)
     columns = (
         found.heights,
         found.polar_inertias,

@@ -8,6 +8,7 @@ from scipy.stats import chi2
 from feederscrew import check
 from feederscrew.dropping.ensemble import NORMAL, wilson
 from feederscrew.dropping.kernel.drop import UNSETTLED
+from feederscrew.geometry import vectors
 
 DRAWS = 400  # of the rates, for the interval of where they lead
 PRIOR = 0.5  # transition out of each class that may have been missed, shared by the ways out
@@ -112,7 +113,7 @@ def limit_of(rates, start):
     step = 0.5 * rates / quickest
     step += np.eye(rates.shape[-1]) * (1.0 - step.sum(axis=-1))[..., None]
     for _ in range(DOUBLINGS):
-        step = step @ step
+        step = vectors.product(step, step)
         step /= step.sum(axis=-1, keepdims=True)
     return np.einsum("...i,...ij->...j", start, step)
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import inset
 from feederscrew.mechanics import cycle
 from feederscrew.mechanics.floor.rolling import rolling
@@ -130,7 +131,7 @@ def over_cycle(posture, bowl, heading, samples=cycle.SAMPLES):
     along = np.array([np.cos(turn), np.sin(turn)])
     if rolls(posture):
         rest = motion(posture, bowl, heading, phase)
-        return rest, cycle.swing(rest.acceleration @ along, 1.0 / bowl.drive.frequency)
+        return rest, cycle.swing(vectors.product(rest.acceleration, along), 1.0 / bowl.drive.frequency)
     course = cycle.settle(_slips(bowl), _loose(bowl), 1.0 / bowl.drive.frequency, samples)
     return motion(posture, bowl, heading, phase, np.sign(course.velocity)), course
 
@@ -216,5 +217,5 @@ def _offset(posture, friction, normal, turning):
     where = np.broadcast_to((normal > 0.0)[..., None], moment.shape)
     offset = np.divide(moment, normal[..., None], out=np.full(moment.shape, np.nan), where=where)
     if rolls(posture):
-        return (offset @ posture.axis)[..., None] * posture.axis
+        return vectors.product(offset, posture.axis)[..., None] * posture.axis
     return offset

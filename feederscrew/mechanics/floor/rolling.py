@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew.geometry import vectors
+
 HALVINGS = 90  # of the interval of slip accelerations: down to rounding
 
 
@@ -49,9 +51,9 @@ def rolling(posture, coefficients, push, normal):
     """
     axis = posture.axis
     frame = np.array([[-axis[1], axis[0]], axis])  # rows: across, along
-    inertia = float(axis @ posture.inertia[:2, :2] @ axis)
+    inertia = float(vectors.dot(vectors.product(axis, posture.inertia[:2, :2]), axis))
     ease = np.array([1.0 / posture.mass + posture.height**2 / inertia, 1.0 / posture.mass])  # of the contact
-    drive = push @ frame.T / posture.mass
+    drive = vectors.product(push, frame.T) / posture.mass
     need = drive / ease
     limiting = np.divide(
         np.hypot(need[..., 0], need[..., 1]),
@@ -61,7 +63,7 @@ def rolling(posture, coefficients, push, normal):
     )
     slips = ~(limiting <= coefficients.static)
     resisted = np.where(slips[..., None], _slipping(drive, ease, coefficients.kinetic * normal), need)
-    friction = -resisted @ frame
+    friction = -vectors.product(resisted, frame)
     return Rolling(
         friction=friction,
         acceleration=(push + friction) / posture.mass,

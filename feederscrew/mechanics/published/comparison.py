@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew.geometry import vectors
 from feederscrew.mechanics.track.frame import frame
 
 FLOOR_TERMS = {  # quantity: what parts the printed from the complete value
@@ -59,7 +60,7 @@ def omitted_terms(seat, bowl, found, offset):
     push = seat.mass * drive.amplitude * (2.0 * np.pi * drive.frequency) ** 2 * axes.drive
     sine = -seat.walls[:, 0] / track.radius
     dragged = found.wall_friction
-    height = float(axes.up @ seat.walls.mean(axis=0))
+    height = float(vectors.dot(axes.up, seat.walls.mean(axis=0)))
     weight = seat.mass * bowl.gravity
     less = 1.0 - np.sqrt(1.0 - sine**2)  # of a force turned by sigma
     drive_lever = seat.height * push[0] + offset * push[2]
@@ -67,8 +68,8 @@ def omitted_terms(seat, bowl, found, offset):
     return (
         Term("radial gravity, -m g cos(phi) sin(delta)", "4.33", float(radial), "N"),
         Term("centripetal force at mid-stroke", "4.33, 4.58", seat.mass * speed**2 / track.radius, "N"),
-        Term("wall friction turned by sigma, along X", "4.32, 4.57", float(dragged @ less), "N"),
-        Term("wall friction turned by sigma, along Y", "4.33, 4.58", float(dragged @ sine), "N"),
+        Term("wall friction turned by sigma, along X", "4.32, 4.57", float(vectors.dot(dragged, less)), "N"),
+        Term("wall friction turned by sigma, along Y", "4.33, 4.58", float(vectors.dot(dragged, sine)), "N"),
         Term("moment of wall friction about Y", "4.36, 4.61", 1e3 * height * float(dragged.sum()), "N mm"),
         Term("moment of the drive about X", "4.35, 4.60", _about_x(seat, axes, push), "N mm"),
         Term("drive at the contact plane, about Y", "4.36, 4.61", 1e3 * float(drive_lever), "N mm"),
@@ -76,4 +77,4 @@ def omitted_terms(seat, bowl, found, offset):
 
 
 def _about_x(seat, axes, push):
-    return -1e3 * seat.height * float(push @ axes.radial)
+    return -1e3 * seat.height * float(vectors.dot(push, axes.radial))

@@ -4,6 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feederscrew.geometry import vectors
+
 AS_PRINTED = ("tilted", "level")  # axes of the Arc Chute's and of the Magnet's equations
 
 
@@ -179,4 +181,4 @@ def _wall(part, side, lever, delta, sigma, wall):
 
 
 def _solved(matrix, known):
-    return np.linalg.solve(matrix, -known[..., None])[..., 0]
+    return vectors.solve(matrix, -known)

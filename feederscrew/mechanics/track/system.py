@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import cross
 
 SETS = ((True, True), (True, False), (False, True), (False, False))  # closed wall contacts, in order of trial
@@ -90,7 +91,7 @@ def held(seat, axes, load, closed, ratio):
     """
     before, after = np.zeros(load.shape[:-1]), None
     slip_before = _resting(seat, axes, load, closed, before, ratio).acceleration[..., 0]
-    normal = np.maximum(load @ [0.0, 0.0, -1.0] / seat.mass, 1e-3 * np.abs(load).max() / seat.mass + 1e-30)
+    normal = np.maximum(-load[..., 2] / seat.mass, 1e-3 * np.abs(load).max() / seat.mass + 1e-30)
     after = slip_before / normal
     for _ in range(STEPS):
         slip = _resting(seat, axes, load, closed, after, ratio).acceleration[..., 0]
@@ -208,9 +209,9 @@ def _solved(columns, rows, load):
     """Solve sum of columns x + load = 0 together with two homogeneous rows."""
     shape = rows.shape[:-2]
     matrix = np.concatenate([np.stack(columns, axis=-1), rows], axis=-2)
-    right = np.zeros((*shape, 8, 1))
-    right[..., :3, 0] = -load
-    return np.linalg.solve(matrix, right)[..., 0]
+    right = np.zeros((*shape, 8))
+    right[..., :3] = -load
+    return vectors.solve(matrix, right)
 
 
 def _solution(x, across, turning, friction, couple, mobilised, parting):

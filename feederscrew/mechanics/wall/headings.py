@@ -10,6 +10,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.errors import FeederError
+from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import inset, outline, sides, turned
 from feederscrew.mechanics.wall import sameness
 from feederscrew.mechanics.wall.outline import rests
@@ -17,6 +18,7 @@ from feederscrew.mechanics.wall.outline import rests
 ALIKE = 1e-5  # of the outline's size: outlines that differ by less are the same
 NO_TURN = 1e-5  # [rad] files in single precision turn a part by a hundredth of it
 TIE = 1e-4  # shares that differ by less of themselves are equal but for rounding
+NARROW = 1e-12  # [m] a contact not as wide as this is a line
 SAME = 1e-6  # of the outline's size: touching corners nearer than this are the same corner
 
 
@@ -232,12 +234,19 @@ def _width(shape, to_wall, radius):
 def _falls(posture, heading, to_wall, track):
     """Whether the weight's line meets the surface outside what the track supports."""
     supported = _on_track(turned(posture.contact, heading), to_wall, track)
-    if len(supported) < 3 or np.linalg.matrix_rank(supported - supported[0], tol=1e-12) < 2:
+    if len(supported) < 3 or _in_line(supported - supported[0]):
         return True
     slope = np.array([np.sin(track.climb), np.cos(track.climb) * np.sin(track.bank)])
     foot = -posture.height * slope / (np.cos(track.climb) * np.cos(track.bank))
     size = np.ptp(posture.outline, axis=0).max()
     return bool(inset(outline(supported), foot) < -SAME * size)
+
+
+def _in_line(points):
+    """Whether points (K, 2) [m] and the origin lie on one line."""
+    far = points[np.argmax(vectors.length(points))]
+    off = np.abs(far[0] * points[:, 1] - far[1] * points[:, 0])
+    return off.max() <= NARROW * vectors.length(far)
 
 
 def _on_track(contact, to_wall, track):
@@ -254,7 +263,7 @@ def _on_track(contact, to_wall, track):
 
 def _crossings(start, along, radius):
     """Where a side crosses a circle about the origin, as shares of the side."""
-    a, b, c = along @ along, start @ along, start @ start - radius**2
+    a, b, c = vectors.dot(along, along), vectors.dot(start, along), vectors.dot(start, start) - radius**2
     root = b * b - a * c
     if root <= 0.0:
         return np.empty(0)

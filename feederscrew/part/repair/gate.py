@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew.errors import MeshError
+from feederscrew.geometry import vectors
 from feederscrew.part import mass
 from feederscrew.part.repair import mend, shells, weld
 from feederscrew.part.repair.holes import caps, holes
@@ -89,8 +90,8 @@ def _size(vertices, faces, where):
         raise MeshError(where, "is a line or a point: no facet has an area", SOLID)
     size = float(np.ptp(vertices, axis=0).max())
     offsets = (vertices - vertices.mean(axis=0)) / size
-    _, axes = np.linalg.eigh(offsets.T @ offsets)
-    if np.ptp(offsets @ axes[:, 0]) <= FLAT:
+    _, axes = vectors.eigen(vectors.product(offsets.T, offsets))
+    if np.ptp(vectors.product(offsets, axes[:, 0])) <= FLAT:
         raise MeshError(where, "is flat: all its corners lie in one plane", SOLID)
     return size
 

@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 from feederscrew.errors import MeshError
+from feederscrew.geometry import vectors
 from feederscrew.part.repair import edges as gate_edges
 from feederscrew.part.repair import weld
 
@@ -139,7 +140,7 @@ def _fan(vertices, rim, tail, head, tolerance):
     """(N, 3) facets between an edge and the rim corners on it; none where there are none."""
     along = vertices[head] - vertices[tail]
     offset = vertices[rim] - vertices[tail]
-    t = offset @ along / (along @ along)
+    t = vectors.product(offset, along) / vectors.dot(along, along)
     off_line = np.linalg.norm(offset - t[:, None] * along, axis=1)
     on = np.flatnonzero((off_line <= tolerance) & (t > 0.0) & (t < 1.0) & (rim != tail) & (rim != head))
     chain = [tail, *rim[on[np.argsort(t[on])]].tolist(), head]

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew import check
+from feederscrew.geometry import vectors
 from feederscrew.geometry.solid_angle import solid_angles
 from feederscrew.resting.basins import adoption
 
@@ -168,22 +169,26 @@ def balance(tips):
     lift = np.maximum(rises(tips), 1e-12 * np.nanmax(tips.heights))
     for k in (0, 1):
         rates[tips.pairs[:, k], tips.pairs[:, 1 - k]] = 1.0 / lift[:, k]
-    flow = rates.T - np.diag(rates.sum(axis=1))
     present = np.isfinite(tips.heights)
     shares = np.zeros(count)
-    shares[present] = _stationary(flow[np.ix_(present, present)])
+    shares[present] = _stationary(rates[np.ix_(present, present)])
     return shares
 
 
-def _stationary(flow):
-    """Shares (sum 1) that a rate matrix leaves alone; columns of ``flow`` sum to zero."""
-    scale = np.abs(np.diag(flow)).max()
-    if scale == 0.0:
-        return np.full(len(flow), 1.0 / len(flow))
-    system = np.vstack([flow / scale, np.ones(len(flow))])
-    right = np.zeros(len(system))
-    right[-1] = 1.0
-    shares = np.maximum(np.linalg.lstsq(system, right, rcond=None)[0], 0.0)
+def _stationary(rates):
+    """Shares (N,), sum 1, that stay the same under rates (N, N) from the row's state to the column's.
+
+    States are taken out one by one and their traffic led past them; no difference is taken, so that rates
+    many orders of magnitude apart do no harm: W. K. Grassmann, M. I. Taksar, D. P. Heyman, "Regenerative
+    analysis and steady state distributions for Markov chains", Oper. Res. 33(5), 1107-1116, 1985.
+    """
+    rates, shares = rates.copy(), np.ones(len(rates))
+    for last in range(len(rates) - 1, 0, -1):
+        rates[:last, last] /= rates[last, :last].sum() or np.inf
+        rates[:last, :last] += rates[:last, last, None] * rates[last, :last]
+    for k in range(1, len(rates)):
+        if rates[:k, k].any():
+            shares[k] = (shares[:k] * rates[:k, k]).sum()
     return shares / shares.sum()
 
 
@@ -191,7 +196,7 @@ def _edge_levers(polygon):
     """(3,) outward normal of a polygon and (K,) [m] distance of the foot inside each edge."""
     ahead = np.roll(polygon, -1, axis=0)
     normal = np.cross(polygon, ahead).sum(axis=0)
-    normal /= np.linalg.norm(normal)
+    normal = vectors.unit(normal)
     edges = ahead - polygon
     outward = np.cross(edges, normal)
     return normal, np.einsum("ki,ki->k", polygon, outward) / np.linalg.norm(edges, axis=1)

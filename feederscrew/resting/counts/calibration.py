@@ -60,7 +60,7 @@ def calibrate(counts, shares, heights, radius):
 
     def loss(exponent):
         fitted = surface_shares(shares, heights, radius, exponent)
-        return -float(counts[known] @ np.log(fitted[known]))
+        return -float((counts[known] * np.log(fitted[known])).sum())
 
     best = optimize.minimize_scalar(loss, bounds=(LOWEST, HIGHEST), method="bounded", options={"xatol": 1e-9})
     limit = best.fun + 0.5 * stats.chi2.ppf(CONFIDENCE, 1)

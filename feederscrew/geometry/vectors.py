@@ -1,0 +1,208 @@
+"""Small linear algebra with the same digits on every processor.
+
+numpy hands `@`, `dot` and `numpy.linalg` to BLAS and LAPACK, whose kernels are chosen by the processor and
+add in different orders. A drop is chaotic, and a last digit decides ties between equal faces, so nothing that
+is computed for an answer may pass through them. Here sums are written out, or left to `numpy.einsum` without
+optimisation, which adds in one order.
+"""
+
+import math
+
+import numpy as np
+
+NOTHING = 1e-15  # [1] of the largest entry: an entry off the diagonal that is rounding
+SWEEPS = 50  # of Jacobi rotations: six suffice for any 3 x 3 matrix
+DEPENDENT = 1e-6  # [1] of its length: what is left of a column that depends on those before it
+
+
+def product(a, b):
+    """Return the matrix product, like ``a @ b``.
+
+    Parameters
+    ----------
+    a : (K,), (N, K) or (..., N, K) float
+    b : (K,), (K, M) or (..., K, M) float
+
+    Returns
+    -------
+    float, or float array
+        Of the shape ``a @ b`` has.
+    """
+    left = "k" if np.ndim(a) == 1 else "...nk"
+    right = "k" if np.ndim(b) == 1 else "...km"
+    both = ("..." if max(np.ndim(a), np.ndim(b)) > 1 else "") + left[3:-1] + right[4:]
+    return np.einsum(f"{left},{right}->{both}", a, b)
+
+
+def dot(u, v):
+    """Return the scalar products (...,) of vectors (..., K)."""
+    return np.einsum("...k,...k->...", u, v)
+
+
+def length(vectors):
+    """Return the lengths (...,) of vectors (..., K), in their unit."""
+    vectors = np.asarray(vectors, float)
+    return np.sqrt(dot(vectors, vectors))
+
+
+def unit(vectors):
+    """Return vectors (..., K) divided by their lengths; none may be zero."""
+    return np.asarray(vectors, float) / length(vectors)[..., None]
+
+
+def determinant(matrix):
+    """Return the determinant of a (3, 3) matrix, or of a stack (..., 3, 3) of them."""
+    a, b, c = np.moveaxis(np.asarray(matrix, float), -2, 0)
+    return dot(a, np.cross(b, c))
+
+
+def covariance(vectors, weights):
+    """Return the unbiased covariance of weighted vectors.
+
+    Parameters
+    ----------
+    vectors : (N, K) float
+    weights : (N,) float
+        Not negative, some of them positive; how much each vector counts.
+
+    Returns
+    -------
+    (K, K) float [square of the vectors' unit]
+    """
+    total = weights.sum()
+    off = vectors - np.einsum("n,nk->k", weights, vectors) / total
+    share = total - (weights**2).sum() / total
+    return np.einsum("n,ni,nj->ij", weights, off, off) / share
+
+
+def eigen(matrix):
+    """Return eigenvalues and eigenvectors of a symmetric matrix.
+
+    Parameters
+    ----------
+    matrix : (K, K) float
+        Symmetric and small.
+
+    Returns
+    -------
+    values : (K,) float
+        Ascending, in the matrix's unit.
+    vectors : (K, K) float [1]
+        Orthonormal columns in their order. Equal values keep the axes of the matrix as far as they may.
+
+    Raises
+    ------
+    ValueError
+        If the matrix is not finite.
+
+    Notes
+    -----
+    Cyclic Jacobi rotations. Entries off the diagonal that are rounding are left alone: they would choose
+    among the axes of equal values.
+
+    References
+    ----------
+    G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed., Johns Hopkins, 2013, section 8.5.
+    """
+    a = np.array(matrix, float)
+    if not np.isfinite(a).all():
+        raise ValueError("matrix: every entry must be finite")
+    turned = np.eye(len(a))
+    small = NOTHING * np.abs(a).max(initial=0.0)
+    for _ in range(SWEEPS):
+        pairs = [(p, q) for p in range(len(a)) for q in range(p + 1, len(a)) if abs(a[p, q]) > small]
+        if not pairs:
+            break
+        for p, q in pairs:
+            _rotate(a, turned, p, q)
+    order = np.argsort(np.diag(a), kind="stable")
+    return np.diag(a)[order], turned[:, order]
+
+
+def _rotate(a, turned, p, q):
+    """Turn axes p and q (in place) until the entry between them is zero."""
+    if a[p, q] == 0.0:
+        return
+    half = (a[q, q] - a[p, p]) / (2.0 * a[p, q])
+    t = math.copysign(1.0, half) / (abs(half) + math.hypot(1.0, half))  # tangent of the angle
+    c = 1.0 / math.hypot(1.0, t)
+    s = t * c
+    for array in (a.T, a, turned.T):  # columns of a, then its rows
+        first, second = array[p].copy(), array[q].copy()
+        array[p], array[q] = c * first - s * second, s * first + c * second
+    a[p, q] = a[q, p] = 0.0
+
+
+def solve(matrix, right):
+    """Return the solutions of systems of linear equations.
+
+    Parameters
+    ----------
+    matrix : (..., K, K) float
+        Small.
+    right : (..., K) float
+
+    Returns
+    -------
+    (..., K) float
+        Not finite where a matrix is singular.
+
+    Notes
+    -----
+    Gaussian elimination, the largest pivot of each column first.
+    """
+    matrix, right = np.asarray(matrix, float), np.asarray(right, float)
+    shape = np.broadcast_shapes(matrix.shape[:-1], right.shape)
+    size = shape[-1]
+    both = np.empty((*shape, size + 1))
+    both[..., :-1], both[..., -1] = matrix, right
+    rows = np.ascontiguousarray(np.moveaxis(both.reshape(-1, size, size + 1), 0, -1))  # a system a column
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        for k in range(size):
+            _pivot(rows, k)
+            factors = rows[k + 1 :, k] / rows[k, k]
+            rows[k + 1 :, k:] -= factors[:, None] * rows[k, k:]
+        for k in reversed(range(size)):
+            for j in range(k + 1, size):
+                rows[k, -1] -= rows[k, j] * rows[j, -1]
+            rows[k, -1] /= rows[k, k]
+    return rows[:, -1].T.reshape(shape)
+
+
+def _pivot(rows, k):
+    """Swap row k (in place) with the one below that is largest in column k, in each system."""
+    best = k + np.abs(rows[k:, k]).argmax(axis=0)
+    swapped = np.flatnonzero(best != k)
+    upper, lower = rows[k][:, swapped].T, rows[best[swapped], :, swapped]
+    rows[best[swapped], :, swapped] = upper
+    rows[k][:, swapped] = lower.T
+
+
+def misfit(columns, right):
+    """Return what least squares leave of the right side.
+
+    Parameters
+    ----------
+    columns : (N, K) float
+        May depend on each other.
+    right : (N,) float
+
+    Returns
+    -------
+    (N,) float [unit of the right side]
+        ``right`` minus the nearest sum of the columns.
+
+    Notes
+    -----
+    Modified Gram-Schmidt, each column freed twice from those before it.
+    """
+    basis, left = [], np.array(right, float)
+    for column in np.asarray(columns, float).T:
+        free = column
+        for axis in basis * 2:
+            free = free - dot(free, axis) * axis
+        if length(free) > DEPENDENT * length(column):
+            basis.append(unit(free))
+    for axis in basis * 2:
+        left = left - dot(left, axis) * axis
+    return left
