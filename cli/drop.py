@@ -4,10 +4,9 @@ import os
 
 import click
 
-from feederscrew_cli import options
+from feederscrew_cli import options, waiting
 from feederscrew_cli import plate as plates
 from feederscrew_cli.interrupt import held_back
-from feederscrew_cli.progress import Progress
 
 LAUNCHES = click.Choice(["place", "drop", "tumble"])
 
@@ -84,39 +83,15 @@ def _fitting(until, trace, plate, out):
 def _on_floor(part, launch, own, test, pictures, out):
     """Drop the part on a plane at rest, write and tell what becomes of it."""
     with held_back():
-        from feederscrew.output import columns
-        from feederscrew.output.drop import files as drop_sheets
-        from feederscrew.resting.aspects import find
+        from feederscrew.output import columns, offers
+        from feederscrew.output.drop import files, tables
+        from feederscrew.studies.drop import drop as drop_study
 
     solid = out.part(part)
-    aspects = find(solid)
     with out.folder(solid.name, {solid.source: solid.sha256}, columns.conditions(solid)) as folder:
-        result = _tested(solid, aspects, launch, own, test, out)
-        document = drop_sheets.document(solid, aspects, result)
-        out.warn(*drop_sheets.remarks(document))
-        if folder:
-            drop_sheets.write(folder, solid, aspects, result, document, pictures=pictures)
-    out.show(document["aspects"], document)
-
-
-def _tested(solid, aspects, launch, own, run, out):
-    """The drop test, with a bar where a person waits."""
-    with held_back():
-        from feederscrew.dropping import runs
-
-    announce(out)
-    with progress(out) as bar:
-        return runs.test(solid, aspects, launch, own, progress=bar.reach, **run)
-
-
-def announce(out):
-    """Say so when the first drop on this machine must wait for the compiler."""
-    from feederscrew.dropping import runs
-
-    if not runs.compiled():
-        out.say("Compiling the drop kernel, once on this machine: about twenty seconds.")
-
-
-def progress(out):
-    """A bar of the drops where a person waits; hidden elsewhere."""
-    return Progress(None, not out.quiet, "drops")
+        waiting.drops(out)
+        with waiting.bar(out, "drops") as bar:
+            study = drop_study(solid, launch, own, progress=bar.reach, **test)
+        out.warn(*tables.remarks(study))
+        offers.write(folder, files.offers(study), pictures=pictures)
+    out.show(tables.counts(study), tables.document(study))

@@ -4,9 +4,8 @@ from dataclasses import replace
 
 import click
 
-from feederscrew_cli import options
+from feederscrew_cli import options, waiting
 from feederscrew_cli.interrupt import held_back
-from feederscrew_cli.progress import Progress
 
 KEYWORDS = ("shaken", "paths", "overrides", "amplitudes", "seconds")
 OPTIONS = {"paths": "--config", "overrides": "--set", "amplitudes": "--amplitude", "seconds": "--seconds"}
@@ -43,30 +42,25 @@ def plate(command):
 def run(part, plate, launch, own, test, pictures, out):
     """Put the part on each plate, write and tell what becomes of it."""
     with held_back():
-        from feederscrew.dropping.plate import runs
-        from feederscrew.output import columns
-        from feederscrew.output.plate import files as plate_sheets
-        from feederscrew.output.plate import tables as plate_tables
-        from feederscrew.resting.aspects import find
+        from feederscrew.output import columns, offers
+        from feederscrew.output.plate import files, tables
+        from feederscrew.studies.plate import plate as plate_study
 
-    bowls, names, files, values = _bowls(plate)
+    bowls, names, inputs, values = _bowls(plate)
     out = replace(out, command="drop plate")
     solid = out.part(part)
-    aspects = find(solid)
-    _announce(out)
-    out.say(*plate_tables.notes(bowls))
-    told = columns.conditions(solid) | values
-    with out.folder(solid.name, {solid.source: solid.sha256} | files, told) as folder:
-        with Progress(None, not out.quiet, "parts") as bar:
-            results = runs.test(
-                solid, aspects, bowls, launch, own, **test, seconds=plate["seconds"], progress=bar.reach
+    waiting.plate(out)
+    out.say(*tables.notes(bowls))
+    inputs = {solid.source: solid.sha256} | inputs
+    with out.folder(solid.name, inputs, columns.conditions(solid) | values) as folder:
+        with waiting.bar(out, "parts") as bar:
+            study = plate_study(
+                solid, bowls, launch, own, names=names, seconds=plate["seconds"], progress=bar.reach, **test
             )
-        document = plate_tables.document(solid, aspects, test["seed"], results, names)
-        out.say(*plate_tables.told(results, names))
-        out.warn(*plate_tables.remarks(document))
-        if folder:
-            plate_sheets.write(folder, solid, aspects, results, names, document, pictures=pictures)
-    out.show(plate_tables.plates(aspects, results, names), document, hidden=plate_tables.HIDDEN)
+        out.say(*tables.summary(study))
+        out.warn(*tables.remarks(study))
+        offers.write(folder, files.offers(study), pictures=pictures)
+    out.show(tables.plates(study), tables.document(study), hidden=tables.HIDDEN)
 
 
 def _given(shaken, **others):
@@ -90,10 +84,3 @@ def _bowls(plate):
     files = {source: digest for path in paths for source, digest in bowls.identity(path).items()}
     values = {name: bowls.texts(one) for name, one in zip(bowls.named(paths), settings)}
     return [bowl for plates in every for bowl in plates], names, files, values
-
-
-def _announce(out):
-    from feederscrew.dropping.plate import rides
-
-    if not rides.compiled():
-        out.say("Compiling the plate's kernel, once on this machine: about twenty seconds.")

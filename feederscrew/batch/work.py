@@ -111,12 +111,12 @@ def _drops(part, found, task, files):
     """The drop test, where it is asked for: its random numbers hang on the part's file alone."""
     if not task.choices.drops or part.vertices is None:
         return {}
-    from feederscrew.dropping import runs
-    from feederscrew.output.drop import files as drop_sheets
+    from feederscrew.output.drop import files as drop_files
+    from feederscrew.studies.drop import drop
 
     seed = int(task.sha256[:SEED_DIGITS], 16)
-    result = runs.test(part, found, LAUNCH, {}, drops=task.choices.drops, seed=seed)
-    document = drop_sheets.document(part, found, result)
-    drop_sheets.write(files, part, found, result, document, pictures=task.choices.pictures)
-    first = int(np.argmax(result.tally.p))
-    return {"drops": task.choices.drops, "drop_aspect": found.names[first], "p_drop": result.tally.p[first]}
+    study = drop(part, LAUNCH, drops=task.choices.drops, seed=seed, aspects=found)
+    offers.write(files, drop_files.offers(study), pictures=task.choices.pictures)
+    shares = study.result.tally.p
+    first = int(np.argmax(shares))
+    return {"drops": task.choices.drops, "drop_aspect": found.names[first], "p_drop": shares[first]}

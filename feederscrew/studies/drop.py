@@ -19,6 +19,11 @@ class DropStudy:
     result: runs.Result
 
     @property
+    def drops(self) -> int:
+        """How many there were."""
+        return len(self.result.drops.faces)
+
+    @property
     def rules(self):
         """Probabilities (A,) by the rules that the drops are shown with."""
         return {rule: self.aspects.probabilities[rule] for rule in BESIDE}

@@ -8,14 +8,13 @@ import shapes
 from scipy.constants import g
 from scipy.spatial.transform import Rotation
 
-from feederscrew.dropping import runs, traces
+from feederscrew.dropping import runs, stills, traces
 from feederscrew.dropping.traces import telling
 from feederscrew.output import style, tables
-from feederscrew.output.drop import trace_curve as drop_trace_curve
-from feederscrew.output.drop import trace_files as drop_trace_sheets
-from feederscrew.output.drop import trace_strip as drop_trace_strip
+from feederscrew.output.drop import trace_curve, trace_strip, trace_tables
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
+from feederscrew.studies.drop import DropStudy
 
 PARTS = Path(__file__).parents[2] / "parts"
 MM = 1e-3
@@ -117,11 +116,11 @@ def test_a_part_let_fall_flat_lands_as_late_as_it_must(tmp_path):
 
 
 def test_a_long_drop_stays_small():
-    _, aspects, result = followed(PARTS / "washer_m6.stl", count=6)
+    part, aspects, result = followed(PARTS / "washer_m6.stl", count=6)
     most = traces.MOST + 2 * traces.HITS + 3
     assert max(len(trace.times) for trace in result.traces) <= most
     assert max(trace.times[-1] for trace in result.traces) > 2.0
-    text = tables.text(drop_trace_sheets.table(aspects, result.traces), "csv")
+    text = tables.text(trace_tables.traces(DropStudy(part, aspects, result)), "csv")
     assert len(text) < 150e3 * len(result.traces)
 
 
@@ -154,14 +153,14 @@ def test_a_drop_that_never_settles_has_no_class(tmp_path):
     (trace,) = result.traces
     assert result.tally.unsettled == 2
     assert trace.row == trace.face == -1 and not trace.still
-    told = drop_trace_sheets.table(aspects, result.traces)
+    told = trace_tables.traces(DropStudy(part, aspects, result))
     assert set(told["aspect"]) == {"none"} and told["event"].iloc[-1] != "still"
-    assert style.png(drop_trace_strip.strip(part, aspects, trace, "box"))
+    assert style.png(trace_strip.strip(part, aspects, trace, "box"))
 
 
 def test_the_table_is_what_was_followed(bracket):
-    _, aspects, result = bracket
-    told = drop_trace_sheets.table(aspects, result.traces)
+    part, aspects, result = bracket
+    told = trace_tables.traces(DropStudy(part, aspects, result))
     assert list(told) == [
         "drop", "time_s", "x_mm", "y_mm", "z_mm", "q_w", "q_x", "q_y", "q_z", "energy_mm", "event", "aspect",
     ]  # fmt: skip
@@ -178,11 +177,11 @@ def test_the_table_is_what_was_followed(bracket):
 def test_the_same_seed_gives_the_same_bytes(bracket):
     part, aspects, result = bracket
     again = followed(PARTS / "lbracket_30x20x15.stl", drops=20, jobs=2)[2]
-    one, two = (tables.text(drop_trace_sheets.table(aspects, r.traces), "csv") for r in (result, again))
+    one, two = (tables.text(trace_tables.traces(DropStudy(part, aspects, r)), "csv") for r in (result, again))
     assert one == two
     shown = telling(result.traces)
-    assert style.png(drop_trace_strip.strip(part, aspects, shown, "a")) == style.png(
-        drop_trace_strip.strip(part, aspects, telling(again.traces), "a")
+    assert style.png(trace_strip.strip(part, aspects, shown, "a")) == style.png(
+        trace_strip.strip(part, aspects, telling(again.traces), "a")
     )
 
 
@@ -199,24 +198,24 @@ def test_the_drop_shown_tumbles_if_one_does(bracket):
 def test_stills_go_from_the_first_impact_to_the_end(bracket):
     _, aspects, result = bracket
     for trace in result.traces:
-        rows = drop_trace_strip.chosen(trace, 12)
+        rows = stills.chosen(trace, 12)
         assert rows[0] == np.argmax(trace.impacts) and rows[-1] == len(trace.times) - 1
         assert len(rows) == 12 and (np.diff(rows) > 0).all()
-        end = drop_trace_strip.said(trace, rows[-1], aspects.names, 0.0)
+        end = trace_strip.said(trace, rows[-1], aspects.names, 0.0)
         assert end == f"{1e3 * trace.times[-1]:.0f} ms, rests on {aspects.names[trace.row]}"
-        assert drop_trace_strip.said(trace, rows[0], aspects.names, 0.0).endswith("ms, hits")
+        assert trace_strip.said(trace, rows[0], aspects.names, 0.0).endswith("ms, hits")
 
 
 def test_the_curve_shows_energy_over_the_heights_it_comes_down_to(bracket):
     _, aspects, result = bracket
     trace = result.traces[0]
     axes = style.figure().add_subplot()
-    drop_trace_curve.curve(axes, trace, aspects, drop_trace_strip.chosen(trace, 12))
+    trace_curve.curve(axes, trace, aspects, stills.chosen(trace, 12))
     assert axes.get_xlabel() == "time [ms]" and axes.get_ylabel() == "energy as height [mm]"
     energy, height = axes.get_lines()[:2]
     assert energy.get_ydata() == pytest.approx(trace.energies / MM)
     assert (energy.get_ydata() >= height.get_ydata() - 1e-9).all()
-    saddle = next(line for line in drop_trace_curve.references(trace, aspects) if "tips" in line[1])
+    saddle = next(line for line in trace_curve.references(trace, aspects) if "tips" in line[1])
     assert saddle[0] == pytest.approx((aspects.heights + aspects.barriers)[trace.row] / MM)
 
 
@@ -224,4 +223,4 @@ def test_the_curve_shows_energy_over_the_heights_it_comes_down_to(bracket):
     ("longest", "step"), [(1.0, 1.0), (1.9, 1.0), (2.0, 2.0), (7.0, 5.0), (10.0, 10.0), (0.3, 0.2)]
 )
 def test_the_grid_has_round_steps(longest, step):
-    assert drop_trace_strip.grid_step(longest * MM) == pytest.approx(step * MM)
+    assert trace_strip.grid_step(longest * MM) == pytest.approx(step * MM)

@@ -32,6 +32,17 @@ class Shaken:
     lost: int  # parts left out: their motion took far more steps than it should
     partial: bool  # stopped by the user before all parts were done
 
+    @property
+    def transitions(self):
+        """How many were seen between classes."""
+        counts = self.occupancy.counts
+        return int(counts.sum() - np.trace(counts))
+
+    @property
+    def unsettled(self):
+        """How many parts have not lain on any face yet."""
+        return round(self.parts * (1.0 - float(self.occupancy.course[-1].sum())))
+
 
 def test(part, aspects, bowls, preset, own, *, drops=None, seconds=None, seed=1, jobs=1, progress=None):
     """Put parts on a vibrating plate, one at a time, and follow what they lie on.

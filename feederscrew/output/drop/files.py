@@ -1,111 +1,42 @@
-"""Drop tests as tables, documents and files."""
+"""What ``feeder drop`` leaves in its folder."""
 
-from feederscrew.output import tables
-from feederscrew.output.columns import MM
-from feederscrew.output.drop import trace_files as drop_trace_sheets
+from feederscrew.output import offers as offer
+from feederscrew.output.drop import tables, trace_tables
 
 
-def counts(aspects, tally, partial=False):
-    """One row an aspect: how many drops rest on it.
+def offers(study):
+    """Offer the counts of a drop test and, where drops were followed, their motion.
 
     Parameters
     ----------
-    aspects : Aspects
-    tally : Tally
-    partial : bool
-        Stopped by the user: labelled in every row.
+    study : DropStudy
 
     Returns
     -------
-    DataFrame
-        The columns of ``drop.csv``.
+    list of Offer
     """
-    return tables.frame(
-        {
-            "aspect": aspects.names,
-            "height_mm": aspects.heights / MM,
-            "count": tally.counts,
-            "p_drop": tally.p,
-            "p_drop_low": tally.low,
-            "p_drop_high": tally.high,
-            "p_gentle": tally.gentle,
-            "p_violent": tally.violent,
-            **({"partial": [True] * len(aspects.names)} if partial else {}),
-        }
-    )
+    offered = [
+        offer.table("drop.csv", tables.counts, study),
+        offer.document("drop.json", tables.document, study),
+        offer.picture("drop.png", "How often the part was found on each aspect", _counts, study),
+    ]
+    if study.result.traces:
+        offered += [
+            offer.table("drop_traces.csv", trace_tables.traces, study),
+            offer.picture("drop_trace.png", "One drop in stills, and its energy below", _strip, study),
+        ]
+    return offered
 
 
-def document(part, aspects, result):
-    """The drop test as one JSON document.
+def _counts(study):
+    from feederscrew.output.drop import figures
 
-    Parameters
-    ----------
-    part : Part
-    aspects : Aspects
-    result : feederscrew.dropping.runs.Result
-
-    Returns
-    -------
-    dict
-    """
-    return {
-        "part": part.name,
-        "drops": len(result.drops.faces),
-        "seed": result.seed,
-        "launch": result.launch,
-        "partial": result.drops.partial,
-        "unsettled": result.tally.unsettled,
-        "until": result.aim,
-        "widest": result.tally.widest,
-        "traces": drop_trace_sheets.listed(aspects, result.traces),
-        "aspects": counts(aspects, result.tally, result.drops.partial),
-    }
+    return figures.counts(tables.title(study), study.aspects, study.result.tally, study.rules)
 
 
-def remarks(document):
-    """What a user must know of a drop test, a line each."""
-    told = []
-    if document["partial"]:
-        told.append(f"partial: stopped after {document['drops']} drops")
-    elif document["until"] is not None and document["widest"] > document["until"]:
-        told.append(
-            f"after {document['drops']} drops the widest interval is {100.0 * document['widest']:.3g} % to "
-            f"either side, not {100.0 * document['until']:.3g} % - give more --drops, or a wider --until"
-        )
-    if document["unsettled"]:
-        told.append(f"{document['unsettled']} of {document['drops']} drops came to rest on no aspect")
-    return told
+def _strip(study):
+    from feederscrew.output.drop import trace_strip
 
-
-def _title(part, document):
-    """What the picture is of, and what is the matter with it."""
-    title = f"{part.name}: {document['drops']} drops, {document['launch']['name']}"
-    unsettled = f", {document['unsettled']} unsettled" if document["unsettled"] else ""
-    return title + unsettled + ", partial" * document["partial"]
-
-
-def write(folder, part, aspects, result, document, *, pictures=True):
-    """The files of ``feeder drop``.
-
-    Parameters
-    ----------
-    folder : ResultFolder
-    part : Part
-    aspects : Aspects
-    result : feederscrew.dropping.runs.Result
-    document : dict
-        Of the JSON file; its ``aspects`` is the table.
-    pictures : bool
-        False for the tables only.
-    """
-    folder.write("drop.csv", tables.text(document["aspects"], "csv"))
-    folder.write("drop.json", tables.json_text(document))
-    if result.traces:
-        drop_trace_sheets.write(folder, part, aspects, result, pictures=pictures)
-    if pictures:
-        from feederscrew.output import style
-        from feederscrew.output.drop import figures as drop_plots
-
-        rules = {rule: aspects.probabilities[rule] for rule in ("csa", "surface")}
-        chart = drop_plots.counts(_title(part, document), aspects, result.tally, rules)
-        folder.write("drop.png", style.png(chart))
+    trace = study.telling
+    title = f"{study.part.name}: drop {trace.number}, {study.result.launch['name']}"
+    return trace_strip.strip(study.part, study.aspects, trace, title)

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator
 
-from feederscrew.output import style as plots
+from feederscrew.output import style
 from feederscrew.output.columns import MM
 
 HEIGHT = "#0072b2"  # colour of the height of the centre of mass
@@ -25,8 +25,8 @@ def curve(axes, trace, aspects, rows):
         Rows of the stills.
     """
     times, energies, heights = 1e3 * trace.times, trace.energies / MM, trace.positions[:, 2] / MM
-    plots.tidy(axes, x="time [ms]", y="energy as height [mm]", grid="none")
-    axes.plot(times, energies, color=plots.ACCENT, linewidth=1.6, label="energy", zorder=3)
+    style.tidy(axes, x="time [ms]", y="energy as height [mm]", grid="none")
+    axes.plot(times, energies, color=style.ACCENT, linewidth=1.6, label="energy", zorder=3)
     axes.plot(times, heights, color=HEIGHT, linewidth=1.0, label="of which height", zorder=2)
     lines = references(trace, aspects)
     lowest = 0.88 * min(heights.min(), *(height for height, _, _ in lines))
@@ -42,9 +42,9 @@ def curve(axes, trace, aspects, rows):
         badge(axes, times[row], energies[row], number)
     if trace.row >= 0:
         certain = 1e3 * trace.decided
-        axes.axvline(certain, color=plots.INK, linewidth=0.8, linestyle=(0, (1, 2)))
+        axes.axvline(certain, color=style.INK, linewidth=0.8, linestyle=(0, (1, 2)))
         axes.text(certain, 1.01, f"from here {aspects.names[trace.row]} is certain", fontsize=7, va="bottom",
-                  ha="center", color=plots.INK, transform=axes.get_xaxis_transform())  # fmt: skip
+                  ha="center", color=style.INK, transform=axes.get_xaxis_transform())  # fmt: skip
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.03), fontsize=7, frameon=False, borderpad=0.0)
 
 
@@ -60,8 +60,8 @@ def references(trace, aspects):
     -------
     list of (float, str, dict)
     """
-    plain = {"color": plots.FAINT, "linewidth": 0.9, "zorder": 0}
-    strong = {"color": plots.INK, "linewidth": 0.9, "zorder": 1}
+    plain = {"color": style.FAINT, "linewidth": 0.9, "zorder": 0}
+    strong = {"color": style.INK, "linewidth": 0.9, "zorder": 1}
     lines = []
     if trace.row >= 0:
         height = aspects.heights[trace.row]
@@ -78,8 +78,8 @@ def references(trace, aspects):
 
 def badge(axes, x, y, number):
     """A still's number in a disc."""
-    disc = {"boxstyle": "circle,pad=0.25", "facecolor": "white", "edgecolor": plots.INK, "linewidth": 0.7}
-    axes.text(x, y, str(number), fontsize=6, ha="center", va="center", color=plots.INK, bbox=disc, zorder=6,
+    disc = {"boxstyle": "circle,pad=0.25", "facecolor": "white", "edgecolor": style.INK, "linewidth": 0.7}
+    axes.text(x, y, str(number), fontsize=6, ha="center", va="center", color=style.INK, bbox=disc, zorder=6,
               clip_on=False)  # fmt: skip
 
 
@@ -87,10 +87,10 @@ def _named(axes, lines):
     """Reference lines, their names at the right from the first on; one without room is left out."""
     low, high = np.log(axes.get_ylim())
     taken = list(LEGEND)
-    for height, text, style in lines:
-        axes.axhline(height, **style)
+    for height, text, look in lines:
+        axes.axhline(height, **look)
         place = (np.log(height) - low) / (high - low)
         if all(abs(place - other) >= APART for other in taken):
             taken.append(place)
             axes.text(1.01, place, f"{text} {height:.3g}", transform=axes.transAxes, fontsize=7, va="center",
-                      color=plots.INK)  # fmt: skip
+                      color=style.INK)  # fmt: skip

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import binary_dilation
 
+from feederscrew.dropping.stills import chosen
 from feederscrew.dropping.traces import Trace
-from feederscrew.output import style as plots
+from feederscrew.output import style
 from feederscrew.output.columns import MM
-from feederscrew.output.drop import trace_curve as drop_trace_curve
+from feederscrew.output.drop import trace_curve
 from feederscrew.output.solid import marks, render, shading
 from feederscrew.output.solid.shading import Shot
 from feederscrew.output.solid.stance import TURN, outermost, placed
@@ -23,10 +24,10 @@ CELLS = 4.0  # of the floor's grid across a still, at least
 DEEP = 1.25  # [size] how far behind and before the part the grid is drawn
 PIECES = 160  # points of a line, to see which are hidden
 BEHIND = 40.0  # [size] how far behind the solid a point may lie
-GRID = {"color": plots.FAINT, "linewidth": 0.8, "zorder": 2}
-PAST = {"color": plots.ACCENT, "linewidth": 1.1, "zorder": 4}
-AHEAD = {"color": plots.ACCENT, "linewidth": 0.9, "linestyle": (0, (1, 2.2)), "zorder": 4}
-FOOT = {"color": plots.INK, "linewidth": 0.7, "linestyle": (0, (3, 2)), "zorder": 4}
+GRID = {"color": style.FAINT, "linewidth": 0.8, "zorder": 2}
+PAST = {"color": style.ACCENT, "linewidth": 1.1, "zorder": 4}
+AHEAD = {"color": style.ACCENT, "linewidth": 0.9, "linestyle": (0, (1, 2.2)), "zorder": 4}
+FOOT = {"color": style.INK, "linewidth": 0.7, "linestyle": (0, (3, 2)), "zorder": 4}
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,38 +78,17 @@ def strip(part, aspects, trace, title):
     solid = render.Rays(part.vertices, part.faces, part.centre_of_mass)
     rows = chosen(trace, ACROSS * DOWN)
     laid, stances = _layout(solid, trace, rows)
-    figure = plots.page(*laid.page)
+    figure = style.page(*laid.page)
     page = _page(figure, laid, title)
     for panel, (row, standing) in enumerate(zip(rows, stances)):
         place = laid.place(panel)
         axes = figure.add_axes(_share(laid, *place), xticks=[], yticks=[])
-        axes.spines[:].set_color(plots.FAINT)
+        axes.spines[:].set_color(style.FAINT)
         _still(axes, laid, standing, panel, row)
         _caption(page, place, panel + 1, said(trace, row, aspects.names, _gap(solid, standing)))
     axes = figure.add_axes(_share(laid, EDGE + 60, 66, laid.page[0] - 2 * EDGE - 240, CURVE - 116))
-    drop_trace_curve.curve(axes, trace, aspects, rows)
+    trace_curve.curve(axes, trace, aspects, rows)
     return figure
-
-
-def chosen(trace, count):
-    """Rows of the stills: the first impact, the end, and in between at equal shares of what goes on.
-
-    That is, half by half, how far the part turns and how much energy it loses (in powers), and by a quarter
-    how long it takes.
-    """
-    first = int(np.argmax(trace.impacts))
-    turned = (trace.turns[first + 1 :] * trace.turns[first:-1].inv()).magnitude()
-    lost = -np.diff(np.log(trace.energies[first:])).clip(max=0.0)
-    lost = lost.clip(max=0.5 * lost.sum() / count)  # one hard hit is one still
-    way = sum(
-        share * np.cumsum(steps) / max(steps.sum(), 1e-9)
-        for share, steps in ((0.5, turned), (0.5, lost), (0.25, np.diff(trace.times[first:])))
-    )
-    way = np.append(0.0, way)
-    rows = first + np.searchsorted(way, np.linspace(0.0, way[-1], count) - 1e-9)
-    rows = rows.clip(max=len(trace.times) - 1)
-    rows[1:-1] -= trace.impacts[rows[1:-1] - 1]  # the hit, not the step after it
-    return rows
 
 
 def said(trace, row, names, gap):
@@ -159,14 +139,14 @@ def _still(axes, laid, standing, panel, row):
     axes.imshow(_clear(laid.solid, standing, frame), extent=frame.extent, interpolation="nearest", zorder=3)
     place, to_file = laid.places[row], laid.trace.turns[row].inv()
     foot = np.linspace(place * [1.0, 1.0, 0.0], place, PIECES)
-    for style, lines in (
+    for look, lines in (
         (GRID, _grid(laid, place)),
         (PAST, [laid.places[: row + 1]]),
         (AHEAD, [laid.places[row:]]),
         (FOOT, [foot]),
     ):
         for line in lines:
-            _draw(axes, laid.solid, standing.camera, to_file.apply(line - place), style)
+            _draw(axes, laid.solid, standing.camera, to_file.apply(line - place), look)
     axes.set(xlim=frame.extent[:2], ylim=frame.extent[2:])
 
 
@@ -179,10 +159,10 @@ def _clear(solid, standing, frame):
     return np.dstack([image * part[..., None], np.where(part, 1.0, shade)])
 
 
-def _draw(axes, solid, camera, line, style):
+def _draw(axes, solid, camera, line, look):
     """Where a line (N, 3) about the centre of mass is not hidden by the solid."""
     image, seen = camera.project(line), camera.sees(solid, line, away=BEHIND)
-    axes.plot(*np.where(seen[:, None], image, np.nan).T, **style)
+    axes.plot(*np.where(seen[:, None], image, np.nan).T, **look)
 
 
 def _grid(laid, place):
@@ -215,10 +195,10 @@ def _page(figure, laid, title):
     axes.set_axis_off()
     axes.set(xlim=(0, width), ylim=(0, height))
     axes.text(
-        EDGE, height - 34, plots.words(title), fontsize=13, fontweight="bold", color=plots.INK, va="center"
+        EDGE, height - 34, style.words(title), fontsize=13, fontweight="bold", color=style.INK, va="center"
     )
     told = f"grid on the plane: {laid.step / MM:g} mm; the line is the way of the centre of mass"
-    axes.text(EDGE, height - 66, told, fontsize=8, color=plots.INK, va="center")
+    axes.text(EDGE, height - 66, told, fontsize=8, color=style.INK, va="center")
     marks.scale_bar(axes, width - EDGE, height - 66, laid.pixel * laid.solid.size)
     return axes
 
@@ -226,5 +206,5 @@ def _page(figure, laid, title):
 def _caption(page, place, number, told):
     """Number and text under a still."""
     left, bottom, _, _ = place
-    drop_trace_curve.badge(page, left + 16, bottom - 18, number)
-    page.text(left + 34, bottom - 18, plots.words(told), fontsize=8, color=plots.INK, va="center")
+    trace_curve.badge(page, left + 16, bottom - 18, number)
+    page.text(left + 34, bottom - 18, style.words(told), fontsize=8, color=style.INK, va="center")

@@ -14,19 +14,20 @@ APART = 0.012  # of the range of throw numbers: from one aspect's points to the 
 GREY = "#aab4bd"
 
 
-def one(title, aspects, result):
-    """Shares over time on one plate, and beside them how parts lay at first, later and in the end.
+def one(study):
+    """Draw shares over time on one plate, and beside them how parts lay at first, later and in the end.
 
     Parameters
     ----------
-    title : str
-    aspects : Aspects
-    result : feederscrew.dropping.plate.runs.Shaken
+    study : PlateStudy
+        Its first plate is drawn.
 
     Returns
     -------
     Figure
     """
+    aspects, result = study.aspects, study.plates[0]
+    title = f"{study.part.name}: {result.parts} parts, throw number {result.throw_number:.3g}"
     figure = style.figure(8.2, 3.8)
     left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
     style.tidy(left, title=style.words(title), x="time on the plate [s]", y="parts [%]", grid="y")
@@ -71,27 +72,25 @@ def shares(axes, aspects, seen):
     axes.tick_params(axis="x", length=0)
 
 
-def trend(title, aspects, results, names):
-    """Shares and velocity over the throw number, a line an aspect.
+def trend(study):
+    """Draw shares and velocity over the throw number, a line an aspect.
 
     Parameters
     ----------
-    title : str
-    aspects : Aspects
-    results : sequence of feederscrew.dropping.plate.runs.Shaken
-    names : sequence of str
-        Of the bowl of each result.
+    study : PlateStudy
 
     Returns
     -------
     Figure
     """
+    aspects = study.aspects
+    title = f"{study.part.name} on {len(study.plates)} plates" + ", partial" * study.plates[-1].partial
     figure = style.figure(8.2, 3.8)
     left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
     style.tidy(left, title=style.words(title), x="throw number", y="share in the second half [%]")
     style.tidy(right, title="Transport", x="throw number", y="velocity [mm/s]")
-    order = np.argsort([result.throw_number for result in results], kind="stable")
-    results, names = [results[k] for k in order], [names[k] for k in order]
+    order = np.argsort([result.throw_number for result in study.plates], kind="stable")
+    results, names = [study.plates[k] for k in order], [study.names[k] for k in order]
     x = np.array([result.throw_number for result in results])
     seen = [result.occupancy for result in results]
     shown = [k for k in range(len(aspects.names)) if max(one.plate[k] for one in seen) > LABELLED]

@@ -13,46 +13,43 @@ HIDDEN = ("velocity_low_mm_s", "velocity_high_mm_s")  # in a table for people
 TIMES = 101  # rows an aspect in the course over time, at most
 
 
-def plates(aspects, results, names):
-    """One row a plate and aspect: how often parts lie on it, and how fast they travel there.
+def plates(study):
+    """Return how often parts lie on each aspect of each plate, and how fast they travel there.
 
     Parameters
     ----------
-    aspects : Aspects
-    results : sequence of feederscrew.dropping.plate.runs.Shaken
-    names : sequence of str
-        Of the bowl of each result.
+    study : PlateStudy
 
     Returns
     -------
     DataFrame
-        The columns of ``plate.csv``.
+        The columns of ``plate.csv``, one row a plate and aspect.
     """
-    return _labelled([_plate(aspects, *pair) for pair in zip(results, names)], results)
+    return _labelled(study, _plate)
 
 
-def rates(aspects, results, names):
-    """One row a plate and pair of aspects: the transitions seen and their rate; ``plate_rates.csv``.
+def rates(study):
+    """Return the transitions seen and their rate, one row a plate and pair of aspects: ``plate_rates.csv``.
 
     A row whose two aspects are the same counts tips onto an equal face.
     """
-    return _labelled([_rates(aspects, *pair) for pair in zip(results, names)], results)
+    return _labelled(study, _rates)
 
 
-def course(aspects, results, names):
-    """One row a plate, time and aspect: the share of the parts there; ``plate_time.csv``."""
-    return _labelled([_course(aspects, *pair) for pair in zip(results, names)], results)
+def course(study):
+    """Return the share of the parts on each aspect over time: ``plate_time.csv``."""
+    return _labelled(study, _course)
 
 
-def drives(results, names):
-    """One row a plate: how fast parts travel on it, and how much was seen; ``plate_drives.csv``."""
-    return _labelled([_drive(*pair) for pair in zip(results, names)], results)
+def drives(study):
+    """Return how fast parts travel on each plate, and how much was seen: ``plate_drives.csv``."""
+    return _labelled(study, _drive)
 
 
-def told(results, names):
-    """How fast parts travel on each plate, a line each."""
-    for result, name in zip(results, names):
-        yield f"{_where(result, name)}: {travels(result, 4)}, {_seen(result.occupancy)} transitions seen"
+def summary(study):
+    """Yield how fast parts travel on each plate, a line each."""
+    for plate, name in zip(study.plates, study.names):
+        yield f"{_where(plate, name)}: {travels(plate, 4)}, {plate.transitions} transitions seen"
 
 
 def travels(result, digits):
@@ -61,48 +58,42 @@ def travels(result, digits):
     return f"travels at {speed} mm/s" + f" ({low} to {high})" * (result.parts > 1)
 
 
-def document(part, aspects, seed, results, names):
-    """The test as one JSON document.
+def document(study):
+    """Return the test as one JSON document.
 
     Parameters
     ----------
-    part : Part
-    aspects : Aspects
-    seed : int
-    results, names
-        As for `plates`.
+    study : PlateStudy
 
     Returns
     -------
     dict
     """
     return {
-        "part": part.name,
-        "seed": seed,
-        "launch": {name: value for name, value in results[0].launch.items() if name not in SURFACE},
-        "partial": any(result.partial for result in results),
-        "plates": [_one(aspects, *pair) for pair in zip(results, names)],
+        "part": study.part.name,
+        "seed": study.seed,
+        "launch": {name: value for name, value in study.plates[0].launch.items() if name not in SURFACE},
+        "partial": study.partial,
+        "plates": [_one(study.aspects, *pair) for pair in zip(study.plates, study.names)],
     }
 
 
-def remarks(document):
-    """What a user must know of a test, a line each."""
+def remarks(study):
+    """Return what a user must know of a test, a line each."""
     told = []
-    for plate in document["plates"]:
-        where, seen = f"{plate['bowl']} at {plate['amplitude_mm']:.4g} mm", plate["transitions_seen"]
-        if plate["changing"]:
-            listed = ", ".join(plate["changing"])
-            told.append(f"{where}: the share of {listed} still changes; give a longer --seconds")
-        if plate["unsettled"]:
-            told.append(
-                f"{where}: {plate['unsettled']} of {plate['drops']} parts lay on no aspect to the end"
-            )
-        if plate["lost"]:
-            told.append(f"{where}: {plate['lost']} parts could not be followed and are left out")
-        if 0 < seen < FEW:
-            told.append(f"{where}: too few transitions ({seen}) for p_limit; give more --drops or --seconds")
-    if document["partial"]:
-        told.append(f"partial: stopped after {plate['drops']} parts on the plate of {where}")
+    for plate, name in zip(study.plates, study.names):
+        where = _where(plate, name)
+        if changing := _changing(study.aspects, plate):
+            told.append(f"{where}: the share of {', '.join(changing)} still changes; give a longer --seconds")
+        if plate.unsettled:
+            told.append(f"{where}: {plate.unsettled} of {plate.parts} parts lay on no aspect to the end")
+        if plate.lost:
+            told.append(f"{where}: {plate.lost} parts could not be followed and are left out")
+        if 0 < plate.transitions < FEW:
+            few = f"too few transitions ({plate.transitions}) for p_limit"
+            told.append(f"{where}: {few}; give more --drops or --seconds")
+    if study.partial:
+        told.append(f"partial: stopped after {plate.parts} parts on the plate of {where}")
     return told
 
 
@@ -118,23 +109,19 @@ def _where(result, name):
     return f"{name} at {result.bowl.drive.amplitude / MM:.4g} mm"
 
 
-def _seen(seen):
-    """Transitions between classes."""
-    return int(seen.counts.sum() - np.trace(seen.counts))
+def _changing(aspects, plate):
+    """Aspects whose share still changes."""
+    return [name for name, changing in zip(aspects.names, plate.occupancy.changing) if changing]
 
 
-def _unsettled(result):
-    """Parts that have not lain on any face yet."""
-    return round(result.parts * (1.0 - float(result.occupancy.course[-1].sum())))
-
-
-def _labelled(parts, results):
+def _labelled(study, columns):
     """The columns of all plates as a table; once the user stopped, which plate is not whole."""
-    columns = {name: np.concatenate([np.asarray(part[name]) for part in parts]) for name in parts[0]}
-    if any(result.partial for result in results):
+    parts = [columns(study.aspects, *pair) for pair in zip(study.plates, study.names)]
+    joined = {name: np.concatenate([np.asarray(part[name]) for part in parts]) for name in parts[0]}
+    if study.partial:
         lengths = [len(part["bowl"]) for part in parts]
-        columns["partial"] = np.repeat([result.partial for result in results], lengths)
-    return tables.frame(columns)
+        joined["partial"] = np.repeat([plate.partial for plate in study.plates], lengths)
+    return tables.frame(joined)
 
 
 def _head(result, name, count):
@@ -144,14 +131,14 @@ def _head(result, name, count):
     return {key: [value] * count for key, value in told.items()}
 
 
-def _drive(result, name):
+def _drive(aspects, result, name):
     ends = ("velocity_mm_s", "velocity_low_mm_s", "velocity_high_mm_s")
     return {
         **_head(result, name, 1),
         "drops": [result.parts],
         "seconds": [result.seconds],
-        "unsettled": [_unsettled(result)],
-        "transitions": [_seen(result.occupancy)],
+        "unsettled": [result.unsettled],
+        "transitions": [result.transitions],
         "steady": ["no" if result.occupancy.changing.any() else "yes"],
         **{end: [result.occupancy.velocity[k] / MM_S] for k, end in enumerate(ends)},
     }
@@ -216,11 +203,11 @@ def _one(aspects, result, name):
         **{name: result.launch[name] for name in SURFACE},
         "drops": result.parts,
         "lost": result.lost,
-        "unsettled": _unsettled(result),
+        "unsettled": result.unsettled,
         "seconds": result.seconds,
         "steady": not seen.changing.any(),
-        "changing": [name for name, changing in zip(aspects.names, seen.changing) if changing],
-        "transitions_seen": _seen(seen),
+        "changing": _changing(aspects, result),
+        "transitions_seen": result.transitions,
         **velocity,
         "aspects": tables.frame({k: v for k, v in _plate(aspects, result, name).items() if k not in head}),
         "rates": tables.frame({k: v for k, v in _rates(aspects, result, name).items() if k not in head}),

@@ -3,11 +3,11 @@
 import numpy as np
 from matplotlib.patches import Circle, Polygon, Wedge
 
-from feederscrew.output import style as plots
+from feederscrew.output import style
 
 STEPS = 60  # pieces an edge of the contact polygon is cut into, to see which are hidden
-LINE = {"color": plots.ACCENT, "linewidth": 1.3, "solid_capstyle": "round"}
-HIDDEN = {"color": plots.ACCENT, "linewidth": 0.8, "linestyle": (0, (3, 2)), "alpha": 0.8}
+LINE = {"color": style.ACCENT, "linewidth": 1.3, "solid_capstyle": "round"}
+HIDDEN = {"color": style.ACCENT, "linewidth": 0.8, "linestyle": (0, (3, 2)), "alpha": 0.8}
 BEYOND = 0.08  # [size] how far a rolling axis sticks out at both ends
 AXIS = {"color": "#0072b2", "linewidth": 0.9, "linestyle": (0, (9, 2.5, 2, 2.5))}
 ROUND_LENGTHS = np.array([1.0, 2.0, 5.0])
@@ -46,15 +46,15 @@ def contact(axes, solid, standing, polygon):
     """
     camera = standing.camera
     axes.add_patch(
-        Polygon(camera.project(polygon), closed=True, facecolor=plots.ACCENT, alpha=0.16, zorder=2)
+        Polygon(camera.project(polygon), closed=True, facecolor=style.ACCENT, alpha=0.16, zorder=2)
     )
     pieces = _pieces(polygon)
     ends = camera.project(pieces.reshape(-1, 3)).reshape(-1, 2, 2)
     seen = camera.sees(solid, pieces.mean(axis=1))
-    for shown, style in ((seen, LINE), (~seen, HIDDEN)):
+    for shown, look in ((seen, LINE), (~seen, HIDDEN)):
         for run in _runs(shown):
             chain = np.vstack([ends[run, 0], ends[run[-1], 1]])
-            axes.plot(chain[:, 0], chain[:, 1], zorder=3, **style)
+            axes.plot(chain[:, 0], chain[:, 1], zorder=3, **look)
 
 
 def rolling_axis(axes, solid, standing, direction):
@@ -84,23 +84,23 @@ def scale_bar(axes, right, y, pixel):
     decade = 10.0 ** np.floor(np.log10(wanted))
     length = float(max(ROUND_LENGTHS[decade * ROUND_LENGTHS <= wanted * (1.0 + 1e-9)]) * decade)
     left = right - length * 1e-3 / pixel
-    axes.plot([left, right], [y, y], color=plots.INK, linewidth=1.6, solid_capstyle="butt")
+    axes.plot([left, right], [y, y], color=style.INK, linewidth=1.6, solid_capstyle="butt")
     for end in (left, right):
-        axes.plot([end, end], [y - 5, y + 5], color=plots.INK, linewidth=1.0)
+        axes.plot([end, end], [y - 5, y + 5], color=style.INK, linewidth=1.0)
     axes.text(
-        0.5 * (left + right), y + 9, f"{length:g} mm", fontsize=7.5, color=plots.INK, ha="center", va="bottom"
+        0.5 * (left + right), y + 9, f"{length:g} mm", fontsize=7.5, color=style.INK, ha="center", va="bottom"
     )
 
 
 def legend(axes, left, y, *, rolling):
     """What the marks mean, in one line of text from ``left`` on; the axis only if one is drawn."""
     centre_of_mass(axes, 9.0, (left + 9.0, y))
-    axes.text(left + 26, y, "centre of mass", fontsize=7, color=plots.INK, va="center")
+    axes.text(left + 26, y, "centre of mass", fontsize=7, color=style.INK, va="center")
     axes.plot([left + 170, left + 198], [y, y], **LINE)
-    axes.text(left + 208, y, "contact, dashed where hidden", fontsize=7, color=plots.INK, va="center")
+    axes.text(left + 208, y, "contact, dashed where hidden", fontsize=7, color=style.INK, va="center")
     if rolling:
         axes.plot([left + 460, left + 500], [y, y], **AXIS)
-        axes.text(left + 510, y, "axis it rolls about", fontsize=7, color=plots.INK, va="center")
+        axes.text(left + 510, y, "axis it rolls about", fontsize=7, color=style.INK, va="center")
 
 
 def _pieces(polygon):

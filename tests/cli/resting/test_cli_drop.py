@@ -9,12 +9,13 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import shapes
 
 from feederscrew.dropping import ensemble
-from feederscrew.output.drop import files as drop_sheets
+from feederscrew.output.drop import tables
 from feederscrew_cli import interrupt, progress
 
 PARTS = Path(__file__).parents[3] / "parts"
@@ -249,8 +250,10 @@ def test_an_interrupt_is_held_back_and_then_heard():
 
 
 def test_a_partial_test_is_labelled():
-    told = {"partial": True, "drops": 250, "unsettled": 0, "until": 0.01, "widest": 0.03}
-    assert drop_sheets.remarks(told) == ["partial: stopped after 250 drops"]
+    tally = SimpleNamespace(unsettled=0, widest=0.03)
+    result = SimpleNamespace(drops=SimpleNamespace(partial=True), tally=tally, aim=0.01)
+    stopped = SimpleNamespace(drops=250, result=result)
+    assert tables.remarks(stopped) == ["partial: stopped after 250 drops"]
 
 
 def test_progress_grows_with_what_is_needed(capsys, monkeypatch):

@@ -9,10 +9,8 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.dropping import conditions
-from feederscrew.dropping.plate import runs
-from feederscrew.output.plate import tables as plate_tables
-from feederscrew.resting.aspects import find
+from feederscrew.output.plate import tables
+from feederscrew.studies.plate import plate as plate_study
 
 HEAD = ["bowl", "amplitude_mm", "throw_number"]
 COLUMNS = [
@@ -165,16 +163,15 @@ def test_parts_that_never_come_down_are_told(run, tmp_path):
 
 
 def test_a_plate_that_was_stopped_is_marked_everywhere():
-    part, own = shapes.part(shapes.box(4.0, 5.0, 6.0)), dict.fromkeys(conditions.KEYS)
-    aspects, plates = find(part), [bowls.record(bowls.settings(path=None, overrides=()))] * 2
-    whole, cut = runs.test(part, aspects, plates, "place", own, drops=10, seconds=0.2)
-    results, names = [whole, replace(cut, partial=True)], ["one", "two"]
-    for table in (plate_tables.plates, plate_tables.rates, plate_tables.course):
-        marks = table(aspects, results, names).groupby("bowl")["partial"].agg(["min", "max"])
+    part, bowl = shapes.part(shapes.box(4.0, 5.0, 6.0)), bowls.record(bowls.settings(path=None, overrides=()))
+    study = plate_study(part, [bowl, bowl], "place", names=["one", "two"], drops=10, seconds=0.2)
+    whole, cut = study.plates
+    stopped = replace(study, plates=(whole, replace(cut, partial=True)))
+    for table in (tables.plates, tables.rates, tables.course):
+        marks = table(stopped).groupby("bowl")["partial"].agg(["min", "max"])
         assert marks.to_numpy().tolist() == [[False, False], [True, True]]
-        assert "partial" not in table(aspects, [whole], ["one"])
-    assert plate_tables.drives(results, names)["partial"].tolist() == [False, True]
-    told = plate_tables.document(part, aspects, 1, results, names)
-    assert told["partial"]
+        assert "partial" not in table(study)
+    assert tables.drives(stopped)["partial"].tolist() == [False, True]
+    assert tables.document(stopped)["partial"]
     line = "partial: stopped after 10 parts on the plate of two at 0.05 mm"
-    assert plate_tables.remarks(told)[-1] == line
+    assert tables.remarks(stopped)[-1] == line

@@ -1,0 +1,84 @@
+"""Drop tests as a table and as a document."""
+
+from feederscrew.output import tables
+from feederscrew.output.columns import MM
+from feederscrew.output.drop import trace_tables
+
+
+def counts(study):
+    """Return how many drops rest on each aspect, one row an aspect.
+
+    Parameters
+    ----------
+    study : DropStudy
+        One that the user stopped is labelled in every row.
+
+    Returns
+    -------
+    DataFrame
+        The columns of ``drop.csv``.
+    """
+    aspects, tally = study.aspects, study.result.tally
+    partial = {"partial": [True] * len(aspects.names)} if study.result.drops.partial else {}
+    return tables.frame(
+        {
+            "aspect": aspects.names,
+            "height_mm": aspects.heights / MM,
+            "count": tally.counts,
+            "p_drop": tally.p,
+            "p_drop_low": tally.low,
+            "p_drop_high": tally.high,
+            "p_gentle": tally.gentle,
+            "p_violent": tally.violent,
+            **partial,
+        }
+    )
+
+
+def document(study):
+    """Return the drop test as one JSON document.
+
+    Parameters
+    ----------
+    study : DropStudy
+
+    Returns
+    -------
+    dict
+    """
+    result = study.result
+    return {
+        "part": study.part.name,
+        "drops": study.drops,
+        "seed": result.seed,
+        "launch": result.launch,
+        "partial": result.drops.partial,
+        "unsettled": result.tally.unsettled,
+        "until": result.aim,
+        "widest": result.tally.widest,
+        "traces": trace_tables.listed(study),
+        "aspects": counts(study),
+    }
+
+
+def remarks(study):
+    """Return what a user must know of a drop test, a line each."""
+    told, drops, tally, aim = [], study.drops, study.result.tally, study.result.aim
+    if study.result.drops.partial:
+        told.append(f"partial: stopped after {drops} drops")
+    elif aim is not None and tally.widest > aim:
+        told.append(
+            f"after {drops} drops the widest interval is {100.0 * tally.widest:.3g} % to either side, not "
+            f"{100.0 * aim:.3g} % - give more --drops, or a wider --until"
+        )
+    if tally.unsettled:
+        told.append(f"{tally.unsettled} of {drops} drops came to rest on no aspect")
+    return told
+
+
+def title(study):
+    """Return what the chart is of, and what is the matter with it."""
+    result = study.result
+    unsettled = f", {result.tally.unsettled} unsettled" if result.tally.unsettled else ""
+    named = f"{study.part.name}: {study.drops} drops, {result.launch['name']}"
+    return named + unsettled + ", partial" * result.drops.partial
