@@ -68,6 +68,7 @@ bench: $(READY_TO_TEST) ## benchmarks, a few minutes
 docs: docs/aspects.png docs/regimes.png docs/drop.png $(READY) ## pictures, outputs and tables of the README
 	$(BIN)/python docs/readme.py
 	$(BIN)/python docs/commands.py
+	$(BIN)/python docs/equations.py
 	$(BIN)/python docs/rules.py
 
 docs/aspects.png: results/$(DEMO)/aspects.csv

@@ -81,7 +81,7 @@ def published_limit(ratio, beta, alpha_minus_theta=0.0):
 
     References
     ----------
-    The thesis, eq. [4.27]; [4.28] for alpha = theta.
+    The thesis, eq. [4.27]; eq. [4.28] for alpha = theta.
     """
     normal = 1.0 - ratio * np.sin(beta)
     with np.errstate(divide="ignore", invalid="ignore"):

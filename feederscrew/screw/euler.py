@@ -65,7 +65,8 @@ class Body:
         Returns
         -------
         Momentum of shape (...,)
-            q = m (v_A + omega x AG) [2.2]; H_A = I_A omega + m AG x v_A [2.3]; q + eps H_A [2.4].
+            q = m (v_A + omega x AG) [2.2]; H_A = I_A omega + m AG x v_A [2.3]; q + eps H_A, eq. [2.4].
+            The thesis writes it out, eqs. [4.8], [4.39], for the twists of eqs. [4.7], [4.38].
         """
         spin, speed, lever = twist.resultant, twist.moment, self.centre - twist.reference
         mass = np.asarray(self.mass)[..., None]
@@ -116,10 +117,15 @@ def spatial_triangle(body, twist, twist_rate):
     -------
     SpatialTriangle
         All three screws at A.
+
+    Notes
+    -----
+    The thesis writes them out for its parts on the floor, eqs. [4.9] to [4.12], eqs. [4.40] to [4.42], and
+    on the track, eqs. [4.30], [4.31], eqs. [4.55], [4.56].
     """
     rate = body.momentum(twist_rate.at(twist.reference))  # linear in the twist, so its rate has its form
     rate = Wrench(rate.resultant, rate.moment, rate.reference)
-    centripetal = twist.cross(body.momentum(twist))
+    centripetal = twist.cross(body.momentum(twist))  # eq. [4.4]
     return SpatialTriangle(rate + centripetal, rate, centripetal)  # eq. [4.6]
 
 

@@ -237,7 +237,7 @@ class Twist(Screw):
 
 
 class Wrench(Screw):
-    """Force [N] and its moment [N m] about ``reference``."""
+    """Force [N] and its moment [N m] about ``reference``, eq. [4.5]."""
 
     @property
     def force(self):

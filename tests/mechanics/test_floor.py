@@ -21,6 +21,7 @@ def drive_acceleration(settings):
 
 
 def test_normal_force_at_both_reversals():
+    """Eqs. [4.14], [4.20]."""
     posture, settings = box_posture(), bowl()
     lift = drive_acceleration(settings) * np.sin(20 * DEG)
     found = balance.motion(posture, settings, 0.0, np.array([0.5, 1.5]) * np.pi)
@@ -28,6 +29,7 @@ def test_normal_force_at_both_reversals():
 
 
 def test_sliding_against_kinetic_friction():
+    """Eqs. [4.16], [4.26], [4.28]."""
     settings = bowl(static=0.4, kinetic=0.25)
     push, lift = (drive_acceleration(settings) * f(20 * DEG) for f in (np.cos, np.sin))
     found = balance.motion(box_posture(), settings, 0.0)
@@ -59,6 +61,7 @@ def test_friction_is_a_vector_against_the_drive():
 
 
 def test_alignment_turns_towards_the_drive():
+    """Eqs. [4.17], [4.23]."""
     posture, settings = box_posture(offset=2e-3), bowl(direction=30 * DEG)
     headings = np.radians(np.linspace(-170, 170, 35))
     turning = balance.motion(posture, settings, headings).turning
@@ -73,7 +76,10 @@ def test_alignment_turns_towards_the_drive():
 
 @pytest.mark.parametrize("seed", range(5))
 def test_newton_and_euler(seed):
-    """All wrenches on the part make its momentum rate, whatever the inertia, the drive and the phase."""
+    """All wrenches on the part make its momentum rate, whatever the inertia, the drive and the phase.
+
+    Eqs. [4.14] to [4.19].
+    """
     rng = np.random.default_rng(seed)
     base = rng.normal(size=(3, 3))
     inertia = 1e-7 * (base @ base.T + 3 * np.eye(3))

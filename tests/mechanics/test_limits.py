@@ -32,6 +32,7 @@ def test_acceleration_ratio_of_figure_5_6():
 
 
 def test_published_limit_by_hand():
+    """Eqs. [4.27], [4.28]."""
     # beta 30 deg, G = 1: cos 30 / (1 - 1/2) = sqrt(3)
     assert limits.published_limit(1.0, 30 * DEG) == pytest.approx(np.sqrt(3.0), rel=1e-14)
     assert limits.published_limit(1.0, 30 * DEG, 60 * DEG) == pytest.approx(np.sqrt(3.0) / 2, rel=1e-14)
@@ -137,6 +138,7 @@ def test_a_reversed_drive_on_a_reversed_climb_swaps_the_limits(ratio, beta, head
 @given(ratios, betas, st.floats(-89.0, 89.0).map(lambda angle: angle * DEG))
 @settings(max_examples=150, deadline=None)
 def test_level_forward_limit_is_the_published_one_below_the_hop(ratio, beta, heading):
+    """Eq. [4.27]."""
     assume(ratio * np.sin(beta) < 0.999)
     published = limits.published_limit(ratio, beta, heading)
     assert limits.forward_limit(ratio, beta, heading) == pytest.approx(published, rel=1e-12, abs=1e-15)

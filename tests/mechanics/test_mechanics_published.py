@@ -58,7 +58,10 @@ def printed_floor_dual(h, e, d, push, normal, friction, beta, alpha, theta):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_wrench_of_the_floor_4_13_and_4_43(printed_card, seed):
-    """All components but Y' and Z' of the moment, and these for alpha = theta = 0."""
+    """Eqs. [4.13], [4.43]: every component but Y' and Z' of the moment; these for a part that is aligned.
+
+    They are eqs. [4.18], [4.19], eqs. [4.48], [4.49].
+    """
     _, card = printed_card
     rng = np.random.default_rng(seed)
     h, e, d = card.height, card.offset, rng.normal()
@@ -77,7 +80,7 @@ def test_wrench_of_the_floor_4_13_and_4_43(printed_card, seed):
 
 
 def test_erratum_floor_moment_is_projected_on_fixed_axes(printed_card):
-    """[4.13], [4.43]: factors cos(theta), sin(theta) stand where the body axes have alpha - theta."""
+    """Eqs. [4.13], [4.43]: factors cos(theta), sin(theta) stand where the body axes have alpha - theta."""
     _, card = printed_card
     h, e, push, beta, alpha, theta = card.height, card.offset, 1.3, 0.4, 0.5, 0.2
     total = floor_wrench(h, e, 0.0, push, 0.0, 0.0, [0.0, 0.0], beta, alpha - theta).moment
@@ -90,7 +93,7 @@ def test_erratum_floor_moment_is_projected_on_fixed_axes(printed_card):
 
 
 def test_erratum_4_43_prints_alpha_plus_theta():
-    """[4.43], [4.46]: cos a cos t - sin a sin t is cos(a + t); the body axis needs cos(a - t)."""
+    """Eqs. [4.43], [4.46]: cos a cos t - sin a sin t is cos(a + t); the body axis needs cos(a - t)."""
     alpha, theta = 0.5, 0.2
     printed = np.cos(alpha) * np.cos(theta) - np.sin(alpha) * np.sin(theta)
     assert printed == pytest.approx(np.cos(alpha + theta))
@@ -98,7 +101,7 @@ def test_erratum_4_43_prints_alpha_plus_theta():
 
 
 def test_alignment_coefficients_4_23_and_4_53(printed_card):
-    """0.033 = 3.15 / 95.32 and 0.0037 = 2.82 / 755.91, per g and mm."""
+    """Eqs. [4.23], [4.53]: 0.033 = 3.15 / 95.32 and 0.0037 = 2.82 / 755.91, per g and mm."""
     name, card = printed_card
     coefficient = card.offset / card.turning_inertia * 1e-6  # [1/(g mm)]
     digits = {"arc_chute": ("0.033", 3), "magnet": ("0.0037", 4)}[name]
@@ -106,7 +109,10 @@ def test_alignment_coefficients_4_23_and_4_53(printed_card):
 
 
 def test_published_floor_on_the_card(printed_card):
-    """[4.20], [4.23], [4.27], [4.16] with [4.26], each by hand."""
+    """By hand, of the Arc Chute: eqs. [4.14] to [4.18], eqs. [4.20] to [4.23], eqs. [4.25] to [4.27].
+
+    Of the Magnet: eqs. [4.44] to [4.48], eqs. [4.50] to [4.53].
+    """
     _, card = printed_card
     settings = bowl(direction=10 * DEG)
     found = published_floor.motion(card, settings, 4 * DEG)
@@ -187,7 +193,10 @@ def summed(lever, settings, heading, x):
 
 @pytest.mark.parametrize("delta", [0.0, 0.2, 0.5])
 def test_track_equations_follow_from_the_wrench_sum_but_for_three_slips(printed_card, delta):
-    """[4.32]-[4.37], [4.57]-[4.62]: left over are radial gravity, the drive about X, wall friction."""
+    """Eqs. [4.32] to [4.37], eqs. [4.57] to [4.62], of the wrenches of eqs. [4.29], [4.54].
+
+    Left over are radial gravity, the drive about X, wall friction.
+    """
     name, card = printed_card
     lever = levers_of(name, card)
     settings = bowl(bank=delta, direction=15 * DEG, wall=0.2)
@@ -206,7 +215,7 @@ def test_track_equations_follow_from_the_wrench_sum_but_for_three_slips(printed_
 
 
 def test_erratum_4_33_leaves_out_radial_gravity():
-    """With it, a banked part without drive presses on the wall; as printed it does not."""
+    """Eq. [4.33]. With it, a banked part without drive presses on the wall; as printed it does not."""
     part = seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 1.0)
     settings = bowl(amplitude=0.0, bank=20 * DEG, climb=0.0, static=0.0, kinetic=0.0, wall=0.0)
     printed = published_track.motion(published_track.levers(part, 0.0), settings, 0.0)
@@ -231,7 +240,7 @@ def test_erratum_the_remark_on_r3_prints_64_44():
 
 
 def test_erratum_4_36_loses_a_term_of_4_29():
-    """[4.36] is [4.29] with sin(delta) for cos(delta) in one term, and without the last one."""
+    """Eq. [4.36] is [4.29] with sin(delta) for cos(delta) in one term, and without the last one."""
     delta, beta, turn, e, h = 0.3, 0.4, 0.2, 3.15, 3.31
     full = e * np.sin(beta) * np.cos(delta) + h * np.cos(beta) * np.cos(turn) * np.cos(delta)
     full -= e * np.cos(beta) * np.sin(turn) * np.sin(delta)  # [4.29]
@@ -242,7 +251,7 @@ def test_erratum_4_36_loses_a_term_of_4_29():
 
 
 def test_erratum_wall_friction_is_not_along_x():
-    """[4.32], [4.57]: each wall's tangent is turned by sigma and its friction has a radial part."""
+    """Eqs. [4.32], [4.57]: each wall's tangent is turned by sigma and its friction has a radial part."""
     part = seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 1.0)
     courses = frame(bowl(climb=0.0, bank=0.0), part.walls).courses
     assert courses[:, 0] == pytest.approx([np.cos(np.arcsin(0.1))] * 2)
@@ -250,7 +259,7 @@ def test_erratum_wall_friction_is_not_along_x():
 
 
 def test_erratum_4_13_prints_the_moment_of_r_y_with_the_other_sign():
-    """-3.31 R_y there, +3.31 R_y in [4.19]: the wrench sum has the latter."""
+    """Eq. [4.13]: -3.31 R_y there, +3.31 R_y in eq. [4.19]: the wrench sum has the latter."""
     total = floor_wrench(3.31, 0.0, 0.0, 0.0, 0.0, 0.0, [1.0, 0.0], 0.0, 0.0)
     assert total.moment[2] == pytest.approx(3.31)
 

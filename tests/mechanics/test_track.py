@@ -54,6 +54,7 @@ def residual(part, settings, found):
 @pytest.mark.parametrize("moving", [0.0, 1.0, -1.0])
 @pytest.mark.parametrize("seed", range(12))
 def test_newton_and_euler_on_random_parts_and_bowls(seed, moving):
+    """Eqs. [4.32] to [4.37], eqs. [4.57] to [4.62]."""
     rng = np.random.default_rng(seed)
     part, settings = random_seat(rng), random_bowl(rng)
     found = track.motion(part, settings, PHASE, moving, speed=0.03 * moving)

@@ -18,6 +18,7 @@ def profile(name, kind, values):
 
 
 def test_deviation_by_hand():
+    """Eq. [Table 3-12]."""
     assert measure.deviation([0.5, 0.5], [0.2, 0.8]) == pytest.approx(0.3, rel=1e-15)
     assert measure.deviation([1, 0, 0], [0, 1, 0]) == pytest.approx(np.sqrt(2 / 3), rel=1e-15)
 

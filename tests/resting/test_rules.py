@@ -9,6 +9,7 @@ RULES = (published.pmi, published.csa, published.stability)
 
 
 def test_each_rule_divides_its_quantity_by_the_height():
+    """Eqs. [section 3.1], [Table 3-2], [Table 3-3]."""
     faces, height = np.array([1, 2]), np.array([2.0, 5.0])
     for rule in RULES:
         np.testing.assert_allclose(rule(faces, np.array([3.0, 4.0]), height), [1.5, 1.6])

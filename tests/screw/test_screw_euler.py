@@ -37,6 +37,7 @@ def cloud(rng, count=9):
 @few
 @given(seeds)
 def test_momentum_screw_is_the_sum_over_the_particles(seed):
+    """Eqs. [2.1] to [2.4]."""
     rng = np.random.default_rng(seed)
     masses, places, body = cloud(rng)
     twist = random_screws(rng, Twist)
@@ -67,6 +68,7 @@ def test_inertia_about_a_point_is_the_sum_over_the_particles(seed):
 @few
 @given(seeds)
 def test_dual_euler_is_newton_and_euler_for_every_particle(seed):
+    """Eq. [4.6]."""
     rng = np.random.default_rng(seed)
     masses, places, body = cloud(rng)
     twist, rate = random_screws(rng, Twist), random_screws(rng, Twist)
@@ -81,6 +83,7 @@ def test_dual_euler_is_newton_and_euler_for_every_particle(seed):
 
 
 def test_at_the_centre_of_mass_it_is_newton_and_euler_written_out():
+    """Eqs. [4.4] to [4.6]."""
     rng = np.random.default_rng(11)
     *_, body = cloud(rng)
     (w, v), (dw, dv) = rng.normal(size=(2, 2, 3))

@@ -200,7 +200,7 @@ def _flat(posture, bowl, heading, push, normal, moving):
     sense = np.where(np.asarray(moving) == 0.0, np.sign(size), moving)
     held = np.where(slides, sense * bowl.friction.kinetic * normal, size)  # eq. [4.26]
     friction = -held[..., None] * along
-    return friction, (push + friction) / posture.mass, slides, needed
+    return friction, (push + friction) / posture.mass, slides, needed  # eqs. [4.15], [4.16]
 
 
 def _rolling(posture, bowl, heading, push, normal, moving):
@@ -213,7 +213,7 @@ def _offset(posture, friction, normal, turning):
     """Where the normal force acts: moments about x' and y' through the centre of mass balance."""
     products = np.where(np.isfinite(posture.inertia[2, :2]), posture.inertia[2, :2], 0.0)
     across = np.array([-products[1], products[0]])
-    moment = -posture.height * friction + np.asarray(turning)[..., None] * across
+    moment = -posture.height * friction + np.asarray(turning)[..., None] * across  # eqs. [4.18], [4.19]
     where = np.broadcast_to((normal > 0.0)[..., None], moment.shape)
     offset = np.divide(moment, normal[..., None], out=np.full(moment.shape, np.nan), where=where)
     if rolls(posture):

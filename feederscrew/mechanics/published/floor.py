@@ -21,7 +21,7 @@ class PrintedFloor:
 
 
 def motion(posture, bowl, heading, phase=UPPER_REVERSAL):
-    """Solve [4.14] to [4.18] and [4.27] for a part at rest, with any part's h, e and I.
+    """Solve the printed equations for a part at rest, with any part's h, e and I.
 
     Parameters
     ----------
@@ -36,12 +36,13 @@ def motion(posture, bowl, heading, phase=UPPER_REVERSAL):
     Returns
     -------
     PrintedFloor
-        R_z = mu F_N once it slides; R_y, which the print leaves open, is nought. The moment of [4.18] is
+        R_z = mu F_N once it slides; R_y, which the print leaves open, is zero. The moment of [4.18] is
         projected on fixed axes, as printed.
 
     References
     ----------
-    The thesis, [4.14] to [4.28] and, for the Magnet, [4.44] to [4.53].
+    The thesis: the parts of the wrench of eq. [4.13], solved as eqs. [4.20] to [4.23], and with the levers
+    and the inertia of the Magnet the same, eqs. [4.43] to [4.53].
     """
     m, h, e = posture.mass, posture.height, posture.offset
     beta, alpha = bowl.drive.vibration_angle, bowl.drive.direction
@@ -50,7 +51,7 @@ def motion(posture, bowl, heading, phase=UPPER_REVERSAL):
     normal = m * bowl.gravity - push * np.sin(beta)  # eq. [4.14]
     limit = published_limit(ratio, beta, alpha - heading)  # eq. [4.27]
     ahead = push * np.cos(beta) * np.cos(alpha - heading)
-    slides = ~(np.abs(limit) <= bowl.friction.static) | (normal <= 0.0)
+    slides = ~(np.abs(limit) <= bowl.friction.static) | (normal <= 0.0)  # eq. [4.25]
     held = np.where(slides, np.sign(ahead) * bowl.friction.kinetic * normal, ahead)  # eq. [4.26]
     across = push * np.cos(beta) * np.sin(alpha - heading)
     turning = e * across / posture.turning_inertia  # eq. [4.17]

@@ -102,8 +102,9 @@ def motion(part, bowl, heading, phase=0.5 * np.pi):
 
     References
     ----------
-    The thesis, [4.32] to [4.37] (axes tilted by the bank) and [4.57] to [4.62] (level axes). In [4.36] the
-    drive's moment is taken from [4.29], of which it is a copy with a term lost.
+    The thesis, eqs. [4.32] to [4.37] (axes tilted by the bank) and eqs. [4.57] to [4.62] (level axes): the
+    parts of the wrenches of eqs. [4.29], [4.54]. In [4.36] the drive's moment is taken from [4.29], of which
+    it is a copy with a term lost.
     """
     drive = _drive(part, bowl, heading, phase)
     known = _known(part, bowl, drive)
@@ -138,7 +139,7 @@ def _drive(part, bowl, heading, phase):
 
 
 def _known(part, bowl, drive):
-    """Terms without unknowns: three forces, three moments, (..., 6)."""
+    """Return the terms without unknowns: three forces [N], three moments [N m], (..., 6)."""
     delta, phi, weight = bowl.track.bank, bowl.track.climb, part.mass * bowl.gravity
     x, y, z = np.moveaxis(drive, -1, 0)
     c, s = np.cos(delta), np.sin(delta)
@@ -147,7 +148,7 @@ def _known(part, bowl, drive):
         "level": (y, z - weight * np.cos(phi)),  # eqs. [4.58], [4.59]
     }[part.axes]
     h, e = part.height, part.offset
-    about_y = e * z * c + h * x * c - e * y * s  # eqs. [4.29], [4.61]
+    about_y = e * z * c + h * x * c - e * y * s  # eqs. [4.29], [4.36], [4.61]
     about_z = -(e * z * s + h * x * s + e * y * c)  # eqs. [4.37], [4.62]
     along = x - weight * np.sin(phi)  # eqs. [4.32], [4.57]
     return np.stack(np.broadcast_arrays(along, *forces, 0.0, about_y, about_z), axis=-1)
@@ -176,6 +177,7 @@ def _wall(part, side, lever, delta, sigma, wall):
     cosine, sine = np.cos(sigma), side * np.sin(sigma)
     across = (cosine * c, -cosine * s) if part.axes == "tilted" else (cosine, 0.0)
     turning = lever * cosine + part.friction_beside * wall - part.beside * sine
+    # eqs. [4.35], [4.60]; eqs. [4.36], [4.61]; eqs. [4.37], [4.62]
     about = (raised * cosine, -raised * sine * c + turning * s, raised * sine * s + turning * c)
     return (sine - wall, *across, *about)
 

@@ -33,7 +33,7 @@ class Solution:
 
 
 def sliding(seat, axes, load, closed, floor, wall, course=AHEAD):
-    """Accelerations and reactions of a sliding part.
+    """Solve the wrench equations of a sliding part: accelerations and reactions.
 
     Parameters
     ----------
@@ -51,6 +51,10 @@ def sliding(seat, axes, load, closed, floor, wall, course=AHEAD):
     Returns
     -------
     Solution
+
+    Notes
+    -----
+    The complete form of eqs. [4.32] to [4.37] and eqs. [4.57] to [4.62].
     """
     blocks = _contact_columns(seat, axes, floor, wall, course)
     shape = blocks[0].shape[:-1]

@@ -36,7 +36,7 @@ class Comparison:
 
 
 def deviation(first, second):
-    """Root mean square difference: the 'standard deviation' of Tables 3-12 and 3-13.
+    """Return the root mean square difference: the 'standard deviation' of eq. [Table 3-12] and Table 3-13.
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ import numpy as np
 
 
 def pmi(faces, polar_inertia, height):
-    """Polar moment of inertia over height: the thesis's rule (section 3.1).
+    """Return polar moment of inertia over height: the thesis's rule, eq. [section 3.1].
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def pmi(faces, polar_inertia, height):
 
 
 def csa(faces, solid_angle, height):
-    """Centroid solid angle over height.
+    """Return centroid solid angle over height, eq. [Table 3-2].
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def csa(faces, solid_angle, height):
 
 
 def stability(faces, contact_area, height):
-    """Contact area over height.
+    """Return contact area over height, eq. [Table 3-3].
 
     Parameters
     ----------
