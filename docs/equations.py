@@ -22,7 +22,8 @@ HEAD = """# From an equation of the thesis to its function and its test
 
 Chapter 3 prints its equations without numbers: in place of a [3.4], say, there is the section or the table
 that an equation stands by. [4.1] to [4.3] are mass properties, kept in `parts/arc_chute.yaml`; the
-Magnet's are in `parts/magnet.yaml`. Where the print has a slip, the test shows it, and `feeder reproduce` lists it.
+Magnet's are in `parts/magnet.yaml`. Where the print has a slip, the test shows it, and `feeder reproduce`
+lists it.
 
 Functions are named from `feederscrew` on, tests from `tests`. This page is made by `docs/equations.py`.
 

@@ -1,6 +1,6 @@
 """The part on the track for arrays of bowl settings: what a map over two of them shows."""
 
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import fields, replace
 
 import numpy as np
 
@@ -17,6 +17,7 @@ COLUMNS = (
     "acceleration_x_m_s2", "normal_force_N", "wall_1_N", "wall_2_N",
     "radial_friction_N", "traction_N", "normal_line_offset_m", "normal_line_offset_across_m",
 )  # fmt: skip
+SECTIONS, SINGLE = ("drive", "friction", "track"), ("restitution", "gravity")  # of a bowl, that act on a part
 ROUNDED = 12  # decimals that tell two radii, widths or banks apart
 
 
@@ -113,13 +114,11 @@ def _answers(found):
 
 
 def _fields(bowl):
-    """Every field of a bowl: its section or '', its name, its value."""
-    for section in fields(bowl):
-        value = getattr(bowl, section.name)
-        if is_dataclass(value):
-            yield from ((section.name, inner.name, getattr(value, inner.name)) for inner in fields(value))
-        else:
-            yield "", section.name, value
+    """Yield every field that acts on a part: its section or '', its name, its value."""
+    for section in SECTIONS:
+        record = getattr(bowl, section)
+        yield from ((section, one.name, getattr(record, one.name)) for one in fields(record))
+    yield from (("", name, getattr(bowl, name)) for name in SINGLE)
 
 
 def _picked(bowl, shape, here):
