@@ -20,9 +20,12 @@ WAYS = {1: "convey curve", 2: "convey map"}  # by how many keys are varied
     help="Once for a curve, twice for a map: drive.vibration_angle=5:60:200.",
 )
 @click.option("--bowl", "curve", is_flag=True, help="Follow this bowl inwards, where its angle is steeper.")
+@click.option(
+    "--best-phase", is_flag=True, help="Find the best phase of an elliptical drive, and what it gains."
+)
 @options.pictures
 @options.output
-def convey(bowl, spans, curve, pictures, out):
+def convey(bowl, spans, curve, best_phase, pictures, out):
     """Example: feeder convey --config bowl.yaml --set drive.frequency="50 Hz" -o results
 
     Integrate a part on the bowl's track exactly, from event to event: its velocity, how it slips
@@ -30,24 +33,30 @@ def convey(bowl, spans, curve, pictures, out):
     angle are a little off.
 
     With -o: convey.json and convey.png; with --vary, convey_curve or convey_map, .csv and .png; with
-    --bowl, the curve over the radius in convey_radius.csv and .png, or drawn into the map.
+    --bowl, the curve over the radius in convey_radius.csv and .png, or drawn into the map; with
+    --best-phase, convey_phase.json, .csv and .png.
     """
     from feederscrew import bowl as bowls
 
-    _fitting(spans, curve)
+    _fitting(spans, curve, best_phase)
     settings, ranges, path = bowls.settings(**bowl), bowls.ranges(spans), bowl["path"]
-    out = replace(out, command=WAYS[len(ranges)] if ranges else "convey radius" if curve else "convey")
+    alone = "convey radius" if curve else "convey phase" if best_phase else "convey"
+    out = replace(out, command=WAYS[len(ranges)] if ranges else alone)
     with out.folder(bowls.name(path), bowls.identity(path), bowls.texts(settings)) as folder:
         if len(ranges) == 2:
             _map(settings, ranges, curve, pictures, folder, out)
         elif ranges or curve:
             _curve(settings, ranges, pictures, folder, out)
+        elif best_phase:
+            _phase(settings, pictures, folder, out)
         else:
             _point(settings, pictures, folder, out)
 
 
-def _fitting(spans, curve):
+def _fitting(spans, curve, best_phase):
     """Wrong calls."""
+    if best_phase and (spans or curve):
+        raise click.UsageError("--best-phase stands alone - leave out --vary and --bowl")
     if len(spans) > len(WAYS):
         raise click.UsageError(
             f"--vary is given {len(spans)} times - give it once for a curve, twice for a map"
@@ -95,6 +104,19 @@ def _curve(settings, ranges, pictures, folder, out):
     offers.write(folder, files.curve_offers(found), pictures=pictures)
     frame = tables.points(found)
     out.show(frame, {"cells": frame})
+
+
+def _phase(settings, pictures, folder, out):
+    from feederscrew import bowl as bowls
+    from feederscrew.output import offers
+    from feederscrew.output.convey import files, phase
+    from feederscrew.studies import convey as studies
+
+    announce(out)
+    found, texts = studies.best_phase(bowls.record(settings)), bowls.texts(settings)
+    best = phase.document(found.best)
+    offers.write(folder, files.phase_offers(found, texts), pictures=pictures)
+    out.show(phase.summary(best), {"best_phase": best, "bowl": texts})
 
 
 def announce(out):

@@ -9,7 +9,7 @@ from feederscrew import bowl as bowls
 from feederscrew import units
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.vary import Range
-from feederscrew.conveying import answer, radius, sensitivity, trace
+from feederscrew.conveying import answer, phase, radius, sensitivity, trace
 from feederscrew.conveying.steady import STATUSES
 from feederscrew.machine import speeds
 from feederscrew.studies import grids
@@ -68,6 +68,19 @@ class ConveyCurve:
         """Return where a part has several steady velocities, (N,) bool."""
         spread, high = self.cells["high"] - self.cells["low"], np.abs(self.cells["high"])
         return (self.statuses == "periodic") & (spread > answer.COEXIST * high)
+
+
+@dataclass(frozen=True, eq=False)
+class ConveyPhase:
+    """What the phase of an elliptical drive does for a bowl."""
+
+    best: phase.BestPhase
+
+    @property
+    def curve(self):
+        """Return the velocities over the phase, as a ConveyCurve."""
+        axis = grids.Axis("phase_deg", self.best.phases, DEG)
+        return ConveyCurve("phase", "drive.phase", (axis,), self.best.cells)
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,6 +157,26 @@ def along_radius(bowl):
         grids.Axis("amplitude_mm", there.drive.amplitude, MM),
     )
     return ConveyCurve("radius", "the radius", axes, answer.cells(there))
+
+
+def best_phase(bowl):
+    """Study a bowl over the phase of its drive.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Single values.
+
+    Returns
+    -------
+    ConveyPhase
+
+    Raises
+    ------
+    ConfigError
+        If the bowl cannot convey, or has no steady velocity at any phase.
+    """
+    return ConveyPhase(phase.best_phase(bowl))
 
 
 def velocity_map(settings, ranges, *, drawn=None):

@@ -1,7 +1,7 @@
 """What ``feeder convey`` leaves in its folder: at one point, along a curve, over a map."""
 
 from feederscrew.output import offers as offer
-from feederscrew.output.convey import tables
+from feederscrew.output.convey import phase, tables
 
 
 def offers(study, settings):
@@ -29,6 +29,16 @@ def curve_offers(study):
     return [
         offer.table(f"{name}.csv", tables.points, study),
         offer.picture(f"{name}.png", alt, _curve, study, alt),
+    ]
+
+
+def phase_offers(study, settings):
+    """Offer the files of a ConveyPhase, as a list of Offer; ``settings`` as for ``offers``."""
+    return [
+        offer.document(
+            "convey_phase.json", lambda: {"best_phase": phase.document(study.best), "bowl": settings}
+        ),
+        *curve_offers(study.curve),
     ]
 
 

@@ -45,20 +45,20 @@ def document(study):
 def summary(document):
     """Return the document of one operating point as a frame for people."""
     rows = [
-        ("velocity [mm/s]", _number(document["velocity_mm_s"])),
-        ("lowest to highest [mm/s]", _range(document["velocity_low_mm_s"], document["velocity_high_mm_s"])),
+        ("velocity [mm/s]", number(document["velocity_mm_s"])),
+        ("lowest to highest [mm/s]", between(document["velocity_low_mm_s"], document["velocity_high_mm_s"])),
         ("status", document["status"] + _of_periods(document["period"])),
         ("regime", document["regime"]),
-        ("acceleration ratio A w2/g", _number(document["acceleration_ratio"])),
+        ("acceleration ratio A w2/g", number(document["acceleration_ratio"])),
         ("throw number", _margin(document["throw_number"], document["margins"]["hop"])),
     ]
     for way, meaning in LIMITS.items():
         limit, margin = document[f"mu_{way}"], document["margins"][way]
         rows.append((f"friction that stops {meaning}", _margin(limit, margin)))
-    rows += [(f"time in {name} [%]", _number(100.0 * share)) for name, share in document["fractions"].items()]
+    rows += [(f"time in {name} [%]", number(100.0 * share)) for name, share in document["fractions"].items()]
     rows += [
-        ("longest flight [periods]", _number(document["longest_flight_periods"])),
-        ("hardest impact [mm/s]", _number(document["hardest_impact_mm_s"])),
+        ("longest flight [periods]", number(document["longest_flight_periods"])),
+        ("hardest impact [mm/s]", number(document["hardest_impact_mm_s"])),
         *(_change(name, pair) for name, pair in document["sensitivity"].items()),
         _change("friction", document["friction_doubt"]),
         ("validity", document["validity"]),
@@ -84,9 +84,11 @@ def remarks(document):
     if document["runs_away"]:
         said.append(RUNS_AWAY)
     if document["status"] == "averaged":
-        said.append(f"not periodic: an average; its spread is {_range(low, high)} mm/s")
+        said.append(f"not periodic: an average; its spread is {between(low, high)} mm/s")
     elif high - low > answer.COEXIST * abs(high):
-        said.append(f"several steady velocities, {_range(low, high)} mm/s, depending on how the part arrives")
+        said.append(
+            f"several steady velocities, {between(low, high)} mm/s, depending on how the part arrives"
+        )
     return said
 
 
@@ -147,21 +149,23 @@ def _changed(found, pair, change):
 
 
 def _change(name, pair):
-    less, more = _number(pair["velocity_less_mm_s"]), _number(pair["velocity_more_mm_s"])
+    less, more = number(pair["velocity_less_mm_s"]), number(pair["velocity_more_mm_s"])
     return f"velocity for {name} -/+ {pair['change_percent']:g} % [mm/s]", f"{less} / {more}"
 
 
 def _margin(limit, margin):
-    return "never holds" if np.isnan(limit) else f"{_number(limit)} (margin {_number(margin)})"
+    return "never holds" if np.isnan(limit) else f"{number(limit)} (margin {number(margin)})"
 
 
 def _of_periods(period):
     return f", every {period} periods" if period > 1 else ""
 
 
-def _range(low, high):
-    return f"{_number(low)} to {_number(high)}"
+def between(low, high):
+    """Return two numbers as a range for people."""
+    return f"{number(low)} to {number(high)}"
 
 
-def _number(value):
+def number(value):
+    """Return a number for people; NaN is none."""
     return "none" if np.isnan(value) else f"{value:.4g}"

@@ -194,3 +194,47 @@ def test_a_map_without_any_velocity_is_drawn(run):
     assert result.exit_code == 0
     assert "56 of 56 cells: no steady state" in told(result)
     assert (Path("results") / "defaults" / "convey_map.png").stat().st_size > 0
+
+
+ELLIPSE = (
+    *("--set", "drive.amplitude=0.3 mm", "--set", "drive.frequency=50 Hz", "--set", "friction.static=0.3"),
+    *("--set", "drive.vibration_angle=15 deg", "--set", "restitution=0"),
+)
+
+
+def test_best_phase(run, tmp_path):
+    result = run("convey", *ELLIPSE, "--best-phase", "--format", "json", "-o", str(tmp_path))
+    document = json.loads(result.stdout)
+    best = document["best_phase"]
+    assert result.exit_code == 0
+    assert best["velocity_mm_s"] > best["straight_mm_s"]
+    assert best["nine_tenths_from_deg"] < best["phase_deg"] < best["nine_tenths_to_deg"]
+    assert [row["friction"] for row in best["over_friction"]] == [0.5, 0.8, 1.0, 1.2, 1.5]
+    assert {"phase_deg", "velocity_mm_s", "straight_mm_s", "gain"} <= set(best)
+    names = {path.name for path in (tmp_path / "defaults").iterdir()}
+    assert names == {"convey_phase.json", "convey_phase.csv", "convey_phase.png", "run.json"}
+    rows = list(csv.DictReader(io.StringIO((tmp_path / "defaults/convey_phase.csv").read_text())))
+    assert len(rows) == 180
+    assert float(rows[0]["phase_deg"]) == -180.0
+    assert max(float(row["velocity_mm_s"]) for row in rows) <= best["velocity_mm_s"] * (1 + 1e-5)
+    table = run("convey", *ELLIPSE, "--best-phase").stdout
+    assert "best drive.phase [deg]" in table
+    assert "at 0.5 times the friction, best / straight [mm/s]" in table
+
+
+@pytest.mark.parametrize("more", [("--bowl",), MAP])
+def test_best_phase_stands_alone(run, more):
+    result = run("convey", "--best-phase", *more)
+    assert result.exit_code == 2
+    assert "Error: --best-phase stands alone - leave out --vary and --bowl" in result.stderr
+
+
+def test_best_phase_without_a_steady_state(run):
+    result = run("convey", "--best-phase", "--set", "track.climb=40 deg", "--set", "friction.static=0.3")
+    assert (result.exit_code, told(result)) == (
+        1,
+        [
+            "Error: drive.phase: has no steady velocity at any value: the part slides down the track without "
+            "stopping - lower track.climb, or raise the friction"
+        ],
+    )
