@@ -3,6 +3,7 @@
 import click
 
 from feederscrew_cli import options, orientation
+from feederscrew_cli.convey import announce
 from feederscrew_cli.quantity import Quantity
 
 TARGET = click.option(
@@ -57,6 +58,7 @@ def bowl(part, target, bowl, pictures, out, **wanted):
     effective = (columns.conditions(solid) if solid else {}) | bowls.texts(settings)
     name = solid.name if solid else bowls.name(path)
     with out.folder(name, identity | bowls.identity(path), effective) as folder:
+        announce(out)
         found = (
             study.bowl(settings, solid, target, devices.read(path), **wanted)
             if solid

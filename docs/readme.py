@@ -1,6 +1,6 @@
-"""Bring the README up to what the program says: its outputs, its commands, its keys.
+"""Bring the README and the worked pages up to what the program says: its outputs, its commands, its keys.
 
-Example: python docs/readme.py          (writes README.md)
+Example: python docs/readme.py          (writes README.md and the pages of WORKED)
          python docs/readme.py --check  (status 1, and the differences, if it is out of date)
 """
 
@@ -16,6 +16,7 @@ from click.testing import CliRunner
 from feederscrew.bowl import documentation
 from feederscrew_cli.main import feeder
 
+WORKED = ("docs/bowl.md",)  # pages whose console examples are outputs as well
 ROOT = Path(__file__).resolve().parent.parent
 BLOCK = re.compile(r"```console( sampled)?\n\$ (feeder .*)\n((?:(?!```).*\n)*)```")
 CUT = "...\n"
@@ -65,12 +66,17 @@ def _between(text, name, content):
 def main():
     """Write or check; the exit status."""
     os.chdir(ROOT)
-    path = Path("README.md")
+    pages = {"README.md": filled, **{page: lambda text: BLOCK.sub(_block, text) for page in WORKED}}
+    return max([_brought_up(Path(page), fill) for page, fill in pages.items()])
+
+
+def _brought_up(path, fill):
+    """Write one page, or print how it differs; 1 if it does."""
     old = path.read_text(encoding="utf-8")
-    new = filled(old)
+    new = fill(old)
     if "--check" in sys.argv:
         sys.stdout.writelines(
-            difflib.unified_diff(old.splitlines(True), new.splitlines(True), "README", "now")
+            difflib.unified_diff(old.splitlines(True), new.splitlines(True), str(path), "now")
         )
         return int(old != new)
     path.write_text(new, encoding="utf-8")

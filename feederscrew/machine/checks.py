@@ -22,7 +22,7 @@ def remarks(sheet):
     -------
     tuple of str
     """
-    found = [*_tuning(sheet), *_stress(sheet), *_stroke(sheet), *_angle(sheet), *_fill(sheet)]
+    found = [*_tuning(sheet), *_stress(sheet), *_stroke(sheet), *_angle(sheet), *_fill(sheet), *_drift(sheet)]
     if sheet.order is not None:
         found += _size(sheet)
     lines = [str(one) for one in found]
@@ -87,6 +87,26 @@ def _fill(sheet):
         what = f"a full bowl's natural frequency {full:.4g} Hz is below the drive's {drive:.4g} Hz"
         mend = f"fill it to {100 * holds:.2g} % at most from a hopper, or control the amplitude"
         yield FeederError("sizing.fill_height", what, mend)
+
+
+def _drift(sheet):
+    """What a bowl left alone does from full to empty."""
+    speeds_left = np.maximum(sheet.velocities, 0.0)
+    full, empty, rules = speeds_left[0], speeds_left[-1], sheet.bowl.sizing
+    mend = "control the amplitude, or hold the level with a hopper"
+    if abs(full - empty) > rules.retune * empty:
+        said = [f"{speed / MM:.3g} mm/s" for speed in (full, empty)]
+        if sheet.order is not None:
+            said = [f"{60.0 * rate:.3g}/min" for rate in sheet.rates(speeds_left[[0, -1]])]
+        what = f"left alone, {said[0]} of a full bowl become {said[1]} as it empties"
+        yield FeederError("sizing.carried", what, mend)
+    most = greatest_amplitude(sheet.bowl)
+    beyond = sheet.emptying.levels[sheet.emptying.strokes * sheet.bowl.drive.amplitude > most]
+    if beyond.size and sheet.bowl.drive.amplitude <= most:
+        what = (
+            f"left alone, the stroke passes {2.0 * most / MM:.3g} mm above {100 * beyond.min():.3g} % of fill"
+        )
+        yield FeederError("drive.amplitude", f"{what}: the magnet strikes", mend)
 
 
 def _size(sheet):

@@ -84,7 +84,7 @@ def amplitude_for(bowl, velocity):
     that is fast enough is taken.
     """
     amplitudes = greatest_amplitude(bowl) * np.arange(1, STEPS + 1) / STEPS
-    speeds = np.array([_speed(bowl, one) for one in amplitudes])
+    speeds = _speeds(bowl, amplitudes)
     best = int(np.argmax(speeds))
     fastest = float(speeds[best]), float(amplitudes[best])
     first = _first(amplitudes, speeds >= velocity, 1.0 + bowl.sizing.retune)
@@ -93,8 +93,8 @@ def amplitude_for(bowl, velocity):
     low, high = (amplitudes[first - 1] if first else 0.0), amplitudes[first]
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if _speed(bowl, middle) >= velocity else (middle, high)
-    return (float(high), float(_speed(bowl, high))), fastest
+        low, high = (low, middle) if _speeds(bowl, middle) >= velocity else (middle, high)
+    return (float(high), float(_speeds(bowl, high))), fastest
 
 
 def _first(amplitudes, fast, reach):
@@ -114,7 +114,7 @@ def steepest(bowl):
     def travels(climb):
         drive = replace(bowl.drive, vibration_angle=max(upright - climb, 0.0))
         there = replace(bowl, drive=drive, track=replace(bowl.track, climb=climb))
-        return answer.answer(there).velocity > 0.0
+        return float(answer.cells(there)["velocity"]) > 0.0
 
     low, high = 0.0, min(STEEPEST, upright)
     if not travels(low):
@@ -136,6 +136,8 @@ def unreachable(target, parts_per_metre, fastest):
     )
 
 
-def _speed(bowl, amplitude):
-    found = answer.answer(replace(bowl, drive=replace(bowl.drive, amplitude=float(amplitude))))
-    return found.velocity if np.isfinite(found.velocity) else -np.inf
+def _speeds(bowl, amplitudes):
+    """Velocities at strokes [m/s]; minus infinity where there is none."""
+    drive = replace(bowl.drive, amplitude=np.asarray(amplitudes))
+    found = answer.cells(replace(bowl, drive=drive))["velocity"]
+    return np.where(np.isfinite(found), found, -np.inf)

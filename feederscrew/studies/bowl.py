@@ -259,7 +259,5 @@ def _sheet(bowl, settings, depth, density, order):
 def _velocities(bowl, strokes):
     """Velocity at multiples of the bowl's stroke [m/s]; its stroke ends where the magnet would strike."""
     most = max(greatest_amplitude(bowl), bowl.drive.amplitude)
-    amplitudes, again = np.unique(np.minimum(bowl.drive.amplitude * strokes, most), return_inverse=True)
-    drives = [replace(bowl.drive, amplitude=float(one)) for one in amplitudes]
-    speeds = np.array([answer.answer(replace(bowl, drive=drive)).velocity for drive in drives])
-    return check.frozen(speeds[again])
+    drive = replace(bowl.drive, amplitude=np.minimum(bowl.drive.amplitude * strokes, most))
+    return check.frozen(answer.cells(replace(bowl, drive=drive))["velocity"])

@@ -77,7 +77,7 @@ def _from_above(axes, study, half):
     turn = np.radians(-38)
     on_track = (radius - 0.5 * width) * np.array([np.cos(turn), np.sin(turn)])
     axes.annotate(
-        f"track {width:.3g}", on_track, (1.08 * radius, -0.80 * radius), fontsize=SMALL,
+        f"track {width:.3g}", on_track, (1.17 * radius, -0.72 * radius), fontsize=SMALL,
         ha="center", va="center", color=style.INK, arrowprops=LEADER,
     )  # fmt: skip
     axes.text(0, 0, f"springs on\nradius {at:.4g}", fontsize=SMALL, color=style.INK, ha="center", va="center")

@@ -1,0 +1,195 @@
+"""``feeder bowl`` from the command line: machine, order, files, faults."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+from feederscrew import part
+from feederscrew.output.page.blocks import Picture, Table
+from feederscrew.output.report import Case, page
+from feederscrew.output.report.chapters import CHAPTERS
+
+PART = Path(__file__).parents[3] / "parts" / "lbracket_30x20x15.stl"
+CARD = PART.with_name("arc_chute.yaml")
+MACHINE = {
+    "bowl_mass": "6 kg", "bowl_inertia": "0.06 kg m2", "base_mass": "25 kg", "base_inertia": "0.25 kg m2",
+    "spring_radius": "90 mm", "spring_angle": "20 deg", "leaf_width": "40 mm", "leaf_thickness": "2.5 mm",
+    "leaf_length": "80 mm", "leaf_modulus": "206 GPa", "leaves": "10", "damping": "0.01",
+}  # fmt: skip
+FILES = {
+    "bowl.json", "bowl.csv", "bowl_angles.csv", "bowl_leaves.csv", "bowl_leaf_changes.csv",
+    "bowl_emptying.csv", "bowl.png", "run.json",
+}  # fmt: skip
+
+
+def machine(**other):
+    lines = [f"  {key}: {value}\n" for key, value in {**MACHINE, **other}.items()]
+    Path("machine.yaml").write_text("machine:\n" + "".join(lines))
+    return ("--config", "machine.yaml")
+
+
+def document(result):
+    assert result.exit_code == 0, result.stderr
+    return json.loads(result.stdout)
+
+
+def told(run, *arguments):
+    result = run("bowl", *arguments)
+    assert result.exit_code == 1
+    return result.stderr.removeprefix("Error: ").strip()
+
+
+def test_the_machine_of_a_file(run):
+    found = document(run("bowl", *machine(), "--format", "json"))
+    assert found["leaf_stiffness_n_per_mm"] == pytest.approx(251.46, abs=0.005)
+    assert found["effective_mass_kg"] == pytest.approx(5.841, abs=5e-4)
+    assert found["natural_frequency_without_twist_hz"] == pytest.approx(104.43, abs=0.005)
+    assert found["drive_frequency_hz"] == 100.0
+    angles = {round(row["radius_mm"]): row["vibration_angle_deg"] for row in found["angle_by_radius"]}
+    assert angles[90] == pytest.approx(20.0, abs=1e-6) and angles[150] == pytest.approx(12.3, abs=0.05)
+    assert {"parts_per_minute", "sheet"}.isdisjoint(found)
+
+
+def test_the_bowl_of_a_part_reaches_its_rate(run):
+    result = run("bowl", PART, "--target", "60/min", "-o", "results", "--format", "json")
+    found = document(result)
+    assert found["parts_per_minute"] == pytest.approx(60.0, rel=1e-6) and found["parts_per_minute"] >= 60.0
+    assert found["rate_empty_bowl"] == pytest.approx(found["parts_per_minute"])
+    assert found["bowl_diameter_mm"] == max(300.0, found["bowl_diameter_mm"])
+    assert all(least <= found["bowl_diameter_mm"] for least in found["least_diameters_mm"].values())
+    parts = found["part_width_mm"] + found["clearance_mm"] + found["bend_mm"]
+    assert found["track_width_mm"] == pytest.approx(parts)
+    assert 3.5 <= found["climb_deg"] < found["steepest_climb_deg"]
+    assert 3.0 <= found["above_drive_percent"] <= 8.0
+    assert found["leaf_stress_mpa"] < found["fatigue_stress_mpa"]
+    folder = Path("results", PART.stem)
+    assert {path.name for path in folder.iterdir()} == FILES
+    sheet = list(csv.DictReader((folder / "bowl.csv").read_text().splitlines()))
+    assert sheet == [{key: row[key] for key in ("quantity", "value")} for row in found["sheet"]]
+    assert len((folder / "bowl_emptying.csv").read_text().splitlines()) == 22
+
+
+def test_the_sized_bowl_gives_the_same_rate_by_feeder_rate(run):
+    """What was sized, written into a bowl file, brings the rate asked for on the aspect that counts."""
+    wanted = ("--aspect", "A", "--rule", "pmi")
+    found = document(run("bowl", PART, "--target", "15/min", *wanted, "--format", "json"))
+    given = {
+        "drive.peak_to_peak": f"{found['peak_to_peak_mm']!r} mm",
+        "drive.frequency": f"{found['drive_frequency_hz']!r} Hz",
+        "drive.vibration_angle": f"{found['vibration_angle_deg']!r} deg",
+        "track.radius": f"{found['bowl_diameter_mm'] / 2!r} mm",
+        "track.width": f"{found['track_width_mm']!r} mm",
+        "track.climb": f"{found['climb_deg']!r} deg",
+    }
+    settings = [word for key, value in given.items() for word in ("--set", f"{key}={value}")]
+    back = document(run("rate", PART, *wanted, *settings, "--format", "json"))
+    assert back["parts_per_minute"] == pytest.approx(15.0, rel=1e-4)
+
+
+def test_what_the_file_says_is_kept_and_devices_count(run):
+    Path("bowl.yaml").write_text(
+        "track:\n  radius: 200 mm\n  width: 40 mm\ndevices:\n  - height_bar: 21 mm\n"
+    )
+    found = document(run("bowl", PART, "--target", "30/min", "--config", "bowl.yaml", "--format", "json"))
+    assert (found["bowl_diameter_mm"], found["track_width_mm"]) == (400.0, 40.0)
+    assert 0.5 < found["share_counted"] < 0.99
+
+
+def test_the_machine_sets_angle_and_frequency_of_other_commands(run):
+    found = document(run("bowl", *machine(), "--format", "json"))
+    along = document(run("convey", "--bowl", *machine(), "--format", "json"))["cells"][-1]
+    assert along["vibration_angle_deg"] == pytest.approx(found["angle_by_radius"][-1]["to_the_track_deg"])
+    shown = document(run("config", "show", *machine(), "--format", "json"))["settings"]
+    origins = {row["key"]: (row["value"], row["from"]) for row in shown}
+    assert origins["drive.vibration_angle"] == ("9.31897 deg", "from machine")
+    assert origins["drive.frequency"] == ("100 Hz", "from machine.supply")
+
+
+def test_an_angle_that_is_written_holds_and_is_told(run):
+    result = run("bowl", *machine(), "--set", "drive.vibration_angle=20 deg")
+    assert (
+        "Warning: drive.vibration_angle: is 20 deg as given, and the springs make it 9.319 deg at the track"
+        " - leave it out, to go by the springs" in result.stderr.splitlines()
+    )
+
+
+def test_a_speed_that_bowls_do_not_run_is_told(run):
+    slow = ("--set", "drive.amplitude=0.15 mm")
+    line = "mm/s is slower than bowls run (20 to 120 mm/s): check stroke, angle and friction"
+    for command in (("convey",), ("rate", PART, "--aspect", "A")):
+        assert line in run(*command, *slow).stderr
+        assert run(*command).stderr == ""
+
+
+@pytest.mark.parametrize(
+    "key, value, line",
+    [
+        ("leaf_thickness", "2 mm", "machine.leaves: the natural frequency 77.99 Hz is below the drive's"),
+        (
+            "leaf_thickness",
+            "3.5 mm",
+            "machine.leaves: the natural frequency 180.6 Hz is 80.6 % above",
+        ),
+        ("leaf_length", "30 mm", "machine.leaf_thickness: the leaves bend to "),
+    ],
+)
+def test_a_machine_that_is_out_of_tune_or_too_weak(run, key, value, line):
+    result = run("bowl", *machine(**{key: value}))
+    (found,) = [one for one in result.stderr.splitlines() if one.startswith(f"Warning: {line}")]
+    assert result.exit_code == 0 and " - " in found
+
+
+def test_faults_are_one_line(run):
+    assert told(run, *machine(damping="-1")) == (
+        "machine.yaml:13:12: machine.damping: '-1' is out of range - give 0 to 0.9"
+    )
+    assert told(run, *machine(leaves="9.5")) == (
+        "machine.yaml:12:11: machine.leaves: '9.5' is not a whole number - give 9 or 10"
+    )
+    assert told(run, *machine(supply="50 Hz")) == (
+        "machine.yaml:14:11: machine.supply: '50 Hz' is a frequency, not a supply - give it in Hz half wave"
+    )
+    assert told(run, PART, "--target", "60/min", "--units", "cm") == (
+        f"{PART}: needs a bowl of 3010 mm, and none is larger than 1200 mm"
+        " - feed it from a step or belt feeder, or raise sizing.greatest_diameter"
+    )
+    assert told(run, PART, "--target", "9/s", "--rule", "nobody").startswith("--rule nobody: has no prob")
+    assert told(run, PART, "--target", "1/min", "--set", "track.radius=30 mm") == (
+        "track.radius: 30 mm is too small for a part 36.05 mm long - leave it out, to have the bowl sized"
+    )
+
+
+def test_a_target_no_bowl_reaches(run):
+    line = told(run, PART, "--target", "6000/min")
+    assert line.startswith("--target: no bowl reaches 6000/min of this part: the most is ")
+    assert line.endswith(" - split it over several bowls or tracks, or let more orientations pass")
+
+
+def test_a_track_too_narrow_for_the_aspect_that_counts(run):
+    line = told(run, PART, "--target", "9/min", "--aspect", "A", "--set", "track.width=15 mm")
+    assert line == (
+        f"{PART}: needs 15 mm of track and its play, more than track.width"
+        " - widen the track, or leave track.width out"
+    )
+
+
+def test_part_and_target_go_together(run):
+    assert run("bowl", PART).exit_code == 2
+    assert "PART is given without --target" in run("bowl", PART).stderr
+    assert "--target is given without PART" in run("bowl", "--target", "60/min").stderr
+    assert "has no outline" in told(run, CARD, "--target", "60/min")
+
+
+@pytest.mark.parametrize("target", [1.0, None])
+def test_the_chapter_of_a_report(target):
+    """With a target the quotation sheet, with a machine its sheet, and nothing without either."""
+    (row,) = [row for row in CHAPTERS if row[0] == "bowl"]
+    given = () if target else ("machine.leaves=10",)
+    (chapter,) = page(Case.of(part.load(PART), None, given, target=target), chapters=[row]).sections
+    (picture,) = [block for block in chapter.blocks if isinstance(block, Picture)]
+    tables = [block for block in chapter.blocks if isinstance(block, Table)]
+    assert picture.content.startswith(b"\x89PNG") and len(tables) == 4
+    assert ("rate asked for [1/min]" in list(tables[0].frame["quantity"])) == bool(target)
+    assert page(Case.of(part.load(PART), None, ()), chapters=[row]).sections == ()
