@@ -18,6 +18,7 @@ SOURCES = ("pyproject.toml", "setup.py", "README.md", "LICENSE", "feederscrew", 
 CACHES = shutil.ignore_patterns("__pycache__", "*.nbi", "*.nbc")
 PART = "lbracket_30x20x15.stl"
 COUNTS = "aspect,counted\nA,40\nB,30\nC,20\nD,10\nE,10\n"
+STEEP = ("--set", "track.climb=20 deg")  # few settings convey: sweeps are quick where nothing is compiled
 CALLS = {
     "config": ["init", "bowl.yaml"],
     "aspects": [PART, "-o", "results"],
@@ -28,12 +29,12 @@ CALLS = {
     "slide": ["--config", "bowl.yaml"],
     "convey": ["--config", "bowl.yaml"],
     "rate": [PART, "--aspect", "A"],
-    "tune": [PART, "--aspect", "A", "--target", "20/min"],
+    "tune": [PART, "--aspect", "A", "--target", "20/min", *STEEP],
     "floor": [PART, "--config", "bowl.yaml"],
     "track": [PART, "--config", "bowl.yaml"],
     "headings": [PART],
     "batch": [PART, "-o", "results/all", "--no-pictures", "--jobs", "1"],
-    "report": [PART, "-o", "results", "--set", "track.climb=20 deg"],  # too steep: its map is quick
+    "report": [PART, "-o", "results", *STEEP],
     "reproduce": ["-o", "results"],
     "doctor": [],
 }
@@ -100,4 +101,5 @@ def test_every_command_runs_there(place):
     python = program.with_name(Path(sys.executable).name)
     assert CALLS.keys() == COMMANDS.keys()
     done = json.loads(ran(python, "-c", RUN, json.dumps(CALLS), cwd=place, env=environment()))
+    assert "no setting reaches" in done.pop("tune")[1]
     assert {name: output for name, (status, output) in done.items() if status} == {}
