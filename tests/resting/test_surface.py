@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from feederscrew.resting.counts.calibration import HIGHEST, calibrate
+from feederscrew.resting.counts.deviation import chi_square
 from feederscrew.resting.rules.surface import EXPONENTS, surface_shares, surface_weights
 
 SHARES = np.array([0.5, 0.3, 0.15, 0.05])
@@ -50,7 +51,21 @@ def test_expected_counts_give_their_exponent_back(exponent):
     fit = calibrate(1e5 * surface_shares(SHARES, HEIGHTS, RADIUS, exponent), SHARES, HEIGHTS, RADIUS)
     assert fit.exponent == pytest.approx(exponent, abs=1e-5)
     assert fit.low < exponent < fit.high and not fit.bounded
-    assert fit.chi_square == pytest.approx(0.0, abs=1e-4) and fit.freedom == 2
+    assert fit.chi_square.statistic == pytest.approx(0.0, abs=1e-4)
+    assert fit.chi_square.degrees_of_freedom == 2
+
+
+@pytest.mark.parametrize("counts", [[200, 90, 40, 10], [300, 40, 3, 1], [60, 3, 1, 0]])
+def test_its_chi_square_is_the_one_of_compare_but_for_the_fitted_exponent(counts):
+    fit = calibrate(counts, SHARES, HEIGHTS, RADIUS)
+    same = chi_square(counts, fit.shares)
+    assert fit.chi_square.joined == same.joined
+    if same.degrees_of_freedom > 1:
+        assert fit.chi_square.statistic == same.statistic
+        assert fit.chi_square.degrees_of_freedom == same.degrees_of_freedom - 1
+        assert fit.chi_square.p_value < same.p_value
+    else:
+        assert fit.chi_square.degrees_of_freedom == 0 and np.isnan(fit.chi_square.p_value)
 
 
 def test_the_interval_narrows_with_the_root_of_the_counts():
@@ -64,12 +79,12 @@ def test_the_interval_covers_the_truth_as_often_as_it_says():
     truth = surface_shares(SHARES, HEIGHTS, RADIUS, 1.5)
     fits = [calibrate(rng.multinomial(400, truth), SHARES, HEIGHTS, RADIUS) for _ in range(200)]
     assert 180 <= sum(fit.low <= 1.5 <= fit.high for fit in fits) <= 199
-    assert 0.35 < np.mean([fit.p_value for fit in fits]) < 0.65
+    assert 0.35 < np.mean([fit.chi_square.p_value for fit in fits]) < 0.65
 
 
 def test_counts_of_another_world_do_not_fit():
     fit = calibrate([10, 10, 10, 970], SHARES, HEIGHTS, RADIUS)
-    assert fit.p_value < 1e-6
+    assert fit.chi_square.p_value < 1e-6
 
 
 def test_counts_on_one_aspect_only_bound_the_exponent_from_below():

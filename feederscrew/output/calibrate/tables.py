@@ -26,9 +26,9 @@ def exponents(study):
             "exponent": [each.exponent for each in found],
             "exponent_low": [each.low for each in found],
             "exponent_high": [each.high for each in found],
-            "chi_square": [each.chi_square for each in found],
-            "degrees_of_freedom": [each.freedom if each.freedom > 0 else None for each in found],
-            "p_value": [each.p_value for each in found],
+            "chi_square": [each.chi_square.statistic for each in found],
+            "degrees_of_freedom": [each.chi_square.degrees_of_freedom or None for each in found],
+            "p_value": [each.chi_square.p_value for each in found],
         }
     )
 
@@ -54,6 +54,6 @@ def remarks(study):
     for fit in study.fits:
         if fit.calibration.bounded:
             told.append(f"{fit.name}: the counts leave the exponent open to one side")
-        if fit.calibration.p_value < UNLIKELY:
-            told.append(f"{fit.name}: no exponent explains these counts (p {fit.calibration.p_value:.2g})")
+        if (p_value := fit.calibration.chi_square.p_value) < UNLIKELY:
+            told.append(f"{fit.name}: no exponent explains these counts (p {p_value:.2g})")
     return told

@@ -6,6 +6,7 @@ import numpy as np
 from scipy import optimize, stats
 
 from feederscrew import check
+from feederscrew.resting.counts.deviation import ChiSquare, chi_square
 from feederscrew.resting.rules.surface import surface_shares
 
 LOWEST, HIGHEST = -2.0, 8.0  # [1] exponents tried
@@ -21,9 +22,7 @@ class Calibration:
     high: float
     bounded: bool  # an end of the interval, or the exponent itself, is the end of the range tried
     shares: np.ndarray  # (A,) [1] fitted
-    chi_square: float  # [1] of the counts against them
-    freedom: int  # its degrees of freedom
-    p_value: float  # [1]; NaN without a degree of freedom
+    chi_square: ChiSquare  # of the counts against them, as ``deviation.chi_square`` makes it
 
 
 def calibrate(counts, shares, heights, radius):
@@ -66,16 +65,13 @@ def calibrate(counts, shares, heights, radius):
     limit = best.fun + 0.5 * stats.chi2.ppf(CONFIDENCE, 1)
     ends = [_crossing(loss, limit, best.x, end) for end in (LOWEST, HIGHEST)]
     fitted = surface_shares(shares, heights, radius, best.x)
-    chi_square, freedom = _goodness(counts, fitted)
     return Calibration(
         exponent=float(best.x),
         low=ends[0],
         high=ends[1],
         bounded=LOWEST in ends or HIGHEST in ends,
         shares=check.frozen(fitted),
-        chi_square=chi_square,
-        freedom=freedom,
-        p_value=float(stats.chi2.sf(chi_square, freedom)) if freedom > 0 else float("nan"),
+        chi_square=chi_square(counts, fitted, estimated=1),
     )
 
 
@@ -98,12 +94,3 @@ def _crossing(loss, limit, best, end):
         return end
     return float(optimize.brentq(lambda exponent: loss(exponent) - limit, best, end))
 
-
-def _goodness(counts, fitted):
-    """Pearson's chi-square and its degrees of freedom, aspects expected fewer than 5 times pooled."""
-    expected = counts.sum() * fitted
-    rare = expected < 5.0
-    observed = np.append(counts[~rare], counts[rare].sum()) if rare.any() else counts
-    expected = np.append(expected[~rare], expected[rare].sum()) if rare.any() else expected
-    used = expected > 0.0
-    return float(((observed - expected)[used] ** 2 / expected[used]).sum()), int(used.sum()) - 2

@@ -68,7 +68,7 @@ def total_variation(first, second):
     return float(0.5 * np.abs(first - second).sum())
 
 
-def chi_square(counts, fractions):
+def chi_square(counts, fractions, estimated=0):
     """Whether counts may come from given probabilities (goodness of fit).
 
     Parameters
@@ -77,6 +77,8 @@ def chi_square(counts, fractions):
         Observed, by aspect.
     fractions : (A,) float [1]
         Expected; scaled to the sum of the counts.
+    estimated : int
+        Parameters of the fractions that were fitted to these counts: each costs a degree of freedom.
 
     Returns
     -------
@@ -92,7 +94,8 @@ def chi_square(counts, fractions):
     Notes
     -----
     Aspects of which fewer than ``LEAST`` are expected are joined, the weakest first, until the
-    group expects enough; ``joined`` says how many. Nothing is left to test with one group.
+    group expects enough; ``joined`` says how many. There is no test without a degree of freedom: groups
+    less one, less the parameters that were estimated.
 
     References
     ----------
@@ -103,9 +106,9 @@ def chi_square(counts, fractions):
     counts, fractions = (_weights(values) for values in _pair(counts, fractions))
     expected = counts.sum() * fractions / fractions.sum()
     if counts[expected == 0.0].any():
-        return ChiSquare(np.inf, int(np.count_nonzero(counts + expected)) - 1, 0.0)
+        return ChiSquare(np.inf, max(int(np.count_nonzero(counts + expected)) - 1 - estimated, 1), 0.0)
     seen = expected > 0.0
-    return _test(counts[None, seen], expected[None, seen])
+    return _test(counts[None, seen], expected[None, seen], estimated)
 
 
 def chi_square_between(first, second):
@@ -165,13 +168,13 @@ def _counted(a, b):
     return chi_square(b.values, a.fractions) if b.counted else NO_TEST
 
 
-def _test(observed, expected):
+def _test(observed, expected, estimated=0):
     """Pearson's statistic over groups that expect enough."""
     from scipy.special import gammaincc
 
     observed, expected, joined = _joined(observed, expected)
-    freedom = expected.shape[1] - 1
-    if freedom == 0:
+    freedom = expected.shape[1] - 1 - estimated
+    if freedom <= 0:
         return ChiSquare(np.nan, 0, np.nan, joined)
     statistic = float(((observed - expected) ** 2 / expected).sum())
     return ChiSquare(statistic, freedom, float(gammaincc(0.5 * freedom, 0.5 * statistic)), joined)
