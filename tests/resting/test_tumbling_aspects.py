@@ -73,7 +73,7 @@ def test_the_graph_is_drawn():
     from feederscrew.output.graph import figures as graph_plots
 
     _, aspects, found, result = everything(shapes.box(10.0, 20.0, 30.0))
-    figure = graph_plots.graph("box", aspects, transitions(found), result.probabilities["quasistatic"])
+    figure = graph_plots.graph("box", aspects.names, transitions(found), result.probabilities["quasistatic"])
     texts = {text.get_text() for text in figure.axes[0].texts}
     assert {"A", "B", "C", "6.18"} <= texts
 
@@ -82,7 +82,7 @@ def test_no_arrow_of_the_graph_ends_under_a_disc():
     from feederscrew.output.graph import figures as graph_plots
 
     _, aspects, found, _ = everything(shapes.box(10.0, 20.0, 30.0))
-    axes = graph_plots.graph("box", aspects, transitions(found), np.array([1.0, 0.0, 0.0])).axes[0]
+    axes = graph_plots.graph("box", aspects.names, transitions(found), np.array([1.0, 0.0, 0.0])).axes[0]
     discs = {tuple(disc.get_offsets()[0]): np.sqrt(disc.get_sizes()[0]) / 2.0 for disc in axes.collections}
     arrows = [text for text in axes.texts if text.arrow_patch is not None]
     assert len(arrows) == 6

@@ -7,19 +7,22 @@ from feederscrew.output.columns import MM
 
 MOST = 12  # aspects a picture can show
 CLEAR = 4.0  # [pt] between an arrow and a disc
+BEND = 0.12  # of an arrow, so that there and back lie apart
+TAIL = 0.36  # of the way: where the lift is written
 REACH = 1.45  # of the picture, where the ring of discs has radius 1
 
 
-def graph(title, aspects, ways, shares):
-    """Discs on a ring, one an aspect, joined by arrows that carry the lift in mm.
+def graph(title, names, ways, shares):
+    """Draw discs on a ring, one an aspect, joined by arrows that carry the lift in mm.
 
     Parameters
     ----------
     title : str
-    aspects : Aspects
+    names : sequence of str
+        Of the A aspects.
     ways : sequence of Transition
     shares : (A,) float [1]
-        Quasi-static probability; the area of a disc grows with it.
+        Quasi-static probability; the area of a disc grows with it. An aspect where it is NaN is left out.
 
     Returns
     -------
@@ -28,22 +31,14 @@ def graph(title, aspects, ways, shares):
     figure = plots.figure(6.4, 6.4)
     axes = figure.add_subplot()
     axes.set_title(plots.words(f"{title}: lift to tip [mm]"), loc="left", fontsize=10, color=plots.INK)
-    shown = [k for k in range(len(aspects.names)) if np.isfinite(shares[k])][:MOST]
+    shown = [k for k in range(len(names)) if np.isfinite(shares[k])][:MOST]
     turn = np.pi / 2 - 2.0 * np.pi * np.arange(len(shown)) / max(len(shown), 1)
     places = {k: np.array([np.cos(a), np.sin(a)]) for k, a in zip(shown, turn)}
     sizes = 500.0 + 2500.0 * np.nan_to_num(shares)  # [pt2] squares about the discs
-    lowest = {}
-    for way in ways:
-        lowest[way.start] = min(way.lift, lowest.get(way.start, np.inf))
-    for way in ways:
-        if way.start in places and way.end in places:
-            ends = (places[way.start], sizes[way.start]), (places[way.end], sizes[way.end])
-            arrow(axes, *ends, way.lift, way.lift <= lowest[way.start])
+    _arrows(axes, ways, places, sizes)
     for k, place in places.items():
         axes.scatter(*place, s=sizes[k], color="white", edgecolor=plots.INK, zorder=3)
-        axes.annotate(
-            aspects.names[k], place, ha="center", va="center", fontsize=11, zorder=4, color=plots.INK
-        )
+        axes.annotate(names[k], place, ha="center", va="center", fontsize=11, zorder=4, color=plots.INK)
     axes.set_xlim(-REACH, REACH)
     axes.set_ylim(-REACH, REACH)
     axes.set_aspect("equal")
@@ -51,8 +46,19 @@ def graph(title, aspects, ways, shares):
     return figure
 
 
+def _arrows(axes, ways, places, sizes):
+    """Every way between two discs that are shown; the easiest out of each stands out."""
+    lowest = {}
+    for way in ways:
+        lowest[way.start] = min(way.lift, lowest.get(way.start, np.inf))
+    for way in ways:
+        if way.start in places and way.end in places:
+            ends = (places[way.start], sizes[way.start]), (places[way.end], sizes[way.end])
+            arrow(axes, *ends, way.lift, way.lift <= lowest[way.start])
+
+
 def arrow(axes, begin, end, lift, easiest):
-    """One way between discs (place, size), bent so that the way back is beside it; the easiest stands out."""
+    """Draw one way between two discs (place, size), bent to leave room for the way back."""
     (start, from_size), (end, to_size) = begin, end
     colour = plots.ACCENT if easiest else plots.INK
     style = {"arrowstyle": "->", "color": colour, "alpha": 1.0 if easiest else 0.45}
@@ -65,14 +71,18 @@ def arrow(axes, begin, end, lift, easiest):
         start,
         arrowprops={
             **style,
-            "connectionstyle": "arc3,rad=0.12",
+            "connectionstyle": f"arc3,rad={BEND}",
             "shrinkA": 0.5 * np.sqrt(from_size) + CLEAR,
             "shrinkB": 0.5 * np.sqrt(to_size) + CLEAR,
         },
     )
     along = end - start
-    side = np.array([along[1], -along[0]]) * 0.09
-    axes.annotate(_shown(lift), start + 0.36 * along + side, ha="center", fontsize=7, color=colour)
+    beside = np.array([along[1], -along[0]]) * BEND  # of the middle control point of the arc
+    axes.annotate(
+        _shown(lift), start + TAIL * along + 2.0 * TAIL * (1.0 - TAIL) * beside,
+        ha="center", va="center", fontsize=7, color=colour, zorder=5,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},
+    )  # fmt: skip
 
 
 def _shown(lift):

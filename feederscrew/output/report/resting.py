@@ -7,13 +7,12 @@ from feederscrew.output import style, tables
 from feederscrew.output.aspects import files as aspects_files
 from feederscrew.output.aspects import tables as aspects_tables
 from feederscrew.output.columns import MM
+from feederscrew.output.graph import figures
 from feederscrew.output.inertia import tables as inertia_tables
 from feederscrew.output.offers import by_name
 from feederscrew.output.page.blocks import CsvSheet, Notes, Picture, Section, Table, Text, Tile, Views
 from feederscrew.output.page.numbers import percent
-from feederscrew.output.report import graph
 from feederscrew.output.report.scene import scene
-from feederscrew.resting.tumbling import by_class
 
 MOST_VIEWS = aspects_tables.MOST
 CARD = "A part card is published data without a shape: there is nothing to draw or to turn."
@@ -59,25 +58,17 @@ def aspects(case):
 
 def tips(case):
     """The tipping graph, from exact tumbling."""
-    ground = by_class.ground(case.part, case.resting.aspects)
-    exact = by_class.exact(ground, case.part, case.resting.aspects)
-    shown = np.flatnonzero(case.resting.aspects.stable)[: graph.MOST]
-    names = [case.resting.aspects.names[row] for row in shown]
-    place = {row: k for k, row in enumerate(shown.tolist())}
-    ways = [
-        by_class.Transition(place[way.start], place[way.end], way.lift, way.axis)
-        for way in by_class.transitions(ground)
-        if way.start != way.end and way.start in place and way.end in place
-    ]
-    shares = exact.probabilities["quasistatic"][shown]
-    drawn = graph.tipping(names, shares, ways, "Lift of the centre of mass that tips it over [mm]")
+    ways, found = case.resting.transitions, case.resting.aspects
+    shown = np.flatnonzero(found.stable)[: figures.MOST]
+    shares = np.where(found.stable, found.probabilities["quasistatic"], np.nan)
+    drawn = figures.graph(case.part.name, found.names, ways, shares)
     table = tables.frame(
         {
-            "aspect": names,
-            "p_quasistatic": shares,
-            "lowest_lift_mm": exact.barriers[shown] / MM,
-            "energy_uJ": exact.barrier_energies[shown] / UJ,
-            "tilts_over_at_deg": np.degrees(exact.tip_angles[shown]),
+            "aspect": [found.names[row] for row in shown],
+            "p_quasistatic": shares[shown],
+            "lowest_lift_mm": found.barriers[shown] / MM,
+            "energy_uJ": found.barrier_energies[shown] / UJ,
+            "tilts_over_at_deg": np.degrees(found.tip_angles[shown]),
         }
     )
     lead = Text(
@@ -89,7 +80,7 @@ def tips(case):
     picture = Picture(
         "tipping.png", style.png(drawn), "Tipping graph: which aspect tips into which, and the lift it takes"
     )
-    return Section((lead, Table(table), picture), warnings=tuple(exact.doubts))
+    return Section((lead, Table(table), picture), warnings=tuple(found.ground.tips.doubts))
 
 
 def numbers(case):

@@ -93,4 +93,3 @@ def _crossing(loss, limit, best, end):
     if loss(end) <= limit:
         return end
     return float(optimize.brentq(lambda exponent: loss(exponent) - limit, best, end))
-
