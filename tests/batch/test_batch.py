@@ -121,7 +121,7 @@ def test_every_part_has_a_folder_of_its_own_on_any_system(names, folders):
 
 def test_several_bowls_multiply_the_parts(tmp_path):
     for name in ("slow", "fast"):
-        (tmp_path / f"{name}.yaml").write_text("gravity: 9.81 m/s2\n")
+        (tmp_path / f"{name}.yaml").write_text("drive:\n  frequency: 60 Hz\n")
     (tmp_path / "fast.yaml").write_text("drive:\n  frequency: 90 Hz\n")
     found = asked(NUT, configs=[str(tmp_path)])
     assert [request.name for request in found] == ["squarenut_m5-fast", "squarenut_m5-slow"]

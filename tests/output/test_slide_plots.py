@@ -42,7 +42,7 @@ def test_maps_name_their_axes_and_their_angle():
 
 
 def test_the_own_point_is_marked_where_the_bowl_works():
-    one = slide(20, "drive.direction=25 deg")
+    one = slide(20, "drive.amplitude=0.05 mm", "drive.frequency=60 Hz", "drive.direction=25 deg")
     for draw in (slide_plots.contours, slide_plots.regimes):
         figure = draw(one)
         assert own_point(figure.axes[0]) == pytest.approx([25, one.ratio])

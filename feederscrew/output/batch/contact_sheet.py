@@ -8,7 +8,7 @@ from matplotlib import image
 
 from feederscrew.output import style
 from feederscrew.output.solid import render, shading
-from feederscrew.output.solid.shading import Frame
+from feederscrew.output.solid.shading import Shot
 from feederscrew.output.solid.stance import outermost, stance
 
 PATTERN = "contact_sheet*.png"
@@ -38,7 +38,7 @@ def thumbnail(part, found):
     lowest, highest = standing.framed
     pixel = ROOM * max((highest - lowest) / (WIDTH, HEIGHT))
     left, bottom = 0.5 * (lowest + highest) - 0.5 * pixel * np.array([WIDTH, HEIGHT])
-    drawn = shading.picture(solid, standing, Frame(left, bottom, pixel, WIDTH, HEIGHT))
+    drawn = shading.picture(solid, standing, Shot(left, bottom, pixel, WIDTH, HEIGHT))
     return _png(np.clip(drawn, 0.0, 1.0))
 
 
