@@ -8,8 +8,8 @@ import pytest
 
 from feederscrew import part
 from feederscrew.output.page.blocks import Picture, Table
-from feederscrew.output.report import Case, page
-from feederscrew.output.report.chapters import CHAPTERS
+from feederscrew.output.report.chapters import CHAPTERS, page
+from feederscrew.studies.report import report
 
 PART = Path(__file__).parents[3] / "parts" / "lbracket_30x20x15.stl"
 CARD = PART.with_name("arc_chute.yaml")
@@ -187,9 +187,9 @@ def test_the_chapter_of_a_report(target):
     """With a target the quotation sheet, with a machine its sheet, and nothing without either."""
     (row,) = [row for row in CHAPTERS if row[0] == "bowl"]
     given = () if target else ("machine.leaves=10",)
-    (chapter,) = page(Case.of(part.load(PART), None, given, target=target), chapters=[row]).sections
+    (chapter,) = page(report(part.load(PART), None, given, target=target), chapters=[row]).sections
     (picture,) = [block for block in chapter.blocks if isinstance(block, Picture)]
     tables = [block for block in chapter.blocks if isinstance(block, Table)]
     assert picture.content.startswith(b"\x89PNG") and len(tables) == 4
     assert ("rate asked for [1/min]" in list(tables[0].frame["quantity"])) == bool(target)
-    assert page(Case.of(part.load(PART), None, ()), chapters=[row]).sections == ()
+    assert page(report(part.load(PART)), chapters=[row]).sections == ()
