@@ -253,7 +253,7 @@ def test_trace_of_an_uneven_drive_rests_on_its_plate():
 @pytest.mark.parametrize(
     ("overrides", "title"),
     [
-        ((), "One steady cycle: 0.8642 mm/s"),
+        (("drive.amplitude=0.05 mm",), "One steady cycle: 0.8642 mm/s"),
         (("track.climb=40 deg",), "No steady state: 4 periods of a slide that does not stop"),
         (("drive.amplitude=0.4 mm",), r"4 periods of a motion that does not repeat: \S+ mm/s on average"),
         (("drive.amplitude=0.5 mm", "restitution=0.3"), r"4 of the 6 periods of a steady cycle: \S+ mm/s"),
