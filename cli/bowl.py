@@ -48,7 +48,6 @@ def bowl(part, target, bowl, pictures, out, **wanted):
     from feederscrew import bowl as bowls
     from feederscrew.output import columns, machine, offers
     from feederscrew.output.machine import tables
-    from feederscrew.rates import devices
     from feederscrew.studies import bowl as study
 
     _fitting(part, target)
@@ -60,7 +59,7 @@ def bowl(part, target, bowl, pictures, out, **wanted):
     with out.folder(name, identity | bowls.identity(path), effective) as folder:
         announce(out)
         found = (
-            study.bowl(settings, solid, target, devices.read(path), **wanted)
+            study.bowl(settings, solid, target, **wanted)
             if solid
             else study.machine(settings)
         )

@@ -88,7 +88,7 @@ def rule(command):
     """``--rule``; the command receives its name."""
     return click.option(
         "--rule",
-        default="pmi",
+        default="recommended",
         show_default=True,
         metavar="NAME",
         shell_complete=completion.rules,

@@ -43,3 +43,18 @@ def chain(command):
     for option in reversed(CHAIN):
         command = option(command)
     return command
+
+
+def doubt(command):
+    """How far part and cut may be off; the command receives ``play`` and ``tolerance``."""
+    for name, text in reversed(DOUBT):
+        command = click.option(
+            name, type=Quantity("length"), default="0 mm", show_default=True, metavar="LENGTH", help=text
+        )(command)
+    return command
+
+
+DOUBT = (
+    ("--play", "Standard deviation of where a part is over a cut."),
+    ("--tolerance", "Standard deviation of where a cut's edge is."),
+)

@@ -30,16 +30,15 @@ def tune(part, target, aspect, heading, rule, gap, fill, bowl, out):
     from feederscrew import bowl as bowls
     from feederscrew.output import columns, offers
     from feederscrew.output.tune import files, tables
-    from feederscrew.rates import devices
     from feederscrew.studies.tune import tune as study
 
-    solid, settings, chain = out.part(part), bowls.settings(**bowl), devices.read(bowl["path"])
+    solid, settings = out.part(part), bowls.settings(**bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
     announce(out)
     with out.folder(solid.name, {solid.source: solid.sha256}, effective) as folder:
         found = study(
             solid, bowls.record(settings), aspect, target,
-            heading=heading, rule=rule, devices=chain, gap=gap, fill=fill,
+            heading=heading, rule=rule, gap=gap, fill=fill,
         )  # fmt: skip
         out.warn(*found.warnings)
         offers.write(folder, files.offers(found))

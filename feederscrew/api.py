@@ -10,11 +10,11 @@ from typing import IO, TYPE_CHECKING
 from feederscrew import bowl as _bowls
 from feederscrew import part as _parts
 from feederscrew.bowl import Bowl
+from feederscrew.bowl.devices import Device
 from feederscrew.conveying.answer import Answer
 from feederscrew.errors import ConfigError, Faults, FeederError, MeshError
 from feederscrew.output.aspects import tables as _tables
 from feederscrew.part import Part
-from feederscrew.rates.devices import Device
 from feederscrew.rates.queue import Rate
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture, posture
@@ -240,8 +240,8 @@ def rate(
     aspect: str,
     *,
     heading: float | None = None,
-    rule: str = "pmi",
-    devices: Sequence[Device] = (),
+    rule: str = "recommended",
+    devices: Sequence[Device] | None = None,
     gap: float = 0.0,
     fill: float = 1.0,
 ) -> Rate:
@@ -259,7 +259,7 @@ def rate(
     rule : str
         Whose probabilities are taken.
     devices : sequence of Device
-        From ``feederscrew.rates.devices.read``.
+        From ``feederscrew.bowl.devices``; those of the bowl without it.
     gap : float [m]
         Between one part and the next.
     fill : float [1]

@@ -14,7 +14,6 @@ from feederscrew.documents import raise_all
 from feederscrew.errors import ConfigError, FeederError
 from feederscrew.output.folder import safe_name
 from feederscrew.part.reading.formats import CARD, FORMATS
-from feederscrew.rates import devices
 
 MESHES = {suffix for name, known in FORMATS.items() if name != CARD for suffix in known.suffixes}
 CARDS = set(FORMATS[CARD].suffixes)
@@ -96,7 +95,7 @@ def _conditions(path, overrides, faults):
         settings = bowls.settings(path, overrides)
         bowl = answer.conveying(bowls.record(settings))
         texts = tuple(bowls.texts(settings).items())
-        return Conditions(bowls.name(path), bowl, texts, devices.read(path))
+        return Conditions(bowls.name(path), bowl, texts)
     except FeederError as fault:
         faults += getattr(fault, "faults", [_placed(fault, path)])
         return None

@@ -9,7 +9,6 @@ from importlib import metadata
 from feederscrew import __version__
 from feederscrew.bowl import Bowl
 from feederscrew.output.folder import LIBRARIES
-from feederscrew.rates.devices import Device
 
 DONE, FAILED = "done", "failed"
 
@@ -21,14 +20,13 @@ class Conditions:
     name: str  # the file's stem; 'bowl' for the defaults
     bowl: Bowl
     texts: tuple[tuple[str, str], ...]  # key and value in effect, as text
-    chain: tuple[Device, ...] = ()
 
 
 @dataclass(frozen=True)
 class Choices:
     """What is computed of every part."""
 
-    rule: str = "pmi"  # whose probabilities the rate takes
+    rule: str = "recommended"  # whose probabilities the rate takes
     drops: int = 0  # simulated drops of each part
     pictures: bool = True
 

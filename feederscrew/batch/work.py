@@ -99,7 +99,7 @@ def _rate(part, found, task, files):
     if part.vertices is None:
         return {"note": "a part card has no outline: no rate"}
     conditions, rule = task.request.conditions, task.choices.rule
-    study = rate(part, conditions.bowl, rule=rule, devices=conditions.chain, aspects=found)
+    study = rate(part, conditions.bowl, rule=rule, aspects=found)
     document = rate_tables.document(study)
     offers.write(files, rate_files.offers(study))
     wanted = ("aspect", "heading_deg", "pitch_mm", "p_orientation", "passes_devices")

@@ -8,33 +8,61 @@ from feederscrew import check
 from feederscrew.conveying import answer, sensitivity
 from feederscrew.documents import hint
 from feederscrew.errors import FeederError
-from feederscrew.geometry.polygons import turned
 from feederscrew.mechanics.wall.headings import headings, laid
-from feederscrew.rates import devices as tooling
 from feederscrew.resting.posture import posture
+from feederscrew.tooling import orientations as tooling
+from feederscrew.tooling.orientations import Orientation
+from feederscrew.tooling.verdicts import verdict
 
-SAME = 1e-3  # of the part's size: hulls whose corners differ by less are the same
+RECOMMENDED = "recommended"  # the rule that has an interval of its own
 
 
 @dataclass(frozen=True, eq=False)
 class Orientations:
     """Every way a part can lie on the track, an aspect and a heading a row; M rows."""
 
-    aspects: tuple[str, ...]
-    headings: np.ndarray  # (M,) [rad]
-    heading_shares: (
-        np.ndarray
-    )  # (M,) of the parts on that aspect; headings equal under a turn of the part are one
-    lengths: np.ndarray  # (M,) [m] along the track
-    widths: np.ndarray  # (M,) [m]
+    lying: tuple[Orientation, ...]  # the rows themselves
     stations: tuple[str, ...]  # the track itself, then each device
     passes: np.ndarray  # (M, stations) share each station lets pass; the rest goes back into the bowl
+    margins: np.ndarray  # (M, stations) [m] by which it passes or fails; NaN where that is not known
     rules: dict[str, np.ndarray]  # (M,) probability of aspect and heading by each rule
+    interval: np.ndarray  # (M, 2) lowest and highest probability by the recommended rule
+
+    @property
+    def aspects(self):
+        """(M,) names of the aspects."""
+        return tuple(one.aspect for one in self.lying)
+
+    @property
+    def headings(self):
+        """(M,) [rad]."""
+        return np.array([one.heading for one in self.lying])
+
+    @property
+    def heading_shares(self):
+        """(M,) of the parts on that aspect; headings equal under a turn of the part are one."""
+        return np.array([one.heading_share for one in self.lying])
+
+    @property
+    def lengths(self):
+        """(M,) [m] along the track."""
+        return np.array([one.length for one in self.lying])
+
+    @property
+    def widths(self):
+        """(M,) [m] across it."""
+        return np.array([one.width for one in self.lying])
 
     @property
     def through(self):
         """(M,) share that passes every station."""
         return self.passes.prod(axis=1)
+
+    @property
+    def margin(self):
+        """(M,) [m] the least over the devices, by which it passes them all or fails; NaN without any."""
+        known = np.where(np.isnan(self.margins), np.inf, self.margins).min(axis=1)
+        return np.where(np.isinf(known), np.nan, known)
 
 
 @dataclass(frozen=True)
@@ -45,6 +73,16 @@ class Range:
     low: float
     high: float
 
+    @property
+    def ends(self):
+        """Its lowest and its highest."""
+        return self.low, self.high
+
+    @property
+    def all(self):
+        """Value, lowest, highest."""
+        return self.value, self.low, self.high
+
     def __mul__(self, factor):
         other = factor if isinstance(factor, Range) else Range(factor, factor, factor)
         return Range(self.value * other.value, self.low * other.low, self.high * other.high)
@@ -54,10 +92,13 @@ class Range:
 class Rate:
     """Well-oriented parts leaving the bowl, and each factor of the chain."""
 
-    parts: Range  # [1/s]
+    parts: Range  # [1/s] delivered: offered times efficiency, at most what fits behind the devices
+    offered: Range  # [1/s] parts that arrive at the first device, in every orientation
+    efficiency: float  # [1] share of the parts offered that leave well oriented
     velocity: Range  # [m/s] over the starts and for friction a fifth lower and higher; not below 0
-    pitch: float  # [m]
-    probability: Range  # of the aspect and the heading; the range is over all rules
+    pitch: float  # [m] mean of the queue before the devices
+    gap: float  # [m] between one part and the next
+    probability: Range  # of the aspect and the heading; the range is the rule's own, or over all rules
     through: float  # share of them that passes every station
     fill: float  # share of the track that is occupied
     purity: float  # share of what leaves the bowl that is well oriented; NaN where nothing leaves
@@ -65,8 +106,8 @@ class Rate:
     orientations: Orientations
 
 
-def orientations(part, aspects, track, chain=()):
-    """Every stable aspect and heading of a part, and what becomes of it at each device.
+def orientations(part, aspects, track, chain=(), sigma=0.0):
+    """Return every stable aspect and heading of a part, and what becomes of it at each device.
 
     Parameters
     ----------
@@ -76,31 +117,36 @@ def orientations(part, aspects, track, chain=()):
         Of that part.
     track : Track
     chain : sequence of Device
+    sigma : float [m]
+        Standard deviation of play and tolerance together, of every device.
 
     Returns
     -------
     Orientations
     """
-    rows, lying, found, first, shares = [], [], [], [], []
-    for row in np.flatnonzero(aspects.stable):
-        lying.append(posture(part, aspects, aspects.names[row]))
-        found.append(headings(lying[-1], track))
-        alike = _alike(lying[-1], found[-1])
-        first.append(np.unique(alike))
-        shares.append(np.bincount(alike, found[-1].shares)[first[-1]])
-        rows += [row] * len(first[-1])
-    joined = check.frozen(np.concatenate(shares))
-    passes = [_passes(one, k, track, chain)[keep] for one, k, keep in zip(lying, found, first)]
+    lying = tooling.orientations(part, aspects, track)
+    found = [[verdict(device, one, lying, sigma) for device in chain] for one in lying]
+    stays = [0.0 if one.falls_off else 1.0 for one in lying]
+    passes = [[stay, *(one.passes for one in row)] for stay, row in zip(stays, found)]
+    margins = [[np.nan, *(one.margin for one in row)] for row in found]
+    rules = {rule: np.array([one.chances[rule] for one in lying]) for rule in aspects.chances}
     return Orientations(
-        aspects=tuple(aspects.names[row] for row in rows),
-        headings=_joined(found, first, "headings"),
-        heading_shares=joined,
-        lengths=_joined(found, first, "lengths"),
-        widths=_joined(found, first, "widths"),
+        lying=lying,
         stations=("track", *(device.kind for device in chain)),
-        passes=check.frozen(np.concatenate(passes)),
-        rules={name: check.frozen(chance[rows] * joined) for name, chance in aspects.chances.items()},
+        passes=check.frozen(np.array(passes)),
+        margins=check.frozen(np.array(margins)),
+        rules={rule: check.frozen(chance) for rule, chance in rules.items()},
+        interval=check.frozen(_interval(aspects, lying)),
     )
+
+
+def _interval(aspects, lying):
+    known = aspects.recommended
+    if known is None:
+        return np.full((len(lying), 2), np.nan)
+    rows = [aspects.names.index(one.aspect) for one in lying]
+    shares = np.array([one.heading_share for one in lying])
+    return np.column_stack([known.low[rows] * shares, known.high[rows] * shares])
 
 
 def wanted(part, aspects, track, name, heading=None):
@@ -122,7 +168,7 @@ def wanted(part, aspects, track, name, heading=None):
     """
     lying = posture(part, aspects, name)
     found = headings(lying, track)
-    return lying.name, float(found.headings[_alike(lying, found)[laid(found, heading)]])
+    return lying.name, float(found.headings[laid(found, heading)])
 
 
 def velocity(bowl):
@@ -179,16 +225,23 @@ def rate(found, speed, target, rule, *, gap=0.0, fill=1.0):
     FeederError
         If no such rule has probabilities of this part.
     """
-    row, pitch = _row(found, target), _pitch(found, target, gap)
+    row = _row(found, target)
     _check_rule(found, rule)
-    chances = [chance[row] for chance in found.rules.values() if not np.isnan(chance[row])]
-    probability = Range(float(found.rules[rule][row]), float(min(chances)), float(max(chances)))
-    through = float(found.through[row])
+    density, share = _queued(found, row, rule, gap, fill), _efficiency(found, row, rule)
+    probability = _probability(found, row, rule)
+    offered, most = speed * density, speed * (1.0 / found.lengths[row])
+    least, greatest = (end / probability.value if probability.value else 1.0 for end in probability.ends)
+    efficiency = Range(share, share * least, share * greatest)
+    made = offered * efficiency
     leaving = float(np.nansum(found.rules[rule] * found.through))
+    through = float(found.through[row])
     return Rate(
-        parts=speed * (1.0 / pitch) * probability * (through * fill),
+        parts=Range(*(min(one, cap) for one, cap in zip(made.all, most.all))),
+        offered=offered,
+        efficiency=share,
         velocity=speed,
-        pitch=pitch,
+        pitch=fill / density,
+        gap=gap,
         probability=probability,
         through=through,
         fill=fill,
@@ -196,6 +249,30 @@ def rate(found, speed, target, rule, *, gap=0.0, fill=1.0):
         row=row,
         orientations=found,
     )
+
+
+def _queued(found, row, rule, gap, fill):
+    """Parts on a length of track before the devices [1/m], all orientations end to end."""
+    chance = np.nan_to_num(found.rules[rule])
+    if not chance.sum() > 0.0:
+        return fill / (found.lengths[row] + gap)
+    return float(fill * chance.sum() / (chance * (found.lengths + gap)).sum())
+
+
+def _efficiency(found, row, rule):
+    """Share of the parts offered that leave in the orientation of a row."""
+    chance = np.nan_to_num(found.rules[rule])
+    total = chance.sum()
+    return float(chance[row] * found.through[row] / total) if total > 0.0 else 0.0
+
+
+def _probability(found, row, rule):
+    """Probability of a row by a rule, within that rule's own interval or the range of all rules."""
+    value = float(found.rules[rule][row])
+    if rule == RECOMMENDED and not np.isnan(found.interval[row]).any():
+        return Range(value, *(float(end) for end in found.interval[row]))
+    chances = [chance[row] for chance in found.rules.values() if not np.isnan(chance[row])]
+    return Range(value, float(min(chances)), float(max(chances)))
 
 
 def parts_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
@@ -217,11 +294,11 @@ def parts_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
     """
     _check_rule(found, rule)
     row = _row(found, target)
-    share = float(found.rules[rule][row] * found.through[row] * fill)
+    share = _efficiency(found, row, rule)
     if not share > 0.0:
         where = f"aspect {target[0]}, heading {np.degrees(target[1]):.4g} deg"
         raise FeederError(where, "never leaves the bowl", "see the devices in feeder rate")
-    return share / _pitch(found, target, gap)
+    return min(share * _queued(found, row, rule, gap, fill), 1.0 / float(found.lengths[row]))
 
 
 def _check_rule(found, rule):
@@ -234,32 +311,3 @@ def _check_rule(found, rule):
 def _row(found, target):
     name, heading = target
     return next(k for k, known in enumerate(found.aspects) if (known, found.headings[k]) == (name, heading))
-
-
-def _pitch(found, target, gap):
-    return float(found.lengths[_row(found, target)] + gap)
-
-
-def _alike(lying, found):
-    """For each heading the first that is the same orientation: a turn maps the part's hull to itself."""
-    from scipy.spatial import cKDTree
-
-    corners, first = lying.corners, np.arange(len(found.headings))
-    tree, size = cKDTree(corners), np.ptp(corners, axis=0).max()
-    for row, heading in enumerate(found.headings):
-        for known in np.unique(first[:row]):
-            plan = turned(corners[:, :2], heading - found.headings[known])
-            gap = tree.query(np.column_stack([plan, corners[:, 2]]))[0].max()
-            if gap < SAME * size:
-                first[row] = known
-                break
-    return first
-
-
-def _joined(found, kept, name):
-    return check.frozen(np.concatenate([getattr(one, name)[keep] for one, keep in zip(found, kept)]))
-
-
-def _passes(lying, found, track, chain):
-    stays = 1.0 - found.falls_off.astype(float)
-    return np.column_stack([stays, *(tooling.passed(device, lying, found, track) for device in chain)])

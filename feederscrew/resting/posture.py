@@ -41,7 +41,7 @@ class Posture:
     def surface(self):
         """Every corner (V, 3) of the part's mesh as it stands [m], z from the floor."""
         body = self.solid.vertices - self.solid.centre_of_mass
-        return np.einsum("ij,vj->vi", self.axes, body) + [0.0, 0.0, self.height]
+        return np.einsum("ij,vj->vi", self.axes, body) + np.array([0.0, 0.0, self.height])
 
     @property
     def turning_inertia(self):

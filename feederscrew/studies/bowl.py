@@ -90,17 +90,16 @@ def machine(settings):
     return _sheet(bowl, settings, 2.0 * bowl.sizing.depth * bowl.track.radius, STEEL, None)
 
 
-def bowl(settings, part, target, chain=(), *, aspect=None, heading=None, rule="pmi", gap=0.0, fill=1.0):
+def bowl(settings, part, target, *, aspect=None, heading=None, rule="recommended", gap=0.0, fill=1.0):
     """Compute the bowl, the drive and the stroke that bring a part at a rate.
 
     Parameters
     ----------
     settings : tuple of Setting
-        What is given of track, drive and machine is kept; the rest is sized.
+        What is given of track, drive, machine and devices is kept; the rest is sized.
     part : Part
     target : float [1/s]
         Counted parts.
-    chain : sequence of Device
     aspect : str, optional
         That counts; without it, every orientation that stays on the track and passes the devices.
     heading : float [rad], optional
@@ -128,7 +127,7 @@ def bowl(settings, part, target, chain=(), *, aspect=None, heading=None, rule="p
     track = replace(plain.track, radius=0.5 * size.diameter, width=size.track_width, climb=size.climb)
     if wanted is not None:
         wanted = queue.wanted(part, found, track, *wanted)
-    known = queue.orientations(part, found, track, chain)
+    known = queue.orientations(part, found, track, plain.devices)
     flow = throughput.flow(known, rule, target=wanted, gap=gap, fill=fill)
     driven = _driven(replace(plain, track=track), size, settings, target, flow)
     order = Order(

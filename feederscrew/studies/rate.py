@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew.bowl.devices import Device, strangers
 from feederscrew.bowl.record import Bowl
 from feederscrew.machine import speeds
 from feederscrew.part.record import Part
-from feederscrew.rates import devices as chain
 from feederscrew.rates import queue
 from feederscrew.resting.aspects import Aspects, find
 
@@ -22,7 +22,7 @@ class RateStudy:
     part: Part
     bowl: Bowl
     aspects: Aspects
-    devices: tuple[chain.Device, ...]  # in the order parts meet them
+    devices: tuple[Device, ...]  # in the order parts meet them
     rule: str  # whose probabilities are taken
     rate: queue.Rate
 
@@ -30,7 +30,7 @@ class RateStudy:
     def warnings(self):
         """What a user must not overlook, a sentence each: of the devices, the aspects, the velocity."""
         odd = speeds.remark(self.rate.velocity.value, self.bowl.sizing)
-        return (*chain.strangers(self.devices, self.aspects.names), *self.aspects.warnings, *odd)
+        return (*strangers(self.devices, self.aspects.names), *self.aspects.warnings, *odd)
 
 
 def rate(
@@ -39,10 +39,11 @@ def rate(
     aspect: str | None = None,
     *,
     heading: float | None = None,
-    rule: str = "pmi",
-    devices: Sequence[chain.Device] = (),
+    rule: str = "recommended",
+    devices: Sequence[Device] | None = None,
     gap: float = 0.0,
     fill: float = 1.0,
+    sigma: float = 0.0,
     aspects: Aspects | None = None,
 ) -> RateStudy:
     """Study how many well-oriented parts leave a bowl.
@@ -60,11 +61,13 @@ def rate(
     rule : str
         Whose probabilities are taken.
     devices : sequence of Device
-        Along the track, in the order parts meet them.
+        Along the track, in the order parts meet them; those of the bowl without it.
     gap : float [m]
         Between one part and the next.
     fill : float [1]
         Share of the track that is occupied.
+    sigma : float [m]
+        Standard deviation of play and tolerance together, of every device.
     aspects : Aspects, optional
         Of the part, where they are known already.
 
@@ -78,16 +81,17 @@ def rate(
         If the part has no outline or no such aspect, no such rule has probabilities of it, or the bowl has
         no steady state.
     """
+    chain = bowl.devices if devices is None else tuple(devices)
     found = find(part) if aspects is None else aspects
     target = None if aspect is None else queue.wanted(part, found, bowl.track, aspect, heading)
-    known = queue.orientations(part, found, bowl.track, devices)
+    known = queue.orientations(part, found, bowl.track, chain, sigma)
     speed = queue.velocity(bowl)
     target = most_frequent(known, rule) if target is None else target
     return RateStudy(
         part=part,
         bowl=bowl,
         aspects=found,
-        devices=tuple(devices),
+        devices=chain,
         rule=rule,
         rate=queue.rate(known, speed, target, rule, gap=gap, fill=fill),
     )

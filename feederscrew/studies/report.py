@@ -10,7 +10,6 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.settings import Setting
 from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
-from feederscrew.rates import devices
 from feederscrew.resting.aspects import find
 from feederscrew.resting.posture import posture
 from feederscrew.studies import bowl as machines
@@ -86,7 +85,7 @@ class ReportStudy:
         """Well-oriented parts, a RateStudy."""
         return rate(
             self.part, self.bowl, self.aspect, heading=self.heading, rule=self.rule,
-            devices=self.devices, gap=self.gap, fill=self.fill, aspects=self.resting.aspects,
+            gap=self.gap, fill=self.fill, aspects=self.resting.aspects,
         )  # fmt: skip
 
     @cached_property
@@ -95,7 +94,7 @@ class ReportStudy:
         if self.target is not None:
             wanted = {"aspect": self.counted, "heading": self.heading if self.counted else None}
             return machines.bowl(
-                self.settings, self.part, self.target, self.devices,
+                self.settings, self.part, self.target,
                 **wanted, rule=self.rule, gap=self.gap, fill=self.fill,
             )  # fmt: skip
         given = any(s.given and s.key.section == "machine" for s in self.settings)
@@ -124,7 +123,7 @@ def report(
     *,
     aspect=None,
     heading=None,
-    rule="pmi",
+    rule="recommended",
     gap=0.0,
     fill=1.0,
     target=None,
@@ -169,7 +168,6 @@ def report(
         settings=settings,
         bowl=bowls.record(settings),
         path=path,
-        devices=tuple(devices.read(path)),
         aspect=posture(part, found, first if aspect is None else aspect).name,
         likeliest=first,
         heading=heading,

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew.bowl.devices import Device, strangers
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer, sensitivity
 from feederscrew.part.record import Part
-from feederscrew.rates import devices as chain
 from feederscrew.rates import queue
 from feederscrew.rates import tune as knobs
 from feederscrew.resting.aspects import Aspects, find
@@ -30,7 +30,7 @@ class TuneStudy:
     part: Part
     bowl: Bowl
     aspects: Aspects
-    devices: tuple[chain.Device, ...]
+    devices: tuple[Device, ...]
     target: float  # [1/s] well-oriented parts
     parts_per_metre: float  # [1/m] well-oriented parts on a length of track
     settings: tuple[Tuned, ...]
@@ -38,7 +38,7 @@ class TuneStudy:
     @property
     def warnings(self):
         """What a user must not overlook, a sentence each: of the devices, then of the aspects."""
-        return (*chain.strangers(self.devices, self.aspects.names), *self.aspects.warnings)
+        return (*strangers(self.devices, self.aspects.names), *self.aspects.warnings)
 
 
 def tune(
@@ -48,8 +48,8 @@ def tune(
     target: float,
     *,
     heading: float | None = None,
-    rule: str = "pmi",
-    devices: Sequence[chain.Device] = (),
+    rule: str = "recommended",
+    devices: Sequence[Device] | None = None,
     gap: float = 0.0,
     fill: float = 1.0,
 ) -> TuneStudy:
@@ -76,15 +76,16 @@ def tune(
     FeederError
         If the part never leaves in that orientation, or no setting reaches the rate.
     """
+    chain = bowl.devices if devices is None else tuple(devices)
     found = find(part)
     wanted = queue.wanted(part, found, bowl.track, aspect, heading)
-    known = queue.orientations(part, found, bowl.track, devices)
+    known = queue.orientations(part, found, bowl.track, chain)
     density = queue.parts_per_metre(known, wanted, rule, gap=gap, fill=fill)
     return TuneStudy(
         part=part,
         bowl=bowl,
         aspects=found,
-        devices=tuple(devices),
+        devices=chain,
         target=target,
         parts_per_metre=density,
         settings=tuple(_tuned(one, bowl) for one in knobs.solutions(bowl, target, density)),

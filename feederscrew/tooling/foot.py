@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -52,8 +53,8 @@ def standing(foot, distance, radius, shift=0.0):
     from feederscrew.tooling.kernel.passage import Foot
 
     middle = radius - distance
-    starts = [ring for ring in foot.rings] + [foot.edges[:, 0]]
-    ends = [np.roll(ring, -1, axis=0) for ring in foot.rings] + [foot.edges[:, 1]]
+    starts = [*foot.rings, foot.edges[:, 0]]
+    ends = [*(np.roll(ring, -1, axis=0) for ring in foot.rings), foot.edges[:, 1]]
     start, end = np.concatenate(starts), np.concatenate(ends)
     closed = np.arange(len(start)) < sum(len(ring) for ring in foot.rings)
     kept = np.hypot(*(end - start).T) > 1e-12
@@ -220,3 +221,53 @@ def _bulging(corners, radius):
         shares = np.arange(1, pieces)[:, None] / max(pieces, 1)
         between = start + shares * (end - start)
         yield np.column_stack([between[:, 0] / radius, radius - between[:, 1]])
+
+
+def over_ring(foot, low, high):
+    """Return the margin [m] of a foot on a track without what lies between two radii [m] about the axis."""
+    from feederscrew.tooling.kernel import ring
+
+    return float(ring.over_ring(foot, low, high, _ring_scratch(foot)))
+
+
+def balcony(foot, radius):
+    """Return the least width of track [m] that carries a foot; infinite where none does."""
+    from feederscrew.tooling.kernel import ring
+
+    return float(ring.balcony(foot, radius, _extent(foot, radius), _ring_scratch(foot)))
+
+
+def canyon(foot, radius):
+    """Return the greatest width [m] of a strip removed along the wall that a foot passes; 0 for none."""
+    from feederscrew.tooling.kernel import ring
+
+    return max(float(ring.canyon(foot, radius, _extent(foot, radius), _ring_scratch(foot))), 0.0)
+
+
+def longest_gap(foot, radius):
+    """Return the greatest gap [m] across the track that a foot passes; 0 for none."""
+    low, high = 0.0, 2.0 * foot.reach
+    work = scratch(foot, gap(high, radius, _extent(foot, radius)))
+    if least(foot, gap(1e-9, radius, _extent(foot, radius)), work)[0] < 0.0:
+        return 0.0
+    while high - low > 1e-12:
+        middle = 0.5 * (low + high)
+        passes = least(foot, gap(middle, radius, _extent(foot, radius)), work)[0] >= 0.0
+        low, high = (middle, high) if passes else (low, middle)
+    return low
+
+
+def _extent(foot, radius):
+    """How far from the wall a foot reaches [m], and a little more."""
+    return min(float(radius - foot.polar[:, 1].min() + BEHIND), radius)
+
+
+def _ring_scratch(foot):
+    return scratch(foot, RingSize(edges=np.empty((1, 7)), nodes=np.empty((0, 2))))
+
+
+class RingSize(NamedTuple):
+    """The sizes of a hole that a ring needs."""
+
+    edges: np.ndarray
+    nodes: np.ndarray

@@ -18,9 +18,12 @@ def document(study):
         **_range("parts_per_minute", found.parts, PER_MINUTE),
         "aspect": known.aspects[row],
         "heading_deg": known.headings[row] / DEG,
+        **_range("offered_per_minute", found.offered, PER_MINUTE),
+        "efficiency": found.efficiency,
+        "purity": found.purity,
         **_range("velocity_mm_s", found.velocity, MM_S),
         "length_mm": known.lengths[row] / MM,
-        "gap_mm": (found.pitch - known.lengths[row]) / MM,
+        "gap_mm": found.gap / MM,
         "pitch_mm": found.pitch / MM,
         "rule": rule,
         **_range("p_orientation", found.probability, 1.0),
@@ -53,6 +56,7 @@ def orientations(known, rule):
             "width_mm": known.widths / MM,
             f"p_{rule}": known.rules[rule],
             **stations,
+            "margin_mm": known.margin / MM,
             "passes": known.through,
         }
     )
@@ -65,11 +69,13 @@ def summary(document):
         ("well-oriented parts per minute", _with_range(d, "parts_per_minute")),
         ("aspect and heading", f"{d['aspect']} at {d['heading_deg']:.4g} deg"),
         ("velocity [mm/s]", _with_range(d, "velocity_mm_s")),
-        ("pitch [mm]", f"{d['pitch_mm']:.4g} (part {d['length_mm']:.4g}, gap {d['gap_mm']:.4g})"),
+        ("parts offered per minute", _with_range(d, "offered_per_minute")),
+        ("efficiency, well oriented of what is offered [%]", f"{100.0 * d['efficiency']:.4g}"),
+        ("purity, well oriented of what leaves [%]", _number(100.0 * d["purity"])),
+        ("mean pitch [mm]", f"{d['pitch_mm']:.4g} (wanted part {d['length_mm']:.4g}, gap {d['gap_mm']:.4g})"),
         (f"probability of the orientation, {d['rule']} [%]", _with_range(d, "p_orientation", 100.0)),
         ("share that passes the devices [%]", f"{100.0 * d['passes_devices']:.4g}"),
         ("fill of the track [%]", f"{100.0 * d['fill']:.4g}"),
-        ("well oriented of what leaves [%]", _number(100.0 * d["well_oriented_of_leaving"])),
     ]
     return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
 

@@ -108,7 +108,7 @@ def _events(foot, hole, scratch):
 
 @compiled
 def _status(foot, hole, scratch, i):
-    """Fill which corners have track below and which stretches are crossed between two events; their number."""
+    """Fill which corners have track below and which stretches are crossed in a piece; their number."""
     phi = 0.5 * (scratch.events[i] + scratch.events[i + 1])
     for k in range(len(foot.corners)):
         scratch.keep[k] = 0 if _over(hole.edges, foot.polar[k, 0] - phi, foot.polar[k, 1]) else 1

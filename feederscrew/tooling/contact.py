@@ -1,0 +1,145 @@
+"""What of a part's mesh touches the track: facets, edges and points; not its hull."""
+
+import numpy as np
+import shapely
+
+from feederscrew import check
+from feederscrew.geometry.polygons import turned
+from feederscrew.tooling.foot import Footprint
+
+TOUCHING = 2e-4  # of the part's size: what is lower than that over the track touches it
+SUNK = 0.03  # of the centre of mass's height: how much of a rolling part's underside counts as its foot
+SLIVER = 1e-6  # of the part's size squared: smaller areas and holes of them are leftovers of rounding
+PLAIN = 1e-4  # of the part's size: corners that stand out by less are left out
+
+
+def footprint(posture, heading):
+    """Return what touches the track.
+
+    Parameters
+    ----------
+    posture : Posture
+        Of a part with a mesh.
+    heading : float [rad]
+
+    Returns
+    -------
+    Footprint
+        In track axes from the foot of the centre of mass. A part that rolls touches with the strip of its
+        underside that a hole's edge would carry, up to ``SUNK`` of its height, however finely its round
+        side is cut into facets.
+    """
+    points, faces = posture.surface, posture.solid.faces
+    size = np.ptp(posture.outline, axis=0).max()
+    depth = SUNK * posture.height if posture.kind == "rolling" else TOUCHING * size
+    plan = turned(points[:, :2], heading)
+    area = _area(plan, points[:, 2], faces, depth, posture.kind == "rolling")
+    area = area.simplify(PLAIN * size) if not area.is_empty else area
+    edges, single = _bare(plan, points[:, 2] < depth, faces, area, TOUCHING * size)
+    if area.is_empty and len(edges) + len(single) < 1:
+        area = shapely.Polygon(turned(posture.contact, heading))
+    borders = rings(area, SLIVER * size**2)
+    return Footprint(rings=borders, edges=check.frozen(edges), points=check.frozen(single))
+
+
+def _area(plan, height, faces, depth, cut):
+    """The union of the facets that lie on the track, or of their parts below a depth."""
+    low = height[faces] < depth
+    whole = plan[faces[low.all(axis=1)]]
+    pieces = [shapely.polygons(whole)] if len(whole) else []
+    if cut:
+        some = faces[low.any(axis=1) & ~low.all(axis=1)]
+        pieces.append(np.array([_below(plan[f], height[f], depth) for f in some], dtype=object))
+    pieces = np.concatenate(pieces) if pieces else np.array([])
+    pieces = pieces[shapely.area(pieces) > 0.0] if len(pieces) else pieces
+    return shapely.union_all(shapely.make_valid(pieces), grid_size=1e-9) if len(pieces) else shapely.Polygon()
+
+
+def _below(corners, height, depth):
+    """The part of a triangle that is lower than a depth."""
+    out = []
+    for k in range(3):
+        a, b, za, zb = corners[k], corners[(k + 1) % 3], height[k], height[(k + 1) % 3]
+        if za < depth:
+            out.append(a)
+        if (za < depth) != (zb < depth):
+            out.append(a + (depth - za) / (zb - za) * (b - a))
+    return shapely.Polygon(out)
+
+
+def _bare(plan, low, faces, area, near):
+    """Edges and points of the mesh on the track that no area covers."""
+    around = area.buffer(near) if not area.is_empty else area
+    ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    ends = np.unique(np.sort(ends[low[ends].all(axis=1)], axis=1), axis=0)
+    edges = plan[ends].reshape(-1, 2, 2)
+    edges = edges[np.hypot(*(edges[:, 1] - edges[:, 0]).T) > near]
+    edges = edges[~_covered(edges.mean(axis=1), around)]
+    points = np.unique(plan[low], axis=0)
+    points = points[~_covered(points, around)]
+    lines = shapely.union_all(shapely.linestrings(edges)).buffer(near) if len(edges) else shapely.Polygon()
+    return edges, points[~_covered(points, lines)]
+
+
+def _covered(points, area):
+    return shapely.contains_xy(area, points) if not area.is_empty else np.zeros(len(points), dtype=bool)
+
+
+def rings(area, least=0.0):
+    """Return the borders of an area, those of its holes too, as corners (K, 2) without the one repeated.
+
+    Parameters
+    ----------
+    area : shapely geometry
+    least : float [m2]
+        Areas and holes that are not larger are left out.
+
+    Returns
+    -------
+    tuple of (K, 2) float [m]
+    """
+    polygons = [one for one in shapely.get_parts(area) if one.geom_type == "Polygon" and one.area > least]
+    lines = [ring for one in polygons for ring in (one.exterior, *one.interiors)]
+    lines = [ring for ring in lines if shapely.Polygon(ring).area > least]
+    return tuple(check.frozen(np.array(ring.coords)[:-1]) for ring in lines)
+
+
+def within(foot, distance, radius, width):
+    """Return what of a footprint lies over a track of some width.
+
+    Parameters
+    ----------
+    foot : Footprint
+    distance : float [m]
+        From the wall to the foot of the centre of mass.
+    radius, width : float [m]
+        Of the wall and of the track.
+
+    Returns
+    -------
+    Footprint
+    """
+    middle = radius - distance
+    edge = radius - width
+    if edge <= 0.0 or not len(foot.corners):
+        return foot
+    away = np.hypot(foot.corners[:, 0], middle - foot.corners[:, 1])
+    if away.min() >= edge and _nearest_side(foot, middle) >= edge:
+        return foot
+    turn = np.linspace(0.0, 2.0 * np.pi, 2001)[:-1]
+    off = shapely.Polygon(np.column_stack([edge * np.sin(turn), middle + edge * np.cos(turn)]))
+    area = shapely.union_all([shapely.Polygon()])
+    for ring in foot.rings:
+        area = area.symmetric_difference(shapely.Polygon(ring))
+    lines = shapely.difference(shapely.linestrings(foot.edges), off) if len(foot.edges) else []
+    kept = [np.array(one.coords) for line in lines for one in shapely.get_parts(line) if not one.is_empty]
+    edges = np.array([[one[0], one[-1]] for one in kept]).reshape(-1, 2, 2)
+    points = foot.points[np.hypot(foot.points[:, 0], middle - foot.points[:, 1]) >= edge]
+    return Footprint(rings=rings(area.difference(off)), edges=edges, points=points)
+
+
+def _nearest_side(foot, middle):
+    axis = shapely.Point(0.0, middle)
+    rings = [shapely.LinearRing(ring).distance(axis) for ring in foot.rings]
+    lines = [shapely.LineString(edge).distance(axis) for edge in foot.edges]
+    return min([*rings, *lines], default=np.inf)

@@ -1,0 +1,160 @@
+"""What each kind of device does with an orientation: one table from kind to verdict."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from feederscrew.bowl.devices import KINDS
+from feederscrew.errors import ConfigError
+from feederscrew.tooling import foot as feet
+
+CLOSE = 1e-9  # [m] a part this much over a limit still passes
+FAR = 10.0  # [m] an opening goes on so far below the track and behind the wall
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a device does with one orientation."""
+
+    passes: float  # [1] share that passes; the rest goes back into the bowl
+    margin: float  # [m] by which it passes, negative: by which it fails; NaN of a measured share
+    shift: float = 0.0  # [rad] of the device from the foot's radial line where the margin is least
+
+
+@dataclass(frozen=True)
+class Judge:
+    """How one kind of device is judged and drawn."""
+
+    verdict: Callable  # (device, orientation, all orientations) -> (margin [m], shift [rad])
+    picture: str  # what of the orientation a picture shows: 'side', 'above', 'ahead' or ''
+    cut: bool  # whether it is cut out of the track
+
+
+def verdict(device, one, every=(), sigma=0.0):
+    """Return what a device does with an orientation.
+
+    Parameters
+    ----------
+    device : Device
+    one : Orientation
+    every : sequence of Orientation
+        Of the part, which a profile may name.
+    sigma : float [m]
+        Standard deviation of play and tolerance together: the share that passes is then
+        Phi(margin / sigma), not 0 or 1.
+
+    Returns
+    -------
+    Verdict
+
+    Raises
+    ------
+    ConfigError
+        If a profile names an orientation that the part has not.
+    """
+    if device.kind == "yield":
+        shares = {name.casefold(): share for name, share in device.shares}
+        return Verdict(shares.get(one.aspect.casefold(), 1.0), math.nan)
+    margin, shift = JUDGES[device.kind].verdict(device, one, every)
+    return Verdict(share(margin, sigma), float(margin), float(shift))
+
+
+def share(margin, sigma):
+    """Return the share that passes at a margin [m], its standard deviation being ``sigma`` [m]."""
+    if sigma > 0.0:
+        return 0.5 * math.erfc(-margin / (sigma * math.sqrt(2.0)))
+    return float(margin >= -CLOSE)
+
+
+def _height(device, one, every):
+    return device.limit - one.height, 0.0
+
+
+def _width(device, one, every):
+    return device.limit - one.width, 0.0
+
+
+def _balcony(device, one, every):
+    needed = one.balcony
+    return (device.limit - needed if math.isfinite(needed) else -one.standing.reach), 0.0
+
+
+def _canyon(device, one, every):
+    return one.canyon - device.limit, 0.0
+
+
+def _gap(device, one, every):
+    return one.gap - device.limit, 0.0
+
+
+def _slot(device, one, every):
+    first, last = device.span
+    radius = one.track.radius
+    high = radius - first if first > 0.0 else 2.0 * radius
+    return feet.over_ring(one.standing, max(radius - last, 0.0), high), 0.0
+
+
+def _cut_out(device, one, every):
+    return feet.least(one.standing, feet.polygon(np.array(device.corners), one.track.radius))
+
+
+def _profile(device, one, every):
+    if device.like:
+        opening = _area(_named(device, every).silhouette).buffer(device.like[2])
+    else:
+        opening = shapely.Polygon(device.corners)
+    return opening_margin(opening, _area(one.silhouette)), 0.0
+
+
+def opening_margin(opening, seen):
+    """Return by how much [m] what is seen of a part stays within an opening over the track.
+
+    Parameters
+    ----------
+    opening, seen : shapely geometry
+        In distance from the wall and height [m]; track and wall themselves are no border of the opening.
+    """
+    below, behind = shapely.box(-FAR, -FAR, FAR, 0.0), shapely.box(-FAR, -FAR, 0.0, FAR)
+    outside = shapely.box(-FAR, -FAR, FAR, FAR).difference(shapely.union_all([opening, below, behind]))
+    inside = seen.distance(outside)
+    if inside > 0.0:
+        return inside
+    corners = shapely.get_coordinates(seen)
+    free = shapely.union_all([opening, below, behind])
+    return -float(shapely.distance(shapely.points(corners), free).max())
+
+
+def _area(rings):
+    return shapely.union_all([shapely.Polygon(ring) for ring in rings])
+
+
+def _named(device, every):
+    """The orientation a profile names: of its aspect the one nearest in heading."""
+    aspect, heading, _ = device.like
+    known = [one for one in every if one.aspect.casefold() == aspect.casefold()]
+    apart = [abs(math.remainder(one.heading - heading, 2.0 * math.pi)) for one in known]
+    if not known or min(apart) > math.radians(1.0):
+        names = ", ".join(one.name for one in every)
+        what = f"profile names orientation {aspect}@{math.degrees(heading):.4g}, which the part has not"
+        raise ConfigError(device.where, what, f"known are {names}")
+    return known[apart.index(min(apart))]
+
+
+JUDGES = {
+    "wiper": Judge(_height, "side", False),
+    "height_bar": Judge(_height, "side", False),
+    "hold_down": Judge(_height, "side", False),
+    "pressure_break": Judge(_width, "above", False),
+    "narrowed_track": Judge(_balcony, "above", True),
+    "canyon": Judge(_canyon, "above", True),
+    "gap": Judge(_gap, "above", True),
+    "slot": Judge(_slot, "above", True),
+    "cut_out": Judge(_cut_out, "above", True),
+    "profile": Judge(_profile, "ahead", False),
+    "yield": Judge(None, "", False),
+}
+if set(JUDGES) != set(KINDS):
+    raise ImportError(f"devices without a verdict, or verdicts without a device: {set(JUDGES) ^ set(KINDS)}")
