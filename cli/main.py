@@ -24,6 +24,7 @@ COMMANDS = {
     "rate": "feederscrew_cli.rate",
     "tune": "feederscrew_cli.tune",
     "bowl": "feederscrew_cli.bowl",
+    "tooling": "feederscrew_cli.tooling",
     "floor": "feederscrew_cli.floor",
     "track": "feederscrew_cli.track",
     "headings": "feederscrew_cli.headings",

@@ -82,7 +82,7 @@ def simple(corners, where, kind):
     if len(corners) < 3:
         raise ConfigError(where, f"{kind} has {len(corners)} corners", POLYGON)
     size = max(max(abs(x), abs(y)) for x, y in corners)
-    if _crossed(corners):
+    if crossed(corners):
         raise ConfigError(where, f"{kind} crosses itself", "list the corners in order around it")
     following = (*corners[1:], corners[0])
     twice = sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(corners, following))
@@ -161,8 +161,8 @@ def _parsed(text, where, name, dimension):
         raise ConfigError(where, f"{name}: {fault.what}", fault.mend) from None
 
 
-def _crossed(corners):
-    """Whether two sides that are not neighbours meet, or two corners coincide."""
+def crossed(corners):
+    """Return whether two sides that are not neighbours meet, or two corners coincide."""
     sides = list(zip(corners, (*corners[1:], corners[0])))
     count = len(sides)
     for i in range(count):

@@ -35,7 +35,6 @@ class ReportStudy:
     settings: tuple[Setting, ...]
     bowl: Bowl
     path: str | None  # of the bowl file
-    devices: tuple[devices.Device, ...]
     aspect: str  # the wanted one
     likeliest: str  # by the rule that ranks them
     heading: float | None  # [rad]

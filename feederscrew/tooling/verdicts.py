@@ -103,32 +103,33 @@ def _cut_out(device, one, every):
 
 def _profile(device, one, every):
     if device.like:
-        opening = _area(_named(device, every).silhouette).buffer(device.like[2])
+        opening = seen(_named(device, every)).buffer(device.like[2])
     else:
         opening = shapely.Polygon(device.corners)
-    return opening_margin(opening, _area(one.silhouette)), 0.0
+    return opening_margin(opening, seen(one)), 0.0
 
 
-def opening_margin(opening, seen):
+def opening_margin(opening, shown):
     """Return by how much [m] what is seen of a part stays within an opening over the track.
 
     Parameters
     ----------
-    opening, seen : shapely geometry
+    opening, shown : shapely geometry
         In distance from the wall and height [m]; track and wall themselves are no border of the opening.
     """
     below, behind = shapely.box(-FAR, -FAR, FAR, 0.0), shapely.box(-FAR, -FAR, 0.0, FAR)
     outside = shapely.box(-FAR, -FAR, FAR, FAR).difference(shapely.union_all([opening, below, behind]))
-    inside = seen.distance(outside)
+    inside = shown.distance(outside)
     if inside > 0.0:
         return inside
-    corners = shapely.get_coordinates(seen)
+    corners = shapely.get_coordinates(shown)
     free = shapely.union_all([opening, below, behind])
     return -float(shapely.distance(shapely.points(corners), free).max())
 
 
-def _area(rings):
-    return shapely.union_all([shapely.Polygon(ring) for ring in rings])
+def seen(one):
+    """Return the silhouette of an orientation as a shapely geometry."""
+    return shapely.union_all([shapely.Polygon(ring) for ring in one.silhouette])
 
 
 def _named(device, every):

@@ -1,0 +1,63 @@
+"""``feeder tooling``."""
+
+import click
+
+from feederscrew_cli import options
+from feederscrew_cli.angle import Angle
+from feederscrew_cli.progress import Progress
+from feederscrew_cli.quantity import Quantity
+
+
+@click.command(short_help="Which cuts let only one orientation leave the bowl.")
+@options.part
+@click.option(
+    "--aspect", metavar="NAME", help="Aspect the part shall leave on.  [default: every orientation]"
+)
+@click.option("--heading", type=Angle(), metavar="DEG", help="Heading of it.  [default: the most frequent]")
+@options.rule
+@click.option(
+    "--margin",
+    type=Quantity("length", positive=True),
+    default="0.25 mm",
+    show_default=True,
+    metavar="LENGTH",
+    help="By which the wanted orientation passes and the others fail.",
+)
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the search for holes."
+)
+@click.option(
+    "--limit",
+    type=Quantity("time", positive=True),
+    default="60 s",
+    show_default=True,
+    metavar="TIME",
+    help="After which the best so far is taken.",
+)
+@options.bowl
+@options.output
+def tooling(part, aspect, heading, rule, margin, seed, limit, bowl, out):
+    """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
+
+    Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect:
+    every orientation with its share, its limits (least track width, greatest canyon and gap), the
+    devices that isolate it, their margin, the efficiency and the purity. With one: the chain of fewest
+    devices, each with the smallest cut that still returns and the largest that still passes.
+    """
+    from feederscrew import bowl as bowls
+    from feederscrew.output import columns
+    from feederscrew.output.tooling import tables
+    from feederscrew.studies.tooling import tooling as study
+
+    solid, settings = out.part(part), bowls.settings(**bowl)
+    effective = columns.conditions(solid) | bowls.texts(settings)
+    with out.folder(solid.name, {solid.source: solid.sha256}, effective):
+        with Progress(None, not out.quiet, "orientations") as bar:
+            found = study(
+                solid, bowls.record(settings), aspect,
+                heading=heading, rule=rule, margin=margin, seed=seed, seconds=limit, told=bar.reach,
+            )  # fmt: skip
+        document = tables.document(found)
+        out.warn(*found.warnings)
+        out.say(*tables.remarks(found))
+        out.show(tables.frame(found), document, hidden=tables.HIDDEN)

@@ -1,0 +1,122 @@
+"""Orientations and chains of devices as tables and as a document, in the units of the shop."""
+
+import numpy as np
+
+from feederscrew.output import columns, tables
+from feederscrew.units import factor
+
+MM, DEG = factor("mm", "length"), factor("deg", "angle")
+HIDDEN = ("reasons",)
+
+
+def document(study):
+    """Return a ToolingStudy as the JSON document."""
+    told = {
+        **columns.part(study.part, study.aspects.warnings),
+        "rule": study.rule,
+        "margin_asked_mm": study.margin / MM,
+        "orientations": orientations(study),
+    }
+    if study.design is None:
+        return told
+    one = study.orientations[study.wanted]
+    return told | {
+        "aspect": one.aspect,
+        "heading_deg": one.heading / DEG,
+        "isolated": study.design.isolated,
+        "efficiency": study.design.efficiency,
+        "purity": study.design.purity,
+        "chain": [_cut(cut) for cut in study.design.cuts],
+        "reasons": list(study.design.reasons),
+    }
+
+
+def orientations(study):
+    """Return one row an orientation: what it measures, its limits and what isolates it.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+
+    Returns
+    -------
+    list of dict
+    """
+    rows = zip(study.orientations, study.shares, study.designs)
+    return [_row(one, share, found) for one, share, found in rows]
+
+
+def frame(study):
+    """Return the rows as a table."""
+    rows = orientations(study)
+    listed = {"devices": ", ", "left_over": " ", "reasons": "; "}
+    for row in rows:
+        for name, between in listed.items():
+            row[name] = between.join(row[name] or ())
+    return tables.frame({name: [row[name] for row in rows] for name in rows[0]})
+
+
+def remarks(study):
+    """Return what a reader should know: what cannot be told apart, and why."""
+    found = study.design
+    if found is None:
+        count = sum(one.isolated for one in study.designs)
+        return [f"{count} of {len(study.designs)} orientations can be isolated"]
+    if found.isolated:
+        return []
+    return [*found.reasons]
+
+
+def _row(one, share, found):
+    return {
+        "aspect": one.aspect,
+        "heading_deg": one.heading / DEG,
+        "share": float(share),
+        "length_mm": one.length / MM,
+        "width_mm": one.width / MM,
+        "height_mm": one.height / MM,
+        "wall_distance_mm": one.distance / MM,
+        "balcony_mm": _finite(one.balcony / MM),
+        "canyon_mm": one.canyon / MM,
+        "gap_mm": one.gap / MM,
+        "mirror": one.mirror or None,
+        **_designed(found),
+    }
+
+
+def _designed(found):
+    if found is None:
+        names = ("isolated", "devices", "margin_mm", "efficiency", "purity", "left_over", "reasons")
+        return dict.fromkeys(names)
+    return {
+        "isolated": found.isolated,
+        "devices": [cut.device.kind for cut in found.cuts],
+        "margin_mm": found.margin / MM,
+        "efficiency": found.efficiency,
+        "purity": found.purity,
+        "left_over": list(found.left_over),
+        "reasons": list(found.reasons),
+    }
+
+
+def _cut(cut):
+    return {
+        "device": cut.device.kind,
+        **_value(cut.device),
+        "margin_pass_mm": cut.margin_pass / MM,
+        "margin_reject_mm": cut.margin_reject / MM,
+        "smallest": _value(cut.smallest),
+        "largest": _value(cut.largest),
+        "returns": list(cut.returns),
+        "text": cut.device.text,
+    }
+
+
+def _value(device):
+    if device.corners:
+        return {"outline_mm": [[x / MM, y / MM] for x, y in device.corners]}
+    return {"value_mm": (device.like[2] if device.like else device.limit) / MM}
+
+
+def _finite(value):
+    return float(value) if np.isfinite(value) else None

@@ -1,0 +1,113 @@
+"""The study of ``feeder tooling``: which orientation can be isolated, and by which cuts."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew.bowl.record import Bowl
+from feederscrew.part.record import Part
+from feederscrew.resting.aspects import Aspects, find
+from feederscrew.tooling.cutting import Search
+from feederscrew.tooling.design import MARGIN, Design, design, place
+from feederscrew.tooling.orientations import Orientation, named, orientations
+
+
+@dataclass(frozen=True, eq=False)
+class ToolingStudy:
+    """Every orientation of a part on a track, and what isolates it; M orientations."""
+
+    part: Part
+    bowl: Bowl
+    aspects: Aspects
+    rule: str  # whose probabilities are taken
+    margin: float  # [m] asked for to either side
+    orientations: tuple[Orientation, ...]
+    shares: np.ndarray  # (M,) [1]
+    designs: tuple[Design | None, ...]  # (M,) None where it was not asked for
+    wanted: int | None  # the orientation asked for; None for all of them
+
+    @property
+    def design(self):
+        """The design of the orientation asked for; None where all were."""
+        return None if self.wanted is None else self.designs[self.wanted]
+
+    @property
+    def warnings(self):
+        """What a user must not overlook, a sentence each."""
+        return self.aspects.warnings
+
+
+def tooling(
+    part: Part,
+    bowl: Bowl,
+    aspect: str | None = None,
+    *,
+    heading: float | None = None,
+    rule: str = "recommended",
+    margin: float = MARGIN,
+    seed: int = 1,
+    seconds: float = 60.0,
+    told: Callable[[int, int], None] | None = None,
+) -> ToolingStudy:
+    """Study which orientations of a part can be isolated by cuts, and how.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    bowl : Bowl
+    aspect : str, optional
+        The one wanted; without it every orientation is designed for.
+    heading : float [rad], optional
+        Of that aspect; without one, its most frequent that stays on the track.
+    rule : str
+        Whose probabilities are taken.
+    margin : float [m]
+        By which the wanted orientation passes and the others fail, at least.
+    seed : int
+        Of the search for holes.
+    seconds : float [s]
+        After so long the best so far is taken.
+    told : callable, optional
+        Called with how many designs are done of how many.
+
+    Returns
+    -------
+    ToolingStudy
+
+    Raises
+    ------
+    FeederError
+        If the part has no mesh, is too large for the bowl, or has no such orientation or rule.
+    """
+    found = find(part)
+    every = named(orientations(part, found, bowl.track))
+    if rule not in found.chances:
+        from feederscrew.documents import hint
+        from feederscrew.errors import FeederError
+
+        raise FeederError(
+            f"--rule {rule}", "has no probabilities of this part", hint(rule, list(found.chances))
+        )
+    shares = np.nan_to_num([one.chances[rule] for one in every])
+    wanted = None if aspect is None else place(every, aspect, heading, part.source)
+    search = Search(seed=seed, until=time.monotonic() + seconds)
+    asked = range(len(every)) if wanted is None else [wanted]
+    designs = [None] * len(every)
+    for done, k in enumerate(asked):
+        designs[k] = design(every, shares, k, margin=margin, search=search)
+        if told is not None:
+            told(done + 1, len(asked))
+    return ToolingStudy(
+        part=part,
+        bowl=bowl,
+        aspects=found,
+        rule=rule,
+        margin=margin,
+        orientations=every,
+        shares=shares,
+        designs=tuple(designs),
+        wanted=wanted,
+    )

@@ -1,0 +1,162 @@
+"""The fewest devices of one number that let one orientation pass and return the others."""
+
+import itertools
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feederscrew.bowl.devices import Device
+from feederscrew.tooling.verdicts import opening_margin, seen, verdict
+
+UPPER = ("wiper", "narrowed_track", "pressure_break")  # pass what needs no more than their value
+LOWER = ("canyon", "gap")  # pass what bears no less
+WHERE = "design"
+FINE = 1e-7  # [m] to which a value is rounded, where that leaves the margins
+
+
+@dataclass(frozen=True)
+class Cut:
+    """One device of a design, with how much it may change."""
+
+    device: Device
+    margin_pass: float  # [m] by which the wanted orientation passes
+    margin_reject: float  # [m] by which the nearest of those it must return fails
+    smallest: Device  # the least cut that still returns them
+    largest: Device  # the greatest cut that the wanted orientation still passes
+    returns: tuple[str, ...]  # names of the orientations it returns
+
+
+def candidates(every, wanted, margin):
+    """Return every device of one number that the wanted orientation passes by a margin.
+
+    Parameters
+    ----------
+    every : sequence of Orientation
+    wanted : int
+        Its place among them.
+    margin : float [m]
+
+    Returns
+    -------
+    dict of Device to (M,) float [m]
+        The device at which it returns the most, with the margin of each orientation at it.
+    """
+    found = {}
+    for kind in (*UPPER, *LOWER):
+        values = limits(kind, every)
+        if not np.isfinite(values[wanted]) or (kind in LOWER and values[wanted] <= 2.0 * margin):
+            continue
+        sign = 1.0 if kind in UPPER else -1.0
+        limit = float(values[wanted] + sign * margin)
+        if limit > 0.0 and not (kind == "narrowed_track" and limit >= every[wanted].track.width):
+            found[Device(kind, WHERE, limit=limit)] = sign * (limit - values)
+    gate = Device("profile", WHERE, like=(every[wanted].aspect, every[wanted].heading, margin))
+    opening = seen(every[wanted]).buffer(margin)
+    found[gate] = np.array([opening_margin(opening, seen(one)) for one in every])
+    return found
+
+
+def limits(kind, every):
+    """Return the value [m] of a device of one number that each orientation just passes, (M,)."""
+    names = {"wiper": "height", "narrowed_track": "balcony", "pressure_break": "width"}
+    return np.array([getattr(one, names.get(kind, kind)) for one in every])
+
+
+def fewest(found, others, margin):
+    """Return the fewest devices that return the most of some orientations.
+
+    Parameters
+    ----------
+    found : dict of Device to (M,) float [m]
+        From ``candidates``.
+    others : (M,) float
+        How much each of the orientations to be returned weighs; 0 for those that need not be.
+    margin : float [m]
+
+    Returns
+    -------
+    tuple of Device
+        In the order of ``candidates``.
+    """
+    best, weight = (), 0.0
+    devices = list(found)
+    for count in range(1, len(devices) + 1):
+        for chosen in itertools.combinations(devices, count):
+            returned = np.any([found[device] <= -margin for device in chosen], axis=0)
+            held = float(others[returned].sum())
+            if held > weight + 1e-12:
+                best, weight = chosen, held
+    return best
+
+
+def placed(every, wanted, devices, must):
+    """Return the cuts of a chain, each value in the middle of what it may be.
+
+    Parameters
+    ----------
+    every : sequence of Orientation
+    wanted : int
+    devices : sequence of Device
+    must : sequence of (M,) bool
+        Which orientations each device has to return.
+
+    Returns
+    -------
+    tuple of Cut
+    """
+    return tuple(_cut(every, wanted, device, some) for device, some in zip(devices, must))
+
+
+def shared_out(found, devices, margin):
+    """Return for each device (M,) which orientations it has to return: those that none before it does."""
+    left, out = np.ones(len(next(iter(found.values()))), dtype=bool), []
+    for device in devices:
+        out.append(left & (found[device] <= -margin))
+        left &= ~out[-1]
+    return out
+
+
+def _cut(every, wanted, device, must):
+    if device.kind == "profile":
+        return _gate(every, wanted, device, must)
+    values = limits(device.kind, every)
+    upper = device.kind in UPPER
+    nearest = (values[must].min() if upper else values[must].max()) if must.any() else values[wanted]
+    middle = float(0.5 * (values[wanted] + nearest))
+    if not np.isfinite(nearest):
+        middle = device.limit
+    rounded = round(middle / FINE) * FINE
+    chosen = replace(device, limit=rounded, text=millimetres(rounded))
+    ends = [replace(device, limit=float(end), text=millimetres(end)) for end in (nearest, values[wanted])]
+    return judged(every, wanted, chosen, must, *ends)
+
+
+def _gate(every, wanted, device, must):
+    aspect, heading, play = device.like
+    outside = [-opening_margin(seen(every[wanted]), seen(one)) for one, some in zip(every, must) if some]
+    widest = min(outside, default=2.0 * play)
+    play = round(0.5 * widest / FINE) * FINE if np.isfinite(widest) else play
+
+    def at(play):
+        text = f"{{of: {aspect}@{np.degrees(heading):.12g}, play: {millimetres(play)}}}"
+        return replace(device, like=(aspect, heading, float(play)), text=text)
+
+    return judged(every, wanted, at(play), must, at(widest), at(0.0))
+
+
+def judged(every, wanted, device, must, smallest, largest):
+    """Return a device as a Cut, with its true margins and what it returns."""
+    margins = np.array([verdict(device, one, every).margin for one in every])
+    return Cut(
+        device=device,
+        margin_pass=float(margins[wanted]),
+        margin_reject=float(-margins[must].max()) if must.any() else np.nan,
+        smallest=smallest,
+        largest=largest,
+        returns=tuple(one.name for one, margin in zip(every, margins) if margin < 0.0),
+    )
+
+
+def millimetres(value):
+    """Return a length as a bowl file has it: '9.25 mm'."""
+    return f"{1e3 * value:.9g} mm"

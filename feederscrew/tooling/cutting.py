@@ -1,0 +1,189 @@
+"""Holes of three to six corners that part orientations which devices of one number cannot."""
+
+import math
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feederscrew.bowl.device_values import crossed
+from feederscrew.bowl.devices import Device
+from feederscrew.tooling import foot as feet
+from feederscrew.tooling.chain import WHERE, judged, millimetres
+
+STARTS = 160  # random holes tried
+CLIMBS = 5  # the best of them are improved
+STEPS = 70  # changes tried of each
+ROOM = 1.3  # holes reach so far beyond the foot
+STEP = 1e-5  # [m] to which a corner is rounded
+HALVINGS = 24
+
+
+@dataclass(frozen=True)
+class Search:
+    """How long and from where holes are looked for."""
+
+    seed: int = 1
+    until: float = math.inf  # [s] of time.monotonic(): then the best so far is taken
+
+
+def cut_out(every, wanted, others, margin, search):
+    """Return the hole that the wanted orientation passes and that returns the most others.
+
+    Parameters
+    ----------
+    every : sequence of Orientation
+    wanted : int
+    others : sequence of int
+        Those to be returned.
+    margin : float [m]
+        To either side.
+    search : Search
+
+    Returns
+    -------
+    (Cut, sequence of int) or None
+        The hole and those of the others that it returns by the margin.
+    """
+    rng = np.random.default_rng((search.seed, wanted, *others))
+    judge = _Judge(every, wanted, others, margin)
+    best = judge.searched(rng, search.until)
+    if best is None:
+        return None
+    corners, margins = best
+    held = [k for k, found in zip(others, margins) if found <= -margin]
+    return _as_cut(every, wanted, held, corners), held
+
+
+class _Judge:
+    """Scores of holes: whole margins gained, others returned first."""
+
+    def __init__(self, every, wanted, others, margin):
+        self.wanted, self.others = every[wanted].standing, [every[k].standing for k in others]
+        self.radius, self.margin = every[wanted].track.radius, margin
+        self.length = ROOM * max(one.length for one in (every[wanted], *(every[k] for k in others)))
+        self.width = max(one.width for one in (every[wanted], *(every[k] for k in others)))
+        self.scratch = {}
+
+    def score(self, corners):
+        """(score, margins of the others): the worse of passing and of returning, at most the margin twice."""
+        hole = feet.polygon(corners, self.radius)
+        passing = self._least(0, self.wanted, hole)
+        if passing < -self.margin:
+            return -math.inf, None
+        margins = [self._least(k + 1, one, hole) for k, one in enumerate(self.others)]
+        returned = sum(found <= -self.margin for found in margins)
+        ready = passing >= self.margin
+        total = sum(min(-found, 2.0 * self.margin) for found in margins)
+        gain = min(passing, 2.0 * self.margin) * max(len(margins), 1) + total
+        nearest = min(passing - self.margin, max(-found for found in margins) - self.margin)
+        return (returned if ready else 0) * 1e3 * self.margin + 3.0 * min(nearest, 0.0) + gain, margins
+
+    def searched(self, rng, until):
+        """The best hole found, as (corners, margins), if it passes the wanted one and returns any other."""
+        found = []
+        for _ in range(STARTS):
+            if time.monotonic() > until:
+                break
+            corners = self._random(rng)
+            if corners is not None:
+                found.append((*self.score(corners), corners))
+        found = sorted(found, key=lambda one: -one[0])[:CLIMBS]
+        climbed = [self._climbed(one, rng, until) for one in found]
+        best = max(climbed, key=lambda one: one[0], default=None)
+        if best is None or best[0] < 500.0 * self.margin:
+            return None
+        return best[2], best[1]
+
+    def _climbed(self, start, rng, until):
+        """One hole improved by moving a corner, or all of it, at random."""
+        score, margins, corners = start
+        size = 0.15 * self.width
+        for _ in range(STEPS):
+            if time.monotonic() > until or margins is None:
+                break
+            moved = corners.copy()
+            if rng.random() < 0.25:
+                moved += rng.normal(0.0, size, 2)
+            else:
+                moved[rng.integers(len(moved))] += rng.normal(0.0, size, 2)
+            moved = self._tidy(moved)
+            if moved is None:
+                continue
+            better, found = self.score(moved)
+            if better > score:
+                score, margins, corners = better, found, moved
+            else:
+                size = max(0.93 * size, 2.0 * self.margin)
+        return score, margins, corners
+
+    def _random(self, rng):
+        """A hole about a random place: corners in order of angle."""
+        count = int(rng.integers(3, 7))
+        turn = np.sort(rng.uniform(0.0, 2.0 * np.pi, count))
+        far = np.array([self.length, self.width]) * rng.uniform(0.1, 0.9, (count, 1))
+        middle = np.array([0.0, rng.uniform(0.0, self.width)])
+        return self._tidy(middle + 0.5 * far * np.column_stack([np.cos(turn), np.sin(turn)]))
+
+    def _tidy(self, corners):
+        """The corners on the grid and over the track; None where they cross or leave no area."""
+        corners = corners.copy()
+        corners[:, 1] = np.clip(corners[:, 1], 0.0, min(1.2 * self.width, 0.9 * self.radius))
+        corners[:, 0] -= corners[:, 0].min()
+        corners = np.round(corners / STEP) * STEP
+        after = np.roll(corners, -1, axis=0)
+        area = 0.5 * abs((corners[:, 0] * after[:, 1] - corners[:, 1] * after[:, 0]).sum())
+        if area < (4.0 * self.margin) ** 2 or crossed([tuple(one) for one in corners]):
+            return None
+        return corners
+
+    def _least(self, k, foot, hole):
+        """Least margin, in arrays kept for holes of that size."""
+        key = k, len(hole.edges), 64 * (1 + len(hole.nodes) // 64)
+        if key not in self.scratch:
+            room = hole._replace(nodes=np.empty((key[2], 2)))
+            self.scratch[key] = feet.scratch(foot, room)
+        return feet.least(foot, hole, self.scratch[key])[0]
+
+
+def _as_cut(every, wanted, held, corners):
+    must = np.isin(np.arange(len(every)), held)
+    middle = corners.mean(axis=0)
+
+    def scaled(share):
+        shape = middle + share * (corners - middle)
+        shape[:, 1] = np.maximum(shape[:, 1], 0.0)
+        return shape
+
+    def passes(share):
+        return _margin(every[wanted], scaled(share)) >= 0.0
+
+    def returns(share):
+        return all(_margin(every[k], scaled(share)) < 0.0 for k in held)
+
+    least = _border(returns, 1.0, 0.0)
+    most = _border(passes, 1.0, 2.0)
+    return judged(every, wanted, _device(corners), must, _device(scaled(least)), _device(scaled(most)))
+
+
+def _margin(one, corners):
+    return feet.least(one.standing, feet.polygon(corners, one.track.radius))[0]
+
+
+def _border(holds, inside, outside):
+    """The last share for which something holds, from where it does towards where it may not."""
+    if holds(outside) if outside > 0.0 else False:
+        return outside
+    for _ in range(HALVINGS):
+        middle = 0.5 * (inside + outside)
+        if middle > 0.0 and holds(middle):
+            inside = middle
+        else:
+            outside = middle
+    return inside
+
+
+def _device(corners):
+    shape = tuple((float(x), float(y)) for x, y in corners)
+    text = ", ".join(f"[{millimetres(x)}, {millimetres(y)}]" for x, y in shape)
+    return replace(Device("cut_out", WHERE), corners=shape, text=f"[{text}]")
