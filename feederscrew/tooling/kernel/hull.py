@@ -5,7 +5,7 @@ import math
 from feederscrew.geometry.compiled import compiled
 
 NEAR = 1e-12  # [m] points nearer to each other are one
-LEVEL = 1e-16  # [m2] of a triangle: three points nearer to one line lie on it
+LEVEL = 1e-12  # [m] of a point from the line of two others: nearer it lies on it
 
 
 @compiled
@@ -29,7 +29,9 @@ def _next(points, count, ax, ay):
         if long2 <= NEAR * NEAR:
             continue
         turn = bx * py - by * px
-        if best < 0 or turn < -LEVEL or (turn <= LEVEL and long2 > reach):
+        level = LEVEL * math.sqrt(max(long2, reach))
+        in_line = abs(turn) <= level and bx * px + by * py > 0.0
+        if best < 0 or (turn < 0.0 and not in_line) or (in_line and long2 > reach):
             best, bx, by, reach = k, px, py, long2
     return best
 
