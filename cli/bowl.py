@@ -58,11 +58,7 @@ def bowl(part, target, bowl, pictures, out, **wanted):
     name = solid.name if solid else bowls.name(path)
     with out.folder(name, identity | bowls.identity(path), effective) as folder:
         announce(out)
-        found = (
-            study.bowl(settings, solid, target, **wanted)
-            if solid
-            else study.machine(settings)
-        )
+        found = study.bowl(settings, solid, target, **wanted) if solid else study.machine(settings)
         out.warn(*found.remarks)
         offers.write(folder, machine.offers(found), pictures=pictures)
         out.show(tables.summary(found), tables.document(found))

@@ -39,10 +39,8 @@ def shares(entry):
 
 def polygon(entry):
     """Read a polygon of lengths or the file that holds it, as {'corners': ((m, m), ...)}."""
-    if entry.value.kind == "mapping":
-        corners = _drawn(entry)
-    else:
-        corners = _corners(entry.value, entry.key)
+    written_here = entry.value.kind != "mapping"
+    corners = _corners(entry.value, entry.key) if written_here else _drawn(entry)
     return {"corners": simple(corners, entry.value.where, entry.key)}
 
 

@@ -73,26 +73,12 @@ KINDS = {
     ),
     "cut_out": DeviceKind(
         values.polygon, "polygon", "[[0 mm, 0 mm], [9 mm, 0 mm], [9 mm, 8 mm]]",
-        "hole in the track: lengths along the wall and distances from it, unrolled; or {dxf: file, layer: CUT}",
+        "hole in the track: lengths along the wall and distances from it, unrolled; or "
+        "{dxf: file, layer: CUT}",
     ),
     "hold_down": DeviceKind(
         values.length, "length", "6 mm",
         "bar above the queue that keeps parts down; returns orientations that do not fit below",
-    ),
-    "rails": DeviceKind(
-        values.length, "length", "4.2 mm",
-        "slot of that width between two rails: headed parts hang in it by the head, others are returned if "
-        "they fall through",
-    ),
-    "step": DeviceKind(
-        values.length, "length", "4 mm",
-        "drop by a height on the next stretch of track: turns parts over, quasi-statically until a trial "
-        "confirms it",
-    ),
-    "tip": DeviceKind(
-        values.length, "length", "5 mm",
-        "ledge of that width over which parts tip to the free side: turns parts over, quasi-statically until a "
-        "trial confirms it",
     ),
     "yield": DeviceKind(
         values.shares, "shares", "{A: 0.9}",
@@ -180,8 +166,6 @@ def _misfit(device, width):
     told, mend = f"the track is {1e3 * width:.4g} mm wide", "give a smaller one, or a wider track"
     if device.kind == "canyon" and device.limit >= width:
         yield ConfigError(device.where, f"canyon leaves no track: {told}", mend)
-    if device.kind == "rails" and device.limit >= width:
-        yield ConfigError(device.where, f"rails leave no track: {told}", mend)
     if device.kind == "slot" and device.span[0] <= 0.0 and device.span[1] >= width:
         yield ConfigError(device.where, f"slot leaves no track: {told}", mend)
     if device.kind == "slot" and device.span[0] >= width:

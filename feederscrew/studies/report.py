@@ -1,4 +1,4 @@
-"""The study of ``feeder report``: everything the other studies find of one part in one bowl, each on request."""
+"""The study of ``feeder report``: what the other studies find of one part in one bowl, each on request."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
