@@ -88,7 +88,7 @@ def _from_file(path):
     for entry in root.entries:
         if entry.key in SECTIONS:
             _read_section(entry, given, faults)
-        elif entry.key in BY_NAME:
+        elif entry.key in BY_NAME and not BY_NAME[entry.key].section:
             _read_value(BY_NAME[entry.key], entry, given, faults)
         elif entry.key == devices.SECTION:
             given |= {

@@ -9,7 +9,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
 from feederscrew.errors import FeederError
-from feederscrew.rates import devices, queue
+from feederscrew.rates import queue
 from feederscrew.rates.queue import Range
 from feederscrew.resting.aspects import find
 
@@ -29,7 +29,7 @@ def stream(mesh, track=STRAIGHT, chain=()):
 def chain(tmp_path, text):
     path = tmp_path / "bowl.yaml"
     path.write_text(text)
-    return devices.read(path)
+    return bowls.read(path).devices
 
 
 def test_range_multiplies_ends():
@@ -66,8 +66,11 @@ def test_rate_is_the_product_of_its_chain():
     target = queue.wanted(part, found, STRAIGHT, "A")
     made = queue.rate(known, Range(0.1, 0.05, 0.2), target, "csa", gap=5e-3, fill=0.8)
     row = made.row
-    assert made.pitch == pytest.approx(known.lengths[row] + 5e-3)
-    assert made.parts.value == pytest.approx(0.1 / made.pitch * known.rules["csa"][row] * 0.8)
+    chance = known.rules["csa"]
+    assert made.pitch == pytest.approx((chance * (known.lengths + 5e-3)).sum())
+    assert made.offered.value == pytest.approx(0.1 * 0.8 / made.pitch)
+    assert made.efficiency == pytest.approx(chance[row])
+    assert made.parts.value == pytest.approx(made.offered.value * made.efficiency)
     assert made.parts.low <= made.parts.value <= made.parts.high
     chances = [chance[row] for chance in known.rules.values()]
     assert made.parts.high == pytest.approx(0.2 / made.pitch * max(chances) * 0.8)
@@ -151,7 +154,7 @@ def test_what_never_leaves_the_bowl(tmp_path):
 
 
 def test_no_devices():
-    assert devices.read(None) == ()
+    assert bowls.read(None).devices == ()
 
 
 @pytest.mark.parametrize(

@@ -55,8 +55,8 @@ def orientations(known, rule):
             "length_mm": known.lengths / MM,
             "width_mm": known.widths / MM,
             f"p_{rule}": known.rules[rule],
-            **stations,
             "margin_mm": known.margin / MM,
+            **stations,
             "passes": known.through,
         }
     )

@@ -24,7 +24,7 @@ def test_a_bar_at_a_straight_wall(run, tmp_path):
     assert set(found[0]) >= CONTRACT
     long_side = [row for row in found if row["length_mm"] == pytest.approx(30, rel=1e-3)]
     assert sum(row["share"] for row in long_side) == pytest.approx(4 * np.arctan(3) / (2 * np.pi), rel=1e-6)
-    assert [row["half_turn_of_deg"] for row in long_side] == pytest.approx([180, 0], abs=1e-6)
+    assert [row["heading_deg"] for row in long_side] == [0.0]  # half a turn maps the bar to itself
 
 
 def test_every_aspect_has_shares_that_sum_to_one(run):

@@ -1,0 +1,101 @@
+"""Every orientation of a part in the queue, and what becomes of it at each device."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.tooling import orientations as tooling
+from feederscrew.tooling.orientations import Orientation
+from feederscrew.tooling.verdicts import verdict
+
+
+@dataclass(frozen=True, eq=False)
+class Orientations:
+    """Every way a part can lie on the track, an aspect and a heading a row; M rows."""
+
+    lying: tuple[Orientation, ...]  # the rows themselves
+    stations: tuple[str, ...]  # the track itself, then each device
+    passes: np.ndarray  # (M, stations) share each station lets pass; the rest goes back into the bowl
+    margins: np.ndarray  # (M, stations) [m] by which it passes or fails; NaN where that is not known
+    rules: dict[str, np.ndarray]  # (M,) probability of aspect and heading by each rule
+    interval: np.ndarray  # (M, 2) lowest and highest probability by the recommended rule
+
+    @property
+    def aspects(self):
+        """(M,) names of the aspects."""
+        return tuple(one.aspect for one in self.lying)
+
+    @property
+    def headings(self):
+        """(M,) [rad]."""
+        return np.array([one.heading for one in self.lying])
+
+    @property
+    def heading_shares(self):
+        """(M,) of the parts on that aspect; headings equal under a turn of the part are one."""
+        return np.array([one.heading_share for one in self.lying])
+
+    @property
+    def lengths(self):
+        """(M,) [m] along the track."""
+        return np.array([one.length for one in self.lying])
+
+    @property
+    def widths(self):
+        """(M,) [m] across it."""
+        return np.array([one.width for one in self.lying])
+
+    @property
+    def through(self):
+        """(M,) share that passes every station."""
+        return self.passes.prod(axis=1)
+
+    @property
+    def margin(self):
+        """(M,) [m] the least over the devices, by which it passes them all or fails; NaN without any."""
+        known = np.where(np.isnan(self.margins), np.inf, self.margins).min(axis=1)
+        return np.where(np.isinf(known), np.nan, known)
+
+
+def orientations(part, aspects, track, chain=(), sigma=0.0):
+    """Return every stable aspect and heading of a part, and what becomes of it at each device.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    aspects : Aspects
+        Of that part.
+    track : Track
+    chain : sequence of Device
+    sigma : float [m]
+        Standard deviation of play and tolerance together, of every device.
+
+    Returns
+    -------
+    Orientations
+    """
+    lying = tooling.orientations(part, aspects, track)
+    found = [[verdict(device, one, lying, sigma) for device in chain] for one in lying]
+    stays = [0.0 if one.falls_off else 1.0 for one in lying]
+    passes = [[stay, *(one.passes for one in row)] for stay, row in zip(stays, found)]
+    margins = [[np.nan, *(one.margin for one in row)] for row in found]
+    rules = {rule: np.array([one.chances[rule] for one in lying]) for rule in aspects.chances}
+    return Orientations(
+        lying=lying,
+        stations=("track", *(device.kind for device in chain)),
+        passes=check.frozen(np.array(passes)),
+        margins=check.frozen(np.array(margins)),
+        rules={rule: check.frozen(chance) for rule, chance in rules.items()},
+        interval=check.frozen(_interval(aspects, lying)),
+    )
+
+
+def _interval(aspects, lying):
+    known = aspects.recommended
+    if known is None:
+        return np.full((len(lying), 2), np.nan)
+    rows = [aspects.names.index(one.aspect) for one in lying]
+    shares = np.array([one.heading_share for one in lying])
+    return np.column_stack([known.low[rows] * shares, known.high[rows] * shares])
