@@ -104,6 +104,9 @@ def _listed(key, node, shape):
         return tuple(_listed(key, item, shape[1:]) for item in node.items)
     if node.kind != "text" or not node.text:
         raise ConfigError(node.where, f"{key.word} has no value", f"write {key.example}")
+    if key.choices and node.text not in key.choices:
+        what = f"{key.word} is {units.shown(node.text)}"
+        raise ConfigError(node.where, what, f"give {' or '.join(key.choices)}")
     return node.text if key.dimension == "text" else _quantity(key, node)
 
 

@@ -13,9 +13,12 @@ class CardKey:
     required: bool = False
     shape: tuple[int, ...] = ()  # of a list; () for one value
     positive: bool = True
+    choices: tuple[str, ...] = ()  # of a text; any text where it is empty
 
 
 MATRIX = "three rows of three, as in [95.3 g mm2, 0 g mm2, -24.5 g mm2]"
+
+AXES = ("tilted", "level")  # by the bank of the track, or not: of the printed track equations
 
 CARD = (
     CardKey("mass", "mass", "1.98 g", required=True),
@@ -48,4 +51,5 @@ TRACK = (
     CardKey("wall_x", "length", "[6.7 mm, 9 mm]", shape=(2,)),
     CardKey("wall_y", "length", "4 mm"),
     CardKey("wall_friction_y", "length", "4 mm"),
+    CardKey("axes", "text", "tilted", choices=AXES),
 )

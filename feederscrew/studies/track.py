@@ -21,7 +21,6 @@ from feederscrew.resting.posture import Posture
 from feederscrew.studies import grids
 
 USUAL = ("track.bank=0deg:30deg:41", "track.climb=0deg:8deg:41")  # of a map
-LEVEL = {"magnet"}  # cards whose printed equations are in level axes, [4.57] to [4.62]
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,9 +128,7 @@ def _from_rest(seat, bowl):
 
 def _levers(part, posture, seat):
     """Levers of the printed equations: the card's own, or the mesh's."""
-    axes = "level" if posture.corners is None and part.name in LEVEL else "tilted"
+    printed = {} if posture.corners is not None else posture.printed["track"]
     ahead = posture.offset * np.cos(seat.heading)
-    levers = published.levers(seat, float(ahead), axes)
-    return (
-        levers if posture.corners is not None else published.printed_levers(levers, posture.printed["track"])
-    )
+    levers = published.levers(seat, float(ahead), printed.get("axes", "tilted"))
+    return published.printed_levers(levers, printed) if printed else levers

@@ -145,11 +145,11 @@ def test_aligned_print_and_complete_agree_but_for_the_line_of_action(printed_car
 
 def levers_of(name, card):
     """The card's printed levers."""
-    told, axes = card.printed["track"], "level" if name == "magnet" else "tilted"
+    told = card.printed["track"]
     behind, ahead = told["wall_x"]
     return published_track.Levers(
         card.mass, card.height, card.offset, told["wall_lever"], told["wall_lever_angle"],
-        behind, ahead, told["wall_y"], told["wall_friction_y"], axes,
+        behind, ahead, told["wall_y"], told["wall_friction_y"], told["axes"],
     )  # fmt: skip
 
 

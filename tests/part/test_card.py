@@ -117,6 +117,8 @@ def test_a_card_in_si_units():
         ("floor: {aspect: top", "floor: {aspect: 7",
          ("10:17: floor: the card lists no aspect '7' - known are 1, top",)),
         ("drive_offset", "drive_ofset", ("10:22: unknown key 'drive_ofset' - did you mean drive_offset?",)),
+        ("floor: {aspect: top, drive_offset: -1 mm}", "track: {axes: askew}",
+         ("10:15: axes is 'askew' - give tilted or level",)),
         ("floor: {aspect: top, drive_offset: -1 mm}", "floor: 3",
          ("10:8: is no block of 'key: value' lines"
           " - give it aspect, drive_offset, centroid_height, polar_inertia",)),

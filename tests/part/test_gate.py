@@ -222,12 +222,15 @@ def mirrored_wall(triangles):
     return files.inside_out(triangles * [-1, 1, 1] + [30, 0, 0])
 
 
-def test_degenerate_facets_go_unsaid(tmp_path):
-    needle = BOX[:1].copy()
-    needle[0, 1] = needle[0, 0]
+@pytest.mark.parametrize(
+    ("count", "said"), [(1, "1 facet without area left out"), (2, "2 facets without area left out")]
+)
+def test_facets_without_area_are_left_out_and_said_in_one_warning(tmp_path, count, said):
+    needle = BOX[:count].copy()
+    needle[:, 1] = needle[:, 0]
     part = of(tmp_path, np.concatenate([BOX, needle]))
     assert mm3(part) == pytest.approx(VOLUME)
-    assert part.warnings == ()
+    assert part.warnings == (f"{said}: two corners in one place",)
     assert len(part.faces) == 12
 
 

@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.geometry import vectors
+from feederscrew.part.card_schema import AXES
 
-AS_PRINTED = ("tilted", "level")  # axes of the Arc Chute's and of the Magnet's equations
+AS_PRINTED = AXES  # of the Arc Chute's and of the Magnet's equations
 
 
 @dataclass(frozen=True)

@@ -56,7 +56,10 @@ def surface(vertices, faces, where, unit, allow_open=False):
     MeshError
         If the triangles bound no volume, do not close, or bound more than one body.
     """
-    vertices, faces = weld.welded(*_finite(vertices, faces, where, unit))
+    vertices, faces = _finite(vertices, faces, where, unit)
+    facets = len(faces)
+    vertices, faces = weld.welded(vertices, faces)
+    slivers = _without_area(facets - len(faces))
     size = _size(vertices, faces, where)
     step, blurred = _precision(vertices, size, where, unit)
     vertices, faces, edges, mended = mend.mended(vertices, faces, JOINED * size + 2.0 * step, where)
@@ -66,7 +69,12 @@ def surface(vertices, faces, where, unit, allow_open=False):
         faces, solid, said = faces[:, ::-1], solid.reversed, (*said, INVERTED)
     if solid.volume <= EMPTY * size**3:
         raise MeshError(where, "encloses no volume", SOLID)
-    return Surface(vertices, faces, solid, is_open, blurred + mended + said)
+    return Surface(vertices, faces, solid, is_open, slivers + blurred + mended + said)
+
+
+def _without_area(count):
+    """What to say of facets left out because two of their corners are one."""
+    return (f"{_many(count, 'facet')} without area left out: two corners in one place",) if count else ()
 
 
 def _finite(vertices, faces, where, unit):

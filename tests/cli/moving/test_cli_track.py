@@ -181,3 +181,17 @@ def test_values_in_the_picture_do_not_cover_one_another(tmp_path):
         boxes = [text.get_window_extent() for text in axes.texts if text.get_text()]
         clashes = [a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i]]
         assert len(boxes) > 2 and not any(clashes)
+
+
+@pytest.mark.parametrize(("card", "aspect"), [(CARD, "5"), (MAGNET, "3")])
+def test_a_card_gives_the_same_under_another_name(run, tmp_path, card, aspect):
+    copy = tmp_path / "another.yaml"
+    copy.write_bytes(card.read_bytes())
+    printed = ("--aspect", aspect, "--as-published", *SETS)
+    first, second = (document(run, path, *printed) for path in (card, copy))
+    assert first["instant"] == second["instant"]
+    other = {"tilted": "level", "level": "tilted"}
+    text = card.read_text()
+    (axes,) = (word for word in other if f"axes: {word}" in text)
+    copy.write_text(text.replace(f"axes: {axes}", f"axes: {other[axes]}"))
+    assert document(run, copy, *printed)["instant"] != first["instant"]
