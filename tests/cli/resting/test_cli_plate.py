@@ -173,5 +173,5 @@ def test_a_plate_that_was_stopped_is_marked_everywhere():
         assert "partial" not in table(study)
     assert tables.drives(stopped)["partial"].tolist() == [False, True]
     assert tables.document(stopped)["partial"]
-    line = "partial: stopped after 10 parts on the plate of two at 0.05 mm"
+    line = f"partial: stopped after 10 parts on the plate of two at {1e3 * bowl.drive.amplitude:.4g} mm"
     assert tables.remarks(stopped)[-1] == line
