@@ -9,7 +9,7 @@ from feederscrew.dropping.ensemble import Aim, Drops, Tally
 from feederscrew.dropping.kernel import drop
 from feederscrew.dropping.launches import sample
 from feederscrew.dropping.shape import principal_axes, shape_of_part
-from feederscrew.dropping.traces import Trace, follow
+from feederscrew.dropping.traces import DropTrace, follow
 from feederscrew.geometry.compiled import on_disk
 from feederscrew.resting.tumbling.by_class import Ground, ground
 
@@ -26,7 +26,7 @@ class Result:
     drops: Drops
     tally: Tally
     aim: float | None = None  # [1] half-width the intervals were to reach
-    traces: tuple[Trace, ...] = ()  # of the first drops
+    traces: tuple[DropTrace, ...] = ()  # of the first drops
 
 
 def test(part, aspects, preset, own, *, drops=None, until=None, seed=1, jobs=1, progress=None, traced=0):

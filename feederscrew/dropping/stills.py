@@ -11,7 +11,7 @@ def chosen(trace, count):
 
     Parameters
     ----------
-    trace : Trace
+    trace : DropTrace
     count : int
 
     Returns

@@ -20,7 +20,7 @@ TURNED = np.radians(90.0)  # of the underside, from which on a part has tumbled
 
 
 @dataclass(frozen=True, eq=False)
-class Trace:
+class DropTrace:
     """Motion of one drop, N rows, some hundreds: at even times, before and after every impact, and the end.
 
     Rows are steps of the simulation, and of free flight between two of them, about EVERY sqrt(L / g) apart,
@@ -70,7 +70,7 @@ def follow(shape, length, principal, starts, drops, rows):
 
     Returns
     -------
-    tuple of Trace
+    tuple of DropTrace
 
     Notes
     -----
@@ -94,7 +94,7 @@ def follow(shape, length, principal, starts, drops, rows):
         states, energies, impacts = states[kept], energies[kept], impacts[kept]
         turns = Rotation.from_quat(states[:, 1 + body.Q + np.array([1, 2, 3, 0])]) * to_body
         traces.append(
-            Trace(
+            DropTrace(
                 number=k + 1,
                 face=face,
                 row=int(rows[face]) if face != drop.UNSETTLED else drop.UNSETTLED,

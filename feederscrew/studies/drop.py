@@ -29,7 +29,7 @@ class DropStudy:
         return {rule: self.aspects.probabilities[rule] for rule in BESIDE}
 
     @property
-    def telling(self) -> traces.Trace:
+    def telling(self) -> traces.DropTrace:
         """The followed drop to show: the first that tumbled and lies still, else tumbled, else the first."""
         return traces.telling(self.result.traces)
 

@@ -19,7 +19,7 @@ def curve(axes, trace, aspects, rows):
     ----------
     axes : Axes
         To draw on.
-    trace : Trace
+    trace : DropTrace
     aspects : Aspects
     rows : (S,) int
         Rows of the stills.
@@ -53,7 +53,7 @@ def references(trace, aspects):
 
     Parameters
     ----------
-    trace : Trace
+    trace : DropTrace
     aspects : Aspects
 
     Returns

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.ndimage import binary_dilation
 
 from feederscrew.dropping.stills import chosen
-from feederscrew.dropping.traces import Trace
+from feederscrew.dropping.traces import DropTrace
 from feederscrew.output import style
 from feederscrew.output.columns import MM
 from feederscrew.output.drop import trace_curve
@@ -35,7 +35,7 @@ class Strip:
     """What all stills share; lengths in sizes of the solid."""
 
     solid: render.Rays
-    trace: Trace
+    trace: DropTrace
     places: np.ndarray  # (N, 3) centre of mass, by row of the trace
     heading: np.ndarray  # (3,) where the part goes, along the picture
     pixel: float  # edge of one pixel
@@ -68,7 +68,7 @@ def strip(part, aspects, trace, title):
         With a mesh.
     aspects : Aspects
         Of that part.
-    trace : Trace
+    trace : DropTrace
     title : str
 
     Returns
