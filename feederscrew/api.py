@@ -42,7 +42,7 @@ def load(
     allow_open: bool = False,
     stdin: IO[bytes] | None = None,
 ) -> Part:
-    """A part from a mesh file or a part card.
+    """Read a part from a mesh file or a part card.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def load(
 
 
 def find_aspects(part: Part, *, unstable: bool = False, as_published: bool = False) -> Aspects:
-    """The resting aspects of a part as a record of arrays, in SI units.
+    """Return the resting aspects of a part as a record of arrays, in SI units.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def find_aspects(part: Part, *, unstable: bool = False, as_published: bool = Fal
 
 
 def aspects(part: Part, *, unstable: bool = False, as_published: bool = False) -> "pd.DataFrame":
-    """The resting aspects of a part as the table that ``feeder aspects`` writes.
+    """Return the resting aspects of a part as the table that ``feeder aspects`` writes.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def drop(
     jobs: int = 1,
     **conditions: str,
 ) -> "Result":
-    """A virtual drop test on a hard plane.
+    """Run a virtual drop test on a hard plane.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def shake(
     jobs: int = 1,
     **conditions: str,
 ) -> "list[Shaken]":
-    """A virtual dynamic bowl test: parts on a plate that vibrates with each bowl's drive.
+    """Run a virtual dynamic bowl test: parts on a plate that vibrates with each bowl's drive.
 
     Parameters
     ----------
@@ -198,7 +198,7 @@ def shake(
 
 
 def read_bowl(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> Bowl:
-    """A bowl from its file, from 'drive.frequency=50 Hz', or the defaults.
+    """Read a bowl from its file, from 'drive.frequency=50 Hz', or take the defaults.
 
     Parameters
     ----------
@@ -220,7 +220,7 @@ def read_bowl(path: str | PathLike[str] | None = None, overrides: Iterable[str] 
 
 
 def convey(bowl: Bowl) -> Answer:
-    """How a part travels on the bowl's track.
+    """Compute how a part travels on the bowl's track.
 
     Parameters
     ----------
@@ -245,7 +245,7 @@ def rate(
     gap: float = 0.0,
     fill: float = 1.0,
 ) -> Rate:
-    """Well-oriented parts a second, with each factor.
+    """Compute the well-oriented parts per second, with each factor.
 
     Parameters
     ----------

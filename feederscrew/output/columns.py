@@ -10,7 +10,7 @@ GRAM, G_MM2, G_CM3 = factor("g", "mass"), factor("g mm2", "inertia"), factor("g/
 
 
 def part(solid, warnings=()):
-    """What every document says of its part.
+    """Return what every document says of its part.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def part(solid, warnings=()):
 
 
 def conditions(solid):
-    """What was assumed of a part, for ``run.json``.
+    """Return what was assumed of a part, for ``run.json``.
 
     Parameters
     ----------

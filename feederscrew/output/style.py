@@ -18,7 +18,7 @@ SPARE = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
 
 
 def figure(width=6.4, height=4.0):
-    """A white figure that lays out its axes by itself, without any global state.
+    """Return a white figure that lays out its axes by itself, without any global state.
 
     Parameters
     ----------
@@ -32,14 +32,14 @@ def figure(width=6.4, height=4.0):
 
 
 def page(width, height):
-    """A white figure of so many pixels whose axes are placed by hand."""
+    """Return a white figure of so many pixels whose axes are placed by hand."""
     made = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor="white")
     FigureCanvasAgg(made)
     return made
 
 
 def tidy(axes, *, title="", x="", y="", grid="both"):
-    """The house look for one Axes: labels, a faint grid behind the data, no box.
+    """Give one Axes the house look: labels, a faint grid behind the data, no box.
 
     Parameters
     ----------
@@ -63,19 +63,19 @@ def tidy(axes, *, title="", x="", y="", grid="both"):
 
 
 def words(text):
-    """A user's text as a figure can show it: no formula, '?' for a letter the font has not."""
+    """Return a user's text as a figure can show it: no formula, '?' for a letter the font has not."""
     font = get_font(findfont("DejaVu Sans"))
     return "".join(letter if font.get_char_index(ord(letter)) else "?" for letter in text).replace("$", r"\$")
 
 
 def method(name, place=0):
-    """Label and colour of a rule or of a profile; ``place`` picks a spare colour for an unknown one."""
+    """Return label and colour of a rule or profile; ``place`` picks a spare colour for an unknown one."""
     rule = registry.BY_NAME.get(name)
     return (rule.label, rule.colour) if rule else (name.replace("_", " "), SPARE[place % len(SPARE)])
 
 
 def png(figure):
-    """The figure as PNG bytes, without a time or a version in them."""
+    """Return the figure as PNG bytes, without a time or a version in them."""
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=DPI, metadata={"Software": None})
     return buffer.getvalue()

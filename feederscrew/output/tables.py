@@ -39,7 +39,7 @@ NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
 
 
 def frame(columns):
-    """A table of equally long columns, in the order given.
+    """Return a table of equally long columns, in the order given.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def frame(columns):
 
 
 def text(frame, format):
-    """A frame as ``'csv'`` (six significant digits) or as a ``'table'`` for people.
+    """Return a frame as ``'csv'`` (six significant digits) or as a ``'table'`` for people.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def text(frame, format):
 
 
 def json_text(document):
-    """A document as JSON: full precision, null for NaN and infinity, keys in the order given.
+    """Return a document as JSON: full precision, null for NaN and infinity, keys in the order given.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def _plain(value):
 
 
 def heading(name):
-    """A column's name and unit for people.
+    """Return a column's name and unit for people.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def _is_abbreviation(name):
 
 
 def is_share(name):
-    """Whether a column holds probabilities of aspects, which people read in percent."""
+    """Return whether a column holds probabilities of aspects, which people read in percent."""
     return name.startswith("p_") and name != "p_value"
 
 

@@ -51,7 +51,7 @@ class Aspects:
 
 
 def find(part, *, as_published=False, unstable=False, exponent=surface.EXPONENTS["hard"]):
-    """Resting aspects of a part, with their probability by every rule.
+    """Find the resting aspects of a part, with their probability by every rule.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def find(part, *, as_published=False, unstable=False, exponent=surface.EXPONENTS
 
 
 def waits(part):
-    """Whether `find` must compile first: on a machine's first large hull, for some seconds."""
+    """Return whether `find` must compile first: on a machine's first large hull, for some seconds."""
     if part.hull is None:
         return False
     return compiled.due(walk.trace_saddles, 3 * len(part.hull.triangles))

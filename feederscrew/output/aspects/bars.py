@@ -10,7 +10,7 @@ UPRIGHT = 0.31  # [in] below this width of a bar its number stands on end
 
 
 def probabilities(names, profiles, title=""):
-    """Chart of several profiles side by side, grouped by aspect.
+    """Draw the chart of several profiles side by side, grouped by aspect.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def probabilities(names, profiles, title=""):
 
 
 def grouped(axes, names, profiles, room=UPRIGHT):
-    """Bars of several profiles on an Axes, each with its value over it.
+    """Draw the bars of several profiles on an Axes, each with its value over it.
 
     Parameters
     ----------

@@ -36,7 +36,7 @@ class Sheet:
         return self.columns * width, self.rows * (height + self.caption) + HEAD + FOOT
 
     def place(self, panel):
-        """Lower left corner of a panel's image."""
+        """Return the lower left corner of a panel's image."""
         row, column = divmod(panel, self.columns)
         width, height = self.image
         top = self.page[1] - HEAD - row * (height + self.caption)

@@ -20,7 +20,7 @@ LETTERS = 26  # of a line of text
 
 
 def thumbnail(part, found):
-    """A small picture of a part on its most likely aspect.
+    """Draw a small picture of a part on its most likely aspect.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def thumbnail(part, found):
 
 
 def pages(tiles):
-    """Contact sheets of any number of parts.
+    """Yield contact sheets of any number of parts.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ LEAST_ROOM = 0.17  # [in] of a bar below which its number is left out
 
 
 def look(name, place=0):
-    """Label and colour of a profile, the same in every chart.
+    """Return label and colour of a profile, the same in every chart.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def look(name, place=0):
 
 
 def bars(axes, names, profiles, printed=None, room=BAR):
-    """Grouped bars on an Axes, with a tick where print has the number.
+    """Draw the grouped bars on an Axes, with a tick where print has the number.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def bars(axes, names, profiles, printed=None, room=BAR):
 
 
 def comparison(title, names, measured, rules, compared):
-    """One chart a rule against everything measured, and the deviations of all pairs.
+    """Draw one chart a rule against everything measured, and the deviations of all pairs.
 
     Parameters
     ----------

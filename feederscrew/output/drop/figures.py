@@ -6,7 +6,7 @@ from feederscrew.output import style
 
 
 def counts(title, aspects, tally, rules):
-    """Chart of a drop test with its intervals, beside what the rules say.
+    """Draw the chart of a drop test with its intervals, beside what the rules say.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def counts(title, aspects, tally, rules):
 
 
 def bars(axes, places, tally):
-    """Bars of the drops with 95 % intervals, and the band from gentle to violent launches behind them."""
+    """Draw bars of the drops with 95 % intervals, and the band from gentle to violent launches behind."""
     low = 100.0 * np.minimum(tally.gentle, tally.violent)
     high = 100.0 * np.maximum(tally.gentle, tally.violent)
     axes.bar(places, high - low, 0.8, bottom=low, color=style.FAINT, label="gentle to violent launches")

@@ -13,7 +13,7 @@ LEGEND = (0.96, 0.87)  # places of its lines, of the axis
 
 
 def curve(axes, trace, aspects, rows):
-    """Energy and height of the centre of mass over time, with the stills' numbers.
+    """Draw the energy and height of the centre of mass over time, with the stills' numbers.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def curve(axes, trace, aspects, rows):
 
 
 def references(trace, aspects):
-    """Heights to compare with: (mm, text, style), of every aspect and of the way out of the last one.
+    """Return heights to compare with: (mm, text, style), of every aspect and of the way out of the last.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def references(trace, aspects):
 
 
 def badge(axes, x, y, number):
-    """A still's number in a disc."""
+    """Draw a still's number in a disc."""
     disc = {"boxstyle": "circle,pad=0.25", "facecolor": "white", "edgecolor": style.INK, "linewidth": 0.7}
     axes.text(x, y, str(number), fontsize=6, ha="center", va="center", color=style.INK, bbox=disc, zorder=6,
               clip_on=False)  # fmt: skip

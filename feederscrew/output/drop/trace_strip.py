@@ -53,7 +53,7 @@ class Strip:
         return grid_step(self.pixel * WIDTH / CELLS * self.solid.size)
 
     def place(self, panel):
-        """Left, bottom, width and height of a still on the page."""
+        """Return the left, bottom, width and height of a still on the page."""
         row, column = divmod(panel, ACROSS)
         above = HEAD + sum(self.heights[: row + 1]) + row * CAPTION
         return EDGE + column * (WIDTH + GAP), self.page[1] - above, WIDTH, self.heights[row]
@@ -92,7 +92,7 @@ def strip(part, aspects, trace, title):
 
 
 def said(trace, row, names, gap):
-    """Time of a still, and what is happening; ``gap`` [m] is under the lowest corner."""
+    """Return the time of a still, and what is happening; ``gap`` [m] is under the lowest corner."""
     time = f"{1e3 * trace.times[row]:.0f} ms"
     if row == len(trace.times) - 1 and trace.row >= 0:
         return f"{time}, {'rests on' if trace.still else 'bound for'} {names[trace.row]}"
@@ -178,7 +178,7 @@ def _grid(laid, place):
 
 
 def grid_step(longest):
-    """The largest of 1, 2, 5, 10, 20, ... mm that is at most ``longest`` [m]; in m."""
+    """Return the largest of 1, 2, 5, 10, 20, ... mm that is at most ``longest`` [m]; in m."""
     decade = 10.0 ** np.floor(np.log10(longest / MM))
     return MM * decade * max(step for step in (1.0, 2.0, 5.0) if step * decade * MM <= longest * (1.0 + 1e-9))
 

@@ -41,7 +41,7 @@ def one(study):
 
 
 def over_time(axes, aspects, result):
-    """Stacked share of each aspect at every look; what is white above was not down yet."""
+    """Draw the stacked share of each aspect at every look; what is white above was not down yet."""
     course = 100.0 * result.occupancy.course
     time = np.linspace(0.0, result.seconds, len(course))
     axes.stackplot(time, course.T, colors=[colour(k) for k in range(course.shape[1])], alpha=0.85, lw=0.0)
@@ -57,7 +57,7 @@ def over_time(axes, aspects, result):
 
 
 def shares(axes, aspects, seen):
-    """How parts lay at first, how they lay in the second half with its interval, and where the rates lead."""
+    """Draw how parts lay at first and in the second half, with its interval, and where the rates lead."""
     places = np.arange(len(aspects.names))
     axes.bar(places - 0.2, 100.0 * seen.start, 0.36, color=GREY, label="at first")
     axes.bar(places + 0.2, 100.0 * seen.plate, 0.36, color=style.INK, alpha=0.8, label="second half")
@@ -107,7 +107,7 @@ def trend(study):
 
 
 def over_throw(axes, x, seen, names):
-    """Share of each named aspect over the (N,) throw numbers ``x``, a little apart lest one hides another."""
+    """Draw the share of each named aspect over the (N,) throw numbers ``x``, set a little apart."""
     for place, (k, name) in enumerate(names.items()):
         at = x + APART * np.ptp(x) * (place - 0.5 * (len(names) - 1))
         middle, low, high = (
@@ -126,7 +126,7 @@ def _left_out(aspects, shown):
 
 
 def named(axes, x, results, names):
-    """The stroke of each plate over its point, and the bowl's name where there are several."""
+    """Draw the stroke of each plate over its point, and the bowl's name where there are several."""
     several = len(set(names)) > 1
     for at, result, name in zip(x, results, names):
         stroke = f"{result.bowl.drive.amplitude / MM:.3g} mm"
@@ -139,5 +139,5 @@ def named(axes, x, results, names):
 
 
 def colour(k):
-    """Colour of the k-th aspect; further ones run through a map."""
+    """Return the colour of the k-th aspect; further ones run through a map."""
     return COLOURS[k] if k < len(COLOURS) else matplotlib.colormaps["viridis"]((0.37 * k) % 1.0)

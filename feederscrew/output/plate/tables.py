@@ -53,7 +53,7 @@ def summary(study):
 
 
 def travels(result, digits):
-    """The mean velocity on one plate and, of several parts, its interval."""
+    """Return the mean velocity on one plate and, of several parts, its interval."""
     speed, low, high = (f"{end:.{digits}g}" for end in result.occupancy.velocity / MM_S)
     return f"travels at {speed} mm/s" + f" ({low} to {high})" * (result.parts > 1)
 
@@ -98,7 +98,7 @@ def remarks(study):
 
 
 def notes(bowls):
-    """What is simplified in a bowl's plate, a line each."""
+    """Return what is simplified in a bowl's plate, a line each."""
     if any(bowl.friction.kinetic < bowl.friction.static for bowl in bowls):
         yield "the plate has one coefficient of friction: the kinetic one, for sticking too"
     if any(bowl.friction.backward != (bowl.friction.static, bowl.friction.kinetic) for bowl in bowls):

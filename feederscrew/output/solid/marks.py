@@ -14,7 +14,7 @@ ROUND_LENGTHS = np.array([1.0, 2.0, 5.0])
 
 
 def centre_of_mass(axes, radius, place=(0.0, 0.0)):
-    """The quartered circle, drawn through whatever is in front of it.
+    """Draw the quartered circle through whatever is in front of it.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def centre_of_mass(axes, radius, place=(0.0, 0.0)):
 
 
 def contact(axes, solid, standing, polygon):
-    """The contact polygon: whole where it is seen, dashed where the part hides it.
+    """Draw the contact polygon: whole where it is seen, dashed where the part hides it.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def contact(axes, solid, standing, polygon):
 
 
 def rolling_axis(axes, solid, standing, direction):
-    """The axis a part rolls about, through its centre of mass; nothing where there is none.
+    """Draw the axis a part rolls about, through its centre of mass; nothing where there is none.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def rolling_axis(axes, solid, standing, direction):
 
 
 def scale_bar(axes, right, y, pixel):
-    """A bar of a round number of millimetres that ends at ``right``; ``pixel`` [m] is one data unit."""
+    """Draw a bar of a round number of millimetres that ends at ``right``; ``pixel`` [m] is one data unit."""
     wanted = 110.0 * pixel * 1e3
     decade = 10.0 ** np.floor(np.log10(wanted))
     length = float(max(ROUND_LENGTHS[decade * ROUND_LENGTHS <= wanted * (1.0 + 1e-9)]) * decade)
@@ -93,7 +93,7 @@ def scale_bar(axes, right, y, pixel):
 
 
 def legend(axes, left, y, *, rolling):
-    """What the marks mean, in one line of text from ``left`` on; the axis only if one is drawn."""
+    """Draw what the marks mean, in one line of text from ``left`` on; the axis only if one is drawn."""
     centre_of_mass(axes, 9.0, (left + 9.0, y))
     axes.text(left + 26, y, "centre of mass", fontsize=7, color=style.INK, va="center")
     axes.plot([left + 170, left + 198], [y, y], **LINE)

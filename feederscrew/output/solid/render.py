@@ -35,7 +35,7 @@ class Rays:
         TriangleMesh(self._scene, self.points.astype(np.float32), self.faces.astype(np.int32))
 
     def hits(self, origins, direction):
-        """What parallel rays meet first.
+        """Return what parallel rays meet first.
 
         Parameters
         ----------
@@ -78,22 +78,22 @@ class Camera:
     back: np.ndarray  # (3,) towards the viewer
 
     def project(self, points):
-        """(N, 3) points -> (N, 2) across and up the image, in the points' unit."""
+        """Project (N, 3) points to (N, 2), across and up the image, in the points' unit."""
         return np.asarray(points) @ np.column_stack([self.right, self.up])
 
     def origins(self, across, up):
-        """Ray starts (rows, columns, 3) for a grid of image positions, in sizes of the solid."""
+        """Return the ray starts (rows, columns, 3) for a grid of image positions, in sizes of the solid."""
         u, v = np.meshgrid(across, up)
         return u[..., None] * self.right + v[..., None] * self.up + AWAY * self.back
 
     def cast(self, solid, across, up):
-        """Depth behind the ray starts (rows, columns) and normals (rows, columns, 3) over a grid."""
+        """Return depths behind the ray starts (rows, columns) and normals (rows, columns, 3) over a grid."""
         origins = self.origins(across, up)
         distances, normals = solid.hits(origins.reshape(-1, 3), -self.back)
         return distances.reshape(origins.shape[:2]), normals.reshape(origins.shape)
 
     def sees(self, solid, points, slack=0.01, away=AWAY):
-        """Which of (N, 3) points, less than ``away`` behind the solid, it does not hide; (N,) bool."""
+        """Return which of (N, 3) points, less than ``away`` behind the solid, it does not hide; (N,) bool."""
         starts = points + away * self.back
         distances, _ = solid.hits(starts, -self.back)
         return distances > away - slack

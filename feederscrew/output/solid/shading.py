@@ -44,7 +44,7 @@ class Shot:
         )
 
     def positions(self, each=1):
-        """Image positions, ``each`` a pixel: across from the left, up from the top row down."""
+        """Return the image positions, ``each`` a pixel: across from the left, up from the top row down."""
         step = self.pixel / each
         across = self.left + (np.arange(self.columns * each) + 0.5) * step
         up = self.bottom + (np.arange(self.rows * each)[::-1] + 0.5) * step
@@ -52,7 +52,7 @@ class Shot:
 
 
 def picture(solid, stance, frame, colour=STEEL):
-    """The solid on the floor as an image.
+    """Render the solid on the floor as an image.
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ MOST_FACETS = 200_000  # beyond it a facet is smaller than a pixel
 
 
 def corner_normals(points, faces):
-    """Outward normal at each corner of each facet, averaged over the curved side it belongs to.
+    """Return the outward normal at each corner of each facet, averaged over the curved side it belongs to.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def corner_normals(points, faces):
 
 
 def curved_sides(faces, normals):
-    """Facets joined across every edge that bends less than ``SMOOTH``.
+    """Return the facets joined across every edge that bends less than ``SMOOTH``.
 
     Parameters
     ----------

@@ -55,7 +55,7 @@ def stance(points, down, height):
 
 
 def placed(points, down, height, along):
-    """The same with the floor axis ``along`` that runs ``TURN`` out of the picture's plane, a unit vector."""
+    """Return the stance whose floor axis ``along``, a unit vector, is ``TURN`` out of the picture's plane."""
     across = np.cross(along, down)
     camera = _camera(along, across, -down)
     plan = points @ np.column_stack([along, across])
@@ -66,7 +66,7 @@ def placed(points, down, height, along):
 
 
 def outermost(points):
-    """A few thousand points that reach about as far as all of them: the farthest in each direction.
+    """Return a few thousand points that reach about as far as all of them: the farthest in each direction.
 
     Parameters
     ----------

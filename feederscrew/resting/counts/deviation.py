@@ -52,7 +52,7 @@ def deviation(first, second):
 
 
 def total_variation(first, second):
-    """Half the sum of absolute differences: the share of parts that would have to land elsewhere.
+    """Return half the sum of absolute differences: the share of parts that would have to land elsewhere.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def total_variation(first, second):
 
 
 def chi_square(counts, fractions, estimated=0):
-    """Whether counts may come from given probabilities (goodness of fit).
+    """Test whether counts may come from given probabilities (goodness of fit).
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def chi_square(counts, fractions, estimated=0):
 
 
 def chi_square_between(first, second):
-    """Whether two sets of counts may come from the same probabilities (homogeneity).
+    """Test whether two sets of counts may come from the same probabilities (homogeneity).
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def chi_square_between(first, second):
 
 
 def compare(profiles):
-    """Every measure between every two profiles.
+    """Compute every measure between every two profiles.
 
     Parameters
     ----------

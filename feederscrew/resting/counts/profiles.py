@@ -52,7 +52,7 @@ class Measured:
 
 
 def of_rules(aspects):
-    """The profile of every rule over the stable aspects.
+    """Return the profile of every rule over the stable aspects.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def of_rules(aspects):
 
 
 def read(path, names, taken=()):
-    """The profiles of a CSV file: first column the aspect, then one column a profile.
+    """Read the profiles of a CSV file: first column the aspect, then one column a profile.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def read(path, names, taken=()):
 
 
 def parse(text, where, names, taken=()):
-    """The profiles of a CSV text.
+    """Read the profiles of a CSV text.
 
     Parameters
     ----------

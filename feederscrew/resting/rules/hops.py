@@ -9,7 +9,7 @@ LEVELS = 200  # of energy, between the part's highest way to stand and the lowes
 
 
 def hop_shares(tips, radius):
-    """Shares in which hops of falling energy leave a part on its faces.
+    """Return the shares in which hops of falling energy leave a part on its faces.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class _Ways:
         self.shares, self.heights, self.start, self.end, self.tops = shares, heights, start, end, tops
 
     def hop(self, mass, energy):
-        """(F,) mass on each face after one hop of that energy."""
+        """Return (F,) mass on each face after one hop of that energy."""
         depth = np.maximum(energy - self.heights, np.finfo(float).eps)
         room, count = self.shares * depth, len(mass)
         rate = room[self.end] * np.maximum(energy - self.tops, 0.0) / depth[self.start]

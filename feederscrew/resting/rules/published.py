@@ -69,7 +69,7 @@ def stability(faces, contact_area, height):
 
 
 def normalised(weights, stable):
-    """Probabilities of the stable aspects from their weights; the unstable ones have none.
+    """Return the probabilities of the stable aspects from their weights; the unstable ones have none.
 
     Parameters
     ----------

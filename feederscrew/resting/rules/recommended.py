@@ -23,7 +23,7 @@ class Recommended:
 
 
 def closed_form(rule, p, others, stable):
-    """The surface-weighted rule between the other answers one could have given.
+    """Return the surface-weighted rule between the other answers one could have given.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def closed_form(rule, p, others, stable):
 
 
 def dropped(tally, stable):
-    """A drop test between its gentle and its violent launches, with its sampling interval.
+    """Return a drop test between its gentle and its violent launches, with its sampling interval.
 
     Parameters
     ----------

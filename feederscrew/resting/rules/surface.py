@@ -10,13 +10,13 @@ EXPONENTS = {"soft": 0.0, "medium": 1.2, "hard": 2.0}  # [1] by what the part la
 
 
 def named(exponent):
-    """The surface of an exponent, 'hard'; 'exponent 1.5' where it has no name."""
+    """Return the surface of an exponent, 'hard'; 'exponent 1.5' where it has no name."""
     names = {value: name for name, value in EXPONENTS.items()}
     return names.get(exponent, f"exponent {exponent:g}")
 
 
 def surface_weights(shares, heights, radius, exponent):
-    """Shares of a part that bounces before it settles, not normalised.
+    """Return the shares of a part that bounces before it settles, not normalised.
 
     Parameters
     ----------
@@ -51,6 +51,6 @@ def surface_weights(shares, heights, radius, exponent):
 
 
 def surface_shares(shares, heights, radius, exponent):
-    """(F,) surface_weights that sum to 1."""
+    """Return (F,) surface_weights that sum to 1."""
     weights = surface_weights(shares, heights, radius, exponent)
     return weights / weights.sum()

@@ -50,7 +50,7 @@ class Transition:
 
 
 def grounded(hull, faces, rows):
-    """Exact basins and barriers of the faces a part rests on.
+    """Compute the exact basins and barriers of the faces a part rests on.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def grounded(hull, faces, rows):
 
 
 def ground(part, aspects):
-    """Faces of a part matched to the rows of its aspects, with exact basins and barriers.
+    """Return the faces of a part matched to the rows of its aspects, with exact basins and barriers.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def ground(part, aspects):
 
 
 def exact(found, part, aspects, exponent=surface.EXPONENTS["hard"]):
-    """Columns that exact tumbling adds to the aspects of a part.
+    """Compute the columns that exact tumbling adds to the aspects of a part.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ def _recommended(found, stable, chances, exponent):
 
 
 def transitions(found):
-    """The graph of what tips into what.
+    """Return the graph of what tips into what.
 
     Parameters
     ----------
