@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.output import style as plots
+from feederscrew.output import style
 from feederscrew.output.columns import MM
 
 MOST = 12  # aspects a picture can show
@@ -28,17 +28,17 @@ def graph(title, names, ways, shares):
     -------
     Figure
     """
-    figure = plots.figure(6.4, 6.4)
+    figure = style.figure(6.4, 6.4)
     axes = figure.add_subplot()
-    axes.set_title(plots.words(f"{title}: lift to tip [mm]"), loc="left", fontsize=10, color=plots.INK)
+    axes.set_title(style.words(f"{title}: lift to tip [mm]"), loc="left", fontsize=10, color=style.INK)
     shown = [k for k in range(len(names)) if np.isfinite(shares[k])][:MOST]
     turn = np.pi / 2 - 2.0 * np.pi * np.arange(len(shown)) / max(len(shown), 1)
     places = {k: np.array([np.cos(a), np.sin(a)]) for k, a in zip(shown, turn)}
     sizes = 500.0 + 2500.0 * np.nan_to_num(shares)  # [pt2] squares about the discs
     _arrows(axes, ways, places, sizes)
     for k, place in places.items():
-        axes.scatter(*place, s=sizes[k], color="white", edgecolor=plots.INK, zorder=3)
-        axes.annotate(names[k], place, ha="center", va="center", fontsize=11, zorder=4, color=plots.INK)
+        axes.scatter(*place, s=sizes[k], color="white", edgecolor=style.INK, zorder=3)
+        axes.annotate(names[k], place, ha="center", va="center", fontsize=11, zorder=4, color=style.INK)
     axes.set_xlim(-REACH, REACH)
     axes.set_ylim(-REACH, REACH)
     axes.set_aspect("equal")
@@ -60,8 +60,8 @@ def _arrows(axes, ways, places, sizes):
 def arrow(axes, begin, end, lift, easiest):
     """Draw one way between two discs (place, size), bent to leave room for the way back."""
     (start, from_size), (end, to_size) = begin, end
-    colour = plots.ACCENT if easiest else plots.INK
-    style = {"arrowstyle": "->", "color": colour, "alpha": 1.0 if easiest else 0.45}
+    colour = style.ACCENT if easiest else style.INK
+    look = {"arrowstyle": "->", "color": colour, "alpha": 1.0 if easiest else 0.45}
     if np.allclose(start, end):
         axes.annotate(_shown(lift), 1.32 * start, ha="center", va="center", fontsize=7, color=colour)
         return
@@ -70,7 +70,7 @@ def arrow(axes, begin, end, lift, easiest):
         end,
         start,
         arrowprops={
-            **style,
+            **look,
             "connectionstyle": f"arc3,rad={BEND}",
             "shrinkA": 0.5 * np.sqrt(from_size) + CLEAR,
             "shrinkB": 0.5 * np.sqrt(to_size) + CLEAR,
