@@ -5,7 +5,7 @@ import click
 from feederscrew_cli import options
 
 
-class Angle(click.ParamType):
+class VibrationAngle(click.ParamType):
     """A vibration angle, '20' or '20 deg', within the limits of the bowl file's; in radians."""
 
     name = "angle"
@@ -27,7 +27,7 @@ class Angle(click.ParamType):
 @click.option(
     "--beta",
     "betas",
-    type=Angle(),
+    type=VibrationAngle(),
     metavar="DEG",
     multiple=True,
     help="Vibration angle; repeatable.  [default: the bowl's]",

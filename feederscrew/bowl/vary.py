@@ -11,7 +11,7 @@ MOST = 2000  # values of one key
 
 
 @dataclass(frozen=True)
-class Range:
+class KeyRange:
     """Evenly spaced values of one key."""
 
     key: Key
@@ -29,7 +29,7 @@ def ranges(texts):
 
     Returns
     -------
-    tuple of Range
+    tuple of KeyRange
 
     Raises
     ------
@@ -62,7 +62,7 @@ def _range(text):
     if low == high:
         raise ConfigError(where, "begins where it ends", "give two different values, or --set the one")
     steps = _count(ends[2], where) - 1
-    return Range(BY_NAME[name], tuple((low * (steps - i) + high * i) / steps for i in range(steps + 1)))
+    return KeyRange(BY_NAME[name], tuple((low * (steps - i) + high * i) / steps for i in range(steps + 1)))
 
 
 def _count(text, where):

@@ -7,7 +7,7 @@ import numpy as np
 
 from feederscrew.bowl.record import Friction
 from feederscrew.conveying import law, onset, steady
-from feederscrew.conveying.setting import PHASES, Setting
+from feederscrew.conveying.setting import PHASES, OperatingPoint
 from feederscrew.errors import ConfigError
 from feederscrew.mechanics import limits
 
@@ -22,7 +22,7 @@ SOURCE = "Sloot and Kruyt 1996"
 class Answer:
     """How a part travels at one operating point."""
 
-    setting: Setting
+    setting: OperatingPoint
     speed: float  # [m/s] A w, of the first harmonic
     status: str  # of ``steady.STATUSES``
     period: int  # of the motion, in periods of the drive; 0 where there is none
@@ -60,7 +60,7 @@ def settings(bowl):
     Returns
     -------
     (..., 13) float
-        A ``Setting`` along the last axis; the acceleration ratio of a bowl at rest is ``STILL``.
+        An ``OperatingPoint`` along the last axis; the acceleration ratio of a bowl at rest is ``STILL``.
     """
     drive, friction, track = bowl.drive, bowl.friction, bowl.track
     ratio = np.maximum(limits.acceleration_ratio(drive.amplitude, drive.frequency, bowl.gravity), STILL)
@@ -88,7 +88,7 @@ def answer(bowl):
         If nothing moves, or the drive does not point along the track.
     """
     conveying(bowl)
-    setting = Setting(*settings(bowl).tolist())
+    setting = OperatingPoint(*settings(bowl).tolist())
     out = np.empty(steady.COLUMNS)
     steady.survey(setting, out)
     return _answer(bowl, setting, out)
@@ -96,7 +96,7 @@ def answer(bowl):
 
 def throw_number(bowl):
     """Greatest downward acceleration of the plate over gravity, along the normal [1]; of single values."""
-    return law.throw_number(law.law(Setting(*settings(bowl).tolist())))
+    return law.throw_number(law.law(OperatingPoint(*settings(bowl).tolist())))
 
 
 def conveying(bowl):

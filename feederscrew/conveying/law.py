@@ -30,7 +30,7 @@ def law(setting):
 
     Parameters
     ----------
-    setting : Setting
+    setting : OperatingPoint
 
     Returns
     -------
@@ -68,7 +68,7 @@ def pull_wave(setting, direction, friction, wall):
 
     Parameters
     ----------
-    setting : Setting
+    setting : OperatingPoint
     direction : float
         Of the slip and of the acceleration: +1 up the track, -1 down.
     friction, wall : float [1]

@@ -14,7 +14,7 @@ def limits_of_slip(setting):
 
     Parameters
     ----------
-    setting : Setting
+    setting : OperatingPoint
         Its own friction does not matter.
 
     Returns

@@ -26,7 +26,7 @@ def numbers(setting):
 
     Parameters
     ----------
-    setting : Setting
+    setting : OperatingPoint
         Unbanked, harmonic, with one coefficient of friction above 0.
 
     Returns
@@ -51,7 +51,7 @@ def with_numbers(found, friction):
 
     Returns
     -------
-    Setting
+    OperatingPoint
 
     Raises
     ------

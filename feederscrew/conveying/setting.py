@@ -8,7 +8,7 @@ STICK, FORWARD, BACKWARD, FLIGHT = range(4)
 PHASES = ("stick", "forward", "backward", "flight")
 
 
-class Setting(NamedTuple):
+class OperatingPoint(NamedTuple):
     """Everything the velocity in units of A w depends on.
 
     The plate moves A cos(angle) s(w t + lead) along the track and A sin(angle) s(w t) along its normal, with
@@ -31,7 +31,7 @@ class Setting(NamedTuple):
 
 
 def plain(ratio, angle, climb, friction, restitution=0.0):
-    """Setting on an unbanked track with one coefficient of friction, as most closed forms assume.
+    """OperatingPoint on an unbanked track with one coefficient of friction, as most closed forms assume.
 
     Parameters
     ----------
@@ -43,9 +43,9 @@ def plain(ratio, angle, climb, friction, restitution=0.0):
 
     Returns
     -------
-    Setting
+    OperatingPoint
     """
-    return Setting(ratio, angle, climb, 0.0, friction, friction, friction, friction, 0.0, restitution)
+    return OperatingPoint(ratio, angle, climb, 0.0, friction, friction, friction, friction, 0.0, restitution)
 
 
 def checked(setting):

@@ -128,7 +128,7 @@ def survey(setting, out):
 
     Parameters
     ----------
-    setting : Setting
+    setting : OperatingPoint
     out : (15,) float
         As ``steady`` fills it from rest, its spread widened to all starts; NaN without a steady state.
         Then the throw number, the regime, and whether a part that slides fast enough runs away: 1 or 0.

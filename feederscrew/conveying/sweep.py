@@ -10,7 +10,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.conveying import events, harmonic, law, motion, settling, steady, waves
-from feederscrew.conveying.setting import Setting, checked
+from feederscrew.conveying.setting import OperatingPoint, checked
 from feederscrew.conveying.steady import COLUMNS, survey
 
 KERNEL = (
@@ -53,7 +53,7 @@ def sweep(settings, workers=None):
     Parameters
     ----------
     settings : (N, 13) float
-        One ``Setting`` a row.
+        One ``OperatingPoint`` a row.
     workers : int, optional
         Threads; by default one a core.
 
@@ -72,9 +72,9 @@ def sweep(settings, workers=None):
     The first call on a machine compiles for some seconds and keeps the result on disk; ``compiled`` tells
     whether that has been done.
     """
-    settings = check.shaped("settings", settings, (-1, len(Setting._fields)))
+    settings = check.shaped("settings", settings, (-1, len(OperatingPoint._fields)))
     for row in settings[np.unique(_suspects(settings))]:
-        checked(Setting(*row))
+        checked(OperatingPoint(*row))
     out = np.empty((len(settings), COLUMNS))
     starts = range(0, len(settings), LOT)
     run = _compiled()
@@ -93,7 +93,7 @@ def compiled():
 
 def _suspects(settings):
     """Rows that could fail ``setting.checked``, found at once."""
-    s = Setting(*settings.T)
+    s = OperatingPoint(*settings.T)
     bad = (s.ratio <= 0.0) | (s.angle < 0.0) | (s.angle > np.pi / 2)
     bad |= (s.kinetic > s.static) | (s.kinetic_back > s.static_back)
     bad |= np.minimum(np.minimum(s.kinetic, s.kinetic_back), s.wall) < 0.0
@@ -125,4 +125,4 @@ def _loop(settings, out):
     for row in range(len(settings)):
         s = settings[row]
         drive = s[10], s[11], s[12]
-        survey(Setting(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8], s[9], *drive), out[row])
+        survey(OperatingPoint(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8], s[9], *drive), out[row])

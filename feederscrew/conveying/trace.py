@@ -16,7 +16,7 @@ SAMPLES = 240  # a period; every phase has at least a few
 
 
 @dataclass(frozen=True, eq=False)
-class Trace:
+class CycleTrace:
     """Plate and part over a cycle; ways in units of the amplitude."""
 
     time: np.ndarray  # (N,) [periods]
@@ -32,11 +32,11 @@ def trace(setting):
 
     Parameters
     ----------
-    setting : Setting
+    setting : OperatingPoint
 
     Returns
     -------
-    Trace
+    CycleTrace
         Of at most four periods; of a motion without a period, the last ones followed.
     """
     rules = law(setting)
@@ -74,7 +74,7 @@ def _around_plate(setting, time, phase, slip, height):
     along = np.cos(setting.angle) * _displacement(setting, TURN * time + setting.lead)
     normal = np.sin(setting.angle) * _displacement(setting, TURN * time)
     ways = (time, phase, along, along + slip, normal, normal + height)
-    return Trace(*(check.frozen(array) for array in ways))
+    return CycleTrace(*(check.frozen(array) for array in ways))
 
 
 def _displacement(setting, angle):

@@ -8,7 +8,7 @@ import numpy as np
 from feederscrew import bowl as bowls
 from feederscrew import units
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.vary import Range
+from feederscrew.bowl.vary import KeyRange
 from feederscrew.conveying import answer, phase, radius, sensitivity, trace
 from feederscrew.conveying.steady import STATUSES
 from feederscrew.machine import speeds
@@ -45,7 +45,7 @@ class ConveyStudy:
         return tuple(speeds.remark(self.answer.velocity, self.bowl.sizing))
 
     def trace(self):
-        """Follow plate and part over one steady cycle, as a ``conveying.trace.Trace``."""
+        """Follow plate and part over one steady cycle, as a ``conveying.trace.CycleTrace``."""
         return trace.trace(self.answer.setting)
 
 
@@ -55,7 +55,7 @@ class ConveyCurve:
 
     kind: str  # 'curve' over a key, or 'radius'
     over: str  # what varies: the key's name, or 'the radius'
-    axes: tuple[grids.Axis, ...]  # the quantity, then what follows from it; (N,) values each
+    axes: tuple[grids.GridAxis, ...]  # the quantity, then what follows from it; (N,) values each
     cells: dict[str, np.ndarray]  # (N,) as ``conveying.answer.cells`` names them, in SI
 
     @property
@@ -87,7 +87,7 @@ class ConveyPhase:
 class ConveyMap:
     """What a part does over two keys of the bowl."""
 
-    ranges: tuple[Range, Range]
+    ranges: tuple[KeyRange, KeyRange]
     grid: grids.Grid  # velocities [m/s], several, throw_number [1], status; the codes are the regimes
     line: Bowl | None  # operating points to be drawn over the map; None if not asked for
 
@@ -123,7 +123,7 @@ def curve(settings, span):
     Parameters
     ----------
     settings : tuple of Setting
-    span : Range
+    span : KeyRange
 
     Returns
     -------
@@ -152,9 +152,9 @@ def along_radius(bowl):
     """
     there = radius.inwards(bowl)
     axes = (
-        grids.Axis("radius_mm", there.track.radius, MM),
-        grids.Axis("vibration_angle_deg", there.drive.vibration_angle, DEG),
-        grids.Axis("amplitude_mm", there.drive.amplitude, MM),
+        grids.GridAxis("radius_mm", there.track.radius, MM),
+        grids.GridAxis("vibration_angle_deg", there.drive.vibration_angle, DEG),
+        grids.GridAxis("amplitude_mm", there.drive.amplitude, MM),
     )
     return ConveyCurve("radius", "the radius", axes, answer.cells(there))
 
@@ -185,7 +185,7 @@ def velocity_map(settings, ranges, *, drawn=None):
     Parameters
     ----------
     settings : tuple of Setting
-    ranges : two Range
+    ranges : two KeyRange
     drawn : str, optional
         What is drawn over it: the bowl's own 'point', or its points along the 'radius'.
 

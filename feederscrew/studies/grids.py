@@ -8,7 +8,7 @@ from feederscrew import check, units
 
 
 @dataclass(frozen=True, eq=False)
-class Axis:
+class GridAxis:
     """One quantity of a grid and the values it takes."""
 
     column: str  # in tables, with its unit: 'beta_deg'
@@ -25,8 +25,8 @@ class Axis:
 class Grid:
     """Values at every pair of two axes, the first along axis 0."""
 
-    first: Axis
-    second: Axis
+    first: GridAxis
+    second: GridAxis
     values: dict[str, np.ndarray]  # (N1, N2) by column name
     codes: np.ndarray  # (N1, N2) places in ``names``
     names: tuple[str, ...]  # of the regimes
@@ -52,9 +52,9 @@ class Grid:
 
 
 def axis(span):
-    """Return the Axis of a ``bowl.vary.Range``."""
+    """Return the GridAxis of a ``bowl.vary.KeyRange``."""
     key = span.key
-    return Axis(key.column, check.frozen(np.array(span.values)), units.factor(key.unit, key.dimension))
+    return GridAxis(key.column, check.frozen(np.array(span.values)), units.factor(key.unit, key.dimension))
 
 
 def evaluate(first, second, function, names=()):
@@ -62,7 +62,7 @@ def evaluate(first, second, function, names=()):
 
     Parameters
     ----------
-    first, second : Axis
+    first, second : GridAxis
     function : callable
         Takes (N1, 1) and (1, N2) arrays in SI; returns arrays that broadcast to (N1, N2) by
         column name, and under 'regime' the places in ``names``.
@@ -81,7 +81,7 @@ def evaluate(first, second, function, names=()):
 
 
 def span(column, low, high, count, unit=1.0):
-    """Return the Axis of ``count`` evenly spaced values.
+    """Return the GridAxis of ``count`` evenly spaced values.
 
     Parameters
     ----------
@@ -94,6 +94,6 @@ def span(column, low, high, count, unit=1.0):
 
     Returns
     -------
-    Axis
+    GridAxis
     """
-    return Axis(column, check.frozen(np.linspace(low, high, count)), unit)
+    return GridAxis(column, check.frozen(np.linspace(low, high, count)), unit)

@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.mechanics import limits
-from feederscrew.studies.grids import Axis, Grid, evaluate
+from feederscrew.studies.grids import Grid, GridAxis, evaluate
 
 STEPS = (1.0, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)  # round numbers within a decade
 PLAIN_TOP = 3.0  # G that every sliding map reaches
@@ -180,7 +180,7 @@ def _onsets(bowl, beta):
 def _headings(direction):
     """Return alpha - theta over half a turn, or over the whole one where the drive points backward."""
     widest = 90 if abs(direction) <= np.pi / 2.0 else 180
-    return Axis(
+    return GridAxis(
         "alpha_minus_theta_deg", check.frozen(np.radians(np.arange(-widest, widest + 1, 3))), np.pi / 180.0
     )
 
@@ -190,12 +190,14 @@ def _ratios(beta, ratio):
     hop = float(limits.hop_ratio(beta)) if beta > 0.0 else 0.0
     top = _rounded_up(max(PLAIN_TOP, MARGIN * hop, MARGIN * ratio))
     step = max(FINE_STEP, _rounded_up(top / MOST_STEPS))
-    return Axis("acceleration_ratio", check.frozen(np.round(np.arange(round(top / step) + 1) * step, NOISE)))
+    return GridAxis(
+        "acceleration_ratio", check.frozen(np.round(np.arange(round(top / step) + 1) * step, NOISE))
+    )
 
 
 def _resampled(axis, count):
     values = np.linspace(axis.values[0], axis.values[-1], count)
-    return Axis(axis.column, check.frozen(values), axis.unit)
+    return GridAxis(axis.column, check.frozen(values), axis.unit)
 
 
 def _rounded_up(number):

@@ -51,7 +51,7 @@ class TrackStudy:
         ----------
         settings : tuple of Setting
             Of the bowl; all but the two are kept.
-        ranges : sequence of Range
+        ranges : sequence of KeyRange
             Two, or none for bank and climb.
 
         Returns

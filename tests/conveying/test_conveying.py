@@ -9,7 +9,7 @@ from feederscrew.conveying import closed_forms, steady
 from feederscrew.conveying.harmonic import gain, harmonic, onward, reached, travel, value
 from feederscrew.conveying.law import law
 from feederscrew.conveying.motion import TALLY, State, at_rest, land, turn
-from feederscrew.conveying.setting import FLIGHT, FORWARD, STICK, TURN, Setting, checked, plain
+from feederscrew.conveying.setting import FLIGHT, FORWARD, STICK, TURN, OperatingPoint, checked, plain
 from feederscrew.conveying.waves import Wave
 from feederscrew.mechanics import limits
 
@@ -149,7 +149,7 @@ def test_threshold_with_wall_and_bank():
 
     def slips(ratio):
         pair = (friction, friction, friction, friction)
-        found = travel_of(Setting(ratio, 25 * DEG, climb, bank, *pair, wall, 0.0))
+        found = travel_of(OperatingPoint(ratio, 25 * DEG, climb, bank, *pair, wall, 0.0))
         return found[steady.FRACTIONS + FORWARD] > 0
 
     drag = wall * math.cos(climb) * math.sin(bank)

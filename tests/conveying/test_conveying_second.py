@@ -11,7 +11,7 @@ from feederscrew.conveying import onset, steady, sweep, waves
 from feederscrew.conveying.harmonic import above, harmonic, value
 from feederscrew.conveying.law import contact, law
 from feederscrew.conveying.motion import State
-from feederscrew.conveying.setting import TURN, Setting, plain
+from feederscrew.conveying.setting import TURN, OperatingPoint, plain
 from feederscrew.mechanics import limits
 
 DEG = math.pi / 180.0
@@ -92,7 +92,7 @@ def test_random_settings_with_everything(restitution):
         pair, back = (kinetic + more, kinetic), (bristles * kinetic + more, bristles * kinetic)
         ratio = ratio / (1.0 + 4.0 * share)
         rest = (wall, restitution, lead, share, phase)
-        setting = Setting(ratio, angle, climb, bank, *pair, *back, *rest)
+        setting = OperatingPoint(ratio, angle, climb, bank, *pair, *back, *rest)
         reference = Reference(ratio, angle, climb, *pair, restitution, bank, wall, lead, back, (share, phase))
         results.append(agreed(setting, reference))
         hops += bool(results[-1]) and travel_of(setting)[steady.HOPS] > 0.0

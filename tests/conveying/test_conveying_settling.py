@@ -8,7 +8,7 @@ import pytest
 from feederscrew.conveying import settling, steady
 from feederscrew.conveying.law import law
 from feederscrew.conveying.motion import TALLY, at_rest, turn
-from feederscrew.conveying.setting import FLIGHT, FORWARD, STICK, Setting, plain
+from feederscrew.conveying.setting import FLIGHT, FORWARD, STICK, OperatingPoint, plain
 
 DEG = math.pi / 180.0
 
@@ -89,7 +89,7 @@ def test_both_sides_of_the_wall_that_does_not_brake_in_flight():
 
 def test_a_velocity_that_keeps_growing_is_no_average():
     """A motion without a period along the normal, which runs away by its trend."""
-    setting = Setting(2.96, 30 * DEG, 5.6 * DEG, 10 * DEG, 0.1, 0.09, 0.1, 0.09, 0.3, 0.7)
+    setting = OperatingPoint(2.96, 30 * DEG, 5.6 * DEG, 10 * DEG, 0.1, 0.09, 0.1, 0.09, 0.3, 0.7)
     assert surveyed(setting)[steady.STATUS] == steady.NO_STEADY_STATE
     held = surveyed(setting._replace(climb=2 * DEG))
     assert held[steady.STATUS] == steady.AVERAGED

@@ -5,7 +5,7 @@ import pytest
 from conveying_reference import random_settings
 
 from feederscrew.conveying import steady, sweep
-from feederscrew.conveying.setting import Setting, plain
+from feederscrew.conveying.setting import OperatingPoint, plain
 
 
 @pytest.fixture(scope="module")
@@ -18,7 +18,7 @@ def test_compiled_equals_plain(settings):
     compiled = sweep.sweep(settings)
     for row, setting in zip(compiled, settings, strict=True):
         out = np.empty(steady.COLUMNS)
-        steady.survey(Setting(*setting.tolist()), out)
+        steady.survey(OperatingPoint(*setting.tolist()), out)
         if out[steady.STATUS] == steady.PERIODIC and out[steady.HIGH] - out[steady.LOW] < 1e-9:
             np.testing.assert_allclose(row, out, rtol=1e-9, atol=1e-11)
 
@@ -41,7 +41,7 @@ def test_a_compiled_kernel_is_kept(settings):
 
 def test_faults_of_a_row(settings):
     wrong = settings.copy()
-    wrong[3, Setting._fields.index("kinetic")] = 2.0
+    wrong[3, OperatingPoint._fields.index("kinetic")] = 2.0
     with pytest.raises(ValueError, match="kinetic friction is above static"):
         sweep.sweep(wrong)
     with pytest.raises(ValueError, match="shape"):

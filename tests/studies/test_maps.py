@@ -23,8 +23,8 @@ def slide(beta, *overrides, **how):
 
 @pytest.fixture
 def grid():
-    first = grids.Axis("angle_deg", np.radians([0.0, 90.0]), DEG)
-    second = grids.Axis("ratio", np.array([1.0, 2.0, 3.0]))
+    first = grids.GridAxis("angle_deg", np.radians([0.0, 90.0]), DEG)
+    second = grids.GridAxis("ratio", np.array([1.0, 2.0, 3.0]))
 
     def function(angle, ratio):
         return {

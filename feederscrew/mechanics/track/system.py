@@ -18,7 +18,7 @@ AHEAD = np.array([1.0, 0.0])
 
 
 @dataclass(frozen=True, eq=False)
-class Solution:
+class TrackSolution:
     """Accelerations and reactions for one set of closed contacts, per unit of mass."""
 
     acceleration: np.ndarray  # (..., 2) [m/s2] along X and Y
@@ -50,7 +50,7 @@ def sliding(seat, axes, load, closed, floor, wall, course=AHEAD):
 
     Returns
     -------
-    Solution
+    TrackSolution
 
     Notes
     -----
@@ -85,7 +85,7 @@ def held(seat, axes, load, closed, ratio):
 
     Returns
     -------
-    Solution
+    TrackSolution
         Its ``mobilised`` is the coefficient that the floor needs along the track. A part that the wall
         does not hold across the track, or against turning, is held by the floor.
 
@@ -126,7 +126,7 @@ def wall_use(seat, axes, solve, closed, ahead, turns):
     seat, axes
         As for ``sliding``.
     solve : callable
-        From that coefficient, (...) float [1], to a Solution.
+        From that coefficient, (...) float [1], to a TrackSolution.
     closed : pair of bool
         Which wall contact presses.
     ahead : (...) float [1]
@@ -219,7 +219,7 @@ def _solved(columns, rows, load):
 
 
 def _solution(x, across, turning, friction, couple, mobilised, parting):
-    return Solution(
+    return TrackSolution(
         acceleration=np.stack([x[..., 0], across], axis=-1),
         turning=turning,
         normal=x[..., 3],

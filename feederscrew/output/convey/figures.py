@@ -35,7 +35,7 @@ def cycle(trace, amplitude, found):
 
     Parameters
     ----------
-    trace : Trace
+    trace : CycleTrace
     amplitude : float [m]
     found : Answer
         To the same setting.
@@ -129,7 +129,7 @@ def on_axes(spans, bowl):
 
     Parameters
     ----------
-    spans : two Range
+    spans : two KeyRange
     bowl : Bowl
         One operating point, or arrays of them as of ``radius.at_radius``.
 
