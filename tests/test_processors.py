@@ -1,5 +1,6 @@
 """The same bytes whatever kernels BLAS would choose: nothing that is printed may pass through them."""
 
+import ast
 import os
 import subprocess
 import sys
@@ -70,3 +71,47 @@ def test_a_batch_writes_the_same_bytes_under_every_kernel(tmp_path):
         for core in CORES[:2]
     )
     assert first and first == second
+
+
+SPARSE = {"adoption.py", "barriers.py"}  # products of scipy's sparse matrices, which do without BLAS
+FREE = {"output", "screw"}  # pictures; the algebra of screws, which no command prints
+CALLS_BLAS = {
+    "dot",
+    "inner",
+    "matmul",
+    "tensordot",
+    "vdot",
+    "cov",
+    "corrcoef",
+    "polyfit",
+    "convolve",
+    "correlate",
+}
+
+
+def offences(path):
+    """Lines of a module that numpy would hand to BLAS or LAPACK."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult) and path.name not in SPARSE:
+            yield node.lineno, "@"
+        if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
+            continue
+        called = ast.unparse(node.func)
+        if "(" in called:  # a method of what another call returns, which is looked at by itself
+            continue
+        lengths = called == "np.linalg.norm" and any(word.arg == "axis" for word in node.keywords)
+        if called.startswith(("np.linalg.", "linalg.")) and not lengths:
+            yield node.lineno, called
+        if called.startswith("np.") and called.removeprefix("np.") in CALLS_BLAS:
+            yield node.lineno, called
+
+
+def test_no_module_hands_its_numbers_to_blas():
+    package = ROOT / "feederscrew"
+    found = {
+        f"{path.relative_to(package)}:{line}": what
+        for path in sorted(package.rglob("*.py"))
+        if path.relative_to(package).parts[0] not in FREE
+        for line, what in offences(path)
+    }
+    assert found == {}, "use feederscrew.geometry.vectors"

@@ -6,6 +6,7 @@ Its drawing, Figure 3-3, is lost; its dimensions follow from Table 3-8.
 import numpy as np
 
 from feederscrew import check
+from feederscrew.geometry import vectors
 
 WIDTH = 25.0e-3  # [m] over the head
 HEIGHT = 25.0e-3  # [m]
@@ -20,7 +21,7 @@ ASPECTS = {  # outward normal of the side it lies on; of two equal sides, one
     "A": (0.0, -1.0, 0.0),  # on the end of the stem
     "B": (1.0, 0.0, 0.0),  # on a side of the head
     "C": (0.0, 1.0, 0.0),  # upside down, on the head
-    "D": tuple(_LEAN / np.linalg.norm(_LEAN)),  # leaning on head and stem: no face of the part
+    "D": tuple(vectors.unit(_LEAN)),  # leaning on head and stem: no face of the part
     "E": (0.0, 0.0, 1.0),  # flat, on the T
 }
 
