@@ -9,6 +9,12 @@ from feederscrew.conveying.setting import FLIGHT
 LONGEST_PERIOD = 32
 TRANSIENT = 400  # periods followed before a motion is hastened, or counts as not periodic
 SAME = 1e-12  # difference of two states at which the motion counts as repeating
+NEAR = 1e-9  # of two states: from here a motion goes over into a known one
+RESTING = -1.0  # in place of the height of a part on the plate
+FIRST_LEAP = 4  # period
+LEAST_LEAP = 1e-11  # [A w] change in a period below which no leap is worth its trial
+LONGEST_LEAP = 10.0  # [A w] of a series that hardly falls the rest is all rounding
+JOINS = -2  # in place of a period: the motion has become one that is known
 RUNS = -1  # in place of a period: the part slides on without stopping and does not slow down
 LEAPS = 200  # of a motion that closes in slowly
 CLOSE = 1e-13  # [A w] width of the bracket of its speed at which it is found
@@ -34,10 +40,28 @@ def settle(rules, state):
     every q periods, and the part has slid through q periods without stopping or turning round and is no
     slower after them, the next q periods add as much: it slides on and never settles.
     """
+    return follow(rules, state, np.empty((0, 3)))
+
+
+def follow(rules, state, known):
+    """Follow a part as ``settle`` does, or to where it joins a motion that is known.
+
+    Parameters
+    ----------
+    rules : Law
+    state : State
+    known : (N, 3) float
+        Of ``noted``: states of steady motions at the start of a period.
+
+    Returns
+    -------
+    (State, int)
+        The number is ``JOINS`` where the motion has become one that is known.
+    """
     tally = np.zeros(TALLY)
     history = np.full((LONGEST_PERIOD + 1, 3), np.inf)
     streak = np.zeros(LONGEST_PERIOD + 1, dtype=np.int64)
-    sliding, sense = 0, 0.0
+    sliding, sense, even = 0, 0.0, evenly(rules)
     for count in range(TRANSIENT):
         state = _afresh(rules, state, tally)
         sliding, sense = _slid(tally, sliding, sense)
@@ -46,7 +70,60 @@ def settle(rules, state):
             return state, RUNS if sliding >= period and sense != 0.0 else period
         if sense != 0.0 and _grows(history, count, state, sliding, sense):
             return state, RUNS
+        if _joins(known, state, even):
+            return state, JOINS
+        if even and count >= FIRST_LEAP:
+            before, state = state.speed, _leap(rules, history, count, state)
+            if state.speed != before:
+                sliding, sense = 0, 0.0  # what it slid before the leap says nothing
+                history[count % (LONGEST_PERIOD + 1), 0] = state.speed
     return _hasten(rules, state, _period_of_normal(history, TRANSIENT - 1))
+
+
+def noted(state):
+    """What tells a state at the start of a period from others: height, velocity along the normal, speed."""
+    return (state.height if state.phase == FLIGHT else RESTING), state.rising, state.speed
+
+
+def evenly(rules):
+    """Whether friction is the same at the onset of a slip as during it, both ways, and there is some.
+
+    Then two parts whose motions along the normal are the same never get farther apart in speed along the
+    track, and one motion along the normal has one velocity.
+    """
+    same = rules.onset.level == rules.slip.level and rules.onset_back.level == rules.slip_back.level
+    return same and min(rules.kinetic, rules.kinetic_back) > 0.0
+
+
+def _joins(known, state, even):
+    """Whether a state is one of a known motion; with even friction the motion along the normal tells."""
+    height, rising, speed = noted(state)
+    for k in range(len(known)):
+        apart = max(abs(known[k, 0] - height), abs(known[k, 1] - rising))
+        if apart <= NEAR and (even or abs(known[k, 2] - speed) <= NEAR):
+            return True
+    return False
+
+
+def _leap(rules, history, count, state):
+    """The state, or where its speed tends to while the motion along the normal repeats every period.
+
+    Three speeds in a row tell (Aitken). The leap is kept where the speed then changes less than before it:
+    a period is followed to see.
+    """
+    one, two = (count - 1) % (LONGEST_PERIOD + 1), (count - 2) % (LONGEST_PERIOD + 1)
+    for then in (one, two):
+        if max(abs(state.height - history[then, 1]), abs(state.rising - history[then, 2])) > SAME:
+            return state
+    first, second = history[one, 0] - history[two, 0], state.speed - history[one, 0]
+    if not (0.0 < second * first < first * first and abs(second) > LEAST_LEAP):
+        return state
+    beyond = second * second / (first - second)  # the rest of a geometric series
+    if abs(beyond) > LONGEST_LEAP:
+        return state
+    leap = _at_speed(rules, state, state.speed + beyond)
+    change = turn(rules, leap, np.zeros(TALLY)).speed - leap.speed
+    return leap if abs(change) < abs(second) else state
 
 
 def _afresh(rules, state, tally):

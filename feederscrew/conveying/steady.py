@@ -21,7 +21,7 @@ from feederscrew.conveying.motion import (
     turn,
 )
 from feederscrew.conveying.setting import FLIGHT, TURN
-from feederscrew.conveying.settling import RUNS, settle
+from feederscrew.conveying.settling import RUNS, follow, noted
 from feederscrew.conveying.waves import Wave
 from feederscrew.mechanics import limits
 
@@ -30,6 +30,7 @@ STATUSES = ("periodic", "averaged", "no steady state")
 STATUS, PERIOD, VELOCITY, LOW, HIGH, FRACTIONS = range(6)  # places in a row of results
 FLIGHT_TIME, IMPACT, HOPS, THROW, REGIME, RUNAWAY, COLUMNS = range(FRACTIONS + 4, FRACTIONS + 11)
 BLOCK, BLOCKS = 32, 8  # periods averaged where there is no period, and in how many lots their spread is taken
+KNOWN = 64  # states of steady motions that are noted, for further starts to join
 LOTS = 16  # averages taken of a part that would run away once it slid all the time, until it does
 ALIKE = 1e-8  # of two states: a motion that closes in from alternate sides repeats doubly first
 DROPS = (1.5,)  # flights [periods] of the drops among the starts
@@ -48,25 +49,35 @@ def steady(rules, state, out):
         Filled with status, period, velocity and its spread [A w], fraction of the time in each phase,
         longest flight [periods], hardest impact [A w], flights a period.
     """
-    state, repeat = settle(rules, state)
+    _steady(rules, state, out, np.empty((KNOWN, 3)), 0)
+
+
+def _steady(rules, state, out, known, count):
+    """The same, noting the states of a steady motion; their number with it, unchanged where it was known."""
+    state, repeat = follow(rules, state, known[:count])
     if repeat == RUNS:
         _nothing(out)
-    elif repeat:
-        _cycle(rules, state, repeat, out)
-    else:
+    elif repeat > 0:
+        return _cycle(rules, state, repeat, out, known, count)
+    elif repeat == 0:
         _long_run(rules, state, out)
+    return count
 
 
-def _cycle(rules, state, repeat, out):
+def _cycle(rules, state, repeat, out, known, noticed):
     """Averages over the periods after which the motion repeats; the least of them is its period."""
     tally, start, period = np.zeros(TALLY), state, repeat
     for count in range(1, repeat + 1):
         state = turn(rules, state, tally)
+        if noticed < KNOWN:
+            known[noticed, 0], known[noticed, 1], known[noticed, 2] = noted(state)
+            noticed += 1
         if count < period and repeat % count == 0 and _apart(state, start) <= ALIKE:
             period = count
     out[STATUS], out[PERIOD] = PERIODIC, period
     _averages(out, tally, float(repeat))
     out[LOW] = out[HIGH] = out[VELOCITY]
+    return noticed
 
 
 def _long_run(rules, state, out):
@@ -135,13 +146,14 @@ def survey(setting, out):
     """
     rules = law(setting)
     out[THROW], out[REGIME] = throw_number(rules), regime(rules)
-    steady(rules, at_rest(rules), out)
+    known = np.empty((KNOWN, 3))
+    count = _steady(rules, at_rest(rules), out, known, 0)
     if out[STATUS] == NO_STEADY_STATE:
         out[RUNAWAY] = 1.0
         return
     out[RUNAWAY] = 1.0 if escape(rules, out[FRACTIONS + FLIGHT]) > 0.0 else 0.0
     if setting.restitution > 0.0:
-        _widen(rules, out)
+        _widen(rules, out, known, count)
 
 
 def _nothing(out):
@@ -157,12 +169,13 @@ def regime(rules):
     return forward + (limits.BACKWARD if peak(rules.onset_back) > 0.0 else limits.RIDE)
 
 
-def _widen(rules, out):
+def _widen(rules, out, known, count):
     other = np.empty(COLUMNS)
     for start in range(2 * BOUNCES + len(DROPS)):
         state = thrown(rules, start)
         if state.rising > 0.0:
-            steady(rules, state, other)
+            other[STATUS], other[LOW], other[HIGH] = PERIODIC, out[LOW], out[HIGH]
+            count = _steady(rules, state, other, known, count)
             if other[STATUS] == NO_STEADY_STATE:
                 out[RUNAWAY] = 1.0
             else:

@@ -22,7 +22,18 @@ KERNEL = (
     *(events.later, events.slip_end, events._stop, events.landing),
     *(events._descent, events._beyond_bounce, events._dip),
     *(motion.at_rest, motion.turn, motion.step, motion._ride, motion._slide, motion._fly, motion.land),
-    *(settling.settle, settling._afresh, settling._slid, settling._repeats, settling._grows),
+    *(
+        settling.settle,
+        settling.follow,
+        settling.noted,
+        settling.evenly,
+        settling._joins,
+        settling._leap,
+        settling._afresh,
+        settling._slid,
+        settling._repeats,
+        settling._grows,
+    ),
     *(
         settling._period_of_normal,
         settling._hasten,
@@ -32,7 +43,7 @@ KERNEL = (
         settling._on,
         settling._runs,
     ),
-    *(steady.steady, steady._cycle, steady._long_run, steady._slid, steady.escape),
+    *(steady.steady, steady._steady, steady._cycle, steady._long_run, steady._slid, steady.escape),
     *(
         steady._apart,
         steady._averages,

@@ -118,3 +118,56 @@ def test_what_settles_slowly_is_what_patience_finds():
     rules = law(setting)
     found, _ = settling.settle(rules, at_rest(rules))
     assert speeds(setting, 12_000)[-1] == pytest.approx(found.speed, rel=0, abs=1e-9)
+
+
+def patient(setting):
+    """Velocity after 1,500 periods without any leap, over 96 more: a multiple of every period to 4, 6, 8."""
+    rules = law(setting)
+    state, tally = at_rest(rules), np.zeros(TALLY)
+    for _ in range(1500):
+        state = turn(rules, state, tally)
+    tally = np.zeros(TALLY)
+    for _ in range(96):
+        state = turn(rules, state, tally)
+    return tally[0] / (96 * 2.0 * math.pi)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_leaps_lead_where_patience_does(seed):
+    """Where friction is even, the speed leaps to where it tends; it must be where it goes without a leap."""
+    rng = np.random.default_rng(seed)
+    for restitution in (0.0, 0.3):
+        friction, angle = rng.uniform(0.05, 0.4), rng.uniform(0.1, 1.2)
+        ratio = rng.uniform(0.8, 3.5) / math.sin(angle)
+        setting = plain(ratio, angle, rng.uniform(0.0, 0.03), friction, restitution)
+        found = surveyed(setting)
+        if found[steady.STATUS] == steady.PERIODIC and 96 % found[steady.PERIOD] == 0:
+            assert found[steady.VELOCITY] == pytest.approx(patient(setting), rel=0, abs=1e-9)
+
+
+def test_no_leap_out_of_a_steady_slide():
+    """Speeds that fall by the same each period make no series to be summed: the slide ends where it ends."""
+    setting = plain(7.48549979, 0.2197702, 0.1607226, 0.20579626, 0.3)
+    setting = setting._replace(wall=0.11120225)
+    assert surveyed(setting)[steady.VELOCITY] == pytest.approx(-0.09144, abs=1e-6)
+
+
+def test_a_further_start_joins_what_is_known():
+    setting = plain(2.5, 0.5, 0.02, 0.3, 0.3)
+    rules = law(setting)
+    state, period = settling.settle(rules, at_rest(rules))
+    known = []
+    for _ in range(period):
+        state = turn(rules, state, np.zeros(TALLY))
+        known.append(settling.noted(state))
+    _, joined = settling.follow(rules, at_rest(rules), np.array(known))
+    assert joined == settling.JOINS
+    alone, other = np.empty(steady.COLUMNS), surveyed(setting)
+    velocities = []
+    for start in range(7):
+        thrown = steady.thrown(rules, start)
+        if thrown.rising > 0.0:
+            steady.steady(rules, thrown, alone)
+            velocities.append(alone[steady.VELOCITY])
+    assert other[steady.LOW] == pytest.approx(min(*velocities, other[steady.VELOCITY]), abs=1e-9)
+    assert other[steady.HIGH] == pytest.approx(max(*velocities, other[steady.VELOCITY]), abs=1e-9)
