@@ -141,7 +141,7 @@ class _Judge:
         """Least margin, in arrays kept for holes of that size."""
         key = k, len(hole.edges), 64 * (1 + len(hole.nodes) // 64)
         if key not in self.scratch:
-            room = hole._replace(nodes=np.empty((key[2], 2)))
+            room = hole._replace(nodes=np.empty((key[2], 3)))
             self.scratch[key] = feet.scratch(foot, room)
         return feet.least(foot, hole, self.scratch[key])[0]
 

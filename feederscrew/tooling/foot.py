@@ -93,8 +93,8 @@ def polygon(corners, radius):
     corners = _through_the_wall(_turned_left(check.shaped("corners", corners, (-1, 2))))
     theta, r = corners[:, 0] / radius, radius - corners[:, 1]
     rows = [_edge(*ends) for ends in zip(theta, r, np.roll(theta, -1), np.roll(r, -1))]
-    nodes = [np.column_stack([theta, r])[_reflex(corners)], *_bulging(corners, radius)]
-    return Compiled(edges=np.array(rows), nodes=np.concatenate(nodes).reshape(-1, 2))
+    corner = np.column_stack([theta, r, np.ones(len(r))])[_reflex(corners)]
+    return Compiled(edges=np.array(rows), nodes=np.concatenate([corner, *_bulging(corners, radius)]))
 
 
 def gap(length, radius, width):
@@ -117,7 +117,7 @@ def gap(length, radius, width):
     low, high = max(radius - width, 1e-3 * radius, 1.000001 * length), radius + BEHIND
     rows = [[0.0, 0.0, 0.0, 0.0, low, high, 0.0], [0.0, 0.0, 0.0, length, low, high, 0.0]]
     inner = [1.0, 0.0, np.arcsin(length / low), 0.0, low, low, 1.0]
-    return Compiled(edges=np.array([*rows, inner]), nodes=np.empty((0, 2)))
+    return Compiled(edges=np.array([*rows, inner]), nodes=np.empty((0, 3)))
 
 
 def scratch(foot, hole):
@@ -134,6 +134,7 @@ def scratch(foot, hole):
         ends=np.empty((2 * rows, 2)),
         cuts=np.empty(CUTS),
         keep=np.empty(len(foot.corners), dtype=np.int64),
+        held=np.empty(len(hole.nodes), dtype=np.int64),
         active=np.empty(rows, dtype=np.int64),
         points=np.empty((points, 2)),
         others=np.empty((points, 2)),
@@ -212,7 +213,7 @@ def _reflex(corners):
 
 
 def _bulging(corners, radius):
-    """Points along the edges beyond which the track left bulges, as (N, 2) arrays of theta and r."""
+    """Points along the edges beyond which the track left bulges, as nodes (N, 3)."""
     for start, end in zip(corners, np.roll(corners, -1, axis=0)):
         if end[0] >= start[0]:
             continue
@@ -220,7 +221,7 @@ def _bulging(corners, radius):
         pieces = int(np.ceil(abs(end[0] - start[0]) * r / radius / np.sqrt(8.0 * r * SAGITTA)))
         shares = np.arange(1, pieces)[:, None] / max(pieces, 1)
         between = start + shares * (end - start)
-        yield np.column_stack([between[:, 0] / radius, radius - between[:, 1]])
+        yield np.column_stack([between[:, 0] / radius, radius - between[:, 1], 0.0 * between[:, 0]])
 
 
 def over_ring(foot, low, high):
@@ -263,7 +264,7 @@ def _extent(foot, radius):
 
 
 def _ring_scratch(foot):
-    return scratch(foot, RingSize(edges=np.empty((1, 7)), nodes=np.empty((0, 2))))
+    return scratch(foot, RingSize(edges=np.empty((1, 7)), nodes=np.empty((0, 3))))
 
 
 class RingSize(NamedTuple):

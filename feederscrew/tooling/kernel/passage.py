@@ -25,7 +25,7 @@ from feederscrew.tooling.kernel.crossing import (
 from feederscrew.tooling.kernel.hull import inset_beside
 
 CLOSE = 1e-9  # [m] a lower margin is looked for if it may be lower by more
-INSTANT = 1e-15  # [rad] a shorter piece is none
+INSTANT = 1e-12  # [rad] a shorter piece is one of rounding
 SAMPLES = 4  # parts of a piece that may hold the least margin
 SECTIONS = 40
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
@@ -48,7 +48,9 @@ class Hole(NamedTuple):
     """What is cut out of the track, about the bowl's axis."""
 
     edges: np.ndarray  # (M, 7) as `crossing` has them
-    nodes: np.ndarray  # (P, 2) [rad, m] points of its border that may be corners of what is left
+    nodes: (
+        np.ndarray
+    )  # (P, 3) [rad, m] points of its border that may be corners of what is left; 1 if a corner
 
 
 class Scratch(NamedTuple):
@@ -60,6 +62,7 @@ class Scratch(NamedTuple):
     ends: np.ndarray  # (2 N, 2) [m] the margin at both ends of what lies between two events
     cuts: np.ndarray  # (10,)
     keep: np.ndarray  # (V,) int, corners with track below
+    held: np.ndarray  # (P,) int, corners of the hole with the foot above
     active: np.ndarray  # (N,) int, stretches crossed now
     points: np.ndarray  # (V + N + P + M, 2)
     others: np.ndarray  # (V + N + P + M, 2)
@@ -112,6 +115,8 @@ def _status(foot, hole, scratch, i):
     phi = 0.5 * (scratch.events[i] + scratch.events[i + 1])
     for k in range(len(foot.corners)):
         scratch.keep[k] = 0 if _over(hole.edges, foot.polar[k, 0] - phi, foot.polar[k, 1]) else 1
+    for k in range(len(hole.nodes)):
+        scratch.held[k] = _under(foot, hole.nodes[k, 0] + phi, hole.nodes[k, 1], scratch.points, 0)
     active = 0
     for k in range(len(scratch.rows)):
         if scratch.rows[k, SIDE] < 0.0:
@@ -217,14 +222,20 @@ def _gather(foot, hole, scratch, phi, active, present, points):
             points[count, 0] = foot.corners[k, 0]
             points[count, 1] = foot.centre - foot.corners[k, 1]
             count += 1
-    return _border(foot, hole, phi, points, count) if present else count
+    return _border(foot, hole, scratch.held, phi, points, count) if present else count
 
 
 @compiled
-def _border(foot, hole, phi, points, count):
-    """Add points of the hole's own border that lie under the foot."""
+def _border(foot, hole, held, phi, points, count):
+    """Add points of the hole's own border that lie under the foot; of its corners those that do in this piece."""
     for k in range(len(hole.nodes)):
-        count = _under(foot, hole.nodes[k, 0] + phi, hole.nodes[k, 1], points, count)
+        theta, radius = hole.nodes[k, 0] + phi, hole.nodes[k, 1]
+        if hole.nodes[k, 2] == 0.0:
+            count = _under(foot, theta, radius, points, count)
+        elif held[k]:
+            points[count, 0] = radius * math.sin(theta)
+            points[count, 1] = foot.centre - radius * math.cos(theta)
+            count += 1
     for j in range(len(hole.edges)):  # of an arc the point nearest to the foot of the centre of mass
         edge = hole.edges[j]
         if edge[ARC] > 0.0 and edge[BULGE] > 0.0 and edge[ALPHA] + phi <= 0.0 <= edge[KAPPA] + phi:
