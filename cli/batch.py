@@ -3,7 +3,10 @@
 import click
 
 from feederscrew_cli import options
+from feederscrew_cli.interrupt import ended_within
 from feederscrew_cli.progress import Progress
+
+PATIENCE = 6.0  # [s] from Ctrl-C to the end, whatever is loading
 
 
 class Jobs(click.ParamType):
@@ -61,6 +64,7 @@ def batch(ctx, sources, configs, overrides, rule, drops, jobs, scheduler, resume
     line names its columns, out of part, units, density, centre_of_mass and config. -o DIR gets summary.csv
     with a row a part, index.html, contact_sheet.png, and a folder a part in DIR/parts.
     """
+    ctx.with_resource(ended_within(PATIENCE))
     from feederscrew import batch as batches
 
     if out.directory is None:

@@ -89,9 +89,9 @@ def _on_floor(part, launch, own, test, pictures, out):
 
     solid = out.part(part)
     with out.folder(solid.name, {solid.source: solid.sha256}, columns.conditions(solid)) as folder:
-        waiting.drops(out)
         with waiting.bar(out, "drops") as bar:
-            study = drop_study(solid, launch, own, progress=bar.reach, **test)
+            told = {"progress": bar.reach, "before": lambda: waiting.drops(out)}
+            study = drop_study(solid, launch, own, **told, **test)
         out.warn(*tables.remarks(study))
         offers.write(folder, files.offers(study), pictures=pictures)
     out.show(tables.counts(study), tables.document(study))

@@ -1,8 +1,11 @@
 """Ctrl-C where the program must not be cut short."""
 
 import contextlib
+import os
 import signal
 import threading
+
+INTERRUPTED = 128 + signal.SIGINT
 
 
 @contextlib.contextmanager
@@ -28,3 +31,38 @@ def held_back():
         signal.signal(signal.SIGINT, before)
     if caught:
         raise KeyboardInterrupt
+
+
+@contextlib.contextmanager
+def ended_within(seconds):
+    """Let Ctrl-C end the program within so many seconds [s], from any moment of the block.
+
+    Libraries drop an interrupt that reaches them while they load or tidy up, and a process that is still
+    loading may not be waited for. What the block has written must be whole at any moment.
+    """
+    from multiprocessing import active_children  # before an interrupt: the import lock may be held then
+
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    timer = threading.Timer(seconds, _leave, (active_children,))
+    timer.daemon = True
+
+    def catch(*_):
+        if not timer.ident:
+            timer.start()
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGINT, catch)
+    try:
+        yield
+        timer.cancel()
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _leave(children):
+    for child in children():
+        child.kill()
+    os.write(2, b"Stopped.\n")
+    os._exit(INTERRUPTED)

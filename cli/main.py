@@ -4,14 +4,14 @@ import difflib
 import importlib
 import os
 import re
-import signal
 import sys
 from collections.abc import Mapping
 
 import click
 
 from feederscrew import __version__
-from feederscrew.errors import FeederError
+from feederscrew.errors import ArgumentError, FeederError
+from feederscrew_cli.interrupt import INTERRUPTED
 
 COMMANDS = {
     "aspects": "feederscrew_cli.aspects",
@@ -36,7 +36,6 @@ COMMANDS = {
 }
 COLOUR = False if os.environ.get("NO_COLOR") else None  # None: on a terminal only
 NO_CHOICE = re.compile(r"'([^']*)' is not one of")
-INTERRUPTED = 128 + signal.SIGINT
 PIPE_CLOSED = 141  # what a shell reports of any filter whose reader went away
 
 
@@ -80,12 +79,22 @@ class Fence(click.Group):
         try:
             return super().invoke(ctx)
         except FeederError as error:
-            for line in error.lines:
+            for line in _lines(error, self.get_command(ctx, ctx.invoked_subcommand)):
                 _tell("Error: " + " ".join(line.splitlines()))  # a file's name may hold a line break
             return ctx.exit(1)
         except BrokenPipeError:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or the last flush fails as well
             return ctx.exit(PIPE_CLOSED)
+
+
+def _lines(error, command):
+    """Every fault as its own line; an argument of the library goes by the name of its option."""
+    if not isinstance(error, ArgumentError):
+        return error.lines
+    name, *rest = error.where.split(" ", 1)
+    options = {param.name: param.opts[0] for param in getattr(command, "params", ())}
+    where = " ".join([options.get(name, "--" + name.replace("_", "-")), *rest])
+    return (f"{where}: {error.what} - {error.mend}",)
 
 
 def _tell(line):

@@ -49,13 +49,13 @@ def run(part, plate, launch, own, test, pictures, out):
     bowls, names, inputs, values = _bowls(plate)
     out = replace(out, command="drop plate")
     solid = out.part(part)
-    waiting.plate(out)
     out.say(*tables.notes(bowls))
     inputs = {solid.source: solid.sha256} | inputs
     with out.folder(solid.name, inputs, columns.conditions(solid) | values) as folder:
         with waiting.bar(out, "parts") as bar:
+            told = {"progress": bar.reach, "before": lambda: waiting.plate(out)}
             study = plate_study(
-                solid, bowls, launch, own, names=names, seconds=plate["seconds"], progress=bar.reach, **test
+                solid, bowls, launch, own, names=names, seconds=plate["seconds"], **told, **test
             )
         out.say(*tables.summary(study))
         out.warn(*tables.remarks(study))

@@ -22,6 +22,13 @@ class ConfigError(FeederError):
     """A value in a YAML file or in an option that cannot be used."""
 
 
+class ArgumentError(ConfigError):
+    """A value that an argument cannot have; ``where`` begins with the argument's name, as a caller knows it.
+
+    The command line names its option instead.
+    """
+
+
 class Faults(FeederError):
     """All faults of one file, told in one go."""
 

@@ -82,3 +82,16 @@ def test_types_are_there_for_a_checker():
         function = getattr(api, name)
         if callable(function) and not isinstance(function, type) and function.__module__ == "feederscrew.api":
             assert "return" in function.__annotations__, name
+
+
+@pytest.mark.parametrize(
+    ("conditions", "line"),
+    [
+        ({"fall": "x mm"}, "fall: 'x mm' is not a number - write digits with a decimal point, as in 0.4"),
+        ({"friction": "9"}, "friction: '9' is out of range - give 0 to 5"),
+    ],
+)
+def test_a_fault_names_the_argument_not_an_option(bracket, conditions, line):
+    with pytest.raises(fs.ConfigError) as caught:
+        fs.drop(bracket, **conditions)
+    assert str(caught.value) == line

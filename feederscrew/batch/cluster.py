@@ -10,7 +10,7 @@ from itertools import islice
 from feederscrew import __version__
 from feederscrew.batch.task import Outcome, libraries
 from feederscrew.batch.work import work
-from feederscrew.errors import FeederError
+from feederscrew.errors import ArgumentError, FeederError
 
 PATIENCE = 20  # [s] for a scheduler to answer and for a first worker
 AHEAD = 2  # tasks sent for each thread of the cluster, so that none waits
@@ -129,7 +129,7 @@ def _distributed():
         import distributed
     except ImportError:
         mend = "pip install 'feederscrew[dist]'"
-        raise FeederError("--scheduler", "needs the package 'distributed'", mend) from None
+        raise ArgumentError("scheduler", "needs the package 'distributed'", mend) from None
     return distributed
 
 

@@ -9,7 +9,7 @@ from feederscrew.batch.store import Store
 from feederscrew.batch.task import FAILED, Choices, Outcome, Task
 from feederscrew.batch.workers import Processes, processors
 from feederscrew.documents import hint
-from feederscrew.errors import ConfigError, FeederError
+from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.output import tables
 from feederscrew.output.batch import contact_sheet
 from feederscrew.output.page.as_html import html
@@ -74,7 +74,7 @@ def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda
     """
     choices = choices or Choices()
     if choices.rule not in CHOICES:
-        raise ConfigError("--rule", f"unknown rule {choices.rule!r}", hint(choices.rule, CHOICES))
+        raise ArgumentError("rule", f"unknown rule {choices.rule!r}", hint(choices.rule, CHOICES))
     with Store(directory) as store:
         store.remove(summary.NAME, index_page.NAME, contact_sheet.PATTERN)
         under_way = _UnderWay(store, choices, resume, tell)

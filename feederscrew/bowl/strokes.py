@@ -6,9 +6,9 @@ from pathlib import Path
 from feederscrew import units
 from feederscrew.bowl.reading import checked
 from feederscrew.bowl.schema import BY_NAME
-from feederscrew.errors import ConfigError
+from feederscrew.errors import ArgumentError, ConfigError
 
-WHERE = "--amplitude"
+WHERE = "amplitudes"
 MOST = 50  # strokes of one call
 FULL = 5.0  # of the bowl's own amplitude, at most
 
@@ -35,7 +35,7 @@ def strokes(bowl, text=None):
         return (bowl,)
     entries = text.split(",")
     if len(entries) > MOST:
-        raise ConfigError(WHERE, f"{len(entries)} amplitudes", f"give at most {MOST}")
+        raise ArgumentError(WHERE, f"{len(entries)} amplitudes", f"give at most {MOST}")
     amplitudes = [_amplitude(bowl.drive.amplitude, entry) for entry in entries]
     return tuple(replace(bowl, drive=replace(bowl.drive, amplitude=amplitude)) for amplitude in amplitudes)
 
@@ -60,13 +60,16 @@ def named(paths):
 
 def _amplitude(full, entry):
     if not entry.strip().endswith("%"):
-        return checked(BY_NAME["drive.amplitude"], entry, WHERE).value
+        try:
+            return checked(BY_NAME["drive.amplitude"], entry, WHERE).value
+        except ConfigError as fault:
+            raise ArgumentError(fault.where, fault.what, fault.mend) from None
     try:
         share = units.quantity(entry, "number")
     except units.QuantityError as fault:
-        raise ConfigError(WHERE, fault.what, fault.mend) from None
+        raise ArgumentError(WHERE, fault.what, fault.mend) from None
     if not 0.0 <= share <= FULL:
-        raise ConfigError(
+        raise ArgumentError(
             WHERE, f"{units.shown(entry)} is out of range", f"give 0% to {FULL:.0%} of drive.amplitude"
         )
     return share * full

@@ -4,17 +4,18 @@ import numpy as np
 from scipy.constants import g
 
 from feederscrew.dropping.launches import PRESETS
-from feederscrew.errors import ConfigError
-from feederscrew.units import QuantityError, quantity
+from feederscrew.errors import ArgumentError
+from feederscrew.units import QuantityError, factor, quantity, shown
 
-KEYS = {  # option: dimension, what it is divided by, from the part's length and gravity; lowest, highest
+KEYS = {  # argument: dimension, what it is divided by, from the part's length and gravity; lowest, highest
     "fall": ("length", lambda length, gravity: length, 0.0, 1000.0),
     "spin": ("angular velocity", lambda length, gravity: np.sqrt(gravity / length), 0.0, 100.0),
     "speed": ("velocity", lambda length, gravity: np.sqrt(gravity * length), 0.0, 100.0),
     "restitution": ("number", lambda length, gravity: 1.0, 0.0, 1.0),
     "friction": ("number", lambda length, gravity: 1.0, 0.0, 5.0),
 }
-OPTIONS = {"fall": "--height"}  # where the option is not called as the range is
+NARROWEST, WIDEST = 1e-4, 0.5  # [1] half-widths of an interval that drops may go on for
+SHOWN = {"length": "mm", "velocity": "mm/s", "angular velocity": "rad/s", "number": ""}  # units of limits
 
 
 def launch_of(preset, length, texts, gravity=g):
@@ -36,7 +37,7 @@ def launch_of(preset, length, texts, gravity=g):
 
     Raises
     ------
-    ConfigError
+    ArgumentError
         If a text is no such quantity, or out of range.
     """
     ranges = {
@@ -72,31 +73,37 @@ def described(launch, length, gravity=g):
 
 def share(text, where):
     """A share above 0 and below 1 as typed, '1%' or '0.01'."""
-    return _within(where, _read(where, text, "number"), 1e-4, 0.5, text)
+    value = _read(where, text, "number")
+    if not NARROWEST <= value <= WIDEST:
+        limits = f"give {NARROWEST:.2%} to {WIDEST:.0%}"
+        raise ArgumentError(where, f"{shown(text)} is out of range", limits)
+    return value
 
 
 def _range(key, text, length, gravity):
-    """(lowest, highest) without dimensions from 'a' or 'a:b'."""
+    """Read (lowest, highest) without dimensions from 'a' or 'a:b'."""
     dimension, unit, lowest, highest = KEYS[key]
-    where = OPTIONS.get(key, f"--{key}")
-    ends = [_read(where, end, dimension) / unit(length, gravity) for end in text.split(":")]
+    size = unit(length, gravity)
+    ends = [_read(key, end, dimension) / size for end in text.split(":")]
     if len(ends) > 2 or ends[0] > ends[-1]:
-        raise ConfigError(
-            where, f"{text!r} is no range", "give one value, or the smaller and the larger as a:b"
-        )
-    return tuple(_within(where, end, lowest, highest, text) for end in (ends[0], ends[-1]))
+        what = f"{shown(text)} is not a range"
+        raise ArgumentError(key, what, "give one value, or the smaller and the larger as a:b")
+    if not lowest <= ends[0] <= ends[-1] <= highest:
+        limits = f"give {_limit(lowest * size, dimension)} to {_limit(highest * size, dimension)}"
+        of_part = "" if dimension == "number" else " for this part"
+        raise ArgumentError(key, f"{shown(text)} is out of range", limits + of_part)
+    return ends[0], ends[-1]
+
+
+def _limit(value, dimension):
+    """A limit in SI units as a user would type it, rounded down to three digits."""
+    number = value / factor(SHOWN[dimension], dimension)
+    step = 10.0 ** (np.floor(np.log10(number)) - 2.0) if number > 0.0 else 1.0
+    return f"{np.floor(number / step + 1e-9) * step:.6g} {SHOWN[dimension]}".strip()
 
 
 def _read(where, text, dimension):
     try:
         return quantity(text, dimension)
     except QuantityError as fault:
-        raise ConfigError(where, fault.what, fault.mend) from fault
-
-
-def _within(where, value, lowest, highest, text):
-    if not lowest <= value <= highest:
-        raise ConfigError(
-            where, f"{text!r} is out of range", f"stay from {lowest:g} to {highest:g} (for this part)"
-        )
-    return value
+        raise ArgumentError(where, fault.what, fault.mend) from fault

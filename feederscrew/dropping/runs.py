@@ -29,7 +29,20 @@ class Result:
     traces: tuple[DropTrace, ...] = ()  # of the first drops
 
 
-def test(part, aspects, preset, own, *, drops=None, until=None, seed=1, jobs=1, progress=None, traced=0):
+def test(
+    part,
+    aspects,
+    preset,
+    own,
+    *,
+    drops=None,
+    until=None,
+    seed=1,
+    jobs=1,
+    progress=None,
+    traced=0,
+    before=None,
+):
     """Drop a part and count the aspects it rests on.
 
     Parameters
@@ -51,6 +64,8 @@ def test(part, aspects, preset, own, *, drops=None, until=None, seed=1, jobs=1, 
         Cores to use; the counts do not depend on it.
     progress : function, optional
         As in ``ensemble.drop``.
+    before : function, optional
+        Called once all inputs are found right, before anything is compiled.
     traced : int
         Of how many drops, from the first, the motion is kept as well.
 
@@ -65,10 +80,12 @@ def test(part, aspects, preset, own, *, drops=None, until=None, seed=1, jobs=1, 
     KeyboardInterrupt
         If the user stops it before there is anything to count; later, the result is partial.
     """
-    width = None if until is None else conditions.share(until, "--until")
+    width = None if until is None else conditions.share(until, "until")
     found = ground(part, aspects)
     shape, length = shape_of_part(part, found)
     launch = conditions.launch_of(preset, length, own)
+    if before:
+        before()
     count = len(aspects.names)
     dropped = ensemble.drop(
         shape,

@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew import units
 from feederscrew.conveying import answer
-from feederscrew.errors import FeederError
+from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.machine.stroke import greatest_amplitude
 from feederscrew.rates import queue
 
@@ -131,8 +131,8 @@ def unreachable(target, parts_per_metre, fastest):
     speed, amplitude = fastest
     most = f"{max(speed, 0.0) * parts_per_metre / minute:.4g}/min at {2e3 * amplitude:.3g} mm peak to peak"
     what = f"no bowl reaches {target / minute:.6g}/min of this part: the most is {most}"
-    return FeederError(
-        "--target", what, "split it over several bowls or tracks, or let more orientations pass"
+    return ArgumentError(
+        "target", what, "split it over several bowls or tracks, or let more orientations pass"
     )
 
 

@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 
 from feederscrew import documents, units
-from feederscrew.errors import ConfigError
+from feederscrew.errors import ArgumentError
 
 LIGHTEST, HEAVIEST = 10.0, 23_000.0  # [kg/m3] the lightest rigid foams; osmium has 22,590
 DEFAULT = "steel"
-OPTION = "--density"
+ARGUMENT = "density"
 EN_1991 = "EN 1991-1-1, table A.4"
 EN_10088 = "EN 10088-1, annex E"
 EN_1999 = "EN 1999-1-1, 3.2.5"
@@ -84,7 +84,7 @@ def density(text=None):
 
     Raises
     ------
-    ConfigError
+    ArgumentError
         If the text names no known material, is no density, or no solid has it.
     """
     if text is None:
@@ -94,7 +94,7 @@ def density(text=None):
     if material:
         return material.density, material.name
     if not plain or not (plain[0].isdigit() or plain[0] in "+-.\N{MINUS SIGN}"):
-        raise ConfigError(OPTION, f"no material is called {units.shown(text)}", _nearest(plain))
+        raise ArgumentError(ARGUMENT, f"no material is called {units.shown(text)}", _nearest(plain))
     return _typed(text), " ".join(text.split())
 
 
@@ -114,12 +114,12 @@ def _typed(text):
         number, unit = units.split(text)
         value = units.quantity(text, "density", suggest=_plausible(number) or "g/cm3")
     except units.QuantityError as error:
-        raise ConfigError(OPTION, error.what, error.mend) from None
+        raise ArgumentError(ARGUMENT, error.what, error.mend) from None
     if not LIGHTEST <= value <= HEAVIEST:
         what = f"{units.shown(text)} is the density of no solid"
         meant = _plausible(number, but=unit)
         mend = f"did you mean {number:g} {meant}?" if meant else "steel has 7.85 g/cm3"
-        raise ConfigError(OPTION, what, mend)
+        raise ArgumentError(ARGUMENT, what, mend)
     return value
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew.conveying import answer, sensitivity
 from feederscrew.documents import hint
-from feederscrew.errors import FeederError
+from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.mechanics.wall.headings import headings, laid
 from feederscrew.rates.stream import Orientations, orientations
 from feederscrew.resting.posture import posture
@@ -210,8 +210,8 @@ def parts_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
 
 def _check_rule(found, rule):
     if rule not in found.rules:
-        raise FeederError(
-            f"--rule {rule}", "has no probabilities of this part", hint(rule, list(found.rules))
+        raise ArgumentError(
+            f"rule {rule}", "has no probabilities of this part", hint(rule, list(found.rules))
         )
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import units
 from feederscrew.bowl.schema import BY_NAME, Key
 from feederscrew.conveying import answer
-from feederscrew.errors import FeederError
+from feederscrew.errors import ArgumentError, FeederError
 
 KNOBS = ("drive.amplitude", "drive.vibration_angle", "drive.frequency")  # turned one at a time
 GENTLE = ("forward", "ride", "both", "backward", "hop", "no steady state")  # regimes, the most wanted first
@@ -114,7 +114,7 @@ def _jumped(target, parts_per_metre, one):
     beyond = f"{one.answer.velocity * parts_per_metre / per_minute:.4g}/min"
     at = f"{key.name} {one.value / units.factor(key.unit, key.dimension):.4g} {key.unit}"
     what = f"no setting gives {target / per_minute:.6g}/min: at {at} the rate jumps over it, to {beyond}"
-    return FeederError("--target", what, "ask for what the bowl gives on either side of the jump")
+    return ArgumentError("target", what, "ask for what the bowl gives on either side of the jump")
 
 
 def _unreachable(target, parts_per_metre, peak):
@@ -128,4 +128,4 @@ def _unreachable(target, parts_per_metre, peak):
     what = f"no setting reaches {target / per_minute:.6g}/min: the most is {most}, at {at}"
     if speed <= 0.0:
         what = f"no setting reaches {target / per_minute:.6g}/min: the part never travels up the track"
-    return FeederError("--target", what, "lower the target, or change two keys of the drive together")
+    return ArgumentError("target", what, "lower the target, or change two keys of the drive together")

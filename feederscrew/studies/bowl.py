@@ -11,7 +11,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.schema import BY_NAME
 from feederscrew.bowl.settings import default
 from feederscrew.conveying import answer
-from feederscrew.errors import FeederError
+from feederscrew.errors import ArgumentError
 from feederscrew.machine import building, checks, filling, sizing, throughput, tuning
 from feederscrew.machine.springs import Springs, gain, leaf_stress, springs
 from feederscrew.machine.stroke import Stroke, angles, greatest_amplitude, stroke
@@ -159,7 +159,7 @@ def _on_its_springs(bowl, settings):
 def _check_rule(rule, found):
     if rule not in found.chances:
         known = ", ".join(found.chances)
-        raise FeederError(f"--rule {rule}", "has no probabilities of this part", f"choose one of {known}")
+        raise ArgumentError(f"rule {rule}", "has no probabilities of this part", f"choose one of {known}")
 
 
 def _given(settings, section=""):

@@ -45,6 +45,7 @@ def drop(
     jobs: int = 1,
     traced: int = 0,
     progress=None,
+    before=None,
     aspects: Aspects | None = None,
 ) -> DropStudy:
     """Study on which aspects a part comes to rest when it is dropped again and again.
@@ -69,6 +70,8 @@ def drop(
         Of how many drops, from the first, the motion is kept as well.
     progress : function, optional
         As in ``ensemble.drop``.
+    before : function, optional
+        Called once all inputs are found right, before anything is compiled.
     aspects : Aspects, optional
         Of the part, where they are known already.
 
@@ -86,6 +89,6 @@ def drop(
     found = find(part) if aspects is None else aspects
     result = runs.test(
         part, found, launch, dict(conditions or {}),
-        drops=drops, until=until, seed=seed, jobs=jobs, traced=traced, progress=progress,
+        drops=drops, until=until, seed=seed, jobs=jobs, traced=traced, progress=progress, before=before,
     )  # fmt: skip
     return DropStudy(part, found, result)

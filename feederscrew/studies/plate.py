@@ -37,6 +37,7 @@ def plate(
     seed: int = 1,
     jobs: int = 1,
     progress=None,
+    before=None,
 ) -> PlateStudy:
     """Study what parts do on plates that vibrate with the drives of bowls.
 
@@ -62,6 +63,8 @@ def plate(
         Cores to use; the outcome does not depend on it.
     progress : function, optional
         Told after every batch how many parts are done, on all plates together, and how many there will be.
+    before : function, optional
+        Called once all inputs are found right, before anything is compiled.
 
     Returns
     -------
@@ -77,7 +80,7 @@ def plate(
     found = find(part)
     plates = runs.test(
         part, found, bowls, launch, dict(conditions or {}),
-        drops=drops, seconds=seconds, seed=seed, jobs=jobs, progress=progress,
+        drops=drops, seconds=seconds, seed=seed, jobs=jobs, progress=progress, before=before,
     )  # fmt: skip
     given = names or ["bowl"] * len(bowls)
     return PlateStudy(part, found, seed, tuple(plates), tuple(given[: len(plates)]))

@@ -336,3 +336,26 @@ def test_killed_at_any_moment_and_resumed_it_ends_with_the_same_bytes(tmp_path):
     last = [*call, *rest, str(tmp_path / "cut"), "--jobs", "2", "--resume"]
     subprocess.run(last, check=True, cwd=ROOT, capture_output=True)
     assert tree(tmp_path / "cut") == tree(tmp_path / "whole")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+def test_stopped_at_any_moment_it_ends_soon_and_resumes_to_the_same_bytes(tmp_path, rng):
+    folder, call = (
+        tmp_path / "in",
+        [sys.executable, "-c", "from feederscrew_cli.main import feeder; feeder()"],
+    )
+    folder.mkdir()
+    for number in range(12):
+        block(folder / f"block_{number}.stl", 4.0 + 0.5 * number, 6.0, 3.0)
+    call += ["batch", str(folder), "--no-pictures", "-q", "--jobs", "2", "--resume", "-o"]
+    for moment in rng.permutation(np.linspace(0.05, 2.3, 10)):  # Python itself, imports, workers, parts
+        child = subprocess.Popen(
+            [*call, str(tmp_path / "cut")],
+            cwd=ROOT, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+        time.sleep(moment)
+        os.killpg(child.pid, signal.SIGINT)  # as a terminal does, to every process of the batch
+        child.wait(timeout=10.0)
+    for where in ("cut", "whole"):
+        subprocess.run([*call, str(tmp_path / where)], check=True, cwd=ROOT, capture_output=True)
+    assert tree(tmp_path / "cut") == tree(tmp_path / "whole")

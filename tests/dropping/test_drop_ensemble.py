@@ -199,13 +199,15 @@ def test_units_cancel_in_described_conditions():
 @pytest.mark.parametrize(
     ("key", "text", "line"),
     [
-        ("fall", "20", "--height: '20' has no unit - write 20 mm"),
+        ("fall", "20", "fall: '20' has no unit - write 20 mm"),
         (
             "friction",
             "0.5:0.2",
-            "--friction: '0.5:0.2' is no range - give one value, or the smaller and the larger as a:b",
+            "friction: '0.5:0.2' is not a range - give one value, or the smaller and the larger as a:b",
         ),
-        ("restitution", "1.5", "--restitution: '1.5' is out of range - stay from 0 to 1 (for this part)"),
+        ("fall", "20 m", "fall: '20 m' is out of range - give 0 mm to 10000 mm for this part"),
+        ("spin", "1e5 rad/s", "spin: '1e5 rad/s' is out of range - give 0 rad/s to 3130 rad/s for this part"),
+        ("restitution", "1.5", "restitution: '1.5' is out of range - give 0 to 1"),
     ],
 )
 def test_conditions_that_are_none(key, text, line):
@@ -215,6 +217,6 @@ def test_conditions_that_are_none(key, text, line):
 
 
 def test_a_width_that_is_none():
-    assert conditions.share("1%", "--until") == pytest.approx(0.01)
-    with pytest.raises(ConfigError, match="--until: '0%' is out of range"):
-        conditions.share("0%", "--until")
+    assert conditions.share("1%", "until") == pytest.approx(0.01)
+    with pytest.raises(ConfigError, match="until: '0%' is out of range"):
+        conditions.share("0%", "until")

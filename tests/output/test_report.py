@@ -198,7 +198,7 @@ def test_same_input_same_bytes(bracket, light):
         ({"aspect": "Q"}, f"{BRACKET}: there is no aspect 'Q' - choose one of A, B, C, D, E"),
         (
             {"rule": "guess"},
-            "--rule guess: has no probabilities of this part - choose one of pmi, csa, stability, "
+            "rule guess: has no probabilities of this part - choose one of pmi, csa, stability, "
             "quasistatic, crsa, barrier, surface, hops, recommended",
         ),
     ],

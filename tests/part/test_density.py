@@ -44,17 +44,17 @@ def test_density_as_typed(text, value, label):
 @pytest.mark.parametrize(
     ("text", "line"),
     [
-        ("steal", "--density: no material is called 'steal' - did you mean steel?"),
-        ("alumnium", "--density: no material is called 'alumnium' - did you mean aluminium?"),
-        ("7.85 kg/m3", "--density: '7.85 kg/m3' is the density of no solid - did you mean 7.85 g/cm3?"),
-        ("7850 g/cm3", "--density: '7850 g/cm3' is the density of no solid - did you mean 7850 kg/m3?"),
-        ("0 g/cm3", "--density: '0 g/cm3' is the density of no solid - steel has 7.85 g/cm3"),
-        ("-7.85 g/cm3", "--density: '-7.85 g/cm3' is the density of no solid - steel has 7.85 g/cm3"),
-        ("100 g/cm3", "--density: '100 g/cm3' is the density of no solid - did you mean 100 kg/m3?"),
-        ("7.85", "--density: '7.85' has no unit - write 7.85 g/cm3"),
-        ("7850", "--density: '7850' has no unit - write 7850 kg/m3"),
-        ("7,85 g/cm3", "--density: '7,85 g/cm3' has a comma - write 7.85"),
-        ("7.85 mm", "--density: '7.85 mm' is a length, not a density - give it in g/cm3"),
+        ("steal", "density: no material is called 'steal' - did you mean steel?"),
+        ("alumnium", "density: no material is called 'alumnium' - did you mean aluminium?"),
+        ("7.85 kg/m3", "density: '7.85 kg/m3' is the density of no solid - did you mean 7.85 g/cm3?"),
+        ("7850 g/cm3", "density: '7850 g/cm3' is the density of no solid - did you mean 7850 kg/m3?"),
+        ("0 g/cm3", "density: '0 g/cm3' is the density of no solid - steel has 7.85 g/cm3"),
+        ("-7.85 g/cm3", "density: '-7.85 g/cm3' is the density of no solid - steel has 7.85 g/cm3"),
+        ("100 g/cm3", "density: '100 g/cm3' is the density of no solid - did you mean 100 kg/m3?"),
+        ("7.85", "density: '7.85' has no unit - write 7.85 g/cm3"),
+        ("7850", "density: '7850' has no unit - write 7850 kg/m3"),
+        ("7,85 g/cm3", "density: '7,85 g/cm3' has a comma - write 7.85"),
+        ("7.85 mm", "density: '7.85 mm' is a length, not a density - give it in g/cm3"),
     ],
 )
 def test_density_that_cannot_be(text, line):
@@ -65,7 +65,7 @@ def test_density_that_cannot_be(text, line):
 @pytest.mark.parametrize("text", ["", "  ", "wood"])
 def test_unknown_material_lists_the_known(text):
     line = refused(text)
-    assert line.startswith(f"--density: no material is called '{text.strip()}' - give a value, as in ")
+    assert line.startswith(f"density: no material is called '{text.strip()}' - give a value, as in ")
     assert all(material.name in line for material in MATERIALS)
 
 

@@ -104,7 +104,7 @@ def test_rules_and_aspects_that_do_not_exist():
     target = queue.wanted(part, found, STRAIGHT, "a")
     with pytest.raises(FeederError) as caught:
         queue.rate(known, Range(1, 1, 1), target, "guess")
-    assert str(caught.value).startswith("--rule guess: has no probabilities of this part - known are pmi, ")
+    assert str(caught.value).startswith("rule guess: has no probabilities of this part - known are pmi, ")
     with pytest.raises(FeederError, match="there is no aspect"):
         queue.wanted(part, found, STRAIGHT, "Z")
 

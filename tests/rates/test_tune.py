@@ -47,7 +47,7 @@ def test_an_unreachable_target_says_what_is_reached():
     with pytest.raises(FeederError) as caught:
         tune.solutions(BOWL, 100.0, PER_METRE)
     line = str(caught.value)
-    assert line.startswith("--target: no setting reaches 6000/min: the most is ")
+    assert line.startswith("target: no setting reaches 6000/min: the most is ")
     assert line.endswith("lower the target, or change two keys of the drive together")
     most = float(line.split("the most is ")[1].split("/min")[0])
     name, amplitude = line.split(", at ")[1].split(" mm")[0].split()
@@ -76,7 +76,5 @@ def test_a_target_that_the_velocity_jumps_over():
     with pytest.raises(FeederError) as caught:
         tune.solutions(bouncing, 0.866, PER_METRE)
     line = str(caught.value)
-    assert line.startswith(
-        "--target: no setting gives 51.96/min: at drive.amplitude 0.3308 mm the rate jumps"
-    )
+    assert line.startswith("target: no setting gives 51.96/min: at drive.amplitude 0.3308 mm the rate jumps")
     assert float(line.split(", to ")[1].split("/min")[0]) > 51.96

@@ -44,7 +44,9 @@ class Shaken:
         return round(self.parts * (1.0 - float(self.occupancy.course[-1].sum())))
 
 
-def test(part, aspects, bowls, preset, own, *, drops=None, seconds=None, seed=1, jobs=1, progress=None):
+def test(
+    part, aspects, bowls, preset, own, *, drops=None, seconds=None, seed=1, jobs=1, progress=None, before=None
+):
     """Put parts on a vibrating plate, one at a time, and follow what they lie on.
 
     Parameters
@@ -65,6 +67,8 @@ def test(part, aspects, bowls, preset, own, *, drops=None, seconds=None, seed=1,
         How long each is followed.
     seed, jobs : int
         As for a drop test.
+    before : function, optional
+        Called once all inputs are found right, before anything is compiled.
     progress : function, optional
         Told after every batch how many parts are done, on all plates together, and how many there will be.
 
@@ -85,11 +89,14 @@ def test(part, aspects, bowls, preset, own, *, drops=None, seconds=None, seed=1,
     seconds = SECONDS if seconds is None else seconds
     count, results = USUAL if drops is None else drops, []
     plate = partial(_plate, found, aspects, shape, length, seconds)
+    came = (conditions.launch_of(preset, length, own, bowl.gravity) for bowl in bowls)
+    launches = [_surfaced(launch, bowl, own) for launch, bowl in zip(came, bowls)]
+    if before:
+        before()
     for k, bowl in enumerate(bowls):
         try:
             tell = _after(k * count, len(bowls) * count, progress)
-            launch = _surfaced(conditions.launch_of(preset, length, own, bowl.gravity), bowl, own)
-            results.append(plate(bowl, launch, count, seed, jobs, tell))
+            results.append(plate(bowl, launches[k], count, seed, jobs, tell))
         except KeyboardInterrupt:
             if not results:
                 raise

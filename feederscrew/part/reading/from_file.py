@@ -3,7 +3,7 @@
 import numpy as np
 
 from feederscrew import check, documents
-from feederscrew.errors import ConfigError, MeshError
+from feederscrew.errors import ArgumentError, MeshError
 from feederscrew.part import card
 from feederscrew.part.density import density as density_of
 from feederscrew.part.hull import convex_hull
@@ -58,8 +58,8 @@ def load(source, *, units=None, density=None, centre_of_mass=None, allow_open=Fa
     solid about its own centroid, moved along unchanged; a warning says so.
     """
     if units not in (None, *UNITS):
-        raise ConfigError(
-            "--units", f"'{units}' is no unit of a part file", documents.hint(str(units), UNITS)
+        raise ArgumentError(
+            "units", f"'{units}' is no unit of a part file", documents.hint(str(units), UNITS)
         )
     value, material = density_of(density)
     file = read.file(source, stdin)
@@ -100,8 +100,7 @@ def _solid(file, soup, wanted, stuff, centre_text, allow_open):
 def _refuse_beside_card(**options):
     for name, value in options.items():
         if value is not None:
-            option = "--" + name.replace("_", "-")
-            raise ConfigError(option, "a part card has its own", f"leave out {option}")
+            raise ArgumentError(name, "a part card has its own", "leave it out")
 
 
 def _unit(soup, wanted):
@@ -135,11 +134,11 @@ def _centre(text, unit, homogeneous):
     pieces = text.strip().removeprefix("(").removesuffix(")").split(",")
     if len(pieces) != 3:
         what = f"{shown(text)} is not three numbers"
-        raise ConfigError("--centre-of-mass", what, "write x,y,z with points and commas, as in 1.5,0,-2")
+        raise ArgumentError("centre_of_mass", what, "write x,y,z with points and commas, as in 1.5,0,-2")
     try:
         centre = np.array([quantity(piece, "length", bare=unit) for piece in pieces])
     except QuantityError as error:
-        raise ConfigError("--centre-of-mass", error.what, error.mend) from None
+        raise ArgumentError("centre_of_mass", error.what, error.mend) from None
     return centre, (GIVEN_CENTRE,)
 
 

@@ -1,6 +1,10 @@
 """``feeder batch``: what it prints, writes and leaves with."""
 
 import json
+import os
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -108,3 +112,17 @@ def test_progress_of_parts_that_are_all_there(capsys, monkeypatch):
     with progress.Progress(1) as shown:
         shown.tell(kept=True)
     assert "0/0" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+def test_an_interrupt_that_a_library_drops_still_ends_the_program():
+    code = (
+        "import time\nfrom feederscrew_cli.interrupt import ended_within\nwith ended_within(0.5):\n"
+        "    print('ready', flush=True)\n    while True:\n        try:\n            time.sleep(60)\n"
+        "        except KeyboardInterrupt:\n            pass\n"
+    )
+    child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert child.stdout.readline() == b"ready\n"
+    child.send_signal(signal.SIGINT)
+    assert child.communicate(timeout=8.0)[1] == b"Stopped.\n"
+    assert child.returncode == 130
