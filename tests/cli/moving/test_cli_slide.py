@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-GENTLE = ("--set", "drive.amplitude=0.05 mm", "--set", "drive.frequency=60 Hz")  # slips forward only
 COLUMNS = "beta_deg,alpha_minus_theta_deg,acceleration_ratio,mu_limit,mu_forward,mu_backward,regime"
 
 
@@ -31,7 +30,7 @@ def test_csv_is_the_whole_map(run):
 
 
 def test_the_table_sums_up_the_bowls_own_point(run):
-    result = run("slide", "--beta", "20", "--beta", "40 deg", "--beta", "20", *GENTLE)
+    result = run("slide", "--beta", "20", "--beta", "40 deg", "--beta", "20")
     head, _, *lines = result.stdout.splitlines()
     assert head.split("  ")[0] == "at the bowl's own point"
     assert (head.count("beta = 20 deg"), head.count("beta = 40 deg")) == (1, 1)
@@ -40,9 +39,7 @@ def test_the_table_sums_up_the_bowls_own_point(run):
 
 
 def test_the_angle_is_the_bowls_own_unless_given(run):
-    own = json.loads(
-        run("slide", "--format", "json", "--set", "drive.vibration_angle=33 deg", *GENTLE).stdout
-    )
+    own = json.loads(run("slide", "--format", "json", "--set", "drive.vibration_angle=33 deg").stdout)
     assert own["maps"][0]["beta_deg"] == pytest.approx(33)
     assert own["bowl"]["drive.vibration_angle"] == "33 deg"
     point = own["maps"][0]["operating_point"]
