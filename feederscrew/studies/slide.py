@@ -11,6 +11,7 @@ from feederscrew.studies.grids import Grid, GridAxis, evaluate
 
 STEPS = (1.0, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)  # round numbers within a decade
 PLAIN_TOP = 3.0  # G that every sliding map reaches
+FARTHEST = 1e6  # G of a hop that no bowl within the limits of its keys reaches: it is left off the map
 MARGIN = 1.25  # how far past the hop, and past the bowl's own G, it reaches
 FINE_STEP, MOST_STEPS = 0.05, 200  # of G, in a map that is printed
 WIDEST = np.radians(89.9)  # of a surface: at 90 deg [4.27] is 0/0 on the hop line
@@ -188,6 +189,7 @@ def _headings(direction):
 def _ratios(beta, ratio):
     """Return G from 0 past the hop and past the bowl's own, in round steps that grow with the range."""
     hop = float(limits.hop_ratio(beta)) if beta > 0.0 else 0.0
+    hop = hop if hop < FARTHEST else 0.0
     top = _rounded_up(max(PLAIN_TOP, MARGIN * hop, MARGIN * ratio))
     step = max(FINE_STEP, _rounded_up(top / MOST_STEPS))
     return GridAxis(

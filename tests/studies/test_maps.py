@@ -182,3 +182,10 @@ def test_the_surface_rises_from_zero_to_its_cut(beta, highest):
     cut = one.level_line(highest, angles[middle, 0])
     if cut < top and beta < 89.0:
         assert friction[middle, -1] == pytest.approx(highest, rel=1e-9)
+
+
+@pytest.mark.parametrize("beta", [1e-300, 1e-9])
+def test_a_hop_out_of_reach_is_left_off_the_map(beta):
+    one = slide(beta)
+    assert one.grid.second.values[-1] < 10.0
+    assert one.grid.shares()["hop"] == 0.0
