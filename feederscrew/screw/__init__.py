@@ -1,5 +1,10 @@
 """Twists, wrenches and momentum screws; knows neither parts nor bowls.
 
+A library of its own. The tool uses it for the contact that opens first on the track and the axis the part
+then tips about (``mechanics.track.opening``): reactions and tipping twists are reciprocal screws there. The
+equations of floor and track themselves are solved for whole maps at once, as arrays of six components in
+``mechanics.track.system``; the tests hold them, and every screw the thesis prints, against this room.
+
 dual          dual numbers
 point         named reference points
 screws        Screw, Twist, Wrench, Momentum and their algebra
