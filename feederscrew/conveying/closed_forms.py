@@ -81,7 +81,7 @@ def ideal_throw_velocity(periods, angle, climb, frequency, gravity):
 
 
 def bounce_window(periods, restitution):
-    """Throw numbers between which a part can bounce for ever with the same flight each time.
+    """Throw numbers between which a part can go on bouncing with the same flight each time.
 
     Parameters
     ----------

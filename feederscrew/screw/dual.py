@@ -1,4 +1,4 @@
-"""Dual numbers: a + eps b with eps squared equal to nought."""
+"""Dual numbers: a + eps b with eps squared equal to zero."""
 
 from dataclasses import dataclass
 from numbers import Real
@@ -81,7 +81,7 @@ class Dual:
         return Dual(np.cos(self.real), -self.dual * np.sin(self.real))
 
     def sqrt(self):
-        """Square root; its dual part does not exist where the real part is nought."""
+        """Square root; its dual part does not exist where the real part is zero."""
         root = np.sqrt(self.real)
         with np.errstate(divide="ignore", invalid="ignore"):
             return Dual(root, np.divide(self.dual, 2.0 * root))

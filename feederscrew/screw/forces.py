@@ -48,7 +48,7 @@ def poinsot(forces, points, couples=None, reference=ORIGIN):
 
 
 def _sum_above_rounding(forces):
-    """Their sum, exactly nought where it is no longer than the rounding error of adding them up."""
+    """Their sum, exactly zero where it is no longer than the rounding error of adding them up."""
     total = forces.sum(axis=-2)
     rounding = forces.shape[-2] * np.finfo(float).eps * length(forces).sum(axis=-1)
     return np.where((length(total) <= rounding)[..., None], 0.0, total)

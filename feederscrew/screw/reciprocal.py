@@ -10,7 +10,7 @@ ROUNDING = 1e-12  # of the largest singular value: below it a contact adds nothi
 
 
 def reciprocity(first, second):
-    """(h1 + h2) cos a - d sin a, nought where two screws are reciprocal.
+    """(h1 + h2) cos a - d sin a, zero where two screws are reciprocal.
 
     Parameters
     ----------

@@ -68,7 +68,7 @@ class Screw:
         foot : (..., 3) float [m]
             Any point of the line; not looked at where the pitch is infinite.
         direction : (..., 3) float [1]
-            Along the line, of any length but nought.
+            Along the line, of any length but zero.
         magnitude : (...,) float
             |s|, or |s0| where the pitch is infinite.
         pitch : (...,) float [m]
@@ -144,7 +144,7 @@ class Screw:
     def __truediv__(self, divisor):
         """Over an ordinary number; arrays (...,) screw by screw."""
         divisor = np.asarray(divisor, dtype=float)[..., None]
-        with np.errstate(divide="ignore", invalid="ignore"):  # a nought is refused below, as not finite
+        with np.errstate(divide="ignore", invalid="ignore"):  # a zero is refused below, as not finite
             return type(self)(self.resultant / divisor, self.moment / divisor, self.reference)
 
     def dot(self, other):
@@ -260,5 +260,5 @@ class Momentum(Screw):
 
 
 def _has_line(screw):
-    """Where s is not nought, so that there is an axis."""
+    """Where s is not zero, so that there is an axis."""
     return np.any(screw.resultant != 0.0, axis=-1)

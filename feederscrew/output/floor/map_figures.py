@@ -13,7 +13,7 @@ HATCHES = {  # regime: hatch, colour of the face, what it says
     "leaves the wall": ("\\\\\\\\", "#dfe9d2", "leaves the wall"),
     "does not fit": ("xxx", "#d9d2e3", "does not fit: falls off the track"),
 }
-SOLID = ("hop", "stick", "does not fit")  # regimes whose values mean nothing, or nought
+SOLID = ("hop", "stick", "does not fit")  # regimes whose values mean nothing, or are zero
 STATES = {"stick": "#9fb3c4", "slide": "#4f9d7f", "hop": "#c9ced3", "tip": style.ACCENT}
 HATCH = "#8d979f"
 SHADES = "cividis"

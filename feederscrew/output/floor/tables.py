@@ -239,7 +239,7 @@ def shown_value(value):
 
 
 def noiseless(value, scale):
-    """Rounding of an exact nought as nought; ``scale`` is what it came out of."""
+    """Return the rounding of an exact zero as zero; ``scale`` is what it came out of."""
     return 0.0 if abs(value) <= 1e-9 * max(abs(scale), 1e-12) else float(value)
 
 

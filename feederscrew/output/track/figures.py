@@ -151,7 +151,7 @@ class _Scale:
         self.length = LONGEST * size / MM
 
     def draw(self, axes, start, direction, value, name, color, **style):
-        """One force of so many newtons along a unit vector; none where it is nought."""
+        """One force of so many newtons along a unit vector; none where it is zero."""
         if abs(value) > LEAST * self.longest:
             step = np.sign(value) * self.length * np.sqrt(abs(value) / self.longest) * np.asarray(direction)
             arrow(axes, start, step, f"{name} {newtons(abs(value))}", color, **style)
