@@ -118,7 +118,7 @@ def hops(ratio, beta, climb=0.0, bank=0.0):
 
 def hop_ratio(beta, climb=0.0, bank=0.0):
     """G [1] from which the part hops; infinite for beta = 0, where nothing lifts it."""
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", over="ignore"):
         return np.cos(climb) * np.cos(bank) / np.sin(beta)
 
 

@@ -152,6 +152,22 @@ def test_turning_the_body_turns_the_headings():
     assert second.widths == pytest.approx(first.widths)
 
 
+@pytest.mark.parametrize("facets", [12, 32, 96])
+@pytest.mark.parametrize("bank", [0.0, 6.0, 15.0, 40.0])
+def test_a_part_that_leans_on_the_wall_does_not_fall_off(bank, facets):
+    """A pin of 6 x 20 mm on a facet: banked, its weight's line meets the surface on the wall's side of it."""
+    strip = 2 * 0.003 * np.sin(np.pi / facets)
+    pin = replace(box_posture(0.02, 0.006, 0.006), contact=rectangle(0.02, strip))
+    found = headings(pin, replace(TRACK, bank=bank * DEG))
+    assert not found.falls_off.any()
+    assert headings(pin, replace(TRACK, bank=bank * DEG, width=0.001)).falls_off.all()
+
+
+def test_a_part_that_tips_ahead_does_not_fall_off():
+    tall = box_posture(0.006, 0.01, 0.04)
+    assert not headings(tall, replace(TRACK, climb=20 * DEG)).falls_off.any()
+
+
 @pytest.mark.parametrize(("share", "falls"), [(0.999, True), (1.001, False)])
 def test_a_part_falls_once_its_foot_has_no_track_below(share, falls):
     """The free edge curves away: the part's two ends carry it until their chord passes the foot."""

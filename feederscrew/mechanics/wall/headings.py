@@ -11,14 +11,14 @@ import numpy as np
 from feederscrew import check
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
-from feederscrew.geometry.polygons import inset, outline, sides, turned
+from feederscrew.geometry.polygons import cross, sides, turned
 from feederscrew.mechanics.wall import sameness
 from feederscrew.mechanics.wall.outline import rests
 
 ALIKE = 1e-5  # of the outline's size: outlines that differ by less are the same
 NO_TURN = 1e-5  # [rad] files in single precision turn a part by a hundredth of it
 TIE = 1e-4  # shares that differ by less of themselves are equal but for rounding
-NARROW = 1e-12  # [m] a contact not as wide as this is a line
+NOISE = 1e-12  # [m] places along the track nearer than this are one
 SAME = 1e-6  # of the outline's size: touching corners nearer than this are the same corner
 
 
@@ -232,21 +232,30 @@ def _width(shape, to_wall, radius):
 
 
 def _falls(posture, heading, to_wall, track):
-    """Whether the weight's line meets the surface outside what the track supports."""
+    """Whether the weight's line meets the surface beyond what the track supports, on the free edge's side.
+
+    Towards the wall the part leans on it, and ahead or behind it tips without leaving the track.
+    """
     supported = _on_track(turned(posture.contact, heading), to_wall, track)
-    if len(supported) < 3 or _in_line(supported - supported[0]):
+    if len(supported) == 0:
         return True
     slope = np.array([np.sin(track.climb), np.cos(track.climb) * np.sin(track.bank)])
-    foot = -posture.height * slope / (np.cos(track.climb) * np.cos(track.bank))
+    ahead, inward = -posture.height * slope / (np.cos(track.climb) * np.cos(track.bank))
     size = np.ptp(posture.outline, axis=0).max()
-    return bool(inset(outline(supported), foot) < -SAME * size)
+    return bool(inward > _inner_side(supported, ahead) + SAME * size)
 
 
-def _in_line(points):
-    """Whether points (K, 2) [m] and the origin lie on one line."""
-    far = points[np.argmax(vectors.length(points))]
-    off = np.abs(far[0] * points[:, 1] - far[1] * points[:, 0])
-    return off.max() <= NARROW * vectors.length(far)
+def _inner_side(points, ahead):
+    """How far from the wall the hull of points reaches at a place along the track; beyond it, at most."""
+    places = np.column_stack([NOISE * np.round(points[:, 0] / NOISE), points[:, 1]])
+    chain, most = [], points[:, 1].max()
+    for point in places[np.lexsort((-places[:, 1], places[:, 0]))]:
+        if chain and point[0] == chain[-1][0]:
+            continue  # nearer to the wall than the one before
+        while len(chain) > 1 and cross(chain[-1] - chain[-2], point - chain[-1]) >= 0.0:
+            chain.pop()
+        chain.append(point)
+    return np.interp(ahead, *np.array(chain).T, left=most, right=most)
 
 
 def _on_track(contact, to_wall, track):

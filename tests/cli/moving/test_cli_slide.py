@@ -107,3 +107,9 @@ def test_nothing_slips_is_an_answer(run):
     result = run("slide", "--beta", "90", "--set", "track.climb=0 deg", "-o", "results")
     assert result.exit_code == 0
     assert "nothing slips before it hops at static friction 0.6." in result.stderr
+
+
+@pytest.mark.parametrize("angle", ["1e-308", "1e-9", "0"])
+def test_a_vibration_angle_of_next_to_nothing(run, angle):
+    result = run("slide", "--beta", angle, "--format", "json")
+    assert (result.exit_code, result.exception) == (0, None)
