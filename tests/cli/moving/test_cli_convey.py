@@ -203,10 +203,10 @@ ELLIPSE = (
 
 
 def test_best_phase(run, tmp_path):
-    result = run("convey", *ELLIPSE, "--best-phase", "--format", "json", "-o", str(tmp_path))
-    document = json.loads(result.stdout)
-    best = document["best_phase"]
-    assert result.exit_code == 0
+    assert run("convey", *ELLIPSE, "--best-phase", "-o", str(tmp_path)).exit_code == 0
+    best = json.loads((tmp_path / "defaults/convey_phase.json").read_text())["best_phase"]
+    printed = json.loads(run("convey", *ELLIPSE, "--best-phase", "--format", "json").stdout)
+    assert printed["best_phase"] == best
     assert best["velocity_mm_s"] > best["straight_mm_s"]
     assert best["nine_tenths_from_deg"] < best["phase_deg"] < best["nine_tenths_to_deg"]
     assert [row["friction"] for row in best["over_friction"]] == [0.5, 0.8, 1.0, 1.2, 1.5]
