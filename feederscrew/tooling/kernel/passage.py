@@ -48,9 +48,7 @@ class Hole(NamedTuple):
     """What is cut out of the track, about the bowl's axis."""
 
     edges: np.ndarray  # (M, 7) as `crossing` has them
-    nodes: (
-        np.ndarray
-    )  # (P, 3) [rad, m] points of its border that may be corners of what is left; 1 if a corner
+    nodes: np.ndarray  # (P, 3) [rad, m] points of its border that what is left may end in; 1: corner
 
 
 class Scratch(NamedTuple):
@@ -227,7 +225,7 @@ def _gather(foot, hole, scratch, phi, active, present, points):
 
 @compiled
 def _border(foot, hole, held, phi, points, count):
-    """Add points of the hole's own border that lie under the foot; of its corners those that do in this piece."""
+    """Add points of the hole's border that lie under the foot; of its corners those that do in the piece."""
     for k in range(len(hole.nodes)):
         theta, radius = hole.nodes[k, 0] + phi, hole.nodes[k, 1]
         if hole.nodes[k, 2] == 0.0:
