@@ -228,21 +228,21 @@ def over_ring(foot, low, high):
     """Return the margin [m] of a foot on a track without what lies between two radii [m] about the axis."""
     from feederscrew.tooling.kernel import ring
 
-    return float(ring.over_ring(foot, low, high, _ring_scratch(foot)))
+    return float(ring.over_ring(foot, low, high, ring_scratch(foot)))
 
 
 def balcony(foot, radius):
     """Return the least width of track [m] that carries a foot; infinite where none does."""
     from feederscrew.tooling.kernel import ring
 
-    return float(ring.balcony(foot, radius, _extent(foot, radius), _ring_scratch(foot)))
+    return float(ring.balcony(foot, radius, _extent(foot, radius), ring_scratch(foot)))
 
 
 def canyon(foot, radius):
     """Return the greatest width [m] of a strip removed along the wall that a foot passes; 0 for none."""
     from feederscrew.tooling.kernel import ring
 
-    return max(float(ring.canyon(foot, radius, _extent(foot, radius), _ring_scratch(foot))), 0.0)
+    return max(float(ring.canyon(foot, radius, _extent(foot, radius), ring_scratch(foot))), 0.0)
 
 
 def longest_gap(foot, radius):
@@ -263,7 +263,8 @@ def _extent(foot, radius):
     return min(float(radius - foot.polar[:, 1].min() + BEHIND), radius)
 
 
-def _ring_scratch(foot):
+def ring_scratch(foot):
+    """Return arrays for the verdict of a foot on a ring."""
     return scratch(foot, RingSize(edges=np.empty((1, 7)), nodes=np.empty((0, 3))))
 
 
