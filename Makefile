@@ -24,6 +24,8 @@ help: ## this list
 demo: $(READY) ## resting table and picture of a bracket, sliding map of a bowl
 	$(FEEDER) aspects parts/$(DEMO).stl -o results
 	$(FEEDER) slide --config configs/bowl.yaml -o results
+	$(FEEDER) report parts/$(DEMO).stl -o results > /dev/null  # compiles what maps need
+	$(FEEDER) drop parts/$(DEMO).stl --drops 10 > /dev/null  # compiles what drops need
 	@echo
 	@echo "Pictures:"
 	@ls results/$(DEMO)/*.png results/bowl/*.png

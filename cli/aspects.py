@@ -21,9 +21,15 @@ SURFACES = click.Choice(["soft", "medium", "hard"])
     "--drop", "drops", type=click.IntRange(1, 10**7), help="Drop it so often; adds p_drop, the answer then."
 )
 @click.option("--graph", is_flag=True, help="With -o: what tips into what over which barrier, CSV and PNG.")
+@click.option(
+    "--columns",
+    metavar="NAMES",
+    help="Columns of the printed table, with commas between, or all.  [default: height, recommended "
+    "answer, rules of the thesis]",
+)
 @options.pictures
 @options.output
-def aspects(part, unstable, as_published, surface, surface_exponent, drops, graph, pictures, out):
+def aspects(part, columns, unstable, as_published, surface, surface_exponent, drops, graph, pictures, out):
     """Example: feeder aspects parts/lbracket_30x20x15.stl -o results
 
     List the resting aspects of PART, equal ones joined into classes, with their geometry and
@@ -32,8 +38,9 @@ def aspects(part, unstable, as_published, surface, surface_exponent, drops, grap
     PART is a mesh (STL, OBJ, PLY, OFF, GLB, 3MF, STEP), a part card (YAML), or - for standard
     input. With -o: aspects.csv, aspects.json, aspects.png, probabilities.png and run.json.
     """
-    from feederscrew.output import columns, offers
+    from feederscrew.output import offers
     from feederscrew.output.aspects import files, tables
+    from feederscrew.output.columns import conditions
 
     _files_wanted(graph, out)
     solid = out.part(part)
@@ -43,11 +50,13 @@ def aspects(part, unstable, as_published, surface, surface_exponent, drops, grap
         "surface": surface if surface_exponent is None else surface_exponent,
         "drops": drops,
     }
-    with out.folder(solid.name, {solid.source: solid.sha256}, columns.conditions(solid) | chosen) as folder:
+    with out.folder(solid.name, {solid.source: solid.sha256}, conditions(solid) | chosen) as folder:
         study = _study(solid, chosen, out)
         offers.write(folder, files.offers(study, tipping=graph), pictures=pictures)
         out.say(*tables.remarks(study) if folder and pictures else ())
-    out.show(tables.aspects(study), tables.document(study), hidden=tables.HIDDEN)
+    frame = tables.aspects(study)
+    people = out.format == "table"
+    out.show(tables.printed(frame, columns) if people else frame, tables.document(study))
 
 
 def _files_wanted(graph, out):

@@ -2,8 +2,7 @@
 
 import click
 
-from feederscrew_cli import options, orientation
-from feederscrew_cli.convey import announce
+from feederscrew_cli import options, orientation, waiting
 from feederscrew_cli.quantity import Quantity
 
 TARGET = click.option(
@@ -57,7 +56,7 @@ def bowl(part, target, bowl, pictures, out, **wanted):
     effective = (columns.conditions(solid) if solid else {}) | bowls.texts(settings)
     name = solid.name if solid else bowls.name(path)
     with out.folder(name, identity | bowls.identity(path), effective) as folder:
-        announce(out)
+        waiting.conveying(out)
         found = study.bowl(settings, solid, target, **wanted) if solid else study.machine(settings)
         out.warn(*found.remarks)
         offers.write(folder, machine.offers(found), pictures=pictures)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import click
 
-from feederscrew_cli import completion, options
+from feederscrew_cli import completion, options, waiting
 
 WAYS = {1: "convey curve", 2: "convey map"}  # by how many keys are varied
 
@@ -83,7 +83,7 @@ def _map(settings, ranges, curve, pictures, folder, out):
     from feederscrew.output.convey import files, tables
     from feederscrew.studies import convey as studies
 
-    announce(out)
+    waiting.conveying(out)
     with out.step("map"):
         found = studies.velocity_map(settings, ranges, drawn="radius" if curve else None)
     out.say(*tables.map_remarks(found))
@@ -98,7 +98,7 @@ def _curve(settings, ranges, pictures, folder, out):
     from feederscrew.output.convey import files, tables
     from feederscrew.studies import convey as studies
 
-    announce(out)
+    waiting.conveying(out)
     found = studies.curve(settings, *ranges) if ranges else studies.along_radius(bowls.record(settings))
     out.say(*tables.curve_remarks(found))
     offers.write(folder, files.curve_offers(found), pictures=pictures)
@@ -112,16 +112,8 @@ def _phase(settings, pictures, folder, out):
     from feederscrew.output.convey import files, phase
     from feederscrew.studies import convey as studies
 
-    announce(out)
+    waiting.conveying(out)
     found, texts = studies.best_phase(bowls.record(settings)), bowls.texts(settings)
     best = phase.document(found.best)
     offers.write(folder, files.phase_offers(found, texts), pictures=pictures)
     out.show(phase.summary(best), {"best_phase": best, "bowl": texts})
-
-
-def announce(out):
-    """Say so when the first map on this machine must wait for the compiler."""
-    from feederscrew.conveying import sweep
-
-    if not sweep.compiled():
-        out.say("Compiling the conveying kernel, once on this machine: about ten seconds.")

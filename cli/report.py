@@ -4,7 +4,7 @@ import shlex
 
 import click
 
-from feederscrew_cli import options, orientation, talk
+from feederscrew_cli import options, orientation, talk, waiting
 from feederscrew_cli.quantity import Quantity
 
 WANTED = (
@@ -69,6 +69,7 @@ def report(part, bowl, directory, format, quiet, verbose, **wanted):
 
     out = talk.Output.of(format=format, directory=directory, quiet=quiet, verbose=verbose)
     solid = out.part(part)
+    waiting.conveying(out)
     found = study(solid, **bowl, **wanted, command=repeated(out.arguments))
     effective = columns.conditions(solid) | texts(found.settings)
     with out.folder(solid.name, found.inputs, effective) as folder:

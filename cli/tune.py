@@ -2,8 +2,7 @@
 
 import click
 
-from feederscrew_cli import options, orientation
-from feederscrew_cli.convey import announce
+from feederscrew_cli import options, orientation, waiting
 from feederscrew_cli.quantity import Quantity
 
 
@@ -34,7 +33,7 @@ def tune(part, target, aspect, heading, rule, gap, fill, bowl, out):
 
     solid, settings = out.part(part), bowls.settings(**bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
-    announce(out)
+    waiting.conveying(out)
     with out.folder(solid.name, {solid.source: solid.sha256}, effective) as folder:
         found = study(
             solid, bowls.record(settings), aspect, target,

@@ -19,6 +19,14 @@ def plate(out):
         out.say("Compiling the plate's kernel, once on this machine: about twenty seconds.")
 
 
+def conveying(out):
+    """Say so when the first map on this machine must wait for the compiler."""
+    from feederscrew.conveying import sweep
+
+    if not sweep.compiled():
+        out.say("Compiling the conveying kernel, once on this machine: about ten seconds.")
+
+
 def bar(out, what):
     """Return a bar of the ``what`` that are done, where a person waits; hidden elsewhere."""
     return Progress(None, not out.quiet, what)

@@ -2,12 +2,19 @@
 
 import numpy as np
 
+from feederscrew.documents import hint
+from feederscrew.errors import ArgumentError
 from feederscrew.output import columns, tables
 from feederscrew.output.columns import DEG, G_MM2, MM, MM2, UJ
+from feederscrew.units import shown
 
 MOST = 24  # rows that a picture shows
 NORMALS = ("normal_x", "normal_y", "normal_z")
-HIDDEN = (*NORMALS, "barrier_uJ", "p_hops")  # left out of the table for people
+RECOMMENDED = ("p_recommended", "p_recommended_low", "p_recommended_high")
+PRINTED = (  # the table for people, unless they ask for more
+    "aspect", "kind", "faces", "stable", "height_mm", *RECOMMENDED, "p_drop", "p_drop_low", "p_drop_high",
+    "p_pmi", "p_csa", "p_stability", "surface", "tumbling",
+)  # fmt: skip
 
 
 def aspects(study):
@@ -43,6 +50,34 @@ def aspects(study):
             **_labels("tumbling", "doubtful", study.doubtful, len(found.names)),
         }
     )
+
+
+def printed(frame, wanted=None):
+    """Return the columns that are printed for people.
+
+    Parameters
+    ----------
+    frame : DataFrame
+        From ``aspects``.
+    wanted : str, optional
+        Names with commas between, or 'all'; without it the columns of ``PRINTED`` that there are.
+
+    Returns
+    -------
+    DataFrame
+
+    Raises
+    ------
+    ArgumentError
+        If there is no such column.
+    """
+    if wanted is None:
+        return frame[[name for name in PRINTED if name in frame]]
+    names = list(frame) if wanted.strip() == "all" else [name.strip() for name in wanted.split(",")]
+    for name in names:
+        if name not in frame:
+            raise ArgumentError("columns", f"there is no column {shown(name)}", hint(name, list(frame)))
+    return frame[names]
 
 
 def _barriers(found):

@@ -80,7 +80,7 @@ def test_the_table_is_for_people(run, stl):
     lines = run("aspects", stl).stdout.splitlines()
     assert lines[0].split()[:4] == ["aspect", "kind", "faces", "stable"]
     assert "normal" not in lines[0]
-    assert "[mm2]" in lines[1]
+    assert "[mm]" in lines[1]
     assert len(lines) == 5
 
 
@@ -274,3 +274,19 @@ def test_a_card_has_no_answer_of_its_own(run):
 def test_the_answer_says_its_surface(run, stl):
     for words, rule in ((("--surface", "soft"), "soft"), (("--surface-exponent", "1.5"), "exponent 1.5")):
         assert document(run("aspects", stl, "--format", "json", *words))["recommended"] == f"surface, {rule}"
+
+
+def test_the_printed_table_fits_a_terminal_and_leads_with_the_answer(run, stl):
+    heading = run("aspects", stl).stdout.splitlines()[0]
+    assert len(heading) <= 100
+    assert heading.index("recommended") < heading.index("PMI") < heading.index("stability")
+
+
+def test_other_columns_are_printed_on_demand(run, stl):
+    some = run("aspects", stl, "--columns", "aspect, barrier_mm").stdout.splitlines()[0].split()
+    assert some == ["aspect", "barrier"]
+    everything = run("aspects", stl, "--columns", "all").stdout
+    assert all(word in everything for word in ("hops", "normal", "quasistatic"))
+    wrong = run("aspects", stl, "--columns", "aspect,barier_mm")
+    assert wrong.exit_code == 1
+    assert "Error: --columns: there is no column 'barier_mm' - did you mean barrier_mm?" in wrong.stderr
