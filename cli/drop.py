@@ -8,7 +8,7 @@ from feederscrew_cli import options, waiting
 from feederscrew_cli import plate as plates
 from feederscrew_cli.interrupt import held_back
 
-LAUNCHES = click.Choice(["place", "drop", "tumble"])
+LAUNCHES = click.Choice(["place", "drop", "flip", "roll", "feed", "tumble"])  # the last: once that of roll
 
 
 def conditions(command):
@@ -16,7 +16,7 @@ def conditions(command):
     for option in reversed(
         [
             click.option(
-                "--launch", type=LAUNCHES, default="tumble", show_default=True, help="How it comes in."
+                "--launch", type=LAUNCHES, default="feed", show_default=True, help="What was done to it."
             ),
             click.option("--height", "fall", metavar="LENGTH", help='Fall: "20 mm" or "5 mm:50 mm".'),
             click.option("--spin", metavar="RATE", help='How fast it turns: "20 rad/s".'),
@@ -43,16 +43,18 @@ def conditions(command):
 @options.pictures
 @options.output
 def drop(part, launch, drops, until, seed, jobs, trace, plate, pictures, out, **own):
-    """Example: feeder drop parts/lbracket_30x20x15.stl --launch tumble --until 1% -o results
+    """Example: feeder drop parts/lbracket_30x20x15.stl --launch feed --until 1% -o results
 
     Drop PART on a hard plane, again and again, each time from a launch drawn from the ranges of
-    --launch (place: set down by hand; drop: let fall without spin; tumble: thrown in, as parts leave
-    a bowl's floor) or from your own ranges, and count the aspects it comes to rest on.
+    --launch, which says what was done to the part (place: set down by hand; drop: let fall; flip: spun
+    as a coin; roll: cast or poured, tumble is its former name; feed: from a hopper into a bowl), or from
+    your own ranges, and count the aspects it comes to rest on.
 
-    p_drop_low and p_drop_high are the 95 % interval of the sampling; p_gentle and p_violent the shares
-    among the third of the launches with the least and with the most energy. The same seed gives the same
-    counts whatever the number of jobs. Ctrl-C ends the test early: what is counted so far is given, marked
-    partial.
+    p_drop is the share of the drops that settled: unsettled tells of the others. p_drop_low and
+    p_drop_high are the 95 % interval of the sampling and the numerical error; p_gentle and p_violent the
+    shares among the third of the launches with the least and with the most energy. The same seed gives
+    the same counts whatever the number of jobs. Ctrl-C ends the test early: what is counted so far is
+    given, marked partial.
 
     With -o: drop.csv, drop.json, drop.png and run.json; with --trace drop_traces.csv, where the part is
     and how it is turned from launch to rest, and drop_trace.png, a strip of stills of the first traced

@@ -8,7 +8,7 @@ def drops(out):
     from feederscrew.dropping import runs
 
     if not runs.compiled():
-        out.say("Compiling the drop kernel, once on this machine: about twenty seconds.")
+        out.say("Compiling the drop kernel, once on this machine: about ten seconds.")
 
 
 def plate(out):
@@ -16,7 +16,7 @@ def plate(out):
     from feederscrew.dropping.plate import rides
 
     if not rides.compiled():
-        out.say("Compiling the plate's kernel, once on this machine: about twenty seconds.")
+        out.say("Compiling the plate's kernel, once on this machine: about ten seconds.")
 
 
 def conveying(out):

@@ -116,7 +116,7 @@ def aspects(part: Part, *, unstable: bool = False, as_published: bool = False) -
 def drop(
     part: Part,
     *,
-    launch: str = "tumble",
+    launch: str = "feed",
     drops: int | None = None,
     seed: int = 1,
     jobs: int = 1,
@@ -129,7 +129,7 @@ def drop(
     part : Part
         From a mesh.
     launch : str
-        'place', 'drop' or 'tumble'.
+        'place', 'drop', 'flip', 'roll' or 'feed': what was done to the part.
     drops : int, optional
         How many; 10,000 without it.
     seed : int
@@ -158,7 +158,7 @@ def shake(
     part: Part,
     bowls: Sequence[Bowl],
     *,
-    launch: str = "tumble",
+    launch: str = "feed",
     drops: int | None = None,
     seconds: float | None = None,
     seed: int = 1,

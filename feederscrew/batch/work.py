@@ -20,7 +20,7 @@ from feederscrew.studies.convey import convey
 from feederscrew.studies.rate import rate
 
 THUMBNAIL = "thumbnail.png"
-LAUNCH = "tumble"  # as parts leave a bowl's floor
+LAUNCH = "feed"  # from a hopper into a bowl
 SEED_DIGITS = 8  # hexadecimal, of the file's sha256
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.constants import g
 
-from feederscrew.dropping.launches import PRESETS
+from feederscrew.dropping.launches import named
 from feederscrew.errors import ArgumentError
 from feederscrew.units import QuantityError, factor, quantity, shown
 
@@ -24,7 +24,7 @@ def launch_of(preset, length, texts, gravity=g):
     Parameters
     ----------
     preset : str
-        A key of PRESETS.
+        A key of ``launches.PRESETS``, or a former name.
     length : float [m]
         Of the part: cube root of its hull's volume.
     texts : dict of str to (str or None)
@@ -43,7 +43,7 @@ def launch_of(preset, length, texts, gravity=g):
     ranges = {
         key: None if text is None else _range(key, text, length, gravity) for key, text in texts.items()
     }
-    return PRESETS[preset].but(**ranges)
+    return named(preset).but(**ranges)
 
 
 def described(launch, length, gravity=g):
@@ -67,7 +67,7 @@ def described(launch, length, gravity=g):
         "speed_mm_s": [speed * end for end in launch.speed],
         "restitution": list(launch.restitution),
         "friction": list(launch.friction),
-        "forward": launch.forward,
+        "axis": launch.axis,
     }
 
 

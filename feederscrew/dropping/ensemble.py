@@ -14,6 +14,7 @@ BATCH = 250  # drops a core takes at a time
 ROUND = 8 * BATCH  # drops between two looks at the intervals, whatever the number of jobs
 MOST = 1_000_000  # drops at which ``until`` gives up
 NORMAL = 1.959963984540054  # two-sided 95 % point
+NUMERICAL = 0.01  # [1] what steps and tolerances may move a share of a half: benchmarks/convergence.py
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,10 +33,11 @@ class Tally:
 
     counts: np.ndarray  # (A,) int
     unsettled: int
-    p: np.ndarray  # (A,) [1] of all drops, the unsettled ones too
-    low: np.ndarray  # (A,) [1] ends of the 95 % Wilson interval
+    unsettled_share: float  # [1] of all drops
+    p: np.ndarray  # (A,) [1] of the drops that settled; NaN where none did
+    low: np.ndarray  # (A,) [1] ends of the 95 % interval: Wilson's, and NUMERICAL beside it
     high: np.ndarray
-    widest: float  # [1] half the longest interval
+    widest: float  # [1] half the longest of Wilson's intervals: the sampling alone
     gentle: np.ndarray  # (A,) [1] among the third of the drops launched with the least energy
     violent: np.ndarray  # (A,) [1] ... with the most
 
@@ -50,7 +52,8 @@ class Aim:
 
     def widest(self, faces):
         """Half the longest interval after drops on (N,) ``faces``."""
-        return half_width(*wilson(counted(faces, self.rows, self.count), len(faces)))
+        counts = counted(faces, self.rows, self.count)
+        return half_width(*wilson(counts, counts.sum()))
 
     def needed(self, done, widest):
         """How many drops it takes: ``done``, or an estimate, as intervals narrow with 1 / sqrt(N)."""
@@ -116,15 +119,18 @@ def tally(drops, rows, count):
     """
     total = len(drops.faces)
     counts = counted(drops.faces, rows, count)
-    low, high = wilson(counts, total)
+    settled = int(counts.sum())
+    low, high = wilson(counts, settled)
     order, third = np.argsort(drops.energies, kind="stable"), max(total // 3, 1)
-    ends = [counted(drops.faces[part], rows, count) / third for part in (order[:third], order[-third:])]
+    ends = [shares(counted(drops.faces[part], rows, count)) for part in (order[:third], order[-third:])]
+    ends = [np.nan_to_num(end) for end in ends]
     return Tally(
         counts=check.frozen(counts),
-        unsettled=int(total - counts.sum()),
-        p=check.frozen(counts / total),
-        low=check.frozen(low),
-        high=check.frozen(high),
+        unsettled=total - settled,
+        unsettled_share=(total - settled) / max(total, 1),
+        p=check.frozen(shares(counts)),
+        low=check.frozen(_wider(counts, low, -1.0)),
+        high=check.frozen(_wider(counts, high, 1.0)),
         widest=half_width(low, high),
         gentle=check.frozen(ends[0]),
         violent=check.frozen(ends[1]),
@@ -134,6 +140,21 @@ def tally(drops, rows, count):
 def counted(faces, rows, count):
     """(A,) drops by class, from the (N,) faces they rest on."""
     return np.bincount(rows[faces[faces != kernel.UNSETTLED]], minlength=count)
+
+
+def shares(counts):
+    """(A,) shares of (A,) counts; NaN where all are zero."""
+    total = counts.sum()
+    return counts / total if total else np.full(len(counts), np.nan)
+
+
+def _wider(counts, end, way):
+    """(A,) end of Wilson's interval moved out by the numerical error, both as independent errors."""
+    p = shares(counts)
+    if not counts.any():
+        return end
+    numerical = 4.0 * NUMERICAL * p * (1.0 - p)
+    return np.clip(p + way * np.hypot(end - p, numerical), 0.0, 1.0)
 
 
 def wilson(counts, total):
@@ -154,6 +175,8 @@ def wilson(counts, total):
     E. B. Wilson, "Probable inference, the law of succession, and statistical inference", J. Amer.
     Statist. Assoc. 22, 209-212, 1927.
     """
+    if not total:
+        return np.zeros(len(counts)), np.ones(len(counts))
     p, spread = np.asarray(counts) / total, NORMAL**2 / total
     middle = (p + 0.5 * spread) / (1.0 + spread)
     half = np.sqrt(spread * p * (1.0 - p) + 0.25 * spread**2) / (1.0 + spread)

@@ -6,9 +6,10 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.dropping.kernel import body
-from feederscrew.geometry import vectors
+from feederscrew.dropping.rims import lowest_on
 
 DRAWS = 11  # uniform numbers a drop takes: 3 attitude, 3 spin, 2 drift, fall, restitution, friction
+ANY, LEVEL, FLIP = "any", "horizontal", "in the greatest face"  # axes a launch spins about
 
 
 @dataclass(frozen=True)
@@ -19,12 +20,12 @@ class Launch:
     """
 
     name: str
-    fall: tuple[float, float]  # from the lowest corner to the plane
+    fall: tuple[float, float]  # from the lowest point to the plane
     spin: tuple[float, float]  # rate
     speed: tuple[float, float]  # along the plane
     restitution: tuple[float, float]  # of a corner hit
     friction: tuple[float, float]
-    forward: bool = False  # spins the way it would roll, about the axis across its speed; else about any axis
+    axis: str = ANY  # it spins about: ANY, LEVEL, or FLIP
 
     def but(self, **ranges):
         """The same launch with some ranges replaced; named 'own' once one is."""
@@ -32,14 +33,26 @@ class Launch:
         return replace(self, name="own", **given) if given else self
 
 
+SURFACE = {"restitution": (0.2, 0.6), "friction": (0.2, 0.5)}  # hard on hard: one range for every launch
 PRESETS = {
-    "place": Launch("place", (0.0, 0.05), (0.0, 0.0), (0.0, 0.0), (0.0, 0.2), (0.3, 0.8)),
-    "drop": Launch("drop", (1.0, 6.0), (0.0, 0.0), (0.0, 0.0), (0.1, 0.6), (0.3, 0.8)),
-    "tumble": Launch("tumble", (1.0, 6.0), (2.0, 6.0), (3.0, 8.0), (0.2, 0.6), (0.3, 0.6), forward=True),
+    launch.name: launch
+    for launch in (
+        Launch("place", (0.0, 0.05), (0.0, 0.0), (0.0, 0.0), **SURFACE),
+        Launch("drop", (1.0, 6.0), (0.0, 0.0), (0.0, 0.0), **SURFACE),
+        Launch("flip", (15.0, 40.0), (6.0, 14.0), (0.0, 2.0), **SURFACE, axis=FLIP),
+        Launch("roll", (1.0, 6.0), (2.0, 6.0), (2.0, 6.0), **SURFACE, axis=LEVEL),
+        Launch("feed", (2.0, 6.0), (0.0, 2.0), (0.0, 2.0), **SURFACE),
+    )
 }
-"""place: set down by hand. drop: let fall without spin. tumble: thrown in, or off a bowl's floor: a part
-that comes sliding and catches an edge goes on turning forward, at some times sqrt(g / L). Ranges chosen by
-this argument and on the measured square cuboids and the T shape."""
+"""What was done to the part. place: set down by hand. drop: let fall without spin. flip: spun up by hand, as
+a coin, about an axis in the plane of its greatest face. roll: cast or poured over a table, spinning about a
+horizontal axis. feed: out of a hopper into a bowl. docs/resting.md says where each range comes from."""
+FORMER = {"tumble": "roll"}  # what launches were called before
+
+
+def named(name):
+    """Return the preset of a name, or of a former one."""
+    return PRESETS[FORMER.get(name, name)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,23 +82,43 @@ def sample(launch, shape, count, rng):
     """
     u = rng.random((count, DRAWS))
     states = np.zeros((count, body.STATE))
-    attitude, fall = _attitudes(u[:, :3]), _between(launch.fall, u[:, 8])
-    spin, drift = _between(launch.spin, u[:, 3]), _between(launch.speed, u[:, 6])
+    attitude, axes = _turns(launch.axis, shape, u)
+    fall, spin = _between(launch.fall, u[:, 8]), _between(launch.spin, u[:, 3])
+    drift = _between(launch.speed, u[:, 6])
     states[:, body.Q : body.Q + 4] = attitude
-    down = _in_body(attitude, np.array([[0.0, 0.0, 1.0]]))
-    states[:, body.Z] = fall - vectors.product(down, shape.vertices.T).min(axis=1)
+    states[:, body.Z] = fall - _lowest(shape, _in_body(attitude, np.array([[0.0, 0.0, 1.0]])))
     ahead = np.stack([np.cos(2.0 * np.pi * u[:, 7]), np.sin(2.0 * np.pi * u[:, 7])], axis=1)
     states[:, body.VX : body.VX + 2] = drift[:, None] * ahead
-    across = np.column_stack([-ahead[:, 1], ahead[:, 0], np.zeros(count)])
-    axes = _in_body(attitude, across) if launch.forward else _directions(u[:, 4], u[:, 5])
     states[:, body.W : body.W + 3] = spin[:, None] * axes
-    turning = 0.5 * (vectors.product(states[:, body.W : body.W + 3] ** 2, shape.inertia))
+    turning = 0.5 * (states[:, body.W : body.W + 3] ** 2 * shape.inertia).sum(axis=1)
     return Starts(
         states=check.frozen(states),
         restitutions=check.frozen(_between(launch.restitution, u[:, 9])),
         frictions=check.frozen(_between(launch.friction, u[:, 10])),
         energies=check.frozen(fall + 0.5 * drift**2 + turning),
     )
+
+
+def _turns(kind, shape, u):
+    """(N, 4) attitudes and (N, 3) axes of spin, in body axes."""
+    attitude = _attitudes(u[:, :3])
+    if kind == ANY:
+        return attitude, _directions(u[:, 4], u[:, 5])
+    turn = 2.0 * np.pi * u[:, 4]
+    if kind == FLIP:
+        along = np.cross(shape.flat, np.eye(3)[np.argmin(np.abs(shape.flat))])
+        along /= np.sqrt((along**2).sum())
+        across = np.cross(shape.flat, along)
+        return attitude, np.cos(turn)[:, None] * along + np.sin(turn)[:, None] * across
+    level = np.stack([np.cos(turn), np.sin(turn), np.zeros(len(u))], axis=1)
+    return attitude, _in_body(attitude, level)
+
+
+def _lowest(shape, up):
+    """(N,) height of the lowest point over the centre, for (N, 3) directions up in body axes."""
+    lowest = np.einsum("ni,vi->nv", up, shape.vertices).min(axis=1)
+    rims = np.einsum("ni,nri->nr", up, lowest_on(shape, up))
+    return np.minimum(lowest, rims.min(axis=1, initial=np.inf))
 
 
 def _between(ends, share):

@@ -1,26 +1,38 @@
 """What the drop kernel needs to know of a part, without dimensions."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from feederscrew import check
+from feederscrew.dropping.rims import AXIS, CENTRE, MIDDLE, RADIUS, rims_of, true_heights, true_tops
 from feederscrew.geometry import vectors
 from feederscrew.resting.basins import barriers
-from feederscrew.resting.tumbling.edges import Edges, half_edges, sinks
+from feederscrew.resting.basins.landscape import SMOOTH
+from feederscrew.resting.tumbling.edges import Edges, half_edges, saddles, sinks
 from feederscrew.resting.tumbling.exact import tumble
 
 
-class Shape(NamedTuple):
-    """A convex body about its centre of mass, along its principal axes, in units of its own length.
+class Solid(NamedTuple):
+    """A convex body about its centre of mass, along its principal axes; V corners, R rims.
 
-    A named tuple, so that compiled code can read it; V corners, F faces, M facets.
+    A named tuple, so that compiled code can read it.
     """
 
     vertices: np.ndarray  # (V, 3)
     links: np.ndarray  # (V + 1 + 2 E,) where each corner's neighbours start in this array; neighbours
     inertia: np.ndarray  # (3,) principal moments at mass 1
-    radius: float  # largest distance of a corner
+    radius: float  # largest distance of a point
+    rims: np.ndarray  # (R, RIM) circles and arcs, as ``Rims.table``
+    inner: np.ndarray  # (V,) bool: corners that rims replace
+    sag: float  # how far a rim bulges over its corners' edges
+
+
+class Shape(NamedTuple):
+    """What the drop kernel knows of a part, in units of its own length; F faces, M facets."""
+
+    solid: Solid
     edges: Edges
     faces: np.ndarray  # (M,) face of each facet the part rests on, -1 for the others
     heights: np.ndarray  # (F,) of the centre of mass
@@ -29,6 +41,17 @@ class Shape(NamedTuple):
     rolls: np.ndarray  # (F,) bool
     axes: np.ndarray  # (F, 3) axis of a rolling face
     ceiling: float  # energy over which no face is decided
+    flat: np.ndarray  # (3,) normal of the greatest facet
+
+    @property
+    def vertices(self):
+        """(V, 3) corners."""
+        return self.solid.vertices
+
+    @property
+    def inertia(self):
+        """(3,) principal moments at mass 1."""
+        return self.solid.inertia
 
 
 def shape_of(hull, labels, mass, inertia, axes=None):
@@ -53,19 +76,18 @@ def shape_of(hull, labels, mass, inertia, axes=None):
     """
     length, mass = float(np.cbrt(hull.volume)), check.positive("mass", mass)
     moments, principal = principal_axes(check.shaped("inertia", inertia, (3, 3)))
-    edges = _turned(half_edges(hull), principal, length)
-    tumbling = tumble(hull)
+    edges = half_edges(hull)
+    rims = rims_of(edges, hull.radius, () if axes is None else axes)
+    tumbling = _rounded(tumble(hull), edges, rims, hull.radius)
     tips = barriers.tipping(tumbling, labels)
     lifts = barriers.barriers(tips) / length
     heights = np.nan_to_num(tips.heights / length)
     count = len(heights)
-    axes = np.full((count, 3), np.nan) if axes is None else check.frozen(np.array(axes, float))
+    axes = np.full((count, 3), np.nan) if axes is None else np.array(axes, float)
     rolls = np.isfinite(axes).all(axis=1)
+    edges = _turned(edges, principal, length)
     shape = Shape(
-        vertices=edges.vertices,
-        links=check.frozen(_links(hull)),
-        inertia=check.frozen(moments / (mass * length**2)),
-        radius=hull.radius / length,
+        solid=_solid(hull, edges, rims, moments / (mass * length**2), principal, length),
         edges=edges,
         faces=check.frozen(_faces(edges, tumbling, labels)),
         heights=check.frozen(heights),
@@ -74,8 +96,43 @@ def shape_of(hull, labels, mass, inertia, axes=None):
         rolls=check.frozen(rolls),
         axes=check.frozen(vectors.product(np.nan_to_num(axes), principal)),
         ceiling=float((heights + lifts).max()),
+        flat=check.frozen(_greatest(edges, hull.areas)),
     )
     return shape, length
+
+
+def _rounded(tumbling, edges, rims, radius):
+    """The tumbling with the heights of round sides and rims, not of the corners that stand for them."""
+    facets = edges.facets[tumbling.sinks]
+    return replace(
+        tumbling,
+        heights=true_heights(rims, edges, facets, tumbling.heights, radius),
+        saddle_heights=true_tops(rims, edges, saddles(edges), tumbling.saddle_heights, radius),
+    )
+
+
+def _solid(hull, edges, rims, inertia, principal, length):
+    """The body itself, in principal axes and units of the length."""
+    table = np.array(rims.table)
+    for vector in (CENTRE, AXIS, MIDDLE):
+        table[:, vector] = vectors.product(rims.table[:, vector], principal)
+    table[:, CENTRE] /= length
+    table[:, RADIUS] /= length
+    return Solid(
+        vertices=edges.vertices,
+        links=check.frozen(_links(hull)),
+        inertia=check.frozen(inertia),
+        radius=hull.radius / length,
+        rims=check.frozen(table),
+        inner=rims.inner,
+        sag=float(table[:, RADIUS].max() * (1.0 - np.cos(SMOOTH / 2))) if len(table) else 0.0,
+    )
+
+
+def _greatest(edges, areas):
+    """(3,) normal of the greatest facet; of several as great the first."""
+    sizes = np.bincount(edges.facets, areas)
+    return edges.normals[np.argmax(sizes > (1.0 - 1e-6) * sizes.max())].copy()
 
 
 def shape_of_part(part, found):

@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from feederscrew import check
 from feederscrew.dropping.kernel import body, drop
+from feederscrew.dropping.rims import lowest_on
 from feederscrew.geometry import vectors
 
 EVERY = 0.05  # sqrt(L / g) from one row that is kept to the next, at least
@@ -160,8 +161,15 @@ def _impacts(shape, states, steps):
     struck = np.zeros(len(states), bool)
     for first in range(0, len(states), CHUNK):
         part = slice(first, first + CHUNK)
-        gaps = states[part, 1 + body.Z, None] + vectors.product(up[part], shape.vertices.T)
-        rising = states[part, 1 + body.VZ, None] + vectors.product(speeds[part], shape.vertices.T)
+        points = np.concatenate(
+            [
+                np.broadcast_to(shape.vertices, (len(up[part]), *shape.vertices.shape)),
+                lowest_on(shape, up[part]),
+            ],
+            axis=1,
+        )
+        gaps = states[part, 1 + body.Z, None] + np.einsum("ni,nvi->nv", up[part], points)
+        rising = states[part, 1 + body.VZ, None] + np.einsum("ni,nvi->nv", speeds[part], points)
         struck[part] = ((gaps <= steps.tolerance) & (rising < -steps.threshold)).any(axis=1)
     return struck
 

@@ -39,7 +39,7 @@ def upright(shape, gap, **values):
 @pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize("friction", [0.0, 0.3, 1.0])
 def test_energy_never_grows(restitution, friction, rng):
-    starts = sample(PRESETS["tumble"], BOX, 12, rng)
+    starts = sample(PRESETS["roll"], BOX, 12, rng)
     for state in starts.states:
         trace, _ = traced(BOX, state, restitution, friction, Steps(early=False, longest=20.0))
         steps = np.diff(energies(trace, BOX.inertia))
@@ -80,20 +80,25 @@ def struck(shape, state, restitution, friction):
     work = scratch(shape)
     work.state[:] = state
     body.rotation(work.state, work.turn)
-    corner, _ = body.lowest(shape.vertices, shape.links, work.turn, 0)
-    count = contact.touching(
-        shape.vertices, shape.links, work.turn, state[body.Z], corner, 1e-3, work.seen, work.found
-    )
-    contact.levers(shape.vertices, shape.inertia, work.turn, work.found, count, work.contacts)
+    corner, _ = body.lowest(shape.vertices, shape.solid.links, work.turn, 0)
+    count = contact.touching(shape.solid, work, state[body.Z], corner, 1e-3)
+    contact.levers(shape.inertia, work, count)
     contact.strike(
-        shape.inertia, work.state, work.saved, work.contacts, count, restitution, friction, Steps(sweeps=2000)
+        shape.inertia,
+        work.state,
+        work.saved,
+        work.contacts,
+        count,
+        restitution,
+        friction,
+        Steps(converged=1e-13),
     )
     return work, count
 
 
 def on_a_corner(rng):
     """A tilted box that touches the floor with one corner and falls."""
-    state = sample(PRESETS["tumble"], BOX, 1, rng).states[0].copy()
+    state = sample(PRESETS["roll"], BOX, 1, rng).states[0].copy()
     body.rotation(state, turn := np.zeros(9))
     state[body.Z] = -(BOX.vertices @ turn[6:]).min()
     state[body.VZ] = -2.0
@@ -105,7 +110,7 @@ def test_an_impact_balances_momentum(friction, rng):
     state = on_a_corner(rng)
     work, count = struck(BOX, state, 0.4, friction)
     impulses = work.contacts[:count, contact.IMPULSE : contact.IMPULSE + 3]
-    corners = BOX.vertices[work.found[:count]]
+    corners = work.spots[:count]
     gained = work.state[body.VX : body.VX + 3] - state[body.VX : body.VX + 3]
     spun = BOX.inertia * (work.state[body.W :] - state[body.W :])
     in_body = impulses @ work.turn.reshape(3, 3)
@@ -119,7 +124,7 @@ def test_a_frictionless_corner_hit_is_its_closed_form(restitution, rng):
     state = on_a_corner(rng)
     work, count = struck(BOX, state, restitution, 0.0)
     assert count == 1
-    normal, corner = work.turn[6:], BOX.vertices[work.found[0]]
+    normal, corner = work.turn[6:], work.spots[0]
     lever = np.cross(corner, normal)
     fall = state[body.VZ] + lever @ state[body.W :]
     impulse = -(1.0 + restitution) * fall / (1.0 + lever @ (lever / BOX.inertia))
@@ -133,7 +138,7 @@ def test_a_frictionless_corner_hit_is_its_closed_form(restitution, rng):
 
 @pytest.mark.parametrize("restitution", [0.5, 0.9])
 def test_a_flat_bounce_rises_to_the_square_of_the_restitution(restitution):
-    trace, _ = traced(BOX, upright(BOX, 2.0), restitution, 0.0, Steps(early=False, longest=6.0, sweeps=500))
+    trace, _ = traced(BOX, upright(BOX, 2.0), restitution, 0.0, Steps(early=False, longest=6.0))
     floor = -BOX.vertices[:, 2].min()
     landed = np.argmax(trace[:, 1 + body.VZ] > 0.0)
     top = (trace[landed:, 1 + body.Z] + 0.5 * trace[landed:, 1 + body.VZ] ** 2).max()
@@ -152,7 +157,7 @@ def test_a_sliding_block_stops_where_friction_says():
     assert trace[-1, 1] == pytest.approx(speed**2 / (2.0 * friction), rel=0.02)
 
 
-def run(shape, count, steps, seed=3, preset="tumble"):
+def run(shape, count, steps, seed=3, preset="feed"):
     starts = sample(PRESETS[preset], shape, count, np.random.default_rng(seed))
     faces, times = np.empty(count, int), np.empty(count)
     drop.settle_all(
@@ -168,7 +173,7 @@ def test_stopping_early_changes_nothing():
 
 
 def test_halving_every_step_moves_no_share_beyond_its_interval():
-    fine = Steps(flight=5e-3, turn=0.03, contact=3e-3, tolerance=5e-4, sweeps=40)
+    fine = Steps(flight=5e-3, turn=0.03, contact=3e-3, swing=0.02, tolerance=1.5e-4)
     shares = [np.bincount(run(BOX, 3000, steps) // 2, minlength=3) / 3000 for steps in (Steps(), fine)]
     spread = np.sqrt(2.0 * shares[0] * (1.0 - shares[0]) / 3000)
     assert (np.abs(shares[0] - shares[1]) < 3.5 * spread).all()
@@ -205,7 +210,7 @@ def test_measured_tosses_of_square_cuboids():
     for x, measured, _ in drop_bodies.cuboids():
         shape, _ = drop_bodies.box((x, 1.0, 1.0))
         errors.append((run(shape, 1500, Steps(), seed=1) < 2).mean() - measured)
-    assert np.sqrt(np.mean(np.square(errors))) < 0.045  # 0.035 with enough drops
+    assert np.sqrt(np.mean(np.square(errors))) < 0.045  # 0.030 with enough drops
 
 
 def test_a_drop_ends_where_it_lies_and_not_where_it_turns_round():
@@ -221,8 +226,7 @@ def test_a_drop_ends_where_it_lies_and_not_where_it_turns_round():
 def test_of_many_corners_on_the_floor_the_lowest_is_among_those_solved():
     """The middle of a rim that bends down is lower than its ends, which are further out."""
     x = np.linspace(-1.0, 1.0, 41)
-    points = np.column_stack([x, np.zeros(41), 1e-4 * x**2])
-    found = np.concatenate([np.argsort(points[:, 2]), np.zeros(contact.MOST, int)])
-    count = contact.thin_out(points, np.eye(3).ravel(), found, 41)
-    assert found[0] == 20 and {0, 40} <= set(found[:count])
-    assert len(set(found[:count])) == count <= contact.MOST
+    points, owners = np.column_stack([x, np.zeros(41), 1e-4 * x**2]), np.arange(41)
+    count = contact.thin_out(points, owners, np.eye(3).ravel(), 41)
+    assert owners[0] == 20 and {0, 40} <= set(owners[:count])
+    assert points[:, 0] == pytest.approx(x[owners]) and count <= contact.MOST

@@ -11,7 +11,7 @@ from scipy.stats import binom
 from feederscrew.dropping import conditions, ensemble
 from feederscrew.dropping.ensemble import Aim, Drops, drop, tally, wilson
 from feederscrew.dropping.kernel.drop import UNSETTLED
-from feederscrew.dropping.launches import PRESETS, sample
+from feederscrew.dropping.launches import PRESETS, named, sample
 from feederscrew.dropping.pool import gather
 from feederscrew.errors import ConfigError
 
@@ -21,7 +21,7 @@ NOTHING = dict.fromkeys(conditions.KEYS)
 
 
 def seeded(**more):
-    return drop(BOX, PRESETS["tumble"], np.random.default_rng(5), **more)
+    return drop(BOX, PRESETS["roll"], np.random.default_rng(5), **more)
 
 
 def test_counts_do_not_depend_on_the_number_of_jobs():
@@ -40,7 +40,7 @@ def test_until_ends_when_every_interval_is_narrow():
     aim = Aim(0.015, ROWS, 3)
     drops = seeded(aim=aim)
     counted = tally(drops, ROWS, 3)
-    assert counted.widest == 0.5 * (counted.high - counted.low).max() <= 0.015
+    assert counted.widest == aim.widest(drops.faces) <= 0.015
     assert len(drops.faces) > ensemble.ROUND and aim.widest(drops.faces[: -ensemble.ROUND]) > 0.015
 
 
@@ -125,10 +125,24 @@ def test_a_tally_counts_every_drop_once():
     energies = np.arange(9.0)
     counted = tally(Drops(faces, np.zeros(9), energies, False), ROWS, 3)
     assert counted.counts.tolist() == [3, 2, 2] and counted.unsettled == 2
-    assert counted.p.sum() == pytest.approx(7 / 9)
-    assert counted.gentle == pytest.approx([2 / 3, 1 / 3, 0]) and counted.violent == pytest.approx(
-        [1 / 3, 1 / 3, 0]
+    assert counted.p == pytest.approx([3 / 7, 2 / 7, 2 / 7]) and counted.unsettled_share == pytest.approx(
+        2 / 9
     )
+    assert counted.gentle == pytest.approx([2 / 3, 1 / 3, 0])
+    assert counted.violent == pytest.approx([1 / 2, 1 / 2, 0])  # of the two that settled
+
+
+def test_a_tally_of_drops_that_never_settle_knows_nothing():
+    counted = tally(Drops(np.full(4, UNSETTLED), np.zeros(4), np.zeros(4), False), ROWS, 3)
+    assert np.isnan(counted.p).all() and counted.unsettled == 4 and counted.unsettled_share == 1.0
+    assert counted.low.tolist() == [0.0] * 3 and counted.high.tolist() == [1.0] * 3
+
+
+def test_the_interval_holds_the_numerical_error_beside_the_sampling():
+    faces = np.tile([0, 2], 200_000)
+    counted = tally(Drops(faces, np.zeros(len(faces)), np.zeros(len(faces)), False), ROWS, 3)
+    assert counted.high[0] - 0.5 == pytest.approx(np.hypot(ensemble.NUMERICAL, counted.widest), rel=1e-3)
+    assert counted.low[2] == 0.0 and counted.high[2] == pytest.approx(0.0, abs=1e-4)
 
 
 def test_the_wilson_interval():
@@ -147,7 +161,7 @@ def test_the_wilson_interval_covers_about_95_times_in_100():
 
 
 def test_every_drop_starts_at_its_fall_within_the_ranges(rng):
-    launch = PRESETS["tumble"]
+    launch = PRESETS["roll"]
     starts = sample(launch, BOX, 500, rng)
     speed = np.hypot(starts.states[:, 3], starts.states[:, 4])
     spin = np.linalg.norm(starts.states[:, 10:], axis=1)
@@ -162,14 +176,24 @@ def test_every_drop_starts_at_its_fall_within_the_ranges(rng):
         )
 
 
-def test_a_tumbling_launch_spins_the_way_it_would_roll(rng):
-    starts = sample(PRESETS["tumble"], BOX, 200, rng)
-    states = starts.states.copy()
-    turns = Rotation.from_quat(states[:, [7, 8, 9, 6]])
-    spin, ahead = turns.apply(states[:, 10:]), states[:, 3:6]
-    below = np.cross(spin, [0.0, 0.0, -1.0])  # the corner under the centre goes back
-    size = np.linalg.norm(spin, axis=1) * np.linalg.norm(ahead, axis=1)
-    assert np.einsum("ni,ni->n", below, ahead) == pytest.approx(-size)
+def test_a_rolled_part_spins_about_a_level_axis_whatever_its_way(rng):
+    states = sample(PRESETS["roll"], BOX, 2000, rng).states.copy()
+    spin = Rotation.from_quat(states[:, [7, 8, 9, 6]]).apply(states[:, 10:])
+    assert np.abs(spin[:, 2]).max() < 1e-12 and np.linalg.norm(spin, axis=1).min() > 1.9
+    size = np.linalg.norm(spin[:, :2], axis=1) * np.linalg.norm(states[:, 3:5], axis=1)
+    assert np.abs(((spin[:, :2] * states[:, 3:5]).sum(axis=1) / size).mean()) < 0.06
+
+
+def test_a_flipped_part_spins_in_the_plane_of_its_greatest_face(rng):
+    states = sample(PRESETS["flip"], BOX, 200, rng).states
+    assert np.abs(BOX.flat) == pytest.approx([0.0, 0.0, 1.0])  # principal axes go from the longest side up
+    assert np.abs(states[:, 10:] @ BOX.flat).max() < 1e-12
+
+
+def test_the_former_name_of_a_launch_is_known():
+    assert named("tumble") is PRESETS["roll"]
+    with pytest.raises(KeyError):
+        named("kick")
 
 
 def test_attitudes_are_uniform(rng):
@@ -180,9 +204,9 @@ def test_attitudes_are_uniform(rng):
 
 
 def test_own_conditions_replace_the_presets():
-    launch = conditions.launch_of("tumble", 0.01, NOTHING | {"fall": "20 mm", "friction": "0.2:0.3"})
+    launch = conditions.launch_of("feed", 0.01, NOTHING | {"fall": "20 mm", "friction": "0.2:0.3"})
     assert launch.name == "own" and launch.fall == pytest.approx((2.0, 2.0))
-    assert launch.friction == (0.2, 0.3) and launch.spin == PRESETS["tumble"].spin
+    assert launch.friction == (0.2, 0.3) and launch.spin == PRESETS["feed"].spin
     told = conditions.described(launch, 0.01)
     assert told["height_mm"] == pytest.approx([20.0, 20.0]) and told["friction"] == [0.2, 0.3]
     assert conditions.launch_of("drop", 0.01, NOTHING) == PRESETS["drop"]
@@ -212,7 +236,7 @@ def test_units_cancel_in_described_conditions():
 )
 def test_conditions_that_are_none(key, text, line):
     with pytest.raises(ConfigError) as fault:
-        conditions.launch_of("tumble", 0.01, NOTHING | {key: text})
+        conditions.launch_of("feed", 0.01, NOTHING | {key: text})
     assert str(fault.value) == line
 
 

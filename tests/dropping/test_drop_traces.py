@@ -25,7 +25,7 @@ def bracket():
     return followed(PARTS / "lbracket_30x20x15.stl")
 
 
-def followed(path, preset="tumble", count=8, drops=300, own=None, **more):
+def followed(path, preset="feed", count=8, drops=300, own=None, **more):
     """A part, its aspects and a test of it with some traces."""
     part = load(path)
     aspects = find(part)
@@ -124,7 +124,7 @@ def test_a_long_drop_stays_small():
     assert len(text) < 150e3 * len(result.traces)
 
 
-@pytest.mark.parametrize("preset", ["place", "drop", "tumble"])
+@pytest.mark.parametrize("preset", ["place", "drop", "feed"])
 def test_what_is_said_to_lie_still_lies_on_its_face(preset):
     part, aspects, result = followed(PARTS / "squarenut_m5.stl", preset, count=60, drops=60)
     tolerance = 4e-3 * np.cbrt(part.hull.volume)

@@ -42,6 +42,12 @@ def spin_energy(state, inertia):
 
 
 @compiled
+def rate(state):
+    """How fast the body turns."""
+    return math.sqrt(state[W] ** 2 + state[W + 1] ** 2 + state[W + 2] ** 2)
+
+
+@compiled
 def moving_energy(state, inertia):
     """Kinetic energy at mass 1."""
     u, v, w = state[VX], state[VY], state[VZ]
@@ -109,10 +115,40 @@ def lowest(points, links, turn, corner):
 
 
 @compiled
+def rim_level(rims, k, turn):
+    """Height of the lowest point of a rim over the body's centre; infinite where an arc does not reach it."""
+    a, b, c = turn[6], turn[7], turn[8]
+    along = a * rims[k, 3] + b * rims[k, 4] + c * rims[k, 5]
+    x, y, z = a - along * rims[k, 3], b - along * rims[k, 4], c - along * rims[k, 5]
+    size = math.sqrt(x * x + y * y + z * z)
+    if rims[k, 10] > -1.0 and -(x * rims[k, 7] + y * rims[k, 8] + z * rims[k, 9]) < size * rims[k, 10]:
+        return math.inf
+    return a * rims[k, 0] + b * rims[k, 1] + c * rims[k, 2] - rims[k, 6] * size
+
+
+@compiled
+def bottom(solid, turn, corner):
+    """Corner from which to look on, and the height of the body's lowest point over its centre."""
+    corner, level = lowest(solid.vertices, solid.links, turn, corner)
+    if solid.inner[corner]:  # its rim is lower, but for rounding
+        level = math.inf
+    for k in range(len(solid.rims)):
+        level = min(level, rim_level(solid.rims, k, turn))
+    return corner, level
+
+
+@compiled
 def slow_down(state, inertia, limit):
-    """Scale all velocities so that the kinetic energy is at most ``limit``."""
-    moving = moving_energy(state, inertia)
-    if moving > limit:
-        scale = math.sqrt(max(limit, 0.0) / moving) if moving > 0.0 else 0.0
-        for k in (VX, VY, VZ, W, W + 1, W + 2):
-            state[k] *= scale
+    """Scale velocities so that the kinetic energy is at most ``limit``; those along the floor last."""
+    moving, along = moving_energy(state, inertia), 0.5 * (state[VX] ** 2 + state[VY] ** 2)
+    if moving <= limit:
+        return
+    if along > limit:
+        scale = math.sqrt(max(limit, 0.0) / along)
+        state[VX] *= scale
+        state[VY] *= scale
+    left = max(limit - along, 0.0)
+    scale = math.sqrt(left / (moving - along)) if moving > along else 0.0
+    state[VZ] *= scale
+    for k in range(3):
+        state[W + k] *= scale

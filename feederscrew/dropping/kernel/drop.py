@@ -5,14 +5,14 @@ import math
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VY, VZ, W, Z
 from feederscrew.dropping.kernel.floor import at_rest
-from feederscrew.dropping.kernel.motion import Steps, approach, go_on, meet, scratch, start
+from feederscrew.dropping.kernel.motion import Steps, advance, scratch, start
 from feederscrew.geometry.compiled import compiled
 from feederscrew.resting.tumbling.walk import LOST, roll_from_corner, roll_from_facet
 
 __all__ = ["STEADY", "UNSETTLED", "Steps", "face_below", "scratch", "settle", "settle_all"]
 
 UNSETTLED = -1
-STILL = 1e-7  # kinetic energy below which a part does not move
+STILL = 1e-6  # kinetic energy below which a part does not move
 BALANCED = 32  # steps it must not move: at the turning point of a slow rocking it stands still for fewer
 STEADY = 0.3  # of the barrier: what a steadily rolling part may have beside its rolling energy
 
@@ -34,7 +34,11 @@ def rolling_energy(shape, state, turn, face):
     flat = math.sqrt(x * x + y * y)
     about = state[W] * a[0] + state[W + 1] * a[1] + state[W + 2] * a[2]
     across = (state[VX] * y - state[VY] * x) / flat if flat > 0.5 else 0.0
-    moment = shape.inertia[0] * a[0] ** 2 + shape.inertia[1] * a[1] ** 2 + shape.inertia[2] * a[2] ** 2
+    moment = (
+        shape.solid.inertia[0] * a[0] ** 2
+        + shape.solid.inertia[1] * a[1] ** 2
+        + shape.solid.inertia[2] * a[2] ** 2
+    )
     return 0.5 * (moment * about**2 + across**2)
 
 
@@ -50,7 +54,7 @@ def slides_flat(shape, state, turn, face, friction):
 @compiled
 def decided(shape, state, turn, corner, count, friction, quiet, steps):
     """Face on which the body is bound to rest, ``quiet`` steps without motion; UNSETTLED if it can leave."""
-    total = body.energy(state, shape.inertia)
+    total = body.energy(state, shape.solid.inertia)
     if total >= shape.ceiling and count < 2:
         return UNSETTLED
     face = face_below(shape, turn, corner)
@@ -87,24 +91,23 @@ def settle(shape, work, restitution, friction, steps):
     face, time, rows of the trace filled
     """
     floor, time, rows, rests, quiet = at_rest(), 0.0, 0, 0, 0
-    corner, gap = start(shape, work)
+    corner, gap = start(shape.solid, work)
     while time < steps.longest:
         if rows < len(work.trace):
             record(work.trace, rows, time, work.state)
             rows += 1
-        if gap > steps.tolerance:
-            corner, gap, dt = approach(shape, work, floor, time, corner, gap, steps)
-            time += dt
+        corner, gap, dt, count, struck = advance(
+            shape.solid, work, floor, time, corner, gap, restitution, friction, steps
+        )
+        time += dt
+        if count == 0:
             continue
-        count, rise, struck = meet(shape, work, corner, restitution, friction, steps)
         rests = 0 if struck else rests + 1
-        quiet = quiet + 1 if body.moving_energy(work.state, shape.inertia) < STILL else 0
+        quiet = quiet + 1 if body.moving_energy(work.state, shape.solid.inertia) < STILL else 0
         if rests % 8 == 0:
             face = decided(shape, work.state, work.turn, corner, count, friction, quiet, steps)
             if face != UNSETTLED:
                 return face, time, rows
-        corner, gap, dt = go_on(shape, work, floor, time, corner, gap, count, rise, friction, steps)
-        time += dt
     return UNSETTLED, time, rows
 
 

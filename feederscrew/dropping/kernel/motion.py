@@ -8,7 +8,9 @@ import numpy as np
 from feederscrew.dropping.kernel import body, contact
 from feederscrew.dropping.kernel import floor as floors
 from feederscrew.dropping.kernel.body import VX, VZ, W, X, Z
-from feederscrew.geometry.compiled import inlined
+from feederscrew.geometry.compiled import compiled
+
+CREEP = 1e-5  # speed at which a point that touches may go on falling: errors of a step, not a landing
 
 
 class Scratch(NamedTuple):
@@ -16,9 +18,13 @@ class Scratch(NamedTuple):
 
     state: np.ndarray  # (STATE,)
     saved: np.ndarray  # (STATE,)
+    ahead: np.ndarray  # (STATE,)
     turn: np.ndarray  # (9,)
+    later: np.ndarray  # (9,)
     seen: np.ndarray  # (V,) bool
-    found: np.ndarray  # (V + MOST,)
+    found: np.ndarray  # (V,)
+    spots: np.ndarray  # (V + QUARTERS R, 3) points that touch the floor, in body axes
+    owners: np.ndarray  # (V + QUARTERS R,) int: rim of each of them, CORNER for none
     contacts: np.ndarray  # (MOST, WIDTH)
     trace: np.ndarray  # (N, 14) time and state at the start of each step, until it is full
 
@@ -26,12 +32,17 @@ class Scratch(NamedTuple):
 def scratch(shape, rows=0):
     """Fresh working arrays for a shape, with a trace of so many rows."""
     size = len(shape.vertices)
+    room = size + contact.QUARTERS * len(shape.solid.rims)
     return Scratch(
         state=np.zeros(body.STATE),
         saved=np.zeros(body.STATE),
+        ahead=np.zeros(body.STATE),
         turn=np.zeros(9),
+        later=np.zeros(9),
         seen=np.zeros(size, bool),
-        found=np.zeros(size + contact.MOST, int),
+        found=np.zeros(size, int),
+        spots=np.zeros((room, 3)),
+        owners=np.zeros(room, int),
         contacts=np.zeros((contact.MOST, contact.WIDTH)),
         trace=np.zeros((rows, 1 + body.STATE)),
     )
@@ -42,22 +53,25 @@ class Steps(NamedTuple):
 
     flight: float = 0.01  # shortest step in the air
     turn: float = 0.06  # [rad] largest turn in a step in the air
-    contact: float = 0.006  # step on the floor
-    tolerance: float = 1e-3  # corners this near the floor touch it
+    contact: float = 0.01  # longest step on the floor
+    swing: float = 0.06  # [rad] largest turn in a step on the floor
+    tolerance: float = 3e-4  # points this near the floor touch it
     threshold: float = 0.05  # approach speed from which a contact rebounds
-    sweeps: int = 20  # of the contact solver
+    sweeps: int = 1000  # of the contact solver, at most
+    converged: float = 1e-6  # what a whole sweep may still change of the impulses
     margin: float = 2e-3  # energy below the lowest saddle at which the face is decided
-    rolling: float = 2e-3  # rolling resistance: lever of the normal force
+    rolling: float = 0.02  # rolling resistance of a rim: lever of the normal force
+    pivot: float = 2e-3  # ... of a corner or an edge
     longest: float = 400.0  # time after which a drop counts as unsettled
     early: bool = True  # stop as soon as the face is decided, not at rest
 
 
-@inlined
-def gap_after(shape, work, floor, time, corner, dt):
-    """Fly from the saved state over dt; lowest corner and its height over the floor."""
+@compiled
+def gap_after(solid, work, floor, time, corner, dt):
+    """Fly from the saved state over dt; corner to look on from, and height over the floor."""
     state = work.state
     body.keep(work.saved, state)
-    body.fly(state, shape.inertia, dt)
+    body.fly(state, solid.inertia, dt)
     ahead, rise = floors.gained(floor, time, dt)
     state[X] -= ahead
     state[Z] -= rise
@@ -65,78 +79,87 @@ def gap_after(shape, work, floor, time, corner, dt):
     state[VX] -= ahead
     state[VZ] -= rise
     body.rotation(state, work.turn)
-    corner, level = body.lowest(shape.vertices, shape.links, work.turn, corner)
+    corner, level = body.bottom(solid, work.turn, corner)
     return corner, state[Z] + level
 
 
-@inlined
-def approach(shape, work, floor, time, corner, gap, steps):
+@compiled
+def approach(solid, work, floor, time, corner, gap, steps):
     """One step through the air, ended on the floor if it would go below; corner, gap and time taken."""
     state = work.state
-    rate = math.sqrt(state[W] ** 2 + state[W + 1] ** 2 + state[W + 2] ** 2)
-    quickest = abs(state[VZ]) + rate * shape.radius + 1e-9
+    rate = body.rate(state)
+    quickest = abs(state[VZ]) + rate * solid.radius + 1e-9
     dt = min(max(gap / quickest, steps.flight), steps.turn / (rate + 1e-9), 0.5, floor.step)
+    early, late, above, below, trial = 0.0, dt, max(gap, 0.0), 0.0, 0
     body.keep(state, work.saved)
-    corner, after = gap_after(shape, work, floor, time, corner, dt)
-    if after >= 0.0:
-        return corner, after, dt
-    early, late, above, below = 0.0, dt, max(gap, 0.0), after
-    for _ in range(30):
-        share = min(max(above / (above - below), 0.1), 0.9)
-        dt = early + share * (late - early)
-        corner, after = gap_after(shape, work, floor, time, corner, dt)
-        if 0.0 <= after <= steps.tolerance:
-            break
+    while True:
+        corner, after = gap_after(solid, work, floor, time, corner, dt)
+        trial += 1
+        if (after >= 0.0 and (trial == 1 or after <= steps.tolerance)) or trial > 30:
+            return corner, after, dt
         if after > 0.0:
             early, above = dt, after
         else:
             late, below = dt, after
-    return corner, after, dt
+        share = min(max(above / (above - below), 0.1), 0.9)
+        dt = early + share * (late - early)
 
 
-@inlined
-def move(shape, work, corner, dt):
-    """Move the saved positions at the present velocities over dt; lowest corner and its height."""
+@compiled
+def move(solid, work, corner, dt):
+    """Move the saved positions at the mean of saved and present velocities over dt; corner, and height."""
     state, saved = work.state, work.saved
     for k in range(3):
-        state[k] = saved[k] + dt * state[VX + k]
+        state[k] = saved[k] + 0.5 * dt * (saved[VX + k] + state[VX + k])
     for k in range(4):
         state[body.Q + k] = saved[body.Q + k]
-    body.rotate(state, state[W], state[W + 1], state[W + 2], dt)
+    p, q, r = saved[W] + state[W], saved[W + 1] + state[W + 1], saved[W + 2] + state[W + 2]
+    body.rotate(state, 0.5 * p, 0.5 * q, 0.5 * r, dt)
     body.rotation(state, work.turn)
-    corner, level = body.lowest(shape.vertices, shape.links, work.turn, corner)
+    corner, level = body.bottom(solid, work.turn, corner)
     return corner, state[Z] + level
 
 
-@inlined
-def press_on(shape, work, floor, time, corner, count, friction, steps):
-    """One step on the floor, ended where another corner lands; corner, gap and time taken."""
-    state, whole = work.state, min(steps.contact, floor.step)
+@compiled
+def press_on(solid, work, floor, time, corner, count, friction, steps):
+    """One step on the floor, ended where another point lands; corner, gap and time taken.
+
+    Of second order in the step: forces act half of it ahead, speeds are wanted at its end, and positions
+    follow the mean velocity.
+    """
+    state = work.state
+    whole = min(steps.contact, floor.step, steps.swing / (body.rate(state) + 1e-9))
     ahead, rise = floors.quickening(floor, time, whole)
-    before = body.moving_energy(state, shape.inertia)
+    before = body.moving_energy(state, solid.inertia)
     body.keep(state, work.saved)
-    body.spin(state, shape.inertia, whole)
+    contact.levers_ahead(solid, work, count, whole)
+    body.spin(state, solid.inertia, whole)
     state[VX] -= ahead
     state[VZ] -= whole + rise
-    contact.hold(state, work.contacts, count, friction, steps.sweeps)
-    resist(state, shape.inertia, steps.rolling, whole)
-    corner, gap = move(shape, work, corner, whole)
+    contact.hold(state, work.contacts, count, friction, steps)
+    lever = steps.pivot
+    for n in range(count):
+        if work.owners[n] != contact.CORNER:
+            lever = steps.rolling
+    resist(state, solid.inertia, lever, whole)
     early, late, dt = 0.0, whole, whole
-    while gap < -0.5 * steps.tolerance and late - early > 0.05 * whole:
-        dt = 0.5 * (early + late)
-        corner, gap = move(shape, work, corner, dt)
+    while True:
+        corner, gap = move(solid, work, corner, dt)
         if gap < -0.5 * steps.tolerance:
             late = dt
-        elif gap > 0.5 * steps.tolerance:
+        elif dt < whole and gap > 0.5 * steps.tolerance:
             early = dt
         else:
             break
-    win_nothing(shape, work, before, gap, -ahead / whole, -1.0 - rise / whole)
+        if late - early <= 0.05 * whole:
+            break
+        dt = 0.5 * (early + late)
+    limit_energy(solid, work, before, gap, -ahead / whole, -1.0 - rise / whole)
     return corner, max(gap, 0.0), dt
 
 
-@inlined
-def win_nothing(shape, work, before, gap, pull, press):
+@compiled
+def limit_energy(solid, work, before, gap, pull, press):
     """Lift a body that has sunk in; leave it no more energy than it had ``before`` and the forces gave it."""
     state = work.state
     left = before + pull * (state[X] - work.saved[X]) + press * (state[Z] - work.saved[Z])
@@ -144,46 +167,49 @@ def win_nothing(shape, work, before, gap, pull, press):
     if press < 0.0:
         lift = min(lift, left / -press)
     state[Z] += lift
-    body.slow_down(state, shape.inertia, left + press * lift)
+    body.slow_down(state, solid.inertia, left + press * lift)
 
 
-@inlined
+@compiled
 def resist(state, inertia, lever, dt):
     """Take the work of rolling resistance out of the rotation."""
     spinning = body.spin_energy(state, inertia)
-    rate = math.sqrt(state[W] ** 2 + state[W + 1] ** 2 + state[W + 2] ** 2)
     if spinning > 0.0:
-        scale = math.sqrt(max(1.0 - lever * rate * dt / spinning, 0.0))
+        scale = math.sqrt(max(1.0 - lever * body.rate(state) * dt / spinning, 0.0))
         for k in range(3):
             state[W + k] *= scale
 
 
-@inlined
-def meet(shape, work, corner, restitution, friction, steps):
-    """Corners on the floor, after their impact if they fall: how many, how fast they rise, if it was one."""
-    state, contacts = work.state, work.contacts
-    count = contact.touching(
-        shape.vertices, shape.links, work.turn, state[Z], corner, steps.tolerance, work.seen, work.found
-    )
-    contact.levers(shape.vertices, shape.inertia, work.turn, work.found, count, contacts)
-    rise = contact.steepest(state, contacts, count)
-    if rise >= -steps.threshold:
-        return count, rise, False
-    contact.strike(shape.inertia, state, work.saved, contacts, count, restitution, friction, steps)
-    return count, contact.steepest(state, contacts, count), True
+@compiled
+def advance(solid, work, floor, time, corner, gap, restitution, friction, steps):
+    """One step of the body: through the air, or on the floor after the impact if it falls.
 
-
-@inlined
-def go_on(shape, work, floor, time, corner, gap, count, rise, friction, steps):
-    """One step of a body that touches the floor: off it, or on; corner, gap and time taken."""
+    Returns
+    -------
+    corner, gap, time taken, points that touched the floor before, whether they struck it
+    """
+    state, contacts, count, struck, rise = work.state, work.contacts, 0, False, math.inf
+    if gap <= steps.tolerance:
+        count = contact.touching(solid, work, state[Z], corner, steps.tolerance)
+        contact.levers(solid.inertia, work, count)
+        rise = contact.steepest(state, contacts, count)
+        struck = rise < -steps.threshold
+        if struck:
+            contact.strike(solid.inertia, state, work.saved, contacts, count, restitution, friction, steps)
+            rise = contact.steepest(state, contacts, count)
+        elif rise < -CREEP:
+            contact.hold(state, contacts, count, friction, steps)
+            rise = 0.0
     if rise > steps.threshold:
-        return approach(shape, work, floor, time, corner, gap, steps)
-    return press_on(shape, work, floor, time, corner, count, friction, steps)
+        corner, gap, dt = approach(solid, work, floor, time, corner, gap, steps)
+    else:
+        corner, gap, dt = press_on(solid, work, floor, time, corner, count, friction, steps)
+    return corner, gap, dt, count, struck
 
 
-@inlined
-def start(shape, work):
-    """Lowest corner of the body as it stands, and its height over the floor."""
+@compiled
+def start(solid, work):
+    """Corner from which to look for the lowest point of the body as it stands, and height over the floor."""
     body.rotation(work.state, work.turn)
-    corner, level = body.lowest(shape.vertices, shape.links, work.turn, 0)
+    corner, level = body.bottom(solid, work.turn, 0)
     return corner, work.state[Z] + level

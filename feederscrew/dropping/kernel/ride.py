@@ -1,9 +1,9 @@
 """Compiled ride: one body on a vibrating floor, looked at again and again."""
 
 from feederscrew.dropping.kernel import body
-from feederscrew.dropping.kernel.body import W, X, Y
+from feederscrew.dropping.kernel.body import VX, VY, W, X, Y
 from feederscrew.dropping.kernel.drop import UNSETTLED, face_below, rolling_energy
-from feederscrew.dropping.kernel.motion import approach, go_on, meet, start
+from feederscrew.dropping.kernel.motion import advance, start
 from feederscrew.geometry.compiled import compiled
 
 SURE = 0.5  # of the barrier: what tilt and spin of a part that lies on a face may hold together
@@ -16,7 +16,7 @@ def lying(shape, state, turn, corner):
     face = face_below(shape, turn, corner)
     if face == UNSETTLED:
         return UNSETTLED
-    corner, level = body.lowest(shape.vertices, shape.links, turn, corner)
+    corner, level = body.bottom(shape.solid, turn, corner)
     held = rocking_energy(shape, state, turn) - level - shape.heights[face]
     if shape.rolls[face]:
         held -= rolling_energy(shape, state, turn, face)
@@ -29,7 +29,7 @@ def rocking_energy(shape, state, turn):
     around = state[W] * turn[6] + state[W + 1] * turn[7] + state[W + 2] * turn[8]
     energy = 0.0
     for k in range(3):
-        energy += 0.5 * shape.inertia[k] * (state[W + k] - around * turn[6 + k]) ** 2
+        energy += 0.5 * shape.solid.inertia[k] * (state[W + k] - around * turn[6 + k]) ** 2
     return energy
 
 
@@ -58,19 +58,19 @@ def ride(shape, work, floor, restitution, friction, steps, looks, faces, places)
         Looks taken; fewer than K only where the motion takes far more steps than it should.
     """
     time, look = 0.0, 0
-    corner, gap = start(shape, work)
+    corner, gap = start(shape.solid, work)
     for _ in range(int(PATIENCE * looks[-1] / min(steps.contact, floor.step))):
         while look < len(looks) and time >= looks[look]:
             faces[look] = lying(shape, work.state, work.turn, corner)
-            places[look, 0], places[look, 1] = work.state[X], work.state[Y]
+            late = time - looks[look]
+            places[look, 0] = work.state[X] - late * work.state[VX]
+            places[look, 1] = work.state[Y] - late * work.state[VY]
             look += 1
         if look == len(looks):
             break
-        if gap > steps.tolerance:
-            corner, gap, dt = approach(shape, work, floor, time, corner, gap, steps)
-        else:
-            count, rise, _ = meet(shape, work, corner, restitution, friction, steps)
-            corner, gap, dt = go_on(shape, work, floor, time, corner, gap, count, rise, friction, steps)
+        corner, gap, dt, _, _ = advance(
+            shape.solid, work, floor, time, corner, gap, restitution, friction, steps
+        )
         time += dt
     return look
 

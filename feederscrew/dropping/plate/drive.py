@@ -7,7 +7,7 @@ from feederscrew.conveying import answer
 from feederscrew.dropping.kernel.floor import Floor
 from feederscrew.dropping.kernel.motion import Steps
 
-PERIOD = 120  # steps of a period, at least: eight times as many change a flat part's velocity by 2 % at most
+PERIOD = 200  # steps of a period, at least: eight times as many change a flat part's velocity by 2 % at most
 FINER = 2.0  # than the steps of a drop
 SLOW = 0.1  # of the plate's greatest speed upwards: slower contacts do not rebound
 
@@ -43,9 +43,9 @@ def steps_of(floor):
     usual = Steps()
     return usual._replace(
         flight=usual.flight / FINER,
-        contact=usual.contact / FINER,
+        contact=usual.contact / FINER**2,
+        swing=usual.swing / FINER,
         tolerance=usual.tolerance / FINER,
-        sweeps=int(usual.sweeps * FINER),
         threshold=min(usual.threshold, max(SLOW * floor.up * floor.rate, 1e-4)),
     )
 

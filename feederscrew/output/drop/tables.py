@@ -30,6 +30,7 @@ def counts(study):
             "p_drop_high": tally.high,
             "p_gentle": tally.gentle,
             "p_violent": tally.violent,
+            "unsettled_share": [tally.unsettled_share] * len(aspects.names),
             **partial,
         }
     )
@@ -54,6 +55,7 @@ def document(study):
         "launch": result.launch,
         "partial": result.drops.partial,
         "unsettled": result.tally.unsettled,
+        "unsettled_share": result.tally.unsettled_share,
         "until": result.aim,
         "widest": result.tally.widest,
         "traces": trace_tables.listed(study),

@@ -9,14 +9,14 @@ from feederscrew import check
 MODEL = 0.06  # [1]
 """What any of our methods may be off beside launch and sampling: twice 0.03, the root-mean-square error
 left on measured cuboids by the best of them (``benchmarks/accuracy.py``)."""
-LAUNCH = "tumble"  # preset of the drop test that is recommended over every closed form
+LAUNCH = "feed"  # preset of the drop test that is recommended over every closed form
 
 
 @dataclass(frozen=True, eq=False)
 class Recommended:
     """Probability of each class by the recommended rule; A rows."""
 
-    rule: str  # 'surface, hard', 'drop, tumble'
+    rule: str  # 'surface, hard', 'drop, feed'
     p: np.ndarray  # (A,) [1]
     low: np.ndarray  # (A,) [1]
     high: np.ndarray  # (A,) [1]

@@ -257,7 +257,7 @@ def test_one_answer_with_an_interval_comes_last(run, stl):
 
 def test_the_answer_is_the_drop_test_where_there_is_one(run, stl):
     told = document(run("aspects", stl, "--drop", "300", "--format", "json", "-q"))
-    assert told["recommended"] == "drop, tumble"
+    assert told["recommended"] == "drop, feed"
     for row in told["aspects"]:
         assert row["p_recommended"] == row["p_drop"]
         assert (

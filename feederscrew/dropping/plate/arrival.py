@@ -1,0 +1,108 @@
+"""What lies at the track's entry: parts fed from a hopper onto the moving floor of a bowl."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.dropping.plate import runs
+from feederscrew.dropping.plate.occupancy import Occupancy
+
+LAUNCH = "feed"
+SPELLS = (1.0, 4.0)  # [s] on the floor: the longer one where the shorter decides nothing
+PARTS = 200
+NEAR = 0.05  # [1] of a share: so near to where the rates lead it has arrived
+MOVING = "the shares still change after {:g} s on the floor - how long the parts stay in the bowl decides"
+UNSEEN = "{} of {} parts lie on no aspect while the floor moves - the drive may be too strong for this part"
+LOST = 0.1  # [1] of the parts that may lie on no aspect
+
+
+@dataclass(frozen=True, eq=False)
+class Arrival:
+    """Shares in which parts reach the track's entry; A classes."""
+
+    p: np.ndarray  # (A,) [1] sums to 1; NaN where no part came to lie on anything
+    low: np.ndarray  # (A,) [1] 95 % interval; where nothing is settled, of all that it may become
+    high: np.ndarray  # (A,) [1]
+    settled: bool  # whether time or the rates of change decide them
+    reason: str  # why they are not settled, for a user; empty where they are
+    shaken: runs.Shaken  # what the parts did on the floor
+
+
+def arrival(part, aspects, bowl, *, drops=PARTS, seed=1, jobs=1, progress=None):
+    """Feed parts from a hopper onto the bowl's moving floor until time or rates settle their shares.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    aspects : Aspects
+        Of that part.
+    bowl : Bowl
+        Its drive, restitution and kinetic friction.
+    drops : int
+        Parts to follow.
+    seed, jobs : int
+    progress : function, optional
+        As in ``runs.test``; it starts again for a longer spell.
+
+    Returns
+    -------
+    Arrival
+
+    Raises
+    ------
+    FeederError
+        If the part has no shape.
+    KeyboardInterrupt
+        If the user stops it before anything is known.
+    """
+    for seconds in SPELLS:
+        own = {"drops": drops, "seconds": seconds, "seed": seed, "jobs": jobs, "progress": progress}
+        shaken = runs.test(part, aspects, [bowl], LAUNCH, {}, **own)[0]
+        found = judged(shaken)
+        if found.settled or shaken.partial:
+            break
+    return found
+
+
+def judged(shaken):
+    """Say whether one run on the floor settles the shares.
+
+    Parameters
+    ----------
+    shaken : Shaken
+
+    Returns
+    -------
+    Arrival
+        Settled where no share still changes and, once so many transitions were seen that they tell where
+        the shares lead, all of them have come NEAR to it.
+    """
+    seen = shaken.occupancy
+    lying = seen.plate.sum()
+    p = seen.plate / lying if lying > 0.0 else np.full(len(seen.plate), np.nan)
+    reason = _reason(shaken, seen, p, lying)
+    low, high = _span(seen, p, settled=not reason)
+    return Arrival(check.frozen(p), check.frozen(low), check.frozen(high), not reason, reason, shaken)
+
+
+def _reason(shaken, seen: Occupancy, p, lying):
+    """Why the shares are not settled; empty where they are."""
+    if not lying >= 1.0 - LOST:
+        return UNSEEN.format(round((1.0 - lying) * shaken.parts), shaken.parts)
+    away = np.abs(np.nan_to_num(seen.limit, nan=0.0) - p) > NEAR
+    outside = (seen.limit < seen.plate_low) | (seen.limit > seen.plate_high)
+    led = np.isfinite(seen.limit).any() and (away & outside & np.isfinite(seen.limit)).any()
+    return MOVING.format(shaken.seconds) if led or seen.changing.any() else ""
+
+
+def _span(seen, p, settled):
+    """(A,) ends of the interval: of the time on the plate, or from the first shares to where they lead."""
+    ends = [seen.plate_low, seen.plate_high, p]
+    if not settled:
+        ends += [seen.start, seen.limit_low, seen.limit_high]
+    ends = np.stack(ends)
+    nothing = ~np.isfinite(p)
+    low, high = np.nanmin(ends, axis=0), np.nanmax(ends, axis=0)
+    return np.where(nothing, 0.0, low), np.where(nothing, 1.0, high)

@@ -1,0 +1,63 @@
+"""What a bowl's own floor delivers, and when that is not settled."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.dropping.plate import arrival, runs
+from feederscrew.resting.aspects import find
+
+
+def plate(amplitude):
+    return bowls.record(bowls.settings(path=None, overrides=(f"drive.amplitude={amplitude} mm",)))
+
+
+@pytest.fixture(scope="module")
+def shaken():
+    """Few parts on a gentle floor."""
+    part = shapes.part(shapes.box(8.0, 12.0, 15.0))
+    aspects = find(part)
+    return part, aspects, runs.test(part, aspects, [plate(0.02)], "feed", {}, drops=30, seconds=0.5)[0]
+
+
+def changed(shaken, **values):
+    """The run with other findings."""
+    values = {name: np.asarray(value) for name, value in values.items()}
+    return replace(shaken, occupancy=replace(shaken.occupancy, **values))
+
+
+def test_a_gentle_floor_settles_the_shares(shaken):
+    part, aspects, _ = shaken
+    found = arrival.arrival(part, aspects, plate(0.02), drops=30)
+    assert found.settled and found.reason == "" and found.p.sum() == pytest.approx(1.0)
+    assert (found.low <= found.p).all() and (found.p <= found.high).all()
+    assert found.shaken.seconds == pytest.approx(arrival.SPELLS[0], rel=0.05)
+
+
+def test_shares_that_still_change_are_undecided(shaken):
+    found = arrival.judged(changed(shaken[2], changing=[True, False, False]))
+    assert not found.settled and found.reason == arrival.MOVING.format(shaken[2].seconds)
+
+
+def test_rates_that_lead_elsewhere_are_undecided_and_in_the_interval(shaken):
+    run = changed(
+        shaken[2], start=[0.5, 0.3, 0.2], plate=[0.5, 0.3, 0.2], plate_low=[0.4, 0.2, 0.1],
+        plate_high=[0.6, 0.4, 0.3], limit=[0.9, 0.1, 0.0], limit_low=[0.8, 0.05, 0.0],
+        limit_high=[0.95, 0.15, 0.05], changing=[False] * 3,
+    )  # fmt: skip
+    found = arrival.judged(run)
+    assert not found.settled and found.low == pytest.approx([0.4, 0.05, 0.0])
+    assert found.high == pytest.approx([0.95, 0.4, 0.3])
+    near = arrival.judged(changed(run, limit=[0.53, 0.28, 0.19]))
+    assert near.settled and near.low == pytest.approx([0.4, 0.2, 0.1])
+
+
+def test_parts_that_lie_on_nothing_are_told(shaken):
+    found = arrival.judged(changed(shaken[2], plate=[0.3, 0.2, 0.1]))
+    assert not found.settled and found.p == pytest.approx([1 / 2, 1 / 3, 1 / 6])
+    assert found.reason == arrival.UNSEEN.format(12, 30)
+    nothing = arrival.judged(changed(shaken[2], plate=[0.0, 0.0, 0.0]))
+    assert np.isnan(nothing.p).all() and nothing.low.tolist() == [0.0] * 3
