@@ -129,9 +129,22 @@ def measured(cuboids, shown):
         print(f"{name:28}{errors}            " + "".join(f"{a:7.3f}" for a in away))
 
 
+def launched(drops):
+    """Print each launch on the sets that name theirs: a coin on its edge, a cube with one side shorter."""
+    sets = {row["what"].split()[0]: float(row["value"]) for row in rows(ROOT / "tests/data/launches.csv")}
+    coin = Body(shapes.part(shapes.cylinder(10.0, 7.08, 64)), drops)
+    short = Body(shapes.part(shapes.box(10.0, 10.0, 9.3)), drops)
+    print(f"\nCoin on its edge, flipped: {sets['coin']:.3f}")
+    print(f"Slope of a shortened cube's pair, dropped: {sets['cube']:.1f}")
+    for name in PRESETS:
+        edge = coin.drop(name)[np.argmax(coin.aspects.heights)]
+        pair = short.drop(name)[np.argmin(short.aspects.heights)]
+        print(f"{f'drop, {name}':28}{edge:9.4f}{(3.0 * pair - 1.0) / 0.07:9.2f}")
+
+
 def against_drops(groups):
     """Print how far each rule is from the drop tests, on the mean of each group of bodies."""
-    for preset in ("tumble", "drop"):
+    for preset in ("feed", "drop"):
         print(f"\nMean total variation from the drop test ({preset})")
         print(f"{'':28}" + "".join(f"{f'{name} ({len(bodies)})':>18}" for name, bodies in groups.items()))
         away = {
@@ -151,7 +164,7 @@ def coverage(cuboids, t_shape, groups):
     print("\nRecommended interval: share that falls inside, mean width")
     for kind in ("closed form", "drop test"):
         found = {"measured": tossed(cuboids, t_shape, kind)}
-        for preset in ("tumble", "drop"):
+        for preset in ("feed", "drop"):
             for group, bodies in groups.items():
                 found[f"drop test ({preset}), {group}"] = [
                     entry for body in bodies for entry in ends(body, kind, body.drop(preset))
@@ -240,6 +253,7 @@ def main(chosen):
     real = [Body(load(str(path), allow_open=True), chosen.drops) for path in files]
     groups = {"real": real, "made": bodies}
     measured(cuboids, shown)
+    launched(chosen.drops)
     against_drops(groups)
     coverage(cuboids, shown[RATIOS[0]], groups)
     cards()

@@ -36,7 +36,7 @@ class DropStudy:
 
 def drop(
     part: Part,
-    launch: str = "tumble",
+    launch: str = "feed",
     conditions: Mapping[str, str | None] | None = None,
     *,
     drops: int | None = None,

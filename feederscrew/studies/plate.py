@@ -28,7 +28,7 @@ class PlateStudy:
 def plate(
     part: Part,
     bowls: Sequence[Bowl],
-    launch: str = "tumble",
+    launch: str = "feed",
     conditions: Mapping[str, str | None] | None = None,
     *,
     names: Sequence[str] | None = None,
