@@ -79,7 +79,7 @@ class ConveyPhase:
     @property
     def curve(self):
         """Return the velocities over the phase, as a ConveyCurve."""
-        axis = grids.Axis("phase_deg", self.best.phases, DEG)
+        axis = grids.GridAxis("phase_deg", self.best.phases, DEG)
         return ConveyCurve("phase", "drive.phase", (axis,), self.best.cells)
 
 
