@@ -179,7 +179,7 @@ def test_part_and_target_go_together(run):
     assert run("bowl", PART).exit_code == 2
     assert "PART is given without --target" in run("bowl", PART).stderr
     assert "--target is given without PART" in run("bowl", "--target", "60/min").stderr
-    assert "has no outline" in told(run, CARD, "--target", "60/min")
+    assert "has no outline" in told(run, CARD, "--target", "60/min", "--rule", "pmi")
 
 
 @pytest.mark.parametrize("target", [1.0, None])
