@@ -67,7 +67,7 @@ results/%/slide.csv: configs/%.yaml | $(READY)
 bench: $(READY_TO_TEST) ## benchmarks, a few minutes
 	for script in benchmarks/*.py; do $(BIN)/python $$script || exit 1; done
 
-docs: docs/aspects.png docs/regimes.png docs/drop.png $(READY) ## pictures, outputs and tables of the README
+docs: docs/aspects.png docs/regimes.png docs/drop.png docs/bowl.png $(READY) ## pictures, outputs and tables of the README
 	$(BIN)/python docs/readme.py
 	$(BIN)/python docs/commands.py
 	$(BIN)/python docs/equations.py
@@ -82,6 +82,10 @@ docs/regimes.png: results/bowl/slide.csv
 docs/drop.png: parts/$(BOLT).stl | $(READY)
 	$(FEEDER) drop $< --drops 1000 --trace 1 -o results --quiet > /dev/null
 	cp results/$(BOLT)/drop_trace.png $@
+
+docs/bowl.png: parts/$(DEMO).stl | $(READY)
+	$(FEEDER) bowl $< --target 60/min -o results --quiet > /dev/null
+	cp results/$(DEMO)/bowl.png $@
 
 fuzz: $(READY_TO_TEST) ## 2,000 round bodies, then ten minutes of damaged files
 	PYTHONPATH=tests $(BIN)/python -m fuzz.rounds 2000

@@ -46,7 +46,7 @@ def test_the_own_point_is_marked_where_the_bowl_works():
     for draw in (slide_plots.contours, slide_plots.regimes):
         figure = draw(one)
         assert own_point(figure.axes[0]) == pytest.approx([25, one.ratio])
-        assert "this bowl, G = 2.11" in texts(figure)
+        assert "this bowl, G = 0.724" in texts(figure)
 
 
 def test_the_regime_map_shows_its_codes_and_names_them():
