@@ -21,9 +21,9 @@ def length(entry):
 def span(entry):
     """Read {from: 2 mm, to: 5 mm}, as {'span': (m, m)}."""
     given = _mapping(entry, ("from", "to"), "write {from: 2 mm, to: 5 mm}")
-    first, last = (_quantity(given[name].value, f"slot {name}", "length") for name in ("from", "to"))
+    first, last = (_quantity(given[name].value, f"{entry.key} {name}", "length") for name in ("from", "to"))
     if not 0.0 <= first < last:
-        what = f"slot runs from {given['from'].value.text} to {given['to'].value.text}"
+        what = f"{entry.key} runs from {given['from'].value.text} to {given['to'].value.text}"
         raise ConfigError(entry.value.where, what, "give from 0 mm or more to something larger")
     return {"span": (first, last)}
 

@@ -30,7 +30,7 @@ class Device:
     where: str  # 'bowl.yaml:20:5'
     limit: float = np.nan  # [m] clearance, width or length
     shares: tuple[tuple[str, float], ...] = ()  # of a yield: share that passes, by aspect
-    span: tuple[float, float] = ()  # [m] from the wall, of a slot
+    span: tuple[float, float] = ()  # [m] from the wall, of a slot or of rails
     corners: tuple[tuple[float, float], ...] = ()  # [m] of a cut_out unrolled, of a profile (y, z)
     like: tuple[str, float, float] = ()  # of a profile: aspect, heading [rad], play [m]
     text: str = ""  # its value as written
@@ -79,6 +79,11 @@ KINDS = {
     "hold_down": DeviceKind(
         values.length, "length", "6 mm",
         "bar above the queue that keeps parts down; returns orientations that do not fit below",
+    ),
+    "rails": DeviceKind(
+        values.span, "span", "{from: 4.5 mm, to: 8.5 mm}",
+        "slot between two rails, by their distances from the wall: headed parts whose centre of mass lies "
+        "over it hang in it by the head; what falls through is returned",
     ),
     "yield": DeviceKind(
         values.shares, "shares", "{A: 0.9}",
@@ -166,10 +171,11 @@ def _misfit(device, width):
     told, mend = f"the track is {1e3 * width:.4g} mm wide", "give a smaller one, or a wider track"
     if device.kind == "canyon" and device.limit >= width:
         yield ConfigError(device.where, f"canyon leaves no track: {told}", mend)
-    if device.kind == "slot" and device.span[0] <= 0.0 and device.span[1] >= width:
-        yield ConfigError(device.where, f"slot leaves no track: {told}", mend)
-    if device.kind == "slot" and device.span[0] >= width:
-        yield ConfigError(device.where, f"slot lies beside the track: {told}", "move it onto the track")
+    if device.span and device.span[0] <= 0.0 and device.span[1] >= width:
+        yield ConfigError(device.where, f"{device.kind} leaves no track: {told}", mend)
+    if device.span and device.span[0] >= width:
+        what = f"{device.kind} lies beside the track: {told}"
+        yield ConfigError(device.where, what, "move it onto the track")
     if device.kind == "cut_out":
         across = [y for _, y in device.corners]
         if max(across) <= 0.0 or min(across) >= width:

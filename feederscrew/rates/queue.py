@@ -140,7 +140,8 @@ def rate(found, speed, target, rule, *, gap=0.0, fill=1.0):
     least, greatest = (end / probability.value if probability.value else 1.0 for end in probability.ends)
     efficiency = Range(share, share * least, share * greatest)
     made = offered * efficiency
-    leaving = float(np.nansum(found.rules[rule] * found.through))
+    chance = np.nan_to_num(found.rules[rule])
+    leaving = float((chance * found.through).sum() / chance.sum()) if chance.sum() > 0.0 else 0.0
     through = float(found.through[row])
     return Rate(
         parts=Range(*(min(one, cap) for one, cap in zip(made.all, most.all))),
@@ -152,7 +153,7 @@ def rate(found, speed, target, rule, *, gap=0.0, fill=1.0):
         probability=probability,
         through=through,
         fill=fill,
-        purity=probability.value * through / leaving if leaving else np.nan,
+        purity=share / leaving if leaving else np.nan,
         row=row,
         orientations=found,
     )
@@ -169,8 +170,8 @@ def _queued(found, row, rule, gap, fill):
 def _efficiency(found, row, rule):
     """Share of the parts offered that leave in the orientation of a row."""
     chance = np.nan_to_num(found.rules[rule])
-    total = chance.sum()
-    return float(chance[row] * found.through[row] / total) if total > 0.0 else 0.0
+    total, same = chance.sum(), found.leaves_as == found.leaves_as[row]
+    return float((chance * found.through)[same].sum() / total) if total > 0.0 else 0.0
 
 
 def _probability(found, row, rule):

@@ -18,6 +18,7 @@ class Orientations:
     stations: tuple[str, ...]  # the track itself, then each device
     passes: np.ndarray  # (M, stations) share each station lets pass; the rest goes back into the bowl
     margins: np.ndarray  # (M, stations) [m] by which it passes or fails; NaN where that is not known
+    leaves_as: np.ndarray  # (M,) int, the row it leaves like: those that hang by the head are one
     rules: dict[str, np.ndarray]  # (M,) probability of aspect and heading by each rule
     interval: np.ndarray  # (M, 2) lowest and highest probability by the recommended rule
 
@@ -81,15 +82,23 @@ def orientations(part, aspects, track, chain=(), sigma=0.0):
     stays = [0.0 if one.falls_off else 1.0 for one in lying]
     passes = [[stay, *(one.passes for one in row)] for stay, row in zip(stays, found)]
     margins = [[np.nan, *(one.margin for one in row)] for row in found]
+    hangs = [any(one.hangs for one in row) for row in found]
     rules = {rule: np.array([one.chances[rule] for one in lying]) for rule in aspects.chances}
     return Orientations(
         lying=lying,
         stations=("track", *(device.kind for device in chain)),
         passes=check.frozen(np.array(passes)),
         margins=check.frozen(np.array(margins)),
+        leaves_as=check.frozen(together(hangs)),
         rules={rule: check.frozen(chance) for rule, chance in rules.items()},
         interval=check.frozen(_interval(aspects, lying)),
     )
+
+
+def together(hangs):
+    """Return the row each orientation leaves like (M,): itself, or the first that hangs where it hangs."""
+    rows = np.arange(len(hangs))
+    return np.where(hangs, int(np.argmax(hangs)), rows)
 
 
 def _interval(aspects, lying):

@@ -10,8 +10,9 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.tooling.cutting import Search
-from feederscrew.tooling.design import MARGIN, Design, design, place
+from feederscrew.tooling.design import MARGIN, design, place
 from feederscrew.tooling.orientations import Orientation, named, orientations
+from feederscrew.tooling.result import Design
 
 
 @dataclass(frozen=True, eq=False)

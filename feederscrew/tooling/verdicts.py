@@ -10,6 +10,7 @@ import shapely
 from feederscrew.bowl.devices import KINDS
 from feederscrew.errors import ConfigError
 from feederscrew.tooling import foot as feet
+from feederscrew.tooling.hanging import hanging_margin
 
 CLOSE = 1e-9  # [m] a part this much over a limit still passes
 FAR = 10.0  # [m] an opening goes on so far below the track and behind the wall
@@ -22,6 +23,7 @@ class Verdict:
     passes: float  # [1] share that passes; the rest goes back into the bowl
     margin: float  # [m] by which it passes, negative: by which it fails; NaN of a measured share
     shift: float = 0.0  # [rad] of the device from the foot's radial line where the margin is least
+    hangs: bool = False  # whether it goes on hanging by the head
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,8 @@ def verdict(device, one, every=(), sigma=0.0):
         shares = {name.casefold(): share for name, share in device.shares}
         return Verdict(shares.get(one.aspect.casefold(), 1.0), math.nan)
     margin, shift = JUDGES[device.kind].verdict(device, one, every)
-    return Verdict(share(margin, sigma), float(margin), float(shift))
+    hangs = device.kind == "rails" and margin >= 0.0 and _slot(device, one, every)[0] < 0.0
+    return Verdict(share(margin, sigma), float(margin), float(shift), hangs)
 
 
 def share(margin, sigma):
@@ -95,6 +98,12 @@ def _slot(device, one, every):
     radius = one.track.radius
     high = radius - first if first > 0.0 else 2.0 * radius
     return feet.over_ring(one.standing, max(radius - last, 0.0), high), 0.0
+
+
+def _rails(device, one, every):
+    over, _ = _slot(device, one, every)
+    held = hanging_margin(one, device.span[1] - device.span[0]) if over < 0.0 else -np.inf
+    return (min(held, -over) if held > 0.0 else over), 0.0
 
 
 def _cut_out(device, one, every):
@@ -153,6 +162,7 @@ JUDGES = {
     "canyon": Judge(_canyon, "above", True),
     "gap": Judge(_gap, "above", True),
     "slot": Judge(_slot, "above", True),
+    "rails": Judge(_rails, "above", True),
     "cut_out": Judge(_cut_out, "above", True),
     "profile": Judge(_profile, "ahead", False),
     "yield": Judge(None, "", False),

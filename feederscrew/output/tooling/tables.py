@@ -115,6 +115,9 @@ def _cut(cut):
 def _value(device):
     if device.corners:
         return {"outline_mm": [[x / MM, y / MM] for x, y in device.corners]}
+    if device.span:
+        first, last = device.span
+        return {"value_mm": (last - first) / MM, "span_mm": [first / MM, last / MM]}
     return {"value_mm": (device.like[2] if device.like else device.limit) / MM}
 
 

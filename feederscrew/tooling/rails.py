@@ -1,0 +1,68 @@
+"""Feeding headed parts hanging: rails at the end, and what has to be returned before them."""
+
+import numpy as np
+
+from feederscrew.bowl.devices import Device
+from feederscrew.tooling import chain
+from feederscrew.tooling.hanging import neck
+from feederscrew.tooling.result import LEAST_SHARE, told, weights
+from feederscrew.tooling.verdicts import verdict
+
+
+def design(every, shares, wanted, margin):
+    """Return the chain that ends in rails in which an orientation hangs.
+
+    Parameters
+    ----------
+    every : sequence of Orientation
+    shares : (M,) float [1]
+    wanted : int
+    margin : float [m]
+        To either side; the slot is wider than the shank and narrower than the head by as much at least.
+
+    Returns
+    -------
+    Design or None
+        None where the part has no head, lies elsewhere than over the slot, or others are left over.
+    """
+    device = _between(every[wanted], margin)
+    if device is None or every[wanted].falls_off:
+        return None
+    found = [verdict(device, one, every) for one in every]
+    same = np.array([one.hangs and one.margin >= margin for one in found])
+    if not same[wanted]:
+        return None
+    margins = np.array([one.margin for one in found])
+    gone = (margins <= -margin) | np.array([one.falls_off for one in every])
+    before = chain.candidates(every, wanted, margin)
+    devices = chain.fewest(before, np.where(gone | same, 0.0, weights(every, shares)), margin)
+    must = [some & ~gone & ~same for some in chain.shared_out(before, devices, margin)]
+    cuts = chain.placed(every, wanted, devices, must)
+    returned = np.any([gone, *must], axis=0)
+    if np.any(~returned & ~same & (shares >= LEAST_SHARE)):
+        return None
+    last = chain.judged(every, wanted, device, margins <= -margin, *_ends(every[wanted], device))
+    return told(every, shares, wanted, (*cuts, last), returned, margin, same)
+
+
+def _between(one, margin):
+    """Rails about the foot of the centre of mass, midway between shank and head; None without a head."""
+    found = neck(one)
+    if found is None or found[1] - found[0] < 2.0 * margin:
+        return None
+    return _rails(one, 0.5 * sum(found))
+
+
+def _ends(one, device):
+    shank, head = neck(one)
+    return tuple(_rails(one, width) or device for width in (shank, head))
+
+
+def _rails(one, width):
+    middle = one.distance - one.shift
+    first = round((middle - 0.5 * width) / chain.FINE) * chain.FINE
+    if first <= 0.0:
+        return None
+    span = first, first + width
+    text = f"{{from: {chain.millimetres(span[0])}, to: {chain.millimetres(span[1])}}}"
+    return Device("rails", chain.WHERE, span=span, text=text)
