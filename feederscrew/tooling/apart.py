@@ -1,6 +1,7 @@
 """Why two orientations cannot be told apart, and what change of the part would help."""
 
 import numpy as np
+import shapely
 
 from feederscrew.mechanics.wall import sameness
 from feederscrew.tooling.chain import LOWER, UPPER, limits
@@ -39,9 +40,25 @@ def reason(wanted, other, margin):
         return (
             f"{wanted.name} and {other.name} differ by {1e3 * apart:.2g} mm at most, as by a chamfer; {need}"
         )
+    if carries_more(other, wanted, margin):
+        return (
+            f"whatever carries {wanted.name} carries {other.name}, which stands on a larger foot and is no higher "
+            f"or wider: only turning it over helps; {need}"
+        )
     return (
         f"{wanted.name} and {other.name} differ by {1e3 * step:.2g} mm in {FEATURES[kind]} and nowhere else "
         f"that a hole or gate can reach, as the open and closed end of a cup: needs an inner feature; {need}"
+    )
+
+
+def carries_more(one, other, margin):
+    """Return whether one orientation stands on all that another stands on, and is no higher or wider."""
+    foot, within = (shapely.MultiPoint(k.foot.corners).convex_hull for k in (one, other))
+    return (
+        foot.buffer(margin).covers(within)
+        and abs(one.distance - other.distance) < 2.0 * margin
+        and one.height <= other.height + margin
+        and one.width <= other.width + 2.0 * margin
     )
 
 

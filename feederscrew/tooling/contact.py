@@ -126,8 +126,11 @@ def within(foot, distance, radius, width):
     away = np.hypot(foot.corners[:, 0], middle - foot.corners[:, 1])
     if away.min() >= edge and _nearest_side(foot, middle) >= edge:
         return foot
-    turn = np.linspace(0.0, 2.0 * np.pi, 2001)[:-1]
-    off = shapely.Polygon(np.column_stack([edge * np.sin(turn), middle + edge * np.cos(turn)]))
+    reach = np.hypot(*foot.corners.T).max()
+    turn = np.linspace(-1.0, 1.0, 2001) * min(3.0 * reach / edge, 0.999 * np.pi)
+    inner = np.array([[0.0, middle]])
+    off = np.concatenate([np.column_stack([edge * np.sin(turn), middle - edge * np.cos(turn)]), inner])
+    off = shapely.Polygon(off)
     area = shapely.union_all([shapely.Polygon()])
     for ring in foot.rings:
         area = area.symmetric_difference(shapely.Polygon(ring))

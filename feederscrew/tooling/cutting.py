@@ -11,9 +11,9 @@ from feederscrew.bowl.devices import Device
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling.chain import WHERE, judged, millimetres
 
-STARTS = 160  # random holes tried
-CLIMBS = 5  # the best of them are improved
-STEPS = 70  # changes tried of each
+STARTS = 220  # random holes tried
+CLIMBS = 6  # the best of them are improved
+STEPS = 100  # changes tried of each
 ROOM = 1.3  # holes reach so far beyond the foot
 STEP = 1e-5  # [m] to which a corner is rounded
 HALVINGS = 24

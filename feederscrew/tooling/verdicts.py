@@ -132,8 +132,7 @@ def opening_margin(opening, shown):
     if inside > 0.0:
         return inside
     corners = shapely.get_coordinates(shown)
-    free = shapely.union_all([opening, below, behind])
-    return -float(shapely.distance(shapely.points(corners), free).max())
+    return -float(shapely.distance(shapely.points(corners), opening).max())
 
 
 def seen(one):

@@ -1,0 +1,126 @@
+"""Designs of tooling: what they promise holds in the verdicts and in the rate."""
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.bowl.record import Track
+from feederscrew.errors import FeederError
+from feederscrew.rates import queue
+from feederscrew.resting.aspects import find
+from feederscrew.studies.tooling import tooling
+from feederscrew.tooling import cutting
+from feederscrew.tooling.design import design, place
+from feederscrew.tooling.orientations import named, orientations
+from feederscrew.tooling.verdicts import verdict
+
+MARGIN = 2.5e-4
+SETTINGS = ("track.radius=150 mm", "track.width=200 mm")
+
+
+@pytest.fixture(scope="module")
+def bracket():
+    part = shapes.part(shapes.prism(shapes.l_profile(30, 20, 2), 15))
+    found = find(part)
+    track = bowls.read(None, SETTINGS).track
+    every = named(orientations(part, found, track))
+    return part, found, every, np.array([one.chances["recommended"] for one in every])
+
+
+def test_a_block_is_isolated_by_devices_of_one_number(monkeypatch):
+    monkeypatch.setattr(cutting, "STARTS", 20)
+    study = tooling(shapes.part(shapes.box(20, 12, 5)), bowls.read(None, SETTINGS), seconds=20.0)
+    told = [one.reasons[0] for one in study.designs if not one.isolated]
+    assert len(told) == 3  # what stands tall on a small foot goes wherever the block lying flat goes
+    assert sum("which stands on a larger foot and is no higher" in one for one in told) >= 2
+    for one in (one for one in study.designs if one.isolated):
+        assert one.purity == pytest.approx(1.0)
+        assert one.efficiency == pytest.approx(study.shares[one.wanted] / study.shares.sum())
+        assert one.margin >= MARGIN - 1e-9
+        assert {cut.device.kind for cut in one.cuts} <= {
+            "wiper", "narrowed_track", "pressure_break", "canyon", "gap", "profile",
+        }  # fmt: skip
+
+
+def test_every_cut_holds_what_it_says(bracket):
+    _, _, every, shares = bracket
+    wanted = next(k for k, one in enumerate(every) if one.height > 0.0295)
+    found = design(every, shares, wanted, holes=False)
+    assert found.cuts
+    for cut in found.cuts:
+        margins = {one.name: verdict(cut.device, one, every).margin for one in every}
+        assert margins[every[wanted].name] == pytest.approx(cut.margin_pass)
+        assert cut.margin_pass >= MARGIN - 1e-9
+        assert {name for name, margin in margins.items() if margin < 0.0} == set(cut.returns)
+        least = verdict(cut.smallest, every[wanted], every).margin
+        most = verdict(cut.largest, every[wanted], every).margin
+        assert least >= cut.margin_pass - 1e-9 >= most - 2e-9
+
+
+def test_a_hole_parts_mirror_images(bracket):
+    _, _, every, shares = bracket
+    wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
+    partner = next(k for k, one in enumerate(every) if one.name == every[wanted].mirror)
+    found = cutting.cut_out(every, wanted, [partner], MARGIN, cutting.Search(seed=3))
+    assert found is not None
+    cut, held = found
+    assert held == [partner]
+    assert 3 <= len(cut.device.corners) <= 6
+    assert cut.margin_pass >= MARGIN and cut.margin_reject >= MARGIN
+    assert verdict(cut.smallest, every[partner]).margin < 1e-6
+    assert verdict(cut.largest, every[wanted]).margin > -1e-6
+    again, _ = cutting.cut_out(every, wanted, [partner], MARGIN, cutting.Search(seed=3))
+    assert again.device == cut.device
+
+
+def test_a_bowl_of_the_design_is_as_pure_and_efficient(bracket, tmp_path):
+    part, aspects, every, shares = bracket
+    wanted = int(np.argmax([one.canyon for one in every]))
+    found = design(every, shares, wanted, holes=False)
+    lines = "".join(f"  - {cut.device.kind}: {cut.device.text}\n" for cut in found.cuts)
+    path = tmp_path / "tooling.yaml"
+    path.write_text(f"track: {{radius: 150 mm, width: 200 mm}}\ndevices:\n{lines}")
+    bowl = bowls.read(path)
+    known = queue.orientations(part, aspects, bowl.track, bowl.devices)
+    target = every[wanted].aspect, every[wanted].heading
+    made = queue.rate(known, queue.Range(0.02, 0.02, 0.02), target, "recommended")
+    assert made.purity == pytest.approx(found.purity, rel=1e-9)
+    assert made.efficiency == pytest.approx(found.efficiency, rel=1e-9)
+    assert made.offered.value == pytest.approx(0.02 / (shares * [one.length for one in every]).sum())
+
+
+def test_a_headed_pin_is_fed_hanging():
+    head, shank = shapes.cylinder(5.0, 4.0, 32), shapes.cylinder(2.0, 20.0, 32)
+    head.apply_translation([0, 0, 12.0])
+    study = tooling(shapes.part(head.union(shank)), bowls.read(None, SETTINGS), "A", seconds=20.0)
+    assert [cut.device.kind for cut in study.design.cuts][-1] == "rails"
+    lying = [k for k, one in enumerate(study.orientations) if one.aspect == "A" and one.length > 0.02]
+    assert study.design.efficiency == pytest.approx(study.shares[lying].sum() / study.shares.sum())
+    assert study.design.purity == pytest.approx(1.0)
+
+
+def test_what_cannot_be_told_apart_is_said():
+    """A plate whose one face has a chamfer of 0.1 mm: its two faces down differ by nothing else."""
+    plate, thin = shapes.box(12, 12, 3.8), shapes.box(11.8, 11.8, 0.2)
+    thin.apply_translation([0, 0, 2.0])
+    study = tooling(shapes.part(plate.union(thin)), bowls.read(None, SETTINGS), "A", seconds=5.0)
+    assert not study.design.isolated
+    assert study.design.left_over == ("B@0",)
+    assert "A@0 and B@0 differ by" in study.design.reasons[0]
+    assert "mm more in" in study.design.reasons[0]
+
+
+def test_orientations_that_do_not_exist(bracket):
+    _, _, every, _ = bracket
+    with pytest.raises(FeederError, match=r"there is no aspect 'Q' - choose one of A, B"):
+        place(every, "Q", None, "part.stl")
+    with pytest.raises(FeederError, match=r"aspect A has no stable heading 45 deg - choose one of"):
+        place(every, "a", np.radians(45.0), "part.stl")
+    assert every[place(every, "A", every[0].heading, "part.stl")] is every[0]
+
+
+def test_a_part_too_large_for_the_bowl_and_a_card_without_a_mesh():
+    part = shapes.part(shapes.box(20, 12, 5))
+    with pytest.raises(FeederError, match=r"track.radius: 20 mm is less than the part's 23"):
+        orientations(part, find(part), Track(climb=0.0, bank=0.0, radius=0.02, width=0.01))

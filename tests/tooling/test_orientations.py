@@ -1,0 +1,132 @@
+"""Orientations: what is one, who is whose mirror image, what touches the track."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew.bowl.record import Track
+from feederscrew.resting.aspects import find
+from feederscrew.tooling.hanging import neck
+from feederscrew.tooling.orientations import named, orientations
+from feederscrew.tooling.silhouette import silhouette
+
+STRAIGHT = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
+CURVED = replace(STRAIGHT, radius=0.15)
+LEGS = [(-10, 0), (-7, 0), (-7, 6), (7, 6), (7, 0), (10, 0), (10, 10), (-10, 10)]
+
+
+def lying(mesh, track=STRAIGHT):
+    part = shapes.part(mesh)
+    return orientations(part, find(part), track)
+
+
+def pick(found, height, length):
+    return next(
+        one
+        for one in found
+        if one.height == pytest.approx(height, rel=1e-3) and one.length == pytest.approx(length, rel=1e-3)
+    )
+
+
+def test_a_block_has_six_orientations_with_closed_form_limits():
+    found = lying(shapes.box(20, 12, 5))
+    assert len(found) == 6
+    assert sum(one.chances["csa"] for one in found) == pytest.approx(1.0, abs=1e-9)
+    along = pick(found, 0.005, 0.020)
+    assert along.gap == pytest.approx(0.010, rel=1e-6)
+    assert along.balcony == pytest.approx(0.006, rel=1e-3)
+    assert along.canyon == pytest.approx(0.006, rel=1e-3)
+    assert along.margin == pytest.approx(0.006, rel=1e-6)
+
+
+def test_turns_by_a_third_are_one():
+    side = 18.0
+    prism = shapes.prism([(-side / 2, 0), (side / 2, 0), (0, side * np.sqrt(3) / 2)], 4)
+    flat = [one for one in lying(prism) if one.height == pytest.approx(0.004)]
+    assert len(flat) == 1
+    assert flat[0].balcony == pytest.approx(1e-3 * side * np.sqrt(3) / 6, rel=1e-3)
+    assert flat[0].heading_share == pytest.approx(1.0)
+
+
+def test_a_bridge_touches_with_its_legs_and_not_its_hull():
+    standing = next(
+        one
+        for one in lying(shapes.prism(LEGS, 8))
+        if one.height == pytest.approx(0.010) and len(one.foot.rings) == 2 and one.length > 0.015
+    )
+    areas = [np.ptp(ring, axis=0).prod() for ring in standing.foot.rings]
+    assert areas == pytest.approx([24e-6, 24e-6], rel=1e-3)
+    assert standing.gap == pytest.approx(0.003, rel=1e-3)
+
+
+def test_limits_scale_with_the_part():
+    small, large = lying(shapes.box(20, 12, 5)), lying(shapes.box(50, 30, 12.5))
+    for one, other in zip(small, large):
+        assert other.gap == pytest.approx(2.5 * one.gap, rel=1e-5)
+        assert other.chances == pytest.approx(one.chances, abs=1e-9)
+
+
+def test_limits_do_not_hang_on_the_tessellation(rng):
+    mesh = shapes.prism(shapes.l_profile(), 15)
+    whole, finer = lying(mesh, CURVED), lying(shapes.subdivided(mesh, 2), CURVED)
+    assert [one.name for one in whole] == [one.name for one in finer]
+    for one, other in zip(whole, finer):
+        limits = [(k.balcony, k.canyon, k.gap, k.margin) for k in (one, other)]
+        assert limits[1] == pytest.approx(limits[0], abs=2e-6)
+
+
+def test_mirror_images_stay_apart_and_name_each_other():
+    found = named(lying(shapes.prism(shapes.l_profile(), 15), CURVED))
+    names = {one.name: one.mirror for one in found}
+    paired = {name: mirror for name, mirror in names.items() if mirror}
+    assert paired
+    assert all(names[mirror] == name for name, mirror in paired.items())
+    first = next(iter(paired))
+    pair = [next(one for one in found if one.name == name) for name in (first, paired[first])]
+    assert pair[0].chances["csa"] == pytest.approx(pair[1].chances["csa"], rel=1e-6)
+    assert pair[0].distance == pytest.approx(pair[1].distance, rel=1e-6)
+
+
+def test_a_dowel_rolls_on_a_strip_as_long_as_itself():
+    track = replace(CURVED, radius=0.15)
+    found = lying(shapes.cylinder(3.0, 18.4, 64), track)
+    along = pick(found, 0.005993, 0.0184)
+    assert along.kind == "rolling"
+    assert along.distance == pytest.approx(0.003 + 0.0184**2 / (8.0 * 0.15), rel=3e-3)
+    strip = np.ptp(along.foot.rings[0], axis=0)
+    assert strip[0] == pytest.approx(0.0184, rel=1e-3)
+    assert strip[1] == pytest.approx(2.0 * np.sqrt(2.0 * 0.03) * 0.003, rel=0.05)
+
+
+def test_a_bank_brings_the_weight_nearer_to_the_wall():
+    level, banked = (lying(shapes.box(20, 12, 5), replace(STRAIGHT, bank=b)) for b in (0.0, 0.2))
+    assert level[0].balcony - banked[0].balcony == pytest.approx(0.0025 * np.tan(0.2), rel=1e-3)
+
+
+def test_what_a_gate_sees_of_a_block():
+    one = pick(lying(shapes.box(20, 12, 5)), 0.005, 0.020)
+    (ring,) = one.silhouette
+    assert ring.min(axis=0) == pytest.approx([0.0, 0.0], abs=1e-6)
+    assert ring.max(axis=0) == pytest.approx([0.012, 0.005], rel=1e-3)
+
+
+def test_a_curved_track_sees_the_block_wider():
+    """The corners at the wall and the middle of the inner side: wider by the sagitta."""
+    one = pick(lying(shapes.box(20, 12, 5), CURVED), 0.005, 0.020)
+    rings = silhouette(one.posture, one.heading, one.distance, 0.15)
+    assert max(ring[:, 0].max() for ring in rings) == pytest.approx(one.width, abs=2e-5)
+
+
+def test_a_headed_pin_has_a_neck():
+    head, shank = shapes.cylinder(5.0, 4.0, 48), shapes.cylinder(2.0, 20.0, 48)
+    head.apply_translation([0, 0, 12.0])
+    pin = head.union(shank) if hasattr(head, "union") else head
+    found = [one for one in lying(pin) if one.length > 0.02]
+    assert found
+    for one in found:
+        thin, wide = neck(one)
+        assert thin == pytest.approx(0.004, rel=0.02)
+        assert wide == pytest.approx(0.010, rel=0.02)
+    assert neck(pick(lying(shapes.box(20, 12, 5)), 0.005, 0.020)) is None

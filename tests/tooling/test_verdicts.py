@@ -1,0 +1,160 @@
+"""What each kind of device does with a block; shares under play."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapes
+from scipy.special import ndtr
+
+from feederscrew import bowl as bowls
+from feederscrew.bowl.devices import KINDS
+from feederscrew.bowl.record import Track
+from feederscrew.errors import FeederError
+from feederscrew.resting.aspects import find
+from feederscrew.tooling.orientations import orientations
+from feederscrew.tooling.verdicts import JUDGES, share, verdict
+
+TRACK = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
+
+
+@pytest.fixture(scope="module")
+def block():
+    part = shapes.part(shapes.box(20, 12, 5))
+    return orientations(part, find(part), TRACK)
+
+
+@pytest.fixture
+def device(tmp_path):
+    def read(line):
+        path = tmp_path / "bowl.yaml"
+        path.write_text(f"track: {{radius: 100 m, width: 200 mm}}\ndevices:\n  - {line}\n")
+        return bowls.read(path).devices[0]
+
+    return read
+
+
+def along(block):
+    return next(one for one in block if one.height < 6e-3 and one.length > 0.015)
+
+
+def across(block):
+    return next(one for one in block if one.height < 6e-3 and one.length < 0.015)
+
+
+@pytest.mark.parametrize(
+    ("line", "lengthwise", "crosswise"),
+    [  # margins in mm
+        ("wiper: 6 mm", 1.0, 1.0),
+        ("height_bar: 4 mm", -1.0, -1.0),
+        ("hold_down: 5.5 mm", 0.5, 0.5),
+        ("pressure_break: 15 mm", 3.0, -5.0),
+        ("narrowed_track: 8 mm", 2.0, -2.0),
+        ("canyon: 8 mm", -2.0, 2.0),
+        ("gap: 9 mm", 1.0, -3.0),
+        ("slot: {from: 5 mm, to: 7 mm}", 6.0, 6.0),
+        ("slot: {from: 0 mm, to: 8 mm}", -2.0, 2.0),
+        ("cut_out: [[0 mm, 0 mm], [9 mm, 0 mm], [9 mm, 100 mm], [0 mm, 100 mm]]", 1.0, -3.0),
+        ("profile: [[0 mm, 0 mm], [12.5 mm, 0 mm], [12.5 mm, 5.5 mm], [0 mm, 5.5 mm]]", 0.5, -7.5),
+    ],
+)
+def test_signed_margins_of_a_block(block, device, line, lengthwise, crosswise):
+    made = device(line)
+    for one, wanted in ((along(block), lengthwise), (across(block), crosswise)):
+        found = verdict(made, one, block)
+        assert 1e3 * found.margin == pytest.approx(wanted, abs=5e-3)
+        assert found.passes == float(wanted > 0.0)
+
+
+def test_a_gate_of_an_orientation_passes_it_by_its_play(block, device):
+    one = along(block)
+    made = device(f"profile: {{of: {one.aspect}@{np.degrees(one.heading):.6g}, play: 0.2 mm}}")
+    assert verdict(made, one, block).margin == pytest.approx(2e-4, abs=1e-6)
+    assert verdict(made, across(block), block).margin < -7e-3
+
+
+def test_a_gate_of_an_orientation_that_is_none(block, device):
+    with pytest.raises(
+        FeederError, match=r"bowl.yaml:3:5: profile names orientation Q@10, which the part has"
+    ):
+        verdict(device("profile: {of: Q@10, play: 0.2 mm}"), block[0], block)
+
+
+def test_rails_return_what_falls_through_and_cannot_hang(block, device):
+    made = device("rails: {from: 0 mm, to: 15 mm}")
+    assert verdict(made, along(block), block).passes == 0.0
+    assert not verdict(made, along(block), block).hangs
+
+
+def test_a_share_passes_by_margin_over_deviation(block, device):
+    found = verdict(device("gap: 9.9 mm"), along(block), block, sigma=2e-4)
+    assert found.passes == pytest.approx(ndtr(0.5), rel=1e-3)
+    assert share(0.0, 1e-4) == 0.5
+    assert share(-1e-3, 0.0) == 0.0
+
+
+def test_every_kind_has_a_verdict_and_an_example_that_reads(tmp_path):
+    assert set(JUDGES) == set(KINDS)
+    lines = "".join(f"  - {kind}: {one.example}\n" for kind, one in KINDS.items())
+    path = tmp_path / "bowl.yaml"
+    path.write_text("devices:\n" + lines)
+    chain = bowls.read(path).devices
+    assert [one.kind for one in chain] == list(KINDS)
+    assert all(one.text == KINDS[one.kind].example for one in chain)
+    settings = {s.key.name: s for s in bowls.settings(path)}
+    assert settings["devices.1"].text == "wiper: 6 mm"
+    assert settings["devices.1"].origin == f"{path}:2"
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("gap: -1 mm", "2:10: gap is -1 mm - give more than 0 mm"),
+        ("gapp: 3 mm", "2:5: unknown device 'gapp' - did you mean gap?"),
+        ("slot: {from: 5 mm, to: 2 mm}", "slot runs from 5 mm to 2 mm"),
+        ("slot: {from: 0 mm, to: 25 mm}", "slot leaves no track: the track is 25 mm wide"),
+        ("slot: {from: 2 mm, too: 3 mm}", "unknown key 'too' - known are from, to"),
+        ("rails: {from: 30 mm, to: 40 mm}", "rails lies beside the track"),
+        ("canyon: 25 mm", "canyon leaves no track: the track is 25 mm wide"),
+        ("cut_out: [[0 mm, 0 mm], [1 mm, 1 mm]]", "cut_out has 2 corners"),
+        ("cut_out: [[0 mm, 0 mm], [9 mm, 9 mm], [9 mm, 0 mm], [0 mm, 9 mm]]", "cut_out crosses itself"),
+        ("cut_out: [[0 mm, 0 mm], [1 mm, 0 mm], [2 mm, 0 mm]]", "cut_out has no area"),
+        ("cut_out: [[0 mm, 30 mm], [9 mm, 30 mm], [9 mm, 40 mm]]", "cut_out lies beside the track"),
+        ("cut_out: {dxf: none.dxf, layer: CUT}", "none.dxf: no such file - check the path"),
+        ("profile: {of: A90, play: 0 mm}", "'A90' is not an orientation - write aspect@heading, as A@90"),
+    ],
+)
+def test_faults_have_their_place(tmp_path, line, told):
+    path = tmp_path / "bowl.yaml"
+    path.write_text(f"devices:\n  - {line}\n")
+    with pytest.raises(FeederError) as caught:
+        bowls.read(path)
+    (one,) = caught.value.lines
+    assert one.startswith(f"{path}:2:")
+    assert told in one
+
+
+def test_a_cut_out_of_a_drawing(tmp_path, block):
+    import ezdxf
+
+    drawing = ezdxf.new("R2010", units=4)
+    corners = [(0, 0), (9, 0), (9, 100), (0, 100)]
+    drawing.modelspace().add_lwpolyline(corners, close=True, dxfattribs={"layer": "CUT"})
+    drawing.saveas(tmp_path / "holes.dxf")
+    path = tmp_path / "bowl.yaml"
+    path.write_text(
+        "track: {radius: 100 m, width: 200 mm}\ndevices:\n  - cut_out: {dxf: holes.dxf, layer: CUT}\n"
+    )
+    made = bowls.read(path).devices[0]
+    assert np.array(made.corners) == pytest.approx(1e-3 * np.array(corners, dtype=float))
+    assert verdict(made, along(block), block).margin == pytest.approx(1e-3, abs=5e-6)
+    with pytest.raises(FeederError, match="has no closed polyline on layer 'GATE'"):
+        path.write_text("devices:\n  - cut_out: {dxf: holes.dxf, layer: GATE}\n")
+        bowls.read(path)
+
+
+def test_a_narrow_track_carries_less(block):
+    one = along(block)
+    narrow = replace(one, track=replace(TRACK, width=0.0065))
+    assert narrow.margin == pytest.approx(0.5e-3, abs=1e-5)
+    assert narrow.foot.rings[0][:, 1].max() == pytest.approx(0.5e-3, abs=1e-5)
