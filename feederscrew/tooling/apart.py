@@ -42,8 +42,8 @@ def reason(wanted, other, margin):
         )
     if carries_more(other, wanted, margin):
         return (
-            f"whatever carries {wanted.name} carries {other.name}, which stands on a larger foot and is no higher "
-            f"or wider: only turning it over helps; {need}"
+            f"whatever carries {wanted.name} carries {other.name}, which stands on a larger foot and is no "
+            f"higher or wider: only turning it over helps; {need}"
         )
     return (
         f"{wanted.name} and {other.name} differ by {1e3 * step:.2g} mm in {FEATURES[kind]} and nowhere else "

@@ -59,7 +59,7 @@ def test_every_cut_holds_what_it_says(bracket):
 
 
 def test_a_hole_parts_mirror_images(bracket):
-    _, _, every, shares = bracket
+    _, _, every, _ = bracket
     wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
     partner = next(k for k, one in enumerate(every) if one.name == every[wanted].mirror)
     found = cutting.cut_out(every, wanted, [partner], MARGIN, cutting.Search(seed=3))

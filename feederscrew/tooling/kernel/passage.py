@@ -28,6 +28,7 @@ CLOSE = 1e-9  # [m] a lower margin is looked for if it may be lower by more
 INSTANT = 1e-12  # [rad] a shorter piece is one of rounding
 SAMPLES = 4  # parts of a piece that may hold the least margin
 SECTIONS = 40
+ASIDE = 1e-3  # of a sample's distance: there the margin is seen to rise or to fall
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 
@@ -167,21 +168,23 @@ def _within(foot, hole, scratch, i, out):
     """Look for a lower margin within a piece: some samples, then the golden section about the lowest."""
     active = _status(foot, hole, scratch, i)
     start, step = scratch.events[i], (scratch.events[i + 1] - scratch.events[i]) / SAMPLES
-    first, second = scratch.ends[i, 0], scratch.ends[i, 1]
-    lowest, at, before, after = math.inf, 0, first, second
-    last = first
-    for k in range(1, SAMPLES):
-        margin = _margin(foot, hole, scratch, start + k * step, active)
+    lowest, at, last = scratch.ends[i, 0], 0, scratch.ends[i, 1]
+    for k in range(1, SAMPLES + 1):
+        margin = last if k == SAMPLES else _margin(foot, hole, scratch, start + k * step, active)
         if margin < lowest:
-            lowest, at, before, after = margin, k, last, second
-        elif at == k - 1:
-            after = margin
-        last = margin
+            lowest, at = margin, k
     _lower(out, lowest, start + at * step)
-    dip = max(before, after) - lowest
-    if min(before, after) < lowest or dip < CLOSE or lowest - dip > out[0]:
-        return
-    low, high = start + (at - 1) * step, start + (at + 1) * step
+    for beside in (at - 1, at + 1):  # an end may be the lowest sample, and the margin still fall from there
+        if 0 <= beside <= SAMPLES:
+            way = (beside - at) * step
+            if _margin(foot, hole, scratch, start + at * step + ASIDE * way, active) < lowest:
+                _section(foot, hole, scratch, start + at * step, start + beside * step, active, out)
+
+
+@compiled
+def _section(foot, hole, scratch, start, end, active, out):
+    """Tell ``out`` of the least margin between two shifts, by the golden section."""
+    low, high = start, end
     first, second = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
     here = _margin(foot, hole, scratch, first, active)
     there = _margin(foot, hole, scratch, second, active)
@@ -194,7 +197,7 @@ def _within(foot, hole, scratch, i, out):
             low, first, here = first, second, there
             second = low + GOLDEN * (high - low)
             there = _margin(foot, hole, scratch, second, active)
-        if here > out[0] + CLOSE and (high - low) * foot.centre < CLOSE:
+        if abs(high - low) * foot.centre < CLOSE:
             break
     _lower(out, min(here, there), first if here < there else second)
 
