@@ -1,0 +1,114 @@
+"""``feeder tooling`` from the command line, and devices in what ``feeder rate`` prints."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapes
+
+ROOT = Path(__file__).parents[3]
+WIDE = ("--set", "track.width=200 mm")
+ROW = {
+    "aspect", "heading_deg", "share", "length_mm", "width_mm", "height_mm", "wall_distance_mm", "balcony_mm",
+    "canyon_mm", "gap_mm", "isolated", "devices", "margin_mm", "efficiency", "purity", "left_over",
+}  # fmt: skip
+CUT = {"device", "value_mm", "margin_pass_mm", "margin_reject_mm", "smallest", "largest", "returns"}
+
+
+@pytest.fixture
+def block(tmp_path):
+    shapes.box(20, 12, 5).export(tmp_path / "block.stl")
+    return "block.stl"
+
+
+def told(run, *arguments):
+    result = run(*arguments, "--format", "json")
+    assert result.exit_code == 0, result.output
+    return json.loads(result.stdout)
+
+
+def test_the_chain_of_one_orientation(run, block):
+    document = told(run, "tooling", block, "--aspect", "A", "--heading", "90deg", *WIDE)
+    assert document["isolated"] is True
+    assert document["rule"] == "recommended"
+    assert len(document["orientations"]) == 6
+    assert all(set(row) >= ROW for row in document["orientations"])
+    assert sum(row["share"] for row in document["orientations"]) == pytest.approx(1.0, abs=1e-9)
+    assert {row["isolated"] for row in document["orientations"]} == {True, None}
+    for cut in document["chain"]:
+        assert set(cut) >= CUT
+        assert min(cut["margin_pass_mm"], cut["margin_reject_mm"]) >= 0.25
+    assert document == told(run, "tooling", block, "--aspect", "A", "--heading", "90deg", *WIDE)
+
+
+def test_rate_reads_the_chain(run, block, tmp_path):
+    document = told(run, "tooling", block, "--aspect", "A", "--heading", "90deg", *WIDE)
+    lines = "".join(f"  - {cut['device']}: {cut['text']}\n" for cut in document["chain"])
+    (tmp_path / "tooling.yaml").write_text(f"track: {{width: 200 mm}}\ndevices:\n{lines}")
+    made = told(run, "rate", block, "--aspect", "A", "--heading", "90deg", "--config", "tooling.yaml")
+    assert made["purity"] == pytest.approx(1.0)
+    assert made["efficiency"] == pytest.approx(document["efficiency"], rel=1e-9)
+    assert made["parts_per_minute"] == pytest.approx(made["offered_per_minute"] * made["efficiency"])
+    wanted = next(row for row in made["orientations"] if row["passes"] > 0.5)
+    assert wanted["margin_mm"] == pytest.approx(min(cut["margin_pass_mm"] for cut in document["chain"]))
+    assert all(row["margin_mm"] < 0.0 for row in made["orientations"] if row["passes"] < 0.5)
+    doubtful = told(
+        run,
+        "rate",
+        block,
+        "--aspect",
+        "A",
+        "--heading",
+        "90deg",
+        "--config",
+        "tooling.yaml",
+        "--play",
+        "1 mm",
+    )
+    assert 0.5 < doubtful["passes_devices"] < 1.0
+    assert doubtful["efficiency"] < made["efficiency"]
+
+
+def test_what_cannot_be_told_apart(run, block):
+    result = run("tooling", block, "--aspect", "C", "--heading", "90deg", *WIDE, "--limit", "1 s")
+    assert result.exit_code == 0
+    assert "which stands on a larger foot and is no higher or wider: only turning it over" in result.stderr
+
+
+def test_a_mixed_queue(run, block):
+    made = told(run, "rate", block, "--aspect", "A", *WIDE, "--gap", "2 mm", "--rule", "csa")
+    share = np.array([row["p_csa"] for row in made["orientations"]])
+    pitch = share @ [row["length_mm"] + 2.0 for row in made["orientations"]]
+    assert made["pitch_mm"] == pytest.approx(pitch)
+    assert made["offered_per_minute"] == pytest.approx(60.0 * made["velocity_mm_s"] / pitch)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (("--aspect", "Q"), "Error: block.stl: there is no aspect 'Q' - choose one of A, B, C"),
+        (
+            ("--aspect", "A", "--heading", "45deg"),
+            "Error: block.stl: aspect A has no stable heading 45 deg - choose one of 0, 90 deg",
+        ),
+        (
+            ("--set", "track.radius=12 mm"),
+            "Error: track.radius: 12 mm is less than the part's 23.32 mm across - give the radius of a bowl that "
+            "holds the part",
+        ),
+        (("--rule", "pmj"), "Error: --rule pmj: has no probabilities of this part - did you mean pmi?"),
+    ],
+)
+def test_faults_are_one_line(run, block, arguments, line):
+    result = run("tooling", block, *arguments)
+    assert (result.exit_code, result.stderr.splitlines()) == (1, [line])
+
+
+def test_a_card_has_no_mesh(run):
+    result = run("tooling", ROOT / "parts/magnet.yaml")
+    assert result.exit_code == 1
+    assert "give the part as a mesh" in result.stderr
+    assert [line for line in result.stderr.splitlines() if line.startswith("Error: ")] == [
+        "Error: part card: the card of aspect 1 has no outline - give the part as a mesh"
+    ]
