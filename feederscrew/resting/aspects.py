@@ -11,7 +11,7 @@ from feederscrew.part.hull import convex_hull
 from feederscrew.part.moments import Moments
 from feederscrew.resting.basins.landscape import landscape
 from feederscrew.resting.classes import body_frame, classes
-from feederscrew.resting.faces import stable_faces, unstable_faces
+from feederscrew.resting.faces import EQUAL, stable_faces, unstable_faces
 from feederscrew.resting.rules import published, registry, surface
 from feederscrew.resting.rules.quantities import ClassQuantities
 from feederscrew.resting.rules.recommended import Recommended
@@ -84,7 +84,7 @@ def find(part, *, as_published=False, unstable=False, exponent=surface.EXPONENTS
     table = _geometry(groups, part)
     chances = _probabilities(table, as_published)
     order = _ranked(table, chances["csa"], part, moments)
-    named = _named(table, chances, order, _said(groups))
+    named = _named(table, chances, order, _said(groups, hull))
     ground = by_class.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
     return _tumbled(named, ground, part, exponent)
 
@@ -205,12 +205,23 @@ def _letters(k):
     return name
 
 
-def _said(groups):
+def _said(groups, hull):
     """What a user must know of the aspects found."""
-    balls = [group for group in groups if group[0].kind == "rolling" and np.isnan(group[0].axis).all()]
-    if balls and len(groups) == 1:
+    balls = [group[0] for group in groups if group[0].kind == "rolling" and np.isnan(group[0].axis).all()]
+    centred = [np.ptp(hull.heights[ball.triangles]) < EQUAL * ball.height for ball in balls]
+    if len(groups) == 1 and centred == [True]:
         return ("the part is a ball: it rests on no aspect, its one class rolls in every direction",)
-    return ()
+    said = []
+    if any(centred):
+        said.append(
+            "a rolling class is the side of a ball about the centre of mass: it rolls in every direction"
+        )
+    if not all(centred):
+        said.append(
+            "a rolling class is the side of a ball whose middle is not the centre of mass: it rests on one"
+            " point of it and rocks in every direction"
+        )
+    return tuple(said)
 
 
 def _from_card(part):

@@ -18,7 +18,9 @@ EQUAL = 5e-3  # of the height: strips of one curve about the centre of mass are 
 STRAIGHT = (
     1e-2  # of their variance along the curve: how far normals of a rocker may leave their plane or cone
 )
+DOUBLE = 2e-3  # of the same: normals off their plane or cone by more belong to a side curved both ways
 FEWEST = 6  # strips that show a curve whose middle is not the centre of mass
+ON_A_LINE = 1e-6  # of the contact's size: a corner off the line between its neighbours by less is none
 ARC = np.radians(60.0)  # coarse strips that turn less may be meant as flats
 
 
@@ -145,7 +147,7 @@ def _rocks(hull, side, sink):
         return False
     across = vectors.eigen(vectors.covariance(normals, share))[0]
     if across[0] >= STRAIGHT * across[1]:
-        return False
+        return _round(hull, side)  # a ball, or a cap of one
     strips = np.unique(normals.round(2), axis=0, return_inverse=True)[1].ravel()
     even = 1.0 / (np.bincount(strips, share) ** 2).sum()  # as many strips of one size
     return even > FEWEST - 0.5 and _round(hull, side)
@@ -159,23 +161,32 @@ def _round(hull, triangles):
     return bool(vectors.length(off) < EQUAL * height.mean() * vectors.length(weights))
 
 
-def _plane(hull, sink, members):
+def _plane(hull, sink, members, of_a_curve=False):
     """Members in the plane about the sink, and with them what lies in the sink's own.
 
     The tightest plane that holds most of what noise allows, and that a looser one would hardly add to:
-    in a clean file the face itself without the shallow bevels beside it, in a noisy one all of it.
+    in a clean file the face itself without the shallow bevels beside it, in a noisy one all of it. Of a
+    curve one strip is wanted, though the halves of the strips beside it may lie as shallow.
     """
     shallow = _depth(hull, sink, members) < FLATNESS * hull.radius
     shallow &= angle(hull.normals[members], hull.normals[sink]) < SMOOTH
     near = np.union1d(members[shallow], [sink])
-    largest = near[np.argmax(hull.areas[near])]
+    own = near[_depth(hull, sink, near) < TIGHTEST_FIRST[0] * hull.radius] if of_a_curve else near
+    largest = own[np.argmax(hull.areas[own])]
     depth, areas = _depth(hull, largest, near), hull.areas[near]
     inside = depth <= hull.radius * np.array(TIGHTEST_FIRST)[:, None]
     held = vectors.product(inside, areas)
     shared = held / areas.sum() - 0.1 * (inside.sum(axis=1) < 2)  # one triangle is a plane by itself
-    good = (shared[:-1] >= 0.5) & (held[1:] <= 1.02 * held[:-1])
+    fewest = 1 if _fan(hull, members) else 2  # triangles of a strip
+    enough = (shared >= 0.5) | (of_a_curve & (inside.sum(axis=1) >= fewest))
+    good = enough[:-1] & (held[1:] <= 1.02 * held[:-1])
     inside = inside[np.argmax(good)] if good.any() else np.ones(len(near), dtype=bool)
     return near[inside | (_depth(hull, sink, near) < TIGHTEST_FIRST[0] * hull.radius)]
+
+
+def _fan(hull, members):
+    """Whether most triangles meet at one corner, as the strips of a cone do at its tip."""
+    return np.bincount(hull.triangles[members].ravel()).max() > 0.5 * len(members)
 
 
 def _depth(hull, plane, members):
@@ -193,14 +204,14 @@ def _describe(hull, triangles, lowest, stable):
     """The record of a face made of these triangles."""
     normals, areas = hull.normals[triangles], hull.areas[triangles]
     curved = _curved(hull, triangles)
-    foot = _plane(hull, lowest, triangles) if curved else triangles
+    foot = _plane(hull, lowest, triangles, of_a_curve=True) if curved else triangles
     weights = np.maximum(hull.areas[foot], np.finfo(float).tiny)
     normal = vectors.unit(vectors.product(weights, hull.normals[foot]))
     return Face(
         kind="rolling" if curved else "flat",
         stable=stable,
         normal=normal,
-        axis=_axis(normals, areas) if curved else np.full(3, np.nan),
+        axis=_axis(normals, areas, normal) if curved else np.full(3, np.nan),
         height=float(np.average(hull.heights[foot], weights=weights)),
         area=float(areas.sum()),
         solid_angle=float(solid_angles(np.zeros(3), hull.corners[triangles]).sum()),
@@ -210,13 +221,18 @@ def _describe(hull, triangles, lowest, stable):
     )
 
 
-def _axis(normals, weights):
-    """Axis of the cylinder or cone with these normals: all make one angle with it; NaN for a ball."""
+def _axis(normals, weights, lowest):
+    """Axis of the cylinder or cone with these normals: all make one angle with it; NaN for a ball.
+
+    A cap of a ball has normals in two dimensions about the ``lowest`` one, which is no axis to roll about.
+    """
     spread = vectors.covariance(normals, np.maximum(weights, weights.max() * 1e-12))
     values, axes = vectors.eigen(spread)
     if values[0] > 0.2 * values[1]:
         return np.full(3, np.nan)
     axis = axes[:, 0]
+    if values[0] > DOUBLE * values[1] and abs(vectors.dot(axis, lowest)) > 0.5:
+        return np.full(3, np.nan)
     return axis * np.sign(axis[np.argmax(np.abs(axis))])
 
 
@@ -228,9 +244,28 @@ def _outline(points, normal):
     u = vectors.unit(np.cross(normal, first))
     plane = vectors.product(points, np.column_stack([u, np.cross(normal, u)]))
     try:
-        return points[ConvexHull(plane).vertices]
+        corners = points[ConvexHull(plane).vertices]
     except QhullError:  # a contact line: a sliver of the hull
         return points
+    return _without_straight_corners(corners)
+
+
+def _without_straight_corners(corners):
+    """Corners (K, 3) of a polygon without those on a line between their neighbours.
+
+    A finer triangulation of the same face brings such corners, and rules that average over the edges of a
+    contact would count its edges twice.
+    """
+    size = vectors.length(np.ptp(corners, axis=0))
+    while len(corners) > 3:
+        before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
+        twice = vectors.length(np.cross(corners - before, after - corners))
+        off = twice / np.maximum(vectors.length(after - before), np.finfo(float).tiny)
+        straight = int(np.argmin(off))
+        if off[straight] > ON_A_LINE * size:
+            break
+        corners = np.delete(corners, straight, axis=0)
+    return corners
 
 
 def _curved(hull, triangles):

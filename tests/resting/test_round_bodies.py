@@ -1,16 +1,22 @@
 """Round bodies with the noise of single precision: every walk arrives, and the graph is that of a sphere."""
 
+import io
 from dataclasses import replace
 
 import numpy as np
+import part_files
 import pytest
 import round_bodies
 from fuzz import rounds
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from feederscrew.part import mass
+from feederscrew import bowl
+from feederscrew.mechanics.floor import balance
+from feederscrew.part import load, mass
 from feederscrew.part.hull import convex_hull
+from feederscrew.resting import aspects
+from feederscrew.resting.posture import posture
 from feederscrew.resting.tumbling.borders import borders
 from feederscrew.resting.tumbling.edges import half_edges
 from feederscrew.resting.tumbling.exact import tumble
@@ -104,3 +110,76 @@ def test_a_facet_that_would_not_be_convex_is_left_in_triangles():
     twins = np.array([lines[b, a] for a, b in zip(origins, targets)])
     found = borders(hull, origins, targets, twins, np.repeat(facets, 3))
     assert len(np.unique(found.facets[::3][top])) == 4
+
+
+def aspects_of(profile, sections=96, finer=0):
+    """Part and aspects of a body of revolution about x [mm]."""
+    triangles = round_bodies.revolved(profile, sections)
+    for _ in range(finer):
+        triangles = round_bodies.split(triangles)
+    part = load("-", stdin=io.BytesIO(part_files.binary_stl(triangles)))
+    return part, aspects.find(part)
+
+
+def ball(cut=5.0):
+    """Profile of a ball of 5 mm, cut off at some place."""
+    turn = np.linspace(0.0, np.pi, 61)[1:-1]
+    arc = [(-5.0 * np.cos(u), 5.0 * np.sin(u)) for u in turn if -5.0 * np.cos(u) < cut]
+    end = [(cut, np.sqrt(25.0 - cut**2)), (cut, 0.0)] if cut < 5.0 else [(5.0, 0.0)]
+    return [(-5.0, 0.0), *arc, *end]
+
+
+@pytest.mark.parametrize("finer", [1, 2])
+def test_the_critical_solid_angle_does_not_depend_on_the_triangulation(finer):
+    profile = [(0, 0), (0, 10), (14, 7), (14, 0)]
+    once, again = (aspects_of(profile, 48, n)[1] for n in (0, finer))
+    assert again.names == once.names
+    assert again.probabilities["crsa"] == pytest.approx(once.probabilities["crsa"], abs=1e-6)
+    assert again.tip_angles == pytest.approx(once.tip_angles, rel=1e-5)
+
+
+def test_a_part_on_two_circles_stands_and_tips_on_the_line_between_them():
+    _, found = aspects_of([(0, 0), (0, 5), (2, 5), (2, 1.5), (10, 1.5), (10, 3.5), (12, 3.5), (12, 0)], 360)
+    volumes = np.array([2 * 25.0, 8 * 2.25, 2 * 12.25])
+    centre = volumes @ [1.0, 6.0, 11.0] / volumes.sum()
+    slope = np.arctan2(1.5, 10.0)
+    height = 5.0 * np.cos(slope) - (centre - 2.0) * np.sin(slope)
+    to_end = 5.0 * np.sin(slope) + (centre - 2.0) * np.cos(slope)
+    row = found.kinds.index("rolling")
+    assert found.heights[row] == pytest.approx(1e-3 * height, rel=1e-4)
+    assert found.tip_angles[row] == pytest.approx(np.arctan2(to_end, height), rel=1e-4)
+
+
+def test_a_cone_rolls_in_a_circle_round_its_tip():
+    part, found = aspects_of([(0, 0), (0, 5), (12, 0)], 360)
+    lying = posture(part, found, found.names[found.kinds.index("rolling")])
+    assert lying.rolling_circle == pytest.approx(9e-3 * 12.0 / 13.0, rel=1e-4)
+    part, found = aspects_of([(0, 0), (0, 5), (12, 5), (12, 0)], 360)
+    lying = posture(part, found, found.names[found.kinds.index("rolling")])
+    assert lying.rolling_circle == np.inf
+
+
+def test_a_ball_with_a_flat_rests_on_a_point_and_on_the_flat():
+    for cut in (1.0, 3.0):
+        _, found = aspects_of(ball(cut))
+        x = np.linspace(-5.0, cut, 100_001)
+        centre = (x * (25.0 - x**2)).sum() / (25.0 - x**2).sum()
+        assert sorted(found.kinds) == ["flat", "rolling"]
+        row = found.kinds.index("rolling")
+        assert np.isnan(found.axes[row]).all()
+        assert found.heights[row] == pytest.approx(1e-3 * (5.0 + centre), rel=2e-3)
+        assert found.warnings == (
+            "a rolling class is the side of a ball whose middle is not the centre of mass: it rests on one"
+            " point of it and rocks in every direction",
+        )
+
+
+def test_a_ball_on_the_floor_rolls_with_two_sevenths_of_the_friction_of_sliding():
+    part, found = aspects_of(ball())
+    settings = bowl.default()
+    for heading in (0.0, 1.0):
+        now = balance.motion(posture(part, found, "A"), settings, heading)
+        push = balance.drive_force(posture(part, found, "A"), settings, heading)
+        sliding = np.hypot(push[0], push[1]) / float(now.normal_force)
+        assert float(now.limiting_friction) == pytest.approx(2.0 / 7.0 * sliding, rel=2e-3)
+        assert balance.STATES[int(now.state)] != "tip"

@@ -166,8 +166,8 @@ def _reversal(bowl):
 
 
 def rolls(posture):
-    """Whether the part stands on a rolling aspect with an axis to roll about."""
-    return posture.kind == "rolling" and posture.axis is not None
+    """Whether the part stands on a rolling aspect: about an axis, or as a ball about any."""
+    return posture.kind == "rolling" and (posture.axis is not None or posture.corners is not None)
 
 
 def regime(states):
@@ -216,6 +216,8 @@ def _offset(posture, friction, normal, turning):
     moment = -posture.height * friction + np.asarray(turning)[..., None] * across  # eqs. [4.18], [4.19]
     where = np.broadcast_to((normal > 0.0)[..., None], moment.shape)
     offset = np.divide(moment, normal[..., None], out=np.full(moment.shape, np.nan), where=where)
-    if rolls(posture):
-        return vectors.product(offset, posture.axis)[..., None] * posture.axis
-    return offset
+    if not rolls(posture):
+        return offset
+    if posture.axis is None:
+        return np.where(where, 0.0, offset)
+    return vectors.product(offset, posture.axis)[..., None] * posture.axis

@@ -15,7 +15,7 @@ class Rolling:
 
     friction: np.ndarray  # (..., 2) [N] of the floor on the part
     acceleration: np.ndarray  # (..., 2) [m/s2] of the axis relative to the bowl
-    rolling_acceleration: np.ndarray  # (...) [rad/s2] about the axis, right-handed
+    rolling_acceleration: np.ndarray  # (...) [rad/s2] about the axis, or the y axis; right-handed
     slips: np.ndarray  # (...) bool, as well as rolling
     limiting_friction: np.ndarray  # (...) [1] least static friction with which it only rolls
 
@@ -26,7 +26,8 @@ def rolling(posture, coefficients, push, normal):
     Parameters
     ----------
     posture : Posture
-        With a rolling axis through the centre of mass, ``height`` above the floor.
+        With a rolling axis through the centre of mass, ``height`` above the floor; a ball has none and
+        rolls every way.
     coefficients : Friction
         Static decides whether it slips, kinetic how.
     push : (..., 2) float [N]
@@ -41,7 +42,8 @@ def rolling(posture, coefficients, push, normal):
     Notes
     -----
     Rolling, the contact line stays at rest: across the axis friction is T I / (I + m h^2), a third of the
-    drive for a solid cylinder, and along the axis the whole drive; both well below mu N. Where their sum
+    drive for a solid cylinder, and along the axis the whole drive; for a ball it is two sevenths of the
+    drive either way. Where their sum
     exceeds static friction, kinetic friction acts against the slip of the contact line, whose direction
     follows from itself.
 
@@ -49,10 +51,11 @@ def rolling(posture, coefficients, push, normal):
     ----------
     The thesis, chapter 1, on Diaz (2004): friction of a rolling cylinder is found, not assumed to be mu N.
     """
-    axis = posture.axis
+    axis = np.array([0.0, 1.0]) if posture.axis is None else posture.axis
     frame = np.array([[-axis[1], axis[0]], axis])  # rows: across, along
-    inertia = float(vectors.dot(vectors.product(axis, posture.inertia[:2, :2]), axis))
-    ease = np.array([1.0 / posture.mass + posture.height**2 / inertia, 1.0 / posture.mass])  # of the contact
+    inertia, other = (_about(line, posture.inertia[:2, :2]) for line in frame[::-1])
+    turning = np.array([1.0 / inertia, 1.0 / other if posture.axis is None else 0.0])  # for a moment of 1
+    ease = 1.0 / posture.mass + posture.height**2 * turning  # of the contact
     drive = vectors.product(push, frame.T) / posture.mass
     need = drive / ease
     limiting = np.divide(
@@ -71,6 +74,11 @@ def rolling(posture, coefficients, push, normal):
         slips=slips,
         limiting_friction=limiting,
     )
+
+
+def _about(axis, inertia):
+    """Moment of inertia about a line in the floor."""
+    return float(vectors.dot(vectors.product(axis, inertia), axis))
 
 
 def _slipping(drive, ease, strength):

@@ -114,6 +114,7 @@ def document(found, settings, *, as_published=False):
         "heading_deg": float(np.degrees(found.heading)),
         "height_mm": posture.height / MM,
         "drive_offset_mm": posture.offset / MM,
+        "rolling_circle_mm": posture.rolling_circle / MM if np.isfinite(posture.rolling_circle) else None,
         "turning_inertia_g_mm2": posture.turning_inertia / factor("g mm2", "inertia"),
         "as_published": as_published,
         "regime": regime(found.cycle.state),
@@ -180,6 +181,11 @@ def remarks(found):
         limit = float(found.now.limiting_friction)
         lines.append(
             f"rolling aspect: it rolls, and slips as well where static friction is below {limit:.3g}"
+        )
+    if np.isfinite(posture.rolling_circle):
+        lines.append(
+            f"it rolls in a circle: its centre of mass stays {posture.rolling_circle / MM:.4g} mm from the"
+            " point where its axis meets the floor; the straight line of these numbers is not its path"
         )
     if HOP in found.cycle.state:
         lines.append(

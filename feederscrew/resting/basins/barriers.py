@@ -105,6 +105,29 @@ def tip_angle(polygon, height):
     return float(np.arctan2(across, height).min())
 
 
+def line_tip_angle(polygon, normal, axis, height):
+    """Return the tilt of the floor at which a rolling part tips over an end of its line of contact.
+
+    Parameters
+    ----------
+    polygon : (K, 3) float [m]
+        Corners of the strip it lies on, about the centre of mass.
+    normal, axis : (3,) float [1]
+        Unit vectors: outward from the strip, and along the axis, not parallel to it.
+    height : float [m]
+        Of the centre of mass over the strip.
+
+    Returns
+    -------
+    float [rad]
+        Of a floor that falls along the line, over the nearer of its ends. A part that lies on two circles
+        has its line from one to the other.
+    """
+    along = vectors.unit(axis - vectors.dot(axis, normal) * normal)
+    reach = vectors.product(polygon, along)
+    return float(np.arctan2(min(reach.max(), -reach.min()), height))
+
+
 def tilt_over(height, top):
     """Tilt [rad] that brings a centre of mass at ``height`` [m] over a saddle at ``top`` [m]."""
     return np.arctan2(np.sqrt(np.maximum(top**2 - height**2, 0.0)), height)

@@ -182,7 +182,11 @@ def transitions(found):
 def _tip_angle(face, lift):
     if face.kind == "flat":
         return barriers.tip_angle(face.polygon, face.height)
-    return barriers.tilt_over(face.height, face.height + lift) if np.isfinite(lift) else np.nan
+    if not np.isfinite(lift):
+        return np.nan
+    if np.isnan(face.axis).any():  # a ball with a flat leaves it over the saddle
+        return barriers.tilt_over(face.height, face.height + lift)
+    return barriers.line_tip_angle(face.polygon, face.normal, face.axis, face.height)
 
 
 def _lowest(rows, values, count):
