@@ -94,8 +94,8 @@ def test_a_mixed_queue(run, block):
         ),
         (
             ("--set", "track.radius=12 mm"),
-            "Error: track.radius: 12 mm is less than the part's 23.32 mm across - give the radius of a bowl that "
-            "holds the part",
+            "Error: track.radius: 12 mm is less than the part's 23.32 mm across - give the radius of a bowl "
+            "that holds the part",
         ),
         (("--rule", "pmj"), "Error: --rule pmj: has no probabilities of this part - did you mean pmi?"),
     ],
