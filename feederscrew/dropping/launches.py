@@ -40,7 +40,7 @@ PRESETS = {
         Launch("place", (0.0, 0.05), (0.0, 0.0), (0.0, 0.0), **SURFACE),
         Launch("drop", (1.0, 6.0), (0.0, 0.0), (0.0, 0.0), **SURFACE),
         Launch("flip", (15.0, 40.0), (6.0, 14.0), (0.0, 2.0), **SURFACE, axis=FLIP),
-        Launch("roll", (1.0, 6.0), (2.0, 6.0), (2.0, 6.0), **SURFACE, axis=LEVEL),
+        Launch("roll", (1.0, 4.0), (1.0, 5.0), (2.0, 6.0), **SURFACE, axis=LEVEL),
         Launch("feed", (2.0, 6.0), (0.0, 2.0), (0.0, 2.0), **SURFACE),
     )
 }

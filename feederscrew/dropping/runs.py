@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew import check
 from feederscrew.dropping import conditions, ensemble
 from feederscrew.dropping.ensemble import Aim, Drops, Tally
 from feederscrew.dropping.kernel import drop
@@ -25,6 +26,7 @@ class Result:
     ground: Ground
     drops: Drops
     tally: Tally
+    heights: np.ndarray  # (A,) [m] of the centre of mass on each class; over the true circle of a round side
     aim: float | None = None  # [1] half-width the intervals were to reach
     traces: tuple[DropTrace, ...] = ()  # of the first drops
 
@@ -100,7 +102,15 @@ def test(
     starts = sample(launch, shape, min(traced, len(dropped.faces)), np.random.default_rng(seed))
     traces = follow(shape, length, principal_axes(part.inertia)[1], starts, dropped, found.rows)
     described = conditions.described(launch, length)
-    return Result(described, seed, found, dropped, counted, width, traces)
+    heights = check.frozen(_heights(shape, length, found.rows, aspects.heights))
+    return Result(described, seed, found, dropped, counted, heights, width, traces)
+
+
+def _heights(shape, length, rows, heights):
+    """(A,) [m] heights of the classes, from those of the shape's faces; of a class without one as it was."""
+    lowest = np.full(len(heights), np.inf)
+    np.minimum.at(lowest, rows, length * shape.heights)
+    return np.where(np.isfinite(lowest) & (lowest > 0.0), lowest, heights)
 
 
 def compiled():

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from feederscrew.dropping.kernel import body, contact, drop
+from feederscrew.dropping.kernel import body, contact, drop, touch
 from feederscrew.dropping.kernel.drop import Steps, scratch, settle
 from feederscrew.dropping.launches import PRESETS, sample
 
@@ -81,7 +81,7 @@ def struck(shape, state, restitution, friction):
     work.state[:] = state
     body.rotation(work.state, work.turn)
     corner, _ = body.lowest(shape.vertices, shape.solid.links, work.turn, 0)
-    count = contact.touching(shape.solid, work, state[body.Z], corner, 1e-3)
+    count = touch.touching(shape.solid, work, state[body.Z], corner, 1e-3)
     contact.levers(shape.inertia, work, count)
     contact.strike(
         shape.inertia,
@@ -227,6 +227,6 @@ def test_of_many_corners_on_the_floor_the_lowest_is_among_those_solved():
     """The middle of a rim that bends down is lower than its ends, which are further out."""
     x = np.linspace(-1.0, 1.0, 41)
     points, owners = np.column_stack([x, np.zeros(41), 1e-4 * x**2]), np.arange(41)
-    count = contact.thin_out(points, owners, np.eye(3).ravel(), 41)
+    count = touch.thin_out(points, owners, np.eye(3).ravel(), 41)
     assert owners[0] == 20 and {0, 40} <= set(owners[:count])
-    assert points[:, 0] == pytest.approx(x[owners]) and count <= contact.MOST
+    assert points[:, 0] == pytest.approx(x[owners]) and count <= touch.MOST

@@ -8,7 +8,7 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from feederscrew.dropping import ensemble
-from feederscrew.dropping.kernel import body, contact, motion
+from feederscrew.dropping.kernel import body, motion, touch
 from feederscrew.dropping.kernel.drop import Steps
 from feederscrew.dropping.kernel.floor import at_rest
 from feederscrew.dropping.launches import PRESETS
@@ -123,7 +123,7 @@ def test_a_tilted_disc_touches_in_one_point_and_a_flat_one_in_four(tilt, points)
     work = motion.scratch(shape)
     work.turn[6:] = up
     corner, level = body.bottom(shape.solid, work.turn, 0)
-    count = contact.touching(shape.solid, work, -level, corner, 1e-4)
+    count = touch.touching(shape.solid, work, -level, corner, 1e-4)
     assert count == points
     assert work.spots[:count] @ up == pytest.approx(level, abs=1e-9)
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from feederscrew.dropping.kernel import body, contact
+from feederscrew.dropping.kernel import body, contact, touch
 from feederscrew.dropping.kernel import floor as floors
 from feederscrew.dropping.kernel.body import VX, VZ, W, X, Z
 from feederscrew.geometry.compiled import compiled
@@ -32,7 +32,7 @@ class Scratch(NamedTuple):
 def scratch(shape, rows=0):
     """Fresh working arrays for a shape, with a trace of so many rows."""
     size = len(shape.vertices)
-    room = size + contact.QUARTERS * len(shape.solid.rims)
+    room = size + touch.QUARTERS * len(shape.solid.rims)
     return Scratch(
         state=np.zeros(body.STATE),
         saved=np.zeros(body.STATE),
@@ -43,7 +43,7 @@ def scratch(shape, rows=0):
         found=np.zeros(size, int),
         spots=np.zeros((room, 3)),
         owners=np.zeros(room, int),
-        contacts=np.zeros((contact.MOST, contact.WIDTH)),
+        contacts=np.zeros((touch.MOST, contact.WIDTH)),
         trace=np.zeros((rows, 1 + body.STATE)),
     )
 
@@ -139,7 +139,7 @@ def press_on(solid, work, floor, time, corner, count, friction, steps):
     contact.hold(state, work.contacts, count, friction, steps)
     lever = steps.pivot
     for n in range(count):
-        if work.owners[n] != contact.CORNER:
+        if work.owners[n] != touch.CORNER:
             lever = steps.rolling
     resist(state, solid.inertia, lever, whole)
     early, late, dt = 0.0, whole, whole
@@ -190,7 +190,7 @@ def advance(solid, work, floor, time, corner, gap, restitution, friction, steps)
     """
     state, contacts, count, struck, rise = work.state, work.contacts, 0, False, math.inf
     if gap <= steps.tolerance:
-        count = contact.touching(solid, work, state[Z], corner, steps.tolerance)
+        count = touch.touching(solid, work, state[Z], corner, steps.tolerance)
         contact.levers(solid.inertia, work, count)
         rise = contact.steepest(state, contacts, count)
         struck = rise < -steps.threshold

@@ -23,7 +23,7 @@ def counts(study):
     return tables.frame(
         {
             "aspect": aspects.names,
-            "height_mm": aspects.heights / MM,
+            "height_mm": study.result.heights / MM,
             "count": tally.counts,
             "p_drop": tally.p,
             "p_drop_low": tally.low,
