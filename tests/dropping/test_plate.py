@@ -149,7 +149,7 @@ def test_a_gentle_plate_leaves_parts_where_they_fell_and_a_violent_one_does_not(
     """Aspects shift once a hop is as high as a barrier: small parts on a strong drive."""
     part = shapes.part(shapes.box(3.0, 3.0, 5.0))
     gentle, violent = "drive.amplitude=0.05 mm", "drive.amplitude=0.6 mm"
-    still, strong = shaken(part, bowl(gentle), bowl(violent), preset="place", drops=40, seconds=1.0)
+    still, strong = shaken(part, bowl(gentle), bowl(violent), preset="place", drops=24, seconds=0.5)
     assert still.throw_number < 1.0 < 2.5 < strong.throw_number
     assert still.occupancy.counts.sum() == 0
     assert np.isnan(still.occupancy.limit).all()
@@ -216,7 +216,7 @@ def test_a_launch_keeps_its_speed_whatever_the_gravity():
     part = shapes.part(shapes.box(12.0, 12.0, 3.0))
     own = dict.fromkeys(("fall", "spin", "restitution")) | {"speed": "0.1 m/s", "friction": "0"}
     plates = [bowl("drive.amplitude=0 mm", f"gravity={gravity} m/s2") for gravity in (9.81, 1.0)]
-    earth, moon = runs.test(part, find(part), plates, "place", own, drops=60, seconds=0.3)
+    earth, moon = runs.test(part, find(part), plates, "place", own, drops=16, seconds=0.2)
     assert earth.launch["speed_mm_s"] == moon.launch["speed_mm_s"] == pytest.approx([100.0, 100.0])
     assert abs(earth.occupancy.velocity[0]) > 1e-3  # not all ways cancel
     assert moon.occupancy.velocity[0] == pytest.approx(earth.occupancy.velocity[0], rel=1e-3)
