@@ -60,4 +60,4 @@ def tooling(part, aspect, heading, rule, margin, seed, limit, bowl, out):
         document = tables.document(found)
         out.warn(*found.warnings)
         out.say(*tables.remarks(found))
-        out.show(tables.frame(found), document, hidden=tables.HIDDEN)
+        out.show(tables.summary(found), document, hidden=tables.HIDDEN)

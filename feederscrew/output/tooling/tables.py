@@ -56,15 +56,39 @@ def frame(study):
     return tables.frame({name: [row[name] for row in rows] for name in rows[0]})
 
 
+def summary(study):
+    """Return what is printed: every orientation, or the chain that isolates the one asked for."""
+    if study.design is None:
+        return frame(study)
+    rows = [
+        {
+            "device": cut.device.kind,
+            "value": cut.device.text,
+            "margin_pass_mm": cut.margin_pass / MM,
+            "margin_reject_mm": cut.margin_reject / MM,
+            "smallest": cut.smallest.text,
+            "largest": cut.largest.text,
+            "returns": " ".join(cut.returns),
+        }
+        for cut in study.design.cuts
+    ]
+    columns_of = ("device", "value", "margin_pass_mm", "margin_reject_mm", "smallest", "largest", "returns")
+    return tables.frame({name: [row[name] for row in rows] for name in columns_of})
+
+
 def remarks(study):
     """Return what a reader should know: what cannot be told apart, and why."""
     found = study.design
     if found is None:
         count = sum(one.isolated for one in study.designs)
         return [f"{count} of {len(study.designs)} orientations can be isolated"]
-    if found.isolated:
-        return []
-    return [*found.reasons]
+    one = study.orientations[study.wanted]
+    said = "is isolated" if found.isolated else "is not isolated"
+    lead = (
+        f"{one.name} {said}: {100.0 * found.efficiency:.3g} % of the parts offered leave so, "
+        f"{100.0 * found.purity:.4g} % of what leaves"
+    )
+    return [lead, *found.reasons]
 
 
 def _row(one, share, found):
