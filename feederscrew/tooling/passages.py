@@ -1,0 +1,116 @@
+"""Orientations at the place of a device where their margin is least."""
+
+from dataclasses import dataclass
+from functools import reduce
+
+import numpy as np
+import shapely
+
+from feederscrew.bowl.devices import Device
+from feederscrew.tooling import foot as feet
+from feederscrew.tooling.orientations import Orientation
+from feederscrew.tooling.strip import bent, hole, opening
+from feederscrew.tooling.verdicts import JUDGES, Verdict, verdict
+
+LONG = 3.0  # lengths of the part: how far a device that goes on along the track is shown
+
+
+@dataclass(frozen=True, eq=False)
+class Passage:
+    """One orientation at the worst place of one device; lengths ahead and distances from the wall."""
+
+    device: Device
+    orientation: Orientation
+    verdict: Verdict
+    picture: str  # 'above', 'ahead', 'side' or '': from where it is seen
+    outline: np.ndarray  # (J, 2) [m] of the part from above
+    foot: shapely.Geometry  # [m] what touches the whole track
+    hole: shapely.Geometry | None  # [m] what is cut away
+    supported: np.ndarray  # (K, 2) [m] hull of what still touches
+    weight: tuple[float, float]  # [m] where the weight meets the track
+    opening: shapely.Geometry | None  # [m] of a gate, in distances from the wall and heights
+
+
+def passage(device, one, every):
+    """Return an orientation at the place of a device where its margin is least.
+
+    Parameters
+    ----------
+    device : Device
+    one : Orientation
+    every : sequence of Orientation
+        Of the part, which a profile may name.
+
+    Returns
+    -------
+    Passage
+    """
+    found = verdict(device, one, every)
+    touching = foot(one)
+    cut = _hole(device, one, found.shift)
+    left = touching if cut is None else touching.difference(cut)
+    hull = shapely.get_coordinates(left.convex_hull)
+    return Passage(
+        device=device,
+        orientation=one,
+        verdict=found,
+        picture=JUDGES[device.kind].picture,
+        outline=one.outline + [0.0, one.distance],
+        foot=touching,
+        hole=cut,
+        supported=hull,
+        weight=(0.0, one.distance - one.shift),
+        opening=opening(device, every, one.track.width),
+    )
+
+
+def chain(devices, every):
+    """Return what happens to each orientation: its passages up to the device that returns it.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+        In the order parts meet them.
+    every : sequence of Orientation
+
+    Returns
+    -------
+    list of list of Passage
+        One list an orientation; empty for one that falls off the bare track.
+    """
+    return [_until_returned(devices, one, every) for one in every]
+
+
+def foot(one):
+    """Return what of an orientation touches the track, as a shapely geometry from the wall [m]."""
+    up = [0.0, one.distance]
+    areas = [shapely.Polygon(ring + up) for ring in one.foot.rings]
+    parts = [reduce(shapely.symmetric_difference, areas)] if areas else []
+    parts += [shapely.LineString(edge + up) for edge in one.foot.edges]
+    parts += [shapely.Point(point + up) for point in one.foot.points]
+    return shapely.union_all(parts)
+
+
+def _until_returned(devices, one, every):
+    if one.falls_off:
+        return []
+    found = []
+    for device in devices:
+        found.append(passage(device, one, every))
+        if found[-1].verdict.passes <= 0.0:
+            break
+    return found
+
+
+def _hole(device, one, shift):
+    """What a device cuts away where the margin is least, about the radial line of the foot."""
+    track, length = one.track, LONG * one.length
+    width = min(track.width, 0.999 * track.radius)
+    ring = hole(device, track.radius, length, width)
+    if ring is None:
+        return None
+    if device.kind == "gap":
+        _, shift = feet.least(one.standing, feet.gap(device.limit, track.radius, width))
+    elif device.kind != "cut_out":
+        shift = -0.5 * length / track.radius
+    return shapely.make_valid(shapely.Polygon(bent(ring, track.radius, shift)))

@@ -1,0 +1,201 @@
+"""A stretch of track with a chain of devices on it, one after the other, as it is drawn and made."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from feederscrew.bowl.devices import Device
+from feederscrew.bowl.record import Track
+from feederscrew.tooling.design import place
+from feederscrew.tooling.verdicts import JUDGES, seen
+
+ROOM = 1.3  # a device has so many lengths of the longest part to itself
+BESIDE = 5e-3  # [m] of track beyond what parts and cuts need, where the whole track is not drawn
+DRAWN = 0.9  # of the radius: a wider track is not drawn whole
+BLADE = 1.5e-3  # [m] thickness of a gate
+FRAME = 5e-3  # [m] of a gate above its opening
+STEPS = 33  # points along the edge of a gap that is parallel to a radial one
+CHORD = 1e-5  # [m] by which an arc may be seen too flat
+OVERHEAD = ("wiper", "height_bar", "hold_down")
+
+
+@dataclass(frozen=True, eq=False)
+class Station:
+    """One device at its place along the track."""
+
+    device: Device
+    start: float  # [m] along the wall
+    length: float  # [m]
+    hole: np.ndarray | None  # (K, 2) [m] what is cut away, unrolled: length along the wall, distance from it
+    blade: np.ndarray | None  # (4, 2) [m] where a gate stands, unrolled
+    openings: tuple[np.ndarray, ...]  # (K, 2) [m] of a gate: distance from the wall, height
+    top: float  # [m] height of a gate
+
+    @property
+    def label(self):
+        """'gap 9 mm': kind and value, the latter where it is one number."""
+        return f"{self.device.kind} {self.device.text}" if np.isfinite(self.device.limit) else self.device.kind
+
+
+@dataclass(frozen=True, eq=False)
+class Strip:
+    """The stretch of track, unrolled: X ahead along the wall, Y from the wall."""
+
+    track: Track
+    length: float  # [m] along the wall
+    width: float  # [m] of it that is drawn
+    tallest: float  # [m] of all orientations
+    stations: tuple[Station, ...]
+
+    def bent(self, ring):
+        """Return a ring (K, 2) [m] unrolled as it lies in the bowl, its corners joined by short chords.
+
+        The wall is tangent to the X axis at the origin and the bowl's axis is at (0, radius).
+        """
+        return bent(ring, self.track.radius)
+
+
+def strip(track, devices, every):
+    """Return the stretch of track that holds a chain of devices.
+
+    Parameters
+    ----------
+    track : Track
+    devices : sequence of Device
+        In the order parts meet them; measured yields need no place.
+    every : sequence of Orientation
+        Of the part.
+
+    Returns
+    -------
+    Strip
+    """
+    made = [device for device in devices if device.kind != "yield"]
+    room = ROOM * max(one.length for one in every)
+    width = _width(track, made, every)
+    tallest = max(one.height for one in every)
+    stations, start = [], 0.5 * room
+    for device in made:
+        length = room + max((x for x, _ in device.corners), default=0.0) * (device.kind == "cut_out")
+        stations.append(_station(device, start, length, width, tallest, every))
+        start += length + 0.5 * room
+    return Strip(track=track, length=start, width=width, tallest=tallest, stations=tuple(stations))
+
+
+def bent(ring, radius, shift=0.0):
+    """Return a ring (K, 2) [m] of lengths along the wall and distances from it as it lies in the bowl.
+
+    Parameters
+    ----------
+    ring : (K, 2) float [m]
+    radius : float [m]
+        Of the wall.
+    shift : float [rad]
+        By which it is turned ahead.
+
+    Returns
+    -------
+    (N, 2) float [m]
+        From the point where the wall is tangent to X, the bowl's axis at (0, radius).
+    """
+    fine = shapely.get_coordinates(
+        shapely.segmentize(shapely.linestrings(np.vstack([ring, ring[:1]])), np.sqrt(8.0 * radius * CHORD))
+    )[:-1]
+    theta, r = fine[:, 0] / radius + shift, radius - fine[:, 1]
+    return np.column_stack([r * np.sin(theta), radius - r * np.cos(theta)])
+
+
+def hole(device, radius, length, width):
+    """Return what a device cuts out of the track, unrolled from its own start.
+
+    Parameters
+    ----------
+    device : Device
+    radius : float [m]
+        Of the wall.
+    length : float [m]
+        Of a device that goes on along the track.
+    width : float [m]
+        Of the track.
+
+    Returns
+    -------
+    (K, 2) float [m] or None
+        None for a device that cuts nothing.
+    """
+    if device.kind == "cut_out":
+        return np.array(device.corners)
+    if device.kind == "gap":
+        across = np.linspace(width, 0.0, STEPS)
+        met = radius * np.arcsin(np.minimum(device.limit / (radius - across), 1.0))
+        return np.vstack([[0.0, width], [0.0, 0.0], np.column_stack([met, across])[::-1]])
+    between = {"canyon": (0.0, device.limit), "narrowed_track": (device.limit, width)}
+    between["pressure_break"] = between["narrowed_track"]
+    low, high = device.span or between.get(device.kind, (0.0, 0.0))
+    if not high > low:
+        return None
+    return np.array([[0.0, low], [length, low], [length, high], [0.0, high]])
+
+
+def opening(device, every, width):
+    """Return the opening of a gate over the track, in distances from the wall and heights [m].
+
+    Parameters
+    ----------
+    device : Device
+    every : sequence of Orientation
+        Of the part, which a profile may name.
+    width : float [m]
+        Of the track.
+
+    Returns
+    -------
+    shapely geometry or None
+        None for a device that is no gate.
+    """
+    if device.kind in OVERHEAD:
+        return shapely.box(0.0, 0.0, width, device.limit)
+    if device.kind != "profile":
+        return None
+    if not device.like:
+        return shapely.Polygon(device.corners)
+    aspect, heading, play = device.like
+    free = seen(every[place(every, aspect, heading, device.where)]).buffer(play)
+    return free.intersection(shapely.box(0.0, 0.0, width, 1.0))
+
+
+def _width(track, devices, every):
+    """The track's own width, or as much of a very wide one as parts and cuts need."""
+    if track.width < DRAWN * track.radius:
+        return track.width
+    needed = [one.width for one in every]
+    needed += [y for device in devices for _, y in device.corners if JUDGES[device.kind].cut]
+    needed += [last for device in devices for last in device.span]
+    needed += [device.limit for device in devices if np.isfinite(device.limit)]
+    return min(max(needed) + BESIDE, DRAWN * track.radius)
+
+
+def _station(device, start, length, width, tallest, every):
+    """A device at its start; a gate stands in the middle of its length."""
+    cut = hole(device, every[0].track.radius, length, width)
+    gate = opening(device, every, width)
+    middle = start + 0.5 * length
+    blade = None
+    if gate is not None:
+        blade = np.array([[0.0, 0.0], [BLADE, 0.0], [BLADE, width], [0.0, width]]) + [middle, 0.0]
+    return Station(
+        device=device,
+        start=start,
+        length=length,
+        hole=None if cut is None else cut + [start, 0.0],
+        blade=blade,
+        openings=() if gate is None else _rings(gate),
+        top=0.0 if gate is None else max(tallest, gate.bounds[3]) + FRAME,
+    )
+
+
+def _rings(area):
+    """The outer borders of an area, without the last corner that repeats the first."""
+    parts = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
+    return tuple(np.asarray(part.exterior.coords)[:-1] for part in parts)
