@@ -1,9 +1,26 @@
-"""Closed polylines of a DXF file."""
+"""DXF files, the one door to ezdxf: closed polylines read from a layer, and drawings written."""
+
+import contextlib
+import io
+from dataclasses import dataclass
 
 from feederscrew import units
 from feederscrew.errors import ConfigError
 
 MILLIMETRES = {0: 1.0, 1: 25.4, 4: 1.0, 5: 10.0, 6: 1000.0}  # by $INSUNITS; 0 states none
+IN_MILLIMETRES = 4  # of $INSUNITS
+LETTERS = 3.0  # [mm] height of texts
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """One layer of a drawing."""
+
+    name: str
+    colour: int  # of AutoCAD's index: 1 red, 3 green, 5 blue, 7 white or black, 8 grey
+    rings: tuple = ()  # of (K, 2) [m], each becomes a closed polyline
+    lines: tuple = ()  # of (K, 2) [m], each becomes an open polyline
+    texts: tuple[tuple[str, tuple[float, float]], ...] = ()  # with the place [m] where each begins
 
 
 def closed_polylines(path, layer, where):
@@ -42,6 +59,52 @@ def closed_polylines(path, layer, where):
         what = f"{path.name} has no closed polyline on layer {units.shown(layer)}"
         raise ConfigError(where, what, "draw the hole as one closed polyline (LWPOLYLINE)")
     return found
+
+
+def written(layers):
+    """Return a drawing as the bytes of a DXF file in millimetres, the same for the same layers.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+
+    Returns
+    -------
+    bytes
+    """
+    import ezdxf
+
+    with _without_a_date(ezdxf.options):
+        drawing = ezdxf.new("R2010", units=IN_MILLIMETRES)
+        drawing.header["$MEASUREMENT"] = 1  # metric
+        space = drawing.modelspace()
+        for layer in layers:
+            drawing.layers.add(layer.name, color=layer.colour)
+            _draw(space, layer)
+        file = io.StringIO()
+        drawing.write(file)
+    return file.getvalue().encode()
+
+
+def _draw(space, layer):
+    look = {"layer": layer.name}
+    for closed, lines in ((True, layer.rings), (False, layer.lines)):
+        for line in lines:
+            corners = [(1e3 * float(x), 1e3 * float(y)) for x, y in line]
+            space.add_lwpolyline(corners, close=closed, dxfattribs=look)
+    for text, place in layer.texts:
+        space.add_text(text, height=LETTERS, dxfattribs=look).set_placement([1e3 * float(x) for x in place])
+
+
+@contextlib.contextmanager
+def _without_a_date(options):
+    """Let ezdxf write neither a date nor a fresh identity into the file."""
+    before = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        yield
+    finally:
+        options.write_fixed_meta_data_for_testing = before
 
 
 def _named(layer):

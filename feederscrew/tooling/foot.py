@@ -90,7 +90,7 @@ def polygon(corners, radius):
     """
     from feederscrew.tooling.kernel.passage import Hole as Compiled
 
-    corners = _through_the_wall(_turned_left(check.shaped("corners", corners, (-1, 2))))
+    corners = through_the_wall(_turned_left(check.shaped("corners", corners, (-1, 2))))
     theta, r = corners[:, 0] / radius, radius - corners[:, 1]
     rows = [_edge(*ends) for ends in zip(theta, r, np.roll(theta, -1), np.roll(r, -1))]
     corner = np.column_stack([theta, r, np.ones(len(r))])[_reflex(corners)]
@@ -196,8 +196,8 @@ def _turned_left(corners):
     return corners if twice > 0.0 else corners[::-1]
 
 
-def _through_the_wall(corners):
-    """The corners with every edge along the wall moved behind it."""
+def through_the_wall(corners):
+    """Return the corners (K, 2) [m] of a hole with every edge along the wall moved behind it."""
     out = []
     for (s0, y0), (s1, y1) in zip(corners, np.roll(corners, -1, axis=0)):
         out.append((s0, y0))

@@ -113,4 +113,5 @@ def _hole(device, one, shift):
         _, shift = feet.least(one.standing, feet.gap(device.limit, track.radius, width))
     elif device.kind != "cut_out":
         shift = -0.5 * length / track.radius
-    return shapely.make_valid(shapely.Polygon(bent(ring, track.radius, shift)))
+    ring = bent(feet.through_the_wall(ring), track.radius, shift)
+    return shapely.make_valid(shapely.Polygon(ring))

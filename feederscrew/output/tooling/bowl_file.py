@@ -1,0 +1,36 @@
+"""A bowl file with the devices of a design, which every command reads back."""
+
+from feederscrew.bowl.devices import SECTION
+
+
+def bowl_file(study, settings):
+    """Return a bowl file: what the user gave, and the devices that isolate the orientation asked for.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+        Of one orientation.
+    settings : sequence of Setting
+        Of its bowl.
+
+    Returns
+    -------
+    str
+    """
+    given = [s for s in settings if s.given and s.key.field != SECTION]
+    lines = [*_head(study), *(f"{s.key.word}: {s.text}" for s in given if not s.key.section)]
+    for section in dict.fromkeys(s.key.section for s in given if s.key.section):
+        lines += [f"{section}:"]
+        lines += [f"  {s.key.word}: {s.text}" for s in given if s.key.section == section]
+    lines += [f"{SECTION}:  # along the track, in the order parts meet them"]
+    lines += [f"  - {cut.device.kind}: {cut.device.text}" for cut in study.design.cuts]
+    return "\n".join(lines) + "\n"
+
+
+def _head(study):
+    one, found = study.orientations[study.wanted], study.design
+    return [
+        f"# Tooling that lets aspect {one.aspect} at heading {one.name.partition('@')[2]} deg leave.",
+        f"# Efficiency {100.0 * found.efficiency:.4g} %, purity {100.0 * found.purity:.4g} %, by the "
+        f"probabilities of rule {study.rule}.",
+    ]

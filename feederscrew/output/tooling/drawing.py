@@ -1,0 +1,162 @@
+"""The stretch of track with its cuts 1:1 in millimetres: layers for a DXF file, and the same as SVG."""
+
+import html
+
+import numpy as np
+
+from feederscrew.bowl import drawing
+from feederscrew.bowl.drawing import Layer
+from feederscrew.units import factor
+
+MM = factor("mm", "length")
+APART = 20e-3  # [m] between the views
+NARROW = 1e-9  # [m] the line of the wall needs no width
+COLOURS = {"TRACK": 7, "WALL": 8, "CUT": 1, "GATE": 5, "OPENING": 4, "GHOST": 9, "TEXT": 8}
+PENS = {  # of the SVG: stroke, fill, dashes
+    "TRACK": ("#22303c", "#eef1f4", ""),
+    "WALL": ("#22303c", "#9aa5b1", ""),
+    "CUT": ("#d55e00", "#ffffff", ""),
+    "GATE": ("#0072b2", "#0072b2", ""),
+    "OPENING": ("#0072b2", "#ffffff", ""),
+    "GHOST": ("#7a8793", "none", "1.5 1"),
+}
+WALL = 2e-3  # [m] thickness the wall is drawn with
+
+
+def dxf(strip, ghosts=()):
+    """Return the drawing of a strip as the bytes of a DXF file.
+
+    Parameters
+    ----------
+    strip : Strip
+    ghosts : sequence of (K, 2) float [m]
+        Outlines of parts, unrolled; they are not cut.
+
+    Returns
+    -------
+    bytes
+    """
+    return drawing.written(layers(strip, ghosts))
+
+
+def layers(strip, ghosts=()):
+    """Return the layers of a strip: unrolled, below it as bent, to the right the openings of gates.
+
+    Parameters
+    ----------
+    strip : Strip
+    ghosts : sequence of (K, 2) float [m]
+
+    Returns
+    -------
+    list of Layer
+        ``TRACK``, ``WALL``, ``GATE``, ``GHOST`` unrolled, the wall along the X axis and parts moving towards
+        +X; ``CUT``, ``CUT_2`` ... one hole each; the same with ``BENT_`` before it as it lies in the bowl;
+        ``OPENING``, ``OPENING_2`` ... one gate each, seen along the track.
+    """
+    found = []
+    for name, rings in _plan(strip, ghosts).items():
+        colour = COLOURS[name.partition("_")[0]]
+        found.append(Layer(name, colour, rings=tuple(rings)))
+        bent = tuple(strip.bent(ring) - [0.0, _drop(strip)] for ring in rings)
+        found.append(Layer(f"BENT_{name}", colour, rings=bent))
+    found += [Layer(name, COLOURS["OPENING"], rings=rings) for name, rings in _openings(strip)]
+    return [*found, Layer("TEXT", COLOURS["TEXT"], texts=_texts(strip))]
+
+
+def svg(strip, ghosts=()):
+    """Return the drawing of a strip as an SVG file of its true size.
+
+    Parameters
+    ----------
+    strip : Strip
+    ghosts : sequence of (K, 2) float [m]
+
+    Returns
+    -------
+    str
+    """
+    drawn = [one for one in layers(strip, ghosts) if one.name != "TEXT"]
+    texts = _texts(strip)
+    corners = np.vstack([ring for one in drawn for ring in one.rings])
+    low, high = corners.min(axis=0) / MM - 5.0, corners.max(axis=0) / MM + 5.0
+    size = high - low + [20.0, 0.0]
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{size[0]:.2f}mm" height="{size[1]:.2f}mm" '
+        f'viewBox="{low[0]:.2f} {-high[1]:.2f} {size[0]:.2f} {size[1]:.2f}">',
+        '<rect x="{:.2f}" y="{:.2f}" width="100%" height="100%" fill="#ffffff"/>'.format(low[0], -high[1]),
+    ]
+    for one in sorted(drawn, key=lambda one: list(PENS).index(_kind(one.name))):
+        lines += [_path(ring, one.name) for ring in one.rings]
+    lines += [
+        f'<text x="{x / MM:.2f}" y="{-y / MM:.2f}" font-family="sans-serif" font-size="3" '
+        f'fill="#22303c">{html.escape(text)}</text>'
+        for text, (x, y) in texts
+    ]
+    return "\n".join([*lines, "</svg>"]) + "\n"
+
+
+def _plan(strip, ghosts):
+    """Rings of each layer, unrolled."""
+    length, width = strip.length, strip.width
+    found = {
+        "TRACK": [_rectangle(0.0, 0.0, length, width)],
+        "WALL": [_rectangle(0.0, -WALL, length, -NARROW)],
+    }
+    cuts = [station.hole for station in strip.stations if station.hole is not None]
+    found |= {_numbered("CUT", place): [ring] for place, ring in enumerate(cuts)}
+    blades = [station.blade for station in strip.stations if station.blade is not None]
+    return found | {"GATE": blades, "GHOST": list(ghosts)}
+
+
+def _openings(strip):
+    """Openings of gates one after the other to the right of the track, each on its own layer."""
+    right, found = strip.length + APART, []
+    for station in strip.stations:
+        if station.openings:
+            shown = tuple(ring + [right, 0.0] for ring in station.openings)
+            found.append((_numbered("OPENING", len(found)), shown))
+            right = max(ring[:, 0].max() for ring in shown) + APART
+    return found
+
+
+def _texts(strip):
+    above = strip.width + 3e-3
+    named = [(station.label, (station.start, above)) for station in strip.stations]
+    gates = [station for station in strip.stations if station.openings]
+    seen = [
+        (f"opening of {station.device.kind}", (rings[0][:, 0].min(), -6e-3))
+        for station, (_, rings) in zip(gates, _openings(strip))
+    ]
+    notes = [
+        ("unrolled: wall below, parts move to the right", (0.0, -WALL - 4.5e-3)),
+        (f"as bent: radius of the wall {strip.track.radius / MM:.6g} mm", (0.0, -_drop(strip) - WALL - 4.5e-3)),
+    ]
+    return tuple(named + seen + notes)
+
+
+def _drop(strip):
+    """How far below the unrolled view the bent one lies [m]."""
+    end = strip.bent(_rectangle(0.0, -WALL, strip.length, strip.width))
+    return float(end[:, 1].max()) + APART
+
+
+def _numbered(name, place):
+    return f"{name}_{place + 1}" if place else name
+
+
+def _kind(layer):
+    return layer.removeprefix("BENT_").partition("_")[0]
+
+
+def _path(ring, layer):
+    stroke, fill, dashes = PENS[_kind(layer)]
+    corners = " L ".join(f"{x / MM:.4f} {-y / MM:.4f}" for x, y in ring)
+    dashed = f' stroke-dasharray="{dashes}"' if dashes else ""
+    return (
+        f'<path class="{layer}" d="M {corners} Z" fill="{fill}" stroke="{stroke}" stroke-width="0.25"{dashed}/>'
+    )
+
+
+def _rectangle(x0, y0, x1, y1):
+    return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])

@@ -1,0 +1,105 @@
+"""The stretch of track as a solid to print: plate, wall and gates, in millimetres; the one door to manifold3d."""
+
+import numpy as np
+import shapely
+from shapely import affinity
+
+from feederscrew.tooling.strip import bent
+from feederscrew.units import factor
+
+MM = factor("mm", "length")
+PLATE, WALL = 3e-3, 3e-3  # [m] thickness of track and wall
+ABOVE = 5e-3  # [m] of the wall above the tallest part
+INTO = 1e-3  # [m] by which wall and gates reach into plate and wall, so that they are one body
+SEAM = 2e-5  # [m] of the plate left along the wall
+HEADER = b"feeder tooling: track section in mm"
+
+
+def stl(strip):
+    """Return the track section with its cuts, bent, as a binary STL in millimetres.
+
+    Parameters
+    ----------
+    strip : Strip
+
+    Returns
+    -------
+    bytes
+        Closed; the wall is tangent to X at the origin, the track's surface lies in the plane Z = 0.
+    """
+    return _binary(triangles(strip))
+
+
+def triangles(strip):
+    """Return the triangles (F, 3, 3) [m] of the section, counter-clockwise seen from outside."""
+    radius, length, width = strip.track.radius, strip.length, strip.width
+    plate = _bent([[0.0, -WALL], [length, -WALL], [length, width], [0.0, width]], radius)
+    holes = [_bent(_off_the_wall(one.hole), radius) for one in strip.stations if one.hole is not None]
+    low, high = INTO, length - INTO
+    wall = _bent([[low, INTO - WALL], [high, INTO - WALL], [high, 0.0], [low, 0.0]], radius)
+    body = _extruded(plate.difference(shapely.union_all(holes)), -PLATE, 0.0)
+    body += _extruded(wall, -INTO, strip.tallest + ABOVE)
+    for station in strip.stations:
+        if station.blade is not None:
+            body += _gate(station, strip)
+    mesh = body.to_mesh64()
+    corners = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts)]
+    return _in_order(corners * MM)
+
+
+def _off_the_wall(ring):
+    """A hole that reaches the wall, moved a little off it: no face of it then lies in the wall's."""
+    return np.column_stack([ring[:, 0], np.maximum(ring[:, 1], SEAM)])
+
+
+def _bent(ring, radius):
+    return shapely.make_valid(shapely.Polygon(bent(np.asarray(ring), radius)))
+
+
+def _extruded(area, low, high):
+    """A body [mm] over an area of the plane between two heights [m]."""
+    from manifold3d import CrossSection, FillRule, Manifold
+
+    polygons = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
+    rings = [ring for part in polygons for ring in (part.exterior, *part.interiors)]
+    flat = CrossSection([np.asarray(ring.coords)[:-1] / MM for ring in rings], FillRule.EvenOdd)
+    return Manifold.extrude(flat, (high - low) / MM).translate((0.0, 0.0, low / MM))
+
+
+def _gate(station, strip):
+    """The blade of a gate: a plate across the track without its opening."""
+    free = shapely.union_all([shapely.Polygon(ring) for ring in station.openings])
+    free = shapely.union_all([affinity.translate(free, *by) for by in ((0, 0), (-2 * INTO, 0), (0, -2 * INTO))])
+    frame = shapely.box(-INTO, -INTO, strip.width - INTO, station.top)
+    thick = np.ptp(station.blade[:, 0])
+    blade = _extruded(frame.difference(free), 0.0, thick)
+    angle = station.blade[0, 0] / strip.track.radius
+    return blade.transform(_across(angle, strip.track.radius / MM))
+
+
+def _across(angle, radius):
+    """The 3 x 4 matrix that stands a plate (distance from the wall, height, thickness) [mm] across the track."""
+    ahead = np.array([np.cos(angle), np.sin(angle), 0.0])
+    inwards = np.array([-np.sin(angle), np.cos(angle), 0.0])
+    place = np.array([radius * np.sin(angle), radius - radius * np.cos(angle), 0.0])
+    return np.column_stack([inwards, [0.0, 0.0, 1.0], ahead, place])
+
+
+def _in_order(corners):
+    """The triangles in one order, whatever the order they were made in."""
+    first = np.array([min(range(3), key=lambda k: tuple(one[k])) for one in corners])
+    rows = np.arange(len(corners))[:, None]
+    turned = corners[rows, (first[:, None] + np.arange(3)) % 3]
+    return turned[np.lexsort(turned.reshape(len(turned), 9).T[::-1])]
+
+
+def _binary(corners):
+    """The bytes of an STL file [mm]."""
+    corners = (corners / MM).astype("<f4")
+    sides = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    normal = np.cross(*sides).astype(float)
+    size = np.sqrt((normal**2).sum(axis=1, keepdims=True))
+    normal = np.divide(normal, size, out=np.zeros_like(normal), where=size > 0.0)
+    record = np.zeros(len(corners), dtype=[("numbers", "<f4", (4, 3)), ("nothing", "<u2")])
+    record["numbers"][:, 0], record["numbers"][:, 1:] = normal, corners
+    return HEADER.ljust(80) + np.uint32(len(corners)).tobytes() + record.tobytes()
