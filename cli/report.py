@@ -33,7 +33,6 @@ PLACE = (
 
 
 TALK = {"-q", "--quiet", "-v", "--verbose"}
-FOLDER = {"-o", "--output"}
 
 
 def _all(decorators):
@@ -90,9 +89,5 @@ def repeated(arguments):
     -------
     str
     """
-    kept, skip = ["feeder"], False
-    for argument in arguments:
-        if not (skip or argument in TALK | FOLDER or argument.startswith(("--output=", "-o="))):
-            kept.append(argument)
-        skip = argument in FOLDER
-    return shlex.join(kept)
+    kept = [argument for argument in talk.placeless(arguments) if argument not in TALK]
+    return shlex.join(["feeder", *kept])

@@ -9,6 +9,7 @@ import click
 from feederscrew_cli.interrupt import held_back
 
 FORMATS = ("table", "csv", "json")
+FOLDER = ("-o", "--output")
 PLACES = ("directory", "depfile")  # options that name what is written, not what is read
 
 
@@ -119,10 +120,20 @@ class Output:
         with ResultFolder(self.directory, name, identity) as folder:
             yield folder
             folder.keep(
-                self.command, arguments=self.arguments, effective=effective or {}, warnings=self.warnings
+                self.command, arguments=placeless(self.arguments), effective=effective or {}, warnings=self.warnings
             )
         self.depend(folder.path / name for name in sorted(folder.staged))
         self.say(f"Wrote {folder.path} ({', '.join(sorted(folder.staged))}, run.json)")
+
+
+def placeless(arguments):
+    """Return arguments as typed without the folder of ``-o``: the same wherever the results are put."""
+    kept, skip = [], False
+    for argument in arguments:
+        if not (skip or argument in FOLDER or argument.startswith(("--output=", "-o="))):
+            kept.append(argument)
+        skip = argument in FOLDER
+    return kept
 
 
 def _inputs(context):

@@ -35,23 +35,28 @@ from feederscrew_cli.quantity import Quantity
     help="After which the best so far is taken.",
 )
 @options.bowl
+@options.pictures
 @options.output
-def tooling(part, aspect, heading, rule, margin, seed, limit, bowl, out):
+def tooling(part, aspect, heading, rule, margin, seed, limit, bowl, pictures, out):
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
     Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect:
     every orientation with its share, its limits (least track width, greatest canyon and gap), the
     devices that isolate it, their margin, the efficiency and the purity. With one: the chain of fewest
     devices, each with the smallest cut that still returns and the largest that still passes.
+
+    With -o: tooling.csv, tooling.json and tooling.png; with an aspect also tooling.yaml, a bowl file with
+    the devices for feeder rate, report and batch, tooling.dxf and tooling.svg, 1:1 in mm, unrolled and as
+    bent, and tooling.stl, the section of track to print.
     """
     from feederscrew import bowl as bowls
-    from feederscrew.output import columns
-    from feederscrew.output.tooling import tables
+    from feederscrew.output import columns, offers
+    from feederscrew.output.tooling import files, tables
     from feederscrew.studies.tooling import tooling as study
 
     solid, settings = out.part(part), bowls.settings(**bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
-    with out.folder(solid.name, {solid.source: solid.sha256}, effective):
+    with out.folder(solid.name, {solid.source: solid.sha256}, effective) as folder:
         with Progress(None, not out.quiet, "orientations") as bar:
             found = study(
                 solid, bowls.record(settings), aspect,
@@ -60,4 +65,5 @@ def tooling(part, aspect, heading, rule, margin, seed, limit, bowl, out):
         document = tables.document(found)
         out.warn(*found.warnings)
         out.say(*tables.remarks(found))
+        offers.write(folder, files.offers(found, settings), pictures=pictures)
         out.show(tables.summary(found), document, hidden=tables.HIDDEN)

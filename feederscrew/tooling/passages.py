@@ -64,23 +64,6 @@ def passage(device, one, every):
     )
 
 
-def chain(devices, every):
-    """Return what happens to each orientation: its passages up to the device that returns it.
-
-    Parameters
-    ----------
-    devices : sequence of Device
-        In the order parts meet them.
-    every : sequence of Orientation
-
-    Returns
-    -------
-    list of list of Passage
-        One list an orientation; empty for one that falls off the bare track.
-    """
-    return [_until_returned(devices, one, every) for one in every]
-
-
 def foot(one):
     """Return what of an orientation touches the track, as a shapely geometry from the wall [m]."""
     up = [0.0, one.distance]
@@ -91,11 +74,23 @@ def foot(one):
     return shapely.union_all(parts)
 
 
-def _until_returned(devices, one, every):
-    if one.falls_off:
-        return []
+def until_returned(devices, one, every):
+    """Return the passages of an orientation up to the device that returns it.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+        In the order parts meet them.
+    one : Orientation
+    every : sequence of Orientation
+
+    Returns
+    -------
+    list of Passage
+        None of one that falls off the bare track.
+    """
     found = []
-    for device in devices:
+    for device in () if one.falls_off else devices:
         found.append(passage(device, one, every))
         if found[-1].verdict.passes <= 0.0:
             break

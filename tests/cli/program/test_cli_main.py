@@ -171,12 +171,12 @@ def test_shared_options_arrive_as_keywords(tmp_path):
     }  # fmt: skip
 
 
-def test_a_run_into_a_folder_is_recorded_as_typed(tmp_path):
+def test_a_run_into_a_folder_is_recorded_as_typed_without_the_folder(tmp_path):
     done = told("put", "nut.stl", "--set", "a=1", "-o", str(tmp_path / "res"))
     assert done.stderr.endswith(f"Wrote {tmp_path / 'res/nut'} (a.csv, run.json)\n")
     entry = json.loads((tmp_path / "res/nut/run.json").read_text())["put"]
     assert entry["version"] == __version__
-    assert entry["arguments"] == ["put", "nut.stl", "--set", "a=1", "-o", str(tmp_path / "res")]
+    assert entry["arguments"] == ["put", "nut.stl", "--set", "a=1"]
     assert entry["effective"] == {"bowl": ["a=1"]}
     assert entry["warnings"] == ["careful"]
 

@@ -1,0 +1,266 @@
+"""Pictures of tooling: each orientation at the worst place of each device, and what isolates each."""
+
+import textwrap
+
+import numpy as np
+import shapely
+from matplotlib.lines import Line2D
+from matplotlib.patches import PathPatch, Polygon
+from matplotlib.path import Path
+
+from feederscrew.output import style
+from feederscrew.tooling import passages
+from feederscrew.tooling.verdicts import seen
+from feederscrew.units import factor
+
+MM = factor("mm", "length")
+WIDTH = 1200  # pixels
+LEFT, COLUMN, ROW, HEAD, FOOT = 230, 300, 170, 110, 30  # pixels
+PASSES, FALLS = "#0072b2", "#d55e00"
+TRACK, AIR, PART, TOUCHING = "#e3e8ec", "#ffffff", "#9fb3c4", "#56697a"
+LEAST_SHARE = 5e-3  # [1] orientations that come less often have no row
+WIDEST = 420  # pixels of a column
+LINE = 17  # pixels between lines of text
+LETTERS = 40  # of a line of text in the last column
+SHRINK = 0.82  # of a size in points
+
+
+def chain(devices, every, shares, wanted=None):
+    """Draw each orientation at the worst place of each device that it meets, a row each.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+        In the order parts meet them.
+    every : sequence of Orientation
+    shares : (M,) float [1]
+    wanted : int, optional
+        The orientation that shall leave, drawn first.
+
+    Returns
+    -------
+    Figure
+    """
+    shown = [device for device in devices if device.kind != "yield"]
+    rows = _rows(every, shares, wanted)
+    wide = max(WIDTH, LEFT + COLUMN * len(shown))
+    page = style.page(wide, HEAD + ROW * len(rows) + FOOT)
+    column = min((wide - LEFT) / max(len(shown), 1), WIDEST)
+    title = "Each orientation where each device bears least" if wanted is None else (
+        f"What lets {every[wanted].name} leave: each orientation where each device bears least"
+    )  # fmt: skip
+    _heading(page, title, _missing(every, rows, shares))
+    for place, device in enumerate(shown):
+        _text(page, LEFT + place * column + 8, HEAD - 22, _device(device, place), weight="bold")
+    size = _scale(every, rows, column)
+    for place, k in enumerate(rows):
+        top = HEAD + place * ROW
+        found = passages.until_returned(shown, every[k], every)
+        _rule(page, top)
+        _told(page, top, every[k], shares[k], found, k == wanted)
+        for step, one in enumerate(found):
+            _cell(page, (LEFT + step * column, top, column, ROW), one, size)
+    return page
+
+
+def limits(study):
+    """Draw every orientation on the track with its limits, and what isolates it, a row each.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+
+    Returns
+    -------
+    Figure
+    """
+    every, shares = study.orientations, study.shares
+    rows = _rows(every, shares, None)
+    page = style.page(WIDTH, HEAD + ROW * len(rows) + FOOT)
+    count = sum(one is not None and one.isolated for one in study.designs)
+    title = f"{count} of {len(every)} orientations can be isolated"
+    _heading(page, title, _missing(every, rows, shares))
+    for left, text in ((LEFT + 8, "from above"), (LEFT + COLUMN + 8, "along the track"), (830, "isolated by")):
+        _text(page, left, HEAD - 22, text, weight="bold")
+    size = _scale(every, rows, COLUMN)
+    for place, k in enumerate(rows):
+        top, one, found = HEAD + place * ROW, every[k], study.designs[k]
+        _rule(page, top)
+        _measured(page, top, one, shares[k])
+        colour = PASSES if found.isolated else FALLS
+        _above(_axes(page, (LEFT, top, COLUMN, ROW), size, True), one, None, None, colour)
+        _ahead(_axes(page, (LEFT + COLUMN, top, COLUMN, ROW), size, False), one, None, colour)
+        for line, text in enumerate(_isolated(found)):
+            _text(page, 830, top + 30 + line * LINE, text, colour=colour)
+    return page
+
+
+def _cell(page, box, found, size):
+    """One orientation at one device."""
+    good = found.verdict.passes > 0.0
+    colour = PASSES if good else FALLS
+    axes = _axes(page, box, size, found.picture == "above")
+    if found.picture == "above":
+        _above(axes, found.orientation, found.hole, found, colour)
+    else:
+        _ahead(axes, found.orientation, found.opening, colour)
+    margin = found.verdict.margin / MM
+    word = "passes" if good else "falls" if found.picture == "above" else "is stopped"
+    _text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, margin {margin:+.2f} mm", colour=colour)
+
+
+def _above(axes, one, hole, found, colour):
+    """The part on the track from above: wall below, moving to the right."""
+    right = axes.get_xlim()[1]
+    half = min(0.95 * max(one.length, one.width) / MM, right)
+    track = shapely.box(-half, 0.0, half, one.track.width / MM)
+    curved = _sunk(track, one.track.radius / MM)
+    _fill(axes, curved if hole is None else curved.difference(_mm(hole)), TRACK, "#b8c2cb", 1)
+    outline = (one.outline + [0.0, one.distance]) / MM
+    axes.add_patch(Polygon(outline, fc=PART, ec="#4d5b68", lw=0.9, alpha=0.45, zorder=3))
+    touching = _mm(passages.foot(one))
+    if hole is not None:
+        _fill(axes, _mm(hole), "none", style.INK, 6, width=0.8)
+    left_over = touching if hole is None else touching.difference(_mm(hole))
+    _fill(axes, left_over, TOUCHING, TOUCHING, 4)
+    hull = left_over.convex_hull if found is None else shapely.MultiPoint(found.supported / MM).convex_hull
+    _fill(axes, hull, "none", colour, 5, width=1.8)
+    weight = 0.0, (one.distance - one.shift) / MM
+    axes.plot(*weight, "o", ms=5.5, color=colour, mec="white", mew=0.8, zorder=7)
+
+
+def _ahead(axes, one, opening, colour):
+    """The part seen along the track, the wall at the left, in the opening of a gate."""
+    top = axes.get_ylim()[1]
+    right = min(axes.get_xlim()[1], one.track.width / MM, 1.5 * max(one.length, one.width) / MM)
+    if opening is not None:
+        plate = shapely.box(0.0, 0.0, right, top).difference(_mm(opening))
+        _fill(axes, plate, "#c3ccd4", "#8593a0", 2)
+    axes.plot([0.0, 0.0, right], [top, 0.0, 0.0], color=style.INK, lw=1.5, zorder=6)
+    shown = _mm(seen(one))
+    _fill(axes, shown, f"{PART}b0", "none", 4)
+    _fill(axes, shown, "none", colour, 5, width=1.8)
+
+
+def _sunk(track, radius):
+    """The track [mm] between the curved wall and its inner edge."""
+    left, low, right, high = track.bounds
+    x = np.linspace(left, right, 41)
+    wall = radius - np.sqrt(radius**2 - x**2)
+    inner = radius - high
+    far = radius - np.sqrt(np.maximum(inner**2 - x**2, 0.0)) if inner > abs(left) else np.full(41, 1e3)
+    return shapely.Polygon(np.vstack([np.column_stack([x, wall]), np.column_stack([x, far])[::-1]]))
+
+
+def _axes(page, box, size, middle):
+    """Axes [mm] in a box of pixels, ``size`` mm a pixel; X = 0 in its middle or at its left."""
+    left, top, width, height = box[0] + 6, box[1] + 8, box[2] - 18, box[3] - 38
+    wide, high = page.get_size_inches() * style.DPI
+    place = left / wide, 1.0 - (top + height) / high, width / wide, height / high
+    axes = page.add_axes(place)
+    start = -0.5 * width * size if middle else -4.0 * size
+    axes.set(xlim=(start, start + width * size), ylim=(-3.0 * size, (height - 3.0) * size))
+    axes.axis("off")
+    return axes
+
+
+def _scale(every, rows, column):
+    """Millimetres a pixel at which every row's part fits its cell."""
+    needed = [(1.25 * max(one.length, one.width) / column, 1.2 * max(one.width, one.height) / (ROW - 38))
+              for one in (every[k] for k in rows)]  # fmt: skip
+    return max(max(pair) for pair in needed) / MM
+
+
+def _fill(axes, area, face, edge, order, width=0.8):
+    """Draw a shapely geometry [mm]: areas with their holes, lines and points."""
+    for part in shapely.get_parts(area):
+        if part.geom_type == "Polygon":
+            rings = [np.asarray(ring.coords) for ring in (part.exterior, *part.interiors)]
+            path = Path.make_compound_path(*(Path(ring, closed=True) for ring in rings))
+            axes.add_patch(PathPatch(path, fc=face, ec=edge, lw=width, zorder=order))
+        elif part.geom_type == "LineString":
+            axes.plot(*np.asarray(part.coords).T, color=edge, lw=2.0, zorder=order)
+        elif part.geom_type == "Point":
+            axes.plot(part.x, part.y, "s", color=edge, ms=3.0, zorder=order)
+
+
+def _mm(area):
+    return shapely.transform(area, lambda points: points / MM)
+
+
+def _heading(page, title, missing):
+    _text(page, 16, 26, style.words(title), size=11, weight="bold")
+    _text(page, 16, 50, "from above: wall below, parts move to the right; light: part, dark: what touches the "
+          "track, outline: hull of the support, dot: weight", size=8)  # fmt: skip
+    _text(page, 16, 68, missing, size=8)
+
+
+def _told(page, top, one, share, found, is_wanted):
+    """What becomes of an orientation, at the left of its row."""
+    through = not one.falls_off and all(passage.verdict.passes > 0.0 for passage in found)
+    if one.falls_off:
+        word, colour = "falls off the track", FALLS
+    elif through:
+        word, colour = "leaves the bowl", PASSES
+    else:
+        word, colour = f"returned by {found[-1].device.kind}", FALLS
+    _text(page, 16, top + 30, one.name, size=12, weight="bold", colour=colour)
+    _text(page, 16, top + 52, f"{100.0 * share:.3g} % of the parts")
+    _text(page, 16, top + 52 + LINE, word, colour=colour)
+    if is_wanted:
+        _text(page, 16, top + 52 + 2 * LINE, "wanted", weight="bold")
+
+
+def _measured(page, top, one, share):
+    """Share and limits of an orientation, at the left of its row."""
+    _text(page, 16, top + 24, one.name, size=12, weight="bold")
+    _text(page, 110, top + 24, f"{100.0 * share:.3g} %")
+    balcony = f"{one.balcony / MM:.2f} mm" if np.isfinite(one.balcony) else "none"
+    lines = [
+        ("track at least", balcony), ("canyon up to", f"{one.canyon / MM:.2f} mm"),
+        ("gap up to", f"{one.gap / MM:.2f} mm"), ("height", f"{one.height / MM:.2f} mm"),
+    ]  # fmt: skip
+    for place, (name, value) in enumerate(lines):
+        _text(page, 16, top + 50 + place * LINE, name)
+        _text(page, 138, top + 50 + place * LINE, value)
+
+
+def _isolated(found):
+    """Lines on what isolates an orientation, or why nothing does."""
+    told = textwrap.wrap(" and ".join(cut.device.kind for cut in found.cuts) or "no device", LETTERS)
+    if found.isolated:
+        margin = f"margin {found.margin / MM:.2f} mm" if np.isfinite(found.margin) else ""
+        return [*told, f"{100.0 * found.efficiency:.3g} % of the parts leave", margin]
+    why = textwrap.shorten("; ".join(found.reasons), 3 * LETTERS, placeholder=" ...")
+    return ["not isolated", *textwrap.wrap(why, LETTERS)]
+
+
+def _device(device, place):
+    value = f" {device.text}" if np.isfinite(device.limit) or device.span else ""
+    play = f" with {device.like[2] / MM:.3g} mm play" if device.like else ""
+    return f"{place + 1}  {device.kind.replace('_', ' ')}{value}{play}"
+
+
+def _rows(every, shares, wanted):
+    """The orientations that have a row: the wanted one, then those that come often enough, likeliest first."""
+    often = [k for k in range(len(every)) if shares[k] >= LEAST_SHARE and k != wanted]
+    often.sort(key=lambda k: -round(float(shares[k]), 9))
+    return ([] if wanted is None else [wanted]) + (often or ([] if wanted is not None else [0]))
+
+
+def _missing(every, rows, shares):
+    left = [every[k].name for k in range(len(every)) if k not in rows]
+    if not left:
+        return ""
+    return f"without a row, as less than {100.0 * LEAST_SHARE:g} % of the parts come so: {', '.join(left)}"
+
+
+def _rule(page, top):
+    wide, high = page.get_size_inches() * style.DPI
+    y = 1.0 - top / high
+    page.add_artist(Line2D([16.0 / wide, 1.0 - 16.0 / wide], [y, y], color=style.FAINT, lw=0.8))
+
+
+def _text(page, x, y, text, *, size=9, colour=style.INK, weight="normal"):
+    wide, high = page.get_size_inches() * style.DPI
+    page.text(x / wide, 1.0 - y / high, text, fontsize=SHRINK * size, color=colour, fontweight=weight, va="center")

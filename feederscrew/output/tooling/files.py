@@ -1,0 +1,94 @@
+"""What ``feeder tooling`` leaves in its folder."""
+
+from feederscrew.output import offers as offer
+from feederscrew.output.tooling import bowl_file, tables
+from feederscrew.tooling.strip import strip
+
+
+def offers(study, settings):
+    """Offer the files of a ToolingStudy, as a list of Offer.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+    settings : sequence of Setting
+        Of its bowl.
+
+    Returns
+    -------
+    list of Offer
+        Table, document and picture; of one orientation with devices that isolate it the bowl file and the
+        drawings as well.
+    """
+    found = [
+        offer.table("tooling.csv", tables.frame, study),
+        offer.document("tooling.json", tables.document, study),
+        offer.picture("tooling.png", "Orientations and what isolates them", picture, study),
+    ]
+    if study.design is None or not study.design.cuts:
+        return found
+    return [
+        *found,
+        offer.text("tooling.yaml", bowl_file.bowl_file, study, settings),
+        offer.text("tooling.dxf", _drawn, "dxf", study),
+        offer.text("tooling.svg", _drawn, "svg", study),
+        offer.text("tooling.stl", _printed, study),
+    ]
+
+
+def picture(study):
+    """Return the figure of a ToolingStudy: the chain of the orientation asked for, or all with their limits."""
+    from feederscrew.output.tooling import figures
+
+    if study.design is None or not study.design.cuts:
+        return figures.limits(study)
+    return figures.chain(_devices(study), study.orientations, study.shares, study.wanted)
+
+
+def chain_picture(devices, every, shares):
+    """Offer the picture of a bowl's own devices.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+    every : sequence of Orientation
+    shares : (M,) float [1]
+
+    Returns
+    -------
+    Offer
+    """
+
+    def draw():
+        from feederscrew.output.tooling import figures
+
+        return figures.chain(devices, every, shares)
+
+    return offer.picture("tooling.png", "Each orientation where each device bears least", draw)
+
+
+def _drawn(kind, study):
+    from feederscrew.output.tooling import drawing
+
+    made = _strip(study)
+    one = study.orientations[study.wanted]
+    ghosts = [
+        one.outline + [station.start + 0.5 * station.length, one.distance]
+        for station in made.stations
+        if station.hole is None
+    ]
+    return getattr(drawing, kind)(made, [*ghosts, one.outline + [0.6 * one.length, one.distance]])
+
+
+def _printed(study):
+    from feederscrew.output.tooling import solid
+
+    return solid.stl(_strip(study))
+
+
+def _strip(study):
+    return strip(study.bowl.track, _devices(study), study.orientations)
+
+
+def _devices(study):
+    return [cut.device for cut in study.design.cuts]
