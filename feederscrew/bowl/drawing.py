@@ -81,6 +81,9 @@ def written(layers):
         for layer in layers:
             drawing.layers.add(layer.name, color=layer.colour)
             _draw(space, layer)
+        # ezdxf would add those that it needs in the order of a set, another one in each process
+        for kind in sorted(drawing.entitydb.dxf_types_in_use()):
+            drawing.classes.add_class(kind)
         file = io.StringIO()
         drawing.write(file)
     return file.getvalue().encode()

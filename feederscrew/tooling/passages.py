@@ -12,6 +12,7 @@ from feederscrew.tooling.orientations import Orientation
 from feederscrew.tooling.strip import bent, hole, opening
 from feederscrew.tooling.verdicts import JUDGES, Verdict, verdict
 
+BESIDE = 1e-6  # [rad] to either side of a place where an edge of the hole meets a corner of the foot
 LONG = 3.0  # lengths of the part: how far a device that goes on along the track is shown
 
 
@@ -46,10 +47,10 @@ def passage(device, one, every):
     Passage
     """
     found = verdict(device, one, every)
-    touching = foot(one)
-    cut = _hole(device, one, found.shift)
-    left = touching if cut is None else touching.difference(cut)
-    hull = shapely.get_coordinates(left.convex_hull)
+    touching, weight = foot(one), (0.0, one.distance - one.shift)
+    holes = [_hole(device, one, found.shift + by) for by in (0.0, -BESIDE, BESIDE)]
+    hulls = [(touching if cut is None else touching.difference(cut)).convex_hull for cut in holes]
+    worst = int(np.argmin([_within(hull, weight) for hull in hulls]))
     return Passage(
         device=device,
         orientation=one,
@@ -57,9 +58,9 @@ def passage(device, one, every):
         picture=JUDGES[device.kind].picture,
         outline=one.outline + [0.0, one.distance],
         foot=touching,
-        hole=cut,
-        supported=hull,
-        weight=(0.0, one.distance - one.shift),
+        hole=holes[worst],
+        supported=shapely.get_coordinates(hulls[worst]),
+        weight=weight,
         opening=opening(device, every, one.track.width),
     )
 
@@ -72,6 +73,12 @@ def foot(one):
     parts += [shapely.LineString(edge + up) for edge in one.foot.edges]
     parts += [shapely.Point(point + up) for point in one.foot.points]
     return shapely.union_all(parts)
+
+
+def _within(hull, weight):
+    """How far [m] a point lies inside a hull, negative: outside."""
+    point = shapely.Point(weight)
+    return hull.boundary.distance(point) if hull.contains(point) else -hull.distance(point)
 
 
 def until_returned(devices, one, every):

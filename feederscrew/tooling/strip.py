@@ -56,6 +56,13 @@ class Strip:
         return bent(ring, self.track.radius)
 
 
+    def laid(self, outline, place):
+        """Return the outline (K, 2) [m] of a part, from the wall, as it lies in the bowl at a length along it."""
+        c, s = np.cos(place / self.track.radius), np.sin(place / self.track.radius)
+        x, up = outline[:, 0], self.track.radius - outline[:, 1]
+        return np.column_stack([c * x + s * up, self.track.radius + s * x - c * up])
+
+
 def strip(track, devices, every):
     """Return the stretch of track that holds a chain of devices.
 

@@ -29,8 +29,8 @@ def dxf(strip, ghosts=()):
     Parameters
     ----------
     strip : Strip
-    ghosts : sequence of (K, 2) float [m]
-        Outlines of parts, unrolled; they are not cut.
+    ghosts : sequence of ((K, 2) float [m], float [m])
+        Outlines of parts from the wall, each with its place along it; they are not cut.
 
     Returns
     -------
@@ -45,7 +45,8 @@ def layers(strip, ghosts=()):
     Parameters
     ----------
     strip : Strip
-    ghosts : sequence of (K, 2) float [m]
+    ghosts : sequence of ((K, 2) float [m], float [m])
+        Outlines of parts from the wall, each with its place along it.
 
     Returns
     -------
@@ -55,11 +56,11 @@ def layers(strip, ghosts=()):
         ``OPENING``, ``OPENING_2`` ... one gate each, seen along the track.
     """
     found = []
-    for name, rings in _plan(strip, ghosts).items():
-        colour = COLOURS[name.partition("_")[0]]
-        found.append(Layer(name, colour, rings=tuple(rings)))
-        bent = tuple(strip.bent(ring) - [0.0, _drop(strip)] for ring in rings)
-        found.append(Layer(f"BENT_{name}", colour, rings=bent))
+    for name, rings in _plan(strip).items():
+        bent = tuple(strip.bent(ring) for ring in rings)
+        found += _both(strip, name, tuple(rings), bent)
+    plain = tuple(ring + [place, 0.0] for ring, place in ghosts)
+    found += _both(strip, "GHOST", plain, tuple(strip.laid(*ghost) for ghost in ghosts))
     found += [Layer(name, COLOURS["OPENING"], rings=rings) for name, rings in _openings(strip)]
     return [*found, Layer("TEXT", COLOURS["TEXT"], texts=_texts(strip))]
 
@@ -70,7 +71,7 @@ def svg(strip, ghosts=()):
     Parameters
     ----------
     strip : Strip
-    ghosts : sequence of (K, 2) float [m]
+    ghosts : sequence of ((K, 2) float [m], float [m])
 
     Returns
     -------
@@ -96,7 +97,13 @@ def svg(strip, ghosts=()):
     return "\n".join([*lines, "</svg>"]) + "\n"
 
 
-def _plan(strip, ghosts):
+def _both(strip, name, plain, bent):
+    """A layer unrolled and as bent, the latter below."""
+    colour, down = COLOURS[name.partition("_")[0]], [0.0, _drop(strip)]
+    return Layer(name, colour, rings=plain), Layer(f"BENT_{name}", colour, rings=tuple(b - down for b in bent))
+
+
+def _plan(strip):
     """Rings of each layer, unrolled."""
     length, width = strip.length, strip.width
     found = {
@@ -106,7 +113,7 @@ def _plan(strip, ghosts):
     cuts = [station.hole for station in strip.stations if station.hole is not None]
     found |= {_numbered("CUT", place): [ring] for place, ring in enumerate(cuts)}
     blades = [station.blade for station in strip.stations if station.blade is not None]
-    return found | {"GATE": blades, "GHOST": list(ghosts)}
+    return found | {"GATE": blades}
 
 
 def _openings(strip):

@@ -21,7 +21,7 @@ TRACK, AIR, PART, TOUCHING = "#e3e8ec", "#ffffff", "#9fb3c4", "#56697a"
 LEAST_SHARE = 5e-3  # [1] orientations that come less often have no row
 WIDEST = 420  # pixels of a column
 LINE = 17  # pixels between lines of text
-LETTERS = 40  # of a line of text in the last column
+LETTERS = 38  # of a line of text in the last column
 SHRINK = 0.82  # of a size in points
 
 
@@ -77,8 +77,8 @@ def limits(study):
     every, shares = study.orientations, study.shares
     rows = _rows(every, shares, None)
     page = style.page(WIDTH, HEAD + ROW * len(rows) + FOOT)
-    count = sum(one is not None and one.isolated for one in study.designs)
-    title = f"{count} of {len(every)} orientations can be isolated"
+    known = [one for one in study.designs if one is not None]
+    title = f"{sum(one.isolated for one in known)} of {len(known)} orientations can be isolated"
     _heading(page, title, _missing(every, rows, shares))
     for left, text in ((LEFT + 8, "from above"), (LEFT + COLUMN + 8, "along the track"), (830, "isolated by")):
         _text(page, left, HEAD - 22, text, weight="bold")
@@ -87,7 +87,7 @@ def limits(study):
         top, one, found = HEAD + place * ROW, every[k], study.designs[k]
         _rule(page, top)
         _measured(page, top, one, shares[k])
-        colour = PASSES if found.isolated else FALLS
+        colour = style.INK if found is None else PASSES if found.isolated else FALLS
         _above(_axes(page, (LEFT, top, COLUMN, ROW), size, True), one, None, None, colour)
         _ahead(_axes(page, (LEFT + COLUMN, top, COLUMN, ROW), size, False), one, None, colour)
         for line, text in enumerate(_isolated(found)):
@@ -227,11 +227,13 @@ def _measured(page, top, one, share):
 
 def _isolated(found):
     """Lines on what isolates an orientation, or why nothing does."""
+    if found is None:
+        return ["not asked for"]
     told = textwrap.wrap(" and ".join(cut.device.kind for cut in found.cuts) or "no device", LETTERS)
     if found.isolated:
         margin = f"margin {found.margin / MM:.2f} mm" if np.isfinite(found.margin) else ""
         return [*told, f"{100.0 * found.efficiency:.3g} % of the parts leave", margin]
-    why = textwrap.shorten("; ".join(found.reasons), 3 * LETTERS, placeholder=" ...")
+    why = textwrap.shorten("; ".join(found.reasons), 4 * LETTERS, placeholder=" ...")
     return ["not isolated", *textwrap.wrap(why, LETTERS)]
 
 

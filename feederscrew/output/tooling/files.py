@@ -72,12 +72,9 @@ def _drawn(kind, study):
 
     made = _strip(study)
     one = study.orientations[study.wanted]
-    ghosts = [
-        one.outline + [station.start + 0.5 * station.length, one.distance]
-        for station in made.stations
-        if station.hole is None
-    ]
-    return getattr(drawing, kind)(made, [*ghosts, one.outline + [0.6 * one.length, one.distance]])
+    outline = one.outline + [0.0, one.distance]
+    places = [station.start + 0.5 * station.length for station in made.stations if station.hole is None]
+    return getattr(drawing, kind)(made, [(outline, place) for place in (0.6 * one.length, *places)])
 
 
 def _printed(study):

@@ -34,7 +34,7 @@ def triangles(strip):
     """Return the triangles (F, 3, 3) [m] of the section, counter-clockwise seen from outside."""
     radius, length, width = strip.track.radius, strip.length, strip.width
     plate = _bent([[0.0, -WALL], [length, -WALL], [length, width], [0.0, width]], radius)
-    holes = [_bent(_off_the_wall(one.hole), radius) for one in strip.stations if one.hole is not None]
+    holes = [_bent(_clear(one.hole, width), radius) for one in strip.stations if one.hole is not None]
     low, high = INTO, length - INTO
     wall = _bent([[low, INTO - WALL], [high, INTO - WALL], [high, 0.0], [low, 0.0]], radius)
     body = _extruded(plate.difference(shapely.union_all(holes)), -PLATE, 0.0)
@@ -47,9 +47,10 @@ def triangles(strip):
     return _in_order(corners * MM)
 
 
-def _off_the_wall(ring):
-    """A hole that reaches the wall, moved a little off it: no face of it then lies in the wall's."""
-    return np.column_stack([ring[:, 0], np.maximum(ring[:, 1], SEAM)])
+def _clear(ring, width):
+    """A hole moved a little off the wall and on over the track's other edge: no two faces then coincide."""
+    across = np.where(ring[:, 1] >= width, width + INTO, np.maximum(ring[:, 1], SEAM))
+    return np.column_stack([ring[:, 0], across])
 
 
 def _bent(ring, radius):

@@ -1,0 +1,156 @@
+"""What ``feeder tooling`` draws: the cuts in every form give the verdicts again."""
+
+import io
+import itertools
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import ezdxf
+import numpy as np
+import pytest
+import shapely
+import trimesh
+
+from feederscrew import bowl as bowls
+from feederscrew import part as parts
+from feederscrew.output.tooling import bowl_file, drawing, figures, files, solid
+from feederscrew.resting.aspects import find
+from feederscrew.studies.rate import rate
+from feederscrew.studies.tooling import tooling
+from feederscrew.tooling import passages
+from feederscrew.tooling.orientations import orientations
+from feederscrew.tooling.strip import bent, strip
+from feederscrew.tooling.verdicts import JUDGES, verdict
+
+PART = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
+BOWL = """\
+track:
+  width: 45 mm
+devices:
+  - wiper: 25 mm
+  - canyon: 9.7 mm
+  - gap: 8 mm
+  - slot: {from: 4 mm, to: 8 mm}
+  - narrowed_track: 16 mm
+  - pressure_break: 20 mm
+  - profile: {of: A@90, play: 0.5 mm}
+  - cut_out: [[0 mm, 0 mm], [12 mm, 3 mm], [14 mm, 9 mm], [2 mm, 11 mm]]
+  - yield: {A: 0.5}
+"""
+CUTS = 6  # of these cut into the track
+
+
+@pytest.fixture(scope="module")
+def lying(tmp_path_factory):
+    """A part's orientations on the track of a bowl with one device of each kind, and that bowl."""
+    path = tmp_path_factory.mktemp("bowl") / "bowl.yaml"
+    path.write_text(BOWL)
+    part, bowl = parts.load(PART), bowls.read(path)
+    return bowl, orientations(part, find(part), bowl.track)
+
+
+@pytest.fixture(scope="module")
+def drawn(lying):
+    return strip(lying[0].track, lying[0].devices, lying[1])
+
+
+def test_the_drawing_opens_in_millimetres_with_closed_polylines(drawn):
+    file = ezdxf.read(io.StringIO(drawing.dxf(drawn, [(np.eye(3, 2), 0.01)]).decode()))
+    lines = file.modelspace().query("LWPOLYLINE")
+    assert file.units == 4
+    assert all(line.closed for line in lines)
+    layers = {line.dxf.layer for line in lines}
+    cuts = {"CUT", *(f"CUT_{k}" for k in range(2, CUTS + 1))}
+    plain = {"TRACK", "WALL", "GATE", "GHOST", *cuts}
+    assert layers == plain | {f"BENT_{name}" for name in plain} | {"OPENING", "OPENING_2"}
+    assert not file.audit().has_errors
+
+
+def test_the_drawing_is_the_same_bytes_in_another_process(tmp_path):
+    code = "from feederscrew.bowl.drawing import Layer, written; import sys; sys.stdout.buffer.write(" \
+        "written([Layer('CUT', 1, rings=[[(0, 0), (1, 0), (0, 1)]], texts=(('a', (0, 0)),))]))"  # fmt: skip
+    seeds = [{**os.environ, "PYTHONHASHSEED": seed} for seed in "12"]
+    one, two = (subprocess.run([sys.executable, "-c", code], capture_output=True, env=env) for env in seeds)
+    assert one.stdout == two.stdout != b""
+
+
+def test_each_cut_read_back_from_the_drawing_gives_the_verdicts_again(lying, drawn, tmp_path):
+    (tmp_path / "tooling.dxf").write_bytes(drawing.dxf(drawn))
+    cuts = [station.device for station in drawn.stations if station.hole is not None]
+    names = ["CUT", *(f"CUT_{k}" for k in range(2, CUTS + 1))]
+    lines = [f"  - cut_out: {{dxf: tooling.dxf, layer: {name}}}" for name in names]
+    (tmp_path / "back.yaml").write_text("\n".join(["track: {width: 45 mm}", "devices:", *lines]))
+    read = bowls.read(tmp_path / "back.yaml").devices
+    assert len(cuts) == len(read) == CUTS
+    for cut, hole in zip(cuts, read):
+        if JUDGES[cut.kind].cut:
+            told = [verdict(cut, one, lying[1]).passes for one in lying[1]]
+            assert told == [verdict(hole, one).passes for one in lying[1]], cut.kind
+
+
+def test_the_section_to_print_is_one_closed_body(drawn):
+    mesh = trimesh.load(io.BytesIO(solid.stl(drawn)), file_type="stl")
+    assert mesh.is_watertight
+    assert mesh.body_count == 1
+    assert solid.stl(drawn) == solid.stl(drawn)
+
+
+def test_bent_keeps_the_distance_from_the_wall():
+    ring = np.array([[0.0, 0.0], [0.1, 0.0], [0.1, 0.02], [0.0, 0.02]])
+    found = bent(ring, 0.15)
+    away = np.hypot(found[:, 0], found[:, 1] - 0.15)
+    assert away.min() == pytest.approx(0.13, rel=1e-9)
+    assert away.max() == pytest.approx(0.15, rel=1e-9)
+    area = shapely.Polygon(found).area
+    assert area == pytest.approx(0.5 * (0.15**2 - 0.13**2) * 0.1 / 0.15, rel=1e-3)
+
+
+def test_the_hull_drawn_at_the_worst_place_is_that_of_the_verdict(lying):
+    bowl, every = lying
+    cut = next(device for device in bowl.devices if device.kind == "cut_out")
+    for one in every:
+        found = passages.passage(cut, one, every)
+        hull, weight = shapely.MultiPoint(found.supported).convex_hull, shapely.Point(found.weight)
+        away = hull.boundary.distance(weight) if hull.contains(weight) else -hull.distance(weight)
+        assert away == pytest.approx(found.verdict.margin, abs=2e-5), one.name
+
+
+@pytest.fixture(scope="module")
+def isolated():
+    """The bracket's aspect A at 270 deg, which one canyon isolates, and its settings."""
+    settings = bowls.settings(None, ["track.width=45 mm"])
+    part = parts.load(PART)
+    return tooling(part, bowls.record(settings), "A", heading=1.5 * np.pi), settings
+
+
+def test_the_bowl_file_gives_the_promised_efficiency_and_purity(isolated, tmp_path):
+    study, settings = isolated
+    path = tmp_path / "tooling.yaml"
+    path.write_text(bowl_file.bowl_file(study, settings))
+    bowl = bowls.read(path)
+    assert bowl.track == study.bowl.track
+    found = rate(study.part, bowl, "A", heading=1.5 * np.pi).rate
+    assert found.purity == pytest.approx(1.0, rel=1e-9)
+    assert found.efficiency == pytest.approx(study.design.efficiency, rel=1e-6)
+
+
+def test_files(isolated):
+    offered = {one.name: one.make() for one in files.offers(*isolated)}
+    assert set(offered) == {f"tooling.{kind}" for kind in ("csv", "json", "png", "yaml", "dxf", "svg", "stl")}
+    assert offered["tooling.svg"].startswith("<svg ")
+    assert offered["tooling.svg"].count('class="CUT"') == 1
+
+
+def test_texts_of_the_pictures_do_not_meet(lying, isolated):
+    bowl, every = lying
+    shares = np.full(len(every), 1.0 / len(every))
+    pictures = [figures.chain(bowl.devices, every, shares), figures.limits(isolated[0])]
+    for figure in pictures:
+        renderer = figure.canvas.get_renderer()
+        boxes = [text.get_window_extent(renderer) for text in figure.texts if text.get_text()]
+        width, height = figure.canvas.get_width_height()
+        assert all(0 <= box.x0 and box.x1 <= width and 0 <= box.y0 and box.y1 <= height for box in boxes)
+        assert not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2))
+
