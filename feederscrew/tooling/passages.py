@@ -12,7 +12,8 @@ from feederscrew.tooling.orientations import Orientation
 from feederscrew.tooling.strip import bent, hole, opening
 from feederscrew.tooling.verdicts import JUDGES, Verdict, verdict
 
-BESIDE = 1e-6  # [rad] to either side of a place where an edge of the hole meets a corner of the foot
+CHORD = 1e-7  # [m] by which an arc may be seen too flat
+BESIDE = 3e-6  # [rad] to either side of a place where an edge of the hole meets a corner of the foot
 LONG = 3.0  # lengths of the part: how far a device that goes on along the track is shown
 
 
@@ -115,5 +116,5 @@ def _hole(device, one, shift):
         _, shift = feet.least(one.standing, feet.gap(device.limit, track.radius, width))
     elif device.kind != "cut_out":
         shift = -0.5 * length / track.radius
-    ring = bent(feet.through_the_wall(ring), track.radius, shift)
+    ring = bent(feet.through_the_wall(ring), track.radius, shift, CHORD)
     return shapely.make_valid(shapely.Polygon(ring))

@@ -90,7 +90,7 @@ def strip(track, devices, every):
     return Strip(track=track, length=start, width=width, tallest=tallest, stations=tuple(stations))
 
 
-def bent(ring, radius, shift=0.0):
+def bent(ring, radius, shift=0.0, chord=CHORD):
     """Return a ring (K, 2) [m] of lengths along the wall and distances from it as it lies in the bowl.
 
     Parameters
@@ -100,15 +100,16 @@ def bent(ring, radius, shift=0.0):
         Of the wall.
     shift : float [rad]
         By which it is turned ahead.
+    chord : float [m]
+        By which an arc may be seen too flat.
 
     Returns
     -------
     (N, 2) float [m]
         From the point where the wall is tangent to X, the bowl's axis at (0, radius).
     """
-    fine = shapely.get_coordinates(
-        shapely.segmentize(shapely.linestrings(np.vstack([ring, ring[:1]])), np.sqrt(8.0 * radius * CHORD))
-    )[:-1]
+    border = shapely.linestrings(np.vstack([ring, ring[:1]]))
+    fine = shapely.get_coordinates(shapely.segmentize(border, np.sqrt(8.0 * radius * chord)))[:-1]
     theta, r = fine[:, 0] / radius + shift, radius - fine[:, 1]
     return np.column_stack([r * np.sin(theta), radius - r * np.cos(theta)])
 
