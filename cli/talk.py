@@ -120,7 +120,10 @@ class Output:
         with ResultFolder(self.directory, name, identity) as folder:
             yield folder
             folder.keep(
-                self.command, arguments=placeless(self.arguments), effective=effective or {}, warnings=self.warnings
+                self.command,
+                arguments=placeless(self.arguments),
+                effective=effective or {},
+                warnings=self.warnings,
             )
         self.depend(folder.path / name for name in sorted(folder.staged))
         self.say(f"Wrote {folder.path} ({', '.join(sorted(folder.staged))}, run.json)")

@@ -119,10 +119,10 @@ def bowl(settings, part, target, *, aspect=None, heading=None, rule="recommended
         If no bowl is so large, or none reaches the target.
     """
     plain, found = answer.conveying(bowls.record(settings)), aspects.find(part)
-    _check_rule(rule, found)
     straight = replace(sizing.STRAIGHT, climb=plain.track.climb)
     wanted = None if aspect is None else queue.wanted(part, found, straight, aspect, heading)
     lying = sizing.lying(part, found, wanted)
+    _check_rule(rule, found)
     size = _size(lying, part, plain, settings, sorts=wanted is None)
     track = replace(plain.track, radius=0.5 * size.diameter, width=size.track_width, climb=size.climb)
     if wanted is not None:

@@ -8,7 +8,7 @@ import numpy as np
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.settings import Setting
-from feederscrew.errors import FeederError
+from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import find
 from feederscrew.resting.posture import posture
@@ -24,6 +24,7 @@ from feederscrew.studies.track import track
 
 ANGLES, STROKES = 56, 48  # cells of the velocity map
 LEAST_STROKE = 0.1e-3  # [m] the velocity map goes at least so far
+RECOMMENDED, RANKING = "recommended", "csa"  # the default rule; the one that ranks the aspects of a card
 ROOM = 2.5  # and to so many times the bowl's own stroke
 
 
@@ -158,9 +159,10 @@ def report(
     """
     settings = bowls.settings(path, overrides)
     found = find(part)
+    rule = RANKING if part.vertices is None and rule == RECOMMENDED else rule  # a card has no such answer
     if rule not in found.chances:
         known = ", ".join(found.chances)
-        raise FeederError(f"--rule {rule}", "has no probabilities of this part", f"choose one of {known}")
+        raise ArgumentError(f"rule {rule}", "has no probabilities of this part", f"choose one of {known}")
     first = likeliest(found)
     return ReportStudy(
         resting=AspectsStudy(part, found),
@@ -182,4 +184,4 @@ def report(
 
 def likeliest(found):
     """Return the aspect the part rests on most often by CSA; the first where no rule tells."""
-    return found.names[int(np.argmax(np.nan_to_num(found.probabilities["csa"])))]
+    return found.names[int(np.argmax(np.nan_to_num(found.probabilities[RANKING])))]

@@ -151,6 +151,5 @@ def test_texts_of_the_pictures_do_not_meet(lying, isolated):
         renderer = figure.canvas.get_renderer()
         boxes = [text.get_window_extent(renderer) for text in figure.texts if text.get_text()]
         width, height = figure.canvas.get_width_height()
-        assert all(0 <= box.x0 and box.x1 <= width and 0 <= box.y0 and box.y1 <= height for box in boxes)
+        assert all(box.x0 >= 0 and box.x1 <= width and box.y0 >= 0 and box.y1 <= height for box in boxes)
         assert not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2))
-

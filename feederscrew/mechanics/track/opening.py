@@ -118,7 +118,7 @@ def _triangles(contact):
 
 
 def _factor(still, driven):
-    """Return the multiple of the drive at which a reaction, ``still`` without it and ``driven`` with, is zero."""
+    """Return the multiple of the drive at which a reaction is zero, from it without and with the drive."""
     if still < -IDLE:
         return 0.0
     if driven - still >= -IDLE:

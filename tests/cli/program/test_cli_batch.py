@@ -30,7 +30,7 @@ def test_a_batch_writes_a_summary_and_a_folder_a_part(run, tmp_path):
         "orientations.csv",
         "rate.json",
     }
-    assert record["effective"]["drive.frequency"] == "60 Hz"
+    assert record["effective"]["drive.frequency"] == "50 Hz"
 
 
 def test_a_bad_part_is_one_line_and_status_1_and_resume_says_what_it_kept(run, tmp_path):

@@ -12,6 +12,7 @@ from feederscrew.output.report.chapters import CHAPTERS
 
 PARTS = Path(__file__).parents[3] / "parts"
 PART = PARTS / "lbracket_30x20x15.stl"
+ON_OCCASION = ("bowl", "tooling")  # chapters of a target or a machine, and of devices
 LIGHT = [chapter for chapter in CHAPTERS if chapter[0] in ("aspects", "part", "headings", "repeat")]
 
 
@@ -27,7 +28,9 @@ def test_one_file_with_every_chapter(run):
     folder = Path("out", PART.stem)
     assert sorted(path.name for path in folder.iterdir()) == ["report.html", "run.json"]
     text = (folder / "report.html").read_text()
-    assert re.findall(r'<section id="(\w+)">', text) == [anchor for anchor, *_ in CHAPTERS]
+    assert re.findall(r'<section id="(\w+)">', text) == [
+        anchor for anchor, *_ in CHAPTERS if anchor not in ON_OCCASION
+    ]
     tiles = re.findall(r'<div class="tile"><span>(.*?)</span><strong>(.*?)</strong>', text)
     assert [label for label, _ in tiles] == [
         "wanted",
