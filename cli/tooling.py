@@ -24,6 +24,22 @@ from feederscrew_cli.quantity import Quantity
     help="By which the wanted orientation passes and the others fail.",
 )
 @click.option(
+    "--purity",
+    type=Quantity("number", positive=True, most=1.0),
+    default="1",
+    show_default=True,
+    metavar="SHARE",
+    help="Of what leaves, that is enough: a shorter chain may do.",
+)
+@click.option(
+    "--efficiency",
+    type=Quantity("number", most=1.0),
+    default="0",
+    show_default=True,
+    metavar="SHARE",
+    help="Of what is offered, that is asked for; what stays below is said.",
+)
+@click.option(
     "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the search for holes."
 )
 @click.option(
@@ -37,7 +53,7 @@ from feederscrew_cli.quantity import Quantity
 @options.bowl
 @options.pictures
 @options.output
-def tooling(part, aspect, heading, rule, margin, seed, limit, bowl, pictures, out):
+def tooling(part, aspect, heading, rule, margin, purity, efficiency, seed, limit, bowl, pictures, out):
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
     Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect:
@@ -60,10 +76,11 @@ def tooling(part, aspect, heading, rule, margin, seed, limit, bowl, pictures, ou
         with Progress(None, not out.quiet, "orientations") as bar:
             found = study(
                 solid, bowls.record(settings), aspect,
-                heading=heading, rule=rule, margin=margin, seed=seed, seconds=limit, told=bar.reach,
+                heading=heading, rule=rule, margin=margin, purity=purity, seed=seed, seconds=limit,
+                told=bar.reach,
             )  # fmt: skip
         document = tables.document(found)
         out.warn(*found.warnings)
-        out.say(*tables.remarks(found))
+        out.say(*tables.remarks(found, efficiency))
         offers.write(folder, files.offers(found, settings), pictures=pictures)
         out.show(tables.summary(found), document, hidden=tables.HIDDEN)

@@ -48,6 +48,7 @@ def tooling(
     heading: float | None = None,
     rule: str = "recommended",
     margin: float = MARGIN,
+    purity: float = 1.0,
     seed: int = 1,
     seconds: float = 60.0,
     told: Callable[[int, int], None] | None = None,
@@ -67,6 +68,8 @@ def tooling(
         Whose probabilities are taken.
     margin : float [m]
         By which the wanted orientation passes and the others fail, at least.
+    purity : float [1]
+        Of what leaves, that is enough.
     seed : int
         Of the search for holes.
     seconds : float [s]
@@ -98,7 +101,7 @@ def tooling(
     asked = range(len(every)) if wanted is None else [wanted]
     designs = [None] * len(every)
     for done, k in enumerate(asked):
-        designs[k] = design(every, shares, k, margin=margin, search=search)
+        designs[k] = design(every, shares, k, margin=margin, search=search, purity=purity)
         if told is not None:
             told(done + 1, len(asked))
     return ToolingStudy(

@@ -62,7 +62,7 @@ def limits(kind, every):
     return np.array([getattr(one, names.get(kind, kind)) for one in every])
 
 
-def fewest(found, others, margin):
+def fewest(found, others, margin, enough=0.0):
     """Return the fewest devices that return the most of some orientations.
 
     Parameters
@@ -72,15 +72,19 @@ def fewest(found, others, margin):
     others : (M,) float
         How much each of the orientations to be returned weighs; 0 for those that need not be.
     margin : float [m]
+    enough : float
+        Of what may be left over: a chain that leaves no more is not made longer.
 
     Returns
     -------
     tuple of Device
         In the order of ``candidates``.
     """
-    best, weight = (), 0.0
+    best, weight, total = (), 0.0, float(others.sum())
     devices = list(found)
     for count in range(1, len(devices) + 1):
+        if total - weight <= enough:
+            break
         for chosen in itertools.combinations(devices, count):
             returned = np.any([found[device] <= -margin for device in chosen], axis=0)
             held = float(others[returned].sum())

@@ -10,7 +10,7 @@ MARGIN = 2.5e-4  # [m] to either side
 MOST_HOLES = 3  # cut-outs in one chain
 
 
-def design(every, shares, wanted, *, margin=MARGIN, search=None, holes=True):
+def design(every, shares, wanted, *, margin=MARGIN, search=None, holes=True, purity=1.0):
     """Return the chain of fewest devices that isolates an orientation.
 
     Parameters
@@ -27,40 +27,46 @@ def design(every, shares, wanted, *, margin=MARGIN, search=None, holes=True):
         Seed and time limit of the search for holes.
     holes : bool
         Whether holes of several corners may be cut.
+    purity : float [1]
+        Of what leaves, that is enough; the chain is not made longer for more.
 
     Returns
     -------
     Design
     """
     search = search or cutting.Search()
-    found = _plain(every, shares, wanted, margin, search, holes)
+    found = _plain(every, shares, wanted, margin, search, holes, purity)
     hung = rails.design(every, shares, wanted, margin)
     if hung is None or (hung.isolated, hung.efficiency) <= (found.isolated, found.efficiency):
         return found
     return hung
 
 
-def _plain(every, shares, wanted, margin, search, holes):
+def _plain(every, shares, wanted, margin, search, holes, purity):
     """The chain of devices that return the others and leave the wanted one lying."""
     if every[wanted].falls_off or not every[wanted].margin > 0.0:
         return without(every, shares, wanted, "falls off the bare track")
     weight, stays = weights(every, shares), np.array([not one.falls_off for one in every])
     weight[wanted] = 0.0
     found = chain.candidates(every, wanted, margin)
-    devices = chain.fewest(found, weight, margin)
+    allowed = shares[wanted] * (1.0 / purity - 1.0)
+    counted = np.where(weight > 0.0, shares, 0.0) if purity < 1.0 else weight
+    devices = chain.fewest(found, counted, margin, allowed)
     must = chain.shared_out(found, devices, margin)
     cuts = chain.placed(every, wanted, devices, must)
     returned = np.any([~stays, *must], axis=0)
     if holes:
-        cuts, returned = _with_holes(every, shares, wanted, cuts, returned, margin, search)
-    return told(every, shares, wanted, cuts, returned, margin)
+        cuts, returned = _with_holes(every, shares, wanted, cuts, returned, margin, search, allowed)
+    return told(every, shares, wanted, cuts, returned, margin, allowed=allowed)
 
 
-def _with_holes(every, shares, wanted, cuts, returned, margin, search):
+def _with_holes(every, shares, wanted, cuts, returned, margin, search, allowed):
     """Add cut-outs for those that are left, as long as one returns any."""
     returned = returned.copy()
     for _ in range(MOST_HOLES):
         left = [k for k in np.flatnonzero(~returned) if k != wanted and shares[k] >= LEAST_SHARE]
+        if shares[left].sum() <= allowed:
+            break
         made = cutting.cut_out(every, wanted, left, margin, search) if left else None
         if made is None:
             break

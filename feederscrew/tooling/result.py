@@ -30,7 +30,7 @@ def weights(every, shares):
     return np.where(stays, np.where(shares >= LEAST_SHARE, 1.0 + shares, 1e-3 * shares), 0.0)
 
 
-def told(every, shares, wanted, cuts, returned, margin, same=None):
+def told(every, shares, wanted, cuts, returned, margin, same=None, allowed=0.0):
     """Return the record of a chain, its purity from the true verdicts of every cut.
 
     Parameters
@@ -44,6 +44,8 @@ def told(every, shares, wanted, cuts, returned, margin, same=None):
     margin : float [m]
     same : (M,) bool, optional
         Which leave like the wanted one, hanging; only itself without it.
+    allowed : float [1]
+        Share of others that may leave as well.
 
     Returns
     -------
@@ -59,7 +61,7 @@ def told(every, shares, wanted, cuts, returned, margin, same=None):
     margins = [end for cut in cuts for end in (cut.margin_pass, cut.margin_reject) if np.isfinite(end)]
     return Design(
         wanted=wanted,
-        isolated=not left,
+        isolated=not left or bool(shares[left].sum() <= allowed),
         cuts=cuts,
         margin=float(min(margins, default=np.nan)),
         efficiency=float(good / total) if total > 0.0 else 0.0,

@@ -124,3 +124,13 @@ def test_a_part_too_large_for_the_bowl_and_a_card_without_a_mesh():
     part = shapes.part(shapes.box(20, 12, 5))
     with pytest.raises(FeederError, match=r"track.radius: 20 mm is less than the part's 23"):
         orientations(part, find(part), Track(climb=0.0, bank=0.0, radius=0.02, width=0.01))
+
+
+def test_a_purity_that_is_enough_makes_a_shorter_chain(bracket):
+    _, _, every, shares = bracket
+    wanted = next(k for k, one in enumerate(every) if one.height < 0.016)
+    whole, part = (design(every, shares, wanted, holes=False, purity=share) for share in (1.0, 0.3))
+    assert len(part.cuts) <= len(whole.cuts)
+    assert part.isolated
+    assert 0.3 <= part.purity <= whole.purity + 1e-12
+    assert part.efficiency == pytest.approx(whole.efficiency)

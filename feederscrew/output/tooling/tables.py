@@ -76,18 +76,21 @@ def summary(study):
     return tables.frame({name: [row[name] for row in rows] for name in columns_of})
 
 
-def remarks(study):
+def remarks(study, efficiency=0.0):
     """Return what a reader should know: what cannot be told apart, and why."""
     found = study.design
     if found is None:
-        count = sum(one.isolated for one in study.designs)
-        return [f"{count} of {len(study.designs)} orientations can be isolated"]
+        good = [one.isolated and one.efficiency >= efficiency for one in study.designs]
+        asked = f" with an efficiency of {100.0 * efficiency:.3g} % or more" if efficiency > 0.0 else ""
+        return [f"{sum(good)} of {len(good)} orientations can be isolated{asked}"]
     one = study.orientations[study.wanted]
     said = "is isolated" if found.isolated else "is not isolated"
     lead = (
         f"{one.name} {said}: {100.0 * found.efficiency:.3g} % of the parts offered leave so, "
         f"{100.0 * found.purity:.4g} % of what leaves"
     )
+    if found.efficiency < efficiency:
+        lead += f"; {100.0 * efficiency:.3g} % are asked for: see the others without --aspect"
     return [lead, *found.reasons]
 
 
