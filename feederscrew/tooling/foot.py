@@ -26,13 +26,6 @@ class Footprint:
         return np.concatenate([*self.rings, self.edges.reshape(-1, 2), self.points])
 
 
-@dataclass(frozen=True, eq=False)
-class Hole:
-    """A hole in the track, unrolled: closed, without crossing itself."""
-
-    corners: np.ndarray  # (K, 2) [m] length along the wall, distance from the wall; counter-clockwise
-
-
 def standing(foot, distance, radius, shift=0.0):
     """Return a foot about the bowl's axis.
 
@@ -88,13 +81,13 @@ def polygon(corners, radius):
     -------
     passage.Hole
     """
-    from feederscrew.tooling.kernel.passage import Hole as Compiled
+    from feederscrew.tooling.kernel.passage import Hole
 
     corners = through_the_wall(_turned_left(check.shaped("corners", corners, (-1, 2))))
     theta, r = corners[:, 0] / radius, radius - corners[:, 1]
     rows = [_edge(*ends) for ends in zip(theta, r, np.roll(theta, -1), np.roll(r, -1))]
     corner = np.column_stack([theta, r, np.ones(len(r))])[_reflex(corners)]
-    return Compiled(edges=np.array(rows), nodes=np.concatenate([corner, *_bulging(corners, radius)]))
+    return Hole(edges=np.array(rows), nodes=np.concatenate([corner, *_bulging(corners, radius)]))
 
 
 def gap(length, radius, width):
@@ -112,22 +105,22 @@ def gap(length, radius, width):
     -------
     passage.Hole
     """
-    from feederscrew.tooling.kernel.passage import Hole as Compiled
+    from feederscrew.tooling.kernel.passage import Hole
 
     low, high = max(radius - width, 1e-3 * radius, 1.000001 * length), radius + BEHIND
     rows = [[0.0, 0.0, 0.0, 0.0, low, high, 0.0], [0.0, 0.0, 0.0, length, low, high, 0.0]]
     inner = [1.0, 0.0, np.arcsin(length / low), 0.0, low, low, 1.0]
-    return Compiled(edges=np.array([*rows, inner]), nodes=np.empty((0, 3)))
+    return Hole(edges=np.array([*rows, inner]), nodes=np.empty((0, 3)))
 
 
 def scratch(foot, hole):
     """Return arrays for the verdict of feet and holes no larger than these."""
     from feederscrew.tooling.kernel.crossing import CUTS
-    from feederscrew.tooling.kernel.passage import Scratch
+    from feederscrew.tooling.kernel.passage import VerdictArrays
 
     rows = 6 * len(foot.sides) * len(hole.edges) + 1
     points = len(foot.corners) + rows + len(hole.nodes) + len(hole.edges)
-    return Scratch(
+    return VerdictArrays(
         rows=np.empty((rows, 6)),
         events=np.empty(2 * rows),
         bounds=np.empty(2 * rows),

@@ -52,7 +52,7 @@ class Hole(NamedTuple):
     nodes: np.ndarray  # (P, 3) [rad, m] points of its border that what is left may end in; 1: corner
 
 
-class Scratch(NamedTuple):
+class VerdictArrays(NamedTuple):
     """Arrays the verdict works in."""
 
     rows: np.ndarray  # (N, 6) stretches
@@ -75,7 +75,7 @@ def least(foot, hole, scratch, out):
     ----------
     foot : Foot
     hole : Hole
-    scratch : Scratch
+    scratch : VerdictArrays
     out : (2,) float [m, rad]
         To be filled.
     """

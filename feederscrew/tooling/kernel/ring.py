@@ -16,7 +16,7 @@ def over_ring(foot, low, high, scratch):
     foot : Foot
     low, high : float [m]
         Radii about the bowl's axis between which there is no track.
-    scratch : Scratch
+    scratch : VerdictArrays
 
     Returns
     -------
