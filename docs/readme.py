@@ -16,7 +16,7 @@ from click.testing import CliRunner
 from feederscrew.bowl import documentation
 from feederscrew_cli.main import feeder
 
-WORKED = ("docs/bowl.md",)  # pages whose console examples are outputs as well
+WORKED = ("docs/bowl.md", "docs/tooling.md")  # pages whose console examples are outputs as well
 ROOT = Path(__file__).resolve().parent.parent
 BLOCK = re.compile(r"```console( sampled)?\n\$ (feeder .*)\n((?:(?!```).*\n)*)```")
 CUT = "...\n"

@@ -17,6 +17,8 @@ DOORS = {
     "pandas": {"feederscrew/output"},
     "matplotlib": {"feederscrew/output"},
     "embreex": {"feederscrew/output"},
+    "ezdxf": {"feederscrew/bowl/drawing.py"},
+    "manifold3d": {"feederscrew/output/tooling/solid.py"},
     "click": {"cli"},
     "numba": {"feederscrew/geometry", "feederscrew/conveying"},
 }

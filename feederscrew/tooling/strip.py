@@ -35,7 +35,9 @@ class Station:
     @property
     def label(self):
         """'gap 9 mm': kind and value, the latter where it is one number."""
-        return f"{self.device.kind} {self.device.text}" if np.isfinite(self.device.limit) else self.device.kind
+        return (
+            f"{self.device.kind} {self.device.text}" if np.isfinite(self.device.limit) else self.device.kind
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +56,6 @@ class Strip:
         The wall is tangent to the X axis at the origin and the bowl's axis is at (0, radius).
         """
         return bent(ring, self.track.radius)
-
 
     def laid(self, outline, place):
         """Return the outline (K, 2) [m] of a part, from the wall, as it lies in the bowl at a length along it."""

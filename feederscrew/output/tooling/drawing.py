@@ -100,7 +100,9 @@ def svg(strip, ghosts=()):
 def _both(strip, name, plain, bent):
     """A layer unrolled and as bent, the latter below."""
     colour, down = COLOURS[name.partition("_")[0]], [0.0, _drop(strip)]
-    return Layer(name, colour, rings=plain), Layer(f"BENT_{name}", colour, rings=tuple(b - down for b in bent))
+    return Layer(name, colour, rings=plain), Layer(
+        f"BENT_{name}", colour, rings=tuple(b - down for b in bent)
+    )
 
 
 def _plan(strip):
@@ -137,7 +139,10 @@ def _texts(strip):
     ]
     notes = [
         ("unrolled: wall below, parts move to the right", (0.0, -WALL - 4.5e-3)),
-        (f"as bent: radius of the wall {strip.track.radius / MM:.6g} mm", (0.0, -_drop(strip) - WALL - 4.5e-3)),
+        (
+            f"as bent: radius of the wall {strip.track.radius / MM:.6g} mm",
+            (0.0, -_drop(strip) - WALL - 4.5e-3),
+        ),
     ]
     return tuple(named + seen + notes)
 
@@ -160,9 +165,7 @@ def _path(ring, layer):
     stroke, fill, dashes = PENS[_kind(layer)]
     corners = " L ".join(f"{x / MM:.4f} {-y / MM:.4f}" for x, y in ring)
     dashed = f' stroke-dasharray="{dashes}"' if dashes else ""
-    return (
-        f'<path class="{layer}" d="M {corners} Z" fill="{fill}" stroke="{stroke}" stroke-width="0.25"{dashed}/>'
-    )
+    return f'<path class="{layer}" d="M {corners} Z" fill="{fill}" stroke="{stroke}" stroke-width="0.25"{dashed}/>'
 
 
 def _rectangle(x0, y0, x1, y1):

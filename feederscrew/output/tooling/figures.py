@@ -15,7 +15,7 @@ from feederscrew.units import factor
 
 MM = factor("mm", "length")
 WIDTH = 1200  # pixels
-LEFT, COLUMN, ROW, HEAD, FOOT = 230, 300, 170, 110, 30  # pixels
+LEFT, COLUMN, ROW, HEAD, FOOT = 230, 300, 170, 118, 30  # pixels
 PASSES, FALLS = "#0072b2", "#d55e00"
 TRACK, AIR, PART, TOUCHING = "#e3e8ec", "#ffffff", "#9fb3c4", "#56697a"
 LEAST_SHARE = 5e-3  # [1] orientations that come less often have no row
@@ -80,7 +80,11 @@ def limits(study):
     known = [one for one in study.designs if one is not None]
     title = f"{sum(one.isolated for one in known)} of {len(known)} orientations can be isolated"
     _heading(page, title, _missing(every, rows, shares))
-    for left, text in ((LEFT + 8, "from above"), (LEFT + COLUMN + 8, "along the track"), (830, "isolated by")):
+    for left, text in (
+        (LEFT + 8, "from above"),
+        (LEFT + COLUMN + 8, "along the track"),
+        (830, "isolated by"),
+    ):
         _text(page, left, HEAD - 22, text, weight="bold")
     size = _scale(every, rows, COLUMN)
     for place, k in enumerate(rows):
@@ -265,4 +269,6 @@ def _rule(page, top):
 
 def _text(page, x, y, text, *, size=9, colour=style.INK, weight="normal"):
     wide, high = page.get_size_inches() * style.DPI
-    page.text(x / wide, 1.0 - y / high, text, fontsize=SHRINK * size, color=colour, fontweight=weight, va="center")
+    page.text(
+        x / wide, 1.0 - y / high, text, fontsize=SHRINK * size, color=colour, fontweight=weight, va="center"
+    )

@@ -70,7 +70,9 @@ def _extruded(area, low, high):
 def _gate(station, strip):
     """The blade of a gate: a plate across the track without its opening."""
     free = shapely.union_all([shapely.Polygon(ring) for ring in station.openings])
-    free = shapely.union_all([affinity.translate(free, *by) for by in ((0, 0), (-2 * INTO, 0), (0, -2 * INTO))])
+    free = shapely.union_all(
+        [affinity.translate(free, *by) for by in ((0, 0), (-2 * INTO, 0), (0, -2 * INTO))]
+    )
     frame = shapely.box(-INTO, -INTO, strip.width - INTO, station.top)
     thick = np.ptp(station.blade[:, 0])
     blade = _extruded(frame.difference(free), 0.0, thick)
