@@ -18,6 +18,7 @@ from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.floor import floor
 from feederscrew.studies.headings import headings
 from feederscrew.studies.inertia import inertia
+from feederscrew.studies.passages import passages
 from feederscrew.studies.rate import rate
 from feederscrew.studies.slide import slide
 from feederscrew.studies.track import track
@@ -87,6 +88,13 @@ class ReportStudy:
             self.part, self.bowl, self.aspect, heading=self.heading, rule=self.rule,
             gap=self.gap, fill=self.fill, aspects=self.resting.aspects,
         )  # fmt: skip
+
+    @cached_property
+    def passages(self):
+        """What the bowl's devices do with each orientation, a PassagesStudy; None without such devices."""
+        if all(device.kind == "yield" for device in self.bowl.devices):
+            return None
+        return passages(self.part, self.bowl, self.resting.aspects, self.rule)
 
     @cached_property
     def machine(self):

@@ -57,7 +57,7 @@ def passage(device, one, every):
         orientation=one,
         verdict=found,
         picture=JUDGES[device.kind].picture,
-        outline=one.outline + [0.0, one.distance],
+        outline=np.add(one.outline, [0.0, one.distance]),
         foot=touching,
         hole=holes[worst],
         supported=shapely.get_coordinates(hulls[worst]),

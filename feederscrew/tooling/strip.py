@@ -58,7 +58,7 @@ class Strip:
         return bent(ring, self.track.radius)
 
     def laid(self, outline, place):
-        """Return the outline (K, 2) [m] of a part, from the wall, as it lies in the bowl at a length along it."""
+        """Return an outline (K, 2) [m] from the wall as it lies in the bowl at a length along it."""
         c, s = np.cos(place / self.track.radius), np.sin(place / self.track.radius)
         x, up = outline[:, 0], self.track.radius - outline[:, 1]
         return np.column_stack([c * x + s * up, self.track.radius + s * x - c * up])
@@ -192,12 +192,13 @@ def _station(device, start, length, width, tallest, every):
     middle = start + 0.5 * length
     blade = None
     if gate is not None:
-        blade = np.array([[0.0, 0.0], [BLADE, 0.0], [BLADE, width], [0.0, width]]) + [middle, 0.0]
+        blade = np.array([[0.0, 0.0], [BLADE, 0.0], [BLADE, width], [0.0, width]])
+        blade += np.array([middle, 0.0])
     return Station(
         device=device,
         start=start,
         length=length,
-        hole=None if cut is None else cut + [start, 0.0],
+        hole=None if cut is None else np.add(cut, [start, 0.0]),
         blade=blade,
         openings=() if gate is None else _rings(gate),
         top=0.0 if gate is None else max(tallest, gate.bounds[3]) + FRAME,

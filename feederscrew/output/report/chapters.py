@@ -6,7 +6,7 @@ from dataclasses import replace
 from feederscrew import __version__
 from feederscrew.errors import FeederError
 from feederscrew.output.page.blocks import Notes, Page, Section
-from feederscrew.output.report import closing, driving, moving, resting
+from feederscrew.output.report import closing, cutting, driving, moving, resting
 
 CHAPTERS = (  # anchor, title, what computes it
     ("aspects", "How it comes to rest", resting.aspects),
@@ -14,6 +14,7 @@ CHAPTERS = (  # anchor, title, what computes it
     ("headings", "How it lies along the wall", moving.headings),
     ("velocity", "How fast it travels", moving.convey),
     ("rate", "How many leave a minute", moving.rate),
+    ("tooling", "Which orientations the devices return", cutting.tooling),
     ("bowl", "The bowl and its drive", driving.bowl),
     ("track", "On the track, against the wall", moving.track),
     ("floor", "On the bowl floor", moving.floor),

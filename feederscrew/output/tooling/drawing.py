@@ -59,7 +59,7 @@ def layers(strip, ghosts=()):
     for name, rings in _plan(strip).items():
         bent = tuple(strip.bent(ring) for ring in rings)
         found += _both(strip, name, tuple(rings), bent)
-    plain = tuple(ring + [place, 0.0] for ring, place in ghosts)
+    plain = tuple(np.add(ring, [place, 0.0]) for ring, place in ghosts)
     found += _both(strip, "GHOST", plain, tuple(strip.laid(*ghost) for ghost in ghosts))
     found += [Layer(name, COLOURS["OPENING"], rings=rings) for name, rings in _openings(strip)]
     return [*found, Layer("TEXT", COLOURS["TEXT"], texts=_texts(strip))]
@@ -85,7 +85,7 @@ def svg(strip, ghosts=()):
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{size[0]:.2f}mm" height="{size[1]:.2f}mm" '
         f'viewBox="{low[0]:.2f} {-high[1]:.2f} {size[0]:.2f} {size[1]:.2f}">',
-        '<rect x="{:.2f}" y="{:.2f}" width="100%" height="100%" fill="#ffffff"/>'.format(low[0], -high[1]),
+        f'<rect x="{low[0]:.2f}" y="{-high[1]:.2f}" width="100%" height="100%" fill="#ffffff"/>',
     ]
     for one in sorted(drawn, key=lambda one: list(PENS).index(_kind(one.name))):
         lines += [_path(ring, one.name) for ring in one.rings]
@@ -123,7 +123,7 @@ def _openings(strip):
     right, found = strip.length + APART, []
     for station in strip.stations:
         if station.openings:
-            shown = tuple(ring + [right, 0.0] for ring in station.openings)
+            shown = tuple(np.add(ring, [right, 0.0]) for ring in station.openings)
             found.append((_numbered("OPENING", len(found)), shown))
             right = max(ring[:, 0].max() for ring in shown) + APART
     return found
@@ -165,7 +165,8 @@ def _path(ring, layer):
     stroke, fill, dashes = PENS[_kind(layer)]
     corners = " L ".join(f"{x / MM:.4f} {-y / MM:.4f}" for x, y in ring)
     dashed = f' stroke-dasharray="{dashes}"' if dashes else ""
-    return f'<path class="{layer}" d="M {corners} Z" fill="{fill}" stroke="{stroke}" stroke-width="0.25"{dashed}/>'
+    look = f'fill="{fill}" stroke="{stroke}" stroke-width="0.25"{dashed}'
+    return f'<path class="{layer}" d="M {corners} Z" {look}/>'
 
 
 def _rectangle(x0, y0, x1, y1):

@@ -109,7 +109,15 @@ def _cell(page, box, found, size):
     else:
         _ahead(axes, found.orientation, found.opening, colour)
     margin = found.verdict.margin / MM
-    word = "passes" if good else "falls" if found.picture == "above" else "is stopped"
+    word = (
+        "hangs"
+        if found.verdict.hangs
+        else "passes"
+        if good
+        else "falls"
+        if found.picture == "above"
+        else "is stopped"
+    )
     _text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, margin {margin:+.2f} mm", colour=colour)
 
 
@@ -120,7 +128,7 @@ def _above(axes, one, hole, found, colour):
     track = shapely.box(-half, 0.0, half, one.track.width / MM)
     curved = _sunk(track, one.track.radius / MM)
     _fill(axes, curved if hole is None else curved.difference(_mm(hole)), TRACK, "#b8c2cb", 1)
-    outline = (one.outline + [0.0, one.distance]) / MM
+    outline = np.add(one.outline, [0.0, one.distance]) / MM
     axes.add_patch(Polygon(outline, fc=PART, ec="#4d5b68", lw=0.9, alpha=0.45, zorder=3))
     touching = _mm(passages.foot(one))
     if hole is not None:
@@ -148,7 +156,7 @@ def _ahead(axes, one, opening, colour):
 
 def _sunk(track, radius):
     """The track [mm] between the curved wall and its inner edge."""
-    left, low, right, high = track.bounds
+    left, _, right, high = track.bounds
     x = np.linspace(left, right, 41)
     wall = radius - np.sqrt(radius**2 - x**2)
     inner = radius - high
@@ -194,8 +202,8 @@ def _mm(area):
 
 def _heading(page, title, missing):
     _text(page, 16, 26, style.words(title), size=11, weight="bold")
-    _text(page, 16, 50, "from above: wall below, parts move to the right; light: part, dark: what touches the "
-          "track, outline: hull of the support, dot: weight", size=8)  # fmt: skip
+    _text(page, 16, 50, "from above: wall below, parts move to the right; light: part, dark: what touches "
+          "the track, outline: hull of the support, dot: weight", size=8)  # fmt: skip
     _text(page, 16, 68, missing, size=8)
 
 
@@ -242,13 +250,14 @@ def _isolated(found):
 
 
 def _device(device, place):
-    value = f" {device.text}" if np.isfinite(device.limit) or device.span else ""
+    value = f" {device.text}" if np.isfinite(device.limit) else ""
+    value += " {:.4g} to {:.4g} mm".format(*np.divide(device.span, MM)) if device.span else ""
     play = f" with {device.like[2] / MM:.3g} mm play" if device.like else ""
     return f"{place + 1}  {device.kind.replace('_', ' ')}{value}{play}"
 
 
 def _rows(every, shares, wanted):
-    """The orientations that have a row: the wanted one, then those that come often enough, likeliest first."""
+    """The orientations that have a row: the wanted one, then what comes often enough, likeliest first."""
     often = [k for k in range(len(every)) if shares[k] >= LEAST_SHARE and k != wanted]
     often.sort(key=lambda k: -round(float(shares[k]), 9))
     return ([] if wanted is None else [wanted]) + (often or ([] if wanted is not None else [0]))

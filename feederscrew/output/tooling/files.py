@@ -1,5 +1,7 @@
 """What ``feeder tooling`` leaves in its folder."""
 
+import numpy as np
+
 from feederscrew.output import offers as offer
 from feederscrew.output.tooling import bowl_file, tables
 from feederscrew.tooling.strip import strip
@@ -37,7 +39,7 @@ def offers(study, settings):
 
 
 def picture(study):
-    """Return the figure of a ToolingStudy: the chain of the orientation asked for, or all with their limits."""
+    """Return the figure of a study: the chain of the orientation asked for, or all with their limits."""
     from feederscrew.output.tooling import figures
 
     if study.design is None or not study.design.cuts:
@@ -72,7 +74,7 @@ def _drawn(kind, study):
 
     made = _strip(study)
     one = study.orientations[study.wanted]
-    outline = one.outline + [0.0, one.distance]
+    outline = np.add(one.outline, [0.0, one.distance])
     places = [station.start + 0.5 * station.length for station in made.stations if station.hole is None]
     return getattr(drawing, kind)(made, [(outline, place) for place in (0.6 * one.length, *places)])
 

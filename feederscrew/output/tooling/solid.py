@@ -1,4 +1,4 @@
-"""The stretch of track as a solid to print: plate, wall and gates, in millimetres; the one door to manifold3d."""
+"""The stretch of track to print, plate, wall and gates in millimetres: the one door to manifold3d."""
 
 import numpy as np
 import shapely
@@ -81,7 +81,7 @@ def _gate(station, strip):
 
 
 def _across(angle, radius):
-    """The 3 x 4 matrix that stands a plate (distance from the wall, height, thickness) [mm] across the track."""
+    """The 3 x 4 matrix that stands a plate (from the wall, height, thickness) [mm] across the track."""
     ahead = np.array([np.cos(angle), np.sin(angle), 0.0])
     inwards = np.array([-np.sin(angle), np.cos(angle), 0.0])
     place = np.array([radius * np.sin(angle), radius - radius * np.cos(angle), 0.0])

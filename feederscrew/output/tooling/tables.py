@@ -94,6 +94,33 @@ def remarks(study, efficiency=0.0):
     return [lead, *found.reasons]
 
 
+def passages(study):
+    """Return one row an orientation: its margin at each device that it meets, and what becomes of it.
+
+    Parameters
+    ----------
+    study : PassagesStudy
+
+    Returns
+    -------
+    DataFrame
+    """
+    rows = list(zip(study.orientations, study.passages))
+    named = {"orientation": [one.name for one, _ in rows], "p_of all parts": study.shares}
+    for place, device in enumerate(study.devices):
+        margins = [met[place].verdict.margin / MM if place < len(met) else None for _, met in rows]
+        named[f"{device.kind}_{place + 1}_mm"] = margins
+    return tables.frame(named | {"outcome": [_outcome(one, met) for one, met in rows]})
+
+
+def _outcome(one, met):
+    if one.falls_off:
+        return "falls off the track"
+    if met and met[-1].verdict.passes <= 0.0:
+        return f"returned by {met[-1].device.kind}"
+    return "leaves"
+
+
 def _row(one, share, found):
     return {
         "aspect": one.aspect,
