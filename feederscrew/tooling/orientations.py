@@ -159,6 +159,6 @@ def _orientation(lying, known, row, chances, track):
         width=float(known.widths[row]),
         height=float(lying.corners[:, 2].max()),
         distance=float(known.distances[row]),
-        falls_off=bool(known.falls_off[row]),
+        falls_off=bool(known.falls_off[row] and known.overhangs[row] > 0.0),  # one that rolls stays on
         kind=lying.kind,
     )
