@@ -132,7 +132,7 @@ def _above(axes, one, hole, found, colour):
     axes.add_patch(Polygon(outline, fc=PART, ec="#4d5b68", lw=0.9, alpha=0.45, zorder=3))
     touching = _mm(passages.foot(one))
     if hole is not None:
-        _fill(axes, _mm(hole), "none", style.INK, 6, width=0.8)
+        _fill(axes, _mm(hole).intersection(curved), "none", style.INK, 6, width=0.8)
     left_over = touching if hole is None else touching.difference(_mm(hole))
     _fill(axes, left_over, TOUCHING, TOUCHING, 4)
     hull = left_over.convex_hull if found is None else shapely.MultiPoint(found.supported / MM).convex_hull
