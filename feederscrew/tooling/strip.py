@@ -41,7 +41,7 @@ class Station:
 
 
 @dataclass(frozen=True, eq=False)
-class Strip:
+class TrackSection:
     """The stretch of track, unrolled: X ahead along the wall, Y from the wall."""
 
     track: Track
@@ -77,7 +77,7 @@ def strip(track, devices, every):
 
     Returns
     -------
-    Strip
+    TrackSection
     """
     made = [device for device in devices if device.kind != "yield"]
     room = ROOM * max(one.length for one in every)
@@ -88,7 +88,7 @@ def strip(track, devices, every):
         length = room + max((x for x, _ in device.corners), default=0.0) * (device.kind == "cut_out")
         stations.append(_station(device, start, length, width, tallest, every))
         start += length + 0.5 * room
-    return Strip(track=track, length=start, width=width, tallest=tallest, stations=tuple(stations))
+    return TrackSection(track=track, length=start, width=width, tallest=tallest, stations=tuple(stations))
 
 
 def bent(ring, radius, shift=0.0, chord=CHORD):

@@ -28,7 +28,7 @@ def dxf(strip, ghosts=()):
 
     Parameters
     ----------
-    strip : Strip
+    strip : TrackSection
     ghosts : sequence of ((K, 2) float [m], float [m])
         Outlines of parts from the wall, each with its place along it; they are not cut.
 
@@ -44,7 +44,7 @@ def layers(strip, ghosts=()):
 
     Parameters
     ----------
-    strip : Strip
+    strip : TrackSection
     ghosts : sequence of ((K, 2) float [m], float [m])
         Outlines of parts from the wall, each with its place along it.
 
@@ -70,7 +70,7 @@ def svg(strip, ghosts=()):
 
     Parameters
     ----------
-    strip : Strip
+    strip : TrackSection
     ghosts : sequence of ((K, 2) float [m], float [m])
 
     Returns

@@ -20,7 +20,7 @@ def stl(strip):
 
     Parameters
     ----------
-    strip : Strip
+    strip : TrackSection
 
     Returns
     -------
