@@ -19,7 +19,7 @@ class Jobs(click.ParamType):
         if value == "auto":
             return None
         if not value.isdecimal() or not int(value):
-            self.fail(f"{value!r} is no number of processes - give 1, 2, ... or auto", param, ctx)
+            self.fail(f"{value!r} is not a number of processes - give 1, 2, ... or auto", param, ctx)
         return int(value)
 
 

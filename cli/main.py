@@ -75,7 +75,7 @@ class Fence(click.Group):
         sys.exit(status if isinstance(status, int) else 0)
 
     def invoke(self, ctx):
-        """Run the command, its faults told one a line."""
+        """Run the command, each fault printed on a line of its own."""
         try:
             return super().invoke(ctx)
         except FeederError as error:

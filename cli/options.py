@@ -29,7 +29,7 @@ class Number(click.FloatRange):
     def convert(self, value, param, ctx):
         """The number, or a wrong call."""
         number = super().convert(value, param, ctx)
-        return number if number == number else self.fail(f"{value!r} is no number", param, ctx)
+        return number if number == number else self.fail(f"{value!r} is not a number", param, ctx)
 
 
 def optional_part(command):

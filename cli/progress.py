@@ -14,7 +14,7 @@ class Progress:
     total : int or None
         How many there are; None where that must be told first.
     shown : bool
-        False for nothing at all; nothing is shown either where stderr is no terminal.
+        False for nothing at all; nothing is shown either where stderr is not a terminal.
     what : str
         They are.
     """

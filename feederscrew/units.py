@@ -54,7 +54,7 @@ PLAIN = str.maketrans({"²": "2", "³": "3", "^": None, "*": " ", "·": " ", "\N
 
 
 class QuantityError(ValueError):
-    """A text that is no quantity of the wanted dimension: what is wrong and how to mend it."""
+    """A text that is not a quantity of the wanted dimension: what is wrong and how to mend it."""
 
     def __init__(self, what, mend):
         super().__init__(f"{what} - {mend}")
@@ -82,7 +82,7 @@ def quantity(text, dimension, *, suggest=None, bare=None):
     Raises
     ------
     QuantityError
-        If the text is no finite number, or its unit is missing, unknown or of another dimension.
+        If the text is not a finite number, or its unit is missing, unknown or of another dimension.
     """
     number, unit = split(text)
     if unit == "" and bare is not None:
@@ -143,7 +143,7 @@ def _wrong_unit(text, unit, dimension, suggest):
         what = f"{shown(text)} is {_with_article(known)}, not {_with_article(dimension)}"
         return QuantityError(what, f"give it in {suggest}")
     return QuantityError(
-        f"{shown(text)}: {shown(unit)} is no unit of {dimension}", _units_of(unit, dimension)
+        f"{shown(text)}: {shown(unit)} is not a unit of {dimension}", _units_of(unit, dimension)
     )
 
 

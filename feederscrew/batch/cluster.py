@@ -59,7 +59,7 @@ class Cluster:
     def _client(self):
         distributed = _distributed()
         if not ADDRESS.fullmatch(self.address):
-            raise FeederError(self.address, "is no address of a scheduler", "write it as tcp://host:8786")
+            raise FeederError(self.address, "is not an address of a scheduler", "write it as tcp://host:8786")
         logging.getLogger("distributed").setLevel(logging.CRITICAL)  # we tell what is lost, in one line
         try:
             return distributed.Client(self.address, timeout=PATIENCE, set_as_default=False)

@@ -110,7 +110,7 @@ class Store:
         return sorted({p.name for p in self.parts.iterdir()} - set(names))
 
     def record(self, name):
-        """What is recorded of one part: key, status, reason, row, files; empty if there is no record."""
+        """What is recorded of one part: key, status, reason, row, files; empty if there is not a record."""
         try:
             record = json.loads((self.parts / name / RECORD).read_text())["batch"]
         except (OSError, ValueError, LookupError, TypeError):

@@ -159,7 +159,7 @@ def strangers(chain, aspects):
 
 def _device(item):
     if item.kind != "mapping" or len(item.entries) != 1:
-        raise ConfigError(item.where, "is no device", "write one '- wiper: 6 mm' a line")
+        raise ConfigError(item.where, "is not a device", "write one '- wiper: 6 mm' a line")
     entry = item.entries[0]
     if entry.key not in KINDS:
         what = f"unknown device {units.shown(entry.key)}"

@@ -64,7 +64,7 @@ def checked(key, text, where, *, bare=False):
     Raises
     ------
     ConfigError
-        If it is no quantity of the key's dimension and range.
+        If it is not a quantity of the key's dimension and range.
     """
     subject = "" if where.endswith(key.name) else f"{key.name}: "
     try:

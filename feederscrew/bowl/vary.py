@@ -56,7 +56,7 @@ def _range(text):
         raise ConfigError(where, f"unknown key {units.shown(name)}", documents.hint(name, list(BY_NAME)))
     ends = span.split(":")
     if len(ends) != 3:
-        what = f"{units.shown(span)} is no range"
+        what = f"{units.shown(span)} is not a range"
         raise ConfigError(where, what, f"write FROM:TO:COUNT, as in {name}={_example(BY_NAME[name])}")
     low, high = (checked(BY_NAME[name], end, where, bare=True).value for end in ends[:2])
     if low == high:
@@ -68,7 +68,7 @@ def _range(text):
 def _count(text, where):
     if text.strip().isascii() and text.strip().isdigit() and 2 <= int(text.strip()[:9]) <= MOST:
         return int(text.strip())
-    raise ConfigError(where, f"{units.shown(text)} is no count", f"give a whole number from 2 to {MOST}")
+    raise ConfigError(where, f"{units.shown(text)} is not a count", f"give a whole number from 2 to {MOST}")
 
 
 def _example(key):

@@ -40,7 +40,7 @@ def at_radius(bowl, radius):
     the horizontal, vibration angle plus climb, is inversely proportional to the radius.
     """
     if np.any(bowl.drive.phase != 0.0):
-        what = "is not 0 deg, and an elliptical drive is no screw motion to follow inwards"
+        what = "is not 0 deg, an elliptical drive is not a screw motion to follow inwards"
         raise ConfigError("drive.phase", what, "leave out --bowl, or the phase")
     rise = np.sin(bowl.drive.vibration_angle + bowl.track.climb) * bowl.drive.amplitude
     turn = np.cos(bowl.drive.vibration_angle + bowl.track.climb) * bowl.drive.amplitude / bowl.track.radius

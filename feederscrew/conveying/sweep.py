@@ -76,7 +76,7 @@ def sweep(settings, workers=None):
     Raises
     ------
     ValueError
-        If a shape is wrong, an entry is not finite, or a row is no track.
+        If a shape is wrong, an entry is not finite, or a row is not a track.
 
     Notes
     -----

@@ -14,7 +14,7 @@ from feederscrew.resting.tumbling.edges import Edges, half_edges, saddles, sinks
 from feederscrew.resting.tumbling.exact import tumble
 
 
-class Solid(NamedTuple):
+class RoundedHull(NamedTuple):
     """A convex body about its centre of mass, along its principal axes; V corners, R rims.
 
     A named tuple, so that compiled code can read it.
@@ -32,7 +32,7 @@ class Solid(NamedTuple):
 class Shape(NamedTuple):
     """What the drop kernel knows of a part, in units of its own length; F faces, M facets."""
 
-    solid: Solid
+    solid: RoundedHull
     edges: Edges
     faces: np.ndarray  # (M,) face of each facet the part rests on, -1 for the others
     heights: np.ndarray  # (F,) of the centre of mass
@@ -118,7 +118,7 @@ def _solid(hull, edges, rims, inertia, principal, length):
         table[:, vector] = vectors.product(rims.table[:, vector], principal)
     table[:, CENTRE] /= length
     table[:, RADIUS] /= length
-    return Solid(
+    return RoundedHull(
         vertices=edges.vertices,
         links=check.frozen(_links(hull)),
         inertia=check.frozen(inertia),

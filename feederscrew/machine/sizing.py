@@ -42,7 +42,7 @@ class Size:
 
 
 @dataclass(frozen=True, eq=False)
-class Shape:
+class SizedShape:
     """One part against the wall, seen from above; x ahead, y inwards, from its centre of mass."""
 
     outline: np.ndarray  # (J, 2) [m]
@@ -89,7 +89,7 @@ def shape(part, aspects, track, wanted=None):
     found = headings(stood, track)
     row = 0 if wanted is None else int(np.argmin(np.abs(found.headings - wanted[1])))
     outline = check.frozen(turned(stood.outline, found.headings[row]))
-    return Shape(outline, float(found.distances[row]), float(found.lengths[row]))
+    return SizedShape(outline, float(found.distances[row]), float(found.lengths[row]))
 
 
 def size(part, given, rules, *, sorts, diameter=None, width=None, climb=None):

@@ -57,7 +57,7 @@ class ResultFolder:
     def write(self, name, content):
         """Hold back one file, text or bytes, until ``keep``; '/' in the name makes folders."""
         if not _inside(name) or name == RECORD:
-            raise ValueError(f"{name!r} is no name for a result")
+            raise ValueError(f"{name!r} is not a name for a result")
         self.staged[name] = content if isinstance(content, bytes) else content.encode()
 
     def keep(self, command, *, arguments=(), effective=None, warnings=()):
@@ -125,7 +125,7 @@ class ResultFolder:
             return {}
         except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
             raise FeederError(
-                file, "is no record of a run", "remove that folder, or give another to -o"
+                file, "is not a record of a run", "remove that folder, or give another to -o"
             ) from error
         for owner in owners:
             self._check_owner(owner)

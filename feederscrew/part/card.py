@@ -69,7 +69,7 @@ def part(file):
 def _mapping(node, keys, faults):
     """Values by word, in SI units; what is wrong is added to ``faults``."""
     if node.kind != "mapping":
-        what = "is no block of 'key: value' lines"
+        what = "is not a block of 'key: value' lines"
         faults.append(ConfigError(node.where, what, f"give it {', '.join(key.word for key in keys)}"))
         return {}
     known = {key.word: key for key in keys}
@@ -100,7 +100,7 @@ def _value(key, node):
 def _listed(key, node, shape):
     if shape:
         if node.kind != "list" or len(node.items) != shape[0]:
-            raise ConfigError(node.where, f"{key.word} is no list of {shape[0]}", f"write {key.example}")
+            raise ConfigError(node.where, f"{key.word} is not a list of {shape[0]}", f"write {key.example}")
         return tuple(_listed(key, item, shape[1:]) for item in node.items)
     if node.kind != "text" or not node.text:
         raise ConfigError(node.where, f"{key.word} has no value", f"write {key.example}")
@@ -133,7 +133,7 @@ def _aspects(rows, faults):
     if rows is None:
         return []
     if rows.kind != "list" or not rows.items:
-        faults.append(ConfigError(rows.where, "aspects is no list", "write - {aspect: 1, height: 6.9 mm}"))
+        faults.append(ConfigError(rows.where, "aspects is not a list", "write - {aspect: 1, height: 6.9 mm}"))
         return []
     aspects, seen = [], {}
     for row in rows.items:

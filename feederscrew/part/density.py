@@ -85,7 +85,7 @@ def density(text=None):
     Raises
     ------
     ArgumentError
-        If the text names no known material, is no density, or no solid has it.
+        If the text names no known material, is not a density, or is one that no solid has.
     """
     if text is None:
         return _named()[DEFAULT].density, f"{DEFAULT} (default)"

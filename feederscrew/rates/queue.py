@@ -97,7 +97,7 @@ def velocity(bowl):
     """
     here = answer.answer(bowl)
     if here.status == "no steady state":
-        what = "is steeper than friction holds: the part slides back for ever"
+        what = "is steeper than friction holds: the part slides down continuously"
         raise FeederError("track.climb", what, "lower the climb or raise the friction")
     doubt = sensitivity.FRICTION_DOUBT
     around = [here, *(answer.answer(answer.scaled(bowl, friction=1.0 + s * doubt)) for s in (-1.0, 1.0))]

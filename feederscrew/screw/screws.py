@@ -72,7 +72,7 @@ class Screw:
         magnitude : (...,) float
             |s|, or |s0| where the pitch is infinite.
         pitch : (...,) float [m]
-            Nought for a pure force or rotation.
+            Zero for a pure force or rotation.
         reference : Point
             Where the result is to be expressed.
 

@@ -84,7 +84,9 @@ def test_no_scheduler_is_one_line(tmp_path, three, monkeypatch):  # noqa: F811
 
 
 def test_what_is_no_address_is_one_line():
-    with pytest.raises(FeederError, match=r"^nonsense: is no address of a scheduler - write it as tcp://"):
+    with pytest.raises(
+        FeederError, match=r"^nonsense: is not an address of a scheduler - write it as tcp://"
+    ):
         list(batch.Cluster("nonsense").outcomes([]))
 
 

@@ -274,16 +274,16 @@ def test_ranges():
         ("track.clim=1:2:3", "track.clim: unknown key 'track.clim' - did you mean track.climb?"),
         (
             "friction.static=0:1",
-            "friction.static: '0:1' is no range - write FROM:TO:COUNT, as in friction.static=0:10:20",
+            "friction.static: '0:1' is not a range - write FROM:TO:COUNT, as in friction.static=0:10:20",
         ),
         (
             "friction.static=0.3:0.30:5",
             "friction.static: begins where it ends - give two different values, or --set the one",
         ),
-        ("friction.static=0:1:1", "friction.static: '1' is no count - give a whole number from 2 to 2000"),
+        ("friction.static=0:1:1", "friction.static: '1' is not a count - give a whole number from 2 to 2000"),
         (
             "friction.static=0:1:1e9",
-            "friction.static: '1e9' is no count - give a whole number from 2 to 2000",
+            "friction.static: '1e9' is not a count - give a whole number from 2 to 2000",
         ),
         ("friction.static=0:11:5", "friction.static: '11' is out of range - give 0 to 10"),
         (

@@ -18,7 +18,7 @@ from fuzz import mutate
 
 ROOT = Path(__file__).parent.parent.parent
 PATIENCE = 10.0  # [s] of computing for one input
-STUCK = 60.0  # [s] on the clock, for one that waits for ever
+STUCK = 60.0  # [s] on the clock, for one that waits without end
 MEMORY = 768 << 10  # [kB] for a file under 1 MB; the program itself takes the rest of a gigabyte
 CARD = str(ROOT / "parts/magnet.yaml")
 PLAN = {  # seeds, how the damaged file is called, and what reads it

@@ -164,7 +164,7 @@ def test_defaults_and_a_file_do_not_mix(tmp_path, first, second, told):
 def test_a_record_of_something_else_is_refused(tmp_path, text):
     (tmp_path / "nut").mkdir()
     (tmp_path / "nut/run.json").write_bytes(text.encode("latin-1"))
-    with pytest.raises(FeederError, match=r"run.json: is no record of a run - remove"):
+    with pytest.raises(FeederError, match=r"run.json: is not a record of a run - remove"):
         run(tmp_path, {"a.csv": "x\n"})
 
 

@@ -74,7 +74,7 @@ def test_a_card_in_si_units():
         (
             "[1 mm, 2 mm, 3 mm]",
             "[1 mm, 2 mm]",
-            ("2:17: centre_of_mass is no list of 3 - write [3.3 mm, 0 mm, 9 mm]",),
+            ("2:17: centre_of_mass is not a list of 3 - write [3.3 mm, 0 mm, 9 mm]",),
         ),
         (
             "[1 mm, 2 mm, 3 mm]",
@@ -120,7 +120,7 @@ def test_a_card_in_si_units():
         ("floor: {aspect: top, drive_offset: -1 mm}", "track: {axes: askew}",
          ("10:15: axes is 'askew' - give tilted or level",)),
         ("floor: {aspect: top, drive_offset: -1 mm}", "floor: 3",
-         ("10:8: is no block of 'key: value' lines"
+         ("10:8: is not a block of 'key: value' lines"
           " - give it aspect, drive_offset, centroid_height, polar_inertia",)),
     ],
 )  # fmt: skip

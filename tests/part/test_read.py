@@ -168,7 +168,7 @@ def test_unlikely_size_is_warned_of(tmp_path, scale, units, warning):
 def test_unknown_unit():
     with pytest.raises(FeederError) as error:
         load("part.stl", units="inch")
-    assert str(error.value) == "units: 'inch' is no unit of a part file - did you mean in?"
+    assert str(error.value) == "units: 'inch' is not a unit of a part file - did you mean in?"
 
 
 ALL = "the file has 12: all of them are read"

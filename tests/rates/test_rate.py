@@ -161,7 +161,7 @@ def test_no_devices():
     ("text", "line"),
     [
         ("devices: 5 mm\n", "1:1: devices is not a list - write one '- wiper: 6 mm' a line"),
-        ("devices:\n  - wiper\n", "2:5: is no device - write one '- wiper: 6 mm' a line"),
+        ("devices:\n  - wiper\n", "2:5: is not a device - write one '- wiper: 6 mm' a line"),
         ("devices:\n  - wipr: 6 mm\n", "2:5: unknown device 'wipr' - did you mean wiper?"),
         ("devices:\n  - wiper: 6\n", "2:12: wiper: '6' has no unit - write 6 mm"),
         ("devices:\n  - wiper: -6 mm\n", "2:12: wiper is -6 mm - give more than 0 mm"),

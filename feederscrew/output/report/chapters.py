@@ -20,8 +20,8 @@ CHAPTERS = (  # anchor, title, what computes it
     ("floor", "On the bowl floor", moving.floor),
     ("slip", "When a part slips", moving.slide),
     ("part", "The part", resting.the_part),
-    ("limits", "What these numbers cannot tell", closing.limits),
-    ("repeat", "To get these numbers again", closing.repeat),
+    ("limits", "Limitations", closing.limits),
+    ("repeat", "Reproducibility", closing.repeat),
 )
 
 

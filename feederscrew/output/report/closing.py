@@ -1,4 +1,4 @@
-"""What the numbers cannot tell, and what is needed to get them again."""
+"""Limitations of the methods, and what it takes to reproduce the numbers."""
 
 import platform
 from importlib import metadata

@@ -59,7 +59,7 @@ def load(source, *, units=None, density=None, centre_of_mass=None, allow_open=Fa
     """
     if units not in (None, *UNITS):
         raise ArgumentError(
-            "units", f"'{units}' is no unit of a part file", documents.hint(str(units), UNITS)
+            "units", f"'{units}' is not a unit of a part file", documents.hint(str(units), UNITS)
         )
     value, material = density_of(density)
     file = read.file(source, stdin)

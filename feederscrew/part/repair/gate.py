@@ -11,10 +11,10 @@ from feederscrew.part.repair import mend, shells, weld
 from feederscrew.part.repair.holes import caps, holes
 from feederscrew.part.repair.mend import SOLID
 
-FLAT = 1e-6  # [1] of the size: thinner is no solid
+FLAT = 1e-6  # [1] of the size: thinner is not a solid
 JOINED = 1e-6  # [1] of the size: corners closer than that are one
 LOST, BLURRED = 1e-2, 1e-5  # [1] of the size: steps of single precision that spoil, or dull, the shape
-MOST_OPEN = 100_000  # edges: with more it is no surface with holes
+MOST_OPEN = 100_000  # edges: with more it is not a surface with holes
 FARTHEST = 1e30  # [unit of the file]
 EMPTY = 1e-10  # [1] of the size cubed: less volume is rounding
 INVERTED = "all facets faced inwards: turned"

@@ -15,7 +15,7 @@ def over_ring(foot, low, high, scratch):
     ----------
     foot : Foot
     low, high : float [m]
-        Radii about the bowl's axis between which there is no track.
+        Radii about the bowl's axis between which there is not a track.
     scratch : VerdictArrays
 
     Returns

@@ -157,7 +157,7 @@ def test_radius_table(run):
         (
             ("--set", "drive.phase=20 deg", "--bowl"),
             1,
-            "Error: drive.phase: is not 0 deg, and an elliptical drive is no screw motion to follow inwards"
+            "Error: drive.phase: is not 0 deg, an elliptical drive is not a screw motion to follow inwards"
             " - leave out --bowl, or the phase",
         ),
         (

@@ -66,7 +66,7 @@ def test_an_orientation_that_a_device_returns(run, config):
         (
             ("--aspect", "A", "--set", "track.climb=40 deg"),
             1,
-            "Error: track.climb: is steeper than friction holds: the part slides back for ever - "
+            "Error: track.climb: is steeper than friction holds: the part slides down continuously - "
             "lower the climb or raise the friction",
         ),
         (

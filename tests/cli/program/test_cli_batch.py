@@ -68,7 +68,7 @@ def test_a_depfile_names_every_part(run, tmp_path):
         (
             ["nut.stl", "-o", "out", "--jobs", "0"],
             2,
-            "'0' is no number of processes - give 1, 2, ... or auto",
+            "'0' is not a number of processes - give 1, 2, ... or auto",
         ),
         (
             ["nut.stl", "-o", "out", "--rule", "scs"],

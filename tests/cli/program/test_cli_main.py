@@ -273,8 +273,8 @@ def test_the_readme_says_what_the_program_says():
 @pytest.mark.parametrize(
     ("call", "line"),
     [
-        (("aspects", "--surface-exponent", "nan"), "'--surface-exponent': 'nan' is no number"),
-        (("drop", "--plate", "--seconds", "nan"), "'--seconds': 'nan' is no number"),
+        (("aspects", "--surface-exponent", "nan"), "'--surface-exponent': 'nan' is not a number"),
+        (("drop", "--plate", "--seconds", "nan"), "'--seconds': 'nan' is not a number"),
         (("track", "--heading", "1e300"), "'--heading': '1e300' is out of range - stay within ten turns"),
     ],
 )
