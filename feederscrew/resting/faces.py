@@ -19,6 +19,7 @@ STRAIGHT = (
     1e-2  # of their variance along the curve: how far normals of a rocker may leave their plane or cone
 )
 DOUBLE = 2e-3  # of the same: normals off their plane or cone by more belong to a side curved both ways
+FEWEST_OF_A_BALL = 24  # facets that show a side curved both ways: a ball, or a cap of one
 FEWEST = 6  # strips that show a curve whose middle is not the centre of mass
 ON_A_LINE = 1e-6  # of the contact's size: a corner off the line between its neighbours by less is none
 ARC = np.radians(60.0)  # coarse strips that turn less may be meant as flats
@@ -146,11 +147,10 @@ def _rocks(hull, side, sink):
     if len(side) < FEWEST or flat > 0.5 or not _curved(hull, side):
         return False
     across = vectors.eigen(vectors.covariance(normals, share))[0]
-    if across[0] >= STRAIGHT * across[1]:
-        return _round(hull, side)  # a ball, or a cap of one
+    fewest = FEWEST if across[0] < STRAIGHT * across[1] else FEWEST_OF_A_BALL
     strips = np.unique(normals.round(2), axis=0, return_inverse=True)[1].ravel()
     even = 1.0 / (np.bincount(strips, share) ** 2).sum()  # as many strips of one size
-    return even > FEWEST - 0.5 and _round(hull, side)
+    return even > fewest - 0.5 and _round(hull, side)
 
 
 def _round(hull, triangles):

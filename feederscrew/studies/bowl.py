@@ -37,7 +37,7 @@ class Order:
     flow: throughput.Flow
     hopper: float  # [m3]
     handbook: float  # [1/s] the handbook's estimate for the same share
-    shape: sizing.Shape  # one part on the track, to draw
+    shape: sizing.SizedShape  # one part on the track, to draw
 
 
 @dataclass(frozen=True, eq=False)

@@ -177,7 +177,7 @@ def test_the_sheet_has_one_panel_a_class_in_one_scale():
 )
 def test_panels_stay_on_the_page_and_apart(count, grid):
     _, stand, _ = standing(box())
-    sheet = picture._sheet([stand] * count, 3)
+    sheet = picture._sheet([stand] * count, 3, False)
     assert (sheet.columns, sheet.rows) == grid
     places = [sheet.place(k) for k in range(count)]
     assert len(set(places)) == count

@@ -78,6 +78,7 @@ def test_a_sink_on_a_mirror_plane_is_shared_by_the_twins_beside_it(ridge):
 @given(st.integers(0, 2**32 - 1))
 @example(1163)  # the broader of two facets that nearly agree is not the one it rests on
 @example(1238)
+@example(245)  # a few flat facets that bend gently both ways are no part of a ball
 @settings(max_examples=60, deadline=None, derandomize=True)
 def test_mirror_twins_are_equally_likely_by_every_rule(seed):
     assert_twins_agree(mirrored_body(seed), 1e-6)

@@ -6,6 +6,9 @@ from feederscrew.output import style
 
 BAR = 0.34  # [in] of paper a bar gets
 NARROW, WIDE = 5.2, 12.0  # [in] limits of the figure's width
+GROUP = 1.0  # [in] of paper an aspect gets beside the recommended answer
+THICK, ASIDE = 0.3, 0.22  # [1] of a group: width of the recommended answer's bar, its way to the left
+FIRST, LAST = 0.0, 0.36  # [1] of a group: where the marks of the rules begin and end
 UPRIGHT = 0.31  # [in] below this width of a bar its number stands on end
 
 
@@ -32,6 +35,48 @@ def probabilities(names, profiles, title=""):
     )
     grouped(axes, names, profiles, room=(width - 1.0) / (len(names) * (len(profiles) + 1.0)))
     figure.legend(loc="outside lower center", ncols=min(len(profiles), 6), frameon=False, fontsize=8)
+    return figure
+
+
+def answered(names, answer, profiles, title=""):
+    """Draw the recommended answer with its interval as a bar, and every rule as a small mark beside it.
+
+    Parameters
+    ----------
+    names : sequence of str
+        The A aspects.
+    answer : (3, A) array_like [1]
+        Probability, and the lower and upper end of its interval.
+    profiles : dict of str to (A,) float [1]
+        Probability by rule.
+    title : str
+        Over the chart.
+
+    Returns
+    -------
+    Figure
+    """
+    width = float(np.clip(len(names) * GROUP + 1.0, NARROW, WIDE))
+    figure = style.figure(width, 3.4)
+    axes = style.tidy(
+        figure.add_subplot(), title=style.words(title), x="aspect", y="probability [%]", grid="y"
+    )
+    places = np.arange(len(names))
+    share, low, high = 100.0 * np.asarray(answer, dtype=float)
+    axes.bar(places - ASIDE, share, THICK, color=style.ANSWER, label="recommended, with interval")
+    reach = np.maximum([share - low, high - share], 0.0)
+    axes.errorbar(places - ASIDE, share, reach, fmt="none", ecolor=style.INK, elinewidth=1.4, capsize=3)
+    _numbers(axes, places - ASIDE, np.maximum(share, high), np.isfinite(share), upright=False, told=share)
+    steps = np.linspace(FIRST, LAST, len(profiles))
+    for place, (step, (name, values)) in enumerate(zip(steps, profiles.items())):
+        label, colour = style.method(name, place)
+        axes.plot(places + step, 100.0 * np.asarray(values), "o", markersize=3.6, color=colour, label=label)
+    axes.set_xticks(places, names)
+    axes.tick_params(axis="x", length=0)
+    axes.set_xlim(-0.55, len(names) - 0.45)
+    every = [high, *(100.0 * np.asarray(values) for values in profiles.values())]
+    axes.set_ylim(0.0, 1.12 * np.nanmax(every))
+    figure.legend(loc="outside lower center", ncols=5, frameon=False, fontsize=7.5)
     return figure
 
 
@@ -64,10 +109,12 @@ def grouped(axes, names, profiles, room=UPRIGHT):
     axes.set_ylim(0.0, highest * 1.14)
 
 
-def _numbers(axes, x, percent, known, upright):
-    for at, value in zip(x[known], percent[known]):
+def _numbers(axes, x, percent, known, upright, told=None):
+    """Write the percentages, or what is ``told`` in their place, over the ends of bars."""
+    told = percent if told is None else told
+    for at, value, text in zip(x[known], percent[known], told[known]):
         axes.annotate(
-            f"{value:.1f}",
+            f"{text:.1f}",
             (at, value),
             (0, 2),
             textcoords="offset points",

@@ -4,7 +4,7 @@ from feederscrew.output.aspects import bars, picture, tables
 
 
 def probabilities(study):
-    """Draw the probability of each stable aspect by every rule.
+    """Draw the probability of each stable aspect: the recommended answer first, then every rule.
 
     Parameters
     ----------
@@ -16,7 +16,11 @@ def probabilities(study):
     """
     part = study.part
     title = f"{part.name} (open surface)" if part.open_surface else part.name
-    return bars.probabilities(*tables.profiles(study), title=title)
+    names, profiles = tables.profiles(study)
+    answer = tables.answer(study)
+    if answer is None:
+        return bars.probabilities(names, profiles, title=title)
+    return bars.answered(names, answer, profiles, title=title)
 
 
 def sheet(study):
@@ -32,4 +36,4 @@ def sheet(study):
     Figure
     """
     rows = range(min(len(study.aspects.names), tables.MOST))
-    return picture.aspects(study.part, study.aspects, rows)
+    return picture.aspects(study.part, study.aspects, rows, study.recommended)

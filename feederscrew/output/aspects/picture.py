@@ -13,7 +13,7 @@ MOST_ACROSS = 4  # panels in a row
 PANEL, ALONE = 400, 720  # [px] width of one panel, and of one that is alone
 LETTER = 22  # [px] width of a letter of the name
 TALLEST = 1.15  # height of a panel over its width
-LINE = 24  # [px] of text
+LINE, SMALL = 24, 17  # [px] of text, and of the rules' smaller text
 BAR, BARS = 144, 126  # [px] length of a bar for a probability of 1, and where it starts
 HEAD, FOOT = 92, 76  # [px] above and below the panels
 ROOM = 1.1  # of a panel over the largest part in it
@@ -43,7 +43,7 @@ class Sheet:
         return column * width, top - height
 
 
-def aspects(part, found, rows):
+def aspects(part, found, rows, answer=None):
     """Draw the part on each of its aspects.
 
     Parameters
@@ -54,6 +54,8 @@ def aspects(part, found, rows):
         Its classes.
     rows : sequence of int
         Which of them are drawn, in this order.
+    answer : Recommended, optional
+        Told first, with its interval.
 
     Returns
     -------
@@ -62,7 +64,7 @@ def aspects(part, found, rows):
     solid = render.Rays(part.vertices, part.faces, part.centre_of_mass)
     points = outermost(solid.points)
     stances = [stance(points, found.normals[row], found.heights[row] / solid.size) for row in rows]
-    sheet = _sheet(stances, len(found.probabilities))
+    sheet = _sheet(stances, len(found.probabilities), answer is not None)
     figure = style.page(*sheet.page)
     for panel, (row, standing) in enumerate(zip(rows, stances)):
         frame = _frame(sheet, standing)
@@ -74,13 +76,13 @@ def aspects(part, found, rows):
         marks.contact(axes, solid, standing, found.polygons[row] / solid.size)
         marks.rolling_axis(axes, solid, standing, found.axes[row])
         marks.centre_of_mass(axes, 11.0 * sheet.pixel)
-        _caption(figure, sheet, panel, found, row)
+        _caption(figure, sheet, panel, found, row, answer)
     page = _head_and_foot(figure, sheet, part, solid)
     marks.legend(page, 30, 30, rolling=bool(np.isfinite(found.axes[list(rows)]).any()))
     return figure
 
 
-def _sheet(stances, rules):
+def _sheet(stances, rules, answered):
     """The layout in which the largest part just fits its panel."""
     count = len(stances)
     columns = count if count <= MOST_ACROSS else 3 if count in (5, 6, 9) else MOST_ACROSS
@@ -88,7 +90,8 @@ def _sheet(stances, rules):
     width = PANEL if count > 1 else ALONE
     pixel = max(widths / width, heights / (TALLEST * PANEL))
     image = (width, max(int(np.ceil(heights / pixel)), PANEL // 3))
-    return Sheet(columns, -(-count // columns), image, LINE * (rules + 2), pixel)
+    caption = LINE * (2 + answered) + SMALL * rules
+    return Sheet(columns, -(-count // columns), image, caption, pixel)
 
 
 def _frame(sheet, standing):
@@ -111,8 +114,8 @@ def _share(sheet, left, bottom, width, height):
     return left / page[0], bottom / page[1], width / page[0], height / page[1]
 
 
-def _caption(figure, sheet, panel, found, row):
-    """Name, kind and count of a class, and its probability by every rule as a bar with its number."""
+def _caption(figure, sheet, panel, found, row, answer):
+    """Name, kind and count of a class; the recommended answer with its interval, then every rule, smaller."""
     left, bottom = sheet.place(panel)
     axes = figure.add_axes(_share(sheet, left, bottom - sheet.caption, sheet.image[0], sheet.caption))
     axes.set_axis_off()
@@ -122,15 +125,29 @@ def _caption(figure, sheet, panel, found, row):
     axes.text(62, -0.6 * LINE, what, fontsize=8, color=style.INK, va="center")
     if not found.stable[row]:
         return
+    top = -1.55 * LINE
+    if answer is not None:
+        _answer(axes, top, *(float(ends[row]) for ends in (answer.p, answer.low, answer.high)))
+        top -= LINE
     for place, (rule, values) in enumerate(found.probabilities.items()):
         label, colour = style.method(rule, place)
-        y = -(place + 1.55) * LINE
-        axes.text(30, y, label, fontsize=7, color=style.INK, va="center")
-        axes.barh(y, BAR, height=9, left=BARS, color=style.FAINT, alpha=0.5)
-        axes.barh(y, BAR * values[row], height=9, left=BARS, color=colour)
+        y = top - place * SMALL
+        axes.text(30, y, label, fontsize=6, color=style.INK, va="center")
+        axes.barh(y, BAR, height=5, left=BARS, color=style.FAINT, alpha=0.5)
+        axes.barh(y, BAR * values[row], height=5, left=BARS, color=colour)
         axes.text(
-            345, y, f"{100.0 * values[row]:.1f} %", fontsize=7, color=style.INK, va="center", ha="right"
+            345, y, f"{100.0 * values[row]:.1f} %", fontsize=6, color=style.INK, va="center", ha="right"
         )
+
+
+def _answer(axes, y, share, low, high):
+    """The recommended probability as a broad bar, its interval as a line through it and in words."""
+    axes.text(30, y, "recommended", fontsize=6, color=style.INK, va="center")
+    axes.barh(y, BAR, height=11, left=BARS, color=style.FAINT, alpha=0.5)
+    axes.barh(y, BAR * share, height=11, left=BARS, color=style.ANSWER)
+    axes.plot([BARS + BAR * low, BARS + BAR * high], [y, y], color=style.INK, linewidth=1.2)
+    told = f"{100.0 * share:.1f} % ({100.0 * low:.0f}–{100.0 * high:.0f})"
+    axes.text(BARS + BAR + 8, y, told, fontsize=6.5, fontweight="bold", color=style.INK, va="center")
 
 
 def _head_and_foot(figure, sheet, part, solid):

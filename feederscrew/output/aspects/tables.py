@@ -136,6 +136,15 @@ def profiles(study):
     return [found.names[row] for row in stable], {rule: p[stable] for rule, p in found.probabilities.items()}
 
 
+def answer(study):
+    """Return the recommended answer for `profiles`, (3, A): share, low, high; None of a card."""
+    known = study.recommended
+    if known is None:
+        return None
+    stable = np.flatnonzero(study.aspects.stable)[:MOST]
+    return np.array([known.p[stable], known.low[stable], known.high[stable]])
+
+
 def remarks(study):
     """Return what a user should know of pictures that are missing or not whole, a line each."""
     count = len(study.aspects.names)

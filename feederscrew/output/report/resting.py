@@ -108,7 +108,11 @@ def _picture(offer, **keywords):
 
 def _caption(found, row):
     kind = f"{found.kinds[row]} ×{found.faces[row]}" if found.stable[row] else "not stable"
-    bars = [
+    answer = found.recommended
+    bars = [] if answer is None else [("recommended", style.INK, float(answer.p[row]))]
+    if answer is not None and found.stable[row]:
+        kind += f", {percent(answer.p[row])} % ({percent(answer.low[row])} to {percent(answer.high[row])} %)"
+    bars += [
         (*style.method(rule, place), float(values[row]))
         for place, (rule, values) in enumerate(found.probabilities.items())
     ]
