@@ -118,7 +118,7 @@ def test_progress_of_parts_that_are_all_there(capsys, monkeypatch):
 def test_an_interrupt_that_a_library_drops_still_ends_the_program():
     code = (
         "import time\nfrom feederscrew_cli.interrupt import ended_within\nwith ended_within(0.5):\n"
-        "    print('ready', flush=True)\n    while True:\n        try:\n            time.sleep(60)\n"
+        "    while True:\n        try:\n            print('ready', flush=True)\n            time.sleep(60)\n"
         "        except KeyboardInterrupt:\n            pass\n"
     )
     child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE)

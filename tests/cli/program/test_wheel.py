@@ -14,7 +14,7 @@ import pytest
 from feederscrew_cli.main import COMMANDS
 
 ROOT = Path(__file__).parents[3]
-SOURCES = ("pyproject.toml", "setup.py", "README.md", "LICENSE", "feederscrew", "cli")
+SOURCES = ("pyproject.toml", "README.md", "LICENSE", "feederscrew", "cli")
 CACHES = shutil.ignore_patterns("__pycache__", "*.nbi", "*.nbc")
 PART = "lbracket_30x20x15.stl"
 COUNTS = "aspect,counted\nA,40\nB,30\nC,20\nD,10\nE,10\n"
