@@ -26,7 +26,8 @@ def filled(text):
     """The README with every output, command and key as it is now."""
     text = BLOCK.sub(_block, text)
     text = _between(text, "commands", _commands())
-    return _between(text, "bowl keys", documentation.markdown())
+    text = _between(text, "bowl keys", documentation.markdown())
+    return _between(text, "devices", documentation.devices_markdown())
 
 
 def _block(match):
@@ -59,6 +60,8 @@ def _commands():
 
 def _between(text, name, content):
     begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->"
+    if text.count(begin) != 1 or text.count(end) != 1:
+        raise SystemExit(f"README.md: the marks {begin.strip()} and {end} must stand there once each")
     before, _, rest = text.partition(begin)
     return before + begin + content + end + rest.partition(end)[2]
 
