@@ -31,7 +31,7 @@ demo: $(READY) ## resting table and picture of a bracket, sliding map of a bowl
 	@ls results/$(DEMO)/*.png results/bowl/*.png
 
 test: lint ## format, lint and every test, warnings as errors
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 check: test ## the same: all that CI runs
 

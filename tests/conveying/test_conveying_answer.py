@@ -236,7 +236,7 @@ def test_cells_and_answers_agree_on_an_uneven_drive():
 
 
 def test_an_elliptical_drive_is_not_followed_inwards():
-    with pytest.raises(ConfigError, match="no screw motion"):
+    with pytest.raises(ConfigError, match="not a screw motion"):
         radius.inwards(bowl("drive.phase=20 deg"))
 
 

@@ -185,7 +185,7 @@ def test_a_folder_that_may_not_be_written(tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", ["../a", "/a", "", "run.json", "a\\b"])
 def test_a_result_stays_in_its_folder(tmp_path, name):
     with (
-        pytest.raises(ValueError, match="no name for a result"),
+        pytest.raises(ValueError, match="not a name for a result"),
         ResultFolder(tmp_path, "nut", PART) as folder,
     ):
         folder.write(name, "x")
