@@ -3,17 +3,29 @@
 import pytest
 from fuzz import harness, mutate
 
-COUNTS = {"stl": 40, "bowl": 50, "card": 60, "counts": 50, "list": 200}  # about ten seconds in all
+COUNTS = {
+    "stl": 40,
+    "bowl": 50,
+    "card": 60,
+    "counts": 50,
+    "list": 200,
+    "together": 40,
+}  # about ten seconds in all
 
 
-@pytest.mark.parametrize("kind", list(harness.PLAN))
+@pytest.mark.parametrize("kind", harness.KINDS)
 def test_damaged_files_give_a_line_and_never_a_traceback(kind):
     faults = harness.run(harness.Case(kind, seed) for seed in range(COUNTS[kind]))
     assert faults == []
 
 
+def test_a_corner_beyond_any_bowl_is_one_line():
+    """Found by a part, a bowl and options damaged together: its square overflowed."""
+    assert harness.run([harness.Case(harness.TOGETHER, 1856)]) == []
+
+
 def test_a_case_is_made_again_from_its_seed():
-    for kind in harness.PLAN:
+    for kind in harness.KINDS:
         assert harness.Case(kind, 7).build() == harness.Case(kind, 7).build()
 
 

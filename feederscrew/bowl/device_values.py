@@ -7,6 +7,7 @@ from feederscrew.errors import ConfigError
 
 CORNER = "write [9 mm, 8 mm]"
 POLYGON = "write a list of three or more corners, as [[0 mm, 0 mm], [9 mm, 0 mm], [9 mm, 8 mm]]"
+FARTHEST = 1000.0  # [m] no bowl reaches so far
 
 
 def length(entry):
@@ -80,6 +81,8 @@ def simple(corners, where, kind):
     if len(corners) < 3:
         raise ConfigError(where, f"{kind} has {len(corners)} corners", POLYGON)
     size = max(max(abs(x), abs(y)) for x, y in corners)
+    if size > FARTHEST:
+        raise ConfigError(where, f"{kind} reaches {size:.3g} m", f"keep its corners within {FARTHEST:g} m")
     if crossed(corners):
         raise ConfigError(where, f"{kind} crosses itself", "list the corners in order around it")
     following = (*corners[1:], corners[0])

@@ -21,7 +21,7 @@ def main():
     end, first, count, bad = time.monotonic() + float(sys.argv[1] if sys.argv[1:] else 600), 0, 0, 0
     first = int(time.time()) * 1000
     while time.monotonic() < end:
-        for kind in harness.PLAN:
+        for kind in harness.KINDS:
             cases = [harness.Case(kind, first + k) for k in range(ROUND)]
             for case, call, fault in harness.run(cases):
                 bad += 1

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from fuzz import mutate
+from fuzz import mutate, together
 
 ROOT = Path(__file__).parent.parent.parent
 PATIENCE = 10.0  # [s] of computing for one input
@@ -54,6 +54,8 @@ PLAN = {  # seeds, how the damaged file is called, and what reads it
     ),
     "list": (("tests/fuzz/list.csv",), "list.csv", (("gather", "FILE"),)),
 }
+TOGETHER = "together"  # the kind of case in which a part, a bowl and the options are damaged at once
+KINDS = (*PLAN, TOGETHER)
 
 
 @dataclass(frozen=True)
@@ -64,12 +66,14 @@ class Case:
     seed: int
 
     def build(self):
-        """The bytes, the file's name and the arguments."""
+        """The bytes of each file by its name, and the arguments."""
         rng = np.random.default_rng(self.seed)
+        if self.kind == TOGETHER:
+            return together.job(ROOT, rng)
         seeds, name, calls = PLAN[self.kind]
         first, second = ((ROOT / seeds[int(rng.integers(len(seeds)))]).read_bytes() for _ in range(2))
         call = calls[int(rng.integers(len(calls)))]
-        return mutate.mutated(first, second, rng), name, [name if a == "FILE" else a for a in call]
+        return {name: mutate.mutated(first, second, rng)}, [name if a == "FILE" else a for a in call]
 
 
 def run(cases):
@@ -88,7 +92,7 @@ def run(cases):
             hung = process.exitcode == -signal.SIGPROF
             fault = f"computed for {PATIENCE:g} s" if hung else f"the process died ({process.exitcode})"
         if fault:
-            faults.append((case, " ".join(case.build()[2]), fault))
+            faults.append((case, " ".join(case.build()[1]), fault))
         if fault and not fault.startswith("Traceback"):
             process.kill()
             process.join()
@@ -102,7 +106,7 @@ def run(cases):
 @functools.cache
 def _warm():
     """Import before the first process is forked what every one needs."""
-    for kind in PLAN:
+    for kind in KINDS:
         fault(Case(kind, 0))
 
 
@@ -131,11 +135,12 @@ def _serve(line, other):
 
 def fault(case):
     """What is wrong with how one case ends; '' if nothing is."""
-    data, name, arguments = case.build()
+    files, arguments = case.build()
     here = Path.cwd()
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        Path(name).write_bytes(data)
+        for name, data in files.items():
+            Path(name).write_bytes(data)
         try:
             told = _gathered(name) if arguments[0] == "gather" else _called(arguments)
         finally:
