@@ -106,7 +106,7 @@ def run(cases):
 @functools.cache
 def _warm():
     """Import before the first process is forked what every one needs."""
-    for kind in KINDS:
+    for kind in PLAN:
         fault(Case(kind, 0))
 
 
