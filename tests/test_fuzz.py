@@ -9,7 +9,6 @@ COUNTS = {
     "card": 60,
     "counts": 50,
     "list": 200,
-    "together": 40,
 }  # about ten seconds in all
 
 
