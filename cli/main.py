@@ -10,7 +10,7 @@ from collections.abc import Mapping
 import click
 
 from feederscrew import __version__
-from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.errors import ArgumentError, Faults, FeederError
 from feederscrew_cli.interrupt import INTERRUPTED
 
 COMMANDS = {
@@ -89,12 +89,18 @@ class Fence(click.Group):
 
 def _lines(error, command):
     """Every fault as its own line; an argument of the library goes by the name of its option."""
-    if not isinstance(error, ArgumentError):
-        return error.lines
-    name, *rest = error.where.split(" ", 1)
-    options = {param.name: param.opts[0] for param in getattr(command, "params", ())}
+    parts = (command, *getattr(command, "commands", {}).values())  # of 'config': 'show' and 'init'
+    options = {param.name: param.opts[0] for part in parts for param in getattr(part, "params", ())}
+    faults = error.faults if isinstance(error, Faults) else (error,)
+    return tuple(line for fault in faults for line in _of_options(fault, options))
+
+
+def _of_options(fault, options):
+    if not isinstance(fault, ArgumentError):
+        return fault.lines
+    name, *rest = fault.where.split(" ", 1)
     where = " ".join([options.get(name, "--" + name.replace("_", "-")), *rest])
-    return (f"{where}: {error.what} - {error.mend}",)
+    return (f"{where}: {fault.what} - {fault.mend}",)
 
 
 def _tell(line):

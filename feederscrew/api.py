@@ -205,7 +205,7 @@ def read_bowl(path: str | PathLike[str] | None = None, overrides: Iterable[str] 
     path : str or Path, optional
         Bowl file (YAML).
     overrides : iterable of str
-        As ``--set`` takes them.
+        Such as 'drive.frequency=50 Hz'; the last of one key holds.
 
     Returns
     -------

@@ -17,7 +17,7 @@ __all__ = [
 
 
 def read(path=None, overrides=()):
-    """The Bowl of a file and of ``--set``.
+    """The Bowl of a file and of overrides.
 
     Parameters
     ----------

@@ -1,12 +1,12 @@
-"""Bowl files and --set, checked against the schema; every fault is told, each with its place."""
+"""Bowl files and overrides, checked against the schema; every fault is told, each with its place."""
 
 import itertools
 
 from feederscrew import documents, units
 from feederscrew.bowl import devices
 from feederscrew.bowl.schema import BY_NAME, KEYS, SECTIONS, rival
-from feederscrew.bowl.settings import Setting, chain, default, effective, of_device, replaced
-from feederscrew.errors import ConfigError
+from feederscrew.bowl.settings import OVERRIDES, Setting, chain, default, effective, of_device, replaced
+from feederscrew.errors import ArgumentError, ConfigError
 
 TOP_LEVEL = (*SECTIONS, devices.SECTION, *(key.name for key in KEYS if not key.section))
 
@@ -19,7 +19,7 @@ def settings(path=None, overrides=()):
     path : str or Path or None
         Bowl file; None for the defaults alone.
     overrides : sequence of str
-        'drive.frequency=50 Hz', as ``--set`` takes them; the last of one key holds.
+        'drive.frequency=50 Hz'; the last of one key holds.
 
     Returns
     -------
@@ -29,7 +29,7 @@ def settings(path=None, overrides=()):
     Raises
     ------
     Faults
-        Every fault of the file and of the overrides, one a line.
+        Every fault of the file and of the overrides, one a line; those of overrides are `ArgumentError`.
     """
     in_file, faults = ({}, []) if path is None else _from_file(path)
     typed = _from_overrides(overrides, faults)
@@ -44,7 +44,7 @@ def _width(found):
     return next(s.value for s in found if s.key.name == "track.width")
 
 
-def checked(key, text, where, *, bare=False):
+def checked(key, text, where, *, bare=False, kind=ConfigError):
     """One value as a Setting.
 
     Parameters
@@ -56,6 +56,8 @@ def checked(key, text, where, *, bare=False):
         For the fault, which names the key itself unless ``where`` does.
     bare : bool
         Whether a number without a unit is taken in ``key.unit``.
+    kind : type of ConfigError
+        Of the fault: `ArgumentError` where ``where`` begins with the name of an argument.
 
     Returns
     -------
@@ -70,13 +72,13 @@ def checked(key, text, where, *, bare=False):
     try:
         value = units.quantity(text, key.dimension, suggest=key.unit, bare=key.unit if bare else None)
     except units.QuantityError as fault:
-        raise ConfigError(where, f"{subject}{fault.what}", fault.mend) from None
+        raise kind(where, f"{subject}{fault.what}", fault.mend) from None
     low, high = (units.quantity(limit, key.dimension) for limit in (key.lowest, key.highest))
     if not low <= value <= high:
         what = f"{subject}{units.shown(text)} is out of range"
-        raise ConfigError(where, what, f"give {key.lowest} to {key.highest}")
+        raise kind(where, what, f"give {key.lowest} to {key.highest}")
     if key.dimension == "count" and value % 1.0:
-        raise ConfigError(where, f"{subject}{units.shown(text)} is not a whole number", "give 9 or 10")
+        raise kind(where, f"{subject}{units.shown(text)} is not a whole number", "give 9 or 10")
     return Setting(key, " ".join(text.split()), value, where)
 
 
@@ -145,7 +147,7 @@ def _unknown(entry, section, known):
 
 
 def _from_overrides(overrides, faults):
-    """Settings of ``--set`` by key name; what is wrong is added to ``faults``."""
+    """Settings of overrides by key name; what is wrong is added to ``faults``."""
     given = {}
     for override in overrides:
         try:
@@ -154,7 +156,7 @@ def _from_overrides(overrides, faults):
             faults.append(fault)
             continue
         if replaced(setting.key, given):
-            faults.append(_both(setting.key, setting.where))
+            faults.append(_both(setting.key, setting.where, ArgumentError))
         given[setting.key.name] = setting
     return given
 
@@ -162,18 +164,18 @@ def _from_overrides(overrides, faults):
 def _from_override(override):
     name, equals, text = override.partition("=")
     name = name.strip()
-    where = f"--set {units.one_line(name)}"
+    where = f"{OVERRIDES} {units.one_line(name)}"
     if not equals:
-        raise ConfigError(where, "has no '='", 'write KEY=VALUE, as in --set drive.frequency="50 Hz"')
+        raise ArgumentError(where, "has no '='", 'write KEY=VALUE, as in "drive.frequency=50 Hz"')
     if name not in BY_NAME:
-        raise ConfigError(where, f"unknown key {units.shown(name)}", documents.hint(name, list(BY_NAME)))
+        raise ArgumentError(where, f"unknown key {units.shown(name)}", documents.hint(name, list(BY_NAME)))
     if not text.strip():
-        raise ConfigError(where, "has no value", f"write {default(BY_NAME[name]).text}")
-    return checked(BY_NAME[name], text, where)
+        raise ArgumentError(where, "has no value", f"write {default(BY_NAME[name]).text}")
+    return checked(BY_NAME[name], text, where, kind=ArgumentError)
 
 
-def _both(key, where):
-    return ConfigError(where, f"{key.name} and {rival(key).name} are both given", "keep one of them")
+def _both(key, where, kind=ConfigError):
+    return kind(where, f"{key.name} and {rival(key).name} are both given", "keep one of them")
 
 
 def _kinetic_above_static(given):
@@ -188,7 +190,9 @@ def _kinetic_above_static(given):
 
 
 def _above(static, kinetic):
-    static_last = not kinetic.given or static.origin == "--set" != kinetic.origin
+    static_last = not kinetic.given or (static.overrides and not kinetic.overrides)
     last, other = (static, kinetic) if static_last else (kinetic, static)
-    what = f"{kinetic.key.name} {kinetic.text} is above {static.key.name} {static.text} ({other.where})"
-    return ConfigError(last.where, what, "lower the kinetic coefficient or raise the static one")
+    place = "given as well" if other.overrides else other.where
+    what = f"{kinetic.key.name} {kinetic.text} is above {static.key.name} {static.text} ({place})"
+    kind = ArgumentError if last.overrides else ConfigError
+    return kind(last.where, what, "lower the kinetic coefficient or raise the static one")

@@ -12,6 +12,7 @@ from feederscrew.bowl.record import Bowl, Drive, Friction, Machine, Sizing, Trac
 from feederscrew.bowl.schema import BY_NAME, KEYS, OPTIONAL, Key, rival
 
 RECORDS = {"drive": Drive, "friction": Friction, "track": Track, "machine": Machine, "sizing": Sizing}
+OVERRIDES = "overrides"  # the argument that goes over the file; ``--set`` of the commands
 OF_THE_MACHINE = ("drive.vibration_angle", "drive.frequency")  # keys that a machine gives, where there is one
 FOLLOWING = {
     f"{name}.{field.name}"
@@ -28,15 +29,20 @@ class Setting:
     key: Key
     text: str  # as typed: '0.5 mm'
     value: float  # [SI]; an array while the key is varied
-    where: str  # 'bowl.yaml:2:14', '--set drive.amplitude', 'default', 'as friction.static'
+    where: str  # 'bowl.yaml:2:14', 'overrides drive.amplitude', 'default', 'as friction.static'
     given: bool = True  # by the user
+
+    @property
+    def overrides(self):
+        """Whether it goes over the file."""
+        return self.given and self.where == f"{OVERRIDES} {self.key.name}"
 
     @property
     def origin(self):
         """Where it came from, for people: 'bowl.yaml:2', '--set', 'default'."""
         if not self.given:
             return self.where
-        return self.where.split()[0] if self.where.startswith("--") else self.where.rpartition(":")[0]
+        return "--set" if self.overrides else self.where.rpartition(":")[0]
 
 
 def effective(given):
@@ -104,7 +110,7 @@ def swept(settings, values):
     Bowl
         Varied fields are those arrays.
     """
-    varied = {name: Setting(BY_NAME[name], "", value, "--vary") for name, value in values.items()}
+    varied = {name: Setting(BY_NAME[name], "", value, "varied") for name, value in values.items()}
     given = {s.key.name: s for s in settings if s.given and not replaced(s.key, varied)}
     return record(effective(given | varied))
 

@@ -1,11 +1,11 @@
-"""``--vary KEY=a:b:n``: one key of the bowl over a range."""
+"""One key of the bowl over a range, KEY=a:b:n."""
 
 from dataclasses import dataclass
 
 from feederscrew import documents, units
 from feederscrew.bowl.reading import checked
 from feederscrew.bowl.schema import BY_NAME, Key
-from feederscrew.errors import ConfigError
+from feederscrew.errors import ArgumentError, ConfigError
 
 MOST = 2000  # values of one key
 
@@ -41,7 +41,7 @@ def ranges(texts):
         try:
             one = _range(text)
             if one.key.field in found:
-                raise ConfigError(f"--vary {one.key.name}", "is varied twice", "vary two different keys")
+                raise ArgumentError(f"vary {one.key.name}", "is varied twice", "vary two different keys")
             found[one.key.field] = one
         except ConfigError as fault:
             faults.append(fault)
@@ -51,16 +51,16 @@ def ranges(texts):
 
 def _range(text):
     name, _, span = (part.strip() for part in text.partition("="))
-    where = f"--vary {units.one_line(name)}"
+    where = f"vary {units.one_line(name)}"
     if name not in BY_NAME:
-        raise ConfigError(where, f"unknown key {units.shown(name)}", documents.hint(name, list(BY_NAME)))
+        raise ArgumentError(where, f"unknown key {units.shown(name)}", documents.hint(name, list(BY_NAME)))
     ends = span.split(":")
     if len(ends) != 3:
         what = f"{units.shown(span)} is not a range"
-        raise ConfigError(where, what, f"write FROM:TO:COUNT, as in {name}={_example(BY_NAME[name])}")
-    low, high = (checked(BY_NAME[name], end, where, bare=True).value for end in ends[:2])
+        raise ArgumentError(where, what, f"write FROM:TO:COUNT, as in {name}={_example(BY_NAME[name])}")
+    low, high = (checked(BY_NAME[name], end, where, bare=True, kind=ArgumentError).value for end in ends[:2])
     if low == high:
-        raise ConfigError(where, "begins where it ends", "give two different values, or --set the one")
+        raise ArgumentError(where, "begins where it ends", "give two different values, or set the one")
     steps = _count(ends[2], where) - 1
     return KeyRange(BY_NAME[name], tuple((low * (steps - i) + high * i) / steps for i in range(steps + 1)))
 
@@ -68,7 +68,7 @@ def _range(text):
 def _count(text, where):
     if text.strip().isascii() and text.strip().isdigit() and 2 <= int(text.strip()[:9]) <= MOST:
         return int(text.strip())
-    raise ConfigError(where, f"{units.shown(text)} is not a count", f"give a whole number from 2 to {MOST}")
+    raise ArgumentError(where, f"{units.shown(text)} is not a count", f"give a whole number from 2 to {MOST}")
 
 
 def _example(key):

@@ -159,8 +159,8 @@ def test_all_faults_of_a_file_and_of_set_in_one_go(file):
     lines = told(path, "gravity=9.81", "track.climb=50 deg")
     assert [line.split(": ")[0] for line in lines] == [
         *(f"bowl.yaml:{place}" for place in ("2:3", "3:14", "5:12", "6:3")),
-        "--set gravity",
-        "--set track.climb",
+        "overrides gravity",
+        "overrides track.climb",
     ]
 
 
@@ -173,7 +173,7 @@ def test_an_empty_section_is_all_defaults(file):
     [
         ("drive.frequency=50 mm", "drive.frequency: '50 mm' is a length, not a frequency - give it in Hz"),
         ("frequency=50 Hz", "frequency: unknown key 'frequency' - did you mean drive.frequency?"),
-        ("gravity", "gravity: has no '=' - write KEY=VALUE, as in --set drive.frequency=\"50 Hz\""),
+        ("gravity", "gravity: has no '=' - write KEY=VALUE, as in \"drive.frequency=50 Hz\""),
         ("gravity=", "gravity: has no value - write 9.81 m/s2"),
         (
             "friction.kinetic=0.9",
@@ -183,13 +183,13 @@ def test_an_empty_section_is_all_defaults(file):
     ],
 )  # fmt: skip
 def test_a_fault_in_set(override, line):
-    assert told(None, override) == [f"--set {line}"]
+    assert told(None, override) == [f"overrides {line}"]
 
 
 def test_kinetic_above_static_across_file_and_set_is_told_once(file):
     path = file("friction:\n  static: 0.6\n  kinetic: 0.5\n")
     assert told(path, "friction.static=0.4") == [
-        "--set friction.static: friction.kinetic 0.5 is above friction.static 0.4 (bowl.yaml:3:12)"
+        "overrides friction.static: friction.kinetic 0.5 is above friction.static 0.4 (bowl.yaml:3:12)"
         " - lower the kinetic coefficient or raise the static one"
     ]
     assert len(told(None, "friction.kinetic=0.6", "friction.static=0.4")) == 1
@@ -236,8 +236,8 @@ def test_friction_down_the_track_follows_until_it_is_given():
 
 def test_kinetic_above_static_down_the_track():
     assert told(None, "friction.static_backward=0.5", "friction.kinetic_backward=0.7") == [
-        "--set friction.kinetic_backward: friction.kinetic_backward 0.7 is above "
-        "friction.static_backward 0.5 (--set friction.static_backward)"
+        "overrides friction.kinetic_backward: friction.kinetic_backward 0.7 is above "
+        "friction.static_backward 0.5 (given as well)"
         " - lower the kinetic coefficient or raise the static one"
     ]
 
@@ -278,7 +278,7 @@ def test_ranges():
         ),
         (
             "friction.static=0.3:0.30:5",
-            "friction.static: begins where it ends - give two different values, or --set the one",
+            "friction.static: begins where it ends - give two different values, or set the one",
         ),
         ("friction.static=0:1:1", "friction.static: '1' is not a count - give a whole number from 2 to 2000"),
         (
@@ -295,13 +295,13 @@ def test_ranges():
 def test_a_fault_in_a_range(text, line):
     with pytest.raises(FeederError) as caught:
         bowl.ranges([text])
-    assert caught.value.lines == (f"--vary {line}",)
+    assert caught.value.lines == (f"vary {line}",)
 
 
 def test_one_field_is_varied_once():
     with pytest.raises(FeederError) as caught:
         bowl.ranges(["drive.amplitude=0:1:3", "drive.peak_to_peak=0:1:3"])
-    assert caught.value.lines == ("--vary drive.peak_to_peak: is varied twice - vary two different keys",)
+    assert caught.value.lines == ("vary drive.peak_to_peak: is varied twice - vary two different keys",)
 
 
 def test_the_schema_agrees_with_the_record():

@@ -33,7 +33,7 @@ TAKEN = {  # file: volume [mm3], its relative tolerance, warnings
         1e-5,
         (
             "the largest dimension, 1.18 mm, is small for a fed part: "
-            "if the file is in inches or centimetres, pass --units in",
+            "if the file is in inches or centimetres, give in as its units",
         ),
     ),
     "inverted_lbracket": (1379.2795, 1e-6, ("all facets faced inwards: turned",)),

@@ -52,7 +52,7 @@ def test_every_format_gives_the_same_box(tmp_path, format):
     assert (part.name, part.source, part.units) == ("box", str(path), "mm")
     assert len(part.faces) == 12
     assert len(part.vertices) == 8
-    warned = ("GLB is in m by its specification; read in mm as --units says",)
+    warned = ("GLB is in m by its specification; read in mm as asked for",)
     assert part.warnings == (warned if format == "glb" else ())
 
 
@@ -87,7 +87,7 @@ def test_step_is_read_in_the_unit_it_was_drawn_in():
     assert part.warnings == ()
     given = load(PARTS / "hexbolt_m8x25.step", units="in")
     assert mm3(given) == mm3(part)
-    assert given.warnings == ("STEP files state their unit, here mm: --units in is left out",)
+    assert given.warnings == ("STEP files state their unit, here mm: the units asked for, in, are not used",)
 
 
 def test_step_in_inches(tmp_path):
@@ -149,15 +149,15 @@ def test_units_scale_the_part(tmp_path, unit):
     ("scale", "units", "warning"),
     [
         (1 / 25.4, None, "the largest dimension, 1.18 mm, is small for a fed part: if the file is in inches "
-         "or centimetres, pass --units in"),
+         "or centimetres, give in as its units"),
         (1e-3, None, "the largest dimension, 0.03 mm, is small for a fed part: if the file is in metres, "
-         "pass --units m"),
+         "give m as its units"),
         (1.0, "m", "the largest dimension, 3e+04 mm, is large for a fed part: if the file is in "
-         "millimetres or centimetres, pass --units mm"),
+         "millimetres or centimetres, give mm as its units"),
         (1e6, None, "the largest dimension, 3e+07 mm, is large for a fed part: check its scale"),
         (1 / 25.4, "mm", None),
         (0.01, "mm", "the largest dimension, 0.3 mm, is small for a fed part: if the file is in inches or "
-         "centimetres, pass --units in"),
+         "centimetres, give in as its units"),
     ],
 )  # fmt: skip
 def test_unlikely_size_is_warned_of(tmp_path, scale, units, warning):

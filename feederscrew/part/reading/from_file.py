@@ -109,8 +109,10 @@ def _unit(soup, wanted):
     if stated is None or wanted in (None, stated):
         return wanted or stated or "mm", ()
     if soup.format == "glb":
-        return wanted, (f"GLB is in m by its specification; read in {wanted} as --units says",)
-    return stated, (f"{title} files state their unit, here {stated}: --units {wanted} is left out",)
+        return wanted, (f"GLB is in m by its specification; read in {wanted} as asked for",)
+    return stated, (
+        f"{title} files state their unit, here {stated}: the units asked for, {wanted}, are not used",
+    )
 
 
 def _unlikely(vertices, unit, wanted):
@@ -123,7 +125,7 @@ def _unlikely(vertices, unit, wanted):
     likely = [u for u in UNITS if u != unit and USUAL <= numbers * factor(u, "length") <= high]
     names = " or ".join(UNITS[u] for u in likely)
     kind = "small" if size < low else "large"
-    mend = f"if the file is in {names}, pass --units {likely[0]}" if likely else "check its scale"
+    mend = f"if the file is in {names}, give {likely[0]} as its units" if likely else "check its scale"
     return (f"the largest dimension, {size * 1e3:.3g} mm, is {kind} for a fed part: {mend}",)
 
 
