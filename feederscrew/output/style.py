@@ -13,7 +13,7 @@ DPI = 160
 MARGIN = 0.08  # [in] round the axes
 INK = "#22303c"  # text and axes
 FAINT = "#d5dbe1"  # grids and frames
-ANSWER = "#a9b8c4"  # the recommended answer
+ANSWER = "#8fa5b5"  # the recommended answer
 ACCENT = "#d55e00"  # what a picture is about: the contact polygon, the operating point
 SPARE = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
 

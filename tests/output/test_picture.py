@@ -172,6 +172,28 @@ def test_the_sheet_has_one_panel_a_class_in_one_scale():
     assert style.png(figure) == style.png(picture.aspects(part, found, range(3)))
 
 
+def test_the_recommended_answer_comes_first_with_its_interval():
+    part = box()
+    found = find(part)
+    answer = found.recommended
+    figure = picture.aspects(part, found, range(3), answer)
+    texts = [text.get_text() for axes in figure.axes for text in axes.texts]
+    share, low, high = (100.0 * ends[0] for ends in (answer.p, answer.low, answer.high))
+    assert f"{share:.0f} % ({low:.0f}–{high:.0f})" in texts
+    assert texts.index("recommended") < texts.index("PMI")
+
+
+@pytest.mark.parametrize("share", [0.0, 0.05, 0.5, 1.0])
+def test_the_numbers_of_the_answer_stay_beside_its_bar(share):
+    figure = style.page(picture.PANEL, 40)
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set(xlim=(0, picture.PANEL), ylim=(0, 40))
+    picture._answer(axes, 20.0, share, 0.9 * share, 1.0)
+    label, number = (text.get_window_extent() for text in axes.texts)
+    assert label.x1 < picture.BARS
+    assert picture.BARS + picture.BAR < number.x0 < number.x1 <= picture.RIGHT + 1
+
+
 @pytest.mark.parametrize(
     ("count", "grid"), [(1, (1, 1)), (4, (4, 1)), (5, (3, 2)), (8, (4, 2)), (13, (4, 4))]
 )

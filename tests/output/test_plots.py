@@ -31,6 +31,32 @@ def test_bars_show_percentages_by_aspect_and_rule():
     )
 
 
+ANSWER = [[0.5, 0.3, 0.2], [0.4, 0.1, 0.0], [0.7, 0.4, 0.35]]
+
+
+def test_the_recommended_answer_is_a_bar_with_its_interval_and_comes_first():
+    figure = bars.answered(NAMES, ANSWER, PROFILES, title="nut")
+    axes = figure.axes[0]
+    assert heights(axes) == pytest.approx([50.0, 30.0, 20.0])
+    ends = [segment[:, 1] for segment in axes.collections[0].get_segments()]
+    assert np.array(ends) == pytest.approx(100.0 * np.array(ANSWER[1:]).T)
+    assert [text.get_text() for text in axes.texts] == ["50.0", "30.0", "20.0"]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == [bars.ANSWERED, "PMI", "CSA"]
+
+
+@pytest.mark.parametrize("count", [1, 3, 6, 24])
+def test_the_answered_chart_keeps_everything_on_its_page(count):
+    names = [chr(65 + k) for k in range(count)]
+    share = np.full(count, 0.123)
+    figure = bars.answered(names, [share, 0.5 * share, 2.0 * share], dict.fromkeys(registry.NAMES, share))
+    figure.draw_without_rendering()
+    legend = figure.legends[0].get_window_extent()
+    assert 0.0 <= legend.x0 < legend.x1 <= figure.bbox.width
+    boxes = [text.get_window_extent() for text in figure.axes[0].texts]
+    assert not any(a.overlaps(b) for a, b in pairwise(boxes))
+    assert all(box.y1 <= figure.axes[0].get_window_extent().y1 for box in boxes)
+
+
 def test_bars_of_one_aspect_stand_side_by_side():
     axes = bars.probabilities(["A"], {"pmi": [1.0], "csa": [1.0], "stability": [1.0]}).axes[0]
     left = [bar.get_x() for bar in axes.patches]

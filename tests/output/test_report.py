@@ -258,6 +258,17 @@ def test_a_bowl_too_steep_to_travel_is_told(bracket):
     assert rate.blocks[0].lines[0].startswith("track.climb: is steeper than friction holds")
 
 
+def test_the_views_show_the_recommended_answer_first_with_its_interval(bracket):
+    case = report(bracket, None, ())
+    answer, whole = case.resting.recommended, page(case, chapters=LIGHT[:1])
+    (views,) = [block for block in whole.sections[0].blocks if isinstance(block, blocks.Views)]
+    for row, (_, _, bars) in enumerate(views.captions):
+        assert bars[0].label == "recommended"
+        assert bars[0].interval == (answer.low[row], answer.high[row])
+        assert not any(bar.interval for bar in bars[1:])
+    assert f"({100.0 * answer.low[0]:.0f}–{100.0 * answer.high[0]:.0f})" in html(whole)
+
+
 def test_a_part_with_a_shape_has_the_recommended_answer(bracket):
     case = report(bracket, None, ())
     answer = case.resting.recommended

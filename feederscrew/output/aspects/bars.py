@@ -9,6 +9,8 @@ NARROW, WIDE = 5.2, 12.0  # [in] limits of the figure's width
 GROUP = 1.0  # [in] of paper an aspect gets beside the recommended answer
 THICK, ASIDE = 0.3, 0.22  # [1] of a group: width of the recommended answer's bar, its way to the left
 FIRST, LAST = 0.0, 0.36  # [1] of a group: where the marks of the rules begin and end
+ANSWERED = "recommended, with interval"
+BROAD, FEW, MANY = 6.0, 3, 5  # [in] width from which a legend has many columns, and how many
 UPRIGHT = 0.31  # [in] below this width of a bar its number stands on end
 
 
@@ -63,7 +65,7 @@ def answered(names, answer, profiles, title=""):
     )
     places = np.arange(len(names))
     share, low, high = 100.0 * np.asarray(answer, dtype=float)
-    axes.bar(places - ASIDE, share, THICK, color=style.ANSWER, label="recommended, with interval")
+    axes.bar(places - ASIDE, share, THICK, color=style.ANSWER, label=ANSWERED)
     reach = np.maximum([share - low, high - share], 0.0)
     axes.errorbar(places - ASIDE, share, reach, fmt="none", ecolor=style.INK, elinewidth=1.4, capsize=3)
     _numbers(axes, places - ASIDE, np.maximum(share, high), np.isfinite(share), upright=False, told=share)
@@ -76,8 +78,17 @@ def answered(names, answer, profiles, title=""):
     axes.set_xlim(-0.55, len(names) - 0.45)
     every = [high, *(100.0 * np.asarray(values) for values in profiles.values())]
     axes.set_ylim(0.0, 1.12 * np.nanmax(every))
-    figure.legend(loc="outside lower center", ncols=5, frameon=False, fontsize=7.5)
+    _first_in_legend(figure, axes, MANY if width >= BROAD else FEW)
     return figure
+
+
+def _first_in_legend(figure, axes, columns):
+    """Draw the legend with the bar before the marks: matplotlib lists lines first."""
+    handles, labels = axes.get_legend_handles_labels()
+    first = labels.index(ANSWERED)
+    order = [first, *(place for place in range(len(labels)) if place != first)]
+    listed = [handles[place] for place in order], [labels[place] for place in order]
+    figure.legend(*listed, loc="outside lower center", ncols=columns, frameon=False, fontsize=7.5)
 
 
 def grouped(axes, names, profiles, room=UPRIGHT):
@@ -111,6 +122,7 @@ def grouped(axes, names, profiles, room=UPRIGHT):
 
 def _numbers(axes, x, percent, known, upright, told=None):
     """Write the percentages, or what is ``told`` in their place, over the ends of bars."""
+    look = {} if told is None else {"fontweight": "bold"}
     told = percent if told is None else told
     for at, value, text in zip(x[known], percent[known], told[known]):
         axes.annotate(
@@ -123,4 +135,5 @@ def _numbers(axes, x, percent, known, upright, told=None):
             rotation=90 if upright else 0,
             fontsize=6.5,
             color=style.INK,
+            **look,
         )

@@ -14,7 +14,8 @@ PANEL, ALONE = 400, 720  # [px] width of one panel, and of one that is alone
 LETTER = 22  # [px] width of a letter of the name
 TALLEST = 1.15  # height of a panel over its width
 LINE, SMALL = 24, 17  # [px] of text, and of the rules' smaller text
-BAR, BARS = 144, 126  # [px] length of a bar for a probability of 1, and where it starts
+BAR, BARS = 102, 132  # [px] length of a bar for a probability of 1, and where it starts
+RIGHT = 370  # [px] where the numbers beside the bars end
 HEAD, FOOT = 92, 76  # [px] above and below the panels
 ROOM = 1.1  # of a panel over the largest part in it
 
@@ -135,19 +136,22 @@ def _caption(figure, sheet, panel, found, row, answer):
         axes.text(30, y, label, fontsize=6, color=style.INK, va="center")
         axes.barh(y, BAR, height=5, left=BARS, color=style.FAINT, alpha=0.5)
         axes.barh(y, BAR * values[row], height=5, left=BARS, color=colour)
-        axes.text(
-            345, y, f"{100.0 * values[row]:.1f} %", fontsize=6, color=style.INK, va="center", ha="right"
-        )
+        _number(axes, y, f"{100.0 * values[row]:.1f} %", fontsize=6)
 
 
 def _answer(axes, y, share, low, high):
     """The recommended probability as a broad bar, its interval as a line through it and in words."""
     axes.text(30, y, "recommended", fontsize=6, color=style.INK, va="center")
-    axes.barh(y, BAR, height=11, left=BARS, color=style.FAINT, alpha=0.5)
-    axes.barh(y, BAR * share, height=11, left=BARS, color=style.ANSWER)
-    axes.plot([BARS + BAR * low, BARS + BAR * high], [y, y], color=style.INK, linewidth=1.2)
-    told = f"{100.0 * share:.1f} % ({100.0 * low:.0f}–{100.0 * high:.0f})"
-    axes.text(BARS + BAR + 8, y, told, fontsize=6.5, fontweight="bold", color=style.INK, va="center")
+    axes.barh(y, BAR, height=13, left=BARS, color=style.FAINT, alpha=0.5)
+    axes.barh(y, BAR * share, height=13, left=BARS, color=style.ANSWER)
+    ends = [BARS + BAR * low, BARS + BAR * high]
+    axes.plot(ends, [y, y], "|-", color=style.INK, linewidth=1.2, markersize=4)
+    told = f"{100.0 * share:.0f} % ({100.0 * low:.0f}–{100.0 * high:.0f})"
+    _number(axes, y, told, fontsize=6.5, fontweight="bold")
+
+
+def _number(axes, y, text, **look):
+    axes.text(RIGHT, y, text, color=style.INK, va="center", ha="right", **look)
 
 
 def _head_and_foot(figure, sheet, part, solid):

@@ -202,7 +202,7 @@ def _views(views):
 
 def _view(place, name, kind, bars):
     label = f"Aspect {escape(name)} in three dimensions; arrow keys turn it"
-    shares = "\n".join(_bar(*bar) for bar in bars)
+    shares = "\n".join(_bar(bar) for bar in bars)
     return (
         f'<figure class="view">\n'
         f'<canvas data-pose="{place}" tabindex="0" role="img" aria-label="{label}"></canvas>\n'
@@ -211,10 +211,15 @@ def _view(place, name, kind, bars):
     )
 
 
-def _bar(rule, colour, share):
-    width = f'<b style="width:{100.0 * share:.2f}%;background:{colour}"></b>'
+def _bar(bar):
+    mark, line, told = "bar", "", f"{100.0 * bar.share:.1f} %"
+    if bar.interval:
+        low, high = (100.0 * end for end in bar.interval)
+        line = f'<u style="left:{low:.2f}%;width:{high - low:.2f}%"></u>'
+        mark, told = "bar answer", f"{100.0 * bar.share:.0f} % ({low:.0f}–{high:.0f})"
+    width = f'<b style="width:{100.0 * bar.share:.2f}%;background:{bar.colour}"></b>'
     return (
-        f'<div class="bar"><span>{escape(rule)}</span><i>{width}</i><span>{100.0 * share:.1f} %</span></div>'
+        f'<div class="{mark}"><span>{escape(bar.label)}</span><i>{width}{line}</i><span>{told}</span></div>'
     )
 
 

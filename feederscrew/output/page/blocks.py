@@ -54,14 +54,22 @@ class Picture:
     printed: bool = False
 
 
+@dataclass(frozen=True)
+class ShareBar:
+    """A share as a bar with its number; the answer that has an ``interval`` is drawn larger."""
+
+    label: str
+    colour: str
+    share: float  # [1]
+    interval: tuple[float, ...] = ()  # [1] low and high
+
+
 @dataclass(frozen=True, eq=False)
 class Views:
     """The part on each aspect, to be turned; ``scene`` is JSON for the viewer."""
 
     scene: dict
-    captions: tuple[
-        tuple[str, str, tuple[tuple[str, str, float], ...]], ...
-    ]  # name, kind, (label, colour, share)
+    captions: tuple[tuple[str, str, tuple[ShareBar, ...]], ...]  # name, kind, bars
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,17 @@ from feederscrew.output.columns import MM
 from feederscrew.output.graph import figures
 from feederscrew.output.inertia import tables as inertia_tables
 from feederscrew.output.offers import by_name
-from feederscrew.output.page.blocks import CsvSheet, Notes, Picture, Section, Table, Text, Tile, Views
+from feederscrew.output.page.blocks import (
+    CsvSheet,
+    Notes,
+    Picture,
+    Section,
+    ShareBar,
+    Table,
+    Text,
+    Tile,
+    Views,
+)
 from feederscrew.output.page.numbers import percent
 from feederscrew.output.report.scene import scene
 
@@ -108,15 +118,17 @@ def _picture(offer, **keywords):
 
 def _caption(found, row):
     kind = f"{found.kinds[row]} ×{found.faces[row]}" if found.stable[row] else "not stable"
+    return found.names[row], kind, tuple(_bars(found, row)) if found.stable[row] else ()
+
+
+def _bars(found, row):
+    """The recommended answer with its interval, then every rule."""
     answer = found.recommended
-    bars = [] if answer is None else [("recommended", style.INK, float(answer.p[row]))]
-    if answer is not None and found.stable[row]:
-        kind += f", {percent(answer.p[row])} % ({percent(answer.low[row])} to {percent(answer.high[row])} %)"
-    bars += [
-        (*style.method(rule, place), float(values[row]))
-        for place, (rule, values) in enumerate(found.probabilities.items())
-    ]
-    return found.names[row], kind, tuple(bars) if found.stable[row] else ()
+    if answer is not None:
+        share, low, high = (float(ends[row]) for ends in (answer.p, answer.low, answer.high))
+        yield ShareBar("recommended", style.ANSWER, share, (low, high))
+    for place, (rule, values) in enumerate(found.probabilities.items()):
+        yield ShareBar(*style.method(rule, place), float(values[row]))
 
 
 def _tile(case):
