@@ -11,8 +11,8 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.vary import KeyRange
 from feederscrew.conveying import answer, phase, radius, sensitivity, trace
 from feederscrew.conveying.steady import STATUSES
+from feederscrew.geometry import grids
 from feederscrew.machine import speeds
-from feederscrew.studies import grids
 
 MM, DEG = units.factor("mm", "length"), units.factor("deg", "angle")
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
+from feederscrew.geometry.grids import evaluate, span
 from feederscrew.mechanics import limits
 from feederscrew.mechanics.cycle import Cycle
 from feederscrew.mechanics.floor import balance, cells
@@ -12,7 +13,6 @@ from feederscrew.mechanics.published import floor as published
 from feederscrew.mechanics.standing import standing
 from feederscrew.part.record import Part
 from feederscrew.resting.posture import Posture
-from feederscrew.studies.grids import evaluate, span
 
 TOP_ANGLE, TOP_FRICTION = np.pi / 2.0, 1.0  # [rad], [1] as Figure 5-6
 LEAST_FREQUENCY, TOP_FREQUENCY, TOP_AMPLITUDE = 10.0, 120.0, 0.5e-3  # [Hz], [Hz], [m] as Figure 5-7, or more

@@ -6,8 +6,8 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
+from feederscrew.geometry.grids import Grid, GridAxis, evaluate
 from feederscrew.mechanics import limits
-from feederscrew.studies.grids import Grid, GridAxis, evaluate
 
 STEPS = (1.0, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)  # round numbers within a decade
 PLAIN_TOP = 3.0  # G that every sliding map reaches

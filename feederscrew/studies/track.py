@@ -6,6 +6,7 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Bowl
+from feederscrew.geometry import grids
 from feederscrew.mechanics import limits
 from feederscrew.mechanics.cycle import Cycle
 from feederscrew.mechanics.floor.balance import SLIDE, STICK, TIP
@@ -18,7 +19,6 @@ from feederscrew.mechanics.track.opening import Opening, first_to_open
 from feederscrew.mechanics.wall.headings import Headings
 from feederscrew.part.record import Part
 from feederscrew.resting.posture import Posture
-from feederscrew.studies import grids
 
 USUAL = ("track.bank=0deg:30deg:41", "track.climb=0deg:8deg:41")  # of a map
 

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from feederscrew import bowl
+from feederscrew.geometry import grids
 from feederscrew.mechanics import limits
-from feederscrew.studies import grids
 from feederscrew.studies.slide import sliding_map
 
 DEG = math.pi / 180.0
