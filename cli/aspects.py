@@ -13,13 +13,15 @@ SURFACES = click.Choice(["soft", "medium", "hard"])
 @click.option(
     "--as-published", is_flag=True, help="Count each class once in p_pmi, as Tables 3-8 and 3-9 do."
 )
+@options.launch
 @click.option(
-    "--surface", type=SURFACES, default="hard", show_default=True, help="What it lands on, for p_surface."
+    "--surface", type=SURFACES, help="What it lands on: p_surface is then the answer.  [default: hard]"
 )
 @click.option("--surface-exponent", type=options.Number(-10, 10), help="The same as a number, 0 to about 3.")
 @click.option(
-    "--drop", "drops", type=click.IntRange(1, 10**7), help="Drop it so often; adds p_drop, the answer then."
-)
+    "--drop", "drops", type=click.IntRange(0, 10**7),
+    help="Drop it so often; adds p_drop, the answer then.  [default: where it is needed]",
+)  # fmt: skip
 @click.option("--graph", is_flag=True, help="With -o: what tips into what over which barrier, CSV and PNG.")
 @click.option(
     "--columns",
@@ -29,11 +31,15 @@ SURFACES = click.Choice(["soft", "medium", "hard"])
 )
 @options.pictures
 @options.output
-def aspects(part, columns, unstable, as_published, surface, surface_exponent, drops, graph, pictures, out):
-    """Example: feeder aspects parts/lbracket_30x20x15.stl -o results
+def aspects(part, columns, graph, pictures, out, **chosen):
+    """Example: feeder aspects parts/lbracket_30x20x15.stl --launch feed -o results
 
     List the resting aspects of PART, equal ones joined into classes, with their geometry and
     their probability by every rule, and what it takes to tip them.
+
+    p_recommended is the answer for --launch, which says what is done to the part (place: set down by
+    hand; drop: let fall; flip: spun as a coin; roll: cast or poured; feed: from a hopper into a bowl):
+    a closed form where one is good enough for that launch and part, else a drop test of 2,000 drops.
 
     PART is a mesh (STL, OBJ, PLY, OFF, GLB, 3MF, STEP), a part card (YAML), or - for standard
     input. With -o: aspects.csv, aspects.json, aspects.png, probabilities.png and run.json.
@@ -44,13 +50,10 @@ def aspects(part, columns, unstable, as_published, surface, surface_exponent, dr
 
     _files_wanted(graph, out)
     solid = out.part(part)
-    chosen = {
-        "as_published": as_published,
-        "unstable": unstable,
-        "surface": surface if surface_exponent is None else surface_exponent,
-        "drops": drops,
-    }
-    with out.folder(solid.name, {solid.source: solid.sha256}, conditions(solid) | chosen) as folder:
+    exponent = chosen.pop("surface_exponent")
+    chosen["surface"] = chosen["surface"] if exponent is None else exponent
+    effective = conditions(solid) | chosen | ({"surface": "hard"} if chosen["surface"] is None else {})
+    with out.folder(solid.name, {solid.source: solid.sha256}, effective) as folder:
         study = _study(solid, chosen, out)
         offers.write(folder, files.offers(study, tipping=graph), pictures=pictures)
         out.say(*tables.remarks(study) if folder and pictures else ())
@@ -72,9 +75,11 @@ def _study(solid, chosen, out):
     if waits(solid):
         out.say("Compiling what large hulls need, once on this machine: about ten seconds.")
     out.say(f"Material: {solid.material}")
-    if chosen["drops"]:
-        waiting.drops(out)
     with out.step("aspects"), waiting.bar(out, "drops") as bar:
-        study = aspects_study(solid, **chosen, progress=bar.reach)
+        study = aspects_study(solid, **chosen, progress=bar.reach, before=lambda _: waiting.drops(out))
+    if study.recommended is not None:
+        needed = study.tally is not None and chosen["drops"] is None
+        why = ": no closed form is good enough for this part and launch" if needed else ""
+        out.say(f"Recommended: {study.recommended.rule}{why}")
     out.warn(*study.aspects.warnings)
     return study

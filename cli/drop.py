@@ -8,16 +8,12 @@ from feederscrew_cli import options, waiting
 from feederscrew_cli import plate as plates
 from feederscrew_cli.interrupt import held_back
 
-LAUNCHES = click.Choice(["place", "drop", "flip", "roll", "feed", "tumble"])  # the last: once that of roll
-
 
 def conditions(command):
     """A launch preset and the ranges that replace its own."""
     for option in reversed(
         [
-            click.option(
-                "--launch", type=LAUNCHES, default="feed", show_default=True, help="What was done to it."
-            ),
+            options.launch,
             click.option("--height", "fall", metavar="LENGTH", help='Fall: "20 mm" or "5 mm:50 mm".'),
             click.option("--spin", metavar="RATE", help='How fast it turns: "20 rad/s".'),
             click.option("--speed", metavar="SPEED", help='Along the plane: "0.3 m/s".'),

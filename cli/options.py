@@ -19,6 +19,7 @@ class Place(click.Path):
 
 FILE = Place(allow_dash=True)
 UNITS = click.Choice(["mm", "cm", "m", "in"])
+LAUNCHES = click.Choice(["place", "drop", "flip", "roll", "feed", "tumble"])  # the last: once that of roll
 
 
 class Number(click.FloatRange):
@@ -93,6 +94,13 @@ def rule(command):
         metavar="NAME",
         shell_complete=completion.rules,
         help="Whose probabilities are taken.",
+    )(command)
+
+
+def launch(command):
+    """``--launch``; the command receives its name."""
+    return click.option(
+        "--launch", type=LAUNCHES, default="feed", show_default=True, help="What is done to the part."
     )(command)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.rims import lowest_on
+from feederscrew.resting.rules.recommended import launch_named
 
 DRAWS = 11  # uniform numbers a drop takes: 3 attitude, 3 spin, 2 drift, fall, restitution, friction
 ANY, LEVEL, FLIP = "any", "horizontal", "in the greatest face"  # axes a launch spins about
@@ -47,12 +48,11 @@ PRESETS = {
 """What was done to the part. place: set down by hand. drop: let fall without spin. flip: spun up by hand, as
 a coin, about an axis in the plane of its greatest face. roll: cast or poured over a table, spinning about a
 horizontal axis. feed: out of a hopper into a bowl. docs/resting.md says where each range comes from."""
-FORMER = {"tumble": "roll"}  # what launches were called before
 
 
 def named(name):
     """Return the preset of a name, or of a former one."""
-    return PRESETS[FORMER.get(name, name)]
+    return PRESETS[launch_named(name)]
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ from feederscrew.part.moments import Moments
 from feederscrew.resting.basins.landscape import landscape
 from feederscrew.resting.classes import body_frame, classes
 from feederscrew.resting.faces import EQUAL, stable_faces, unstable_faces
-from feederscrew.resting.rules import published, registry, surface
+from feederscrew.resting.rules import published, recommended, registry, surface
 from feederscrew.resting.rules.quantities import ClassQuantities
 from feederscrew.resting.rules.recommended import Recommended
 from feederscrew.resting.tumbling import by_class, walk
@@ -50,7 +50,7 @@ class Aspects:
         return self.probabilities | answer
 
 
-def find(part, *, as_published=False, unstable=False, exponent=surface.EXPONENTS["hard"]):
+def find(part, *, as_published=False, unstable=False, exponent=None, launch=recommended.LAUNCH):
     """Find the resting aspects of a part, with their probability by every rule.
 
     Parameters
@@ -61,8 +61,11 @@ def find(part, *, as_published=False, unstable=False, exponent=surface.EXPONENTS
         Count each class once in the PMI rule, as the thesis's tables do.
     unstable : bool
         List the facets the part rolls off as well, with no probability.
-    exponent : float [1]
-        Of the surface-weighted closed form; see `surface.EXPONENTS`.
+    exponent : float [1], optional
+        Of the surface-weighted closed form, which is then the recommended one; see `surface.EXPONENTS`.
+    launch : str
+        What is done to the part, one of `recommended.LAUNCHES` or a former name: the recommended closed
+        form depends on it.
 
     Returns
     -------
@@ -72,7 +75,10 @@ def find(part, *, as_published=False, unstable=False, exponent=surface.EXPONENTS
     ------
     MeshError
         If the centre of mass is not strictly inside the convex hull.
+    ValueError
+        If there is no such launch.
     """
+    launch = recommended.launch_named(launch)
     if part.vertices is None:
         return _from_card(part)
     hull = part.hull or convex_hull(part.vertices, part.centre_of_mass, part.source)
@@ -86,7 +92,7 @@ def find(part, *, as_published=False, unstable=False, exponent=surface.EXPONENTS
     order = _ranked(table, chances["csa"], part, moments)
     named = _named(table, chances, order, _said(groups, hull))
     ground = by_class.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
-    return _tumbled(named, ground, part, exponent)
+    return _answered(_tumbled(named, ground, part, exponent), launch, exponent)
 
 
 def waits(part):
@@ -98,7 +104,8 @@ def waits(part):
 
 def _tumbled(named, ground, part, exponent):
     """The record with all that exact tumbling adds to it."""
-    more = by_class.exact(ground, part, named, exponent)
+    hard = surface.EXPONENTS["hard"]
+    more = by_class.exact(ground, part, named, hard if exponent is None else exponent)
     doubts = tuple(f"exact tumbling is doubtful: {doubt}" for doubt in more.doubts)
     return replace(
         named,
@@ -106,10 +113,16 @@ def _tumbled(named, ground, part, exponent):
         barriers=more.barriers,
         barrier_energies=more.barrier_energies,
         tip_angles=more.tip_angles,
-        recommended=more.recommended,
         ground=ground,
         warnings=named.warnings + doubts,
     )
+
+
+def _answered(known, launch, exponent):
+    """The record with the closed form that is recommended for a launch, or for the user's own surface."""
+    own = None if exponent is None else surface.named(exponent)
+    answer = recommended.closed_form(known.probabilities, known.stable, known.kinds, launch, own)
+    return replace(known, recommended=answer)
 
 
 def _about(axis, inertia):

@@ -6,8 +6,9 @@ import shapes
 from drop_bodies import cuboids
 
 from feederscrew.dropping import ensemble
+from feederscrew.dropping.launches import PRESETS
 from feederscrew.resting.aspects import find
-from feederscrew.resting.rules import recommended
+from feederscrew.resting.rules import recommended, registry
 
 BOTH = np.array([True, True])
 
@@ -18,55 +19,78 @@ def tally(faces, energies):
     return ensemble.tally(drops, np.array([0, 1]), 2)
 
 
-def test_the_closed_form_spans_all_answers_and_the_models_error():
-    p, other = np.array([0.7, 0.3]), np.array([0.5, 0.5])
-    found = recommended.closed_form("surface, hard", p, [other], BOTH)
-    assert found.rule == "surface, hard" and found.p.tolist() == p.tolist()
-    assert found.low == pytest.approx([0.5 - recommended.MODEL, 0.3 - recommended.MODEL])
-    assert found.high == pytest.approx([0.7 + recommended.MODEL, 0.5 + recommended.MODEL])
+FLAT = ("flat", "flat")
+
+
+def chances(p, **others):
+    """Probabilities by every rule: p, but for those given."""
+    return dict.fromkeys(registry.NAMES, np.array(p)) | {k: np.array(q) for k, q in others.items()}
+
+
+def test_the_launches_are_those_that_can_be_simulated():
+    assert tuple(PRESETS) == recommended.LAUNCHES
+    assert recommended.launch_named("tumble") == "roll"
+    with pytest.raises(ValueError, match="launch is 'thrown', not one of place, drop"):
+        recommended.launch_named("thrown")
+
+
+def test_the_answer_names_its_rule_and_its_launch():
+    found = recommended.closed_form(chances([0.5, 0.5], csa=[0.7, 0.3]), BOTH, FLAT, "drop")
+    assert (found.rule, found.launch, found.wants_drops) == ("CSA, launch drop", "drop", False)
+    assert found.p.tolist() == [0.7, 0.3]
+
+
+def test_a_rolling_class_and_a_flip_want_a_drop_test():
+    known = chances([0.7, 0.3])
+    assert recommended.closed_form(known, BOTH, FLAT, "flip").wants_drops
+    assert recommended.closed_form(known, BOTH, ("flat", "rolling"), "feed").wants_drops
+    assert not recommended.closed_form(
+        known, np.array([True, False]), ("flat", "rolling"), "feed"
+    ).wants_drops
+
+
+def test_the_users_own_surface_is_the_answer_whatever_the_launch():
+    found = recommended.closed_form(chances([0.7, 0.3], surface=[0.4, 0.6]), BOTH, FLAT, "flip", "soft")
+    assert found.rule == "surface, soft, launch flip" and found.p.tolist() == [0.4, 0.6]
+    assert not found.wants_drops
 
 
 def test_the_ends_stay_shares():
-    found = recommended.closed_form("surface, hard", np.array([0.98, 0.02]), [], BOTH)
-    assert found.high[0] == 1.0 and found.low[1] == 0.0
+    found = recommended.closed_form(chances([0.98, 0.02]), BOTH, FLAT, "feed")
+    assert 0.9 < found.high[0] <= 1.0 and found.low[1] == 0.0
 
 
 def test_what_the_part_rolls_off_is_not_in_doubt():
-    found = recommended.closed_form(
-        "surface, hard", np.array([0.6, 0.4, 0.0]), [], np.array([True, True, False])
-    )
+    stable = np.array([True, True, False])
+    found = recommended.closed_form(chances([0.6, 0.4, 0.0]), stable, (*FLAT, "flat"), "feed")
     assert (found.low[2], found.high[2]) == (0.0, 0.0)
 
 
 def test_a_part_with_one_class_is_certain():
-    found = recommended.closed_form("surface, hard", np.array([1.0]), [], np.array([True]))
-    assert (found.low[0], found.high[0]) == (1.0, 1.0)
+    found = recommended.closed_form(chances([1.0]), np.array([True]), ("rolling",), "feed")
+    assert (found.low[0], found.high[0], found.wants_drops) == (1.0, 1.0, False)
 
 
-def test_a_drop_test_spans_gentle_and_violent_launches():
+def test_a_drop_test_holds_its_sampling():
     faces = [0] * 300 + [1] * 300 + [0, 1] * 150  # gentle ones on 0, middle ones on 1, violent ones on both
     counted = tally(faces, range(900))
-    found = recommended.dropped(counted, BOTH)
-    assert found.rule == f"drop, {recommended.LAUNCH}"
+    found = recommended.dropped(counted, BOTH, "flip")
+    assert (found.rule, found.launch) == ("drop test, launch flip", "flip")
     assert found.p == pytest.approx([0.5, 0.5])
-    assert found.high == pytest.approx([1.0, counted.high[1] + recommended.MODEL])
-    assert found.low == pytest.approx([counted.low[0] - recommended.MODEL, 0.0])
+    assert (found.low < counted.low).all() and (found.high > counted.high).all()
 
 
 @pytest.mark.parametrize(("exponent", "name"), [(2.0, "hard"), (0.0, "soft"), (1.5, "exponent 1.5")])
 def test_the_answer_of_a_part_says_its_rule(exponent, name):
     found = find(shapes.part(shapes.box(4.0, 7.0, 11.0)), exponent=exponent)
     answer = found.recommended
-    assert answer.rule == f"surface, {name}"
+    assert answer.rule == f"surface, {name}, launch feed"
     assert answer.p.tolist() == found.probabilities["surface"].tolist()
-    for rule in ("quasistatic", "hops", "surface"):
-        assert (answer.low <= found.probabilities[rule]).all()
-        assert (answer.high >= found.probabilities[rule]).all()
 
 
 def test_measured_tosses_fall_inside():
     for x, measured, tosses in cuboids():
-        found = find(shapes.part(shapes.box(10.0 * x, 10.0, 10.0)))
+        found = find(shapes.part(shapes.box(10.0 * x, 10.0, 10.0)), launch="roll")
         row = int(np.argmin(np.abs(1e3 * found.heights - 5.0 * x)))
         slack = 2.0 * np.sqrt(measured * (1.0 - measured) / tosses)
         assert found.recommended.low[row] - slack < measured < found.recommended.high[row] + slack

@@ -8,7 +8,7 @@ from feederscrew.errors import FeederError
 from feederscrew.output import offers
 from feederscrew.output.aspects import files, tables
 from feederscrew.part import load
-from feederscrew.studies.aspects import aspects
+from feederscrew.studies.aspects import NEEDED, aspects
 
 CARD = "parts/arc_chute.yaml"
 
@@ -19,6 +19,16 @@ def test_without_a_drop_test_the_closed_form_is_recommended():
     assert study.recommended is study.aspects.recommended
     np.testing.assert_allclose(study.aspects.chances["surface"], study.aspects.chances["quasistatic"])
     assert not study.doubtful
+
+
+def test_a_drop_test_is_made_where_no_closed_form_is_good_enough():
+    begun = []
+    part = shapes.part(shapes.box(10.0, 20.0, 30.0))
+    study = aspects(part, launch="flip", before=begun.append)
+    assert begun == [NEEDED] == [study.tally.counts.sum()]
+    assert study.recommended.rule == "drop test, launch flip"
+    np.testing.assert_array_equal(study.aspects.chances["recommended"], study.tally.p)
+    assert aspects(part, launch="flip", drops=0).tally is None
 
 
 def test_a_surface_may_be_named_or_a_number():

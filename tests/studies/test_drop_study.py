@@ -48,7 +48,7 @@ def test_traces_are_offered_where_there_are_some(box):
 
 def test_a_drop_test_becomes_the_recommended_answer(box):
     study = aspects(box, drops=60)
-    assert study.recommended.rule == "drop, feed"
+    assert study.recommended.rule == "drop test, launch feed"
     np.testing.assert_array_equal(study.recommended.p, study.tally.p)
 
 

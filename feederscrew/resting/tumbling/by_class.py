@@ -12,7 +12,6 @@ from feederscrew.resting.basins import barriers
 from feederscrew.resting.faces import Face
 from feederscrew.resting.rules import published, registry, surface
 from feederscrew.resting.rules.quantities import FaceQuantities
-from feederscrew.resting.rules.recommended import Recommended, closed_form
 from feederscrew.resting.tumbling.exact import tumble
 
 
@@ -35,7 +34,6 @@ class Exact:
     barriers: np.ndarray  # (A,) [m] lowest lift that tips the part; NaN where nothing does
     barrier_energies: np.ndarray  # (A,) [J]
     tip_angles: np.ndarray  # (A,) [rad] of the floor, at which a part that does not slide tips
-    recommended: Recommended  # the surface-weighted rule, with its interval
     doubts: tuple[str, ...]  # self-checks of the tumbling that failed
 
 
@@ -112,15 +110,13 @@ def exact(found, part, aspects, exponent=surface.EXPONENTS["hard"]):
     """
     tips, count = found.tips, len(aspects.names)
     lifts = barriers.barriers(tips)
-    chances = _probabilities(found, aspects.stable, exponent)
     lowest = _lowest(found.rows, np.where(np.isfinite(lifts), lifts, np.nan), count)
     angles = [_tip_angle(face, lift) for face, lift in zip(found.faces, lifts)]
     return Exact(
-        probabilities=chances,
+        probabilities=_probabilities(found, aspects.stable, exponent),
         barriers=check.frozen(lowest),
         barrier_energies=check.frozen(part.mass * g * lowest),
         tip_angles=check.frozen(_lowest(found.rows, np.array(angles), count)),
-        recommended=_recommended(found, aspects.stable, chances, exponent),
         doubts=tips.doubts,
     )
 
@@ -144,17 +140,6 @@ def _by_class(found, weights, stable):
     """(A,) shares of the classes, from the (F,) weights of their faces."""
     sums = np.bincount(found.rows, weights, minlength=len(stable))
     return check.frozen(published.normalised(sums, stable))
-
-
-def _recommended(found, stable, chances, exponent):
-    """The surface-weighted rule, between all its surfaces and the cascade of hops."""
-    tips, radius = found.tips, found.hull.radius
-    others = [
-        _by_class(found, surface.surface_weights(tips.shares, tips.heights, radius, other), stable)
-        for other in surface.EXPONENTS.values()
-    ]
-    rule = f"surface, {surface.named(exponent)}"
-    return closed_form(rule, chances["surface"], [*others, chances["hops"]], stable)
 
 
 def transitions(found):

@@ -247,17 +247,17 @@ def test_a_drop_test_joins_the_columns(run, stl):
 
 def test_one_answer_with_an_interval_comes_last(run, stl):
     told = document(run("aspects", stl, "--format", "json"))
-    assert told["recommended"] == "surface, hard"
+    assert told["recommended"] == "hops, launch feed"
     last = ["p_recommended", "p_recommended_low", "p_recommended_high"]
     for row in told["aspects"]:
         assert list(row)[-3:] == last
-        assert row["p_recommended"] == row["p_surface"]
-        assert 0.0 <= row[last[1]] <= row["p_quasistatic"] <= row[last[2]] <= 1.0
+        assert row["p_recommended"] == row["p_hops"]
+        assert 0.0 <= row[last[1]] <= row["p_hops"] <= row[last[2]] <= 1.0
 
 
 def test_the_answer_is_the_drop_test_where_there_is_one(run, stl):
     told = document(run("aspects", stl, "--drop", "300", "--format", "json", "-q"))
-    assert told["recommended"] == "drop, feed"
+    assert told["recommended"] == "drop test, launch feed"
     for row in told["aspects"]:
         assert row["p_recommended"] == row["p_drop"]
         assert (
@@ -273,7 +273,8 @@ def test_a_card_has_no_answer_of_its_own(run):
 
 def test_the_answer_says_its_surface(run, stl):
     for words, rule in ((("--surface", "soft"), "soft"), (("--surface-exponent", "1.5"), "exponent 1.5")):
-        assert document(run("aspects", stl, "--format", "json", *words))["recommended"] == f"surface, {rule}"
+        told = document(run("aspects", stl, "--format", "json", *words))
+        assert told["recommended"] == f"surface, {rule}, launch feed"
 
 
 def test_the_printed_table_fits_a_terminal_and_leads_with_the_answer(run, stl):
