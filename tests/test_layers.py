@@ -18,7 +18,7 @@ DOORS = {
     "matplotlib": {"feederscrew/output"},
     "embreex": {"feederscrew/output"},
     "ezdxf": {"feederscrew/bowl/drawing.py"},
-    "manifold3d": {"feederscrew/output/tooling/solid.py"},
+    "manifold3d": {"feederscrew/tooling/solid.py"},
     "click": {"cli"},
     "numba": {"feederscrew/geometry", "feederscrew/conveying"},
 }

@@ -15,11 +15,11 @@ import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
-from feederscrew.output.tooling import bowl_file, drawing, figures, files, solid
+from feederscrew.output.tooling import bowl_file, drawing, figures, files, stl
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling import passages
+from feederscrew.tooling import passages, solid
 from feederscrew.tooling.orientations import orientations
 from feederscrew.tooling.strip import bent, strip
 from feederscrew.tooling.verdicts import JUDGES, verdict
@@ -91,10 +91,14 @@ def test_each_cut_read_back_from_the_drawing_gives_the_verdicts_again(lying, dra
 
 
 def test_the_section_to_print_is_one_closed_body(drawn):
-    mesh = trimesh.load(io.BytesIO(solid.stl(drawn)), file_type="stl")
+    mesh = trimesh.load(io.BytesIO(stl.stl(drawn)), file_type="stl")
     assert mesh.is_watertight
     assert mesh.body_count == 1
-    assert solid.stl(drawn) == solid.stl(drawn)
+    assert stl.stl(drawn) == stl.stl(drawn)
+    vertices, faces = solid.solid(drawn)
+    assert len(faces) == len(mesh.faces) and vertices[faces].min() == pytest.approx(
+        1e-3 * mesh.bounds[0].min()
+    )
 
 
 def test_bent_keeps_the_distance_from_the_wall():

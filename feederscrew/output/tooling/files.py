@@ -80,9 +80,9 @@ def _drawn(kind, study):
 
 
 def _printed(study):
-    from feederscrew.output.tooling import solid
+    from feederscrew.output.tooling import stl
 
-    return solid.stl(_strip(study))
+    return stl.stl(_strip(study))
 
 
 def _strip(study):

@@ -1,47 +1,53 @@
-"""The stretch of track to print, plate, wall and gates in millimetres: the one door to manifold3d."""
+"""The stretch of track as a solid: plate, wall and gates without the cuts; the one door to manifold3d."""
 
 import numpy as np
 import shapely
 from shapely import affinity
 
+from feederscrew import check
 from feederscrew.tooling.strip import bent
 from feederscrew.units import factor
 
-MM = factor("mm", "length")
+MM = factor("mm", "length")  # manifold3d works on numbers of that size
 PLATE, WALL = 3e-3, 3e-3  # [m] thickness of track and wall
 ABOVE = 5e-3  # [m] of the wall above the tallest part
 INTO = 1e-3  # [m] by which wall and gates reach into plate and wall, so that they are one body
 SEAM = 2e-5  # [m] of the plate left along the wall
-HEADER = b"feeder tooling: track section in mm"
 
 
-def stl(strip):
-    """Return the track section with its cuts, bent, as a binary STL in millimetres.
+def solid(section):
+    """Return the closed surface of a track section with its cuts, as it lies in the bowl.
 
     Parameters
     ----------
-    strip : TrackSection
+    section : TrackSection
+        From ``strip.strip``.
 
     Returns
     -------
-    bytes
-        Closed; the wall is tangent to X at the origin, the track's surface lies in the plane Z = 0.
+    vertices : (V, 3) float [m]
+        The wall is tangent to X at the origin, the bowl's axis is at (0, radius), the track's surface lies
+        in the plane Z = 0, parts move towards +X.
+    faces : (F, 3) int
+        Corners counter-clockwise seen from outside; vertices and faces in one order, however they were made.
     """
-    return _binary(triangles(strip))
+    corners = triangles(section)
+    vertices, places = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    return check.frozen(vertices), check.frozen(places.reshape(-1, 3))
 
 
-def triangles(strip):
+def triangles(section):
     """Return the triangles (F, 3, 3) [m] of the section, counter-clockwise seen from outside."""
-    radius, length, width = strip.track.radius, strip.length, strip.width
+    radius, length, width = section.track.radius, section.length, section.width
     plate = _bent([[0.0, -WALL], [length, -WALL], [length, width], [0.0, width]], radius)
-    holes = [_bent(_clear(one.hole, width), radius) for one in strip.stations if one.hole is not None]
+    holes = [_bent(_clear(one.hole, width), radius) for one in section.stations if one.hole is not None]
     low, high = INTO, length - INTO
     wall = _bent([[low, INTO - WALL], [high, INTO - WALL], [high, 0.0], [low, 0.0]], radius)
     body = _extruded(plate.difference(shapely.union_all(holes)), -PLATE, 0.0)
-    body += _extruded(wall, -INTO, strip.tallest + ABOVE)
-    for station in strip.stations:
+    body += _extruded(wall, -INTO, section.tallest + ABOVE)
+    for station in section.stations:
         if station.blade is not None:
-            body += _gate(station, strip)
+            body += _gate(station, section)
     mesh = body.to_mesh64()
     corners = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts)]
     return _in_order(corners * MM)
@@ -67,17 +73,17 @@ def _extruded(area, low, high):
     return Manifold.extrude(flat, (high - low) / MM).translate((0.0, 0.0, low / MM))
 
 
-def _gate(station, strip):
+def _gate(station, section):
     """The blade of a gate: a plate across the track without its opening."""
     free = shapely.union_all([shapely.Polygon(ring) for ring in station.openings])
     free = shapely.union_all(
         [affinity.translate(free, *by) for by in ((0, 0), (-2 * INTO, 0), (0, -2 * INTO))]
     )
-    frame = shapely.box(-INTO, -INTO, strip.width - INTO, station.top)
+    frame = shapely.box(-INTO, -INTO, section.width - INTO, station.top)
     thick = np.ptp(station.blade[:, 0])
     blade = _extruded(frame.difference(free), 0.0, thick)
-    angle = station.blade[0, 0] / strip.track.radius
-    return blade.transform(_across(angle, strip.track.radius / MM))
+    angle = station.blade[0, 0] / section.track.radius
+    return blade.transform(_across(angle, section.track.radius / MM))
 
 
 def _across(angle, radius):
@@ -94,15 +100,3 @@ def _in_order(corners):
     rows = np.arange(len(corners))[:, None]
     turned = corners[rows, (first[:, None] + np.arange(3)) % 3]
     return turned[np.lexsort(turned.reshape(len(turned), 9).T[::-1])]
-
-
-def _binary(corners):
-    """The bytes of an STL file [mm]."""
-    corners = (corners / MM).astype("<f4")
-    sides = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    normal = np.cross(*sides).astype(float)
-    size = np.sqrt((normal**2).sum(axis=1, keepdims=True))
-    normal = np.divide(normal, size, out=np.zeros_like(normal), where=size > 0.0)
-    record = np.zeros(len(corners), dtype=[("numbers", "<f4", (4, 3)), ("nothing", "<u2")])
-    record["numbers"][:, 0], record["numbers"][:, 1:] = normal, corners
-    return HEADER.ljust(80) + np.uint32(len(corners)).tobytes() + record.tobytes()
