@@ -27,7 +27,7 @@ def calibrate(part, counts, out):
 
     solid = out.part(part)
     study = calibrate_study(solid, counts)
-    out.warn(*tables.remarks(study))
+    out.warn(*study.measured.warnings(solid), *tables.remarks(study))
     inputs = {each.source: each.sha256 for each in (solid, study.measured)}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
         offers.write(folder, files.offers(study))

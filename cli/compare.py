@@ -1,24 +1,19 @@
 """``feeder compare``."""
 
+from pathlib import Path
+
 import click
 
-from feederscrew_cli import options
+from feederscrew_cli import options, waiting
 
 
-@click.command(short_help="Measured aspects against every rule.")
-@options.part
-@click.option(
-    "--with",
-    "counts",
-    metavar="CSV",
-    required=True,
-    type=options.Place(),
-    help="Counts or fractions by aspect.",
-)
+@click.command(short_help="Measured aspects against every rule, of one part or over many files.")
+@options.parts
+@click.option("--with", "counts", metavar="CSV", type=options.Place(), help="Counts or fractions of PART.")
 @click.option("--as-published", is_flag=True, help="Count each class once in PMI, as Tables 3-8 and 3-9 do.")
 @options.pictures
 @options.output
-def compare(part, counts, as_published, pictures, out):
+def compare(sources, reading, counts, as_published, pictures, out):
     """Example: feeder compare parts/arc_chute.yaml --with counts.csv -o results
 
     How far what was measured on PART is from each rule, and from the rest: the deviation of the
@@ -26,19 +21,51 @@ def compare(part, counts, as_published, pictures, out):
     and the chi-square test where there are counts.
 
     The CSV opens with a line 'aspect,NAME,...'; then comes one line an aspect of the part, by the names
-    that `feeder aspects` gives. Whole numbers are counts; else a column holds fractions that sum to 1
-    or percents that sum to 100. Lines that begin with # are comments. Aspects of which fewer than five
-    are expected are joined for the test. With -o: compare.csv, compare.png and run.json.
+    that `feeder aspects` gives, or one an orientation ('orientation,NAME,...', then 'A@180,...'). Whole
+    numbers are counts; else a column holds fractions that sum to 1 or percents that sum to 100. Lines that
+    begin with # are comments; above the table '# launch: roll', '# part: FILE' and other keys say what was
+    done (docs/counts.md). Aspects of which fewer than five are expected are joined for the test.
+
+    Without --with, every FILE is such a CSV whose head names its part: the total variation of each set
+    from each rule and from the recommended answer for the launch that was used (feeder compare
+    measured/*.csv). With -o: compare.csv, compare.png and run.json.
     """
+    if counts is None:
+        _over_files(sources, as_published, pictures, out)
+    elif len(sources) > 1:
+        raise click.UsageError("--with goes with one PART - leave it out to compare many files")
+    else:
+        _of_part(reading | {"source": sources[0]}, counts, as_published, pictures, out)
+
+
+def _of_part(part, counts, as_published, pictures, out):
+    """One part against one file."""
     from feederscrew.output import columns, offers
     from feederscrew.output.compare import files, tables
     from feederscrew.studies.compare import compare as compare_study
 
     solid = out.part(part)
     study = compare_study(solid, counts, as_published=as_published)
-    out.warn(*study.aspects.warnings)
+    out.warn(*study.warnings)
     inputs = {each.source: each.sha256 for each in (solid, study.measured)}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
         out.say("\n".join(study.measured.notes))
         offers.write(folder, files.offers(study), pictures=pictures)
     out.show(tables.comparisons(study), tables.document(study), hidden=tables.hidden(study))
+
+
+def _over_files(sources, as_published, pictures, out):
+    """Many files, each with its own part."""
+    from feederscrew.output import offers
+    from feederscrew.output.compare import sets
+    from feederscrew.studies.compare import compare_sets
+
+    if any(Path(source).suffix.lower() != ".csv" for source in sources):
+        raise click.UsageError("Missing option '--with' - or name CSV files that say which part they are of")
+    with waiting.bar(out, "files") as bar:
+        study = compare_sets(sources, as_published=as_published, progress=bar.reach)
+    out.warn(*study.warnings)
+    with out.folder("measured", study.inputs) as folder:
+        offers.write(folder, sets.offers(study), pictures=pictures)
+    people = out.format == "table"
+    out.show(sets.printed(study) if people else sets.frame(study), sets.document(study))

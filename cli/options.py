@@ -40,10 +40,28 @@ def optional_part(command):
 
 def part(command, *, required=True):
     """PART and how to read it; the command receives the keywords of ``feederscrew.part.load``."""
-    keywords = ("source", "units", "density", "centre_of_mass", "allow_open")
     return stacked(
-        packed(command, "part", keywords),
+        packed(command, "part", ("source", *READING)),
         click.argument("source", metavar="PART" if required else "[PART]", type=FILE, required=required),
+        *_reading(),
+    )
+
+
+def parts(command):
+    """PART or many FILEs, and how to read the part: ``sources`` and ``reading``."""
+    return stacked(
+        packed(command, "reading", READING),
+        click.argument("sources", metavar="PART|FILE...", nargs=-1, type=FILE, required=True),
+        *_reading(),
+    )
+
+
+READING = ("units", "density", "centre_of_mass", "allow_open")
+
+
+def _reading():
+    """The options of READING."""
+    return (
         click.option("--units", type=UNITS, help="Length unit of the file (STL has none).  [default: mm]"),
         click.option(
             "--density",

@@ -1,4 +1,4 @@
-"""Bring the table of rules in docs/resting.md up to the registry of rules.
+"""Bring docs/resting.md up to date: the table of rules, and that of rules against measured sets.
 
 Example: python docs/rules.py          (writes docs/resting.md)
          python docs/rules.py --check  (status 1, and the differences, if it is out of date)
@@ -9,9 +9,12 @@ import sys
 from pathlib import Path
 
 from feederscrew.resting.rules.registry import RULES
+from feederscrew.studies.compare import compare_sets
 
 PAGE = Path(__file__).resolve().parent / "resting.md"
 BEGIN, END = "<!-- rules -->\n", "<!-- end of rules -->"
+SETS, END_OF_SETS = "<!-- measured sets -->\n", "<!-- end of measured sets -->"
+MEASURED = PAGE.parent.parent / "measured"
 HEAD = "| Column | What it is | When to trust it | Source |\n|---|---|---|---|\n"
 ANSWERS = (
     "| `p_drop` | a simulated drop test | parts thrown or fed onto a hard surface | own: see below |\n"
@@ -21,10 +24,31 @@ ANSWERS = (
 
 
 def filled(text):
-    """Return the page with the table as the registry has it."""
+    """Return the page with its tables as the program has them."""
     rows = [f"| `{rule.column}` | {rule.meaning} | {rule.use} | {rule.reference} |\n" for rule in RULES]
-    before, _, rest = text.partition(BEGIN)
-    return before + BEGIN + HEAD + "".join(rows) + ANSWERS + END + rest.partition(END)[2]
+    text = between(text, BEGIN, HEAD + "".join(rows) + ANSWERS, END)
+    return between(text, SETS, measured_sets(), END_OF_SETS)
+
+
+def between(text, begin, content, end):
+    """Return the text with the content between two marks; a page without them stays as it is."""
+    if begin not in text or end not in text:
+        return text
+    before, _, rest = text.partition(begin)
+    return before + begin + content + end + rest.partition(end)[2]
+
+
+def measured_sets():
+    """Return the mean total variation of each series of measured sets from each answer, as a table."""
+    study = compare_sets(sorted(MEASURED.glob("*.csv")))
+    lines = [["series", "launch", "sets", *(name.lower() for name in study.answers)]]
+    for name, sets in study.series.items():
+        apart = [one.apart for one in sets]
+        known = [[away[answer] for away in apart if answer in away] for answer in study.answers]
+        means = [f"{sum(some) / len(some):.3f}" if some else "" for some in known]
+        lines.append([name, sets[0].measured.head.launch, str(len(sets)), *means])
+    lines.insert(1, ["---"] * len(lines[0]))
+    return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
 
 
 def main():

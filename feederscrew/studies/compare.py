@@ -1,11 +1,18 @@
-"""The study of ``feeder compare``: what was measured on one part against every rule."""
+"""The study of ``feeder compare``: what was measured on one part, or on many, against every rule."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from os import PathLike
+from pathlib import Path
 
+from feederscrew.errors import Faults, FeederError
+from feederscrew.part import load
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.resting.counts import deviation, profiles
+from feederscrew.resting.counts import deviation, profiles, sheet
+from feederscrew.resting.rules.recommended import Recommended
+
+MOST = 500  # files of one comparison
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,6 +29,69 @@ class CompareStudy:
     def profiles(self) -> tuple[profiles.Profile, ...]:
         """What was measured, then the rules."""
         return (*self.measured.profiles, *self.rules)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a user must not overlook, a sentence each."""
+        return (*self.aspects.warnings, *self.measured.warnings(self.part))
+
+
+@dataclass(frozen=True, eq=False)
+class SetStudy:
+    """One measured profile and every answer for its part."""
+
+    part: Part
+    aspects: Aspects
+    measured: profiles.Measured
+    profile: profiles.Profile
+    answers: dict[str, profiles.Profile]  # by rule, and the recommended one where there is one
+    recommended: Recommended | None  # for the launch of the head
+
+    @property
+    def apart(self) -> dict[str, float]:
+        """Total variation [1] of the profile from each answer."""
+        mine = self.profile.fractions / self.profile.fractions.sum()
+        return {
+            name: deviation.total_variation(mine, one.fractions / one.fractions.sum())
+            for name, one in self.answers.items()
+        }
+
+    @property
+    def inside(self) -> int | None:
+        """How many aspects' shares lie in the interval of the recommended answer; None without one."""
+        if self.recommended is None:
+            return None
+        shares = self.profile.fractions
+        return int(((self.recommended.low <= shares) & (shares <= self.recommended.high)).sum())
+
+
+@dataclass(frozen=True, eq=False)
+class SetsStudy:
+    """Many measured profiles, each against every answer for its part."""
+
+    sets: tuple[SetStudy, ...]
+    inputs: dict[str, str]  # sha256 by path
+
+    @property
+    def answers(self) -> tuple[str, ...]:
+        """Every answer that some set has, in their order."""
+        return tuple(dict.fromkeys(name for one in self.sets for name in one.answers))
+
+    @property
+    def series(self) -> dict[str, tuple[SetStudy, ...]]:
+        """The sets by the series they say they belong to, else by their file."""
+        found = {}
+        for one in self.sets:
+            name = one.measured.head.series or Path(one.measured.source).stem
+            found.setdefault(name, []).append(one)
+        return {name: tuple(sets) for name, sets in found.items()}
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a user must not overlook, a sentence each."""
+        told = [line for one in self.sets for line in one.measured.warnings(one.part)]
+        told += [f"{one.part.source}: {line}" for one in self.sets for line in one.aspects.warnings]
+        return tuple(dict.fromkeys(told))
 
 
 def compare(part: Part, counts: str | PathLike[str], *, as_published: bool = False) -> CompareStudy:
@@ -50,3 +120,60 @@ def compare(part: Part, counts: str | PathLike[str], *, as_published: bool = Fal
     measured = profiles.read(counts, found.names, [rule.name for rule in rules])
     compared = deviation.compare((*measured.profiles, *rules))
     return CompareStudy(part, found, measured, rules, tuple(compared))
+
+
+def compare_sets(
+    files: Iterable[str | PathLike[str]], *, as_published: bool = False, progress=None
+) -> SetsStudy:
+    """Study how far many measured sets are from every rule and from the recommended answer.
+
+    Parameters
+    ----------
+    files : iterable of str or Path
+        Files of counts whose head names the part file, from the folder of the counts.
+    as_published : bool
+        As for ``compare``.
+    progress : function, optional
+        Told after every file how many are done of how many.
+
+    Returns
+    -------
+    SetsStudy
+
+    Raises
+    ------
+    FeederError
+        Every fault of the files.
+    """
+    files = [str(path) for path in files]
+    if not 0 < len(files) <= MOST:
+        raise FeederError("files", f"are {len(files)}", f"name 1 to {MOST} files of counts")
+    sets, faults, inputs = [], [], {}
+    for done, path in enumerate(files, 1):
+        try:
+            sets += _sets(path, as_published, inputs)
+        except FeederError as fault:
+            faults += fault.faults if isinstance(fault, Faults) else [fault]
+        if progress:
+            progress(done, len(files))
+    if faults:
+        raise Faults(faults)
+    return SetsStudy(tuple(sets), inputs)
+
+
+def _sets(path, as_published, inputs):
+    """Every profile of one file against every answer."""
+    text, sha256 = sheet.content(path)
+    table = sheet.parse(text, path)
+    if not table.head.part:
+        raise FeederError(path, "does not say which part was counted", "add a line '# part: FILE' at its top")
+    beside = Path(path).parent / table.head.part
+    part = load(str(beside), **table.head.reading)
+    aspects = find(part, as_published=as_published)
+    rules = {rule.name: rule for rule in profiles.of_rules(aspects)}
+    measured = profiles.measured(table, path, sha256, aspects.names, list(rules))
+    inputs |= {path: sha256, str(beside): part.sha256}
+    answer = aspects.recommended
+    if answer is not None:
+        rules["recommended"] = profiles.answer(answer.p[aspects.stable])
+    return [SetStudy(part, aspects, measured, profile, rules, answer) for profile in measured.profiles]

@@ -92,7 +92,7 @@ def test_fractions_are_compared_as_printed():
             [
                 "c.csv:2: x: 'one' is not a number - write digits with a decimal point",
                 "c.csv:3: x: '-2' is negative - give a number from 0",
-                "c.csv:4: x: '1e999' is too large - give a finite number",
+                "c.csv:4: x: '1e999' is too large - give a number up to 1e+12",
             ],
         ),
         (
@@ -163,3 +163,74 @@ def test_of_a_drop_table_the_counts_are_taken():
     text = "aspect,height_mm,count,p_drop,p_drop_low\nA,1.5,30,0.75,0.6\nB,2.5,10,0.25,0.1\n"
     (found,) = profiles.parse(text, "drop.csv", ["B", "A"])
     assert (found.name, found.kind, found.values.tolist()) == ("count", "counts", [10.0, 30.0])
+
+
+ORIENTED = "orientation,tray\nA@0,5\nA@90,3\nB@-180,2\nC@0,0\n"
+
+
+def test_orientations_are_kept_and_summed_up_by_aspect(tmp_path):
+    (tmp_path / "c.csv").write_text(ORIENTED)
+    found = profiles.read(tmp_path / "c.csv", NAMES)
+    assert found.profiles[0].values.tolist() == [8.0, 2.0, 0.0] and found.profiles[0].counted
+    assert [name for name, _ in found.lying] == ["A", "A", "B", "C"]
+    np.testing.assert_allclose([turn for _, turn in found.lying], np.radians([0.0, 90.0, -180.0, 0.0]))
+    assert found.by_orientation[:, 0].tolist() == [5.0, 3.0, 2.0, 0.0]
+
+
+def test_an_orientation_that_is_none():
+    assert fault(ORIENTED.replace("A@90", "A90").replace("B@-180", "F@0")) == [
+        "c.csv:3: 'A90' is not an aspect at a heading - write it as feeder tooling does: A@180",
+        "c.csv:4: the part has no aspect 'F' - known are A, B, C",
+        "c.csv: has no row for aspect B - add it, 0 if never seen",
+    ]
+
+
+HEAD = "# part: a.stl\n# Mesh: sha256:0123ABCDef\n# launch: roll\n# Tossed: never\n# who: me\n"
+
+
+def test_the_head_says_what_was_launched_how(tmp_path):
+    (tmp_path / "c.csv").write_text(HEAD + "# centre of mass: 0,0,1\naspect,x\nA,1\n# when: now\nB,2\nC,3\n")
+    head = profiles.read(tmp_path / "c.csv", NAMES).head
+    assert (head.part, head.mesh, head.launch, head.who) == ("a.stl", "0123abcdef", "roll", "me")
+    assert head.reading == {"centre_of_mass": "0,0,1"} and head.when == ""
+
+
+def test_a_head_that_cannot_be_understood():
+    assert fault("# launch: rol\n# mesh: 12\n# who:\n# part: a\n# part: b\naspect,x\nA,1\nB,2\nC,3\n") == [
+        "c.csv:1: there is no launch 'rol' - did you mean roll?",
+        "c.csv:2: mesh: '12' is not a sha256 - give its hexadecimal digits, at least 8, as in run.json",
+        "c.csv:3: who has no value - give one, or remove the line",
+        "c.csv:5: part is given twice - keep one of them",
+    ]
+
+
+def test_of_many_faults_the_first_are_told():
+    lines = fault("aspect,x\n" + "nobody,1\n" * 9000)
+    assert len(lines) == 21
+    assert lines[0] == "c.csv:2: the part has no aspect 'nobody' - known are A, B, C"
+    assert lines[-2:] == [
+        "c.csv:21: the part has no aspect 'nobody' - known are A, B, C",
+        "c.csv: and 8981 more faults - mend these first",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("aspect,x\n" + "A,1\n" * 10_001, "c.csv: has more than 10000 rows - give one row an aspect"),
+        ("aspect," + ",".join("x" * 300), "c.csv:1: has more than 200 columns - split the file"),
+        ("aspect,x\nA," + "1" * 200_000, "c.csv:2: is not CSV (field larger than field limit (131072)) - "),
+    ],
+)
+def test_a_file_has_limits(text, line):
+    assert fault(text)[0].startswith(line)
+
+
+def test_a_stream_without_an_end_is_refused_after_a_megabyte(tmp_path):
+    line = "/dev/zero: has more than 1 MB - name a CSV file with one row an aspect"
+    with pytest.raises(FeederError) as caught:
+        profiles.read("/dev/zero", NAMES)
+    assert str(caught.value) == line
+    (tmp_path / "c.csv").write_text("aspect,x\n" + "nobody,1\n" * 1_300_000)
+    with pytest.raises(FeederError, match="has more than 1 MB"):
+        profiles.read(tmp_path / "c.csv", NAMES)

@@ -1,23 +1,26 @@
 """Probability profiles: what the rules give, and what somebody measured."""
 
-import csv
-import hashlib
 import re
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from feederscrew import check
-from feederscrew.documents import decoded, hint
+from feederscrew.documents import hint
 from feederscrew.errors import Faults, FeederError
+from feederscrew.resting.counts import sheet
+from feederscrew.resting.counts.head import NO_HEAD, Head
+from feederscrew.resting.counts.sheet import EXAMPLE, Few
 from feederscrew.units import shown
 
 ROUNDING = 0.005  # of the whole: how far printed fractions may miss their sum
 WHOLE = {"counts": 0.0, "fractions": 1.0, "percent": 100.0}  # what a column sums to; counts, to anything
-DROPPED = ["height_mm", "count"]  # columns by which a table of ``feeder drop`` is known
-EXAMPLE = "give a header 'aspect,counts' and one row an aspect"
+DROPPED = ("height_mm", "count")  # columns by which a table of ``feeder drop`` is known
+ASPECT, ORIENTATION = "aspect", "orientation"  # what a file counts by: the name of its first column
 INTEGER = re.compile(r"\+?\d+", re.ASCII)
+FULL_TURN = 360.0  # [deg]
+MOST = 1e12  # of a count
+LETTERS = 40  # of a column's name in a message
 DECIMAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
 
@@ -43,6 +46,16 @@ class Measured:
     source: str  # the path as given
     sha256: str  # of the file's bytes
     profiles: tuple[Profile, ...]
+    head: Head = NO_HEAD
+    lying: tuple[tuple[str, float], ...] = ()  # (M,) aspect and heading [rad] where it counts orientations
+    by_orientation: np.ndarray | None = None  # (M, profiles) as given
+
+    def warnings(self, part):
+        """Say, a sentence each, where the head was not written for a part."""
+        if part.sha256.startswith(self.head.mesh):
+            return ()
+        told = f"{self.source}: counted with another part file: its mesh is {self.head.mesh[:8]}"
+        return (f"{told}, that of {part.source} {part.sha256[:8]}",)
 
     @property
     def notes(self):
@@ -68,6 +81,11 @@ def of_rules(aspects):
     return tuple(_profile(rule.upper(), "rule", p) for rule, p in chosen.items() if np.isfinite(p).all())
 
 
+def answer(shares):
+    """Return the profile of the recommended answer, (A,) [1]."""
+    return _profile("recommended", "rule", shares)
+
+
 def read(path, names, taken=()):
     """Read the profiles of a CSV file: first column the aspect, then one column a profile.
 
@@ -87,30 +105,30 @@ def read(path, names, taken=()):
     Raises
     ------
     FeederError
-        Every fault of the file, each with its line.
+        Faults of the file, each with its line.
     """
-    try:
-        data = Path(path).read_bytes()
-    except FileNotFoundError:
-        raise FeederError(path, "no such file", "check the path") from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise FeederError(path, f"cannot be read ({reason})", "check the path") from None
-    found = parse(decoded(data, str(path)), str(path), names, taken)
-    return Measured(str(path), hashlib.sha256(data).hexdigest(), found)
+    text, sha256 = sheet.content(path)
+    return measured(sheet.parse(text, str(path)), str(path), sha256, names, taken)
 
 
 def parse(text, where, names, taken=()):
-    """Read the profiles of a CSV text.
+    """Read the profiles of a CSV text, as ``measured`` does."""
+    return measured(sheet.parse(text, where), where, "", names, taken).profiles
+
+
+def measured(table, where, sha256, names, taken=()):
+    """Understand the table of a file of counts.
 
     Parameters
     ----------
-    text : str
-        Lines that open with '#' are comments. Whole numbers are counts; fractions sum to 1 and
-        percents to 100, both within ``ROUNDING`` of the whole. Of a table of ``feeder drop`` only the
-        counts are taken.
+    table : Sheet
+        Whole numbers are counts; fractions sum to 1 and percents to 100, both within ``ROUNDING`` of the
+        whole. Of a table of ``feeder drop`` only the counts are taken. Rows are aspects or, where the first
+        column is 'orientation', aspects at a heading in degrees: 'A@180'.
     where : str
         The file, for the fault lines.
+    sha256 : str
+        Of its bytes.
     names : sequence of str
         Of the part's aspects.
     taken : sequence of str
@@ -118,50 +136,54 @@ def parse(text, where, names, taken=()):
 
     Returns
     -------
-    tuple of Profile
+    Measured
+        Orientations summed up by aspect, and as they are.
 
     Raises
     ------
     FeederError
-        Every fault of the text, each with its line.
+        Faults of the text, each with its line; the first of many.
     """
-    lines = [(k, row) for k, row in _rows(text, where) if any(cell for cell in row)]
-    if not lines:
-        raise FeederError(where, "is empty", EXAMPLE)
-    (first, header), *rows = _counted(lines)
-    columns = _columns(f"{where}:{first}", header, taken)
-    faults, cells = [], {}
+    header, rows = _counted(table)
+    line = f"{where}:{table.first}"
+    columns = _columns(line, header, taken)
+    by, faults, cells = header[0].lower(), Few(where), {}
     for number, row in rows:
-        faults += _row_faults(f"{where}:{number}", row, columns, cells, names)
-        cells.setdefault(row[0], (number, row[1:]))
-    if missing := [name for name in names if name not in cells]:
-        faults.append(
-            FeederError(where, f"has no row for aspect {', '.join(missing)}", "add it, 0 if never seen")
-        )
-    if faults:
-        raise Faults(faults)
-    table = zip(*(cells[name][1] for name in names), strict=True)
-    made = [_measured(f"{where}:{first}", name, column) for name, column in zip(columns, table, strict=True)]
+        key = _row(f"{where}:{number}", row, columns, cells, names, by, faults)
+        cells.setdefault(key, (number, row[1:]))
+    if missing := [name for name in names if name not in {key[0] for key in cells if key}]:
+        faults.add(where, f"has no row for aspect {', '.join(missing)}", "add it, 0 if never seen")
+    faults.raise_any()
+    lying = [(name, turn) for name in names for known, turn in cells if known == name]
+    texts = list(zip(*(cells[key][1] for key in lying), strict=True))
+    every = _profiles(line, columns, texts)
+    if by == ASPECT:
+        return Measured(where, sha256, every, table.head)
+    rows = np.array([names.index(name) for name, _ in lying])
+    values = np.column_stack([profile.values for profile in every])
+    together = tuple(_by_aspect(profile, rows, len(names)) for profile in every)
+    return Measured(where, sha256, together, table.head, tuple(lying), check.frozen(values))
+
+
+def _profiles(where, columns, texts):
+    made = [_measured(where, name, column) for name, column in zip(columns, texts, strict=True)]
     if faults := [entry for entry in made if isinstance(entry, FeederError)]:
-        raise Faults(faults)
+        raise Faults(faults[: sheet.TOLD])
     return tuple(made)
 
 
-def _rows(text, where):
-    """Every row that is not a comment, with the number of its line."""
-    lines = [(k, line) for k, line in enumerate(text.splitlines(), 1) if not line.lstrip().startswith("#")]
-    try:
-        return [(k, [cell.strip() for cell in next(csv.reader([line]), [])]) for k, line in lines]
-    except csv.Error as error:
-        raise FeederError(where, f"is not CSV ({error})", EXAMPLE) from None
+def _by_aspect(profile, rows, count):
+    """A profile over orientations, summed up over the headings of each aspect."""
+    values, fractions = (np.bincount(rows, of, minlength=count) for of in (profile.values, profile.fractions))
+    return Profile(profile.name, profile.kind, check.frozen(values), check.frozen(fractions))
 
 
-def _counted(lines):
-    """The lines of a file; of our own ``drop.csv`` its first column and its counts."""
-    header = lines[0][1]
-    if header[1:3] != DROPPED:
-        return lines
-    return [(number, [row[0], *row[2:3]]) for number, row in lines]
+def _counted(table):
+    """Header and rows; of our own ``drop.csv`` its first column and its counts."""
+    if table.header[1:3] != DROPPED:
+        return table.header, table.rows
+    kept = [(number, [row[0], *row[2:3]]) for number, row in table.rows]
+    return (table.header[0], *table.header[2:3]), kept
 
 
 def _columns(where, header, taken):
@@ -169,7 +191,7 @@ def _columns(where, header, taken):
     first, *columns = header
     if ";" in first or "\t" in first:
         raise FeederError(where, "the columns are not separated by commas", "separate them by commas")
-    if first.lower() != "aspect":
+    if first.lower() not in (ASPECT, ORIENTATION):
         raise FeederError(where, f"the first column is {shown(first)}, not aspect", EXAMPLE)
     if not columns:
         raise FeederError(where, "has no profile", EXAMPLE)
@@ -182,30 +204,44 @@ def _columns(where, header, taken):
     return columns
 
 
-def _row_faults(where, row, columns, cells, names):
-    """What is wrong with one row."""
+def _row(where, row, columns, cells, names, by, faults):
+    """Aspect and heading of a row, None where it has none; what is wrong is added to ``faults``."""
     name, values = row[0], row[1:]
-    if name not in names:
-        return [FeederError(where, f"the part has no aspect {shown(name)}", hint(name, list(names)))]
-    if name in cells:
-        what = f"aspect {shown(name)} is already in line {cells[name][0]}"
-        return [FeederError(where, what, "keep one of them")]
-    if len(values) != len(columns):
+    key = (name, None) if by == ASPECT else _oriented(where, name, faults)
+    if key is None:
+        return None
+    if key[0] not in names:
+        faults.add(where, f"the part has no aspect {shown(key[0])}", lambda: hint(key[0], list(names)))
+        return None
+    if key in cells:
+        faults.add(where, f"{by} {shown(name)} is already in line {cells[key][0]}", "keep one of them")
+    elif len(values) != len(columns):
         what = f"has {len(values)} value{'s' * (len(values) != 1)}, the header names {len(columns)}"
-        return [FeederError(where, what, "give one value a column")]
-    found = [_value_fault(where, column, value) for column, value in zip(columns, values, strict=True)]
-    return [fault for fault in found if fault]
+        faults.add(where, what, "give one value a column")
+    else:
+        for column, value in zip(columns, values, strict=True):
+            _judge(where, column, value, faults)
+    return key
 
 
-def _value_fault(where, column, value):
-    what = f"{column}: {shown(value)}"
+def _oriented(where, name, faults):
+    """Aspect and heading [rad] of 'A@180'; None where it is not of that form."""
+    aspect, _, degrees = name.rpartition("@")
+    if not aspect or not DECIMAL.fullmatch(degrees) or not abs(float(degrees)) <= FULL_TURN:
+        what = f"{shown(name)} is not an aspect at a heading"
+        faults.add(where, what, "write it as feeder tooling does: A@180")
+        return None
+    return aspect, float(np.radians(float(degrees)))
+
+
+def _judge(where, column, value, faults):
+    what = f"{column[:LETTERS]}: {shown(value)}"
     if not DECIMAL.fullmatch(value):
-        return FeederError(where, f"{what} is not a number", "write digits with a decimal point")
-    if float(value) < 0.0:
-        return FeederError(where, f"{what} is negative", "give a number from 0")
-    if not np.isfinite(float(value)):
-        return FeederError(where, f"{what} is too large", "give a finite number")
-    return None
+        faults.add(where, f"{what} is not a number", "write digits with a decimal point")
+    elif float(value) < 0.0:
+        faults.add(where, f"{what} is negative", "give a number from 0")
+    elif float(value) > MOST:
+        faults.add(where, f"{what} is too large", f"give a number up to {MOST:g}")
 
 
 def _measured(where, name, texts):

@@ -1,0 +1,93 @@
+"""The head of a file of counts: what was launched how, by whom and when."""
+
+import re
+from dataclasses import dataclass, fields
+
+from feederscrew.documents import hint
+from feederscrew.errors import FeederError
+from feederscrew.units import shown
+
+LINE = re.compile(r"#\s*([A-Za-z_ -]{1,30}?)\s*:\s*(.*)")
+DIGEST = re.compile(r"(?:sha256:)?([0-9a-f]{8,64})", re.IGNORECASE)
+LONGEST = 500  # letters of a value
+LAUNCHES = ("place", "drop", "flip", "roll", "feed")
+
+
+@dataclass(frozen=True)
+class Head:
+    """What the lines '# key: value' of a file of counts say; empty where they are silent."""
+
+    part: str = ""  # path of the part file, from the folder of the counts
+    mesh: str = ""  # sha256 of the part file, or how it begins
+    units: str = ""  # how the part file is read: as --units, --density, --centre-of-mass
+    density: str = ""
+    centre_of_mass: str = ""
+    config: str = ""  # path of the bowl file, from the folder of the counts
+    launch: str = ""  # what was done to the part: a name of ``recommended.LAUNCHES``
+    surface: str = ""  # it landed on
+    series: str = ""  # files of one series are summed up in one line
+    who: str = ""
+    when: str = ""
+    source: str = ""  # where it was published
+    note: str = ""
+
+    @property
+    def reading(self):
+        """What the part file is read with, as keywords of ``feederscrew.part.load``."""
+        told = {name: getattr(self, name) for name in ("units", "density", "centre_of_mass")}
+        return {name: value for name, value in told.items() if value}
+
+
+NO_HEAD = Head()
+KEYS = tuple(field.name for field in fields(Head))
+
+
+def parse(lines, where):
+    """Read the head from the comment lines above a table.
+
+    Parameters
+    ----------
+    lines : sequence of (int, str)
+        Number and text of each line that begins with '#'. What is not '# key: value' with a key of ``Head``
+        is a comment.
+    where : str
+        The file, for the fault lines.
+
+    Returns
+    -------
+    Head
+    faults : list of FeederError
+        A key given twice or without a value, a launch or a digest that is none.
+    """
+    told, faults = {}, []
+    for number, line in lines:
+        match = LINE.match(line.strip())
+        key = match and match[1].lower().replace(" ", "_").replace("-", "_")
+        if key not in KEYS:
+            continue
+        fault = _fault(f"{where}:{number}", key, match[2], told)
+        if fault:
+            faults.append(fault)
+        else:
+            told[key] = _cleaned(key, match[2])
+    return Head(**told), faults
+
+
+def _cleaned(key, value):
+    return DIGEST.fullmatch(value)[1].lower() if key == "mesh" else value
+
+
+def _fault(where, key, value, told):
+    """What is wrong with one line of the head, or None."""
+    if key in told:
+        return FeederError(where, f"{key} is given twice", "keep one of them")
+    if not value:
+        return FeederError(where, f"{key} has no value", "give one, or remove the line")
+    if len(value) > LONGEST:
+        return FeederError(where, f"{key} is longer than {LONGEST} letters", "say it shorter")
+    if key == "launch" and value not in LAUNCHES:
+        return FeederError(where, f"there is no launch {shown(value)}", hint(value, list(LAUNCHES)))
+    if key == "mesh" and not DIGEST.fullmatch(value):
+        what = f"mesh: {shown(value)} is not a sha256"
+        return FeederError(where, what, "give its hexadecimal digits, at least 8, as in run.json")
+    return None

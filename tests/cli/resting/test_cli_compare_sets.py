@@ -1,0 +1,112 @@
+"""``feeder compare FILE...``: many measured sets, each with its own part."""
+
+import csv
+import io
+import json
+import tracemalloc
+
+import numpy as np
+import pytest
+
+from feederscrew.errors import FeederError
+from feederscrew.resting.counts import profiles, sheet
+
+ROUND = 5e-4  # of a printed share
+
+
+@pytest.fixture(scope="module")
+def files(request):
+    return sorted((request.config.rootpath / "measured").glob("*.csv"))
+
+
+def rows(text):
+    return list(csv.DictReader(line for line in text.splitlines() if line[0] != "#"))
+
+
+def test_the_files_hold_what_was_published(files, request):
+    root = request.config.rootpath
+    printed = {row["x_over_y"]: row for row in rows((root / "tests/data/square_cuboids.csv").read_text())}
+    heads = [sheet.parse(sheet.content(path)[0], str(path)) for path in files]
+    cuboids = [table for table in heads if table.head.series == "square cuboids"]
+    assert len(cuboids) == len(printed) == 8
+    for table in cuboids:
+        ratio = table.head.note.split()[2]
+        counts = sorted(int(row[1]) for _, row in table.rows)
+        share, tosses = float(printed[ratio]["p_square"]), int(printed[ratio]["n"])
+        assert sum(counts) == tosses
+        assert any(abs(count / tosses - share) <= 0.5 / tosses for count in counts)
+
+
+def test_each_set_is_compared_with_every_answer(run, files, tmp_path):
+    done = run("compare", *files, "--format", "csv", "-o", "out")
+    assert done.exit_code == 0, done.output
+    found = {row["set"]: row for row in csv.DictReader(io.StringIO(done.stdout))}
+    assert "Warning" not in done.stderr  # every mesh is the one that was counted
+    coin, mean = found["coin"], found["square cuboids, mean of 8"]
+    assert coin["launch"] == "flip" and found["arc_chute, MDBT_80"]["recommended"] == ""
+    assert float(found["arc_chute, MDBT_80"]["PMI"]) == pytest.approx(0.405, abs=ROUND)
+    assert mean["parts"] == "5197"
+    single = [float(row["CSA"]) for name, row in found.items() if name.startswith("cuboid_")]
+    assert float(mean["CSA"]) == pytest.approx(np.mean(single), abs=1e-5)
+    assert (tmp_path / "out/measured/compare.csv").read_text() == done.stdout
+    assert (tmp_path / "out/measured/compare.png").stat().st_size > 20_000
+    record = json.loads((tmp_path / "out/measured/run.json").read_text())["compare"]
+    assert len(record["inputs"]) == 2 * len(files)
+
+
+def test_for_people_and_for_programs(run, files):
+    some = [path for path in files if path.stem in ("coin", "t_shape")]
+    table = run("compare", *some).stdout.splitlines()
+    assert table[0].split()[:4] == ["set", "launch", "parts", "inside"] and len(table) == 3
+    told = json.loads(run("compare", *some, "--format", "json").stdout)
+    coin = told["sets"][0]
+    assert coin["launch"] == "flip" and coin["fractions"] == [0.868, 0.132]
+    assert sum(coin["answers"]["recommended"]) == pytest.approx(1.0, abs=1e-9)
+    assert coin["recommended"]["low"][1] <= coin["answers"]["recommended"][1]
+
+
+def test_another_mesh_than_the_one_counted_is_a_warning(run, files, tmp_path):
+    (coin,) = [path for path in files if path.stem == "coin"]
+    text = coin.read_text().replace("# part: ", f"# part: {coin.parent}/").replace("# mesh: 0c", "# mesh: ff")
+    (tmp_path / "c.csv").write_text(text)
+    done = run("compare", "c.csv")
+    assert done.exit_code == 0
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("Warning: c.csv: counted with another part file: its mesh is ffa14317, that of ")
+    old = run("compare", coin.parent / "coin.stl", "--with", "c.csv")
+    assert line in old.stderr.splitlines() and old.exit_code == 0
+    counts = coin.parent / "cuboid_047.csv"
+    told = run("calibrate", coin.parent / "cuboid_075.stl", "--with", counts).stderr
+    assert f"Warning: {counts}: counted with another part file" in told
+
+
+def test_a_file_without_a_part_and_one_with_a_fault(run, tmp_path):
+    (tmp_path / "a.csv").write_text("aspect,x\nA,1\n")
+    (tmp_path / "b.csv").write_text("# part: none.stl\naspect,x\nA,1\n")
+    done = run("compare", "a.csv", "b.csv")
+    assert done.exit_code == 1
+    assert done.stderr.splitlines() == [
+        "Error: a.csv: does not say which part was counted - add a line '# part: FILE' at its top",
+        "Error: none.stl: no such file - check the path",
+    ]
+
+
+def test_with_goes_with_one_part(run, files):
+    done = run("compare", files[0], files[1], "--with", files[2])
+    assert done.exit_code == 2 and "--with goes with one PART" in done.stderr
+
+
+@pytest.mark.parametrize("counts", ["/dev/zero", "faulty.csv"])
+def test_floods_are_refused_early(run, request, tmp_path, counts):
+    """Both took gigabytes once."""
+    part = request.config.rootpath / "parts/arc_chute.yaml"
+    (tmp_path / "faulty.csv").write_text("aspect,x\n" + "nobody,1\n" * 1_300_000)
+    done = run("compare", part, "--with", counts)
+    line = f"{counts}: has more than 1 MB - name a CSV file with one row an aspect"
+    assert (done.exit_code, done.stderr) == (1, f"Error: {line}\n")
+    tracemalloc.start()
+    with pytest.raises(FeederError, match=line):
+        profiles.read(counts, ["1"])
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 10e6
