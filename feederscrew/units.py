@@ -5,6 +5,7 @@ import re
 
 FOOT, INCH, POUND = 0.3048, 0.0254, 0.45359237  # [m, m, kg] exact by definition
 MINUTE, HOUR = 60.0, 3600.0  # [s]
+GRAVITY = 9.80665  # [m/s2] standard: 3rd General Conference on Weights and Measures, 1901
 DEGREE, TURN = math.pi / 180.0, 2.0 * math.pi  # [rad]
 
 UNITS = {  # dimension: {unit: SI units in it}, the unit we suggest first

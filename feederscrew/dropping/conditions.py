@@ -1,11 +1,10 @@
 """Launch conditions as people give them, '20 mm:50 mm', and back."""
 
 import numpy as np
-from scipy.constants import g
 
 from feederscrew.dropping.launches import named
 from feederscrew.errors import ArgumentError
-from feederscrew.units import QuantityError, factor, quantity, shown
+from feederscrew.units import GRAVITY, QuantityError, factor, quantity, shown
 
 KEYS = {  # argument: dimension, what it is divided by, from the part's length and gravity; lowest, highest
     "fall": ("length", lambda length, gravity: length, 0.0, 1000.0),
@@ -18,7 +17,7 @@ NARROWEST, WIDEST = 1e-4, 0.5  # [1] half-widths of an interval that drops may g
 SHOWN = {"length": "mm", "velocity": "mm/s", "angular velocity": "rad/s", "number": ""}  # units of limits
 
 
-def launch_of(preset, length, texts, gravity=g):
+def launch_of(preset, length, texts, gravity=GRAVITY):
     """A preset with the user's own ranges in it.
 
     Parameters
@@ -46,7 +45,7 @@ def launch_of(preset, length, texts, gravity=g):
     return named(preset).but(**ranges)
 
 
-def described(launch, length, gravity=g):
+def described(launch, length, gravity=GRAVITY):
     """Name and ranges of a launch in the units of the shop, for documents.
 
     Parameters

@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.constants import g
 from scipy.spatial.transform import Rotation
 
 from feederscrew import check
 from feederscrew.dropping.kernel import body, drop
 from feederscrew.dropping.rims import lowest_on
 from feederscrew.geometry import vectors
+from feederscrew.units import GRAVITY
 
 EVERY = 0.05  # sqrt(L / g) from one row that is kept to the next, at least
 MOST = 1000  # such rows; a longer drop has them further apart
@@ -80,7 +80,7 @@ def follow(shape, length, principal, starts, drops, rows):
     it ends where the drop was counted.
     """
     to_body = Rotation.from_matrix(principal.T)
-    second = np.sqrt(length / g)
+    second = np.sqrt(length / GRAVITY)
     traces = []
     for k, state in enumerate(starts.states):
         face, limits = int(drops.faces[k]), (starts.restitutions[k], starts.frictions[k])

@@ -1,10 +1,10 @@
 """The tipping graph as a table."""
 
 import numpy as np
-from scipy.constants import g
 
 from feederscrew.output import tables
 from feederscrew.output.columns import MM, UJ
+from feederscrew.units import GRAVITY
 
 
 def transitions(study):
@@ -27,7 +27,7 @@ def transitions(study):
             "from": [names[way.start] for way in ways],
             "to": [names[way.end] for way in ways],
             "barrier_mm": lifts / MM,
-            "barrier_uJ": study.part.mass * g * lifts / UJ,
+            "barrier_uJ": study.part.mass * GRAVITY * lifts / UJ,
             "axis_x": axes[:, 0],
             "axis_y": axes[:, 1],
             "axis_z": axes[:, 2],

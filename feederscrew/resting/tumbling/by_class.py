@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.constants import g
 
 from feederscrew import check
 from feederscrew.errors import MeshError
@@ -13,6 +12,7 @@ from feederscrew.resting.faces import Face
 from feederscrew.resting.rules import published, registry, surface
 from feederscrew.resting.rules.quantities import FaceQuantities
 from feederscrew.resting.tumbling.exact import tumble
+from feederscrew.units import GRAVITY
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +115,7 @@ def exact(found, part, aspects, exponent=surface.EXPONENTS["hard"]):
     return Exact(
         probabilities=_probabilities(found, aspects.stable, exponent),
         barriers=check.frozen(lowest),
-        barrier_energies=check.frozen(part.mass * g * lowest),
+        barrier_energies=check.frozen(part.mass * GRAVITY * lowest),
         tip_angles=check.frozen(_lowest(found.rows, np.array(angles), count)),
         doubts=tips.doubts,
     )
