@@ -78,7 +78,7 @@ def method(name, place=0):
 def png(figure):
     """Return the figure as PNG bytes, without a time or a version in them."""
     buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=DPI, metadata={"Software": None})
+    figure.canvas.print_png(buffer, metadata={"Software": None})  # savefig would draw it twice
     return buffer.getvalue()
 
 

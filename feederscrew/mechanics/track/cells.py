@@ -9,6 +9,7 @@ from feederscrew.errors import FeederError
 from feederscrew.mechanics.floor.balance import HOP, STATES
 from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import card_seat, seat
+from feederscrew.mechanics.wall import support
 from feederscrew.mechanics.wall.headings import headings, laid, on_track
 
 REGIMES = (*STATES, "leaves the wall", "does not fit")  # a code is a place in this list
@@ -96,7 +97,10 @@ def _seat(posture, bowl, heading, there, known):
     try:
         if there.radius not in known:
             known[there.radius] = headings(posture, there)
-        found = on_track(known[there.radius], posture, there)
+        one = known[there.radius]
+        if (there.radius, there.width) not in known:
+            known[there.radius, there.width] = support.reaches(one, posture, there)
+        found = on_track(one, posture, there, known[there.radius, there.width])
         row = laid(found, heading)
     except FeederError:
         return None, None

@@ -10,16 +10,13 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.errors import FeederError
-from feederscrew.geometry import vectors
-from feederscrew.geometry.polygons import cross, sides, turned
-from feederscrew.mechanics.wall import sameness
+from feederscrew.geometry.polygons import sides, turned
+from feederscrew.mechanics.wall import sameness, support
 from feederscrew.mechanics.wall.outline import rests
 
 ALIKE = 1e-5  # of the outline's size: outlines that differ by less are the same
 NO_TURN = 1e-5  # [rad] files in single precision turn a part by a hundredth of it
 TIE = 1e-4  # shares that differ by less of themselves are equal but for rounding
-NOISE = 1e-12  # [m] places along the track nearer than this are one
-SAME = 1e-6  # of the outline's size: touching corners nearer than this are the same corner
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +97,7 @@ def headings(posture, track):
     return on_track(geometry, posture, track)
 
 
-def on_track(found, posture, track):
+def on_track(found, posture, track, reaches=None):
     """The same headings on a track of other width, climb or bank, but of the same radius.
 
     Parameters
@@ -108,14 +105,16 @@ def on_track(found, posture, track):
     found : Headings
     posture : Posture
     track : Track
+    reaches : list of (K, 2) float [m], optional
+        What `support.reaches` gives for that width, where it is known already.
 
     Returns
     -------
     Headings
         With its own overhangs and falls.
     """
-    where = zip(found.headings, found.distances)
-    falls = np.array([_falls(posture, angle, distance, track) for angle, distance in where])
+    reaches = support.reaches(found, posture, track) if reaches is None else reaches
+    falls = np.array([support.falls(posture, reach, track) for reach in reaches])
     overhangs = np.maximum(found.widths - track.width, 0.0)
     return replace(found, overhangs=check.frozen(overhangs), falls_off=check.frozen(falls))
 
@@ -229,55 +228,6 @@ def _width(shape, to_wall, radius):
     part = np.clip(((centre - shape) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
     nearest = shape + part[:, None] * along - centre
     return float(radius - np.hypot(*nearest.T).min())
-
-
-def _falls(posture, heading, to_wall, track):
-    """Whether the weight's line meets the surface beyond what the track supports, on the free edge's side.
-
-    Towards the wall the part leans on it, and ahead or behind it tips without leaving the track.
-    """
-    supported = _on_track(turned(posture.contact, heading), to_wall, track)
-    if len(supported) == 0:
-        return True
-    slope = np.array([np.sin(track.climb), np.cos(track.climb) * np.sin(track.bank)])
-    ahead, inward = -posture.height * slope / (np.cos(track.climb) * np.cos(track.bank))
-    size = np.ptp(posture.outline, axis=0).max()
-    return bool(inward > _inner_side(supported, ahead) + SAME * size)
-
-
-def _inner_side(points, ahead):
-    """How far from the wall the hull of points reaches at a place along the track; beyond it, at most."""
-    places = np.column_stack([NOISE * np.round(points[:, 0] / NOISE), points[:, 1]])
-    chain, most = [], points[:, 1].max()
-    for point in places[np.lexsort((-places[:, 1], places[:, 0]))]:
-        if chain and point[0] == chain[-1][0]:
-            continue  # nearer to the wall than the one before
-        while len(chain) > 1 and cross(chain[-1] - chain[-2], point - chain[-1]) >= 0.0:
-            chain.pop()
-        chain.append(point)
-    return np.interp(ahead, *np.array(chain).T, left=most, right=most)
-
-
-def _on_track(contact, to_wall, track):
-    """Corners of the part of a contact polygon that lies over the track."""
-    edge = track.radius - track.width
-    if edge <= 0.0:
-        return contact
-    centre = np.array([0.0, track.radius - to_wall])
-    kept = [contact[np.hypot(*(contact - centre).T) >= edge]]
-    for start, along in zip(contact, sides(contact)):
-        kept.append(start + _crossings(start - centre, along, edge)[:, None] * along)
-    return np.concatenate(kept)
-
-
-def _crossings(start, along, radius):
-    """Where a side crosses a circle about the origin, as shares of the side."""
-    a, b, c = vectors.dot(along, along), vectors.dot(start, along), vectors.dot(start, start) - radius**2
-    root = b * b - a * c
-    if root <= 0.0:
-        return np.empty(0)
-    shares = (-b + np.sqrt(root) * np.array([-1.0, 1.0])) / a
-    return shares[(shares >= 0.0) & (shares <= 1.0)]
 
 
 def _partners(shapes, image, astray):

@@ -1,0 +1,87 @@
+"""Whether the track holds the weight of a part on the side of its free edge."""
+
+import numpy as np
+
+from feederscrew.geometry import vectors
+from feederscrew.geometry.polygons import cross, sides, turned
+
+NOISE = 1e-12  # [m] places along the track nearer than this are one
+SAME = 1e-6  # of the outline's size: nearer than this to the edge is on it
+
+
+def reaches(found, posture, track):
+    """How far from the wall a track of some radius and width supports a part in each of its headings.
+
+    Parameters
+    ----------
+    found : Headings
+    posture : Posture
+    track : Track
+
+    Returns
+    -------
+    list of (K, 2) float [m]
+        Places along the track and how far it reaches there, as seen from the centre of mass; none where it
+        supports nothing.
+    """
+    where = zip(found.headings, found.distances)
+    return [_reach(_on_track(turned(posture.contact, angle), wall, track)) for angle, wall in where]
+
+
+def falls(posture, reach, track):
+    """Whether the weight's line meets the surface beyond what the track supports, on the free edge's side.
+
+    Parameters
+    ----------
+    posture : Posture
+    reach : (K, 2) float [m]
+        Of one heading, from `reaches`.
+    track : Track
+
+    Returns
+    -------
+    bool
+        Towards the wall the part leans on it, and ahead or behind it tips without leaving the track.
+    """
+    if len(reach) == 0:
+        return True
+    slope = np.array([np.sin(track.climb), np.cos(track.climb) * np.sin(track.bank)])
+    ahead, inward = -posture.height * slope / (np.cos(track.climb) * np.cos(track.bank))
+    size = np.ptp(posture.outline, axis=0).max()
+    most = reach[:, 1].max()
+    return bool(inward > np.interp(ahead, *reach.T, left=most, right=most) + SAME * size)
+
+
+def _reach(points):
+    """(K, 2) the side of the hull of points that is away from the wall, along the track."""
+    places = np.column_stack([NOISE * np.round(points[:, 0] / NOISE), points[:, 1]])
+    chain = []
+    for point in places[np.lexsort((-places[:, 1], places[:, 0]))]:
+        if chain and point[0] == chain[-1][0]:
+            continue  # nearer to the wall than the one before
+        while len(chain) > 1 and cross(chain[-1] - chain[-2], point - chain[-1]) >= 0.0:
+            chain.pop()
+        chain.append(point)
+    return np.array(chain).reshape(-1, 2)
+
+
+def _on_track(contact, to_wall, track):
+    """Corners of the part of a contact polygon that lies over the track."""
+    edge = track.radius - track.width
+    if edge <= 0.0:
+        return contact
+    centre = np.array([0.0, track.radius - to_wall])
+    kept = [contact[np.hypot(*(contact - centre).T) >= edge]]
+    for start, along in zip(contact, sides(contact)):
+        kept.append(start + _crossings(start - centre, along, edge)[:, None] * along)
+    return np.concatenate(kept)
+
+
+def _crossings(start, along, radius):
+    """Where a side crosses a circle about the origin, as shares of the side."""
+    a, b, c = vectors.dot(along, along), vectors.dot(start, along), vectors.dot(start, start) - radius**2
+    root = b * b - a * c
+    if root <= 0.0:
+        return np.empty(0)
+    shares = (-b + np.sqrt(root) * np.array([-1.0, 1.0])) / a
+    return shares[(shares >= 0.0) & (shares <= 1.0)]
