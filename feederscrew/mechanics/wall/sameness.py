@@ -78,12 +78,11 @@ def _supports(corners, turn):
     """(2, N) greatest extent of corners, turned about the vertical, along directions and their images."""
     there = directions()
     both = np.stack([there, there * [-1.0, 1.0, 1.0]])
-    back = _turned_back(both, turn)
-    return np.array([[_greatest(corners, side) for side in half] for half in back])
-
-
-def _greatest(corners, direction):
-    return (corners[:, 0] * direction[0] + corners[:, 1] * direction[1] + corners[:, 2] * direction[2]).max()
+    x, y, z = np.moveaxis(_turned_back(both, turn), -1, 0)
+    greatest = np.full(x.shape, -np.inf)
+    for corner in corners:
+        np.maximum(greatest, corner[0] * x + corner[1] * y + corner[2] * z, out=greatest)
+    return greatest
 
 
 def _moments_of(solid, axes, turn):

@@ -14,6 +14,7 @@ RATIO = "acceleration ratio G = A ω² / g [1]"
 FRICTION = "limiting friction μ [1]"
 HIGHEST = 2.0  # [1] friction at which pictures are cut: hardly any pair has more
 LEVELS = (0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 4.0)  # [1] of the contour lines
+NEAR = 0.1  # [1] of a level: the bowl's own friction, nearer than that, takes its place
 REGIMES = {  # colour and label; what a designer wants is the strongest
     "ride": ("#eef2f5", "rides"),
     "forward": ("#79bfa4", "slips forward only"),
@@ -78,11 +79,7 @@ def contours(slide):
     Figure
     """
     figure, axes = _map_axes(slide, "Limiting friction")
-    shades = _shades(len(LEVELS))
-    for place, level in enumerate(LEVELS):
-        if abs(level - slide.friction) > 0.1 * level:
-            _level(axes, slide, level, (-22, -40)[place % 2], color=shades[place])
-    _level(axes, slide, slide.friction, 60, color=style.ACCENT, width=1.8, text="this bowl's μ = %g")
+    _levels(axes, slide)
     _hop_region(axes, slide, slide.level_hop)
     _own_point(axes, np.degrees(slide.alpha_minus_theta), slide.ratio, f"this bowl, G = {slide.ratio:.3g}")
     return figure
@@ -222,16 +219,25 @@ def _legend(figure, slide, names):
         )
 
 
-def _level(axes, slide, level, degrees, *, color, width=1.1, text="μ = %g"):
-    """One contour line with its value written at an angle; nothing where the map does not reach it."""
+def _levels(axes, slide):
+    """Contour lines, each with its value written at an angle: those that the map reaches."""
     friction = slide.grid.values["mu_limit"]
-    if not np.nanmin(friction) < level < np.nanmax(friction):
-        return
     x, y = slide.grid.first.shown, slide.grid.second.values
-    lines = axes.contour(x, y, friction.T, [level], colors=[color], linewidths=width)
-    place = degrees, slide.level_line(level, np.radians(degrees))
-    if place[1] < y[-1]:
-        axes.clabel(lines, fmt=text, fontsize=7, manual=[place])
+    lines = {
+        level: (shade, 1.1, (-22, -40)[place % 2], f"μ = {level:g}")
+        for place, (level, shade) in enumerate(zip(LEVELS, _shades(len(LEVELS))))
+        if abs(level - slide.friction) > NEAR * level
+    }
+    lines[slide.friction] = (style.ACCENT, 1.8, 60, f"this bowl's μ = {slide.friction:g}")
+    levels = [level for level in sorted(lines) if np.nanmin(friction) < level < np.nanmax(friction)]
+    if not levels:
+        return
+    colours, widths, degrees, texts = zip(*(lines[level] for level in levels))
+    drawn = axes.contour(x, y, friction.T, levels, colors=colours, linewidths=widths)
+    places = [(at, slide.level_line(level, np.radians(at))) for level, at in zip(levels, degrees)]
+    named = [place for place in places if place[1] < y[-1]]
+    if named:
+        axes.clabel(drawn, fmt=dict(zip(levels, texts)), fontsize=7, manual=named)
 
 
 def _dress_3d(axes, slide, top):

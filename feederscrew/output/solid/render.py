@@ -10,6 +10,7 @@ from feederscrew.output.solid import smoothing
 
 AWAY = 4.0  # sizes from the centre of mass to where rays start
 MISSED = -1
+SINGLE = np.float32  # what the caster keeps, and more than a picture shows
 
 
 class Rays:
@@ -30,9 +31,11 @@ class Rays:
         self.size = float(np.linalg.norm(points, axis=1).max())
         self.points = points / self.size
         self.faces = np.asarray(faces)
-        self.corner_normals = smoothing.corner_normals(self.points, self.faces)
+        smooth = smoothing.corner_normals(self.points, self.faces)
+        self.corner_normals = None if smooth is None else smooth.astype(SINGLE)
+        self._single = self.points.astype(SINGLE)
         self._scene = EmbreeScene()
-        TriangleMesh(self._scene, self.points.astype(np.float32), self.faces.astype(np.int32))
+        TriangleMesh(self._scene, self._single, self.faces.astype(np.int32))
 
     def hits(self, origins, direction):
         """Return what parallel rays meet first.
@@ -51,17 +54,17 @@ class Rays:
         normals : (N, 3) float
             Outward unit normals of the surface there, smooth over curved sides; zero where nothing is met.
         """
-        origins = np.ascontiguousarray(origins, dtype=np.float32)
-        directions = np.broadcast_to(np.asarray(direction, dtype=np.float32), origins.shape)
+        origins = np.ascontiguousarray(origins, dtype=SINGLE)
+        directions = np.broadcast_to(np.asarray(direction, dtype=SINGLE), origins.shape)
         found = self._scene.run(origins, np.ascontiguousarray(directions), output=True)
         met = found["primID"] != MISSED
-        normals = np.zeros(origins.shape)
+        normals = np.zeros(origins.shape, dtype=SINGLE)
         normals[met] = self._normals(found["primID"][met], found["u"][met], found["v"][met])
-        return np.where(met, found["tfar"], np.inf).astype(float), normals
+        return np.where(met, found["tfar"], SINGLE(np.inf)), normals
 
     def _normals(self, triangle, u, v):
         if self.corner_normals is None:
-            a, b, c = np.moveaxis(self.points[self.faces[triangle]], 1, 0)
+            a, b, c = np.moveaxis(self._single[self.faces[triangle]], 1, 0)
             normals = np.cross(b - a, c - a)
         else:
             weights = np.column_stack([1.0 - u - v, u, v])
@@ -83,8 +86,9 @@ class Camera:
 
     def origins(self, across, up):
         """Return the ray starts (rows, columns, 3) for a grid of image positions, in sizes of the solid."""
-        u, v = np.meshgrid(across, up)
-        return u[..., None] * self.right + v[..., None] * self.up + AWAY * self.back
+        u, v = np.meshgrid(np.asarray(across, SINGLE), np.asarray(up, SINGLE))
+        right, above, back = (axis.astype(SINGLE) for axis in (self.right, self.up, self.back))
+        return u[..., None] * right + v[..., None] * above + SINGLE(AWAY) * back
 
     def cast(self, solid, across, up):
         """Return depths behind the ray starts (rows, columns) and normals (rows, columns, 3) over a grid."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import binary_dilation, gaussian_filter, map_coordinates
 
-from feederscrew.output.solid.render import AWAY, Camera
+from feederscrew.output.solid.render import AWAY, SINGLE, Camera
 
 SAMPLES = 3  # rays a pixel, each way
 PAPER = np.array([1.0, 1.0, 1.0])
@@ -71,7 +71,8 @@ def picture(solid, stance, frame, colour=STEEL):
         Red, green and blue from 0 to 1, the top row first.
     """
     across, up = frame.positions(SAMPLES)
-    image = _floor(solid, stance, *frame.positions()).repeat(SAMPLES, axis=0).repeat(SAMPLES, axis=1)
+    floor = _floor(solid, stance, *frame.positions()).astype(SINGLE)
+    image = floor.repeat(SAMPLES, axis=0).repeat(SAMPLES, axis=1)
     box = _covered(stance.bounds, across, up)
     depths, normals = stance.camera.cast(solid, across[box[1]], up[box[0]])
     part = image[box]
@@ -92,19 +93,19 @@ def _covered(bounds, across, up):
 
 def _lit(normals, camera: Camera, colour):
     """Colour of matt surfaces (N, 3) under the lights; a face seen from behind is lit as from the front."""
-    seen = normals @ np.column_stack([camera.right, camera.up, camera.back])
-    seen *= np.where(seen[:, 2:] < 0.0, -1.0, 1.0)
-    light = np.full(len(seen), AMBIENT)
+    seen = normals @ np.column_stack([camera.right, camera.up, camera.back]).astype(SINGLE)
+    seen *= np.where(seen[:, 2:] < 0.0, SINGLE(-1.0), SINGLE(1.0))
+    light = np.full(len(seen), AMBIENT, dtype=SINGLE)
     for towards, strength in LIGHTS:
-        light += strength * np.clip(seen @ (towards / np.linalg.norm(towards)), 0.0, None)
-    return light[:, None] * colour
+        light += strength * np.maximum(seen @ (towards / np.linalg.norm(towards)).astype(SINGLE), 0.0)
+    return light[:, None] * colour.astype(SINGLE)
 
 
 def _edges(depths, normals, camera, step):
     """Samples on an outline (two wide) or on a sharp edge (one wide)."""
     met = np.isfinite(depths)
     depths = np.where(met, depths, 2.0 * AWAY)
-    facing = np.maximum(np.abs(normals @ camera.back), 0.05)
+    facing = np.maximum(np.abs(normals @ camera.back.astype(SINGLE)), 0.05)
     slope = step * np.sqrt(1.0 - np.minimum(facing, 1.0) ** 2) / facing  # depth a flat surface gains a sample
     outline, crease = np.zeros_like(met), np.zeros_like(met)
     for axis in (0, 1):
