@@ -2,7 +2,7 @@
 
 import matplotlib
 import numpy as np
-from matplotlib.colors import ListedColormap
+from matplotlib.colors import to_rgba_array
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from scipy import ndimage
@@ -99,10 +99,12 @@ def regimes(slide):
     """
     figure, axes = _map_axes(slide, f"Regimes at static friction {slide.friction:g}")
     widest, top = axes.get_xlim()[1], axes.get_ylim()[1]
-    colours = ListedColormap([REGIMES[name][0] for name in slide.grid.names])
+    colours = (
+        (255.0 * to_rgba_array([REGIMES[name][0] for name in slide.grid.names])).round().astype(np.uint8)
+    )
     axes.imshow(
-        slide.grid.codes.T, cmap=colours, vmin=-0.5, vmax=len(REGIMES) - 0.5, interpolation="none",
-        origin="lower", aspect="auto", extent=(-widest, widest, 0, top),
+        colours[slide.grid.codes.T], interpolation="none", origin="lower", aspect="auto",
+        extent=(-widest, widest, 0, top),
     )  # fmt: skip
     _hop_region(axes, slide, slide.onsets["hop"])
     unlabelled = [name for name in slide.grid.names if name != "hop" and not _label_region(axes, slide, name)]
