@@ -28,7 +28,7 @@ def compare(sources, reading, counts, as_published, pictures, out):
 
     Without --with, every FILE is such a CSV whose head names its part: the total variation of each set
     from each rule and from the recommended answer for the launch that was used (feeder compare
-    measured/*.csv). With -o: compare.csv, compare.png and run.json.
+    docs/measured/*.csv). With -o: compare.csv, compare.png and run.json.
     """
     if counts is None:
         _over_files(sources, as_published, pictures, out)

@@ -14,7 +14,7 @@ from feederscrew.studies.compare import compare_sets
 PAGE = Path(__file__).resolve().parent / "resting.md"
 BEGIN, END = "<!-- rules -->\n", "<!-- end of rules -->"
 SETS, END_OF_SETS = "<!-- measured sets -->\n", "<!-- end of measured sets -->"
-MEASURED = PAGE.parent.parent / "measured"
+MEASURED = PAGE.parent / "measured"
 HEAD = "| Column | What it is | When to trust it | Source |\n|---|---|---|---|\n"
 ANSWERS = (
     "| `p_drop` | a simulated drop test | parts thrown or fed onto a hard surface | own: see below |\n"

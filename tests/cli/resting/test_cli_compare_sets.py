@@ -16,7 +16,7 @@ ROUND = 5e-4  # of a printed share
 
 @pytest.fixture(scope="module")
 def files(request):
-    return sorted((request.config.rootpath / "measured").glob("*.csv"))
+    return sorted((request.config.rootpath / "docs/measured").glob("*.csv"))
 
 
 def rows(text):
