@@ -76,7 +76,7 @@ class Output:
         """Print a frame as the table or CSV asked for; a table for people leaves out ``hidden`` columns."""
         from feederscrew.output import tables
 
-        shown = frame.drop(columns=list(hidden), errors="ignore") if self.format == "table" else frame
+        shown = frame.without(hidden) if self.format == "table" else frame
         click.echo(tables.text(shown, self.format), nl=False)
 
     def json(self, document):

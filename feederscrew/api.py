@@ -14,6 +14,7 @@ from feederscrew.bowl.devices import Device
 from feederscrew.conveying.answer import Answer
 from feederscrew.errors import ConfigError, Faults, FeederError, MeshError
 from feederscrew.output.aspects import tables as _tables
+from feederscrew.output.tables import data_frame as _data_frame
 from feederscrew.part import Part
 from feederscrew.rates.queue import Rate
 from feederscrew.resting.aspects import Aspects
@@ -110,7 +111,8 @@ def aspects(part: Part, *, unstable: bool = False, as_published: bool = False) -
     DataFrame
         The columns of ``aspects.csv``: mm, g, sr.
     """
-    return _tables.aspects(_aspects.aspects(part, unstable=unstable, as_published=as_published))
+    found = _aspects.aspects(part, unstable=unstable, as_published=as_published)
+    return _data_frame(_tables.aspects(found))
 
 
 def drop(

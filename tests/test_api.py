@@ -42,7 +42,7 @@ def test_no_public_name_is_that_of_a_room():
 
 def test_aspects_are_what_the_command_prints(run, bracket):
     printed = run("aspects", BRACKET, "--format", "csv", "-q").stdout
-    assert tables.text(fs.aspects(bracket), "csv") == printed
+    assert tables.text(tables.frame(dict(fs.aspects(bracket))), "csv") == printed
 
 
 def test_unstable_facets_and_published_counts_pass_through(bracket):

@@ -1,10 +1,11 @@
 """Tables and documents as text: for people, for spreadsheets, for programs."""
 
+import csv
+import io
 import json
 import math
 
 import numpy as np
-import pandas as pd
 
 UNITS = {  # the end of a column's name, and how a heading writes it
     "_n_per_mm": "N/mm",
@@ -38,6 +39,26 @@ DIGITS = 4  # significant, in a table for people
 NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
 
 
+class Frame(dict):
+    """A table: equally long columns by name, in their order; in a document, a list of rows.
+
+    A column is an array where all its cells are numbers or all are true or false, else a list. A DataFrame
+    does the same; importing pandas takes longer than most answers.
+    """
+
+    def rows(self):
+        """Return the rows, each a dict of cells by column."""
+        return [dict(zip(self, cells)) for cells in zip(*self.values())]
+
+    def only(self, names):
+        """Return a table of these columns, in this order."""
+        return Frame({name: self[name] for name in names})
+
+    def without(self, names):
+        """Return a table of all columns but these."""
+        return Frame({name: column for name, column in self.items() if name not in names})
+
+
 def frame(columns):
     """Return a table of equally long columns, in the order given.
 
@@ -48,10 +69,43 @@ def frame(columns):
 
     Returns
     -------
-    DataFrame
-        NaN or None stands for an empty cell.
+    Frame
+        NaN or None stands for an empty cell; None among numbers becomes NaN.
+
+    Raises
+    ------
+    ValueError
+        If the columns are not equally long.
     """
-    return pd.DataFrame({name: list(values) for name, values in columns.items()})
+    found = Frame({name: _as_column(values) for name, values in columns.items()})
+    if len(lengths := {len(column) for column in found.values()}) > 1:
+        raise ValueError(f"columns of one table are not of the same length: {sorted(lengths)}")
+    return found
+
+
+def data_frame(frame):
+    """Return the table as a pandas DataFrame, as users of the library expect one."""
+    import pandas as pd
+
+    return pd.DataFrame(frame)
+
+
+def is_numeric(column):
+    """Return whether a column of a Frame holds numbers."""
+    return isinstance(column, np.ndarray) and column.dtype.kind in "iuf"
+
+
+def _as_column(values):
+    if isinstance(values, np.ndarray) and values.dtype.kind in "iufb":
+        return values
+    cells = list(values)
+    kinds = {type(cell) for cell in cells}
+    if kinds and kinds <= {bool, np.bool_}:
+        return np.array(cells)
+    numbers = {kind for kind in kinds if issubclass(kind, (int, float, np.number)) and kind is not bool}
+    if numbers and kinds - numbers <= {type(None)}:
+        return np.array([np.nan if cell is None else cell for cell in cells])
+    return cells
 
 
 def text(frame, format):
@@ -59,7 +113,7 @@ def text(frame, format):
 
     Parameters
     ----------
-    frame : DataFrame
+    frame : Frame
         From ``frame``.
     format : str
         ``'table'`` or ``'csv'``.
@@ -70,10 +124,25 @@ def text(frame, format):
         Lines that end in a newline; the same frame always gives the same bytes.
     """
     if format == "csv":
-        return frame.to_csv(index=False, float_format="%.6g", lineterminator="\n", na_rep="")
+        return _csv(frame)
     if format == "table":
         return _aligned(frame)
     raise ValueError(f"format is {format!r}, not 'table' or 'csv'")
+
+
+def _csv(frame):
+    """Comma-separated lines, the names first; cells that would look like nothing at all are quoted."""
+    lines = io.StringIO()
+    writer = csv.writer(lines, lineterminator="\n")
+    writer.writerow(frame)
+    writer.writerows(zip(*([_cell(value) for value in column] for column in frame.values())))
+    return lines.getvalue()
+
+
+def _cell(value):
+    if isinstance(value, (float, np.floating)):
+        return "" if math.isnan(value) else f"{value:.6g}"
+    return "" if value is None else value
 
 
 def json_text(document):
@@ -94,8 +163,8 @@ def json_text(document):
 
 def _plain(value):
     """The same value in JSON's own types."""
-    if isinstance(value, pd.DataFrame):
-        return [_plain(row) for row in value.to_dict("records")]
+    if isinstance(value, Frame):
+        return [_plain(row) for row in value.rows()]
     if isinstance(value, dict):
         return {str(key): _plain(entry) for key, entry in value.items()}
     if isinstance(value, (list, tuple, np.ndarray)):
@@ -142,15 +211,15 @@ def is_share(name):
 
 def _aligned(frame):
     """Columns side by side: texts to the left, numbers with their points in one line."""
-    columns = [_column(name, frame[name]) for name in frame.columns]
+    columns = [_column(name, column) for name, column in frame.items()]
     lines = ["  ".join(cells).rstrip() for cells in zip(*columns)]
     return "".join(f"{line}\n" for line in lines if line)  # a line of units where no column has one
 
 
 def _column(name, values):
     """Name, unit and cells of one column, all of one width."""
-    numeric = pd.api.types.is_numeric_dtype(values) and not pd.api.types.is_bool_dtype(values)
-    cells = _numbers(name, values.to_numpy()) if numeric else [_word(value) for value in values]
+    numeric = is_numeric(values)
+    cells = _numbers(name, values) if numeric else [_word(value) for value in values]
     cells = [*heading(name), *cells]
     width = max(map(len, cells))
     return [cell.rjust(width) if numeric else cell.ljust(width) for cell in cells]

@@ -6,6 +6,7 @@ import shapes
 import trimesh
 
 from feederscrew.errors import MeshError
+from feederscrew.output import tables
 from feederscrew.output.aspects import tables as aspects_tables
 from feederscrew.output.graph import tables as graph_tables
 from feederscrew.resting.aspects import find
@@ -60,12 +61,12 @@ def test_the_graph_is_a_table(rng):
     part, aspects, _, result = everything(shapes.box(10.0, 20.0, 30.0))
     study = AspectsStudy(part, aspects)
     frame = graph_tables.transitions(study)
-    assert list(frame.columns) == ["from", "to", "barrier_mm", "barrier_uJ", "axis_x", "axis_y", "axis_z"]
+    assert list(frame) == ["from", "to", "barrier_mm", "barrier_uJ", "axis_x", "axis_y", "axis_z"]
     assert list(zip(frame["from"], frame["to"])) == [(a, b) for a in "ABC" for b in "ABC" if a != b]
-    assert np.hypot(np.hypot(frame["axis_x"], frame["axis_y"]), frame["axis_z"]).to_numpy() == pytest.approx(
-        1.0
+    assert np.hypot(np.hypot(frame["axis_x"], frame["axis_y"]), frame["axis_z"]) == pytest.approx(1.0)
+    assert tables.data_frame(frame).groupby("from")["barrier_mm"].min().to_numpy() == pytest.approx(
+        1e3 * result.barriers
     )
-    assert frame.groupby("from")["barrier_mm"].min().to_numpy() == pytest.approx(1e3 * result.barriers)
     assert aspects_tables.aspects(study)["tip_angle_deg"][0] == pytest.approx(np.degrees(np.arctan(2.0)))
 
 

@@ -27,7 +27,7 @@ def aspects(study):
 
     Returns
     -------
-    DataFrame
+    Frame
         The columns of ``aspects.csv``.
     """
     found = study.aspects
@@ -57,14 +57,14 @@ def printed(frame, wanted=None):
 
     Parameters
     ----------
-    frame : DataFrame
+    frame : Frame
         From ``aspects``.
     wanted : str, optional
         Names with commas between, or 'all'; without it the columns of ``PRINTED`` that there are.
 
     Returns
     -------
-    DataFrame
+    Frame
 
     Raises
     ------
@@ -72,12 +72,12 @@ def printed(frame, wanted=None):
         If there is no such column.
     """
     if wanted is None:
-        return frame[[name for name in PRINTED if name in frame]]
+        return frame.only(name for name in PRINTED if name in frame)
     names = list(frame) if wanted.strip() == "all" else [name.strip() for name in wanted.split(",")]
     for name in names:
         if name not in frame:
             raise ArgumentError("columns", f"there is no column {shown(name)}", hint(name, list(frame)))
-    return frame[names]
+    return frame.only(names)
 
 
 def _barriers(found):

@@ -14,7 +14,7 @@ def exponents(study):
 
     Returns
     -------
-    DataFrame
+    Frame
         The columns of ``calibrate.csv``.
     """
     fits = study.fits

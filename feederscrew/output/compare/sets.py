@@ -29,7 +29,7 @@ def frame(study):
 
     Returns
     -------
-    DataFrame
+    Frame
         The columns of ``compare.csv``; an answer that a set has not is empty.
     """
     apart = [one.apart for one in study.sets]

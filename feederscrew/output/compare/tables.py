@@ -14,7 +14,7 @@ def comparisons(study):
 
     Returns
     -------
-    DataFrame
+    Frame
         The columns of ``compare.csv``; those of the test are empty where neither profile holds counts.
     """
     compared = study.comparisons

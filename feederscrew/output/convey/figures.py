@@ -104,7 +104,7 @@ def curve(frame, title):
 
     Parameters
     ----------
-    frame : DataFrame
+    frame : Frame
         Of ``tables.points``.
     title : str
 
@@ -113,7 +113,7 @@ def curve(frame, title):
     Figure
     """
     figure = style.figure()
-    column = frame.columns[0]
+    column = next(iter(frame))
     label = " ".join(heading(column))
     axes = style.tidy(figure.add_subplot(), title=title, x=label, y="velocity [mm/s]")
     low, high = frame["velocity_low_mm_s"], frame["velocity_high_mm_s"]

@@ -15,7 +15,7 @@ def counts(study):
 
     Returns
     -------
-    DataFrame
+    Frame
         The columns of ``drop.csv``.
     """
     aspects, tally = study.aspects, study.result.tally

@@ -18,7 +18,7 @@ def traces(study):
 
     Returns
     -------
-    DataFrame
+    Frame
         The columns of ``drop_traces.csv``: the centre of mass over the plane, the quaternion from the
         file's axes to the plane's, total energy over m g, what happens, and the aspect the drop ends on.
     """

@@ -154,7 +154,7 @@ def difference(printed, complete, terms=FLOOR_TERMS):
 
     Returns
     -------
-    DataFrame
+    Frame
     """
     rows = [(name, printed[name], complete[name], term) for name, term in terms.items()]
     names, first, second, told = zip(*rows)

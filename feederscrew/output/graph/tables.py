@@ -16,7 +16,7 @@ def transitions(study):
 
     Returns
     -------
-    DataFrame
+    Frame
         The columns of ``graph.csv``.
     """
     ways, names = study.transitions, study.aspects.names

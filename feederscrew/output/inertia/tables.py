@@ -43,7 +43,7 @@ def rows(study):
 
     Returns
     -------
-    DataFrame
+    Frame
         Columns ``quantity`` and ``value``; NaN where a part card is silent.
     """
     told = document(study)

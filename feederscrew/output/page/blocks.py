@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-import pandas as pd
+from feederscrew.output.tables import Frame
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Code:
 class Table:
     """A frame for people."""
 
-    frame: pd.DataFrame
+    frame: Frame
     caption: str = ""
 
 

@@ -1,7 +1,6 @@
 """Frames and numbers as people read them on a page."""
 
 import numpy as np
-import pandas as pd
 
 from feederscrew.output import tables
 
@@ -17,7 +16,7 @@ def cells(frame):
 
     Parameters
     ----------
-    frame : DataFrame
+    frame : Frame
         Columns named with their units.
 
     Returns
@@ -28,9 +27,9 @@ def cells(frame):
         Whether a column is of numbers.
     rows : list of tuple of str
     """
-    numeric = [_is_numeric(frame[name]) for name in frame.columns]
-    columns = [_column(name, frame[name]) for name in frame.columns]
-    return [tables.heading(name) for name in frame.columns], numeric, list(zip(*columns))
+    numeric = [tables.is_numeric(column) for column in frame.values()]
+    columns = [_column(name, column) for name, column in frame.items()]
+    return [tables.heading(name) for name in frame], numeric, list(zip(*columns))
 
 
 def number(value, digits=DIGITS):
@@ -49,18 +48,14 @@ def percent(share):
 
 
 def _column(name, values):
-    if not _is_numeric(values):
+    if not tables.is_numeric(values):
         return [_word(value) for value in values]
-    if pd.api.types.is_integer_dtype(values):
+    if np.issubdtype(values.dtype, np.integer):
         return [str(value) for value in values]
     if name.startswith("p_"):
         return [percent(value) for value in values]
-    noise = NOISE * np.abs(values).max(skipna=True)
+    noise = NOISE * np.abs(values[np.isfinite(values)]).max(initial=0.0)
     return [number(0.0 if abs(value) <= noise else value) for value in values]
-
-
-def _is_numeric(values):
-    return pd.api.types.is_numeric_dtype(values) and not pd.api.types.is_bool_dtype(values)
 
 
 def _word(value):

@@ -22,7 +22,7 @@ def plates(study):
 
     Returns
     -------
-    DataFrame
+    Frame
         The columns of ``plate.csv``, one row a plate and aspect.
     """
     return _labelled(study, _plate)

@@ -38,7 +38,7 @@ def limits(case):
 def repeat(case):
     """The inputs: command, files, bowl values, versions, and the table of aspects to the last digit."""
     hashes = tables.frame({"input": list(case.inputs), "sha256": list(case.inputs.values())})
-    bowl = slide_tables.settings(case.settings)[["key", "value", "from", "meaning"]]
+    bowl = slide_tables.settings(case.settings).only(("key", "value", "from", "meaning"))
     chain = [f"device {device.kind} ({device.where})" for device in case.bowl.devices]
     names, versions = zip(*_versions())
     return Section(

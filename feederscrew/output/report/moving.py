@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.output import tables
 from feederscrew.output.convey import figures as convey_plots
 from feederscrew.output.convey import files as convey_files
 from feederscrew.output.convey import tables as convey_tables
@@ -84,7 +85,8 @@ def floor(case):
 def headings(case):
     """How the part lies along the wall."""
     study = case.headings
-    frame = heading_tables.frame(study)[list(HEADINGS)].rename(columns=HEADINGS)
+    told = heading_tables.frame(study)
+    frame = tables.frame({shown: told[name] for name, shown in HEADINGS.items()})
     lead = Text(
         "The directions in which the part is stable when pushed against the wall, the share of all "
         "directions of laying down that ends in each, and the room it takes."

@@ -38,9 +38,9 @@ def the_part(case):
     """Mass properties and warnings."""
     part = case.part
     told = inertia_tables.rows(case.inertia)
-    rows = told[told["quantity"].isin(SHOWN)].reset_index(drop=True)
-    names = [" ".join(tables.heading(name)).strip() for name in rows["quantity"]]
-    facts = tables.frame({"quantity": names, "value": rows["value"]})
+    rows = [row for row in told.rows() if row["quantity"] in SHOWN]
+    names = [" ".join(tables.heading(row["quantity"])).strip() for row in rows]
+    facts = tables.frame({"quantity": names, "value": [row["value"] for row in rows]})
     facets = "a part card: published data, no shape" if part.vertices is None else f"{len(part.faces)} facets"
     lead = Text(f"{part.source}: {facets}, lengths in {part.units}. Material: {part.material}.")
     return Section((lead, Table(facts)), warnings=tuple(part.warnings))
@@ -56,11 +56,11 @@ def aspects(case):
     views = (Text(CARD, quiet=True),) if part.vertices is None else (*_views(case, rows, offered),)
     chart = _picture(offered["probabilities.png"])
     lines = (Notes(tuple(said)),) if said and part.vertices is not None else ()
-    shown = table.drop(columns=[name for name in aspects_tables.NORMALS if name in table])
+    shown = table.without(aspects_tables.NORMALS)
     chances = [name for name in shown if name.startswith("p_")]
-    shapes = Table(shown.drop(columns=chances))
+    shapes = Table(shown.without(chances))
     return Section(
-        (*views, *lines, shapes, Table(shown[["aspect", *chances]]), chart),
+        (*views, *lines, shapes, Table(shown.only(["aspect", *chances])), chart),
         tiles=(_tile(case),),
         warnings=tuple(found.warnings),
     )

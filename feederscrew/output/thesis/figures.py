@@ -61,7 +61,7 @@ def numbers(figure):
 
     Returns
     -------
-    DataFrame
+    Frame
     """
     data = figure.data()
     if isinstance(data, figures.Bars):

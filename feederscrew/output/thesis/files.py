@@ -21,7 +21,7 @@ def overview(items):
 
     Returns
     -------
-    DataFrame
+    Frame
     """
     counts = [summary(item) for item in items]
     columns = {"item": [f"{item.kind} {item.id}" for item in items]}
@@ -99,7 +99,7 @@ def cells(item):
 
     Returns
     -------
-    DataFrame
+    Frame
     """
     entries = item.entries
     columns = {name: [getattr(entry, name) for entry in entries] for name in ("row", "column", "published")}
@@ -119,7 +119,7 @@ def statements(item):
 
     Returns
     -------
-    DataFrame
+    Frame
     """
     names = ("statement", "published", "recomputed", "verdict", "finding")
     return tables.frame({name: [getattr(entry, name) for entry in item.entries] for name in names})

@@ -103,7 +103,7 @@ def passages(study):
 
     Returns
     -------
-    DataFrame
+    Frame
     """
     rows = list(zip(study.orientations, study.passages))
     named = {"orientation": [one.name for one, _ in rows], "p_of all parts": study.shares}

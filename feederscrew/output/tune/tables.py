@@ -28,10 +28,10 @@ def summary(frame):
 
     Parameters
     ----------
-    frame : DataFrame
+    frame : Frame
         Of ``settings``.
     """
-    rows = frame.to_dict("records")
+    rows = frame.rows()
     return tables.frame(
         {
             "setting": [f"{row['key']} {row['value']:.4g} {row['unit']}" for row in rows],
