@@ -37,29 +37,40 @@ from feederscrew_cli.quantity import Quantity
     default="0",
     show_default=True,
     metavar="SHARE",
-    help="Of what is offered, that is asked for; what stays below is said.",
+    help="Of what is offered, that is asked for: the search goes on for it, or says what is missing.",
 )
+@click.option("--turn", is_flag=True, help="Allow steps and ledges that turn parts over, before the cuts.")
 @click.option(
     "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the search for holes."
 )
 @click.option(
+    "--verdicts",
+    type=click.IntRange(min=1),
+    default=30000,
+    show_default=True,
+    help="Most of them in the search for holes of one orientation: the same end on every machine.",
+)
+@click.option(
     "--limit",
     type=Quantity("time", positive=True),
-    default="60 s",
+    default="10 min",
     show_default=True,
     metavar="TIME",
-    help="After which the best so far is taken.",
+    help="The last resort, after which the best so far is taken, and said to be so.",
 )
 @options.bowl
 @options.pictures
 @options.output
-def tooling(part, aspect, heading, rule, margin, purity, efficiency, seed, limit, bowl, pictures, out):
+def tooling(
+    part, aspect, heading, rule, margin, purity, efficiency, turn, seed, verdicts, limit, bowl, pictures, out
+):
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
     Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect:
     every orientation with its share, its limits (least track width, greatest canyon and gap), the
     devices that isolate it, their margin, the efficiency and the purity. With one: the chain of fewest
-    devices, each with the smallest cut that still returns and the largest that still passes.
+    devices, each with the smallest cut that still returns and the largest that still passes. Devices that
+    the bowl file lists already stay, and the design is found behind them.
 
     With -o: tooling.csv, tooling.json and tooling.png; with an aspect also tooling.yaml, a bowl file with
     the devices for feeder rate, report and batch, tooling.dxf and tooling.svg, 1:1 in mm, unrolled and as
@@ -76,8 +87,8 @@ def tooling(part, aspect, heading, rule, margin, purity, efficiency, seed, limit
         with Progress(None, not out.quiet, "orientations") as bar:
             found = study(
                 solid, bowls.record(settings), aspect,
-                heading=heading, rule=rule, margin=margin, purity=purity, seed=seed, seconds=limit,
-                told=bar.reach,
+                heading=heading, rule=rule, margin=margin, purity=purity, efficiency=efficiency, turn=turn,
+                seed=seed, verdicts=verdicts, seconds=limit, told=bar.reach,
             )  # fmt: skip
         document = tables.document(found)
         out.warn(*found.warnings)

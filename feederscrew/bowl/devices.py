@@ -20,6 +20,8 @@ class DeviceKind:
     dimension: str  # 'length', 'span', 'polygon', 'opening', 'shares'
     example: str  # as written after 'kind:'
     meaning: str
+    hanging: bool = True  # whether it means anything to parts that hang between rails
+    turns: bool = False  # whether it turns parts over instead of returning them
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,7 @@ KINDS = {
     "pressure_break": DeviceKind(
         values.length, "length", "10 mm",
         "gap where the queue pushes parts off; returns orientations wider than the ledge left",
+        hanging=False,
     ),
     "canyon": DeviceKind(
         values.length, "length", "8 mm",
@@ -80,10 +83,22 @@ KINDS = {
         values.length, "length", "6 mm",
         "bar above the queue that keeps parts down; returns orientations that do not fit below",
     ),
+    "step": DeviceKind(
+        values.length, "length", "5 mm",
+        "drop of the track by that height: orientations of a lower barrier pitch over their leading edge; "
+        "quasi-static, until a trial confirms it",
+        hanging=False, turns=True,
+    ),
+    "tip": DeviceKind(
+        values.length, "length", "6 mm",
+        "ledge of that width above a second track: orientations whose foot of the centre of mass lies beyond "
+        "it turn over it; quasi-static, until a trial confirms it",
+        hanging=False, turns=True,
+    ),
     "rails": DeviceKind(
         values.span, "span", "{from: 4.5 mm, to: 8.5 mm}",
         "slot between two rails, by their distances from the wall: headed parts whose centre of mass lies "
-        "over it hang in it by the head; what falls through is returned",
+        "over it hang in it by the head from there on; what falls through is returned",
     ),
     "yield": DeviceKind(
         values.shares, "shares", "{A: 0.9}",
@@ -131,7 +146,30 @@ def misplaced(chain, width):
     -------
     list of ConfigError
     """
-    return [fault for device in chain for fault in _misfit(device, width)]
+    return [fault for device in chain for fault in _misfit(device, width)] + beyond_rails(chain)
+
+
+def beyond_rails(chain):
+    """Return the faults of devices behind rails that mean nothing to parts that hang.
+
+    Parameters
+    ----------
+    chain : sequence of Device
+
+    Returns
+    -------
+    list of ConfigError
+    """
+    first = next((place for place, device in enumerate(chain) if device.kind == "rails"), len(chain))
+    return [
+        ConfigError(
+            device.where,
+            f"{device.kind} has no meaning for parts that hang between rails",
+            "list it before the rails",
+        )
+        for device in chain[first:]
+        if not KINDS[device.kind].hanging
+    ]
 
 
 def strangers(chain, aspects):

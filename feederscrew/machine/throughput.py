@@ -53,7 +53,7 @@ def flow(found, rule, *, target=None, gap=0.0, fill=1.0):
     if target is not None:
         parts = queue.parts_per_metre(found, target, rule, gap=gap, fill=fill)
         row = list(zip(found.aspects, found.headings)).index(target)
-        return Flow(parts, float(chances[row] * found.through[row]), float(found.lengths[row]))
+        return Flow(parts, queue.efficiency(found, row, rule), float(queue.fed(found, row).length))
     share = float(np.nansum(chances * found.through))
     if not share > 0.0:
         raise FeederError("devices", "let no part pass", "see what each returns in feeder rate")

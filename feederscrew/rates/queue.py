@@ -134,12 +134,10 @@ def rate(found, speed, target, rule, *, gap=0.0, fill=1.0):
     """
     row = _row(found, target)
     _check_rule(found, rule)
-    density, share = _queued(found, row, rule, gap, fill), _efficiency(found, row, rule)
+    density, share = _queued(found, row, rule, gap, fill), efficiency(found, row, rule)
     probability = _probability(found, row, rule)
-    offered, most = speed * density, speed * (1.0 / found.lengths[row])
-    least, greatest = (end / probability.value if probability.value else 1.0 for end in probability.ends)
-    efficiency = Range(share, share * least, share * greatest)
-    made = offered * efficiency
+    offered, most = speed * density, speed * (1.0 / fed(found, row).length)
+    made = offered * Range(share, *_efficiency_ends(found, row, rule))
     chance = np.nan_to_num(found.rules[rule])
     leaving = float((chance * found.through).sum() / chance.sum()) if chance.sum() > 0.0 else 0.0
     through = float(found.through[row])
@@ -167,11 +165,41 @@ def _queued(found, row, rule, gap, fill):
     return float(fill * chance.sum() / (chance * (found.lengths + gap)).sum())
 
 
-def _efficiency(found, row, rule):
-    """Share of the parts offered that leave in the orientation of a row."""
+def efficiency(found, row, rule):
+    """Return the share of the parts offered that leave in the orientation of a row.
+
+    Parameters
+    ----------
+    found : Orientations
+    row : int
+    rule : str
+
+    Returns
+    -------
+    float [1]
+    """
     chance = np.nan_to_num(found.rules[rule])
-    total, same = chance.sum(), found.leaves_as == found.leaves_as[row]
-    return float((chance * found.through)[same].sum() / total) if total > 0.0 else 0.0
+    total = chance.sum()
+    return float((chance * _fed_share(found, row)).sum() / total) if total > 0.0 else 0.0
+
+
+def _efficiency_ends(found, row, rule):
+    """The least and the greatest efficiency, by the rule's own interval or over all rules."""
+    fed = _fed_share(found, row)
+    if rule == RECOMMENDED and not np.isnan(found.interval).any():
+        return tuple(min(float((end * fed).sum()), 1.0) for end in found.interval.T)
+    all_rules = [float((np.nan_to_num(chance) * fed).sum()) for chance in found.rules.values()]
+    return min(all_rules), max(all_rules)
+
+
+def fed(found, row):
+    """Return the Orientation in which parts wanted as a row leave: as they lie, or hanging."""
+    return found.states[found.leaves_as[row]]
+
+
+def _fed_share(found, row):
+    """(M,) share of each orientation that leaves in the state of a wanted row."""
+    return found.leaving[:, found.leaves_as[row]]
 
 
 def _probability(found, row, rule):
@@ -202,11 +230,11 @@ def parts_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
     """
     _check_rule(found, rule)
     row = _row(found, target)
-    share = _efficiency(found, row, rule)
+    share = efficiency(found, row, rule)
     if not share > 0.0:
         where = f"aspect {target[0]}, heading {np.degrees(target[1]):.4g} deg"
         raise FeederError(where, "never leaves the bowl", "see the devices in feeder rate")
-    return min(share * _queued(found, row, rule, gap, fill), 1.0 / float(found.lengths[row]))
+    return min(share * _queued(found, row, rule, gap, fill), 1.0 / float(fed(found, row).length))
 
 
 def _check_rule(found, rule):

@@ -6,8 +6,8 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.tooling import orientations as tooling
+from feederscrew.tooling.course import course
 from feederscrew.tooling.orientations import Orientation
-from feederscrew.tooling.verdicts import verdict
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,7 +18,9 @@ class Orientations:
     stations: tuple[str, ...]  # the track itself, then each device
     passes: np.ndarray  # (M, stations) share each station lets pass; the rest goes back into the bowl
     margins: np.ndarray  # (M, stations) [m] by which it passes or fails; NaN where that is not known
-    leaves_as: np.ndarray  # (M,) int, the row it leaves like: those that hang by the head are one
+    states: tuple[Orientation, ...]  # S of them parts may leave in: the rows, then those that hang
+    leaving: np.ndarray  # (M, S) share of each row that leaves in each state
+    leaves_as: np.ndarray  # (M,) int, the state in which parts wanted as a row are fed
     rules: dict[str, np.ndarray]  # (M,) probability of aspect and heading by each rule
     interval: np.ndarray  # (M, 2) lowest and highest probability by the recommended rule
 
@@ -78,27 +80,19 @@ def orientations(part, aspects, track, chain=(), sigma=0.0):
     Orientations
     """
     lying = tooling.orientations(part, aspects, track)
-    found = [[verdict(device, one, lying, sigma) for device in chain] for one in lying]
-    stays = [0.0 if one.falls_off else 1.0 for one in lying]
-    passes = [[stay, *(one.passes for one in row)] for stay, row in zip(stays, found)]
-    margins = [[np.nan, *(one.margin for one in row)] for row in found]
-    hangs = [any(one.hangs for one in row) for row in found]
+    found = course(chain, lying, sigma)
     rules = {rule: np.array([one.chances[rule] for one in lying]) for rule in aspects.chances}
     return Orientations(
         lying=lying,
         stations=("track", *(device.kind for device in chain)),
-        passes=check.frozen(np.array(passes)),
-        margins=check.frozen(np.array(margins)),
-        leaves_as=check.frozen(together(hangs)),
+        passes=found.passes,
+        margins=found.margins,
+        states=found.states,
+        leaving=found.leaving,
+        leaves_as=check.frozen(np.array([found.leaves_as(row) for row in range(len(lying))])),
         rules={rule: check.frozen(chance) for rule, chance in rules.items()},
         interval=check.frozen(_interval(aspects, lying)),
     )
-
-
-def together(hangs):
-    """Return the row each orientation leaves like (M,): itself, or the first that hangs where it hangs."""
-    rows = np.arange(len(hangs))
-    return np.where(hangs, int(np.argmax(hangs)), rows)
 
 
 def _interval(aspects, lying):

@@ -9,15 +9,17 @@ import numpy as np
 from feederscrew.bowl.record import Bowl
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.tooling.cutting import Search
+from feederscrew.tooling.cutting import VERDICTS, Search
 from feederscrew.tooling.design import MARGIN, design, place
 from feederscrew.tooling.orientations import Orientation, named, orientations
 from feederscrew.tooling.result import Design
 
+LATE = "the search stopped at the time limit: another machine may find more - raise --limit"
+
 
 @dataclass(frozen=True, eq=False)
 class ToolingStudy:
-    """Every orientation of a part on a track, and what isolates it; M orientations."""
+    """Every orientation of a part on a track, and what isolates it behind the bowl's devices; M of them."""
 
     part: Part
     bowl: Bowl
@@ -37,7 +39,8 @@ class ToolingStudy:
     @property
     def warnings(self):
         """What a user must not overlook, a sentence each."""
-        return self.aspects.warnings
+        late = any(one is not None and one.late for one in self.designs)
+        return (*self.aspects.warnings, *([LATE] if late else []))
 
 
 def tooling(
@@ -49,8 +52,11 @@ def tooling(
     rule: str = "recommended",
     margin: float = MARGIN,
     purity: float = 1.0,
+    efficiency: float = 0.0,
+    turn: bool = False,
     seed: int = 1,
-    seconds: float = 60.0,
+    verdicts: int = VERDICTS,
+    seconds: float = 600.0,
     told: Callable[[int, int], None] | None = None,
 ) -> ToolingStudy:
     """Study which orientations of a part can be isolated by cuts, and how.
@@ -70,10 +76,16 @@ def tooling(
         By which the wanted orientation passes and the others fail, at least.
     purity : float [1]
         Of what leaves, that is enough.
+    efficiency : float [1]
+        Of what is offered, that is asked for.
+    turn : bool
+        Whether devices that turn parts over may be used, where returning them wastes too much.
     seed : int
         Of the search for holes.
+    verdicts : int
+        Most of them in the search for the holes of one orientation: then the best so far is taken.
     seconds : float [s]
-        After so long the best so far is taken.
+        The last resort: what is found until then may differ from machine to machine, and is marked.
     told : callable, optional
         Called with how many designs are done of how many.
 
@@ -97,11 +109,12 @@ def tooling(
         )
     shares = np.nan_to_num([one.chances[rule] for one in every])
     wanted = None if aspect is None else place(every, aspect, heading, part.source)
-    search = Search(seed=seed, until=time.monotonic() + seconds)
+    search = Search(seed=seed, verdicts=verdicts, until=time.monotonic() + seconds)
+    asked_of_each = {"purity": purity, "efficiency": efficiency, "turn": turn, "before": bowl.devices}
     asked = range(len(every)) if wanted is None else [wanted]
     designs = [None] * len(every)
     for done, k in enumerate(asked):
-        designs[k] = design(every, shares, k, margin=margin, search=search, purity=purity)
+        designs[k] = design(every, shares, k, margin=margin, search=search, **asked_of_each)
         if told is not None:
             told(done + 1, len(asked))
     return ToolingStudy(

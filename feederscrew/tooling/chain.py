@@ -24,6 +24,7 @@ class Cut:
     smallest: Device  # the least cut that still returns them
     largest: Device  # the greatest cut that the wanted orientation still passes
     returns: tuple[str, ...]  # names of the orientations it returns
+    turns: tuple[tuple[str, str, float], ...] = ()  # name, name it turns over into, share
 
 
 def candidates(every, wanted, margin):

@@ -5,7 +5,7 @@ import shapely
 
 from feederscrew import check
 from feederscrew.geometry.polygons import turned
-from feederscrew.tooling.foot import Footprint
+from feederscrew.tooling.foot import BEHIND, Footprint
 
 TOUCHING = 2e-4  # of the part's size: what is lower than that over the track touches it
 SUNK = 0.03  # of the centre of mass's height: how much of a rolling part's underside counts as its foot
@@ -33,7 +33,7 @@ def footprint(posture, heading):
     size = np.ptp(posture.outline, axis=0).max()
     depth = SUNK * posture.height if posture.kind == "rolling" else TOUCHING * size
     plan = turned(points[:, :2], heading)
-    area = _area(plan, points[:, 2], faces, depth, posture.kind == "rolling")
+    area = area_below(plan, points[:, 2], faces, depth, posture.kind == "rolling")
     area = area.simplify(PLAIN * size) if not area.is_empty else area
     edges, single = _bare(plan, points[:, 2] < depth, faces, area, TOUCHING * size)
     if area.is_empty and len(edges) + len(single) < 1:
@@ -42,8 +42,21 @@ def footprint(posture, heading):
     return Footprint(rings=borders, edges=check.frozen(edges), points=check.frozen(single))
 
 
-def _area(plan, height, faces, depth, cut):
-    """The union of the facets that lie on the track, or of their parts below a depth."""
+def area_below(plan, height, faces, depth, cut):
+    """Return the union of the facets lower than a depth [m], with ``cut`` also of their parts below it.
+
+    Parameters
+    ----------
+    plan : (V, 2) float [m]
+    height : (V,) float [m]
+    faces : (F, 3) int
+    depth : float [m]
+    cut : bool
+
+    Returns
+    -------
+    shapely geometry
+    """
     low = height[faces] < depth
     whole = plan[faces[low.all(axis=1)]]
     pieces = [shapely.polygons(whole)] if len(whole) else []
@@ -104,6 +117,48 @@ def rings(area, least=0.0):
     return tuple(check.frozen(np.array(ring.coords)[:-1]) for ring in lines)
 
 
+def ring(span, distance, radius, reach):
+    """Return the area between two distances from the wall, about the foot of the centre of mass.
+
+    Parameters
+    ----------
+    span : (float, float) [m]
+        From the wall.
+    distance, radius : float [m]
+        From the wall to the foot, and of the wall.
+    reach : float [m]
+        How far it goes on ahead and behind.
+
+    Returns
+    -------
+    shapely Polygon
+    """
+    turn = np.linspace(-1.0, 1.0, 2001) * min(reach / max(radius - span[1], 0.1 * radius), 0.999 * np.pi)
+    sides = [radius - span[0] + BEHIND * (span[0] <= 0.0), max(radius - span[1], 0.0)]
+    middle = radius - distance
+    sides = [np.column_stack([r * np.sin(turn), middle - r * np.cos(turn)]) for r in sides]
+    return shapely.Polygon(np.vstack([sides[0], sides[1][::-1]]))
+
+
+def beside(foot, span, distance, radius):
+    """Return what of a footprint rests beside a slot between two distances from the wall.
+
+    Parameters
+    ----------
+    foot : Footprint
+    span : (float, float) [m]
+    distance, radius : float [m]
+        From the wall to the foot of the centre of mass, and of the wall.
+
+    Returns
+    -------
+    Footprint
+    """
+    if not len(foot.corners):
+        return foot
+    return _without(foot, ring(span, distance, radius, 2.0 * np.hypot(*foot.corners.T).max()))
+
+
 def within(foot, distance, radius, width):
     """Return what of a footprint lies over a track of some width.
 
@@ -130,14 +185,18 @@ def within(foot, distance, radius, width):
     turn = np.linspace(-1.0, 1.0, 2001) * min(3.0 * reach / edge, 0.999 * np.pi)
     inner = np.array([[0.0, middle]])
     off = np.concatenate([np.column_stack([edge * np.sin(turn), middle - edge * np.cos(turn)]), inner])
-    off = shapely.Polygon(off)
+    return _without(foot, shapely.Polygon(off))
+
+
+def _without(foot, off):
+    """What of a footprint lies outside an area."""
     area = shapely.union_all([shapely.Polygon()])
-    for ring in foot.rings:
-        area = area.symmetric_difference(shapely.Polygon(ring))
+    for border in foot.rings:
+        area = area.symmetric_difference(shapely.Polygon(border))
     lines = shapely.difference(shapely.linestrings(foot.edges), off) if len(foot.edges) else []
     kept = [np.array(one.coords) for line in lines for one in shapely.get_parts(line) if not one.is_empty]
     edges = np.array([[one[0], one[-1]] for one in kept]).reshape(-1, 2, 2)
-    points = foot.points[np.hypot(foot.points[:, 0], middle - foot.points[:, 1]) >= edge]
+    points = foot.points[~shapely.contains_xy(off, foot.points)] if len(foot.points) else foot.points
     return Footprint(rings=rings(area.difference(off)), edges=edges, points=points)
 
 

@@ -17,14 +17,29 @@ STEPS = 100  # changes tried of each
 ROOM = 1.3  # holes reach so far beyond the foot
 STEP = 1e-5  # [m] to which a corner is rounded
 HALVINGS = 24
+VERDICTS = 30000  # in the search for the holes of one orientation
 
 
-@dataclass(frozen=True)
+@dataclass
 class Search:
-    """How long and from where holes are looked for."""
+    """How long and from where holes are looked for: by a count of verdicts, the same on every machine."""
 
     seed: int = 1
-    until: float = math.inf  # [s] of time.monotonic(): then the best so far is taken
+    verdicts: int = VERDICTS  # for one orientation; then the best so far is taken
+    until: float = math.inf  # [s] of time.monotonic(): the last resort
+    late: bool = False  # whether that was reached
+    spent: int = 0  # verdicts so far
+
+    def started(self):
+        """Return the same search for another orientation."""
+        return replace(self, spent=0, late=False)
+
+    def over(self):
+        """Return whether one of the limits is reached."""
+        if self.spent >= self.verdicts:
+            return True
+        self.late = self.late or time.monotonic() > self.until
+        return self.late
 
 
 def cut_out(every, wanted, others, margin, search):
@@ -46,8 +61,8 @@ def cut_out(every, wanted, others, margin, search):
         The hole and those of the others that it returns by the margin.
     """
     rng = np.random.default_rng((search.seed, wanted, *others))
-    judge = _Judge(every, wanted, others, margin)
-    best = judge.searched(rng, search.until)
+    judge = _Judge(every, wanted, others, margin, search)
+    best = judge.searched(rng)
     if best is None:
         return None
     corners, margins = best
@@ -58,7 +73,8 @@ def cut_out(every, wanted, others, margin, search):
 class _Judge:
     """Scores of holes: whole margins gained, others returned first."""
 
-    def __init__(self, every, wanted, others, margin):
+    def __init__(self, every, wanted, others, margin, search):
+        self.search = search
         self.wanted, self.others = every[wanted].standing, [every[k].standing for k in others]
         self.radius, self.margin = every[wanted].track.radius, margin
         self.length = ROOM * max(one.length for one in (every[wanted], *(every[k] for k in others)))
@@ -79,28 +95,28 @@ class _Judge:
         nearest = min(passing - self.margin, max(-found for found in margins) - self.margin)
         return (returned if ready else 0) * 1e3 * self.margin + 3.0 * min(nearest, 0.0) + gain, margins
 
-    def searched(self, rng, until):
+    def searched(self, rng):
         """The best hole found, as (corners, margins), if it passes the wanted one and returns any other."""
         found = []
         for _ in range(STARTS):
-            if time.monotonic() > until:
+            if self.search.over():
                 break
             corners = self._random(rng)
             if corners is not None:
                 found.append((*self.score(corners), corners))
         found = sorted(found, key=lambda one: -one[0])[:CLIMBS]
-        climbed = [self._climbed(one, rng, until) for one in found]
+        climbed = [self._climbed(one, rng) for one in found]
         best = max(climbed, key=lambda one: one[0], default=None)
         if best is None or best[0] < 500.0 * self.margin:
             return None
         return best[2], best[1]
 
-    def _climbed(self, start, rng, until):
+    def _climbed(self, start, rng):
         """One hole improved by moving a corner, or all of it, at random."""
         score, margins, corners = start
         size = 0.15 * self.width
         for _ in range(STEPS):
-            if time.monotonic() > until or margins is None:
+            if self.search.over() or margins is None:
                 break
             moved = corners.copy()
             if rng.random() < 0.25:
@@ -139,6 +155,7 @@ class _Judge:
 
     def _least(self, k, foot, hole):
         """Least margin, in arrays kept for holes of that size."""
+        self.search.spent += 1
         key = k, len(hole.edges), 64 * (1 + len(hole.nodes) // 64)
         if key not in self.scratch:
             room = hole._replace(nodes=np.empty((key[2], 3)))

@@ -1,16 +1,23 @@
 """Which devices let one orientation leave and return all the others."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from feederscrew.errors import FeederError
-from feederscrew.tooling import chain, cutting, rails
-from feederscrew.tooling.result import LEAST_SHARE, told, weights, without
+from feederscrew.tooling import chain, cutting, rails, turners
+from feederscrew.tooling.result import task as asked_for
+from feederscrew.tooling.result import told, weights, without
 
 MARGIN = 2.5e-4  # [m] to either side
 MOST_HOLES = 3  # cut-outs in one chain
+GAIN = 1.25  # turning devices are taken where they bring so many times the parts, if no efficiency is asked
 
 
-def design(every, shares, wanted, *, margin=MARGIN, search=None, holes=True, purity=1.0):
+def design(
+    every, shares, wanted, *, margin=MARGIN, search=None, holes=True, purity=1.0, efficiency=0.0,
+    turn=False, before=(),
+):  # fmt: skip
     """Return the chain of fewest devices that isolates an orientation.
 
     Parameters
@@ -24,50 +31,106 @@ def design(every, shares, wanted, *, margin=MARGIN, search=None, holes=True, pur
     margin : float [m]
         To either side.
     search : cutting.Search, optional
-        Seed and time limit of the search for holes.
+        Seed and limits of the search for holes.
     holes : bool
         Whether holes of several corners may be cut.
     purity : float [1]
         Of what leaves, that is enough; the chain is not made longer for more.
+    efficiency : float [1]
+        Of what is offered, that is asked for: as long as it is missed, ways on are tried.
+    turn : bool
+        Whether devices that turn parts over may be used, where returning them wastes too much.
+    before : sequence of Device
+        Of the bowl itself: the design is found behind them.
 
     Returns
     -------
     Design
     """
     search = search or cutting.Search()
-    found = _plain(every, shares, wanted, margin, search, holes, purity)
-    hung = rails.design(every, shares, wanted, margin)
+    given = asked_for(every, shares, wanted, margin, purity, before)
+    found = _returning(given, search.started(), holes)
+    if turn and not (found.isolated and found.efficiency >= efficiency > 0.0):
+        found = _with_turning(given, found, search, holes, efficiency)
+    short = _short(given, found, efficiency, turn)
+    return replace(found, reasons=(*found.reasons, *short)) if short else found
+
+
+def _returning(given, search, holes):
+    """The best chain of devices that only return parts: they leave lying, or hanging."""
+    if any(device.kind == "rails" for device in given.before):
+        return told(given, (), np.zeros(len(given.every), dtype=bool))
+    found = _plain(given, search, holes)
+    hung = rails.design(given)
     if hung is None or (hung.isolated, hung.efficiency) <= (found.isolated, found.efficiency):
         return found
     return hung
 
 
-def _plain(every, shares, wanted, margin, search, holes, purity):
+def _with_turning(given, found, search, holes, efficiency):
+    """The design with turning devices before all others, where it delivers enough more."""
+    enough = GAIN if efficiency <= 0.0 else 1.0
+    for cuts in turners.chains(given):
+        behind = asked_for(
+            given.every, given.shares, given.wanted, given.margin, given.purity, given.before, cuts
+        )
+        other = _returning(behind, search.started(), holes)
+        more = other.efficiency > enough * found.efficiency + 1e-12
+        if other.isolated and (more or not found.isolated):
+            found = other
+        if efficiency > 0.0 and found.isolated and found.efficiency >= efficiency:
+            break
+    return found
+
+
+def _short(given, found, efficiency, turn):
+    """By how much what was asked for is missed, and why, a sentence each."""
+    one, said = given.every[given.wanted], []
+    if found.efficiency < efficiency:
+        comes = given.shares[given.wanted] / given.shares.sum()
+        why = (
+            f"{100.0 * comes:.3g} % of the parts come as {one.name}, and devices that return parts add none; "
+            "--turn allows devices that turn parts over"
+        )
+        if turn:
+            why = "no step or ledge, nor two of them, turns more parts into it that can then be isolated"
+        miss = 100.0 * (efficiency - found.efficiency)
+        said.append(f"the efficiency asked for is missed by {miss:.3g} % of the parts: {why}")
+    if given.purity < 1.0 and found.purity < given.purity - 1e-12:
+        miss = 100.0 * (given.purity - found.purity)
+        said.append(f"the purity asked for is missed by {miss:.3g} % of what leaves")
+    return said
+
+
+def _plain(given, search, holes):
     """The chain of devices that return the others and leave the wanted one lying."""
+    every, wanted = given.every, given.wanted
     if every[wanted].falls_off or not every[wanted].margin > 0.0:
-        return without(every, shares, wanted, "falls off the bare track")
-    weight, stays = weights(every, shares), np.array([not one.falls_off for one in every])
+        return without(given, "falls off the bare track")
+    if not given.coming[wanted] > 0.0 and given.shares[wanted] > 0.0:
+        return without(given, "does not come past the devices of the bowl file")
+    weight = weights(given)
     weight[wanted] = 0.0
-    found = chain.candidates(every, wanted, margin)
-    allowed = shares[wanted] * (1.0 / purity - 1.0)
-    counted = np.where(weight > 0.0, shares, 0.0) if purity < 1.0 else weight
-    devices = chain.fewest(found, counted, margin, allowed)
-    must = chain.shared_out(found, devices, margin)
+    found = chain.candidates(every, wanted, given.margin)
+    counted = np.where(weight > 0.0, given.coming, 0.0) if given.purity < 1.0 else weight
+    devices = chain.fewest(found, counted, given.margin, given.allowed)
+    gone = ~given.stays | ((given.coming <= 0.0) & (given.shares > 0.0))
+    must = [some & ~gone for some in chain.shared_out(found, devices, given.margin)]
     cuts = chain.placed(every, wanted, devices, must)
-    returned = np.any([~stays, *must], axis=0)
+    returned = np.any([gone, *must], axis=0)
     if holes:
-        cuts, returned = _with_holes(every, shares, wanted, cuts, returned, margin, search, allowed)
-    return told(every, shares, wanted, cuts, returned, margin, allowed=allowed)
+        cuts, returned = _with_holes(given, cuts, returned, search)
+    return told(given, cuts, returned, late=search.late)
 
 
-def _with_holes(every, shares, wanted, cuts, returned, margin, search, allowed):
+def _with_holes(given, cuts, returned, search):
     """Add cut-outs for those that are left, as long as one returns any."""
     returned = returned.copy()
     for _ in range(MOST_HOLES):
-        left = [k for k in np.flatnonzero(~returned) if k != wanted and shares[k] >= LEAST_SHARE]
-        if shares[left].sum() <= allowed:
+        left = [k for k in np.flatnonzero(~returned) if k != given.wanted and given.often[k]]
+        if given.coming[left].sum() <= given.allowed:
             break
-        made = cutting.cut_out(every, wanted, left, margin, search) if left else None
+        made = cutting.cut_out(given.every, given.wanted, left, given.margin, search) if left else None
         if made is None:
             break
         cuts, returned[made[1]] = (*cuts, made[0]), True

@@ -1,15 +1,78 @@
-"""Headed parts: a slot between rails lets the shank down and holds the head."""
+"""Headed parts: a slot between rails lets the shank down and holds the head; from there on they hang."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from feederscrew.geometry.polygons import cross, sides, turned
+from feederscrew import check
+from feederscrew.geometry import vectors
+from feederscrew.geometry.polygons import cross, outline, sides, turned
+from feederscrew.tooling import contact
+from feederscrew.tooling.foot import Footprint
+from feederscrew.tooling.orientations import Orientation
 
 SLICES = 80  # along the part
 STEEP = np.radians(45.0)  # a part that stands or lies across the track does not go down by its shank
+ALIKE = np.cos(np.radians(5.0))  # parts that hang by the same head hang alike, however they lay before
+HANGING = "hanging"  # what the hanging pose is called, in place of an aspect
+SEATED = 0.1  # of the head's height: how much of a cone's underside counts as resting on the rails
+
+
+@dataclass(frozen=True, eq=False)
+class Neck:
+    """Shank and head of a part, across its own long axis."""
+
+    shank: float  # [m] greatest width of the stretch that holds the centre of mass and reaches to one end
+    head: float  # [m] of the other end
+    down: np.ndarray  # (3,) [1] from head to shank, in the file's axes
+
+
+@dataclass(frozen=True, eq=False)
+class Hanging(Orientation):
+    """A part that hangs by its head between rails: its foot is what of the head rests on them."""
+
+    neck: Neck = None
+    span: tuple[float, float] = ()  # [m] of the slot, from the wall
+    lies_on: tuple[float, float] = ()  # [m] shank's and head's middle from the foot of the centre of mass
+
+    @property
+    def name(self):
+        """'hanging'; of a part with two heads also 'hanging 2'."""
+        return self.aspect
+
+    @property
+    def shift(self):
+        """A hanging part's weight pulls through its own slot, however the track is banked."""
+        return 0.0
+
+    @cached_property
+    def foot(self):
+        """What of the head rests on the rails: a Footprint."""
+        size = np.ptp(self.posture.corners, axis=0).max()
+        for depth in (contact.TOUCHING * size, SEATED * self.height):
+            rings = contact.rings(self._rests(depth), contact.SLIVER * size**2)
+            if len(rings) > 1 or depth > contact.TOUCHING * size:
+                break
+        return Footprint(rings=rings, edges=np.empty((0, 2, 2)), points=np.empty((0, 2)))
+
+    def over(self, span):
+        """Return the margin [m] by which shank and head fit rails at another distance; negative if not."""
+        first, last = (end - self.distance for end in span)
+        (shank, head), wide = self.lies_on, self.neck
+        free = min(shank - 0.5 * wide.shank - first, last - shank - 0.5 * wide.shank)
+        return float(min(free, first - head + 0.5 * wide.head, head + 0.5 * wide.head - last))
+
+    def _rests(self, depth):
+        """What of the part lies lower over the rails than a depth, as an area about the foot."""
+        points, faces = self.posture.surface, self.posture.solid.faces
+        area = contact.area_below(points[:, :2], points[:, 2], faces, depth, True)
+        reach = np.hypot(*self.posture.corners[:, :2].T).max()
+        return area.difference(contact.ring(self.span, self.distance, self.track.radius, 2.0 * reach))
 
 
 def neck(one):
-    """Return the widths of a part's shank and head, as it lies.
+    """Return shank and head of a part, as it lies.
 
     Parameters
     ----------
@@ -17,10 +80,8 @@ def neck(one):
 
     Returns
     -------
-    (float, float) [m] or None
-        Greatest width of the stretch that holds the foot of the centre of mass and reaches to one end, and of
-        the head at the other end, both across the part's own long axis; None where no end is wider than the
-        rest of the part, or that axis does not lie along the track.
+    Neck or None
+        None where no end is wider than the rest of the part, or its long axis does not lie along the track.
     """
     turn = _long_axis(one.outline)
     tilt = _tilt(one.posture.inertia, one.heading - turn)
@@ -28,20 +89,103 @@ def neck(one):
         return None
     places, widths = _widths(one, turn, tilt)
     found = []
-    for along, across in ((places, widths), (-places[::-1], widths[::-1])):
+    for sign, along, across in ((1.0, places, widths), (-1.0, -places[::-1], widths[::-1])):
         for k in range(1, len(across)):
             if along[k] > 0.0:  # the head must end before the centre of mass
                 break
             head, shank = across[:k].max(), across[k:].max()
-            found.append((head - shank, shank, head))
-    step, shank, head = max(found, default=(0.0, 0.0, 0.0))
-    return (float(shank), float(head)) if step > 0.0 else None
+            found.append((head - shank, shank, head, sign))
+    step, shank, head, sign = max(found, default=(0.0, 0.0, 0.0, 1.0))
+    if not step > 0.0:
+        return None
+    axis = sign * np.array([np.cos(tilt) * np.cos(turn), np.cos(tilt) * np.sin(turn), np.sin(tilt)])
+    return Neck(float(shank), float(head), check.frozen(np.einsum("ij,i->j", one.axes, axis)))
 
 
 def hanging_margin(one, width):
     """Return by how much [m] a slot of some width lets the shank down and holds the head; negative if not."""
     found = neck(one)
-    return -np.inf if found is None else min(width - found[0], found[1] - width)
+    return -np.inf if found is None else min(width - found.shank, found.head - width)
+
+
+def hung(one, span, known=()):
+    """Return a part hanging between rails that it came to lying.
+
+    Parameters
+    ----------
+    one : Orientation
+        From which it goes down by its shank.
+    span : (float, float) [m]
+        Of the slot, from the wall.
+    known : sequence of Hanging
+        That hang in this slot already: parts that hang by the same head are one orientation, however they
+        lay before and however they are turned about the vertical.
+
+    Returns
+    -------
+    Hanging
+    """
+    found = neck(one)
+    for other in known:
+        if vectors.dot(found.down, other.neck.down) > ALIKE:
+            return other
+    up = -found.down
+    across = one.axes[1] - up * vectors.dot(one.axes[1], up)
+    across = vectors.unit(across)
+    axes = np.array([np.cross(across, up), across, up])
+    points = vectors.product(one.posture.solid.vertices - one.posture.solid.centre_of_mass, axes.T)
+    below = points[:, 2] < 0.0
+    shank = float(0.5 * (points[below, 1].min() + points[below, 1].max()))
+    rail = _underside(points, one.posture.solid.faces, shank, 0.5 * (span[1] - span[0]))
+    return _hanging(one, found, span, axes, points, rail, shank, len(known))
+
+
+def _hanging(one, found, span, axes, points, rail, shank, count):
+    """The record, from corners (V, 3) about the centre of mass and the height of the rails over it [m]."""
+    points = points - [0.0, 0.0, rail]
+    head = points[points[:, 2] > 0.0, 1]
+    plan, distance = outline(points[:, :2]), 0.5 * sum(span) - shank
+    lying = replace(
+        one.posture,
+        name=HANGING,
+        kind=HANGING,
+        height=float(-rail),
+        inertia=check.frozen(vectors.product(vectors.product(axes, one.posture.solid.inertia), axes.T)),
+        contact=check.frozen(plan),
+        outline=check.frozen(plan),
+        corners=check.frozen(points),
+        axes=check.frozen(axes),
+    )
+    return Hanging(
+        posture=lying,
+        track=one.track,
+        aspect=HANGING if not count else f"{HANGING} {count + 1}",
+        heading=0.0,
+        heading_share=1.0,
+        chances={},
+        length=float(np.ptp(points[:, 0])),
+        width=float(distance + points[:, 1].max()),
+        height=float(points[:, 2].max()),
+        distance=float(distance),
+        falls_off=False,
+        kind=HANGING,
+        neck=found,
+        span=tuple(span),
+        lies_on=(shank, float(0.5 * (head.min() + head.max()))),
+    )
+
+
+def _underside(points, faces, middle, half):
+    """Height [m] of the lowest place of a surface beyond half a slot's width to either side of its middle."""
+    away = np.abs(points[:, 1] - middle)
+    ends = np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])), axis=0)
+    a, b = points[ends[:, 0]], points[ends[:, 1]]
+    heights = [points[away >= half, 2]]
+    for side in (middle - half, middle + half):
+        met = (a[:, 1] > side) != (b[:, 1] > side)
+        share = (side - a[met, 1]) / (b[met, 1] - a[met, 1])
+        heights.append(a[met, 2] + share * (b[met, 2] - a[met, 2]))
+    return float(np.concatenate(heights).min())
 
 
 def _widths(one, turn, tilt):

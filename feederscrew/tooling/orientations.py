@@ -46,6 +46,12 @@ class Orientation:
         return self.posture.height * np.tan(self.track.bank)
 
     @cached_property
+    def axes(self):
+        """(3, 3) [1] the track's axes as rows, in the file's axes."""
+        c, s, (x, y, z) = np.cos(self.heading), np.sin(self.heading), self.posture.axes
+        return np.array([c * x - s * y, s * x + c * y, z])
+
+    @cached_property
     def foot(self):
         """What of it touches the track: a Footprint."""
         whole = contact.footprint(self.posture, self.heading)

@@ -8,6 +8,8 @@ import shapely
 
 from feederscrew.bowl.devices import Device
 from feederscrew.tooling import foot as feet
+from feederscrew.tooling.course import astride
+from feederscrew.tooling.hanging import hung
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.tooling.strip import bent, hole, opening
 from feederscrew.tooling.verdicts import JUDGES, Verdict, verdict
@@ -24,7 +26,8 @@ class Passage:
     device: Device
     orientation: Orientation
     verdict: Verdict
-    picture: str  # 'above', 'ahead', 'side' or '': from where it is seen
+    after: Orientation  # that most parts go on in
+    picture: str  # 'above', 'ahead', 'side', 'turned' or '': from where it is seen
     outline: np.ndarray  # (J, 2) [m] of the part from above
     foot: shapely.Geometry  # [m] what touches the whole track
     hole: shapely.Geometry | None  # [m] what is cut away
@@ -33,7 +36,7 @@ class Passage:
     opening: shapely.Geometry | None  # [m] of a gate, in distances from the wall and heights
 
 
-def passage(device, one, every):
+def passage(device, one, every, known=()):
     """Return an orientation at the place of a device where its margin is least.
 
     Parameters
@@ -42,6 +45,8 @@ def passage(device, one, every):
     one : Orientation
     every : sequence of Orientation
         Of the part, which a profile may name.
+    known : sequence of Hanging
+        What hangs already.
 
     Returns
     -------
@@ -56,6 +61,7 @@ def passage(device, one, every):
         device=device,
         orientation=one,
         verdict=found,
+        after=_after(device, one, found, every, known),
         picture=JUDGES[device.kind].picture,
         outline=np.add(one.outline, [0.0, one.distance]),
         foot=touching,
@@ -82,8 +88,17 @@ def _within(hull, weight):
     return hull.boundary.distance(point) if hull.contains(point) else -hull.distance(point)
 
 
+def _after(device, one, found, every, known):
+    """The orientation in which most parts go on from a device."""
+    if found.onto:
+        return every[max(found.onto, key=lambda place: place[1])[0]]
+    if found.hangs:
+        return hung(one, device.span, known)
+    return astride(one, device.span) if device.kind == "rails" and found.passes > 0.0 else one
+
+
 def until_returned(devices, one, every):
-    """Return the passages of an orientation up to the device that returns it.
+    """Return the passages of an orientation, as most parts go on, up to the device that returns it.
 
     Parameters
     ----------
@@ -100,7 +115,8 @@ def until_returned(devices, one, every):
     found = []
     for device in () if one.falls_off else devices:
         found.append(passage(device, one, every))
-        if found[-1].verdict.passes <= 0.0:
+        one = found[-1].after
+        if found[-1].verdict.passes <= 0.0 or one.falls_off:
             break
     return found
 

@@ -5,26 +5,24 @@ import numpy as np
 from feederscrew.bowl.devices import Device
 from feederscrew.tooling import chain
 from feederscrew.tooling.hanging import neck
-from feederscrew.tooling.result import LEAST_SHARE, told, weights
+from feederscrew.tooling.result import told, weights
 from feederscrew.tooling.verdicts import verdict
 
 
-def design(every, shares, wanted, margin):
+def design(given):
     """Return the chain that ends in rails in which an orientation hangs.
 
     Parameters
     ----------
-    every : sequence of Orientation
-    shares : (M,) float [1]
-    wanted : int
-    margin : float [m]
-        To either side; the slot is wider than the shank and narrower than the head by as much at least.
+    given : DesignTask
+        The slot is wider than the shank and narrower than the head by its margin at least.
 
     Returns
     -------
     Design or None
         None where the part has no head, lies elsewhere than over the slot, or others are left over.
     """
+    every, wanted, margin = given.every, given.wanted, given.margin
     device = _between(every[wanted], margin)
     if device is None or every[wanted].falls_off:
         return None
@@ -33,29 +31,29 @@ def design(every, shares, wanted, margin):
     if not same[wanted]:
         return None
     margins = np.array([one.margin for one in found])
-    gone = (margins <= -margin) | np.array([one.falls_off for one in every])
+    gone = (margins <= -margin) | ~given.stays | (given.coming <= 0.0)
     before = chain.candidates(every, wanted, margin)
-    devices = chain.fewest(before, np.where(gone | same, 0.0, weights(every, shares)), margin)
+    devices = chain.fewest(before, np.where(gone | same, 0.0, weights(given)), margin)
     must = [some & ~gone & ~same for some in chain.shared_out(before, devices, margin)]
     cuts = chain.placed(every, wanted, devices, must)
     returned = np.any([gone, *must], axis=0)
-    if np.any(~returned & ~same & (shares >= LEAST_SHARE)):
+    if np.any(~returned & ~same & given.often):
         return None
     last = chain.judged(every, wanted, device, margins <= -margin, *_ends(every[wanted], device))
-    return told(every, shares, wanted, (*cuts, last), returned, margin, same)
+    return told(given, (*cuts, last), returned, same)
 
 
 def _between(one, margin):
     """Rails about the foot of the centre of mass, midway between shank and head; None without a head."""
     found = neck(one)
-    if found is None or found[1] - found[0] < 2.0 * margin:
+    if found is None or found.head - found.shank < 2.0 * margin:
         return None
-    return _rails(one, 0.5 * sum(found))
+    return _rails(one, 0.5 * (found.shank + found.head))
 
 
 def _ends(one, device):
-    shank, head = neck(one)
-    return tuple(_rails(one, width) or device for width in (shank, head))
+    found = neck(one)
+    return tuple(_rails(one, width) or device for width in (found.shank, found.head))
 
 
 def _rails(one, width):

@@ -1,11 +1,13 @@
-"""What a design of tooling says, from the true verdicts of its cuts."""
+"""What a design of tooling says, from what the whole chain does with every orientation."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew.bowl.devices import Device
 from feederscrew.tooling import apart
 from feederscrew.tooling.chain import Cut
+from feederscrew.tooling.course import course
 
 LEAST_SHARE = 5e-3  # [1] orientations that come less often need not be returned
 
@@ -16,70 +18,116 @@ class Design:
 
     wanted: int  # its place among the orientations
     isolated: bool  # all others that come often enough are returned, to either side by the margin
+    before: tuple[Device, ...]  # devices of the bowl itself, which parts meet first
     cuts: tuple[Cut, ...]  # in the order parts meet them
     margin: float  # [m] the least, of passing and of returning; NaN without any device
     efficiency: float  # [1] share of the parts offered that leave in this orientation
     purity: float  # [1] share of what leaves that is in this orientation
-    left_over: tuple[str, ...]  # orientations that leave as well
+    left_over: tuple[str, ...]  # what leaves as well
     reasons: tuple[str, ...]  # why, a sentence each
+    late: bool = False  # the time limit stopped the search: another machine may find more
+
+    @property
+    def devices(self):
+        """Every device along the track: those of the bowl, then the design's own."""
+        return (*self.before, *(cut.device for cut in self.cuts))
 
 
-def weights(every, shares):
+@dataclass(frozen=True, eq=False)
+class DesignTask:
+    """One orientation to be isolated behind some devices; M orientations."""
+
+    every: tuple  # of Orientation
+    shares: np.ndarray  # (M,) [1] probability of each
+    wanted: int
+    margin: float  # [m] to either side
+    purity: float  # [1] of what leaves, that is enough
+    before: tuple[Device, ...]  # of the bowl
+    coming: np.ndarray  # (M,) [1] share that comes to the design lying so
+    turners: tuple[Cut, ...] = ()  # turning devices of the design, before all that return
+
+    @property
+    def stays(self):
+        """(M,) bool, whether the bare track carries it."""
+        return np.array([not one.falls_off for one in self.every])
+
+    @property
+    def often(self):
+        """(M,) bool, whether it comes often enough to matter."""
+        return self.coming >= LEAST_SHARE
+
+    @property
+    def allowed(self):
+        """Share of others [1] that may leave as well."""
+        return float(self.coming[self.wanted] * (1.0 / self.purity - 1.0))
+
+
+def task(every, shares, wanted, margin, purity, before, turners=()):
+    """Return what a design has to do behind the devices of the bowl and its own turning devices."""
+    every = tuple(every)
+    flow = course((*before, *(cut.device for cut in turners)), every)
+    coming = (shares[:, None] * flow.leaving).sum(axis=0)[: len(every)]
+    return DesignTask(every, shares, wanted, margin, purity, tuple(before), coming, tuple(turners))
+
+
+def weights(given):
     """Return how much it matters to return each orientation (M,): those that come often enough first."""
-    stays = np.array([not one.falls_off for one in every])
-    return np.where(stays, np.where(shares >= LEAST_SHARE, 1.0 + shares, 1e-3 * shares), 0.0)
+    weight = np.where(given.often, 1.0 + given.coming, 1e-3 * given.coming)
+    return np.where(given.stays, weight, 0.0)
 
 
-def told(every, shares, wanted, cuts, returned, margin, same=None, allowed=0.0):
-    """Return the record of a chain, its purity from the true verdicts of every cut.
+def told(given, cuts, returned, same=None, late=False):
+    """Return the record of a chain, by what all of its devices do with every orientation.
 
     Parameters
     ----------
-    every : sequence of Orientation
-    shares : (M,) float [1]
-    wanted : int
+    given : DesignTask
     cuts : sequence of Cut
+        Without turning devices.
     returned : (M,) bool
         Which are returned by the margin.
-    margin : float [m]
     same : (M,) bool, optional
         Which leave like the wanted one, hanging; only itself without it.
-    allowed : float [1]
-        Share of others that may leave as well.
+    late : bool
+        Whether the time limit stopped the search.
 
     Returns
     -------
     Design
     """
+    every, shares, wanted = given.every, given.shares, given.wanted
     same = np.arange(len(every)) == wanted if same is None else same
-    names = [one.name for one in every]
-    gone = np.array([any(name in cut.returns for cut in cuts) for name in names])
-    gone |= np.array([one.falls_off for one in every])
-    gone[wanted] = False
-    total, leaving, good = shares.sum(), shares[~gone].sum(), shares[same & ~gone].sum()
-    left = [k for k in np.flatnonzero(~returned & ~same) if shares[k] >= LEAST_SHARE]
+    cuts = (*given.turners, *cuts)
+    flow = course((*given.before, *(cut.device for cut in cuts)), every)
+    state = flow.leaves_as(wanted)
+    out = (shares[:, None] * flow.leaving).sum(axis=0)
+    total, leaving = shares.sum(), out.sum()
+    left = [k for k in np.flatnonzero(~returned & ~same) if given.often[k]]
     margins = [end for cut in cuts for end in (cut.margin_pass, cut.margin_reject) if np.isfinite(end)]
     return Design(
         wanted=wanted,
-        isolated=not left or bool(shares[left].sum() <= allowed),
+        isolated=not left or bool(given.coming[left].sum() <= given.allowed),
+        before=given.before,
         cuts=cuts,
         margin=float(min(margins, default=np.nan)),
-        efficiency=float(good / total) if total > 0.0 else 0.0,
-        purity=float(good / leaving) if leaving > 0.0 else np.nan,
-        left_over=tuple(names[k] for k in np.flatnonzero(~gone & ~same)),
-        reasons=tuple(apart.reason(every[wanted], every[k], margin) for k in left),
+        efficiency=float(out[state] / total) if total > 0.0 else 0.0,
+        purity=float(out[state] / leaving) if leaving > 0.0 else np.nan,
+        left_over=tuple(one.name for k, one in enumerate(flow.states) if out[k] > 0.0 and k != state),
+        reasons=tuple(apart.reason(every[wanted], every[k], given.margin) for k in left),
+        late=late,
     )
 
 
-def without(every, shares, wanted, why):
+def without(given, why):
     """Return the record of an orientation that nothing isolates, and why."""
     return Design(
-        wanted=wanted,
+        wanted=given.wanted,
         isolated=False,
+        before=given.before,
         cuts=(),
         margin=np.nan,
         efficiency=0.0,
         purity=np.nan,
         left_over=(),
-        reasons=(f"{every[wanted].name} {why}",),
+        reasons=(f"{given.every[given.wanted].name} {why}",),
     )

@@ -10,7 +10,8 @@ import shapely
 from feederscrew.bowl.devices import KINDS
 from feederscrew.errors import ConfigError
 from feederscrew.tooling import foot as feet
-from feederscrew.tooling.hanging import hanging_margin
+from feederscrew.tooling import turning
+from feederscrew.tooling.hanging import Hanging, hanging_margin
 
 CLOSE = 1e-9  # [m] a part this much over a limit still passes
 FAR = 10.0  # [m] an opening goes on so far below the track and behind the wall
@@ -24,14 +25,15 @@ class Verdict:
     margin: float  # [m] by which it passes, negative: by which it fails; NaN of a measured share
     shift: float = 0.0  # [rad] of the device from the foot's radial line where the margin is least
     hangs: bool = False  # whether it goes on hanging by the head
+    onto: tuple[tuple[int, float], ...] = ()  # orientations it goes on in, with their shares; () as it is
 
 
 @dataclass(frozen=True)
 class Judge:
     """How one kind of device is judged and drawn."""
 
-    verdict: Callable  # (device, orientation, all orientations) -> (margin [m], shift [rad])
-    picture: str  # what of the orientation a picture shows: 'side', 'above', 'ahead' or ''
+    verdict: Callable | None  # (device, orientation, all) -> (margin [m], shift [rad]); None: its own way
+    picture: str  # what of the orientation a picture shows: 'side', 'above', 'ahead', 'turned' or ''
     cut: bool  # whether it is cut out of the track
 
 
@@ -60,9 +62,33 @@ def verdict(device, one, every=(), sigma=0.0):
     if device.kind == "yield":
         shares = {name.casefold(): share for name, share in device.shares}
         return Verdict(shares.get(one.aspect.casefold(), 1.0), math.nan)
+    if KINDS[device.kind].turns:
+        return _turned(device, one, every, sigma)
     margin, shift = JUDGES[device.kind].verdict(device, one, every)
-    hangs = device.kind == "rails" and margin >= 0.0 and _slot(device, one, every)[0] < 0.0
+    hangs = not isinstance(one, Hanging) and _hangs(device, one, margin)
     return Verdict(share(margin, sigma), float(margin), float(shift), hangs)
+
+
+def _turned(device, one, every, sigma):
+    """What a step or a ledge does: every part goes on, some of them turned over."""
+    every = tuple(every)
+    here = next((k for k, other in enumerate(every) if other is one), None)
+    if here is None:
+        raise ValueError(f"{one.name} is not one of the orientations")
+    if device.kind == "step":
+        turned, margin = turning.share_over_step(one, every, device.limit)
+        onto = turning.pitched(one, every).onto if turned > 0.0 else here
+    else:
+        margin, _ = _balcony(device, one, every)
+        turned, margin = 1.0 - share(margin, sigma), abs(margin)
+        onto = turning.rolled(one, every).onto if turned > 0.0 else here
+    shares = ((here, 1.0 - turned), (onto, turned))
+    return Verdict(1.0, float(margin), onto=tuple((place, part) for place, part in shares if part > 0.0))
+
+
+def _hangs(device, one, margin):
+    """Whether rails that an orientation passes let it down by its shank."""
+    return device.kind == "rails" and margin >= 0.0 and _slot(device, one, ())[0] < 0.0
 
 
 def share(margin, sigma):
@@ -101,6 +127,8 @@ def _slot(device, one, every):
 
 
 def _rails(device, one, every):
+    if isinstance(one, Hanging):
+        return one.over(device.span), 0.0
     over, _ = _slot(device, one, every)
     held = hanging_margin(one, device.span[1] - device.span[0]) if over < 0.0 else -np.inf
     return (min(held, -over) if held > 0.0 else over), 0.0
@@ -164,6 +192,8 @@ JUDGES = {
     "rails": Judge(_rails, "above", True),
     "cut_out": Judge(_cut_out, "above", True),
     "profile": Judge(_profile, "ahead", False),
+    "step": Judge(None, "turned", False),
+    "tip": Judge(None, "turned", False),
     "yield": Judge(None, "", False),
 }
 if set(JUDGES) != set(KINDS):

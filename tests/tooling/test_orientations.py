@@ -126,7 +126,7 @@ def test_a_headed_pin_has_a_neck():
     found = [one for one in lying(pin) if one.length > 0.02]
     assert found
     for one in found:
-        thin, wide = neck(one)
+        thin, wide = neck(one).shank, neck(one).head
         assert thin == pytest.approx(0.004, rel=0.02)
         assert wide == pytest.approx(0.010, rel=0.02)
     assert neck(pick(lying(shapes.box(20, 12, 5)), 0.005, 0.020)) is None

@@ -142,7 +142,7 @@ def laid(found, heading=None):
             what = "the part falls off the track in every heading"
             raise FeederError(f"aspect {found.aspect}", what, "give a wider track, or another aspect")
         return int(np.argmin(found.falls_off))
-    row = _settled(found, heading)
+    row = settled(found, heading)
     if found.falls_off[row]:
         what = f"the part needs {1e3 * found.widths[row]:.4g} mm of track and falls off"
         where = f"aspect {found.aspect}, heading {np.degrees(found.headings[row]):.4g} deg"
@@ -150,8 +150,8 @@ def laid(found, heading=None):
     return row
 
 
-def _settled(found, heading):
-    """The row whose range of headings holds one; on a border the one nearer in heading."""
+def settled(found, heading):
+    """Return the row whose range of headings [rad] holds one; on a border the one nearer in heading."""
     lowest, width = found.ranges.T
     beyond = np.mod(heading - lowest, 2.0 * np.pi) - width
     middle = _apart(lowest + 0.5 * width, heading)

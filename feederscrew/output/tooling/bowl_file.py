@@ -1,6 +1,7 @@
 """A bowl file with the devices of a design, which every command reads back."""
 
-from feederscrew.bowl.devices import SECTION
+from feederscrew.bowl.devices import KINDS, SECTION
+from feederscrew.tooling.chain import millimetres
 
 
 def bowl_file(study, settings):
@@ -23,8 +24,21 @@ def bowl_file(study, settings):
         lines += [f"{section}:"]
         lines += [f"  {s.key.word}: {s.text}" for s in given if s.key.section == section]
     lines += [f"{SECTION}:  # along the track, in the order parts meet them"]
-    lines += [f"  - {cut.device.kind}: {cut.device.text}" for cut in study.design.cuts]
+    lines += [f"  - {device.kind}: {_value(device)}" for device in study.design.before]
+    lines += [f"  - {cut.device.kind}: {cut.device.text}{_mark(cut)}" for cut in study.design.cuts]
     return "\n".join(lines) + "\n"
+
+
+def _value(device):
+    """The value of one of the bowl's own devices; a hole from a drawing with its corners, as files move."""
+    if not device.corners:
+        return device.text
+    return f"[{', '.join(f'[{millimetres(x)}, {millimetres(y)}]' for x, y in device.corners)}]"
+
+
+def _mark(cut):
+    """What is not certain of a device."""
+    return "  # quasi-static, until a trial confirms it" if KINDS[cut.device.kind].turns else ""
 
 
 def _head(study):

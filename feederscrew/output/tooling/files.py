@@ -27,7 +27,7 @@ def offers(study, settings):
         offer.document("tooling.json", tables.document, study),
         offer.picture("tooling.png", "Orientations and what isolates them", picture, study),
     ]
-    if study.design is None or not study.design.cuts:
+    if study.design is None or not study.design.devices:
         return found
     return [
         *found,
@@ -42,7 +42,7 @@ def picture(study):
     """Return the figure of a study: the chain of the orientation asked for, or all with their limits."""
     from feederscrew.output.tooling import figures
 
-    if study.design is None or not study.design.cuts:
+    if study.design is None or not study.design.devices:
         return figures.limits(study)
     return figures.chain(_devices(study), study.orientations, study.shares, study.wanted)
 
@@ -90,4 +90,4 @@ def _strip(study):
 
 
 def _devices(study):
-    return [cut.device for cut in study.design.cuts]
+    return study.design.devices

@@ -2,11 +2,13 @@
 
 import numpy as np
 
+from feederscrew.bowl.devices import KINDS
 from feederscrew.output import columns, tables
 from feederscrew.units import factor
 
 MM, DEG = factor("mm", "length"), factor("deg", "angle")
 HIDDEN = ("reasons",)
+QUASI_STATIC = "quasi-static, until a trial confirms it"
 
 
 def document(study):
@@ -26,7 +28,9 @@ def document(study):
         "isolated": study.design.isolated,
         "efficiency": study.design.efficiency,
         "purity": study.design.purity,
+        "before": [f"{device.kind}: {device.text}" for device in study.design.before],
         "chain": [_cut(cut) for cut in study.design.cuts],
+        "quasi_static": [cut.device.kind for cut in study.design.cuts if KINDS[cut.device.kind].turns],
         "reasons": list(study.design.reasons),
     }
 
@@ -68,7 +72,7 @@ def summary(study):
             "margin_reject_mm": cut.margin_reject / MM,
             "smallest": cut.smallest.text,
             "largest": cut.largest.text,
-            "returns": " ".join(cut.returns),
+            "returns": " ".join(cut.returns) or _turns(cut),
         }
         for cut in study.design.cuts
     ]
@@ -89,8 +93,6 @@ def remarks(study, efficiency=0.0):
         f"{one.name} {said}: {100.0 * found.efficiency:.3g} % of the parts offered leave so, "
         f"{100.0 * found.purity:.4g} % of what leaves"
     )
-    if found.efficiency < efficiency:
-        lead += f"; {100.0 * efficiency:.3g} % are asked for: see the others without --aspect"
     return [lead, *found.reasons]
 
 
@@ -163,7 +165,27 @@ def _cut(cut):
         "largest": _value(cut.largest),
         "returns": list(cut.returns),
         "text": cut.device.text,
+        **_turned(cut),
     }
+
+
+def _turned(cut):
+    """What a turning device does, and how sure that is; nothing of any other."""
+    if not KINDS[cut.device.kind].turns:
+        return {}
+    return {
+        "turns": [{"from": start, "to": end, "share": share} for start, end, share in cut.turns],
+        "basis": QUASI_STATIC,
+    }
+
+
+def _turns(cut):
+    """'turns A@0 to C@90 (80 %)': what a turning device does, for people."""
+    told = [
+        f"{start} to {end}" + ("" if share > 0.9995 else f" ({100.0 * share:.3g} %)")
+        for start, end, share in cut.turns
+    ]
+    return f"turns {', '.join(told)}; {QUASI_STATIC}" if told else ""
 
 
 def _value(device):

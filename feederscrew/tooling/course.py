@@ -1,0 +1,136 @@
+"""What becomes of every orientation along a chain of devices: one matrix a device."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.bowl.devices import beyond_rails
+from feederscrew.tooling import contact
+from feederscrew.tooling.hanging import Hanging, hung
+from feederscrew.tooling.orientations import Orientation
+from feederscrew.tooling.verdicts import Verdict, verdict
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """Parts along a chain of D devices; M orientations that lie, S states with those that hang as well."""
+
+    states: tuple[Orientation, ...]  # (S,) the M orientations, then what hangs between rails
+    verdicts: tuple[tuple[Verdict | None, ...], ...]  # (D, S) None for a state that none is in yet
+    matrices: np.ndarray  # (D, S, S) [1] share that goes on from a row's state in a column's
+    starts: np.ndarray  # (M,) [1] share that the bare track carries
+
+    @cached_property
+    def leaving(self):
+        """(M, S) [1] share of each orientation that leaves in each state."""
+        return check.frozen(self._reached[-1])
+
+    @cached_property
+    def passes(self):
+        """(M, 1 + D) [1] share that the track and each device let on, of those that come to it."""
+        reached, found = self._reached, [self.starts]
+        for step, matrix in enumerate(self.matrices):
+            there, on = reached[step].sum(axis=1), reached[step + 1].sum(axis=1)
+            alone = matrix[: len(self.starts)].sum(axis=1)
+            found.append(np.where(there > 0.0, on / np.where(there > 0.0, there, 1.0), alone))
+        return check.frozen(np.column_stack(found))
+
+    @cached_property
+    def margins(self):
+        """(M, 1 + D) [m] by which most of it passes or fails each device; NaN: not known."""
+        rows, reached = np.arange(len(self.starts)), self._reached
+        found = [np.full(len(rows), np.nan)]
+        for step, told in enumerate(self.verdicts):
+            most = np.where(reached[step].sum(axis=1) > 0.0, reached[step].argmax(axis=1), rows)
+            found.append(np.array([np.nan if told[k] is None else told[k].margin for k in most]))
+        return check.frozen(np.column_stack(found))
+
+    def leaves_as(self, row):
+        """Return the state in which an orientation is fed: its own, or how it hangs if none leaves lying."""
+        becomes = int(self.leaving[row].argmax())
+        return row if self.leaving[:, row].any() or becomes < len(self.starts) else becomes
+
+    @cached_property
+    def _reached(self):
+        """(1 + D) arrays (M, S) [1]: share of each orientation that comes on in each state."""
+        reached = [self.starts[:, None] * np.eye(len(self.starts), len(self.states))]
+        for matrix in self.matrices:
+            reached.append(np.einsum("ms,st->mt", reached[-1], matrix))
+        return reached
+
+
+def course(devices, every, sigma=0.0):
+    """Return what becomes of every orientation along a chain of devices.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+        In the order parts meet them.
+    every : sequence of Orientation
+        Of the part.
+    sigma : float [m]
+        Standard deviation of play and tolerance together, of every device.
+
+    Returns
+    -------
+    Course
+
+    Raises
+    ------
+    ConfigError
+        If a device behind rails means nothing to parts that hang.
+    """
+    for fault in beyond_rails(devices):
+        raise fault
+    every = tuple(every)
+    states, here = list(every), list(every)  # `here`: as they are at this device, a slot below them or not
+    verdicts, ways = [], []
+    for device in devices:
+        told = [verdict(device, one, every, sigma) for one in here]
+        ways.append([_way(device, k, one, found, states) for k, (one, found) in enumerate(zip(here, told))])
+        verdicts.append(told)
+        here = here + states[len(here) :]
+        if device.kind == "rails":
+            here = [astride(one, device.span) for one in here]
+    return Course(
+        states=tuple(states),
+        verdicts=tuple(tuple(told + [None] * (len(states) - len(told))) for told in verdicts),
+        matrices=check.frozen(_matrices(ways, len(states))),
+        starts=check.frozen(np.array([0.0 if one.falls_off else 1.0 for one in every])),
+    )
+
+
+def _way(device, place, one, found, states):
+    """Where a state goes on from a device: (place, share) of what passes; new hanging states are added."""
+    if found.onto:
+        return [(onto, share) for onto, share in found.onto if not states[onto].falls_off]
+    if not found.hangs:
+        return [(place, found.passes)]
+    known = [other for other in states if isinstance(other, Hanging)]
+    down = hung(one, device.span, known)
+    if down not in states:
+        states.append(down)
+    return [(states.index(down), found.passes)]
+
+
+def _matrices(ways, count):
+    out = np.zeros((len(ways), count, count))
+    for matrix, rows in zip(out, ways):
+        for place, row in enumerate(rows):
+            for onto, share in row:
+                matrix[place, onto] += share
+    return out
+
+
+def astride(one, span):
+    """Return an orientation over the rails' slot, which goes on: lying, it stands on what is beside it."""
+    if isinstance(one, Hanging) or one.falls_off:
+        return one
+    foot = contact.beside(one.foot, span, one.distance, one.track.radius)
+    if not len(foot.corners):  # it fell
+        return one
+    over = replace(one)
+    vars(over)["foot"] = foot  # a cached property of its own
+    return over
