@@ -10,6 +10,7 @@ from feederscrew.tooling.foot import BEHIND, Footprint
 TOUCHING = 2e-4  # of the part's size: what is lower than that over the track touches it
 SUNK = 0.03  # of the centre of mass's height: how much of a rolling part's underside counts as its foot
 SLIVER = 1e-6  # of the part's size squared: smaller areas and holes of them are leftovers of rounding
+CHORD = 2e-7  # [m] by which the edge of a slot may be seen too flat
 PLAIN = 1e-4  # of the part's size: corners that stand out by less are left out
 
 
@@ -133,7 +134,9 @@ def ring(span, distance, radius, reach):
     -------
     shapely Polygon
     """
-    turn = np.linspace(-1.0, 1.0, 2001) * min(reach / max(radius - span[1], 0.1 * radius), 0.999 * np.pi)
+    most = min(reach / max(radius - span[1], 0.1 * radius), 0.999 * np.pi)
+    count = 2 + int(2.0 * most * np.sqrt(radius / (8.0 * CHORD)))
+    turn = np.linspace(-most, most, count)
     sides = [radius - span[0] + BEHIND * (span[0] <= 0.0), max(radius - span[1], 0.0)]
     middle = radius - distance
     sides = [np.column_stack([r * np.sin(turn), middle - r * np.cos(turn)]) for r in sides]

@@ -7,7 +7,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.geometry import vectors
-from feederscrew.geometry.polygons import cross, outline, sides, turned
+from feederscrew.geometry.polygons import cross, outline, sides
 from feederscrew.tooling import contact
 from feederscrew.tooling.foot import Footprint
 from feederscrew.tooling.orientations import Orientation
@@ -83,11 +83,10 @@ def neck(one):
     Neck or None
         None where no end is wider than the rest of the part, or its long axis does not lie along the track.
     """
-    turn = _long_axis(one.outline)
-    tilt = _tilt(one.posture.inertia, one.heading - turn)
-    if abs(tilt) > STEEP or abs(np.sin(turn)) > np.sin(STEEP):
+    axis = _axis(one)
+    if abs(axis[2]) > np.sin(STEEP) or abs(axis[1]) > np.sin(STEEP) * np.hypot(axis[0], axis[1]):
         return None
-    places, widths = _widths(one, turn, tilt)
+    places, widths = _widths(one, axis)
     found = []
     for sign, along, across in ((1.0, places, widths), (-1.0, -places[::-1], widths[::-1])):
         for k in range(1, len(across)):
@@ -98,8 +97,8 @@ def neck(one):
     step, shank, head, sign = max(found, default=(0.0, 0.0, 0.0, 1.0))
     if not step > 0.0:
         return None
-    axis = sign * np.array([np.cos(tilt) * np.cos(turn), np.cos(tilt) * np.sin(turn), np.sin(tilt)])
-    return Neck(float(shank), float(head), check.frozen(np.einsum("ij,i->j", one.axes, axis)))
+    down = np.einsum("ij,i->j", one.axes, sign * axis)
+    return Neck(float(shank), float(head), check.frozen(down))
 
 
 def hanging_margin(one, width):
@@ -188,31 +187,33 @@ def _underside(points, faces, middle, half):
     return float(np.concatenate(heights).min())
 
 
-def _widths(one, turn, tilt):
-    """Places along the long axis from the foot (N,) [m], and the part's width there (N,) [m]."""
-    points, faces = one.posture.surface, one.posture.solid.faces
-    plan = turned(points[:, :2], one.heading - turn)
-    along = np.cos(tilt) * plan[:, 0] + np.sin(tilt) * (points[:, 2] - one.posture.height)
-    plan = np.column_stack([along, plan[:, 1]])
+def _axis(one):
+    """The part's own long axis (3,) in the track's axes: the principal one nearest to that of its outline."""
+    turn = _long_axis(one.outline)
+    near = np.array([np.cos(turn), np.sin(turn), 0.0])
+    _, found = vectors.eigen(one.posture.solid.inertia)
+    found = vectors.product(found.T, one.axes.T)
+    best = found[np.argmax(np.round(np.abs(vectors.product(found, near)), 9))]
+    return best if best[0] > 0.0 else -best
+
+
+def _widths(one, axis):
+    """Places along an axis from the centre of mass (N,) [m], and the part's level width there (N,) [m]."""
+    solid = one.posture.solid
+    points = vectors.product(solid.vertices - solid.centre_of_mass, one.axes.T)
+    across = vectors.unit(np.array([-axis[1], axis[0], 0.0]))
+    along, level = vectors.product(points, axis), vectors.product(points, across)
+    faces = solid.faces
     ends = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     ends = np.unique(ends, axis=0)
-    a, b = plan[ends[:, 0]], plan[ends[:, 1]]
-    low, high = plan[:, 0].min(), plan[:, 0].max()
-    places = low + (np.arange(SLICES) + 0.5) / SLICES * (high - low)
-    rise = b[:, 0] - a[:, 0]
-    crossed = (a[:, 0] > places[:, None]) != (b[:, 0] > places[:, None])
-    share = (places[:, None] - a[:, 0]) / np.where(rise == 0.0, 1.0, rise)
-    y = a[:, 1] + share * (b[:, 1] - a[:, 1])
+    a, b = along[ends[:, 0]], along[ends[:, 1]]
+    places = along.min() + (np.arange(SLICES) + 0.5) / SLICES * np.ptp(along)
+    rise = b - a
+    crossed = (a > places[:, None]) != (b > places[:, None])
+    share = (places[:, None] - a) / np.where(rise == 0.0, 1.0, rise)
+    y = level[ends[:, 0]] + share * (level[ends[:, 1]] - level[ends[:, 0]])
     top, bottom = np.where(crossed, y, -np.inf).max(axis=1), np.where(crossed, y, np.inf).min(axis=1)
     return places, np.maximum(top - bottom, 0.0)
-
-
-def _tilt(inertia, turn):
-    """How far the long axis rises [rad], from the inertia in the vertical plane along it."""
-    c, s = np.cos(turn), np.sin(turn)
-    along = c * c * inertia[0, 0] - 2.0 * c * s * inertia[0, 1] + s * s * inertia[1, 1]
-    mixed = c * inertia[0, 2] - s * inertia[1, 2]
-    return 0.5 * float(np.arctan2(-2.0 * mixed, inertia[2, 2] - along))
 
 
 def _long_axis(outline):

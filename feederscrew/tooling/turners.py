@@ -8,12 +8,13 @@ from feederscrew.bowl.devices import Device
 from feederscrew.tooling import turning
 from feederscrew.tooling.chain import WHERE, Cut, millimetres
 from feederscrew.tooling.course import course
+from feederscrew.tooling.result import LEAST_SHARE
 from feederscrew.tooling.verdicts import verdict
 
 ROUND = 1e-4  # [m] to which a height or width is rounded
 MORE = 1.05  # a chain is tried if it brings so many times what the best shorter one does
 TRIED = 4  # chains of each length
-HIGHEST = 2.0  # of the part's greatest length: no higher step
+HIGHEST = 1.0  # of the part's greatest length: over a higher step it tumbles freely
 
 
 def chains(given):
@@ -46,29 +47,41 @@ def _devices(given):
     """Steps and ledges, one between each two values at which what they do changes."""
     every = given.every
     often = [one for one, some in zip(every, given.often & given.stays) if some]
-    longest = max(max(one.length, one.width, one.height) for one in often) if often else 0.0
-    turns = [turning.pitched(one, every) for one in often]
-    heights = {end for turn in turns for end in (turn.lift, turn.sure)}
-    made = [Device("step", WHERE, limit=limit) for limit in _between(heights, HIGHEST * longest)]
-    widths = {one.balcony for one in often if np.isfinite(one.balcony)}
-    made += [Device("tip", WHERE, limit=limit) for limit in _between(widths, 0.0)]
-    return [Device(one.kind, WHERE, limit=one.limit, text=millimetres(one.limit)) for one in made]
+    longest = max((max(one.length, one.height) for one in often), default=0.0)
+    made = [_device(kind, one) for kind in ("step", "tip") for one in _between(_changes(given, kind))]
+    return [one for one in made if one.kind == "tip" or one.limit <= HIGHEST * longest]
 
 
-def _between(values, most):
-    """Rounded middles between values, and one above them all where it may be that much."""
-    known = sorted(values)
+def _changes(given, kind):
+    """Values [m] at which a device changes what it does with an orientation that comes often, ascending."""
+    often = [one for one, some in zip(given.every, given.often & given.stays) if some]
+    if kind == "tip":
+        return sorted({one.balcony for one in often if np.isfinite(one.balcony)})
+    turns = [turning.pitched(one, given.every) for one in often]
+    return sorted({end for turn in turns for end in (turn.lift, turn.sure)})
+
+
+def _between(known):
+    """Rounded middles between ascending values, and one above them all."""
     middles = [0.5 * (low + high) for low, high in itertools.pairwise(known)]
-    middles += [1.1 * known[-1]] if known and 1.1 * known[-1] < most else []
+    middles += [1.1 * known[-1]] if known else []
     return sorted({round(round(one / ROUND) * ROUND, 9) for one in middles if one > 2.0 * ROUND})
 
 
+def _device(kind, limit):
+    return Device(kind, WHERE, limit=float(limit), text=millimetres(limit))
+
+
 def _sure(given, device):
-    """Whether the wanted orientation, if it comes often, stays or turns by the margin."""
-    one = given.every[given.wanted]
-    if one.falls_off or not given.often[given.wanted]:
-        return not one.falls_off
-    return verdict(device, one, given.every).margin >= given.margin
+    """Whether a device does by the margin what it does: a step with the wanted orientation, a ledge with all.
+
+    The share that a step turns over of the others is known where it is not all or none.
+    """
+    asked = given.often & given.stays
+    if device.kind == "step":
+        asked &= np.arange(len(asked)) == given.wanted
+    some = [one for one, often in zip(given.every, asked) if often]
+    return all(verdict(device, one, given.every).margin >= given.margin for one in some)
 
 
 def _matrix(given, device):
@@ -83,6 +96,13 @@ def _brought(given, matrices):
     return float(share[given.wanted])
 
 
+def _around(known, limit):
+    """The values nearest to a limit at which what its device does changes; itself where there is none."""
+    below = [one for one in known if one <= limit]
+    above = [one for one in known if one >= limit]
+    return max(below, default=limit), min(above, default=limit)
+
+
 def _cuts(given, devices):
     """Turning devices as cuts of a design, the second with what the first brings to it."""
     cuts, coming = [], given.coming
@@ -92,16 +112,17 @@ def _cuts(given, devices):
             (given.every[k].name, given.every[onto].name, float(share))
             for k, one in enumerate(told)
             for onto, share in one.onto
-            if onto != k and coming[k] > 0.0
+            if onto != k and coming[k] >= LEAST_SHARE
         ]
-        turned = [one.margin for k, one in enumerate(told) if coming[k] > 0.0 and one.onto[0][0] != k]
+        often = [one.margin for one, share in zip(told, coming) if share >= LEAST_SHARE]
+        below, above = _around(_changes(given, device.kind), device.limit)
         cuts.append(
             Cut(
                 device=device,
-                margin_pass=float(told[given.wanted].margin) if coming[given.wanted] > 0.0 else np.nan,
-                margin_reject=float(min((one for one in turned if one > 0.0), default=np.nan)),
-                smallest=device,
-                largest=device,
+                margin_pass=float(min((one for one in often if one >= given.margin), default=np.nan)),
+                margin_reject=np.nan,
+                smallest=_device(device.kind, below),
+                largest=_device(device.kind, above),
                 returns=(),
                 turns=tuple(moved),
             )

@@ -5,10 +5,13 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl.devices import Device
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
+from feederscrew.output.tooling import bowl_file
 from feederscrew.rates import queue
 from feederscrew.resting.aspects import find
+from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling import cutting
 from feederscrew.tooling.design import design, place
@@ -134,3 +137,36 @@ def test_a_purity_that_is_enough_makes_a_shorter_chain(bracket):
     assert part.isolated
     assert 0.3 <= part.purity <= whole.purity + 1e-12
     assert part.efficiency == pytest.approx(whole.efficiency)
+
+
+def test_the_design_is_found_behind_the_devices_of_the_bowl(bracket, tmp_path):
+    part, _, every, shares = bracket
+    wanted = int(np.argmax([one.canyon for one in every]))
+    before = (Device("wiper", "bowl.yaml:2:3", limit=0.019, text="19 mm"),)
+    found = design(every, shares, wanted, holes=False, before=before)
+    assert not found.cuts and "does not come past" in found.reasons[0]
+    low = max((k for k, one in enumerate(every) if one.height < 0.016), key=lambda k: shares[k])
+    alone, behind = (design(every, shares, low, holes=False, before=some) for some in ((), before))
+    assert behind.devices[0] == before[0]
+    assert "wiper" in [cut.device.kind for cut in alone.cuts]
+    assert "wiper" not in [cut.device.kind for cut in behind.cuts]
+    assert behind.efficiency == pytest.approx(alone.efficiency)
+    path = tmp_path / "bowl.yaml"
+    path.write_text("track: {radius: 150 mm, width: 200 mm}\ndevices:\n  - wiper: 19 mm\n")
+    study = tooling(part, bowls.read(path), every[low].aspect, heading=every[low].heading, verdicts=500)
+    text = bowl_file.bowl_file(study, bowls.settings(path))
+    assert text.count("wiper: 19 mm") == 1
+    path.write_text(text)
+    made = rate(part, bowls.read(path), every[low].aspect, heading=every[low].heading).rate
+    assert made.efficiency == pytest.approx(study.design.efficiency, rel=1e-9)
+    assert made.purity == pytest.approx(study.design.purity, rel=1e-9)
+
+
+def test_the_search_ends_by_a_count_of_verdicts_and_says_when_by_time(bracket):
+    _, _, every, shares = bracket
+    wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
+    search = cutting.Search(verdicts=300)
+    first, second = (design(every, shares, wanted, search=search) for _ in range(2))
+    assert [cut.device for cut in first.cuts] == [cut.device for cut in second.cuts]
+    assert not first.late
+    assert design(every, shares, wanted, search=cutting.Search(until=0.0)).late

@@ -3,6 +3,7 @@
 import numpy as np
 
 from feederscrew import units
+from feederscrew.bowl.devices import KINDS
 from feederscrew.output import columns, tables
 
 PER_MINUTE = units.factor("/min", "rate")
@@ -32,6 +33,7 @@ def document(study):
         "passes_devices": found.through,
         "fill": found.fill,
         "well_oriented_of_leaving": found.purity,
+        "quasi_static": [device.kind for device in study.devices if KINDS[device.kind].turns],
         "orientations": orientations(known, rule),
     }
 
@@ -56,10 +58,16 @@ def orientations(known, rule):
             "width_mm": known.widths / MM,
             f"p_{rule}": known.rules[rule],
             "margin_mm": known.margin / MM,
+            "leaves_as": [_becomes(known, row) for row in range(len(known.aspects))],
             **stations,
             "passes": known.through,
         }
     )
+
+
+def _becomes(known, row):
+    """Name of the state in which most of an orientation leaves; None where it is returned."""
+    return known.states[int(known.leaving[row].argmax())].name if known.leaving[row].any() else None
 
 
 def summary(document):
@@ -85,12 +93,24 @@ def remarks(study):
     found = study.rate
     if found.velocity.value <= 0.0:
         return ["the part does not travel up the track: see feeder convey"]
+    turned = _turned(study.devices)
+    if found.through == 0.0 and found.efficiency > 0.0:
+        return [
+            *turned,
+            "what lands in the wanted orientation is turned or returned; what leaves in it was turned",
+        ]
     if found.through == 0.0:
         stations = zip(found.orientations.stations, found.orientations.passes[found.row])
         return [
             f"the wanted orientation is returned by: {', '.join(name for name, p in stations if p == 0.0)}"
         ]
-    return []
+    return turned
+
+
+def _turned(devices):
+    """What is not certain of the devices."""
+    kinds = [device.kind for device in devices if KINDS[device.kind].turns]
+    return [f"{', '.join(kinds)}: quasi-static, until a trial confirms it"] if kinds else []
 
 
 def _range(name, found, unit):

@@ -1,0 +1,112 @@
+"""Steps and ledges that turn parts over: closed forms of a block, matrices, and chains of them."""
+
+import math
+
+import numpy as np
+import pytest
+import shapes
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from feederscrew import bowl as bowls
+from feederscrew.bowl.devices import KINDS, Device
+from feederscrew.resting.aspects import find
+from feederscrew.tooling import turning
+from feederscrew.tooling.course import course
+from feederscrew.tooling.design import design
+from feederscrew.tooling.orientations import orientations
+
+TRACK = bowls.read(None, ("track.radius=100 m", "track.width=200 mm", "track.bank=0 deg")).track
+A, B, C = 20e-3, 12e-3, 5e-3  # the sides of the block
+LYING = {"length": A, "width": B, "height": C}
+
+
+def block(a=20, b=12, c=5):
+    part = shapes.part(shapes.box(a, b, c))
+    return orientations(part, find(part), TRACK)
+
+
+def pick(every, length, height):
+    return next(
+        k for k, one in enumerate(every)
+        if one.length == pytest.approx(length, rel=1e-6) and one.height == pytest.approx(height, rel=1e-6)
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def lying():
+    return block()
+
+
+def test_a_block_pitches_over_its_leading_edge(lying):
+    one = lying[pick(lying, A, C)]
+    turn = turning.pitched(one, lying)
+    edge = math.hypot(A / 2, C / 2)
+    assert turn.angle == pytest.approx(math.atan2(A, C))
+    assert turn.lift == pytest.approx(edge - C / 2)
+    assert turn.sure == pytest.approx(A * (A / 2) / edge)  # the slope of its foot over the step is that angle
+    assert turn.onto == pick(lying, C, A)
+    ledge = turning.rolled(one, lying)
+    assert ledge.lift == pytest.approx(math.hypot(B / 2, C / 2) - C / 2)
+    assert ledge.onto == pick(lying, A, B)
+
+
+@settings(max_examples=3, deadline=None)
+@given(st.permutations([4.0, 9.0, 17.0]), st.floats(0.5, 3.0))
+def test_a_block_that_pitches_twice_lies_as_before(sides, size):
+    every = block(*(size * side for side in sides))
+    for k, one in enumerate(every):
+        onto = turning.pitched(one, every).onto
+        assert onto != k
+        assert turning.pitched(every[onto], every).onto == k
+        assert every[onto].length == pytest.approx(one.height, rel=1e-6)
+
+
+def test_a_step_is_a_matrix_of_shares_that_grows_with_its_height(lying):
+    heights = [0.1e-3, 1e-3, 4e-3, 8e-3, 15e-3, 25e-3]
+    found = course([Device("step", "test", limit=h) for h in heights], lying)
+    np.testing.assert_allclose(found.matrices.sum(axis=2), 1.0)
+    np.testing.assert_allclose(found.matrices[0], np.eye(len(lying)))  # lower than every barrier
+    stay = np.einsum("dii->di", found.matrices)
+    assert (np.diff(stay, axis=0) <= 1e-12).all()
+    assert not stay[-1].any()
+    k = pick(lying, A, C)
+    turn = turning.pitched(lying[k], lying)
+    share, margin = turning.share_over_step(lying[k], lying, 0.5 * (turn.lift + turn.sure))
+    assert share == pytest.approx(0.5)
+    assert margin == pytest.approx(-0.5 * (turn.sure - turn.lift))
+
+
+def test_a_ledge_turns_what_its_weight_lies_beyond(lying):
+    found = course([Device("tip", "test", limit=4e-3)], lying)
+    for k, one in enumerate(lying):
+        beyond = one.distance > 4e-3
+        assert (found.matrices[0][k, k] == 0.0) == beyond
+        assert found.verdicts[0][k].margin == pytest.approx(abs(one.balcony - 4e-3))
+    soft = course([Device("tip", "test", limit=6.1e-3)], lying, sigma=1e-4).matrices[0]
+    k = pick(lying, A, C)
+    assert soft[k, k] == pytest.approx(0.5 * math.erfc(-1.0 / math.sqrt(2.0)), abs=2e-3)
+
+
+def test_turning_devices_do_not_commute_with_those_that_return(lying):
+    step, wiper = Device("step", "test", limit=19.5e-3), Device("wiper", "test", limit=6e-3)
+    k, up = pick(lying, A, C), pick(lying, C, A)
+    assert course([step, wiper], lying).leaving[k].sum() == 0.0
+    first = course([wiper, step], lying)
+    assert first.leaving[k, up] == pytest.approx(1.0)
+    assert first.passes[up].tolist() == [1.0, 0.0, 1.0]
+    assert first.leaves_as(k) == k  # turned over is not hanging: what is wanted stays what is asked for
+
+
+def test_turning_brings_more_where_returning_wastes(lying):
+    shares = np.array([one.chances["recommended"] for one in lying])
+    wanted = pick(lying, A, B)
+    plain, turned = (design(lying, shares, wanted, holes=False, turn=turn) for turn in (False, True))
+    assert turned.isolated
+    assert turned.efficiency > 1.5 * plain.efficiency
+    assert any(KINDS[cut.device.kind].turns for cut in turned.cuts)
+    flow = course(turned.devices, lying)
+    assert turned.efficiency == pytest.approx((shares * flow.leaving[:, wanted]).sum())
+    short = design(lying, shares, wanted, holes=False, efficiency=0.99)
+    assert "the efficiency asked for is missed by" in short.reasons[-1]
+    assert "--turn allows" in short.reasons[-1]
