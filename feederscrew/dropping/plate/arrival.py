@@ -9,8 +9,9 @@ from feederscrew.dropping.plate import runs
 from feederscrew.dropping.plate.occupancy import Occupancy
 
 LAUNCH = "feed"
-SPELLS = (1.0, 4.0)  # [s] on the floor: the longer one where the shorter decides nothing
-PARTS = 200
+SPELLS = (0.5, 2.0)  # [s] on the floor: the longer one where the shorter decides nothing
+PARTS = 100
+PACE = runs.Pace(coarse=3.0, settling=15.0)  # shares alone are asked for, not velocities: a fifth of the time
 NEAR = 0.05  # [1] of a share: so near to where the rates lead it has arrived
 MOVING = "the shares still change after {:g} s on the floor - how long the parts stay in the bowl decides"
 UNSEEN = "{} of {} parts lie on no aspect while the floor moves - the drive may be too strong for this part"
@@ -59,7 +60,7 @@ def arrival(part, aspects, bowl, *, drops=PARTS, seed=1, jobs=1, progress=None):
     """
     for seconds in SPELLS:
         own = {"drops": drops, "seconds": seconds, "seed": seed, "jobs": jobs, "progress": progress}
-        shaken = runs.test(part, aspects, [bowl], LAUNCH, {}, **own)[0]
+        shaken = runs.test(part, aspects, [bowl], LAUNCH, {}, pace=PACE, **own)[0]
         found = judged(shaken)
         if found.settled or shaken.partial:
             break

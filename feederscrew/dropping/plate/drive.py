@@ -12,7 +12,7 @@ FINER = 2.0  # than the steps of a drop
 SLOW = 0.1  # of the plate's greatest speed upwards: slower contacts do not rebound
 
 
-def floor_of(bowl, length):
+def floor_of(bowl, length, coarse=1.0):
     """The plate that moves as the bowl's floor does; level, its x axis along the drive.
 
     Parameters
@@ -20,6 +20,8 @@ def floor_of(bowl, length):
     bowl : Bowl
     length : float [m]
         Of the part, cube root of its hull's volume.
+    coarse : float [1]
+        By how much steps are longer than those that velocities need.
 
     Returns
     -------
@@ -34,18 +36,18 @@ def floor_of(bowl, length):
         lead=-drive.phase,
         second=drive.second_harmonic,
         second_phase=drive.second_harmonic_phase,
-        step=2.0 * math.pi / rate / PERIOD,
+        step=coarse * 2.0 * math.pi / rate / PERIOD,
     )
 
 
-def steps_of(floor):
-    """Step sizes for a plate: finer than a drop's, and rebounds as slow as its own."""
-    usual = Steps()
+def steps_of(floor, coarse=1.0):
+    """Step sizes for a plate: finer than a drop's unless ``coarse``, and rebounds as slow as its own."""
+    usual, once = Steps(), min(coarse, FINER)
     return usual._replace(
-        flight=usual.flight / FINER,
-        contact=usual.contact / FINER**2,
-        swing=usual.swing / FINER,
-        tolerance=usual.tolerance / FINER,
+        flight=coarse * usual.flight / FINER,
+        contact=coarse * usual.contact / FINER**2,
+        swing=once * usual.swing / FINER,
+        tolerance=once * usual.tolerance / FINER,
         threshold=min(usual.threshold, max(SLOW * floor.up * floor.rate, 1e-4)),
     )
 

@@ -15,8 +15,18 @@ from feederscrew.dropping.shape import shape_of_part
 from feederscrew.resting.tumbling.by_class import ground
 
 USUAL, SECONDS = 400, 5.0  # parts, and how long each is followed [s]
-SETTLING = 30.0  # before the count begins, in units of sqrt(L / g): the launch has died away
 LEAST, MOST = 8, 600  # looks at a part, one a period or one in so many
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How finely and how long a part is followed before it counts."""
+
+    coarse: float = 1.0  # [1] by how much steps are longer than those that velocities need
+    settling: float = 30.0  # [sqrt(L / g)] before the count begins: the launch has died away
+
+
+EXACT = Pace()
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +55,8 @@ class Shaken:
 
 
 def test(
-    part, aspects, bowls, preset, own, *, drops=None, seconds=None, seed=1, jobs=1, progress=None, before=None
+    part, aspects, bowls, preset, own, *, drops=None, seconds=None, seed=1, jobs=1, progress=None, before=None,
+    pace=EXACT,
 ):
     """Put parts on a vibrating plate, one at a time, and follow what they lie on.
 
@@ -67,6 +78,7 @@ def test(
         How long each is followed.
     seed, jobs : int
         As for a drop test.
+    pace : Pace
     before : function, optional
         Called once all inputs are found right, before anything is compiled.
     progress : function, optional
@@ -88,7 +100,7 @@ def test(
     shape, length = shape_of_part(part, found)
     seconds = SECONDS if seconds is None else seconds
     count, results = USUAL if drops is None else drops, []
-    plate = partial(_plate, found, aspects, shape, length, seconds)
+    plate = partial(_plate, found, aspects, shape, length, seconds, pace)
     came = (conditions.launch_of(preset, length, own, bowl.gravity) for bowl in bowls)
     launches = [_surfaced(launch, bowl, own) for launch, bowl in zip(came, bowls)]
     if before:
@@ -117,14 +129,14 @@ def _surfaced(launch, bowl, own):
     return replace(launch, **{key: (value, value) for key, value in surface.items() if own.get(key) is None})
 
 
-def _plate(found, aspects, shape, length, seconds, bowl, launch, count, seed, jobs, progress):
+def _plate(found, aspects, shape, length, seconds, pace, bowl, launch, count, seed, jobs, progress):
     """The test on one plate."""
-    floor, unit = drive.floor_of(bowl, length), np.sqrt(length / bowl.gravity)
+    floor, unit = drive.floor_of(bowl, length, pace.coarse), np.sqrt(length / bowl.gravity)
     period = looks_apart(bowl.drive.frequency, seconds)
     number = max(round(seconds / period), LEAST)
-    looks = (np.ceil(SETTLING * unit / period) + np.arange(number + 1)) * period / unit
+    looks = (np.ceil(pace.settling * unit / period) + np.arange(number + 1)) * period / unit
     starts = sample(launch, shape, count, np.random.default_rng(seed))
-    rides = ride(shape, floor, starts, looks, drive.steps_of(floor), jobs=jobs, progress=progress)
+    rides = ride(shape, floor, starts, looks, drive.steps_of(floor, pace.coarse), jobs=jobs, progress=progress)
     rng = np.random.default_rng((seed, len(rides.faces)))
     seen = occupancy(rides.faces, length * rides.places[:, :, 0], found.rows, len(aspects.names), period, rng)
     return Shaken(
