@@ -15,7 +15,9 @@ SURFACES = click.Choice(["soft", "medium", "hard"])
 )
 @options.launch
 @click.option(
-    "--surface", type=SURFACES, help="What it lands on: p_surface is then the answer.  [default: hard]"
+    "--surface",
+    type=SURFACES,
+    help="What it lands on: p_surface is then the answer.  [default: as the launch]",
 )
 @click.option("--surface-exponent", type=options.Number(-10, 10), help="The same as a number, 0 to about 3.")
 @click.option(
@@ -52,8 +54,7 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     solid = out.part(part)
     exponent = chosen.pop("surface_exponent")
     chosen["surface"] = chosen["surface"] if exponent is None else exponent
-    effective = conditions(solid) | chosen | ({"surface": "hard"} if chosen["surface"] is None else {})
-    with out.folder(solid.name, {solid.source: solid.sha256}, effective) as folder:
+    with out.folder(solid.name, {solid.source: solid.sha256}, conditions(solid) | chosen) as folder:
         study = _study(solid, chosen, out)
         offers.write(folder, files.offers(study, tipping=graph), pictures=pictures)
         out.say(*tables.remarks(study) if folder and pictures else ())

@@ -92,7 +92,8 @@ def find(part, *, as_published=False, unstable=False, exponent=None, launch=reco
     order = _ranked(table, chances["csa"], part, moments)
     named = _named(table, chances, order, _said(groups, hull))
     ground = by_class.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
-    return _answered(_tumbled(named, ground, part, exponent), launch, exponent)
+    weighted = recommended.EXPONENTS[launch] if exponent is None else exponent
+    return _answered(_tumbled(named, ground, part, weighted), launch, exponent)
 
 
 def waits(part):
@@ -104,8 +105,7 @@ def waits(part):
 
 def _tumbled(named, ground, part, exponent):
     """The record with all that exact tumbling adds to it."""
-    hard = surface.EXPONENTS["hard"]
-    more = by_class.exact(ground, part, named, hard if exponent is None else exponent)
+    more = by_class.exact(ground, part, named, exponent)
     doubts = tuple(f"exact tumbling is doubtful: {doubt}" for doubt in more.doubts)
     return replace(
         named,

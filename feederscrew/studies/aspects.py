@@ -105,5 +105,22 @@ def _dropped(part, found, launch, drops, progress):
     from feederscrew.studies.drop import drop
 
     tally = drop(part, launch, drops=drops, progress=progress, aspects=found).result.tally
-    answer = recommended.dropped(tally, found.stable, launch)
-    return AspectsStudy(part, replace(found, recommended=answer), tally)
+    answer, apart = recommended.reconciled(
+        recommended.dropped(tally, found.stable, launch), found.recommended
+    )
+    said = _apart(found, tally, apart)
+    return AspectsStudy(part, replace(found, recommended=answer, warnings=found.warnings + said), tally)
+
+
+def _apart(found, tally, apart):
+    """What a user must know where drop test and closed form disagree by more than both their intervals."""
+    shares = [
+        f"{found.names[k]} {tally.p[k]:.1%} and {found.recommended.p[k]:.1%}" for k in apart.nonzero()[0]
+    ]
+    if not shares:
+        return ()
+    rule = found.recommended.rule.partition(",")[0]
+    return (
+        f"the drop test and the closed form ({rule}) disagree beyond their intervals: {', '.join(shares)} - "
+        "the interval is widened to hold both",
+    )

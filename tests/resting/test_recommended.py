@@ -35,18 +35,27 @@ def test_the_launches_are_those_that_can_be_simulated():
 
 
 def test_the_answer_names_its_rule_and_its_launch():
-    found = recommended.closed_form(chances([0.5, 0.5], csa=[0.7, 0.3]), BOTH, FLAT, "drop")
-    assert (found.rule, found.launch, found.wants_drops) == ("CSA, launch drop", "drop", False)
+    found = recommended.closed_form(chances([0.5, 0.5], surface=[0.7, 0.3]), BOTH, FLAT, "drop")
+    assert (found.rule, found.launch, found.wants_drops) == ("surface, launch drop", "drop", False)
     assert found.p.tolist() == [0.7, 0.3]
 
 
-def test_a_rolling_class_and_a_flip_want_a_drop_test():
-    known = chances([0.7, 0.3])
-    assert recommended.closed_form(known, BOTH, FLAT, "flip").wants_drops
-    assert recommended.closed_form(known, BOTH, ("flat", "rolling"), "feed").wants_drops
-    assert not recommended.closed_form(
-        known, np.array([True, False]), ("flat", "rolling"), "feed"
-    ).wants_drops
+def test_a_rolling_class_a_flip_and_a_roll_want_a_drop_test():
+    known, turned = chances([0.7, 0.3]), ("flat", "rolling")
+    assert all(recommended.closed_form(known, BOTH, FLAT, launch).wants_drops for launch in ("flip", "roll"))
+    assert recommended.closed_form(known, BOTH, turned, "feed").wants_drops
+    assert not recommended.closed_form(known, np.array([True, False]), turned, "flip").wants_drops
+    assert recommended.closed_form(known, BOTH, turned, "place").rule == "quasi-static, launch place"
+
+
+@pytest.mark.parametrize("launch", recommended.LAUNCHES)
+@pytest.mark.parametrize("kinds", [FLAT, ("flat", "rolling")])
+def test_every_launch_has_an_interval_that_is_widest_at_a_half(launch, kinds):
+    found = recommended.closed_form(chances([0.5, 0.5]), BOTH, kinds, launch)
+    small = recommended.closed_form(chances([0.05, 0.95]), BOTH, kinds, launch)
+    width = recommended.WIDTHS[launch, "rolling" in kinds]
+    assert found.high - found.p == pytest.approx(np.minimum(width, 0.5))
+    assert (small.high - small.low < found.high - found.low).all()
 
 
 def test_the_users_own_surface_is_the_answer_whatever_the_launch():
@@ -86,6 +95,16 @@ def test_the_answer_of_a_part_says_its_rule(exponent, name):
     answer = found.recommended
     assert answer.rule == f"surface, {name}, launch feed"
     assert answer.p.tolist() == found.probabilities["surface"].tolist()
+
+
+def test_where_two_answers_disagree_the_first_is_widened_to_the_other():
+    one = recommended.closed_form(chances([0.9, 0.1]), BOTH, FLAT, "feed")
+    other = recommended.closed_form(chances([0.2, 0.8]), BOTH, FLAT, "feed")
+    wide, apart = recommended.reconciled(one, other)
+    assert apart.all() and wide.p.tolist() == [0.9, 0.1]
+    assert (wide.low[0], wide.high[1]) == (0.2, 0.8)
+    same, apart = recommended.reconciled(one, one)
+    assert not apart.any() and same.low.tolist() == one.low.tolist()
 
 
 def test_measured_tosses_fall_inside():

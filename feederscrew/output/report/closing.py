@@ -12,9 +12,10 @@ from feederscrew.output.slide import tables as slide_tables
 
 LIMITS = (
     "How often a part lands on an aspect: the rules compute from the part's shape and mass alone; only "
-    "p_surface and the interval of p_recommended consider different surfaces, and none knows the height of "
-    "the drop or other parts. They disagree, and on real parts each is right in some cases only. Where they "
-    "lie far apart, drop the part a few hundred times and let your own counts decide (feeder compare).",
+    "p_surface and p_recommended know how the part is launched, and none knows other parts. They disagree, "
+    "and on real parts each is right in some cases only. The interval of p_recommended holds for the launch "
+    "it names. Where much depends on it, drop the part a few hundred times and let your own counts decide "
+    "(feeder compare).",
     "The part is rigid and, unless its centre of mass was given, homogeneous. A mesh is a polyhedron: its "
     "curved sides are a little smaller than the part's. Two aspects that are mirror images have the same "
     "numbers.",

@@ -1,0 +1,141 @@
+"""Bodies for ``accuracy.py``: those that were measured, real parts, and those made at random."""
+
+import csv
+import json
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import trimesh
+from closed_forms import TRIED
+
+from feederscrew.dropping import conditions, runs
+from feederscrew.resting.aspects import find
+from feederscrew.resting.rules import recommended
+from feederscrew.resting.rules.surface import surface_weights
+from feederscrew.resting.tumbling.by_class import ground
+
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT / "tests"))
+import shapes  # noqa: E402 - the parts with closed forms
+
+MADE, ROUND = 2013, 1909  # seeds
+SIDES = 64  # sections of a round body
+EXPONENTS = (0.0, 0.5, 1.0, 1.5, 2.0, 2.5)  # of the surface-weighted rule
+
+
+def rows(path):
+    """Rows of a CSV with # lines."""
+    return list(csv.DictReader(line for line in path.read_text().splitlines() if line[0] != "#"))
+
+
+class Body:
+    """A part with everything the rules need; a drop test is made once and kept in a folder."""
+
+    def __init__(self, name, part, drops, keep=None, jobs=1):
+        self.name, self.part, self.aspects = name, part, find(part)
+        self.ground = ground(part, self.aspects)
+        self.tips, self.radius = self.ground.tips, self.ground.hull.radius
+        self.drops, self.tallies, self.jobs = drops, {}, jobs
+        self.file = None if keep is None else keep / f"{name}.json"
+        if self.file and self.file.exists():
+            kept = json.loads(self.file.read_text())
+            self.tallies = {k: _tally({n: np.array(v) for n, v in t.items()}) for k, t in kept.items()}
+
+    @property
+    def rolling(self):
+        """Whether one of the classes it rests on rolls."""
+        return "rolling" in np.array(self.aspects.kinds)[self.aspects.stable]
+
+    def by_class(self, weights):
+        """Share of each class from a weight of each face."""
+        sums = np.bincount(self.ground.rows, weights, minlength=len(self.aspects.names))
+        return sums / sums.sum()
+
+    def rules(self):
+        """Every rule's shares by class."""
+        found = {rule: p for rule, p in self.aspects.probabilities.items() if rule != "surface"}
+        heights, shares = self.tips.heights, self.tips.shares
+        for exponent in EXPONENTS:
+            weights = surface_weights(shares, heights, self.radius, exponent)
+            found[f"surface, {exponent:g}"] = self.by_class(weights)
+        return found | {name: self.by_class(weigh(self)) for name, weigh in TRIED.items()}
+
+    def tally(self, launch):
+        """Counts of a drop test."""
+        if launch not in self.tallies:
+            own = dict.fromkeys(conditions.KEYS)
+            tested = runs.test(self.part, self.aspects, launch, own, drops=self.drops, jobs=self.jobs)
+            self.tallies[launch] = tested.tally
+            self._keep()
+        return self.tallies[launch]
+
+    def drop(self, launch):
+        """Shares by class in a drop test."""
+        counts = self.tally(launch).counts
+        return counts / max(counts.sum(), 1)
+
+    def closed(self, launch):
+        """The closed form's answer for a launch."""
+        return find(self.part, launch=launch).recommended
+
+    def answer(self, launch):
+        """The recommended answer for a launch: the closed form's where it is good enough."""
+        found = self.closed(launch)
+        return self.dropped(launch) if found.wants_drops else found
+
+    def dropped(self, launch):
+        """The answer of a drop test."""
+        return recommended.dropped(self.tally(launch), self.aspects.stable, launch)
+
+    def _keep(self):
+        if self.file:
+            told = {
+                launch: {name: np.asarray(getattr(one, name)).tolist() for name in KEPT}
+                for launch, one in self.tallies.items()
+            }
+            self.file.write_text(json.dumps(told))
+
+
+KEPT = ("counts", "unsettled", "p", "low", "high", "gentle", "violent")
+
+
+def _tally(columns):
+    return SimpleNamespace(**columns)
+
+
+def made(count, rng):
+    """Meshes of boxes, hulls and prisms at random, in turn."""
+    for k in range(count):
+        if k % 3 == 0:
+            yield shapes.box(*rng.uniform(3.0, 12.0, 3))
+        elif k % 3 == 1:
+            points = rng.normal(size=(rng.integers(5, 16), 3)) * rng.uniform(4.0, 10.0, 3)
+            yield trimesh.convex.convex_hull(points)
+        else:
+            turn = np.sort(rng.uniform(0.0, 2.0 * np.pi, rng.integers(3, 7)))
+            ring = np.column_stack([np.cos(turn), np.sin(turn)]) * rng.uniform(4.0, 10.0, (len(turn), 1))
+            half = rng.uniform(1.5, 12.5)
+            ends = [np.column_stack([ring, np.full(len(ring), z)]) for z in (-half, half)]
+            yield trimesh.convex.convex_hull(np.vstack(ends))
+
+
+def rounds(count, rng):
+    """Meshes of cylinders, headed shanks, frusta and rings at random, in turn."""
+    for k in range(count):
+        if k % 4 == 0:
+            yield shapes.cylinder(rng.uniform(3.0, 10.0), rng.uniform(2.0, 20.0), SIDES)
+        elif k % 4 == 1:
+            head, shank = rng.uniform(5.0, 10.0), rng.uniform(2.0, 4.5)
+            high, end = np.cumsum([rng.uniform(2.0, 8.0), rng.uniform(4.0, 20.0)])
+            profile = [(0, 0), (head, 0), (head, high), (shank, high), (shank, end), (0, end)]
+            yield trimesh.creation.revolve(profile, sections=SIDES)
+        elif k % 4 == 2:
+            wide, narrow, end = rng.uniform(5.0, 10.0), rng.uniform(2.0, 5.0), rng.uniform(3.0, 20.0)
+            yield trimesh.creation.revolve([(0, 0), (wide, 0), (narrow, end), (0, end)], sections=SIDES)
+        else:
+            outer = rng.uniform(5.0, 10.0)
+            inner, end = outer * rng.uniform(0.3, 0.8), rng.uniform(2.0, 14.0)
+            profile = [(inner, 0), (outer, 0), (outer, end), (inner, end), (inner, 0)]
+            yield trimesh.creation.revolve(profile, sections=SIDES)
