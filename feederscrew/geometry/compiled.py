@@ -12,6 +12,7 @@ SOURCES = (
     "resting/tumbling/*.py",
     "dropping/kernel/*.py",
     "tooling/kernel/*.py",
+    "trial/kernel/*.py",
 )
 
 

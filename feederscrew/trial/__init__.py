@@ -1,0 +1,1 @@
+"""Parts of true shape on the vibrating, tooled track."""

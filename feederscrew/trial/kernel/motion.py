@@ -1,0 +1,320 @@
+"""Compiled steps of one part in the bowl's frame, and its way past one station.
+
+The frame is fixed to the bowl: the track is z = 0, the wall a cylinder that is tangent to x at the origin,
+with its axis at (0, radius). The drive is a force that changes with time, and gravity turns with the place.
+Everything is without dimensions, as in `feederscrew.dropping.kernel`.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from feederscrew.dropping.kernel import body
+from feederscrew.dropping.kernel import floor as floors
+from feederscrew.dropping.kernel.body import VX, VY, VZ, W, X, Y, Z
+from feederscrew.geometry.compiled import compiled
+from feederscrew.trial.kernel import contact, edges, search
+
+RUNNING, PASSED, RETURNED = 0, 1, 2
+REACH = 2e-3  # how far ahead contacts are looked for, beside the way of two steps
+SLOP = 2e-4  # depth that is left alone
+LIFT = 0.1  # of a greater depth, taken back in a step
+STILL = 1e-5  # speed along a contact below which it sticks while static friction holds
+LEFT = 1e-6  # of a step: less is nothing
+AT_ONCE = 0.02  # of a step: what happens sooner happens at its start
+TIME, MOVED, SUNK, PLACES = 0, 1, 2, 3  # what a run notes: time, way along the wall, depth, places
+
+
+class Surface(NamedTuple):
+    """What a part meets at one station, in units of its length; P plates, B borders."""
+
+    radius: float  # of the wall
+    gravity: np.ndarray  # (3,) ahead, from the wall inwards, up
+    plates: np.ndarray  # (P, 16) rows as ``search`` names their columns
+    borders: np.ndarray  # (B, 8) start, end, normal away from the solid, corner at the start, end of drawing
+    friction: np.ndarray  # (5,) static and kinetic ahead, static and kinetic back, wall
+    restitution: float
+    threshold: float  # approach speed from which a contact rebounds
+    sweeps: int
+    converged: float
+    exit: float  # way along the wall at which a part has passed
+    longest: float  # time after which it is given up
+
+
+@compiled
+def pull(surface, floor, time, dt, state):
+    """Change velocities by gravity and by the drive over dt."""
+    x, y = state[X], surface.radius - state[Y]
+    off = math.sqrt(x * x + y * y)
+    c, s = y / off, x / off
+    ahead, rise = floors.quickening(floor, time, dt)
+    spin, share = ahead / surface.radius, off / surface.radius
+    along, across = dt * surface.gravity[0] - ahead * share, dt * surface.gravity[1]
+    state[VX] += c * along - s * across
+    state[VY] += s * along + c * across
+    state[VZ] += dt * surface.gravity[2] - rise
+    return spin
+
+
+@compiled
+def found(surface, solid, work, reach):
+    """Every contact of the part as it is; how many."""
+    state, turn, contacts = work.state, work.turn, work.contacts
+    x, y = state[X], surface.radius - state[Y]
+    off = math.sqrt(x * x + y * y)
+    tangent = work.tangent
+    tangent[0], tangent[1] = y / off, x / off
+    search.placed(solid.corners, turn, work.spots)
+    count = 0
+    if off + solid.radius > surface.radius - reach:
+        count = search.on_wall(
+            work.spots, state, turn, solid.inertia, surface.radius, tangent, reach, contacts, count
+        )
+    for k in range(len(surface.plates)):
+        plate = surface.plates[k]
+        if search.seen(plate, state, work.spots, work.shown) > reach:
+            continue
+        count = search.corners_on(
+            plate,
+            surface.borders,
+            work.shown,
+            work.spots,
+            turn,
+            solid.inertia,
+            tangent,
+            reach,
+            contacts,
+            count,
+        )
+        nears = edges.near_borders(plate, surface.borders, state, solid.radius + reach, work.near)
+        if nears:
+            count = edges.edges_on(
+                plate, surface.borders, work.near, nears, solid, work.shown, work.spots, turn, tangent, reach,
+                work.vectors, contacts, count,
+            )  # fmt: skip
+            count = edges.faces_on(
+                plate, surface.borders, work.near, nears, solid, state, turn, tangent, reach, work.vectors,
+                contacts, count,
+            )  # fmt: skip
+    return count
+
+
+@compiled
+def wanted(surface, work, count, dt):
+    """Say how each contact shall leave a step, with which friction.
+
+    Returns
+    -------
+    depth of the deepest, whether one strikes, share of the step after which the first of them does
+    """
+    deepest, strikes, share = 0.0, False, 1.0
+    for n in range(count):
+        row = work.contacts[n]
+        gap, fall = row[contact.GAP], contact.speed(work.saved, row, contact.NORMAL)
+        deepest = min(deepest, gap)
+        row[contact.WANTED] = -max(gap, 0.0) / dt
+        if fall < -surface.threshold and gap + fall * dt < 0.0:
+            strikes = True
+            share = min(share, max(gap, 0.0) / (-fall * dt))
+            row[contact.WANTED] = -surface.restitution * fall
+        slides = math.hypot(contact.speed(work.saved, row, 0), contact.speed(work.saved, row, 1)) > STILL
+        if row[contact.WALL] > 0.5:
+            row[contact.AHEAD] = row[contact.BACK] = surface.friction[4]
+        else:
+            row[contact.AHEAD] = surface.friction[int(slides)]
+            row[contact.BACK] = surface.friction[2 + int(slides)]
+    return deepest, strikes, share
+
+
+@compiled
+def reversal(work, count):
+    """Share of a step after which sliding comes to a stand, if it does; else 1.
+
+    Of the contact that slides fastest. What friction did less than its most against the sliding is what it
+    did after the stand: without that the contact would have gone on to slide back so much faster.
+    """
+    first, before = -1, STILL
+    for n in range(count):
+        row = work.contacts[n]
+        if row[contact.IMPULSE + 2] > 0.0:
+            quick = math.hypot(contact.speed(work.saved, row, 0), contact.speed(work.saved, row, 1))
+            if quick > before:
+                first, before = n, quick
+    if first < 0:
+        return 1.0
+    row = work.contacts[first]
+    a, b = contact.speed(work.saved, row, 0) / before, contact.speed(work.saved, row, 1) / before
+    after = a * contact.speed(work.state, row, 0) + b * contact.speed(work.state, row, 1)
+    if after > STILL:
+        return 1.0
+    spared = 0.0
+    for n in range(count):
+        row = work.contacts[n]
+        most = row[contact.BACK] if a < 0.0 else row[contact.AHEAD]
+        spared += most * row[contact.IMPULSE + 2] + a * row[contact.IMPULSE] + b * row[contact.IMPULSE + 1]
+    return before / (before - after + max(spared, 0.0))
+
+
+@compiled
+def lifted(surface, solid, work, count):
+    """Take a part of what is too deep back, without a speed; what that costs is taken from its motion."""
+    state, push = work.state, work.push
+    for k in range(body.STATE):
+        push[k] = 0.0
+    for n in range(count):
+        row = work.contacts[n]
+        row[contact.WANTED] = LIFT * max(-row[contact.GAP] - SLOP, 0.0)
+    contact.solve(push, work.contacts, count, False, surface.sweeps, surface.converged, 0.0)
+    work.memory[0] = -1.0
+    for k in range(3):
+        state[k] += push[VX + k]
+    body.rotate(state, push[W], push[W + 1], push[W + 2], 1.0)
+    return push[VZ]
+
+
+@compiled
+def pushed(surface, solid, floor, work, time, dt, count):
+    """Velocities after a step: gravity, drive and contacts.
+
+    Returns
+    -------
+    depth of the deepest contact, whether one strikes, share of the step after which its course changes
+    """
+    state, inertia = work.state, solid.inertia
+    spin = pull(surface, floor, time, dt, state)
+    _freely(state, inertia, dt)
+    for k in range(3):
+        state[W + k] -= spin * work.turn[6 + k]
+    if count == 0:
+        return 0.0, False, 1.0
+    deepest, strikes, share = wanted(surface, work, count, dt)
+    if strikes and share > AT_ONCE:
+        return deepest, strikes, share
+    limit = body.moving_energy(state, inertia)
+    warm = 0.0 if strikes or count != work.memory[0] else dt / work.memory[1]
+    contact.solve(state, work.contacts, count, True, surface.sweeps, surface.converged, warm)
+    work.memory[0], work.memory[1] = -1.0 if strikes else count, dt
+    share = reversal(work, count)
+    _no_more(state, inertia, limit)
+    return deepest, strikes, share
+
+
+@compiled
+def step(surface, solid, floor, work, time, dt):
+    """One step of the part, or the share of it up to where it strikes or its sliding turns round.
+
+    Returns
+    -------
+    depth of its deepest contact, time taken
+    """
+    state, saved, inertia = work.state, work.saved, solid.inertia
+    body.rotation(state, work.turn)
+    quick = math.sqrt(state[VX] ** 2 + state[VY] ** 2 + state[VZ] ** 2) + solid.radius * body.rate(state)
+    count = found(surface, solid, work, REACH + 2.0 * dt * quick)
+    body.keep(state, saved)
+    deepest, strikes, share = pushed(surface, solid, floor, work, time, dt, count)
+    if AT_ONCE < share < 1.0 - AT_ONCE:
+        dt *= share
+        body.keep(saved, state)
+        deepest, strikes, share = pushed(surface, solid, floor, work, time, dt, count)
+    share = 1.0 if strikes else 0.5
+    for k in range(3):
+        state[k] += dt * (share * state[VX + k] + (1.0 - share) * saved[VX + k])
+    p = share * state[W] + (1.0 - share) * saved[W]
+    q = share * state[W + 1] + (1.0 - share) * saved[W + 1]
+    r = share * state[W + 2] + (1.0 - share) * saved[W + 2]
+    body.rotate(state, p, q, r, dt)
+    if deepest < -SLOP:
+        lift = lifted(surface, solid, work, count)
+        _no_more(state, inertia, body.moving_energy(state, inertia) + surface.gravity[2] * max(lift, 0.0))
+    return deepest, dt
+
+
+@compiled
+def _freely(state, inertia, dt):
+    """Change the rates of a body that turns freely over dt, its energy kept; its attitude stays."""
+    a, b, c, d = state[body.Q], state[body.Q + 1], state[body.Q + 2], state[body.Q + 3]
+    body.spin(state, inertia, dt)
+    state[body.Q], state[body.Q + 1], state[body.Q + 2], state[body.Q + 3] = a, b, c, d
+
+
+@compiled
+def _no_more(state, inertia, limit):
+    """Scale all velocities so that the kinetic energy is at most ``limit``."""
+    moving = body.moving_energy(state, inertia)
+    if moving > limit:
+        scale = math.sqrt(max(limit, 0.0) / moving)
+        for k in range(3):
+            state[VX + k] *= scale
+            state[W + k] *= scale
+
+
+@compiled
+def way(surface, state):
+    """How far along the wall the centre of mass is."""
+    return surface.radius * math.atan2(state[X], surface.radius - state[Y])
+
+
+@compiled
+def travel(surface, solid, floor, work, time, every, path, notes):
+    """Follow a part until it has passed, has dropped out or its time is up.
+
+    Parameters
+    ----------
+    surface : Surface
+    solid : Solid
+    floor : Floor
+        Its ``step`` is the time step.
+    work : Scratch
+        Its ``state`` holds the start, and the end afterwards.
+    time : float
+        At the start: the phase of the drive.
+    every : int
+        Steps between two places noted.
+    path : (K, 8) float
+        Filled with time, position and attitude, from the first row on; nothing more once it is full.
+    notes : (4,) float
+        Filled with the time taken, the way along the wall, the greatest depth and the places noted.
+
+    Returns
+    -------
+    int
+        PASSED, RETURNED or RUNNING.
+    """
+    state, dt, begun, start = work.state, floor.step, time, way(surface, work.state)
+    work.memory[0] = -1.0
+    steps, noted, sunk, outcome = math.ceil(surface.longest / dt), 0, 0.0, RUNNING
+    for k in range(steps):
+        if k % every == 0 and noted < len(path):
+            path[noted, 0] = time - begun
+            for e in range(3):
+                path[noted, 1 + e] = state[e]
+            for e in range(4):
+                path[noted, 4 + e] = state[body.Q + e]
+            noted += 1
+        rest = dt
+        while rest > LEFT * dt:
+            deepest, taken = step(surface, solid, floor, work, begun + (k + 1) * dt - rest, rest)
+            sunk, rest = min(sunk, deepest), rest - taken
+        time = begun + (k + 1) * dt
+        if state[Z] < -solid.radius:
+            outcome = RETURNED
+            break
+        if way(surface, state) > surface.exit:
+            outcome = PASSED
+            break
+    notes[TIME], notes[MOVED] = time - begun, way(surface, state) - start
+    notes[SUNK], notes[PLACES] = -sunk, noted
+    return outcome
+
+
+@compiled
+def travel_all(surface, solid, floor, work, starts, times, every, paths, notes, outcomes):
+    """Follow every row of (N, 13) starts, which hold the ends afterwards; fills paths, notes and outcomes."""
+    for n in range(len(starts)):
+        for k in range(body.STATE):
+            work.state[k] = starts[n, k]
+        outcomes[n] = travel(surface, solid, floor, work, times[n], every, paths[n], notes[n])
+        for k in range(body.STATE):
+            starts[n, k] = work.state[k]

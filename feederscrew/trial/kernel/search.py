@@ -1,0 +1,150 @@
+"""Compiled search for contacts of a part with the bowl's wall and with plates.
+
+A plate is a flat surface with borders: the track, seen from above with its free edge and its holes, or a
+gate, seen by the part that arrives. Its solid lies behind the surface, its sides go straight back from the
+borders. What can touch: a corner of the part the surface or a side, an edge of the part a border, a convex
+corner of the border a face of the part.
+"""
+
+import math
+
+from feederscrew.dropping.kernel.body import X, Y, Z
+from feederscrew.geometry.compiled import compiled
+from feederscrew.trial.kernel.contact import add
+
+SLANT = 0.02  # [1] by which a contact's normal may lie beyond the faces it is between
+PARALLEL = 1e-4  # [1] sine of the angle below which two edges do not cross
+DEEP = 0.03  # how far behind a surface an edge may be found, in units of the part's length
+ORIGIN, ACROSS, ALONG, FRONT, DEPTH, ROUNDED, FIRST, LAST = 0, 3, 6, 9, 12, 13, 14, 15  # of a plate's row
+BOX = 16  # where its borders are: least and greatest of both coordinates
+
+
+@compiled
+def placed(vertices, turn, spots):
+    """Write the corners of a part (V, 3), turned into the bowl's frame, from the centre of mass."""
+    for k in range(len(vertices)):
+        a, b, c = vertices[k, 0], vertices[k, 1], vertices[k, 2]
+        spots[k, 0] = turn[0] * a + turn[1] * b + turn[2] * c
+        spots[k, 1] = turn[3] * a + turn[4] * b + turn[5] * c
+        spots[k, 2] = turn[6] * a + turn[7] * b + turn[8] * c
+
+
+@compiled
+def on_wall(spots, state, turn, inertia, radius, tangent, reach, contacts, count):
+    """Contacts with the wall, a cylinder about the bowl's axis that a part is inside of."""
+    limit = (radius - reach) * (radius - reach)
+    for k in range(len(spots)):
+        x, y = state[X] + spots[k, 0], state[Y] + spots[k, 1] - radius
+        square = x * x + y * y
+        if square > limit:
+            far = math.sqrt(square)
+            count = add(
+                contacts, count, turn, inertia, tangent, spots[k, 0], spots[k, 1], spots[k, 2],
+                -x / far, -y / far, 0.0, radius - far, 1.0,
+            )  # fmt: skip
+    return count
+
+
+@compiled
+def inside(borders, first, last, a, b):
+    """Whether a point of a plate's surface is solid: it is within its borders, holes left out."""
+    odd = False
+    for k in range(first, last):
+        p, q, r, s = borders[k, 0], borders[k, 1], borders[k, 2], borders[k, 3]
+        if (q > b) != (s > b) and a < p + (b - q) / (s - q) * (r - p):
+            odd = not odd
+    return odd
+
+
+@compiled
+def _beside(borders, first, last, a, b):
+    """Nearest border of a point, and how far the point is from it, negative where it is solid."""
+    best, nearest = math.inf, first
+    for k in range(first, last):
+        if borders[k, 7] > 0.5:  # the end of what is drawn, no border
+            continue
+        p, q, u, v = borders[k, 0], borders[k, 1], borders[k, 2], borders[k, 3]
+        u, v = u - p, v - q
+        share = min(max(((a - p) * u + (b - q) * v) / (u * u + v * v), 0.0), 1.0)
+        off = math.hypot(a - p - share * u, b - q - share * v)
+        if off < best:
+            best, nearest = off, k
+    return nearest, best
+
+
+@compiled
+def seen(plate, state, spots, shown):
+    """Write corners in a plate's own coordinates (V, 3), the height over its surface last; the least."""
+    least = math.inf
+    x, y, z = state[X] - plate[0], state[Y] - plate[1], state[Z] - plate[2]
+    for e in range(3):
+        u, v, w = plate[ACROSS + 3 * e], plate[ACROSS + 3 * e + 1], plate[ACROSS + 3 * e + 2]
+        start = u * x + v * y + w * z
+        for k in range(len(spots)):
+            shown[k, e] = start + u * spots[k, 0] + v * spots[k, 1] + w * spots[k, 2]
+    for k in range(len(spots)):
+        least = min(least, shown[k, 2])
+    return least
+
+
+@compiled
+def corners_on(plate, borders, shown, spots, turn, inertia, tangent, reach, contacts, count):
+    """Contacts of the part's corners with a plate's surface, and with its sides behind rounded borders."""
+    first, last = int(plate[FIRST]), int(plate[LAST])
+    for k in range(len(shown)):
+        height = shown[k, 2]
+        if height > reach or height < -plate[DEPTH]:
+            continue
+        solid = inside(borders, first, last, shown[k, 0], shown[k, 1])
+        nx, ny, nz, gap = plate[FRONT], plate[FRONT + 1], plate[FRONT + 2], height
+        if height < -plate[ROUNDED]:
+            n, off = _beside(borders, first, last, shown[k, 0], shown[k, 1])
+            if off < (-height if solid else reach):
+                u, v, gap = borders[n, 4], borders[n, 5], (-off if solid else off)
+                nx = u * plate[ACROSS] + v * plate[ALONG]
+                ny = u * plate[ACROSS + 1] + v * plate[ALONG + 1]
+                nz = u * plate[ACROSS + 2] + v * plate[ALONG + 2]
+                solid = True
+        if solid:
+            count = add(
+                contacts, count, turn, inertia, tangent, spots[k, 0], spots[k, 1], spots[k, 2],
+                nx, ny, nz, gap, 0.0,
+            )  # fmt: skip
+    return count
+
+
+@compiled
+def _crossing(p, q, border, wedge, reach):
+    """Where an edge from p to q touches a border, in the plate's coordinates.
+
+    Returns
+    -------
+    share of the edge, normal (3), gap; the gap is infinite where they do not touch
+    """
+    a, b, c = q[0] - p[0], q[1] - p[1], q[2] - p[2]
+    u, v = border[2] - border[0], border[3] - border[1]
+    nx, ny, nz = -c * v, c * u, a * v - b * u  # edge x border
+    size, whole = math.sqrt(nx * nx + ny * ny + nz * nz), math.sqrt((a * a + b * b + c * c) * (u * u + v * v))
+    if size <= PARALLEL * whole:
+        return 0.0, 0.0, 0.0, 0.0, math.inf
+    if nz + nx * border[4] + ny * border[5] < 0.0:
+        size = -size
+    nx, ny, nz = nx / size, ny / size, nz / size
+    if nz < -SLANT or nx * border[4] + ny * border[5] < -SLANT:
+        return 0.0, 0.0, 0.0, 0.0, math.inf
+    x, y, z = p[0] - border[0], p[1] - border[1], p[2]
+    gap = nx * x + ny * y + nz * z
+    if gap > reach or gap < -DEEP:
+        return 0.0, 0.0, 0.0, 0.0, math.inf
+    x, y, z = x - gap * nx, y - gap * ny, z - gap * nz
+    # in the plane of both: share of the edge where it meets the border's line, then of the border
+    mx, my, mz = -v * nz, u * nz, v * nx - u * ny  # normal x border
+    slope = a * mx + b * my + c * mz
+    share = -(x * mx + y * my + z * mz) / slope
+    place = ((x + share * a) * u + (y + share * b) * v) / (u * u + v * v)
+    if share < 0.0 or share > 1.0 or place < 0.0 or place > 1.0:
+        return 0.0, 0.0, 0.0, 0.0, math.inf
+    for k in range(2):
+        if nx * wedge[k, 0] + ny * wedge[k, 1] + nz * wedge[k, 2] < -SLANT:
+            return 0.0, 0.0, 0.0, 0.0, math.inf
+    return share, nx, ny, nz, gap

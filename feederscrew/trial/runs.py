@@ -1,0 +1,273 @@
+"""Parts one at a time past one station: starts, runs on several cores, and what became of them."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.dropping.kernel import body
+from feederscrew.dropping.kernel.floor import Floor
+from feederscrew.dropping.plate import drive
+from feederscrew.dropping.pool import gather
+from feederscrew.geometry import vectors
+from feederscrew.geometry.compiled import on_disk
+from feederscrew.trial.kernel import contact, motion
+
+PASSED, RETURNED, RUNNING = motion.PASSED, motion.RETURNED, motion.RUNNING
+PERIOD = 120  # steps of a period of the drive
+SWEEPS, CONVERGED = 60, 1e-5  # of the contact solver: at most, and what a sweep may still change
+CONTACTS = 48  # of a part at a time
+BATCH = 5  # parts a core takes at a time
+
+
+class Scratch(NamedTuple):
+    """Arrays the kernel works in."""
+
+    state: np.ndarray
+    saved: np.ndarray
+    push: np.ndarray
+    turn: np.ndarray  # (9,)
+    tangent: np.ndarray  # (2,)
+    spots: np.ndarray  # (C, 3)
+    shown: np.ndarray  # (C, 3)
+    near: np.ndarray  # (B,) int
+    vectors: np.ndarray  # (3, 3)
+    contacts: np.ndarray  # (CONTACTS, WIDTH)
+    memory: np.ndarray  # (2,) how many of them the step before had, and how long it was
+
+
+@dataclass(frozen=True, eq=False)
+class Rides:
+    """What became of N parts at one station, in SI units; K places of each."""
+
+    outcomes: np.ndarray  # (N,) int: PASSED, RETURNED or RUNNING
+    states: np.ndarray  # (N, 13) at the end, without dimensions
+    seconds: np.ndarray  # (N,) [s]
+    ways: np.ndarray  # (N,) [m] along the wall
+    depths: np.ndarray  # (N,) [m] the deepest that anything was in anything
+    paths: np.ndarray  # (N, K, 8) time [s], position [m], attitude; NaN after the end
+    partial: bool  # stopped by the user before all parts were done
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """A part in a bowl, without dimensions."""
+
+    solid: object  # trial.shape.Solid
+    length: float  # [m] the unit of length
+    unit: float  # [s] the unit of time
+    floor: Floor
+    radius: float  # of the wall
+    gravity: np.ndarray  # (3,)
+    friction: np.ndarray  # (5,)
+    restitution: float
+    threshold: float
+
+
+def setting(solid, length, bowl):
+    """Return what the kernel needs of a bowl.
+
+    Parameters
+    ----------
+    solid : Solid
+    length : float [m]
+        Its unit.
+    bowl : Bowl
+
+    Returns
+    -------
+    Setting
+    """
+    floor, track, friction = drive.floor_of(bowl, length), bowl.track, bowl.friction
+    if bowl.drive.amplitude == 0.0:
+        floor = floor._replace(along=0.0, up=0.0)
+    back = friction.backward
+    c, s = np.cos(track.climb), np.sin(track.climb)
+    return Setting(
+        solid=solid,
+        length=length,
+        unit=float(np.sqrt(length / bowl.gravity)),
+        floor=floor._replace(step=2.0 * np.pi / floor.rate / PERIOD),
+        radius=track.radius / length,
+        gravity=np.array([-s, -c * np.sin(track.bank), -c * np.cos(track.bank)]),
+        friction=np.array([friction.static, friction.kinetic, *back, friction.wall]),
+        restitution=bowl.restitution,
+        threshold=drive.steps_of(floor).threshold,
+    )
+
+
+def laid(orientation, principal, length, track, *, place, aside=0.0, turn=0.0):
+    """Return the state of a part laid on the track in an orientation.
+
+    Parameters
+    ----------
+    orientation : Orientation
+    principal : (3, 3) float [1]
+        From ``solid_of``.
+    length : float [m]
+        The unit of length.
+    track : Track
+    place : float [m]
+        Of its centre of mass along the wall.
+    aside : float [m]
+        From the wall.
+    turn : float [rad]
+        Of its heading, counter-clockwise.
+
+    Returns
+    -------
+    (13,) float
+    """
+    theta, angle = place / track.radius, place / track.radius + orientation.heading + turn
+    axes = vectors.product(_about_z(angle), vectors.product(orientation.posture.axes, principal))
+    off = track.radius - orientation.distance - aside
+    state = np.zeros(body.STATE)
+    state[:3] = off * np.sin(theta), track.radius - off * np.cos(theta), orientation.posture.height
+    state[:3] /= length
+    state[body.Q : body.Q + 4] = quaternion(axes)
+    return state
+
+
+def _about_z(angle):
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def quaternion(axes):
+    """Return the quaternion (4,), w x y z, of a rotation matrix (3, 3)."""
+    trace = np.array([axes.trace(), *np.diag(axes)])
+    k = int(np.argmax(trace))
+    if k == 0:
+        spun = [axes[2, 1] - axes[1, 2], axes[0, 2] - axes[2, 0], axes[1, 0] - axes[0, 1]]
+        found = np.array([1.0 + trace[0], *spun])
+    else:
+        i, j, m = k - 1, k % 3, (k + 1) % 3
+        found = np.zeros(4)
+        found[0] = axes[m, j] - axes[j, m]
+        found[1 + i] = 1.0 + axes[i, i] - axes[j, j] - axes[m, m]
+        found[1 + j] = axes[j, i] + axes[i, j]
+        found[1 + m] = axes[m, i] + axes[i, m]
+    return found / vectors.length(found)
+
+
+def moved(states, by, radius):
+    """Return states turned about the bowl's axis by a way along the wall, all in one unit of length."""
+    theta = by / radius
+    c, s = np.cos(theta), np.sin(theta)
+    out = np.array(states, float)
+    for first, middle in ((0, radius), (3, 0.0)):
+        x, y = states[:, first], states[:, first + 1] - middle
+        out[:, first], out[:, first + 1] = c * x - s * y, s * x + c * y + middle
+    half = np.array([np.cos(0.5 * theta), 0.0, 0.0, np.sin(0.5 * theta)])
+    w, x, y, z = (states[:, body.Q + k] for k in range(4))
+    a, d = half[0], half[3]
+    out[:, body.Q : body.Q + 4] = np.column_stack(
+        [a * w - d * z, a * x - d * y, a * y + d * x, a * z + d * w]
+    )
+    return out
+
+
+def ride(known, station, states, times, *, seconds, every, places, jobs=1, progress=None):
+    """Follow parts past one station.
+
+    Parameters
+    ----------
+    known : Setting
+    station : Station
+    states : (N, 13) float
+        At the start, without dimensions.
+    times : (N,) float [s]
+        Of the start, which sets the phase of the drive.
+    seconds : float [s]
+        After which a part is given up.
+    every : float [s]
+        Between two places noted; whole steps.
+    places : int
+        Noted at most.
+    jobs : int
+        Cores to use; the outcome does not depend on it.
+    progress : function, optional
+        Told after every batch how many parts are done.
+
+    Returns
+    -------
+    Rides
+        After an interrupt from the keyboard, the batches that were finished, up to the first that was not.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If no batch was finished.
+    """
+    surface = surface_of(known, station, seconds)
+    stride = max(round(every / known.unit / known.floor.step), 1)
+    own = known, surface, stride, places
+    _batch(*own, states[:0], times[:0])  # compiled here, if need be
+
+    def work(begin):
+        cuts = [slice(k, k + BATCH) for k in range(0, len(states), BATCH)]
+        tasks, done = [begin(_batch, *own, states[cut], times[cut]) for cut in cuts], 0
+        for task in tasks:
+            done += len(task.result()[0])
+            if progress:
+                progress(done)
+
+    results, partial = gather(work, jobs)
+    outcomes, ends, notes, paths = (np.concatenate(column) for column in zip(*results))
+    paths[:, :, 0] *= known.unit
+    paths[:, :, 1:4] *= known.length
+    found = {
+        "outcomes": outcomes, "states": ends, "seconds": notes[:, motion.TIME] * known.unit,
+        "ways": notes[:, motion.MOVED] * known.length, "depths": notes[:, motion.SUNK] * known.length,
+        "paths": paths,
+    }  # fmt: skip
+    return Rides(**{name: check.frozen(value) for name, value in found.items()}, partial=partial)
+
+
+def surface_of(known, station, seconds):
+    """Return a station as the kernel takes it, with the time after which a part is given up [s]."""
+    plates, borders = np.array(station.plates), np.array(station.borders)
+    plates[:, [0, 1, 2, 12, 13]] /= known.length
+    borders[:, :4] /= known.length
+    return motion.Surface(
+        radius=known.radius,
+        gravity=known.gravity,
+        plates=plates,
+        borders=borders,
+        friction=known.friction,
+        restitution=known.restitution,
+        threshold=known.threshold,
+        sweeps=SWEEPS,
+        converged=CONVERGED,
+        exit=station.exit / known.length,
+        longest=seconds / known.unit,
+    )
+
+
+def scratch(solid, borders):
+    """Return the arrays the kernel works in."""
+    count = len(solid.corners)
+    return Scratch(
+        state=np.zeros(body.STATE), saved=np.zeros(body.STATE), push=np.zeros(body.STATE), turn=np.zeros(9),
+        tangent=np.zeros(2), spots=np.zeros((count, 3)), shown=np.zeros((count, 3)),
+        near=np.zeros(max(borders, 1), np.int64), vectors=np.zeros((3, 3)),
+        contacts=np.zeros((CONTACTS, contact.WIDTH)), memory=np.zeros(2),
+    )  # fmt: skip
+
+
+def compiled():
+    """Whether the kernel of the trial is on disk already."""
+    return on_disk(motion.travel_all)
+
+
+def _batch(known, surface, stride, places, states, times):
+    """Outcomes, ends, notes and paths of some parts."""
+    ends, count = np.array(states, float), len(states)
+    outcomes, notes = np.zeros(count, np.int64), np.zeros((count, 4))
+    paths = np.full((count, places, 8), np.nan)
+    motion.travel_all(
+        surface, known.solid, known.floor, scratch(known.solid, len(surface.borders)), ends,
+        np.asarray(times) / known.unit, stride, paths, notes, outcomes,
+    )  # fmt: skip
+    return outcomes, ends, notes, paths

@@ -1,0 +1,119 @@
+"""A part's true surface without dimensions, as the trial's kernel needs it."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.dropping.shape import principal_axes
+from feederscrew.errors import FeederError
+from feederscrew.geometry import vectors
+
+FLAT = 2e-3  # [rad] facets that meet at a smaller angle are one face
+MOST = 20000  # facets of a part
+
+
+class Solid(NamedTuple):
+    """A rigid body about its centre of mass, along its principal axes; V corners, E edges, T triangles."""
+
+    vertices: np.ndarray  # (V, 3) every corner
+    corners: np.ndarray  # (C, 3) the first of them, in which convex edges end: no other can touch
+    edges: np.ndarray  # (E, 2) int, convex edges, both ends
+    sides: np.ndarray  # (E, 6) in both faces of an edge, unit vectors away from it
+    triangles: np.ndarray  # (T, 3) int, counter-clockwise from outside
+    normals: np.ndarray  # (T, 3)
+    inertia: np.ndarray  # (3,) principal moments at mass 1
+    radius: float  # largest distance of a corner
+
+
+def solid_of(part):
+    """Return a part's surface without dimensions.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+
+    Returns
+    -------
+    solid : Solid
+    length : float [m]
+        Cube root of the hull's volume, the unit of length.
+    principal : (3, 3) float [1]
+        Its principal axes as columns, in the file's axes.
+
+    Raises
+    ------
+    FeederError
+        If the part has no surface, or one of very many facets.
+    """
+    if part.vertices is None:
+        raise FeederError(part.source, "has no surface, as a part card", "give the part as a mesh")
+    if len(part.faces) > MOST:
+        what = f"has {len(part.faces)} facets, too many to follow on the track"
+        raise FeederError(part.source, what, f"export it more coarsely, with {MOST} facets at most")
+    length = float(np.cbrt(part.hull.volume))
+    moments, principal = principal_axes(part.inertia)
+    corners = vectors.product(part.vertices - part.centre_of_mass, principal) / length
+    normals = _normals(corners, part.faces)
+    ends, sides = convex_edges(corners, part.faces, normals)
+    touches = np.zeros(len(corners), bool)
+    touches[ends] = True
+    order = np.argsort(~touches, kind="stable")
+    place = np.argsort(order, kind="stable")
+    corners = check.frozen(corners[order])
+    return (
+        Solid(
+            vertices=corners,
+            corners=corners[: touches.sum()],
+            edges=check.frozen(place[ends]),
+            sides=check.frozen(sides),
+            triangles=check.frozen(place[part.faces]),
+            normals=check.frozen(normals),
+            inertia=check.frozen(moments / (part.mass * length**2)),
+            radius=float(vectors.length(corners).max()),
+        ),
+        length,
+        principal,
+    )
+
+
+def _normals(corners, faces):
+    """(T, 3) unit normals; zero of a facet without area."""
+    a, b, c = (corners[faces[:, k]] for k in range(3))
+    normal = np.cross(b - a, c - a)
+    size = vectors.length(normal)
+    return normal / np.where(size > 0.0, size, 1.0)[:, None]
+
+
+def convex_edges(corners, faces, normals):
+    """Return the edges at which a surface turns outwards.
+
+    Parameters
+    ----------
+    corners : (V, 3) float
+    faces : (T, 3) int
+        Of a closed surface, counter-clockwise from outside.
+    normals : (T, 3) float [1]
+
+    Returns
+    -------
+    ends : (E, 2) int
+    sides : (E, 6) float [1]
+        In both faces, unit vectors square to the edge and away from it.
+    """
+    pairs = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    owners = np.tile(np.arange(len(faces)), 3)
+    key = np.sort(pairs, axis=1)
+    order = np.lexsort((key[:, 1], key[:, 0]))
+    key, owners, pairs = key[order], owners[order], pairs[order]
+    two = np.flatnonzero((key[1:] == key[:-1]).all(axis=1))
+    ends, first, second = pairs[two], owners[two], owners[two + 1]
+    along = corners[ends[:, 1]] - corners[ends[:, 0]]
+    one = np.cross(normals[first], along)  # into the first face: it runs the edge as given
+    other = -np.cross(normals[second], along)
+    size = vectors.length(along)[:, None]
+    one, other = one / size, other / size
+    bend = np.arctan2(-vectors.dot(other, normals[first]), vectors.dot(normals[first], normals[second]))
+    keep = bend > FLAT
+    return ends[keep], np.hstack([one, other])[keep]

@@ -1,0 +1,143 @@
+"""What a part meets at each device, as plates with borders in the bowl's own frame."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from feederscrew import check
+from feederscrew.bowl.devices import Device
+from feederscrew.tooling.strip import BLADE, FRAME, bent, hole, opening
+
+BEHIND = 0.5  # of the part's size: how far the track is drawn behind the wall
+ROUNDED = 5e-5  # [m] by which the borders of a cut are rounded: less depth does not catch
+CHORD = 2e-6  # [m] by which an arc may be seen too flat
+CORNER = 1e-4  # [rad] a border that turns by less has no corner
+SPARE = 0.1  # of the part's size: how far before a device parts begin, and behind it they end
+THIN = 1e3  # a solid without an end behind its surface
+BARE = Device("track", "")
+
+
+@dataclass(frozen=True, eq=False)
+class Station:
+    """One device, or a stretch of the bare track, as solid geometry in the bowl's frame."""
+
+    device: Device
+    plates: np.ndarray  # (P, 16) [m], [1] as `trial.kernel.search` names the columns
+    borders: np.ndarray  # (B, 8) [m], [1]
+    begin: float  # [m] along the wall, where the part's centre of mass starts
+    exit: float  # [m] where it has passed
+
+
+def station(device, track, every, start=0.0):
+    """Return one device with enough track before and behind it.
+
+    Parameters
+    ----------
+    device : Device
+        A measured yield is bare track.
+    track : Track
+    every : sequence of Orientation
+        Of the part, the longest of which sets how long a device is that goes on along the track.
+    start : float [m]
+        Where the cut begins.
+
+    Returns
+    -------
+    Station
+    """
+    size = max(np.hypot(one.length, max(one.width, one.height)) for one in every)
+    room = 1.3 * max(one.length for one in every)
+    width = min(track.width, 0.95 * track.radius)
+    cut = None if device.kind == "yield" else hole(device, track.radius, room, width)
+    last = start + (room if cut is None else float(cut[:, 0].max()))
+    if device.kind == "rails":  # those that hang are led on, they do not come back onto the track
+        cut = hole(device, track.radius, room + 2.0 * size, width)
+    begin, beyond = start - (0.5 + SPARE) * size, last + (0.5 + SPARE) * size
+    ends = begin - size, beyond + size
+    plates = [_track_plate(cut, track, width, size, ends, start)]
+    gate = None if device.kind == "yield" else opening(device, every, width)
+    if gate is not None:
+        middle = start + 0.5 * room
+        plates.append(_gate_plate(gate, track, width, every, middle))
+        beyond = middle + (0.5 + SPARE) * size
+    return Station(device, *_stacked(plates), begin=begin, exit=beyond)
+
+
+def plain(track, every, length):
+    """Return a stretch of the bare track, from 0 to ``length`` [m]."""
+    size = max(np.hypot(one.length, max(one.width, one.height)) for one in every)
+    width = min(track.width, 0.95 * track.radius)
+    plate = _track_plate(None, track, width, size, (-2.0 * size, length + 2.0 * size), 0.0)
+    return Station(BARE, *_stacked([plate]), begin=0.0, exit=length)
+
+
+def _track_plate(cut, track, width, size, ends, start):
+    """The track's surface: a sector about the bowl's axis without the hole."""
+    behind = BEHIND * size
+    ring = np.array([[ends[0], -behind], [ends[1], -behind], [ends[1], width], [ends[0], width]])
+    area = shapely.Polygon(bent(ring, track.radius, chord=CHORD))
+    if cut is not None:
+        taken = np.array(cut, float)
+        taken[:, 0] += start
+        taken[:, 1] = np.where(taken[:, 1] <= 0.0, -2.0 * behind, taken[:, 1])
+        taken[:, 1] = np.where(taken[:, 1] >= width - 1e-9, width + behind, taken[:, 1])
+        area = area.difference(shapely.make_valid(shapely.Polygon(bent(taken, track.radius, chord=CHORD))))
+    frame = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    return frame, THIN, _rings(area, lambda a, b: _drawn_end(a, b, track.radius, ends))
+
+
+def _drawn_end(a, b, radius, ends):
+    """Whether a border is where the drawing ends: behind the wall, or at either end of the stretch."""
+    near = 1e-6 * radius
+    off = [np.hypot(x, radius - y) for x, y in (a, b)]
+    place = [radius * np.arctan2(x, radius - y) for x, y in (a, b)]
+    return min(off) > radius + near or max(place) < ends[0] + near or min(place) > ends[1] - near
+
+
+def _gate_plate(gate, track, width, every, middle):
+    """A gate across the track, seen by the part that arrives: across from the wall, along upwards."""
+    tall = 2.0 * max(max(one.height for one in every), gate.bounds[3]) + FRAME
+    solid = shapely.box(0.0, 0.0, width + FRAME, tall).difference(gate)
+    if gate.bounds[2] >= width:  # a bar overhead leaves the whole width free
+        solid = solid.difference(shapely.box(width, 0.0, width + 2.0 * FRAME, gate.bounds[3]))
+    theta = middle / track.radius
+    c, s = np.cos(theta), np.sin(theta)
+    origin = [track.radius * s, track.radius * (1.0 - c), 0.0]
+    frame = np.array([origin, [-s, c, 0.0], [0.0, 0.0, 1.0], [-c, -s, 0.0]])
+    return frame, BLADE, _rings(solid, lambda a, b: max(a[0], b[0]) <= 0.0 or max(a[1], b[1]) <= 0.0)
+
+
+def _rings(area, is_end):
+    """Borders (B, 8) of a solid area: start, end, normal away, corner at the start, end of drawing."""
+    found = []
+    for one in shapely.get_parts(area):
+        if one.geom_type != "Polygon" or one.area <= 0.0:
+            continue
+        one = shapely.geometry.polygon.orient(one)  # the solid on the left
+        for ring in (one.exterior, *one.interiors):
+            points = np.asarray(ring.coords)[:-1, :2]
+            found += _ring(points, is_end)
+    return np.array(found).reshape(-1, 8)
+
+
+def _ring(points, is_end):
+    after, before = np.roll(points, -1, axis=0), np.roll(points, 1, axis=0)
+    for p, q, o in zip(points, after, before):
+        along, came = q - p, p - o
+        size = np.hypot(*along)
+        bend = np.arctan2(came[0] * along[1] - came[1] * along[0], came[0] * along[0] + came[1] * along[1])
+        end = is_end(p, q)
+        corner = bend > CORNER and not end and not is_end(o, p)
+        yield [*p, *q, along[1] / size, -along[0] / size, float(corner), float(end)]
+
+
+def _stacked(plates):
+    """Plates as rows, and all borders one below the other."""
+    rows, first = [], 0
+    for frame, depth, borders in plates:
+        last = first + len(borders)
+        rows.append([*frame.ravel(), depth, ROUNDED, first, last])
+        first = last
+    borders = np.concatenate([borders for _, _, borders in plates])
+    return check.frozen(np.array(rows, float)), check.frozen(borders)
