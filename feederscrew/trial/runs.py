@@ -15,7 +15,7 @@ from feederscrew.geometry.compiled import on_disk
 from feederscrew.trial.kernel import contact, motion
 
 PASSED, RETURNED, RUNNING = motion.PASSED, motion.RETURNED, motion.RUNNING
-PERIOD = 120  # steps of a period of the drive
+PERIOD = 80  # steps of a period of the drive
 SWEEPS, CONVERGED = 60, 1e-5  # of the contact solver: at most, and what a sweep may still change
 CONTACTS = 48  # of a part at a time
 BATCH = 5  # parts a core takes at a time
@@ -151,24 +151,40 @@ def quaternion(axes):
     return found / vectors.length(found)
 
 
+def matrix(state):
+    """Return the rotation matrix (3, 3) of a state, body to bowl."""
+    a, b, c, d = state[body.Q : body.Q + 4]
+    return np.array(
+        [
+            [1.0 - 2.0 * (c * c + d * d), 2.0 * (b * c - a * d), 2.0 * (b * d + a * c)],
+            [2.0 * (b * c + a * d), 1.0 - 2.0 * (b * b + d * d), 2.0 * (c * d - a * b)],
+            [2.0 * (b * d - a * c), 2.0 * (c * d + a * b), 1.0 - 2.0 * (b * b + c * c)],
+        ]
+    )
+
+
+def ways(states, radius):
+    """Return how far along the wall states (N, 13) are (N,), in the unit of length of the radius."""
+    return radius * np.arctan2(states[:, 0], radius - states[:, 1])
+
+
 def moved(states, by, radius):
-    """Return states turned about the bowl's axis by a way along the wall, all in one unit of length."""
-    theta = by / radius
+    """Return states (N, 13) turned about the bowl's axis by ways along the wall, in one unit of length."""
+    theta = np.broadcast_to(np.asarray(by) / radius, len(states))
     c, s = np.cos(theta), np.sin(theta)
     out = np.array(states, float)
     for first, middle in ((0, radius), (3, 0.0)):
         x, y = states[:, first], states[:, first + 1] - middle
         out[:, first], out[:, first + 1] = c * x - s * y, s * x + c * y + middle
-    half = np.array([np.cos(0.5 * theta), 0.0, 0.0, np.sin(0.5 * theta)])
+    a, d = np.cos(0.5 * theta), np.sin(0.5 * theta)
     w, x, y, z = (states[:, body.Q + k] for k in range(4))
-    a, d = half[0], half[3]
     out[:, body.Q : body.Q + 4] = np.column_stack(
         [a * w - d * z, a * x - d * y, a * y + d * x, a * z + d * w]
     )
     return out
 
 
-def ride(known, station, states, times, *, seconds, every, places, jobs=1, progress=None):
+def ride(known, station, states, times, *, limits, every, places, jobs=1, progress=None):
     """Follow parts past one station.
 
     Parameters
@@ -179,8 +195,8 @@ def ride(known, station, states, times, *, seconds, every, places, jobs=1, progr
         At the start, without dimensions.
     times : (N,) float [s]
         Of the start, which sets the phase of the drive.
-    seconds : float [s]
-        After which a part is given up.
+    limits : (float [s], float [s], float [m])
+        After how long a part is given up; and the time in which it must get on, and how far.
     every : float [s]
         Between two places noted; whole steps.
     places : int
@@ -200,7 +216,7 @@ def ride(known, station, states, times, *, seconds, every, places, jobs=1, progr
     KeyboardInterrupt
         If no batch was finished.
     """
-    surface = surface_of(known, station, seconds)
+    surface = surface_of(known, station, limits)
     stride = max(round(every / known.unit / known.floor.step), 1)
     own = known, surface, stride, places
     _batch(*own, states[:0], times[:0])  # compiled here, if need be
@@ -225,8 +241,8 @@ def ride(known, station, states, times, *, seconds, every, places, jobs=1, progr
     return Rides(**{name: check.frozen(value) for name, value in found.items()}, partial=partial)
 
 
-def surface_of(known, station, seconds):
-    """Return a station as the kernel takes it, with the time after which a part is given up [s]."""
+def surface_of(known, station, limits):
+    """Return a station as the kernel takes it, with the limits of ``ride``."""
     plates, borders = np.array(station.plates), np.array(station.borders)
     plates[:, [0, 1, 2, 12, 13]] /= known.length
     borders[:, :4] /= known.length
@@ -241,7 +257,9 @@ def surface_of(known, station, seconds):
         sweeps=SWEEPS,
         converged=CONVERGED,
         exit=station.exit / known.length,
-        longest=seconds / known.unit,
+        longest=limits[0] / known.unit,
+        patience=limits[1] / known.unit,
+        progress=limits[2] / known.length,
     )
 
 

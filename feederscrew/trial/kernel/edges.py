@@ -5,7 +5,7 @@ import math
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import compiled
 from feederscrew.trial.kernel.contact import add
-from feederscrew.trial.kernel.search import ACROSS, ALONG, DEEP, FIRST, FRONT, LAST, _crossing
+from feederscrew.trial.kernel.search import ACROSS, ALONG, DEEP, FIRST, FRONT, LAST, ROUNDED, _crossing
 
 BEND, END = 6, 7  # columns of a border: a convex corner at its start; no border but the end of the drawing
 STEEP = 0.02  # [1] slope against a plate's front from which a face may lie on a corner
@@ -58,7 +58,7 @@ def edges_on(plate, borders, near, nears, solid, shown, spots, turn, tangent, re
                 ready, s = True, solid.sides[k]
                 _vector(plate, turn, s[0], s[1], s[2], work[0])
                 _vector(plate, turn, s[3], s[4], s[5], work[1])
-            share, u, v, w, gap = _crossing(p, q, borders[n], work, reach)
+            share, u, v, w, gap = _crossing(p, q, borders[n], work, plate[ROUNDED], reach)
             if gap < math.inf:
                 x = spots[i, 0] + share * (spots[j, 0] - spots[i, 0])
                 y = spots[i, 1] + share * (spots[j, 1] - spots[i, 1])

@@ -40,6 +40,8 @@ class Surface(NamedTuple):
     converged: float
     exit: float  # way along the wall at which a part has passed
     longest: float  # time after which it is given up
+    patience: float  # time in which a part must get on
+    progress: float  # ... so far along the wall, or down
 
 
 @compiled
@@ -285,7 +287,13 @@ def travel(surface, solid, floor, work, time, every, path, notes):
     state, dt, begun, start = work.state, floor.step, time, way(surface, work.state)
     work.memory[0] = -1.0
     steps, noted, sunk, outcome = math.ceil(surface.longest / dt), 0, 0.0, RUNNING
+    apart, mark, level = math.ceil(surface.patience / dt), start, state[Z]
     for k in range(steps):
+        if k % apart == apart - 1:
+            place = way(surface, state)
+            if place - mark < surface.progress and level - state[Z] < surface.progress:
+                break
+            mark, level = place, state[Z]
         if k % every == 0 and noted < len(path):
             path[noted, 0] = time - begun
             for e in range(3):

@@ -13,7 +13,8 @@ from feederscrew.geometry.compiled import compiled
 from feederscrew.trial.kernel.contact import add
 
 SLANT = 0.02  # [1] by which a contact's normal may lie beyond the faces it is between
-PARALLEL = 1e-4  # [1] sine of the angle below which two edges do not cross
+PARALLEL = 0.03  # [1] sine of the angle below which two edges do not cross: their ends touch instead
+LEVEL = 0.7  # [1] of a normal against a plate's front: one that lies flatter stops a part
 DEEP = 0.03  # how far behind a surface an edge may be found, in units of the part's length
 ORIGIN, ACROSS, ALONG, FRONT, DEPTH, ROUNDED, FIRST, LAST = 0, 3, 6, 9, 12, 13, 14, 15  # of a plate's row
 BOX = 16  # where its borders are: least and greatest of both coordinates
@@ -114,7 +115,7 @@ def corners_on(plate, borders, shown, spots, turn, inertia, tangent, reach, cont
 
 
 @compiled
-def _crossing(p, q, border, wedge, reach):
+def _crossing(p, q, border, wedge, rounded, reach):
     """Where an edge from p to q touches a border, in the plate's coordinates.
 
     Returns
@@ -130,6 +131,8 @@ def _crossing(p, q, border, wedge, reach):
     if nz + nx * border[4] + ny * border[5] < 0.0:
         size = -size
     nx, ny, nz = nx / size, ny / size, nz / size
+    if nz < LEVEL and min(p[2], q[2]) > -rounded:  # not deep enough to catch on a rounded border
+        return 0.0, 0.0, 0.0, 0.0, math.inf
     if nz < -SLANT or nx * border[4] + ny * border[5] < -SLANT:
         return 0.0, 0.0, 0.0, 0.0, math.inf
     x, y, z = p[0] - border[0], p[1] - border[1], p[2]

@@ -1,0 +1,254 @@
+"""Many parts, one at a time, through a chain of devices: what becomes of each, and where."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.conveying import answer
+from feederscrew.dropping.kernel import body
+from feederscrew.geometry import vectors
+from feederscrew.trial import runs, stations
+from feederscrew.trial.shape import solid_of
+
+PASSED, RETURNED, HANGING, STUCK = range(4)
+FATES = ("passed", "returned", "hanging", "stuck")
+PLAY = 5e-5  # [m] from the wall, at most, where a part is laid down
+TURN = np.radians(0.1)  # [rad] of its heading, at most
+RUN_UP = 1.0  # of the part's size: how far it travels before the first device
+LOOKS = 300  # places noted of a part at a station
+SPARE = 3.0  # times what it should take is given to a part
+SLOWEST = 1e-3  # [m/s] a slower bowl is given up after the time this takes
+GETS_ON = 0.08  # of the way it should come in the time it has to get on
+ALIKE = 0.05  # of the part's size: a part whose outline is off by more lies in no known orientation
+LOOK_DIRECTIONS = 160
+BELOW = 1e-4  # [m] under the track: a part that reaches so deep hangs
+OTHER = -1  # orientation: none of the known
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """What became of N parts on their way past S stations, the bare track first; M orientations."""
+
+    entered: np.ndarray  # (N,) int, orientation each was laid down in
+    orientations: np.ndarray  # (S + 1, N) int, before each station and at the end; OTHER; -2 of one gone
+    fates: np.ndarray  # (N,) int, of FATES
+    ended: np.ndarray  # (N,) int, station at which it ended; S of one that passed
+    velocities: np.ndarray  # (N,) [m/s] on the bare track; NaN of one that did not travel
+    seconds: np.ndarray  # (N,) [s] in all
+    depths: np.ndarray  # (N,) [m] the deepest that anything was in anything
+    fell: np.ndarray  # (N,) [m] along the wall from the device's start, where it ended
+    rides: tuple  # runs.Rides of each station, of the parts that came so far
+    riders: tuple  # (P,) int, which parts those are
+    stations: tuple  # stations.Station
+    length: float  # [m] the unit of length of the states
+    principal: np.ndarray  # (3, 3) [1]
+    partial: bool
+
+
+def course(part, bowl, every, tried, devices, *, parts, seed=1, jobs=1, progress=None, before=None):
+    """Send parts through a chain of devices.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    bowl : Bowl
+    every : sequence of Orientation
+        Of the part.
+    tried : sequence of int
+        Which of them are laid down, in turn.
+    devices : sequence of Device
+        In the order parts meet them.
+    parts : int
+    seed : int
+        Of play, heading and phase of the drive; each part draws its own.
+    jobs : int
+        Cores to use; the outcome does not depend on it.
+    progress : function, optional
+        Told how many parts are done with a station, of how many.
+    before : function, optional
+        Called before anything is compiled.
+
+    Returns
+    -------
+    Course
+
+    Raises
+    ------
+    FeederError
+        If the part has no shape or the bowl conveys nothing at all.
+    """
+    solid, length, principal = solid_of(part)
+    known, chain = runs.setting(solid, length, bowl), _chain(bowl, every, devices)
+    if before:
+        before()
+    entered = np.resize(np.asarray(tried, int), parts)
+    states, times = _starts(bowl, every, entered, principal, length, seed)
+    looks = _Looks(every, solid, length, bowl.track.radius)
+    told = _Told(progress, parts * len(chain))
+    found = _Found(len(chain), parts, looks, entered)
+    riders = np.arange(parts)
+    for place, station in enumerate(chain):
+        if not len(riders) or found.partial:
+            break
+        ride = runs.ride(
+            known, station, states, times, jobs=jobs, progress=told.of(place * parts),
+            **_limits(bowl, station, every),
+        )  # fmt: skip
+        stays = found.add(place, station, ride, riders[: len(ride.outcomes)], bowl)
+        riders = riders[: len(ride.outcomes)][stays]
+        times = (times[: len(ride.seconds)] + ride.seconds)[stays]
+        if place + 1 < len(chain):
+            begun = runs.ways(ride.states[stays], known.radius)
+            states = runs.moved(ride.states[stays], chain[place + 1].begin / length - begun, known.radius)
+    return found.course(chain, length, principal)
+
+
+def _chain(bowl, every, devices):
+    """The bare track, then each device that is no measured yield."""
+    size = max(one.length for one in every)
+    made = [stations.station(device, bowl.track, every) for device in devices if device.kind != "yield"]
+    return [stations.plain(bowl.track, every, RUN_UP * size), *made]
+
+
+def _starts(bowl, every, entered, principal, length, seed):
+    """States (N, 13) of parts laid on the track, and the times [s] at which they are."""
+    states, times = np.zeros((len(entered), body.STATE)), np.zeros(len(entered))
+    for n, k in enumerate(entered):
+        rng = np.random.default_rng((seed, n))
+        play, turn, phase = rng.random(3)
+        lean = TURN * (2.0 * turn - 1.0)
+        states[n] = runs.laid(
+            every[k], principal, length, bowl.track, place=0.0,
+            aside=PLAY * play + 0.5 * every[k].length * abs(lean), turn=lean,
+        )  # fmt: skip
+        times[n] = phase / bowl.drive.frequency
+    return states, times
+
+
+def _limits(bowl, station, every):
+    """How long a part has, and how often it is looked at, by the velocity of the point mass."""
+    found = answer.answer(bowl).velocity
+    speed = max(found if np.isfinite(found) else 0.0, SLOWEST)
+    way = station.exit - station.begin
+    size = max(one.length for one in every)
+    patience = max(0.5 * size / speed, 0.5)
+    seconds = SPARE * way / speed + 1.0
+    period = 1.0 / bowl.drive.frequency
+    every_s = max(np.ceil(seconds / SPARE / LOOKS / period), 1.0) * period
+    return {
+        "limits": (seconds, patience, GETS_ON * patience * speed),
+        "every": every_s, "places": int(LOOKS * SPARE) + 60,
+    }  # fmt: skip
+
+
+class _Told:
+    """Progress over all stations."""
+
+    def __init__(self, progress, total):
+        self.progress, self.total = progress, total
+
+    def of(self, before):
+        """What one station tells."""
+        return self.progress and (lambda done: self.progress(before + done, self.total))
+
+
+class _Looks:
+    """Tells in which orientation a part lies, by how far it reaches in many directions."""
+
+    def __init__(self, every, solid, length, radius):
+        self.directions, self.corners = spread(LOOK_DIRECTIONS), solid.corners
+        self.radius, self.near = radius / length, ALIKE * solid.radius
+        self.known = np.array([self._standing(one, length) for one in every])
+
+    def _standing(self, one, length):
+        c, s = np.cos(one.heading), np.sin(one.heading)
+        turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        corners = one.posture.corners - np.array([0.0, 0.0, one.posture.height])
+        return vectors.product(vectors.product(corners, turn.T) / length, self.directions.T).max(axis=0)
+
+    def of(self, states):
+        """(N,) orientation of each state, OTHER where it is none of the known."""
+        return np.array([self._of(state) for state in states], int)
+
+    def _of(self, state):
+        place = np.arctan2(state[0], self.radius - state[1])
+        level = runs.moved(state[None], -place * self.radius, self.radius)[0]
+        seen = vectors.product(self.corners, runs.matrix(level).T)
+        reach = vectors.product(seen, self.directions.T).max(axis=0)
+        off = np.abs(self.known - reach).max(axis=1)
+        best = int(np.argmin(off))
+        return best if off[best] < self.near else OTHER
+
+
+def spread(count):
+    """Return unit vectors (count, 3) spread over the sphere, along a spiral."""
+    k = np.arange(count) + 0.5
+    z, turn = 1.0 - 2.0 * k / count, np.pi * (1.0 + np.sqrt(5.0)) * k
+    flat = np.sqrt(1.0 - z * z)
+    return np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])
+
+
+class _Found:
+    """Collects what became of the parts, station by station."""
+
+    def __init__(self, count, parts, looks, entered):
+        self.looks, self.count = looks, count
+        self.entered, self.orientations = entered, np.full((count + 1, parts), -2)
+        self.orientations[0] = entered
+        self.fates, self.ended = np.full(parts, STUCK), np.full(parts, -1)
+        self.velocities, self.fell = np.full(parts, np.nan), np.full(parts, np.nan)
+        self.seconds, self.depths = np.zeros(parts), np.zeros(parts)
+        self.rides, self.riders, self.partial, self.known = [], [], False, parts
+
+    def add(self, place, station, ride, riders, bowl):
+        """Note what one station did; which of its parts go on."""
+        self.rides.append(ride)
+        self.riders.append(riders)
+        if ride.partial:  # later parts are unknown: only the first ones count
+            self.partial, self.known = True, int(riders[-1]) + 1
+        self.seconds[riders] += ride.seconds
+        self.depths[riders] = np.maximum(self.depths[riders], ride.depths)
+        if place == 0:
+            self.velocities[riders] = velocities(ride, bowl.track.radius)
+        passed = ride.outcomes == runs.PASSED
+        self.ended[riders] = np.where(passed, place + 1, place)
+        self.fell[riders] = runs.ways(ride.states, self.looks.radius) * bowl.track.radius / self.looks.radius
+        fates = np.where(ride.outcomes == runs.RETURNED, RETURNED, STUCK)
+        low = self._lowest(ride.states) * bowl.track.radius / self.looks.radius
+        fates = np.where((ride.outcomes == runs.RUNNING) & (low < -BELOW), HANGING, fates)
+        self.fates[riders] = np.where(passed, PASSED, fates)
+        self.orientations[place + 1][riders[passed]] = self.looks.of(ride.states[passed])
+        return passed
+
+    def _lowest(self, states):
+        corners = self.looks.corners
+        return np.array([s[2] + vectors.product(corners, runs.matrix(s)[2]).min() for s in states])
+
+    def course(self, chain, length, principal):
+        """All of it as a record."""
+        first = slice(0, self.known)
+        arrays = {
+            "entered": self.entered, "fates": self.fates, "ended": self.ended,
+            "velocities": self.velocities, "seconds": self.seconds, "depths": self.depths, "fell": self.fell,
+        }  # fmt: skip
+        return Course(
+            **{name: check.frozen(array[first]) for name, array in arrays.items()},
+            orientations=check.frozen(self.orientations[:, first]),
+            rides=tuple(self.rides), riders=tuple(self.riders), stations=tuple(chain),
+            length=length, principal=check.frozen(principal), partial=self.partial,
+        )  # fmt: skip
+
+
+def velocities(ride, radius):
+    """Return mean velocities (N,) [m/s], over the second half of each path; NaN of a short one."""
+    found = np.full(len(ride.paths), np.nan)
+    for n, path in enumerate(ride.paths):
+        count = int(np.isfinite(path[:, 0]).sum())
+        if count < 4 or ride.outcomes[n] == runs.RETURNED:
+            continue
+        way = radius * np.arctan2(path[:count, 1], radius - path[:count, 2])
+        first = count // 2
+        found[n] = (way[-1] - way[first]) / (path[count - 1, 0] - path[first, 0])
+    return found
