@@ -25,6 +25,7 @@ COMMANDS = {
     "tune": "feederscrew_cli.tune",
     "bowl": "feederscrew_cli.bowl",
     "tooling": "feederscrew_cli.tooling",
+    "trial": "feederscrew_cli.trial",
     "floor": "feederscrew_cli.floor",
     "track": "feederscrew_cli.track",
     "headings": "feederscrew_cli.headings",

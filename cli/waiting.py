@@ -19,6 +19,14 @@ def plate(out):
         out.say("Compiling the plate's kernel, once on this machine: about ten seconds.")
 
 
+def trial(out):
+    """Say so when the first trial on this machine must wait for the compiler."""
+    from feederscrew.trial import runs
+
+    if not runs.compiled():
+        out.say("Compiling the trial's kernel, once on this machine: about fifteen seconds.")
+
+
 def conveying(out):
     """Say so when the first map on this machine must wait for the compiler."""
     from feederscrew.conveying import sweep

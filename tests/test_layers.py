@@ -9,7 +9,7 @@ ROOT = Path(__file__).parent.parent
 ORDER = [
     "errors", "check", "units", "documents",
     "geometry", "part", "resting", "bowl", "screw", "mechanics", "conveying", "dropping",
-    "tooling", "rates", "machine", "studies", "thesis", "output", "batch", "api",
+    "tooling", "rates", "trial", "machine", "studies", "thesis", "output", "batch", "api",
 ]  # fmt: skip
 DOORS = {
     "trimesh": {"feederscrew/part"},

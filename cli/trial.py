@@ -1,0 +1,70 @@
+"""``feeder trial``."""
+
+import os
+
+import click
+
+from feederscrew_cli import options, waiting
+from feederscrew_cli.interrupt import held_back
+
+
+@click.command(short_help="A trial run: parts of true shape on the vibrating, tooled track.")
+@options.part
+@click.option("--aspect", metavar="NAME", help="Only its orientations.  [default: every orientation]")
+@options.rule
+@click.option(
+    "--parts", type=click.IntRange(1, 10**6), help="One at a time.  [default: 200; with --queue 60]"
+)
+@click.option(
+    "--queue", type=click.IntRange(1, 1000), metavar="N", help="So many in a row that push each other, too."
+)
+@click.option(
+    "--seconds", type=options.Number(0.05, 3600.0), default=10.0, show_default=True, help="Of the queue."
+)
+@click.option(
+    "--amplitude",
+    "amplitudes",
+    metavar="LIST",
+    help="A trial at each, '60%,80%,100%' of the bowl's or '0.3 mm,0.4 mm'.",
+)
+@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of play and phase.")
+@click.option("--jobs", type=click.IntRange(1, 256), metavar="N", help="Cores to use.  [default: all]")
+@options.bowl
+@options.pictures
+@options.output
+def trial(part, aspect, rule, parts, queue, seconds, amplitudes, seed, jobs, bowl, pictures, out):
+    """Example: feeder trial parts/lbracket_30x20x15.stl --config tooling.yaml --parts 100 -o results
+
+    Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed,
+    while all of it vibrates with the drive: one part at a time, its orientations in turn. Each part
+    passes, is returned, hangs or is stuck. Beside each orientation stands what the static rule of feeder
+    tooling says, and its margin; those that do something else come first.
+
+    --amplitude gives the greatest drive at which the tooling still sorts. --queue adds a row of parts
+    that push each other, a reduced model in one dimension. The same seed gives the same numbers whatever
+    the number of jobs. Ctrl-C ends the trial early: what is finished is given, marked partial.
+
+    With -o: trial.csv, trial_stations.csv, trial.json, trial.png (orientations in and out),
+    trial_paths.png (paths from above), trial_stills.png and run.json.
+    """
+    with held_back():
+        from feederscrew import bowl as bowls
+        from feederscrew.output import columns, offers
+        from feederscrew.output.trial import files, tables
+        from feederscrew.studies.trial import trial as study
+
+    solid, settings = out.part(part), bowls.settings(**bowl)
+    driven = bowls.strokes(bowls.record(settings), amplitudes)
+    effective = columns.conditions(solid) | bowls.texts(settings)
+    with out.folder(solid.name, {solid.source: solid.sha256}, effective) as folder:
+        with waiting.bar(out, "runs") as bar:
+            found = study(
+                solid, driven, aspect,
+                rule=rule, parts=parts, queue=queue, seconds=seconds, seed=seed,
+                jobs=jobs or os.cpu_count(), progress=bar.reach, before=lambda: waiting.trial(out),
+            )  # fmt: skip
+        document = tables.document(found)
+        out.warn(*found.warnings)
+        out.say(*tables.summary(found))
+        offers.write(folder, files.offers(found), pictures=pictures)
+        out.show(tables.frame(found), document, hidden=tables.HIDDEN)

@@ -1,0 +1,34 @@
+"""What ``feeder trial`` leaves in its folder."""
+
+from feederscrew.output import offers as offer
+from feederscrew.output.trial import tables
+
+
+def offers(study):
+    """Offer the files of a TrialStudy, as a list of Offer."""
+    return [
+        offer.table("trial.csv", tables.frame, study),
+        offer.table("trial_stations.csv", tables.stations, study.runs[0]),
+        offer.document("trial.json", tables.document, study),
+        offer.picture("trial.png", "Orientations in and out", _matrix, study),
+        offer.picture("trial_paths.png", "Paths over the last device, from above", _paths, study),
+        offer.picture("trial_stills.png", "A part that passes and one that does not", _stills, study),
+    ]
+
+
+def _matrix(study):
+    from feederscrew.output.trial import figures
+
+    return figures.matrix(study.runs[0])
+
+
+def _paths(study):
+    from feederscrew.output.trial import figures
+
+    return figures.paths(study.runs[0])
+
+
+def _stills(study):
+    from feederscrew.output.trial import stills
+
+    return stills.stills(study.part, study.runs[0])

@@ -1,0 +1,168 @@
+"""Trials as tables and documents, in the units of the shop."""
+
+import numpy as np
+
+from feederscrew import units
+from feederscrew.output import columns, tables
+from feederscrew.studies.trial import ENGINE
+from feederscrew.trial import course, row
+
+PER_MINUTE, MM_S = units.factor("/min", "rate"), units.factor("mm/s", "velocity")
+MM, DEG = columns.MM, columns.DEG
+HIDDEN = ("fell_mm", "seconds")
+
+
+def document(study):
+    """Return a TrialStudy as the JSON document: of the first amplitude, and of all where there are more."""
+    told = {
+        **columns.part(study.part, study.warnings),
+        "rule": study.rule,
+        "seed": study.seed,
+        "partial": study.partial,
+        **_run(study.runs[0]),
+    }
+    if len(study.runs) > 1:
+        told["highest_amplitude_mm"] = study.highest / MM
+        told["drives"] = [_run(run) for run in study.runs]
+    return told
+
+
+def _run(run):
+    queued = "" if run.queue is None else f"; queue: {row.ENGINE}"
+    return {
+        "amplitude_mm": run.bowl.drive.amplitude / MM,
+        "throw_number": run.throw_number,
+        "velocity_mm_s": run.velocity / MM_S,
+        "parts_per_minute": run.parts / PER_MINUTE,
+        "efficiency": run.efficiency,
+        "purity": run.purity,
+        "jams": run.jams,
+        "engine": ENGINE + queued,
+        "sorts": bool(run.sorts),
+        "part_seconds": float(run.course.seconds.sum()),
+        "deepest_um": float(run.course.depths.max(initial=0.0)) / (1e-3 * MM),
+        "wanted": _name(run, run.wanted),
+        "stations": [station.device.kind for station in run.course.stations],
+        "orientations": orientations(run),
+        "matrix": run.matrix,
+        "queue": None if run.queue is None else queue(run),
+    }
+
+
+def orientations(run):
+    """Return one row an orientation tried, those that do not do what the static rule says first."""
+    margin, ends, counts = run.known.margin, run.ends, run.counts
+    first = sorted(np.flatnonzero(run.tried), key=lambda k: (not run.odd[k], k))
+    return [
+        {
+            "aspect": one.aspect,
+            "heading_deg": one.heading / DEG,
+            "length_mm": one.length / MM,
+            "share": float(run.shares[k]),
+            "tried": int(run.tried[k]),
+            **{name: int(count) for name, count in zip(course.FATES, counts[k])},
+            "passed_low": ends[k, 0],
+            "passed_high": ends[k, 1],
+            "leaves_as": _leaves(run, k),
+            "ended_at": _ended(run, k),
+            "predicted": "passes" if run.predicted[k] else "returned",
+            "margin_mm": None if np.isnan(margin[k]) else float(margin[k]) / MM,
+            "disagrees": bool(run.odd[k]),
+            "velocity_mm_s": _mean(run.course.velocities[run.course.entered == k]) / MM_S,
+            "seconds": _mean(run.course.seconds[run.course.entered == k]),
+            "fell_mm": _mean(
+                run.course.fell[(run.course.entered == k) & (run.course.fates == course.RETURNED)]
+            )
+            / MM,
+        }
+        for k, one in ((k, run.known.lying[k]) for k in first)
+    ]
+
+
+def queue(run):
+    """Return what the queue did, as a document."""
+    found = run.queue
+    return {
+        "engine": row.ENGINE,
+        "seconds": found.seconds,
+        "delivered": found.delivered,
+        "returned": found.returned,
+        "jams": found.jams,
+        "velocity_mm_s": found.velocity / MM_S,
+        "mean_gap_mm": found.gap / MM,
+        "touching": found.touching,
+        "pressure_mn": found.pressure * 1e3,
+        "leaving": {run.known.lying[k].name: int(n) for k, n in enumerate(found.leaving) if n},
+    }
+
+
+def frame(study):
+    """Return the rows of every amplitude as a table."""
+    rows = []
+    for run in study.runs:
+        lead = {"amplitude_mm": run.bowl.drive.amplitude / MM} if len(study.runs) > 1 else {}
+        rows += [lead | one for one in orientations(run)]
+    return tables.frame({name: [one[name] for one in rows] for name in rows[0]})
+
+
+def stations(run):
+    """Return what each station did with each orientation that came to it, as a frame."""
+    found = run.course
+    rows = []
+    for place, station in enumerate(found.stations):
+        before, after = found.orientations[place], found.orientations[place + 1]
+        for k in np.unique(before[before > -2]):
+            came = before == k
+            for m in np.unique(after[came & (after > -2)]):
+                rows.append((place, station.device.kind, _name(run, k), _name(run, m), came & (after == m)))
+            for fate in (course.RETURNED, course.HANGING, course.STUCK):
+                here = came & (found.ended == place) & (found.fates == fate)
+                if here.any():
+                    rows.append((place, station.device.kind, _name(run, k), course.FATES[fate], here))
+    names = ("station", "device", "comes_as", "becomes", "parts")
+    made = [(*one[:4], int(one[4].sum())) for one in rows]
+    return tables.frame({name: [one[k] for one in made] for k, name in enumerate(names)})
+
+
+def summary(study):
+    """Return what is said beside the table, a sentence each."""
+    for run in study.runs:
+        at = f"amplitude {run.bowl.drive.amplitude / MM:.4g} mm, throw number {run.throw_number:.3g}: "
+        yield at + (
+            f"{run.velocity / MM_S:.4g} mm/s, {run.parts / PER_MINUTE:.4g} parts per minute, efficiency "
+            f"{100.0 * run.efficiency:.4g} %, purity {100.0 * np.nan_to_num(run.purity):.4g} %"
+        )
+        if run.queue is not None:
+            yield (
+                f"queue ({row.ENGINE}): {run.queue.delivered:.4g} delivered in {run.queue.seconds:.4g} s, "
+                f"{run.queue.returned} returned, {run.queue.jams} jams"
+            )
+    if len(study.runs) > 1 and np.isfinite(study.highest):
+        yield f"the tooling sorts up to an amplitude of {study.highest / MM:.4g} mm of those tried"
+    if study.partial:
+        yield "stopped early: only what was finished is counted"
+
+
+def _name(run, k):
+    if k is None or k < 0 or k >= len(run.known.lying):
+        return None if k is None else "other"
+    return run.known.lying[k].name
+
+
+def _leaves(run, k):
+    """The orientations in which those that passed left: 'A@0 9, other 1'."""
+    count = run.matrix[k]
+    return ", ".join(f"{_name(run, m)} {count[m]}" for m in np.flatnonzero(count))
+
+
+def _ended(run, k):
+    """Where those ended that did not pass: 'gap 9'."""
+    found = run.course
+    own = (found.entered == k) & (found.fates != course.PASSED)
+    places, counts = np.unique(found.ended[own], return_counts=True)
+    return ", ".join(f"{found.stations[p].device.kind} {n}" for p, n in zip(places, counts))
+
+
+def _mean(values):
+    known = values[np.isfinite(values)]
+    return float(known.mean()) if len(known) else np.nan
