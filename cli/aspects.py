@@ -56,11 +56,11 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     chosen["surface"] = chosen["surface"] if exponent is None else exponent
     with out.folder(solid.name, {solid.source: solid.sha256}, conditions(solid) | chosen) as folder:
         study = _study(solid, chosen, out)
+        frame = tables.aspects(study)
+        shown = tables.printed(frame, columns) if out.format == "table" else frame
         offers.write(folder, files.offers(study, tipping=graph), pictures=pictures)
         out.say(*tables.remarks(study) if folder and pictures else ())
-    frame = tables.aspects(study)
-    people = out.format == "table"
-    out.show(tables.printed(frame, columns) if people else frame, tables.document(study))
+    out.show(shown, tables.document(study))
 
 
 def _files_wanted(graph, out):

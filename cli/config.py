@@ -15,8 +15,8 @@ def config():
 
 @config.command(short_help="Write a commented bowl file of all defaults.")
 @click.argument("file", type=options.FILE, default="-")
-@click.option("--force", is_flag=True, help="Replace the file if it exists.")
-def init(file, force):
+@click.option("--force", "replace", is_flag=True, help="Replace the file if it exists.")
+def init(file, replace):
     """Example: feeder config init bowl.yaml
 
     Write a bowl file of all defaults, each key with its meaning, to FILE or to standard output.
@@ -26,7 +26,7 @@ def init(file, force):
     if file == "-":
         click.echo(documentation.template(), nl=False)
     else:
-        documentation.write_template(file, replace=force)
+        documentation.write_template(file, replace=replace)
         click.echo(f"Wrote {file}", err=True)
 
 

@@ -1,5 +1,6 @@
 """The ``feeder`` program: its commands and its one error fence."""
 
+import contextlib
 import difflib
 import importlib
 import os
@@ -11,6 +12,7 @@ import click
 
 from feederscrew import __version__
 from feederscrew.errors import ArgumentError, Faults, FeederError
+from feederscrew_cli import naming
 from feederscrew_cli.interrupt import INTERRUPTED
 
 COMMANDS = {
@@ -63,6 +65,7 @@ class Fence(click.Group):
     def main(self, args=None, **extra):
         """Run one command line and leave the interpreter."""
         arguments = list(sys.argv[1:] if args is None else args)
+        _take_any_name()
         try:
             status = super().main(arguments, **{**extra, "standalone_mode": False, "obj": arguments})
         except click.Abort:
@@ -73,6 +76,11 @@ class Fence(click.Group):
                 "Error: " + " ".join(error.format_message().split()) + _near_miss(error) + _help_hint(error)
             )
             status = error.exit_code
+        except BrokenPipeError:
+            status = _without_stdout(PIPE_CLOSED)
+        except (OSError, UnicodeError) as error:
+            _tell("Error: " + _of_the_system(error))
+            status = _without_stdout(1)
         sys.exit(status if isinstance(status, int) else 0)
 
     def invoke(self, ctx):
@@ -83,17 +91,37 @@ class Fence(click.Group):
             for line in _lines(error, self.get_command(ctx, ctx.invoked_subcommand)):
                 _tell("Error: " + " ".join(line.splitlines()))  # a file's name may hold a line break
             return ctx.exit(1)
-        except BrokenPipeError:
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or the last flush fails as well
-            return ctx.exit(PIPE_CLOSED)
+        except BrokenPipeError:  # before click takes it for its own
+            return ctx.exit(_without_stdout(PIPE_CLOSED))
+
+
+def _take_any_name():
+    """Let stdout show an escape for what it cannot write, as stderr does: a byte of a file's name."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _without_stdout(status):
+    """The status, and what still waits for stdout thrown away: the last flush would fail as well."""
+    with contextlib.suppress(OSError, ValueError):  # a stream of a test has no number
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return status
+
+
+def _of_the_system(error):
+    """One line of what the system refuses: a full disk, a folder gone, a name it cannot take."""
+    if isinstance(error, UnicodeError):
+        return f"a name or text: cannot be converted ({error.reason}) - rename the file in plain letters"
+    where = error.filename or "output"
+    return f"{where}: cannot be read or written ({error.strerror or error}) - check the disk and permissions"
 
 
 def _lines(error, command):
     """Every fault as its own line; an argument of the library goes by the name of its option."""
-    parts = (command, *getattr(command, "commands", {}).values())  # of 'config': 'show' and 'init'
-    options = {param.name: param.opts[0] for part in parts for param in getattr(part, "params", ())}
+    options = naming.options(command)
     faults = error.faults if isinstance(error, Faults) else (error,)
-    return tuple(line for fault in faults for line in _of_options(fault, options))
+    return tuple(naming.translated(line, options) for fault in faults for line in _of_options(fault, options))
 
 
 def _of_options(fault, options):
@@ -105,7 +133,8 @@ def _of_options(fault, options):
 
 
 def _tell(line):
-    click.echo(line, err=True)
+    with contextlib.suppress(OSError):  # stderr may be the full disk
+        click.echo(line, err=True)
 
 
 def _near_miss(error):

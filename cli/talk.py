@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import click
 
+from feederscrew_cli import naming
 from feederscrew_cli.interrupt import held_back
 
 FORMATS = ("table", "csv", "json")
@@ -25,6 +26,7 @@ class Output:
     verbose: bool = False
     depfile: str | None = None  # of --depfile
     inputs: tuple[str, ...] = ()  # the files named on the command line
+    options: dict[str, str] = field(default_factory=dict)  # of the command, by the argument they are
     warnings: list[str] = field(default_factory=list)  # told so far, for run.json
 
     @classmethod
@@ -35,12 +37,16 @@ class Output:
         if options.get("depfile") and not options["directory"]:
             raise click.UsageError("--depfile says what the files of -o depend on - give -o as well")
         return cls(
-            command=name, arguments=tuple(context.obj or ()), inputs=tuple(_inputs(context)), **options
+            command=name,
+            arguments=tuple(context.obj or ()),
+            inputs=tuple(_inputs(context)),
+            options=naming.options(context.command),
+            **options,
         )
 
     def warn(self, *texts):
         """Tell each warning on stderr and keep it for run.json."""
-        for text in texts:
+        for text in map(self._named, texts):
             self.warnings.append(text)
             self.say(f"Warning: {text}")
 
@@ -48,7 +54,11 @@ class Output:
         """Each text as a line on stderr, unless ``-q``."""
         for text in texts:
             if not self.quiet:
-                click.echo(text, err=True)
+                with contextlib.suppress(OSError):  # a full disk under stderr must not cost the answer
+                    click.echo(self._named(text), err=True)
+
+    def _named(self, text):
+        return naming.translated(text, self.options)
 
     def detail(self, text):
         """One line on stderr, with ``-v`` only."""
@@ -119,6 +129,8 @@ class Output:
             return
         with ResultFolder(self.directory, name, identity) as folder:
             yield folder
+            if folder.left_out:
+                self.warn(f"stopped while drawing: without {', '.join(folder.left_out)}")
             folder.keep(
                 self.command,
                 arguments=placeless(self.arguments),

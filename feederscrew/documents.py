@@ -91,6 +91,8 @@ def content(path, most, wanted, kind=ConfigError):
         with Path(path).open("rb") as file:
             return file.read(most + 1)
     except FileNotFoundError:
+        if Path(path).is_symlink():
+            raise kind(path, "is a link to a file that is not there", "mend or remove the link") from None
         raise kind(path, "no such file", "check the path") from None
     except IsADirectoryError:
         raise kind(path, "is a folder", f"name {wanted} in it") from None

@@ -16,7 +16,7 @@ PATIENCE = 20  # [s] for a scheduler to answer and for a first worker
 AHEAD = 2  # tasks sent for each thread of the cluster, so that none waits
 POLL = 0.05  # [s] between looks at what has come
 ADDRESS = re.compile(r"((tcp|tls|ucx|wss?)://)?[^\s/]+:\d+/?")
-AGAIN = "see to it, then start this command again with --resume: what is finished is kept"
+AGAIN = "see to it, then start this command again with `resume`: what is finished is kept"
 
 
 class Cluster:

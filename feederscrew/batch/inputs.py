@@ -1,6 +1,7 @@
 """From what was typed to one request a part and bowl: folders, patterns, lists."""
 
 import glob
+import os
 import re
 import unicodedata
 from dataclasses import replace
@@ -18,7 +19,7 @@ from feederscrew.part.reading.formats import CARD, FORMATS
 MESHES = {suffix for name, known in FORMATS.items() if name != CARD for suffix in known.suffixes}
 CARDS = set(FORMATS[CARD].suffixes)
 CARD_KEY = re.compile(rb"^(mass|inertia|aspects)\s*:", re.MULTILINE)
-LONGEST = 80  # letters of a folder's name
+LONGEST, MOST_BYTES = 80, 160  # letters and bytes of a folder's name
 
 
 def gather(sources, configs=(), overrides=()):
@@ -50,7 +51,7 @@ def gather(sources, configs=(), overrides=()):
     bowls_by_path = {path: _conditions(path, overrides, faults) for path in paths}
     raise_all(faults)
     requests = dict.fromkeys(
-        Request(row.source, bowls_by_path[path], row.options)
+        Request(row.source, bowls_by_path[path], row.options, line=row.line)
         for row in rows
         for path in ([row.config] if row.config else wanted)
     )
@@ -71,7 +72,7 @@ def _expanded(typed, suffixes, kind):
         found = [str(p) for p in sorted(path.iterdir()) if _fits(p, suffixes, kind)]
         return _some(found, typed, f"holds no {kind} file", f"name a folder of {kind} files, or a pattern")
     if glob.has_magic(typed) and not path.exists():
-        found = [p for p in sorted(glob.glob(typed, recursive=True)) if Path(p).is_file()]  # noqa: PTH207 - takes any path
+        found = _once(p for p in sorted(glob.glob(typed, recursive=True)) if _there(Path(p)))  # noqa: PTH207 - takes any path
         return _some(found, typed, "fits no file", "check the pattern")
     return [typed]
 
@@ -79,9 +80,24 @@ def _expanded(typed, suffixes, kind):
 def _fits(path, suffixes, kind):
     """Whether a file of a folder is meant: parts and bowls may lie side by side."""
     suffix = path.suffix.lower().removeprefix(".")
-    if suffix not in suffixes or not path.is_file() or path.name.startswith("."):
+    if suffix not in suffixes or not _there(path) or path.name.startswith("."):
         return False
-    return suffix not in CARDS or (CARD_KEY.search(path.read_bytes()) is not None) == (kind == "part")
+    if suffix not in CARDS or not path.is_file():
+        return True
+    return (CARD_KEY.search(path.read_bytes()) is not None) == (kind == "part")
+
+
+def _there(path):
+    """Whether a file is meant: one that is there, or a link that leads nowhere, to be told of."""
+    return path.is_file() or (path.is_symlink() and not path.exists())
+
+
+def _once(paths):
+    """Each file by its shortest way: links between folders may lead round in a circle."""
+    shortest = {}
+    for path in sorted(paths, key=lambda path: (len(Path(path).parts), path)):
+        shortest.setdefault((Path(path).parent.resolve(), Path(path).name), path)
+    return sorted(shortest.values())
 
 
 def _some(found, typed, what, mend):
@@ -124,7 +140,7 @@ def _named(requests):
 def _label(request, several):
     stem = unicodedata.normalize("NFC", Path(request.source).stem)
     name = f"{stem}-{request.conditions.name}" if several else stem
-    return safe_name(safe_name(name)[:LONGEST])
+    return safe_name(os.fsencode(safe_name(name)[:LONGEST])[:MOST_BYTES].decode(errors="ignore"))
 
 
 def _unlike(label, named, taken):

@@ -21,6 +21,7 @@ class Row:
     source: str
     options: tuple[tuple[str, str], ...] = ()  # those given
     config: str | None = None  # bowl file; None for those of the command line
+    line: str = ""  # 'parts.csv:3'
 
 
 def read(path, faults):
@@ -83,4 +84,4 @@ def _row(path, line, header, cells, faults):
     beside = Path(path).parent
     options = tuple((name, given[name]) for name in OPTIONS if given.get(name))
     config = str(beside / given[CONFIG]) if given.get(CONFIG) else None
-    return [Row(str(beside / given[PART]), options, config)]
+    return [Row(str(beside / given[PART]), options, config, where)]

@@ -16,6 +16,7 @@ from feederscrew.output.folder import RECORD
 
 MARKER = "batch.json"  # says that the folder is a batch's
 PARTS = "parts"
+AGAIN = "make room there, then start this batch again with `resume`: what is finished is kept"
 STALE = ".batch-"  # how the name of what is not finished begins
 
 
@@ -47,7 +48,7 @@ class Store:
             self.write(MARKER, tables.json_text({"version": __version__}))
             self.parts.mkdir(exist_ok=True)
         except OSError as error:
-            mend = "give another folder to -o"
+            mend = "give another folder to `directory`"
             raise FeederError(self.path, f"cannot be written ({error.strerror})", mend) from error
         return self
 
@@ -59,7 +60,9 @@ class Store:
         held = [p.name for p in self.path.iterdir() if not p.name.startswith(STALE)]
         if held and MARKER not in held:
             what = f"holds other files, such as {sorted(held)[0]}"
-            raise FeederError(self.path, what, "give an empty folder to -o, or that of an earlier batch")
+            raise FeederError(
+                self.path, what, "give an empty folder to `directory`, or that of an earlier batch"
+            )
 
     def holds(self, name, key):
         """Whether the results of one part are there, whole and of this very input."""
@@ -75,16 +78,15 @@ class Store:
 
     def keep(self, outcome):
         """Put the results of one part in place, instead of those of an earlier run."""
-        staging = Path(tempfile.mkdtemp(prefix=STALE, dir=self.path))
-        fresh, place = staging / "new", self.parts / outcome.name
-        record = tables.json_text({"batch": _told(outcome)})
-        for name, content in {**outcome.files, RECORD: record.encode()}.items():
-            (fresh / name).parent.mkdir(parents=True, exist_ok=True)
-            (fresh / name).write_bytes(content)
-        if place.exists():
-            place.rename(staging / "old")
-        fresh.rename(place)
-        shutil.rmtree(staging)
+        with self._writing(), tempfile.TemporaryDirectory(prefix=STALE, dir=self.path) as staging:
+            fresh, place = Path(staging, "new"), self.parts / outcome.name
+            record = tables.json_text({"batch": _told(outcome)})
+            for name, content in {**outcome.files, RECORD: record.encode()}.items():
+                (fresh / name).parent.mkdir(parents=True, exist_ok=True)
+                (fresh / name).write_bytes(content)
+            if place.exists():
+                place.rename(Path(staging, "old"))
+            fresh.rename(place)
 
     def file(self, name, file):
         """The bytes of one result of a part, or None."""
@@ -93,11 +95,19 @@ class Store:
 
     def write(self, name, content):
         """Put one file of the whole batch in place, text or bytes, at once."""
-        handle, staged = tempfile.mkstemp(prefix=STALE, dir=self.path)
-        with os.fdopen(handle, "wb") as file:
-            file.write(content if isinstance(content, bytes) else content.encode())
-        Path(staged).chmod(0o644)
-        Path(staged).replace(self.path / name)
+        with self._writing(), tempfile.TemporaryDirectory(prefix=STALE, dir=self.path) as staging:
+            staged = Path(staging, "new")
+            staged.write_bytes(tables.encoded(content))
+            staged.replace(self.path / name)
+
+    @contextlib.contextmanager
+    def _writing(self):
+        """What the disk refuses, as our fault; what is finished stays."""
+        try:
+            yield
+        except OSError as error:
+            what = f"cannot be written ({error.strerror or error})"
+            raise FeederError(self.path, what, AGAIN) from error
 
     def remove(self, *patterns):
         """Take files of the whole batch away, those that say what is no longer so."""

@@ -13,6 +13,7 @@ COLUMNS = (
     "parts_per_minute", "parts_per_minute_low", "parts_per_minute_high",
     "drops", "drop_aspect", "p_drop", "note", "warnings",
 )  # fmt: skip
+FORMULA = ("=", "+", "-", "@", "\t", "\r")
 HIDDEN = (  # from a table for people
     "folder", "aspects", "material", "rule", "regime", "passes_devices",
     "parts_per_minute_low", "parts_per_minute_high", "drops", "drop_aspect", "p_drop", "note", "warnings",
@@ -50,7 +51,12 @@ def _row(record, request):
 
 def frame(rows):
     """The rows as a table."""
-    return tables.frame({name: [row[name] for row in rows] for name in COLUMNS})
+    return tables.frame({name: [_harmless(row[name]) for row in rows] for name in COLUMNS})
+
+
+def _harmless(value):
+    """A text that a spreadsheet would take for a formula, marked as text; numbers as they are."""
+    return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value
 
 
 def rate(row):

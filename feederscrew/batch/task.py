@@ -39,6 +39,7 @@ class Request:
     conditions: Conditions
     options: tuple[tuple[str, str], ...] = ()  # units, density, centre_of_mass: those that were given
     name: str = ""  # of its folder, unlike any other of the batch
+    line: str = field(default="", compare=False)  # 'parts.csv:3', where a list names it
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,9 +77,12 @@ class Outcome:
     @classmethod
     def failed(cls, task, reason, *, final=True):
         """Of a part that gave nothing; ``final`` if it would fail again."""
-        reason = " ".join(reason.split())
+        request, reason = task.request, " ".join(reason.split())
+        if request.source not in reason:
+            reason = f"{request.source}: {reason}"
+        reason = f"{request.line}: {reason}" if request.line else reason
         key = task.key if final else ""
-        return cls(task.request.name, key, task.request.source, task.sha256, FAILED, reason)
+        return cls(request.name, key, request.source, task.sha256, FAILED, reason)
 
 
 def fingerprint(request, choices, sha256):
@@ -98,7 +102,7 @@ def fingerprint(request, choices, sha256):
     """
     told = {
         "part": sha256,
-        "request": dataclasses.asdict(request),
+        "request": dataclasses.asdict(dataclasses.replace(request, line="")),
         "choices": dataclasses.asdict(choices),
         "version": __version__,
         "libraries": libraries(),

@@ -29,7 +29,7 @@ class Files(dict):
 
     def write(self, name, content):
         """Keep one file, text or bytes."""
-        self[name] = content if isinstance(content, bytes) else content.encode()
+        self[name] = tables.encoded(content)
 
 
 def work(task):

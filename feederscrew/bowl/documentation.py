@@ -44,7 +44,7 @@ def write_template(path, *, replace=False):
             file.write(template())
     except FileExistsError:
         raise FeederError(
-            path, "exists already", "name another file, or pass --force to replace it"
+            path, "exists already", "name another file, or pass `replace` to replace it"
         ) from None
     except OSError as error:
         raise FeederError(

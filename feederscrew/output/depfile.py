@@ -25,13 +25,13 @@ def write(path, targets, inputs):
     path = Path(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, staged = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
-            file.write(rule(targets, inputs))
+        handle, staged = tempfile.mkstemp(dir=path.parent, prefix=".depfile.")
+        with os.fdopen(handle, "wb") as file:
+            file.write(os.fsencode(rule(targets, inputs)))
         Path(staged).chmod(0o644)
         Path(staged).replace(path)
     except OSError as error:
-        raise FeederError(path, f"cannot be written ({error.strerror})", "give another --depfile") from error
+        raise FeederError(path, f"cannot be written ({error.strerror})", "give another `depfile`") from error
 
 
 def rule(targets, inputs):

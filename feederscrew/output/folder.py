@@ -17,6 +17,7 @@ RECORD = "run.json"
 LIBRARIES = ("embreex", "matplotlib", "numba", "numpy", "pandas", "scipy", "trimesh")
 NO_FILE = {"path": "", "sha256": ""}  # in place of an input where all is by default
 RESERVED = {"CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10))}
+NO_LETTERS = {chr(0xDC00 + byte) for byte in range(256)}  # bytes of a file name that are not UTF-8
 
 
 class ResultFolder:
@@ -45,6 +46,7 @@ class ResultFolder:
         self.path = self.root / safe_name(name)
         self.identity = dict(identity)
         self.staged = {}
+        self.left_out = []  # pictures that an interrupt kept from being drawn
 
     def __enter__(self):
         self._check_writable()
@@ -58,7 +60,7 @@ class ResultFolder:
         """Hold back one file, text or bytes, until ``keep``; '/' in the name makes folders."""
         if not _inside(name) or name == RECORD:
             raise ValueError(f"{name!r} is not a name for a result")
-        self.staged[name] = content if isinstance(content, bytes) else content.encode()
+        self.staged[name] = tables.encoded(content)
 
     def keep(self, command, *, arguments=(), effective=None, warnings=()):
         """Put every file in place and record the run.
@@ -90,7 +92,7 @@ class ResultFolder:
                 self._put(command, record)
         except OSError as error:
             raise FeederError(
-                self.path, f"cannot be written ({error.strerror})", "give another folder to -o"
+                self.path, f"cannot be written ({error.strerror})", "give another folder to `directory`"
             ) from error
         finally:
             for folder in made:
@@ -101,7 +103,7 @@ class ResultFolder:
         records = self._records()
         old = records.get(command, {}).get("files", [])
         records[command] = record
-        staging = Path(tempfile.mkdtemp(prefix=f".{self.path.name}.", dir=self.root))
+        staging = Path(tempfile.mkdtemp(prefix=".feeder.", dir=self.root))
         try:
             contents = {**self.staged, RECORD: tables.json_text(dict(sorted(records.items()))).encode()}
             for name, content in contents.items():
@@ -125,7 +127,7 @@ class ResultFolder:
             return {}
         except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
             raise FeederError(
-                file, "is not a record of a run", "remove that folder, or give another to -o"
+                file, "is not a record of a run", "remove that folder, or give another to `directory`"
             ) from error
         for owner in owners:
             self._check_owner(owner)
@@ -137,7 +139,7 @@ class ResultFolder:
             return
         if path in (None, "-") or owner["path"] != self._seen_from_here(path):
             held = "a run without a file" if owner == NO_FILE else f"another file, {owner['path']}"
-            mend = "give another folder to -o" + (", or rename the file" if path else "")
+            mend = "give another folder to `directory`" + (", or rename the file" if path else "")
             raise FeederError(self.path, f"holds the results of {held}", mend)
 
     def _seen_from_here(self, path):
@@ -152,14 +154,16 @@ class ResultFolder:
     def _check_writable(self):
         nearest = next(p for p in (self.path.absolute(), *self.path.absolute().parents) if p.exists())
         if not nearest.is_dir():
-            raise FeederError(nearest, "is a file, not a folder", "give another folder to -o")
+            raise FeederError(nearest, "is a file, not a folder", "give another folder to `directory`")
         if not os.access(nearest, os.W_OK | os.X_OK):
-            raise FeederError(nearest, "may not be written to", "give another folder to -o")
+            raise FeederError(nearest, "may not be written to", "give another folder to `directory`")
 
 
 def safe_name(name):
     """A name that any file system takes as one folder."""
-    kept = "".join("_" if c in '<>:"/\\|?*' or ord(c) < 32 else c for c in name).rstrip(". ")
+    kept = "".join("_" if c in '<>:"/\\|?*' or ord(c) < 32 or c in NO_LETTERS else c for c in name).rstrip(
+        ". "
+    )
     return f"{kept}_" if kept.split(".")[0].upper() in RESERVED or not kept else kept
 
 

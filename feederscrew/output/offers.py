@@ -83,12 +83,24 @@ def write(folder, offered, *, pictures=True):
     offered : iterable of Offer
     pictures : bool
         False for tables and documents only.
+
+    Notes
+    -----
+    An interrupt while a picture is drawn leaves out that one and those after it: ``folder.left_out`` names
+    them, and the tables are kept.
     """
     if folder is None:
         return
-    for offer in offered:
-        if pictures or not offer.is_picture:
+    by_kind = sorted(offered, key=lambda offer: offer.is_picture)  # numbers first
+    wanted = [offer for offer in by_kind if pictures or not offer.is_picture]
+    for place, offer in enumerate(wanted):
+        try:
             folder.write(offer.name, offer.make())
+        except KeyboardInterrupt:
+            if not offer.is_picture:
+                raise
+            folder.left_out += [missing.name for missing in wanted[place:]]
+            return
 
 
 def by_name(offered):

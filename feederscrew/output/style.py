@@ -1,9 +1,10 @@
 """Figures that come out as the same bytes every time: their size, their look, the colours of the methods."""
 
 import io
+import re
 from pathlib import Path
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
 from matplotlib.figure import Figure
 from matplotlib.font_manager import findfont, get_font
 
@@ -15,7 +16,41 @@ INK = "#22303c"  # text and axes
 FAINT = "#d5dbe1"  # grids and frames
 ANSWER = "#8fa5b5"  # the recommended answer
 ACCENT = "#d55e00"  # what a picture is about: the contact polygon, the operating point
+PAGE = 0.95  # [1] of it that one line may take
+LONG_WORD = re.compile(r"(\S{24})\S{24,}(\S{20})")  # a name of more than 67 letters, its middle left out
 SPARE = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
+
+
+class _Writer(RendererAgg):
+    """Measures and draws every text as it stands: no formula, no letter without a glyph, not off the page."""
+
+    def draw_text(self, gc, x, y, s, prop, angle, ismath=False, mtext=None):
+        super().draw_text(gc, x, y, self._drawable(s, prop), prop, angle, ismath=False, mtext=mtext)
+
+    def get_text_width_height_descent(self, s, prop, ismath):
+        return super().get_text_width_height_descent(self._drawable(s, prop), prop, False)
+
+    def _drawable(self, text, prop):
+        font = get_font(findfont(prop))
+        told = "".join(letter if font.get_char_index(ord(letter)) else _escape(letter) for letter in text)
+        told = LONG_WORD.sub(r"\1…\2", told)
+        width, _, _ = super().get_text_width_height_descent(told, prop, False)
+        page = PAGE * max(self.width, self.height)  # text may stand upright
+        return told if width <= page else told[: int(len(told) * page / width) - 1] + "…"
+
+
+def _escape(letter):
+    return letter.encode("unicode_escape").decode()
+
+
+class _Canvas(FigureCanvasAgg):
+    """What figures are drawn on; names of users enter them in many places, and are made harmless here."""
+
+    def get_renderer(self):
+        size = (*self.figure.bbox.size, self.figure.dpi)
+        if getattr(self, "_size", None) != size:
+            self.renderer, self._size = _Writer(*size), size
+        return self.renderer
 
 
 def figure(width=6.4, height=4.0):
@@ -28,14 +63,14 @@ def figure(width=6.4, height=4.0):
     """
     made = Figure(figsize=(width, height), dpi=DPI, layout="constrained", facecolor="white")
     made.get_layout_engine().set(w_pad=MARGIN, h_pad=MARGIN)
-    FigureCanvasAgg(made)
+    _Canvas(made)
     return made
 
 
 def page(width, height):
     """Return a white figure of so many pixels whose axes are placed by hand."""
     made = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor="white")
-    FigureCanvasAgg(made)
+    _Canvas(made)
     return made
 
 
@@ -61,12 +96,6 @@ def tidy(axes, *, title="", x="", y="", grid="both"):
     if grid != "none":
         axes.grid(axis=grid, color=FAINT, linewidth=0.6)
     return axes
-
-
-def words(text):
-    """Return a user's text as a figure can show it: no formula, '?' for a letter the font has not."""
-    font = get_font(findfont("DejaVu Sans"))
-    return "".join(letter if font.get_char_index(ord(letter)) else "?" for letter in text).replace("$", r"\$")
 
 
 def method(name, place=0):

@@ -145,6 +145,11 @@ def _cell(value):
     return "" if value is None else value
 
 
+def encoded(content):
+    """Return text as the bytes of a file: UTF-8, an escape for what a file name holds that is no letter."""
+    return content if isinstance(content, bytes) else content.encode(errors="backslashreplace")
+
+
 def json_text(document):
     """Return a document as JSON: full precision, null for NaN and infinity, keys in the order given.
 
@@ -248,7 +253,7 @@ def _number(value):
 def _word(value):
     if isinstance(value, (bool, np.bool_)):
         return "yes" if value else "no"
-    return "-" if value is None or value != value else str(value)
+    return "-" if value is None or value != value else encoded(str(value)).decode()
 
 
 def _pointed(cells):

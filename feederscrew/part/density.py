@@ -1,4 +1,4 @@
-"""Materials and densities: what ``--density`` means."""
+"""Materials and densities: what ``density`` means."""
 
 from dataclasses import dataclass
 

@@ -71,7 +71,7 @@ def convex_hull(points, centre, where="part"):
         raise MeshError(
             where,
             "the centre of mass is not inside the part's convex hull",
-            "check --centre-of-mass and its units",
+            "check `centre_of_mass` and its units",
         )
     return Hull(
         vertices=check.frozen(vertices),

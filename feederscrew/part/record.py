@@ -41,5 +41,5 @@ class Part:
     aspects: tuple[CardAspect, ...] = ()  # of a part card
     printed: dict | None = None  # further data of a part card, as read: 'floor', 'track'
     hull: Hull | None = None  # about the centre of mass; None for a part card
-    open_surface: bool = False  # computed with --allow-open: every output must say so
+    open_surface: bool = False  # computed with ``allow_open``: every output must say so
     warnings: tuple[str, ...] = ()

@@ -129,7 +129,8 @@ def curve(settings, span):
     -------
     ConveyCurve
     """
-    cells = answer.cells(bowls.swept(settings, {span.key.name: np.array(span.values)}))
+    found = answer.cells(bowls.swept(settings, {span.key.name: np.array(span.values)}))
+    cells = {name: np.broadcast_to(values, len(span.values)) for name, values in found.items()}
     return ConveyCurve("curve", span.key.name, (grids.axis(span),), cells)
 
 

@@ -102,10 +102,10 @@ def tooling(
     every = named(orientations(part, found, bowl.track))
     if rule not in found.chances:
         from feederscrew.documents import hint
-        from feederscrew.errors import FeederError
+        from feederscrew.errors import ArgumentError
 
-        raise FeederError(
-            f"--rule {rule}", "has no probabilities of this part", hint(rule, list(found.chances))
+        raise ArgumentError(
+            f"rule {rule}", "has no probabilities of this part", hint(rule, list(found.chances))
         )
     shares = np.nan_to_num([one.chances[rule] for one in every])
     wanted = None if aspect is None else place(every, aspect, heading, part.source)

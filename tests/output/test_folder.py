@@ -114,7 +114,7 @@ def test_another_parts_results_are_not_overwritten(tmp_path):
     owner = os.path.relpath("parts/nut.stl", tmp_path / "nut")
     assert str(caught.value) == (
         f"{tmp_path / 'nut'}: holds the results of another file, {owner}"
-        " - give another folder to -o, or rename the file"
+        " - give another folder to `directory`, or rename the file"
     )
     assert tree(tmp_path) == before
 
@@ -146,8 +146,8 @@ def test_a_run_of_defaults_has_no_input(tmp_path):
 @pytest.mark.parametrize(
     ("first", "second", "told"),
     [
-        ({}, PART, "a run without a file - give another folder to -o, or rename the file"),
-        (PART, {}, "another file, {} - give another folder to -o"),
+        ({}, PART, "a run without a file - give another folder to `directory`, or rename the file"),
+        (PART, {}, "another file, {} - give another folder to `directory`"),
     ],
     ids=["defaults first", "file first"],
 )
@@ -172,14 +172,17 @@ def test_o_names_a_file(tmp_path):
     (tmp_path / "res").write_text("")
     with pytest.raises(FeederError) as caught:
         run(tmp_path / "res", {"a.csv": ""})
-    assert str(caught.value) == f"{tmp_path / 'res'}: is a file, not a folder - give another folder to -o"
+    assert (
+        str(caught.value)
+        == f"{tmp_path / 'res'}: is a file, not a folder - give another folder to `directory`"
+    )
 
 
 def test_a_folder_that_may_not_be_written(tmp_path, monkeypatch):
     monkeypatch.setattr(os, "access", lambda path, mode: False)
     with pytest.raises(FeederError) as caught:
         run(tmp_path / "res", {"a.csv": ""})
-    assert str(caught.value) == f"{tmp_path}: may not be written to - give another folder to -o"
+    assert str(caught.value) == f"{tmp_path}: may not be written to - give another folder to `directory`"
 
 
 @pytest.mark.parametrize("name", ["../a", "/a", "", "run.json", "a\\b"])

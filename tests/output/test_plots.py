@@ -98,9 +98,25 @@ def test_methods_keep_their_colour_and_others_get_a_spare_one():
     assert style.method("MDBT_80", 1) == ("MDBT 80", style.SPARE[1])
 
 
-def test_words_are_no_formulas_and_have_only_known_letters():
-    assert style.words("a$b µ°") == r"a\$b µ°"
-    assert style.words("部x\n") == "?x?"
+@pytest.mark.parametrize("name", ["$dollar^_{x}$", "$\\mathdefault{$", "部品\t", "bad\udcff\udcfe", r"a\$b"])
+def test_any_name_can_stand_anywhere_in_a_figure(name):
+    figure = style.figure()
+    axes = style.tidy(figure.add_subplot(), title=name, x=name, y=name)
+    axes.plot([1.0, 2.0], [1.0, 2.0], label=name)
+    axes.set_xticks([1.0], labels=[name])
+    axes.legend()
+    assert style.png(figure) == style.png(figure)
+
+
+def test_names_are_no_formulas_and_a_letter_without_a_glyph_is_told_by_its_number():
+    figure = style.figure()
+
+    def width(text):
+        return figure.text(0.0, 0.0, text).get_window_extent().width
+
+    assert width("$x^{2}$ and more") > width("x2 and more")
+    assert width("部") == width(r"\u90e8")
+    assert width("a\udcff") == width(r"a\udcff")
 
 
 def test_tidy_labels_an_axes():

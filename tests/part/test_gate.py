@@ -13,8 +13,11 @@ BROKEN = Path(__file__).parents[1] / "data" / "broken"
 BOX = files.box()
 VOLUME = 6000.0  # [mm3] of that box
 CLOSED = "export it as a closed solid"
-OPEN = "close it in CAD, or pass --allow-open to compute from what there is"
-SPLIT = "save each body as a file of its own, or unite them in CAD if they are one part"
+OPEN = "close it in CAD, or pass `allow_open` to compute from what there is"
+SPLIT = (
+    "save each body as a file of its own, or unite them in CAD if they are one part;"
+    " or pass `allow_open` to take them as one part"
+)
 
 TAKEN = {  # file: volume [mm3], its relative tolerance, warnings
     "count_zero_hexbolt": (
@@ -33,7 +36,7 @@ TAKEN = {  # file: volume [mm3], its relative tolerance, warnings
         1e-5,
         (
             "the largest dimension, 1.18 mm, is small for a fed part: "
-            "if the file is in inches or centimetres, give in as its units",
+            "if the file is in inches or centimetres, pass `units` in",
         ),
     ),
     "inverted_lbracket": (1379.2795, 1e-6, ("all facets faced inwards: turned",)),
@@ -146,7 +149,7 @@ def test_one_facet_missing(tmp_path, facet):
     part = load(path, allow_open=True)
     assert mm3(part) == pytest.approx(VOLUME, rel=1e-6)  # a flat hole is closed exactly
     assert part.open_surface
-    assert part.warnings == ("the surface is open: 1 hole filled in for these numbers (--allow-open)",)
+    assert part.warnings == ("the surface is open: 1 hole filled in for these numbers (`allow_open`)",)
 
 
 def test_allow_open_on_a_closed_part_changes_nothing(tmp_path):
@@ -166,7 +169,7 @@ def test_large_hole_is_filled_by_a_fan(tmp_path):
     triangles = mesh.triangles[np.abs(mesh.face_normals[:, 2]) < 0.5]  # without its ends
     part = of(tmp_path, triangles, allow_open=True)
     assert mm3(part) == pytest.approx(mesh.volume, rel=1e-6)
-    assert part.warnings == ("the surface is open: 2 holes filled in for these numbers (--allow-open)",)
+    assert part.warnings == ("the surface is open: 2 holes filled in for these numbers (`allow_open`)",)
 
 
 def test_loose_facets_are_no_solid(tmp_path, rng):
@@ -282,7 +285,7 @@ def test_bodies_that_overlap(tmp_path):
     part = load(path, allow_open=True)
     assert mm3(part) == pytest.approx(1800.0)
     assert part.open_surface
-    assert part.warnings == ("holds 2 bodies, of 1000, 800 mm3: taken together as one part (--allow-open)",)
+    assert part.warnings == ("holds 2 bodies, of 1000, 800 mm3: taken together as one part (`allow_open`)",)
 
 
 @pytest.mark.parametrize("touch", [(10, 10, 0), (10, 10, 10)], ids=["edge", "corner"])

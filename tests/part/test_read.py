@@ -149,15 +149,15 @@ def test_units_scale_the_part(tmp_path, unit):
     ("scale", "units", "warning"),
     [
         (1 / 25.4, None, "the largest dimension, 1.18 mm, is small for a fed part: if the file is in inches "
-         "or centimetres, give in as its units"),
+         "or centimetres, pass `units` in"),
         (1e-3, None, "the largest dimension, 0.03 mm, is small for a fed part: if the file is in metres, "
-         "give m as its units"),
+         "pass `units` m"),
         (1.0, "m", "the largest dimension, 3e+04 mm, is large for a fed part: if the file is in "
-         "millimetres or centimetres, give mm as its units"),
+         "millimetres or centimetres, pass `units` mm"),
         (1e6, None, "the largest dimension, 3e+07 mm, is large for a fed part: check its scale"),
         (1 / 25.4, "mm", None),
         (0.01, "mm", "the largest dimension, 0.3 mm, is small for a fed part: if the file is in inches or "
-         "centimetres, give in as its units"),
+         "centimetres, pass `units` in"),
     ],
 )  # fmt: skip
 def test_unlikely_size_is_warned_of(tmp_path, scale, units, warning):

@@ -55,7 +55,18 @@ class Shaken:
 
 
 def test(
-    part, aspects, bowls, preset, own, *, drops=None, seconds=None, seed=1, jobs=1, progress=None, before=None,
+    part,
+    aspects,
+    bowls,
+    preset,
+    own,
+    *,
+    drops=None,
+    seconds=None,
+    seed=1,
+    jobs=1,
+    progress=None,
+    before=None,
     pace=EXACT,
 ):
     """Put parts on a vibrating plate, one at a time, and follow what they lie on.
@@ -136,7 +147,9 @@ def _plate(found, aspects, shape, length, seconds, pace, bowl, launch, count, se
     number = max(round(seconds / period), LEAST)
     looks = (np.ceil(pace.settling * unit / period) + np.arange(number + 1)) * period / unit
     starts = sample(launch, shape, count, np.random.default_rng(seed))
-    rides = ride(shape, floor, starts, looks, drive.steps_of(floor, pace.coarse), jobs=jobs, progress=progress)
+    rides = ride(
+        shape, floor, starts, looks, drive.steps_of(floor, pace.coarse), jobs=jobs, progress=progress
+    )
     rng = np.random.default_rng((seed, len(rides.faces)))
     seen = occupancy(rides.faces, length * rides.places[:, :, 0], found.rows, len(aspects.names), period, rng)
     return Shaken(

@@ -32,9 +32,7 @@ def probabilities(names, profiles, title=""):
     """
     width = float(np.clip(len(names) * (len(profiles) + 1.0) * BAR + 1.0, NARROW, WIDE))
     figure = style.figure(width, 3.4)
-    axes = style.tidy(
-        figure.add_subplot(), title=style.words(title), x="aspect", y="probability [%]", grid="y"
-    )
+    axes = style.tidy(figure.add_subplot(), title=title, x="aspect", y="probability [%]", grid="y")
     grouped(axes, names, profiles, room=(width - 1.0) / (len(names) * (len(profiles) + 1.0)))
     figure.legend(loc="outside lower center", ncols=min(len(profiles), 6), frameon=False, fontsize=8)
     return figure
@@ -60,9 +58,7 @@ def answered(names, answer, profiles, title=""):
     """
     width = float(np.clip(len(names) * GROUP + 1.0, NARROW, WIDE))
     figure = style.figure(width, 3.4)
-    axes = style.tidy(
-        figure.add_subplot(), title=style.words(title), x="aspect", y="probability [%]", grid="y"
-    )
+    axes = style.tidy(figure.add_subplot(), title=title, x="aspect", y="probability [%]", grid="y")
     places = np.arange(len(names))
     share, low, high = 100.0 * np.asarray(answer, dtype=float)
     axes.bar(places - ASIDE, share, THICK, color=style.ANSWER, label=ANSWERED)

@@ -162,10 +162,8 @@ def _head_and_foot(figure, sheet, part, solid):
     axes.set(xlim=(0, width), ylim=(0, height))
     longest = width // LETTER
     name = part.name if len(part.name) <= longest else f"{part.name[: longest - 3]}..."
-    axes.text(
-        30, height - 34, style.words(name), fontsize=13, fontweight="bold", color=style.INK, va="center"
-    )
-    facts = style.words(f"{part.material}, {1e3 * part.mass:.4g} g") + ", open surface" * part.open_surface
+    axes.text(30, height - 34, name, fontsize=13, fontweight="bold", color=style.INK, va="center")
+    facts = f"{part.material}, {1e3 * part.mass:.4g} g" + ", open surface" * part.open_surface
     colour = style.ACCENT if part.open_surface else style.INK
     axes.text(30, height - 66, facts, fontsize=8, color=colour, va="center")
     marks.scale_bar(axes, width - 30, height - 66, sheet.pixel * solid.size)

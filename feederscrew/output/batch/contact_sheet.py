@@ -82,7 +82,7 @@ def _tile(figure, axes, left, bottom, tile):
         figure.figimage(image.imread(io.BytesIO(picture)), left, bottom + TEXT)
     middle, colour = left + WIDTH / 2, style.INK if picture is not None else style.ACCENT
     for line, weight, y in ((name, "bold", 38), (said, "normal", 16)):
-        text = style.words(line if len(line) <= LETTERS else f"{line[: LETTERS - 3]}...")
+        text = line if len(line) <= LETTERS else f"{line[: LETTERS - 3]}..."
         axes.text(
             middle, bottom + y, text, fontsize=7, fontweight=weight, color=colour, ha="center", va="center"
         )

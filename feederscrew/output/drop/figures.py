@@ -22,9 +22,7 @@ def counts(title, aspects, tally, rules):
     """
     places = np.arange(len(aspects.names))
     figure = style.figure(float(np.clip(0.9 * len(places) + 2.0, 5.2, 12.0)), 3.4)
-    axes = style.tidy(
-        figure.add_subplot(), title=style.words(title), x="aspect", y="probability [%]", grid="y"
-    )
+    axes = style.tidy(figure.add_subplot(), title=title, x="aspect", y="probability [%]", grid="y")
     bars(axes, places, tally)
     for place, (name, values) in enumerate(rules.items()):
         label, colour = style.method(name, place)

@@ -71,7 +71,7 @@ def remarks(study):
     elif aim is not None and tally.widest > aim:
         told.append(
             f"after {drops} drops the widest interval is {100.0 * tally.widest:.3g} % to either side, not "
-            f"{100.0 * aim:.3g} % - give more --drops, or a wider --until"
+            f"{100.0 * aim:.3g} % - give more `drops`, or a wider `until`"
         )
     if tally.unsettled:
         told.append(f"{tally.unsettled} of {drops} drops came to rest on no aspect")

@@ -194,9 +194,7 @@ def _page(figure, laid, title):
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set_axis_off()
     axes.set(xlim=(0, width), ylim=(0, height))
-    axes.text(
-        EDGE, height - 34, style.words(title), fontsize=13, fontweight="bold", color=style.INK, va="center"
-    )
+    axes.text(EDGE, height - 34, title, fontsize=13, fontweight="bold", color=style.INK, va="center")
     told = f"grid on the plane: {laid.step / MM:g} mm; the line is the way of the centre of mass"
     axes.text(EDGE, height - 66, told, fontsize=8, color=style.INK, va="center")
     marks.scale_bar(axes, width - EDGE, height - 66, laid.pixel * laid.solid.size)
@@ -207,4 +205,4 @@ def _caption(page, place, number, told):
     """Number and text under a still."""
     left, bottom, _, _ = place
     trace_curve.badge(page, left + 16, bottom - 18, number)
-    page.text(left + 34, bottom - 18, style.words(told), fontsize=8, color=style.INK, va="center")
+    page.text(left + 34, bottom - 18, told, fontsize=8, color=style.INK, va="center")

@@ -30,7 +30,7 @@ def graph(title, names, ways, shares):
     """
     figure = style.figure(6.4, 6.4)
     axes = figure.add_subplot()
-    axes.set_title(style.words(f"{title}: lift to tip [mm]"), loc="left", fontsize=10, color=style.INK)
+    axes.set_title(f"{title}: lift to tip [mm]", loc="left", fontsize=10, color=style.INK)
     shown = [k for k in range(len(names)) if np.isfinite(shares[k])][:MOST]
     turn = np.pi / 2 - 2.0 * np.pi * np.arange(len(shown)) / max(len(shown), 1)
     places = {k: np.array([np.cos(a), np.sin(a)]) for k, a in zip(shown, turn)}

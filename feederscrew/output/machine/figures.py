@@ -45,7 +45,7 @@ def _title(page, study):
     words, moved = "The machine of this bowl", study.stroke
     if study.order is not None:
         rate = study.order.target / PER_MINUTE
-        words = f"{style.words(study.order.part.name)}: a bowl for {rate:.4g} parts a minute"
+        words = f"{study.order.part.name}: a bowl for {rate:.4g} parts a minute"
     facts = (
         f"{moved.frequency:.4g} Hz, {moved.peak_to_peak / MM:.3g} mm peak to peak, "
         f"{1e3 * study.answer.velocity:.3g} mm/s"

@@ -9,6 +9,7 @@ from html import escape
 from importlib import resources
 from itertools import groupby
 
+from feederscrew.output import tables
 from feederscrew.output.page import blocks as kinds
 from feederscrew.output.page.numbers import cells
 from feederscrew.output.style import DPI
@@ -155,7 +156,7 @@ def _sheet(file, text):
     head, *rows = csv.reader(io.StringIO(text))
     heads = "".join(f"<th>{escape(name)}</th>" for name in head)
     lines = [f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows]
-    link = f'<a download="{file}" href="{_data("text/csv", text.encode())}">Save {file}</a>'
+    link = f'<a download="{file}" href="{_data("text/csv", tables.encoded(text))}">Save {file}</a>'
     marks = f' class="sheet" id="{file}"'
     return f"{_grid(marks, heads, lines)}\n<p>{link}</p>"
 

@@ -30,7 +30,7 @@ def one(study):
     title = f"{study.part.name}: {result.parts} parts, throw number {result.throw_number:.3g}"
     figure = style.figure(8.2, 3.8)
     left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
-    style.tidy(left, title=style.words(title), x="time on the plate [s]", y="parts [%]", grid="y")
+    style.tidy(left, title=title, x="time on the plate [s]", y="parts [%]", grid="y")
     style.tidy(
         right, title=travels(result, 3) + ", partial" * result.partial, x="aspect", y="share [%]", grid="y"
     )
@@ -87,7 +87,7 @@ def trend(study):
     title = f"{study.part.name} on {len(study.plates)} plates" + ", partial" * study.plates[-1].partial
     figure = style.figure(8.2, 3.8)
     left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
-    style.tidy(left, title=style.words(title), x="throw number", y="share in the second half [%]")
+    style.tidy(left, title=title, x="throw number", y="share in the second half [%]")
     style.tidy(right, title="Transport", x="throw number", y="velocity [mm/s]")
     order = np.argsort([result.throw_number for result in study.plates], kind="stable")
     results, names = [study.plates[k] for k in order], [study.names[k] for k in order]
@@ -131,7 +131,7 @@ def named(axes, x, results, names):
     for at, result, name in zip(x, results, names):
         stroke = f"{result.bowl.drive.amplitude / MM:.3g} mm"
         axes.annotate(
-            style.words(f"{name} {stroke}" if several else stroke),
+            f"{name} {stroke}" if several else stroke,
             (at, np.nanmax(result.occupancy.velocity) / MM_S), (-5, 4), textcoords="offset points",
             ha="right", fontsize=7, color=style.INK,
         )  # fmt: skip

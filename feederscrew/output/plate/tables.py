@@ -84,14 +84,14 @@ def remarks(study):
     for plate, name in zip(study.plates, study.names):
         where = _where(plate, name)
         if changing := _changing(study.aspects, plate):
-            told.append(f"{where}: the share of {', '.join(changing)} still changes; give a longer --seconds")
+            told.append(f"{where}: the share of {', '.join(changing)} still changes; give a longer `seconds`")
         if plate.unsettled:
             told.append(f"{where}: {plate.unsettled} of {plate.parts} parts lay on no aspect to the end")
         if plate.lost:
             told.append(f"{where}: {plate.lost} parts could not be followed and are left out")
         if 0 < plate.transitions < FEW:
             few = f"too few transitions ({plate.transitions}) for p_limit"
-            told.append(f"{where}: {few}; give more --drops or --seconds")
+            told.append(f"{where}: {few}; give more `drops` or `seconds`")
     if study.partial:
         told.append(f"partial: stopped after {plate.parts} parts on the plate of {where}")
     return told

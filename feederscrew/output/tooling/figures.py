@@ -201,7 +201,7 @@ def _mm(area):
 
 
 def _heading(page, title, missing):
-    _text(page, 16, 26, style.words(title), size=11, weight="bold")
+    _text(page, 16, 26, title, size=11, weight="bold")
     _text(page, 16, 50, "from above: wall below, parts move to the right; light: part, dark: what touches "
           "the track, outline: hull of the support, dot: weight", size=8)  # fmt: skip
     _text(page, 16, 68, missing, size=8)

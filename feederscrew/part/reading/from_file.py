@@ -125,7 +125,7 @@ def _unlikely(vertices, unit, wanted):
     likely = [u for u in UNITS if u != unit and USUAL <= numbers * factor(u, "length") <= high]
     names = " or ".join(UNITS[u] for u in likely)
     kind = "small" if size < low else "large"
-    mend = f"if the file is in {names}, give {likely[0]} as its units" if likely else "check its scale"
+    mend = f"if the file is in {names}, pass `units` {likely[0]}" if likely else "check its scale"
     return (f"the largest dimension, {size * 1e3:.3g} mm, is {kind} for a fed part: {mend}",)
 
 

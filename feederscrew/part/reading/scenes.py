@@ -14,7 +14,7 @@ import numpy as np
 
 from feederscrew import units
 from feederscrew.errors import MeshError
-from feederscrew.part.reading import source, step
+from feederscrew.part.reading import source, step, threemf
 from feederscrew.part.reading.formats import FORMATS, plain
 
 MOST = 20_000_000  # facets, instances counted
@@ -92,6 +92,8 @@ def _meshes(data, kind, where):
     loader, options = FORMATS[kind].loader, {"skip_materials": True} if kind == "obj" else {}
     if kind == "step":
         data = step.glb(data)
+    if kind == "3mf":
+        threemf.refuse_bombs(data)
     if kind in ("obj", "off", "ply"):
         text, mark, rest = data.partition(b"end_header") if kind == "ply" else (data, b"", b"")
         data = plain(text) + mark + rest

@@ -7,11 +7,17 @@ import tempfile
 from pathlib import Path
 
 FLATNESS, TURN = 0.01, 0.1  # [mm, rad] between a curved face and its facets, and from facet to facet
-PATIENCE = 600.0  # [s]
-CONVERT = (
-    "import sys, cascadio; source, target, *tolerances = sys.argv[1:];"
-    "sys.exit(cascadio.step_to_glb(source, target, *map(float, tolerances), use_parallel=False))"
-)
+PATIENCE = 60  # [s]
+CONVERT = """
+import ctypes, signal, sys
+if sys.platform == "linux":
+    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # it ends when its parent does, however that ends
+if hasattr(signal, "alarm"):
+    signal.alarm(PATIENCE + 5)  # and after its time in any case
+import cascadio
+source, target, *tolerances = sys.argv[1:]
+sys.exit(cascadio.step_to_glb(source, target, *map(float, tolerances), use_parallel=False))
+""".replace("PATIENCE", str(PATIENCE))
 UNITS = ((rb"CONVERSION_BASED_UNIT\s*\(\s*'INCH", "in"), (rb"\.CENTI\.\s*,\s*\.METRE\.", "cm"))
 METRE = rb"SI_UNIT\s*\(\s*\$\s*,\s*\.METRE\."
 
@@ -39,7 +45,7 @@ def glb(data):
         try:
             done = subprocess.run(call, capture_output=True, timeout=PATIENCE, check=False)
         except subprocess.TimeoutExpired:
-            raise ValueError(f"no answer in {PATIENCE:.0f} s") from None
+            raise ValueError(f"not converted within {PATIENCE} s") from None
         if done.returncode != 0 or not target.exists():
             raise ValueError("OpenCASCADE cannot convert it")
         return target.read_bytes()

@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew.errors import MeshError
 from feederscrew.geometry import vectors
 from feederscrew.part import mass
-from feederscrew.part.repair import mend, shells, weld
+from feederscrew.part.repair import crossings, mend, shells, weld
 from feederscrew.part.repair.holes import caps, holes
 from feederscrew.part.repair.mend import SOLID
 
@@ -17,8 +17,10 @@ LOST, BLURRED = 1e-2, 1e-5  # [1] of the size: steps of single precision that sp
 MOST_OPEN = 100_000  # edges: with more it is not a surface with holes
 FARTHEST = 1e30  # [unit of the file]
 EMPTY = 1e-10  # [1] of the size cubed: less volume is rounding
+SHALLOW, DEEP = 1e-4, 2e-2  # [1] of the size: how far facets may pass through others, unsaid and at all
 INVERTED = "all facets faced inwards: turned"
-CLOSE = "close it in CAD, or pass --allow-open to compute from what there is"
+CLOSE = "close it in CAD, or pass `allow_open` to compute from what there is"
+UNITE = "unite what overlaps in CAD, or pass `allow_open` to compute from what there is"
 NEARER = "export it near the origin"
 
 
@@ -29,7 +31,7 @@ class Surface:
     vertices: np.ndarray  # (V, 3) [unit of the file]
     faces: np.ndarray  # (F, 3) counter-clockwise seen from outside
     solid: mass.Solid  # [powers of the unit of the file]
-    open_surface: bool  # or several bodies, with --allow-open
+    open_surface: bool  # or several bodies, with allow_open
     warnings: tuple[str, ...]
 
 
@@ -69,7 +71,25 @@ def surface(vertices, faces, where, unit, allow_open=False):
         faces, solid, said = faces[:, ::-1], solid.reversed, (*said, INVERTED)
     if solid.volume <= EMPTY * size**3:
         raise MeshError(where, "encloses no volume", SOLID)
+    if not is_open:
+        said += _crossed(vertices, faces, JOINED * size + 2.0 * step, size, where, unit, allow_open)
     return Surface(vertices, faces, solid, is_open, slivers + blurred + mended + said)
+
+
+def _crossed(vertices, faces, tolerance, size, where, unit, allow_open):
+    """What to say of a surface that passes through itself; refused where it does so deeply."""
+    found = crossings.crossings(vertices, faces, tolerance)
+    deepest = float(found.depths.max(initial=0.0))
+    if deepest <= SHALLOW * size:
+        return ()
+    place = ", ".join(f"{x:.4g}" for x in found.points[np.argmax(found.depths)] + 0.0)
+    what = (
+        f"the surface passes through itself: {_many(len(found.pairs), 'pair')} of facets cut each other, "
+        f"the deepest by {deepest:.2g} {unit} at ({place})"
+    )
+    if deepest > DEEP * size and not allow_open:
+        raise MeshError(where, what, UNITE)
+    return (f"{what}: what lies inside twice counts twice",)
 
 
 def _without_area(count):
@@ -129,7 +149,7 @@ def _opened(vertices, faces, edges, where, unit, allow_open):
             f"{_many(len(hole.rims), 'hole')}, the widest {hole.width:.3g} {unit} across at ({place})"
         )
         raise MeshError(where, what, CLOSE)
-    told = f"the surface is open: {_many(len(hole.rims), 'hole')} filled in for these numbers (--allow-open)"
+    told = f"the surface is open: {_many(len(hole.rims), 'hole')} filled in for these numbers (`allow_open`)"
     return mass.solid(np.concatenate([vertices[faces], caps(vertices, hole.rims)])), True, (told,)
 
 
@@ -146,7 +166,7 @@ def _closed(vertices, faces, edges, where, unit, allow_open):
         return solid, False, ()
     if not allow_open:
         raise MeshError(where, *fault)
-    return solid, True, (f"{fault[0]}: taken together as one part (--allow-open)",)
+    return solid, True, (f"{fault[0]}: taken together as one part (`allow_open`)",)
 
 
 def _many(count, noun):

@@ -1,4 +1,4 @@
-"""Where a surface is open, and the triangles that close it for ``--allow-open``."""
+"""Where a surface is open, and the triangles that close it for ``allow_open``."""
 
 from dataclasses import dataclass
 

@@ -7,7 +7,10 @@ from feederscrew.part.repair.edges import components
 PROBES = 64  # corners of a shell that are tried
 BUDGET, MOST_TURNS = 4_000_000, 400_000_000  # solid angles for one shell and for all: half a second, a minute
 LISTED = 3  # bodies named with their volume
-SPLIT = "save each body as a file of its own, or unite them in CAD if they are one part"
+SPLIT = (
+    "save each body as a file of its own, or unite them in CAD if they are one part;"
+    " or pass `allow_open` to take them as one part"
+)
 INNER = "reverse the inner surface if it is a cavity, else save each body as a file of its own"
 CROSSING = "move the cavity inside the material in CAD"
 

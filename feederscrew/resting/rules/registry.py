@@ -1,7 +1,7 @@
 """Every probability rule, once.
 
 A rule is a function in a module of this folder and an entry here. Probabilities, tables, pictures, the
-choices of ``--rule`` and the table in ``docs/resting.md`` are made from these entries, in this order.
+names of rules and the table in ``docs/resting.md`` are made from these entries, in this order.
 """
 
 from collections.abc import Callable

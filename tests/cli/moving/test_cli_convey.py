@@ -238,3 +238,11 @@ def test_best_phase_without_a_steady_state(run):
             "stopping - lower track.climb, or raise the friction"
         ],
     )
+
+
+def test_a_key_that_changes_no_velocity_gives_a_level_curve(run):
+    done = run("convey", "--vary", "machine.leaves=1:5:3", "--format", "csv")
+    assert done.exit_code == 0, done.output
+    rows = [line.split(",") for line in done.stdout.splitlines()[1:]]
+    assert [row[0] for row in rows] == ["1", "3", "5"]
+    assert len({tuple(row[1:]) for row in rows}) == 1

@@ -291,3 +291,9 @@ def test_other_columns_are_printed_on_demand(run, stl):
     wrong = run("aspects", stl, "--columns", "aspect,barier_mm")
     assert wrong.exit_code == 1
     assert "Error: --columns: there is no column 'barier_mm' - did you mean barrier_mm?" in wrong.stderr
+
+
+def test_a_column_that_is_not_there_leaves_no_files(run, tmp_path):
+    done = run("aspects", PARTS / "squarenut_m5.stl", "--columns", "nonsense", "-o", "out", "--no-pictures")
+    assert (done.exit_code, list(tmp_path.iterdir())) == (1, [])
+    assert "Error: --columns: there is no column 'nonsense'" in done.stderr

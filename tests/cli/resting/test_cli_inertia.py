@@ -108,7 +108,7 @@ def test_warnings_go_to_stderr_and_into_the_document(run):
 def test_open_surface_is_labelled(run):
     told = document(run("inertia", BROKEN / "open_lbracket.stl", "--allow-open", "--format", "json"))
     assert told["open_surface"] is True
-    assert told["warnings"] == ["the surface is open: 10 holes filled in for these numbers (--allow-open)"]
+    assert told["warnings"] == ["the surface is open: 10 holes filled in for these numbers (`allow_open`)"]
 
 
 @pytest.mark.parametrize(

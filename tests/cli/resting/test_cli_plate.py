@@ -10,6 +10,7 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.output.plate import tables
+from feederscrew.output.tables import data_frame
 from feederscrew.studies.plate import plate as plate_study
 
 HEAD = ["bowl", "amplitude_mm", "throw_number"]
@@ -168,7 +169,7 @@ def test_a_plate_that_was_stopped_is_marked_everywhere():
     whole, cut = study.plates
     stopped = replace(study, plates=(whole, replace(cut, partial=True)))
     for table in (tables.plates, tables.rates, tables.course):
-        marks = table(stopped).groupby("bowl")["partial"].agg(["min", "max"])
+        marks = data_frame(table(stopped)).groupby("bowl")["partial"].agg(["min", "max"])
         assert marks.to_numpy().tolist() == [[False, False], [True, True]]
         assert "partial" not in table(study)
     assert tables.drives(stopped)["partial"].tolist() == [False, True]

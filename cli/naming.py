@@ -1,0 +1,16 @@
+"""Arguments of the library by the names of their options, in what it says."""
+
+import re
+
+MARKED = re.compile(r"`([a-z_]+)`")  # how the library names an argument within a sentence
+
+
+def options(command):
+    """The options of a command by the argument they are; those of 'config' are of 'show' and 'init'."""
+    parts = (command, *getattr(command, "commands", {}).values())
+    return {param.name: param.opts[0] for part in parts for param in getattr(part, "params", ())}
+
+
+def translated(text, known):
+    """The text with `argument` as --option where the command has one, else bare."""
+    return MARKED.sub(lambda found: known.get(found[1], found[1]), text)

@@ -1,0 +1,166 @@
+"""What the system refuses, and names that are no letters: one line, and as much done as can be."""
+
+import errno
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import click
+import pytest
+
+from feederscrew.batch import store
+from feederscrew.output import offers
+from feederscrew_cli.main import feeder
+
+ROOT = Path(__file__).parents[3]
+NUT = ROOT / "parts" / "squarenut_m5.stl"
+FULL = Path("/dev/full")
+ODD = ("$dollar^_{x}$.stl", "=1+1.stl", "n" * 240 + ".stl", os.fsdecode(b"bad\xff\xfe.stl"))
+EXTRA = {
+    "config": ("init",),
+    "compare": ("--with", "x.csv"),
+    "calibrate": ("--with", "x.csv"),
+    "tune": ("--target", "60/min"),
+}
+linux = pytest.mark.skipif(not FULL.exists(), reason="no /dev/full here")
+
+
+def program(*arguments, **streams):
+    """The program in a process of its own."""
+    code = "import sys; from feederscrew_cli.main import feeder; feeder(sys.argv[1:])"
+    call = [sys.executable, "-c", code, *map(str, arguments)]
+    return subprocess.run(call, **streams, timeout=60, check=False)
+
+
+@linux
+@pytest.mark.parametrize("arguments", [["config", "init"], ["--help"], ["inertia", NUT]], ids=lambda a: a[0])
+def test_a_full_disk_under_stdout_is_one_line(arguments):
+    with FULL.open("wb") as full:
+        done = program(*arguments, stdout=full, stderr=subprocess.PIPE)
+    *_, last = done.stderr.decode().splitlines()
+    assert last == (
+        "Error: output: cannot be read or written (No space left on device) - check the disk and permissions"
+    )
+    assert (done.returncode, b"Traceback" in done.stderr) == (1, False)
+
+
+@linux
+def test_a_full_disk_under_stderr_does_not_cost_the_answer():
+    with FULL.open("wb") as full:
+        done = program("inertia", NUT, stdout=subprocess.PIPE, stderr=full)
+    assert (done.returncode, b"volume" in done.stdout) == (0, True)
+
+
+@pytest.mark.parametrize("name", list(feeder.commands))
+def test_every_command_tells_of_a_full_disk_in_one_line(run, monkeypatch, name):
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device", "x.csv")
+
+    monkeypatch.setattr(click.Command, "invoke", full)
+    needs = any(
+        param.required for param in feeder.commands[name].params if param.param_type_name == "argument"
+    )
+    done = run(name, *(["x.stl"] if needs else []), *EXTRA.get(name, ()))
+    line = "x.csv: cannot be read or written (No space left on device) - check the disk and permissions"
+    assert (done.exit_code, done.stderr) == (1, f"Error: {line}\n")
+
+
+def test_a_full_disk_in_a_batch_is_one_line_and_keeps_what_is_finished(run, monkeypatch, tmp_path):
+    shutil.copy(NUT, tmp_path / "a.stl")
+    shutil.copy(NUT, tmp_path / "b.stl")
+
+    def full(path, *arguments, **keywords):
+        if path.parent.name == "new" and "b" in seen:
+            raise OSError(errno.ENOSPC, "No space left on device", str(path))
+        return write(path, *arguments, **keywords)
+
+    seen, write, told = [], Path.write_bytes, store._told
+    monkeypatch.setattr(store, "_told", lambda outcome: seen.append(outcome.name) or told(outcome))
+    monkeypatch.setattr(Path, "write_bytes", full)
+    done = run("batch", "a.stl", "b.stl", "-o", "out", "--no-pictures", "--jobs", 1)
+    monkeypatch.setattr(Path, "write_bytes", write)
+    assert done.exit_code == 1
+    assert done.stderr.splitlines()[-1] == (
+        "Error: out: cannot be written (No space left on device) - "
+        "make room there, then start this batch again with --resume: what is finished is kept"
+    )
+    assert (tmp_path / "out/parts/a/run.json").exists()
+    assert not list((tmp_path / "out").glob(f"{store.STALE}*"))
+    assert (
+        run("batch", "a.stl", "b.stl", "-o", "out", "--no-pictures", "--jobs", 1, "--resume").exit_code == 0
+    )
+
+
+def test_a_batch_of_odd_names_ends_with_its_summary(run, tmp_path):
+    for name in ODD:
+        try:
+            shutil.copy(NUT, tmp_path / name)
+        except OSError:
+            pytest.skip("this file system takes no such name")
+    done = run("batch", ".", "-o", "out", "--jobs", 1, "--no-pictures")
+    assert (done.exit_code, "Error" in done.stderr) == (0, False)
+    rows = (tmp_path / "out/summary.csv").read_text().splitlines()
+    assert len(rows) == 1 + len(ODD)
+    assert sum(row.startswith("'=1+1.stl,'=1+1,") for row in rows) == 1
+    assert sum(row.startswith(r"bad\udcff\udcfe.stl,bad__,") for row in rows) == 1
+    assert (tmp_path / "out/index.html").exists()
+
+
+@pytest.mark.parametrize("name", ODD)
+def test_a_picture_of_odd_names(run, tmp_path, name):
+    shutil.copy(NUT, tmp_path / name)
+    done = run("floor", name, "-o", "out")
+    assert done.exit_code == 0, done.output
+
+
+def test_links_that_go_round_are_counted_once_and_dangling_ones_are_told(run, tmp_path):
+    (tmp_path / "in").mkdir()
+    shutil.copy(NUT, tmp_path / "in/a.stl")
+    (tmp_path / "in/round").symlink_to(tmp_path / "in", target_is_directory=True)
+    (tmp_path / "in/lost.stl").symlink_to(tmp_path / "nothing.stl")
+    done = run("batch", "in/**/*.stl", "-o", "out", "--no-pictures", "--jobs", 1)
+    assert done.exit_code == 1
+    line = "Error: in/lost.stl: is a link to a file that is not there - mend or remove the link"
+    assert line in done.stderr.splitlines()
+    assert len((tmp_path / "out/summary.csv").read_text().splitlines()) == 3
+    assert line in run("batch", "in", "-o", "out", "--no-pictures", "--jobs", 1).stderr.splitlines()
+
+
+def test_faults_of_a_list_name_part_and_line(run, tmp_path):
+    shutil.copy(NUT, tmp_path / "a.stl")
+    (tmp_path / "list.csv").write_text("part,density\na.stl,steel\na.stl,heavy\n")
+    done = run("batch", "list.csv", "-o", "out", "--no-pictures", "--jobs", 1)
+    assert done.exit_code == 1
+    assert done.stderr.splitlines()[0].startswith("Error: list.csv:3: a.stl: density: no material is called")
+
+
+def test_an_interrupt_while_drawing_keeps_the_counts(run, tmp_path, monkeypatch):
+    shutil.copy(NUT, tmp_path / "a.stl")
+
+    def stopped(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("feederscrew.output.style.png", stopped)
+    done = run("drop", "a.stl", "--drops", 20, "-o", "out")
+    assert "Warning: stopped while drawing: without drop.png\n" in done.stderr
+    assert sorted(path.name for path in (tmp_path / "out/a").iterdir()) == [
+        "drop.csv",
+        "drop.json",
+        "run.json",
+    ]
+
+
+def test_an_interrupt_before_that_writes_nothing():
+    class Held:
+        staged, left_out = {}, []
+
+        def write(self, name, content):
+            self.staged[name] = content
+
+    def stopped():
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        offers.write(Held(), [offers.Offer("a.csv", stopped)])

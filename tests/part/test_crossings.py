@@ -1,0 +1,73 @@
+"""Surfaces that pass through themselves are found."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import part_files as files
+import pytest
+
+from feederscrew.part import load
+from feederscrew.part.repair import crossings, weld
+
+PARTS = Path(__file__).parents[2] / "parts"
+
+
+def twisted(turn):
+    """A box of 10 mm whose upper face is turned, its corners in (8, 3)."""
+    across = 5.0 * np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]])
+    c, s = np.cos(turn), np.sin(turn)
+    upper = np.einsum("kx,yx->ky", across, np.array([[c, -s], [s, c]]))
+    return np.column_stack([np.concatenate([across, upper]), np.repeat([0.0, 10.0], 4)])
+
+
+def prism(corners):
+    """Facets of a box of eight corners, (12, 3, 3)."""
+    sides = [(k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k) for k in range(4)]
+    quads = [(3, 2, 1, 0), (4, 5, 6, 7), *sides]
+    return corners[np.array([(a, b, c) for a, b, c, _ in quads] + [(a, c, d) for a, _, c, d in quads])]
+
+
+def spiked():
+    """A box of 10 mm, the middle of its upper face drawn through the lower one."""
+    box, tip = files.box((10, 10, 10)), np.array([5.0, 5.0, -4.0])
+    upper = (box[:, :, 2] == 10.0).all(axis=1)
+    ring = np.array([[0, 0, 10], [10, 0, 10], [10, 10, 10], [0, 10, 10.0]])
+    return np.concatenate([box[~upper], np.stack([ring, np.roll(ring, -1, axis=0), [tip] * 4], axis=1)])
+
+
+SWAPPED = twisted(0.0)[[0, 1, 2, 3, 5, 4, 6, 7]]  # two corners of the upper face in each other's place
+CROSSING = r"the surface passes through itself: \d+ pairs? of facets cut each other, the deepest by .* mm at"
+
+
+@pytest.mark.parametrize(
+    "triangles", [prism(twisted(2.5)), prism(SWAPPED), spiked()], ids=["twisted", "swapped", "spiked"]
+)
+def test_a_surface_that_passes_through_itself_is_refused(tmp_path, triangles):
+    path = files.written(tmp_path, triangles)
+    assert re.match(f"{CROSSING}|encloses no volume", files.refused(path))
+
+
+def test_a_surface_that_passes_through_itself_may_be_taken_as_it_is(tmp_path):
+    part = load(files.written(tmp_path, spiked()), allow_open=True)
+    assert re.match(CROSSING, part.warnings[0])
+
+
+def test_a_box_turned_by_little_does_not_pass_through_itself(tmp_path):
+    assert load(files.written(tmp_path, prism(twisted(0.6)))).warnings == ()
+
+
+def test_crossings_do_not_hang_on_place_and_turn(rng):
+    corners = spiked().reshape(-1, 3)
+    turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    places = np.einsum("nx,yx->ny", corners, turn) + rng.normal(size=3)
+    faces = np.arange(len(corners)).reshape(-1, 3)
+    for vertices in (corners, places):
+        joined = weld.welded(np.round(vertices, 9), faces)
+        assert len(crossings.crossings(*joined, 1e-6).pairs) == 4
+    assert crossings.crossings(*joined, 1e-6).depths == pytest.approx([10.0 * 4.0 / 14.0] * 4, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", [path.name for path in sorted(PARTS.glob("*.stl"))])
+def test_parts_do_not_pass_through_themselves(name):
+    assert not any("through itself" in told for told in load(PARTS / name).warnings)
