@@ -17,10 +17,10 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 from conveying_reference import Reference, random_settings
 
 from feederscrew.conveying import steady, sweep
-from feederscrew.conveying.setting import Setting, plain
+from feederscrew.conveying.setting import OperatingPoint, plain
 from feederscrew.mechanics import limits
 
-TARGETS = {0.0: (25_000, 1_600), 0.3: (5_000, 300)}  # points a second: compiled, plain Python
+TARGETS = {0.0: (60_000, 1_600), 0.3: (12_000, 300)}  # points a second: compiled, plain Python
 SPEED_UP = 15.0
 PERIODS = 100  # the general solver follows, where it cannot know that the motion has settled
 
@@ -35,7 +35,7 @@ def seconds(function):
 def plain_python(settings):
     out = np.empty((len(settings), steady.COLUMNS))
     for row, setting in zip(out, settings):
-        steady.survey(Setting(*setting.tolist()), row)
+        steady.survey(OperatingPoint(*setting.tolist()), row)
     return out
 
 

@@ -40,10 +40,10 @@ def settle(rules, state):
     every q periods, and the part has slid through q periods without stopping or turning round and is no
     slower after them, the next q periods add as much: it slides on and never settles.
     """
-    return follow(rules, state, np.empty((0, 3)))
+    return follow(rules, state, np.empty((0, 3)), TRANSIENT)
 
 
-def follow(rules, state, known):
+def follow(rules, state, known, patience):
     """Follow a part as ``settle`` does, or to where it joins a motion that is known.
 
     Parameters
@@ -52,6 +52,8 @@ def follow(rules, state, known):
     state : State
     known : (N, 3) float
         Of ``noted``: states of steady motions at the start of a period.
+    patience : int
+        Periods followed before the motion is hastened, or counts as not periodic.
 
     Returns
     -------
@@ -62,7 +64,7 @@ def follow(rules, state, known):
     history = np.full((LONGEST_PERIOD + 1, 3), np.inf)
     streak = np.zeros(LONGEST_PERIOD + 1, dtype=np.int64)
     sliding, sense, even = 0, 0.0, evenly(rules)
-    for count in range(TRANSIENT):
+    for count in range(patience):
         state = _afresh(rules, state, tally)
         sliding, sense = _slid(tally, sliding, sense)
         period = _repeats(history, streak, count, state)
@@ -77,7 +79,7 @@ def follow(rules, state, known):
             if state.speed != before:
                 sliding, sense = 0, 0.0  # what it slid before the leap says nothing
                 history[count % (LONGEST_PERIOD + 1), 0] = state.speed
-    return _hasten(rules, state, _period_of_normal(history, TRANSIENT - 1))
+    return _hasten(rules, state, _period_of_normal(history, patience - 1))
 
 
 def noted(state):

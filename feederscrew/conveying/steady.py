@@ -21,7 +21,7 @@ from feederscrew.conveying.motion import (
     turn,
 )
 from feederscrew.conveying.setting import FLIGHT, TURN
-from feederscrew.conveying.settling import RUNS, follow, noted
+from feederscrew.conveying.settling import RUNS, TRANSIENT, follow, noted
 from feederscrew.conveying.waves import Wave
 from feederscrew.mechanics import limits
 
@@ -30,6 +30,7 @@ STATUSES = ("periodic", "averaged", "no steady state")
 STATUS, PERIOD, VELOCITY, LOW, HIGH, FRACTIONS = range(6)  # places in a row of results
 FLIGHT_TIME, IMPACT, HOPS, THROW, REGIME, RUNAWAY, COLUMNS = range(FRACTIONS + 4, FRACTIONS + 11)
 BLOCK, BLOCKS = 32, 8  # periods averaged where there is no period, and in how many lots their spread is taken
+BRIEF, FEW = 64, 4  # periods followed, and lots averaged, of further starts where the first has no period
 KNOWN = 64  # states of steady motions that are noted, for further starts to join
 LOTS = 16  # averages taken of a part that would run away once it slid all the time, until it does
 ALIKE = 1e-8  # of two states: a motion that closes in from alternate sides repeats doubly first
@@ -49,18 +50,18 @@ def steady(rules, state, out):
         Filled with status, period, velocity and its spread [A w], fraction of the time in each phase,
         longest flight [periods], hardest impact [A w], flights a period.
     """
-    _steady(rules, state, out, np.empty((KNOWN, 3)), 0)
+    _steady(rules, state, out, np.empty((KNOWN, 3)), 0, TRANSIENT)
 
 
-def _steady(rules, state, out, known, count):
+def _steady(rules, state, out, known, count, patience):
     """The same, noting the states of a steady motion; their number with it, unchanged where it was known."""
-    state, repeat = follow(rules, state, known[:count])
+    state, repeat = follow(rules, state, known[:count], patience)
     if repeat == RUNS:
         _nothing(out)
     elif repeat > 0:
         return _cycle(rules, state, repeat, out, known, count)
     elif repeat == 0:
-        _long_run(rules, state, out)
+        _long_run(rules, state, out, BLOCKS if patience == TRANSIENT else FEW)
     return count
 
 
@@ -80,18 +81,18 @@ def _cycle(rules, state, repeat, out, known, noticed):
     return noticed
 
 
-def _long_run(rules, state, out):
+def _long_run(rules, state, out, blocks):
     """Averages over lots of periods, unless the part slides through them all and gets faster."""
     for _ in range(LOTS):
         tally, way, first = np.zeros(TALLY), 0.0, state.speed
         low, high = math.inf, -math.inf
-        for _ in range(BLOCKS):
+        for _ in range(blocks):
             for _ in range(BLOCK):
                 state = turn(rules, state, tally)
             velocity = (tally[TRAVEL] - way) / (BLOCK * TURN)
             way, low, high = tally[TRAVEL], min(low, velocity), max(high, velocity)
         out[STATUS], out[PERIOD], out[LOW], out[HIGH] = AVERAGED, 0.0, low, high
-        _averages(out, tally, float(BLOCK * BLOCKS))
+        _averages(out, tally, float(BLOCK * blocks))
         if _slid(tally) and (state.speed - first) * state.speed > 0.0:
             _nothing(out)
             break
@@ -147,7 +148,7 @@ def survey(setting, out):
     rules = law(setting)
     out[THROW], out[REGIME] = throw_number(rules), regime(rules)
     known = np.empty((KNOWN, 3))
-    count = _steady(rules, at_rest(rules), out, known, 0)
+    count = _steady(rules, at_rest(rules), out, known, 0, TRANSIENT)
     if out[STATUS] == NO_STEADY_STATE:
         out[RUNAWAY] = 1.0
         return
@@ -171,11 +172,12 @@ def regime(rules):
 
 def _widen(rules, out, known, count):
     other = np.empty(COLUMNS)
+    patience = TRANSIENT if out[STATUS] == PERIODIC else BRIEF
     for start in range(2 * BOUNCES + len(DROPS)):
         state = thrown(rules, start)
         if state.rising > 0.0:
             other[STATUS], other[LOW], other[HIGH] = PERIODIC, out[LOW], out[HIGH]
-            count = _steady(rules, state, other, known, count)
+            count = _steady(rules, state, other, known, count, patience)
             if other[STATUS] == NO_STEADY_STATE:
                 out[RUNAWAY] = 1.0
             else:
