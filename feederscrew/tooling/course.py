@@ -14,7 +14,7 @@ from feederscrew.tooling.verdicts import Verdict, verdict
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class DeviceFlow:
     """Parts along a chain of D devices; M orientations that lie, S states with those that hang as well."""
 
     states: tuple[Orientation, ...]  # (S,) the M orientations, then what hangs between rails
@@ -75,7 +75,7 @@ def course(devices, every, sigma=0.0):
 
     Returns
     -------
-    Course
+    DeviceFlow
 
     Raises
     ------
@@ -94,7 +94,7 @@ def course(devices, every, sigma=0.0):
         here = here + states[len(here) :]
         if device.kind == "rails":
             here = [astride(one, device.span) for one in here]
-    return Course(
+    return DeviceFlow(
         states=tuple(states),
         verdicts=tuple(tuple(told + [None] * (len(states) - len(told))) for told in verdicts),
         matrices=check.frozen(_matrices(ways, len(states))),

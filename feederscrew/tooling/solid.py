@@ -1,5 +1,7 @@
 """The stretch of track as a solid: plate, wall and gates without the cuts; the one door to manifold3d."""
 
+import itertools
+
 import numpy as np
 import shapely
 from shapely import affinity
@@ -39,18 +41,41 @@ def solid(section):
 def triangles(section):
     """Return the triangles (F, 3, 3) [m] of the section, counter-clockwise seen from outside."""
     radius, length, width = section.track.radius, section.length, section.width
-    plate = _bent([[0.0, -WALL], [length, -WALL], [length, width], [0.0, width]], radius)
     holes = [_bent(_clear(one.hole, width), radius) for one in section.stations if one.hole is not None]
     low, high = INTO, length - INTO
     wall = _bent([[low, INTO - WALL], [high, INTO - WALL], [high, 0.0], [low, 0.0]], radius)
-    body = _extruded(plate.difference(shapely.union_all(holes)), -PLATE, 0.0)
-    body += _extruded(wall, -INTO, section.tallest + ABOVE)
+    levels = _levels(section)
+    body = _extruded(wall, -INTO + levels[-1][2], section.tallest + ABOVE)
+    holes = shapely.union_all(holes)
+    for start, end, level in levels:
+        plate = _bent([[start, -WALL], [end, -WALL], [end, width], [start, width]], radius)
+        body += _extruded(plate.difference(holes), level - PLATE, level)
+    for (_, end, upper), (_, _, lower) in itertools.pairwise(levels):
+        riser = _bent([[end - WALL, -WALL], [end, -WALL], [end, width], [end - WALL, width]], radius)
+        body += _extruded(riser, lower - PLATE, upper - 0.5 * PLATE)
     for station in section.stations:
         if station.blade is not None:
-            body += _gate(station, section)
+            body += _gate(station, section).translate((0.0, 0.0, _level(levels, station) / MM))
     mesh = body.to_mesh64()
     corners = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts)]
     return _in_order(corners * MM)
+
+
+def _levels(section):
+    """Stretches of the track between steps: from, to (a little into the next one), height [m]."""
+    found, start, level = [], 0.0, 0.0
+    for station in section.stations:
+        if station.drop > 0.0:
+            middle = station.start + 0.5 * station.length
+            found.append((start, middle, level))
+            start, level = middle - INTO, level - station.drop
+    return [*found, (start, section.length, level)]
+
+
+def _level(levels, station):
+    """Height [m] of the track where a gate stands."""
+    place = station.blade[0, 0]
+    return next(level for start, end, level in levels if place <= end)
 
 
 def _clear(ring, width):

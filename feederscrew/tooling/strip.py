@@ -15,6 +15,7 @@ BESIDE = 5e-3  # [m] of track beyond what parts and cuts need, where the whole t
 DRAWN = 0.9  # of the radius: a wider track is not drawn whole
 BLADE = 1.5e-3  # [m] thickness of a gate
 FRAME = 5e-3  # [m] of a gate above its opening
+EDGE = 2e-4  # [m] the width with which an edge over which parts turn is drawn
 STEPS = 33  # points along the edge of a gap that is parallel to a radial one
 CHORD = 1e-5  # [m] by which an arc may be seen too flat
 OVERHEAD = ("wiper", "height_bar", "hold_down")
@@ -31,6 +32,8 @@ class Station:
     blade: np.ndarray | None  # (4, 2) [m] where a gate stands, unrolled
     openings: tuple[np.ndarray, ...]  # (K, 2) [m] of a gate: distance from the wall, height
     top: float  # [m] height of a gate
+    drop: float = 0.0  # [m] by which the track goes on lower, from the middle of its length
+    edge: np.ndarray | None = None  # (4, 2) [m] where parts turn over, unrolled: a step's or a ledge's edge
 
     @property
     def label(self):
@@ -140,7 +143,7 @@ def hole(device, radius, length, width):
         met = radius * np.arcsin(np.minimum(device.limit / (radius - across), 1.0))
         return np.vstack([[0.0, width], [0.0, 0.0], np.column_stack([met, across])[::-1]])
     between = {"canyon": (0.0, device.limit), "narrowed_track": (device.limit, width)}
-    between["pressure_break"] = between["narrowed_track"]
+    between["pressure_break"] = between["tip"] = between["narrowed_track"]
     low, high = device.span or between.get(device.kind, (0.0, 0.0))
     if not high > low:
         return None
@@ -190,7 +193,14 @@ def _station(device, start, length, width, tallest, every):
     cut = hole(device, every[0].track.radius, length, width)
     gate = opening(device, every, width)
     middle = start + 0.5 * length
-    blade = None
+    blade, edge = None, None
+    if device.kind == "step":
+        edge = np.array([[middle, 0.0], [middle + EDGE, 0.0], [middle + EDGE, width], [middle, width]])
+    elif device.kind == "tip":
+        low = device.limit
+        edge = np.array(
+            [[start, low], [start + length, low], [start + length, low + EDGE], [start, low + EDGE]]
+        )
     if gate is not None:
         blade = np.array([[0.0, 0.0], [BLADE, 0.0], [BLADE, width], [0.0, width]])
         blade += np.array([middle, 0.0])
@@ -202,6 +212,8 @@ def _station(device, start, length, width, tallest, every):
         blade=blade,
         openings=() if gate is None else _rings(gate),
         top=0.0 if gate is None else max(tallest, gate.bounds[3]) + FRAME,
+        drop=device.limit if device.kind == "step" else 0.0,
+        edge=edge,
     )
 
 

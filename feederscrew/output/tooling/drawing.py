@@ -11,13 +11,25 @@ from feederscrew.units import factor
 MM = factor("mm", "length")
 APART = 20e-3  # [m] between the views
 NARROW = 1e-9  # [m] the line of the wall needs no width
-COLOURS = {"TRACK": 7, "WALL": 8, "CUT": 1, "GATE": 5, "OPENING": 4, "GHOST": 9, "TEXT": 8}
+COLOURS = {
+    "TRACK": 7,
+    "WALL": 8,
+    "CUT": 1,
+    "GATE": 5,
+    "OPENING": 4,
+    "GHOST": 9,
+    "TEXT": 8,
+    "STEP": 6,
+    "LEDGE": 6,
+}
 PENS = {  # of the SVG: stroke, fill, dashes
     "TRACK": ("#22303c", "#eef1f4", ""),
     "WALL": ("#22303c", "#9aa5b1", ""),
     "CUT": ("#d55e00", "#ffffff", ""),
     "GATE": ("#0072b2", "#0072b2", ""),
     "OPENING": ("#0072b2", "#ffffff", ""),
+    "STEP": ("#cc79a7", "#cc79a7", ""),
+    "LEDGE": ("#cc79a7", "#cc79a7", ""),
     "GHOST": ("#7a8793", "none", "1.5 1"),
 }
 WALL = 2e-3  # [m] thickness the wall is drawn with
@@ -112,7 +124,11 @@ def _plan(strip):
         "TRACK": [_rectangle(0.0, 0.0, length, width)],
         "WALL": [_rectangle(0.0, -WALL, length, -NARROW)],
     }
-    cuts = [station.hole for station in strip.stations if station.hole is not None]
+    turning = [station for station in strip.stations if station.edge is not None]
+    for kind, layer in (("step", "STEP"), ("tip", "LEDGE")):
+        edges = [station.edge for station in turning if station.device.kind == kind]
+        found |= {layer: edges} if edges else {}
+    cuts = [one.hole for one in strip.stations if one.hole is not None and one.edge is None]
     found |= {_numbered("CUT", place): [ring] for place, ring in enumerate(cuts)}
     blades = [station.blade for station in strip.stations if station.blade is not None]
     return found | {"GATE": blades}
@@ -131,7 +147,7 @@ def _openings(strip):
 
 def _texts(strip):
     above = strip.width + 3e-3
-    named = [(station.label, (station.start, above)) for station in strip.stations]
+    named = [(_label(station), (station.start, above)) for station in strip.stations]
     gates = [station for station in strip.stations if station.openings]
     seen = [
         (f"opening of {station.device.kind}", (rings[0][:, 0].min(), -6e-3))
@@ -145,6 +161,12 @@ def _texts(strip):
         ),
     ]
     return tuple(named + seen + notes)
+
+
+def _label(station):
+    return (
+        station.label if station.edge is None else f"{station.label}: quasi-static, until a trial confirms it"
+    )
 
 
 def _drop(strip):
