@@ -3,6 +3,7 @@
 import csv
 import json
 import sys
+from functools import cached_property
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -22,7 +23,7 @@ import shapes  # noqa: E402 - the parts with closed forms
 
 MADE, ROUND = 2013, 1909  # seeds
 SIDES = 64  # sections of a round body
-EXPONENTS = (0.0, 0.5, 1.0, 1.5, 2.0, 2.5)  # of the surface-weighted rule
+EXPONENTS = (0.0, 0.5, 1.0, 1.5, 2.0)  # of the surface-weighted rule
 
 
 def rows(path):
@@ -37,7 +38,7 @@ class Body:
         self.name, self.part, self.aspects = name, part, find(part)
         self.ground = ground(part, self.aspects)
         self.tips, self.radius = self.ground.tips, self.ground.hull.radius
-        self.drops, self.tallies, self.jobs = drops, {}, jobs
+        self.drops, self.tallies, self.jobs, self.answers = drops, {}, jobs, {}
         self.file = None if keep is None else keep / f"{name}.json"
         if self.file and self.file.exists():
             kept = json.loads(self.file.read_text())
@@ -53,14 +54,17 @@ class Body:
         sums = np.bincount(self.ground.rows, weights, minlength=len(self.aspects.names))
         return sums / sums.sum()
 
+    def surfaces(self):
+        """The surface-weighted rule's shares by class, by exponent."""
+        heights, shares = self.tips.heights, self.tips.shares
+        weights = {x: surface_weights(shares, heights, self.radius, x) for x in EXPONENTS}
+        return {f"surface, {x:g}": self.by_class(weight) for x, weight in weights.items()}
+
+    @cached_property
     def rules(self):
         """Every rule's shares by class."""
         found = {rule: p for rule, p in self.aspects.probabilities.items() if rule != "surface"}
-        heights, shares = self.tips.heights, self.tips.shares
-        for exponent in EXPONENTS:
-            weights = surface_weights(shares, heights, self.radius, exponent)
-            found[f"surface, {exponent:g}"] = self.by_class(weights)
-        return found | {name: self.by_class(weigh(self)) for name, weigh in TRIED.items()}
+        return found | self.surfaces() | {name: self.by_class(weigh(self)) for name, weigh in TRIED.items()}
 
     def tally(self, launch):
         """Counts of a drop test."""
@@ -78,7 +82,9 @@ class Body:
 
     def closed(self, launch):
         """The closed form's answer for a launch."""
-        return find(self.part, launch=launch).recommended
+        if launch not in self.answers:
+            self.answers[launch] = find(self.part, launch=launch).recommended
+        return self.answers[launch]
 
     def answer(self, launch):
         """The recommended answer for a launch: the closed form's where it is good enough."""

@@ -5,10 +5,9 @@ the score that 95 % of the shares keep below. Left out means: one part at a time
 is judged by. The widths of ``recommended.WIDTHS`` are those printed here, rounded to a hundredth.
 """
 
-from itertools import groupby
-
 import numpy as np
 
+from feederscrew.dropping.ensemble import NORMAL
 from feederscrew.resting.rules import recommended
 
 HELD = 0.95
@@ -61,9 +60,8 @@ def _one(launch, rolling, bodies):
 
 
 def _former(body):
-    """The interval before: between soft, medium and hard surface and the hops, 0.06 wider."""
-    rules = body.rules()
-    found = np.array([rules["surface, 0"], rules["surface, 1"], rules["surface, 2"], rules["hops"]])
+    """The interval before: between soft and hard surface and the hops, 0.06 wider."""
+    found = np.array([*body.surfaces().values(), body.aspects.probabilities["hops"]])
     return np.clip(found.min(axis=0) - 0.06, 0.0, 1.0), np.clip(found.max(axis=0) + 0.06, 0.0, 1.0)
 
 
@@ -78,31 +76,52 @@ def _coverage(bodies, launch, ends):
     return np.mean(inside), np.mean(widths)
 
 
-def drop_tests(measured):
-    """Print what a launch's name leaves open, on the measured sets, leaving one set out at a time.
+def measured(series):
+    """Print what a launch's name leaves open, from the measured series, leaving one out at a time.
 
     Parameters
     ----------
-    measured : list of (str, float, float, float, float)
-        Set, measured share, half its sampling interval; simulated share, half its sampling interval.
+    series : dict of str to list of Measured
     """
     print("\nDrop tests against what was measured under a launch of that name: half the interval of a share")
-    print("of a half beside sampling, from the other sets, and the shares of the set it holds")
-    sets = {name: list(group) for name, group in groupby(measured, key=lambda entry: entry[0])}
-    inside = []
-    for name, own in sets.items():
-        others = [_beyond(*entry[1:]) for other, group in sets.items() if other != name for entry in group]
-        width = quantile(np.array(others))
-        held = [_beyond(*entry[1:]) <= width for entry in own]
+    print("of a half beside sampling, from the other series, and the shares of the series it holds; then the")
+    print("shares that the interval of the closed form and of the recommended answer hold, and their width")
+    scores = {name: [x for one in sets for x in _beyond(one)] for name, sets in series.items()}
+    inside, total = 0, sum(len(own) for own in scores.values())
+    for name, own in scores.items():
+        width = quantile(np.array([x for other, some in scores.items() if other != name for x in some]))
+        held = np.sum(np.array(own) <= width)
         inside += held
-        print(f"  {name:24}{width:7.3f}   {sum(held)} of {len(held)}")
-    every = np.array([_beyond(*entry[1:]) for entry in measured])
-    held = np.mean(every <= recommended.LAUNCHED)
-    print(f"  {'all together':24}{quantile(every):7.3f}   left out {np.mean(inside):.1%} of {len(inside)}")
-    print(f"  {'as it is':24}{recommended.LAUNCHED:7.3f}   {held:.1%}")
+        answers = "".join(_held(series[name], kind) for kind in ("closed", "answer"))
+        print(f"  {name:20}{width:7.3f}   {held} of {len(own)}   {answers}")
+    every = np.array([x for own in scores.values() for x in own])
+    print(f"  {'all together':20}{quantile(every):7.3f}   left out {inside} of {total}: {inside / total:.1%}")
+    print(f"  {'as it is':20}{recommended.LAUNCHED:7.3f}   {np.mean(every <= recommended.LAUNCHED):.1%}")
 
 
-def _beyond(truth, tossed, p, dropped):
-    """How far a simulated share is off beyond the sampling of both, relative to a share of a half."""
-    excess = (truth - p) ** 2 - tossed**2 - dropped**2
-    return np.sqrt(max(excess, 0.0)) / recommended.shape(np.array(p))
+def _rows(body):
+    """Classes that say something of their own: of two, the second says what the first does."""
+    stable = np.flatnonzero(body.aspects.stable)
+    return stable if len(stable) > 2 else stable[:1]
+
+
+def _beyond(one):
+    """How far the simulated shares of a set are off beyond all sampling, relative to a share of a half."""
+    rows, p = _rows(one.body), one.body.drop(one.launch)
+    tosses, drops = one.count, one.body.tally(one.launch).counts.sum()
+    noise = np.nan_to_num(one.shares * (1.0 - one.shares) / tosses) + p * (1.0 - p) / drops
+    excess = np.maximum((one.shares - p) ** 2 - NORMAL**2 * noise, 0.0)
+    return (np.sqrt(excess) / recommended.shape(p))[rows]
+
+
+def _held(sets, kind):
+    """How many measured shares the intervals hold, and their mean width."""
+    entries = [
+        (found.low[k], one.shares[k], found.high[k])
+        for one in sets
+        for found in [getattr(one.body, kind)(one.launch)]
+        for k in _rows(one.body)
+    ]
+    low, truth, high = np.array(entries).T
+    held = np.sum((low <= truth) & (truth <= high))
+    return f"{kind} {held} of {len(truth)}, {np.mean(high - low):.3f} wide   "

@@ -17,7 +17,7 @@ SURFACES = click.Choice(["soft", "medium", "hard"])
 @click.option(
     "--surface",
     type=SURFACES,
-    help="What it lands on: p_surface is then the answer.  [default: as the launch]",
+    help="What it lands on: p_surface is then the answer.  [default: hard]",
 )
 @click.option("--surface-exponent", type=options.Number(-10, 10), help="The same as a number, 0 to about 3.")
 @click.option(
@@ -54,7 +54,8 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     solid = out.part(part)
     exponent = chosen.pop("surface_exponent")
     chosen["surface"] = chosen["surface"] if exponent is None else exponent
-    with out.folder(solid.name, {solid.source: solid.sha256}, conditions(solid) | chosen) as folder:
+    effective = conditions(solid) | chosen | ({"surface": "hard"} if chosen["surface"] is None else {})
+    with out.folder(solid.name, {solid.source: solid.sha256}, effective) as folder:
         study = _study(solid, chosen, out)
         frame = tables.aspects(study)
         shown = tables.printed(frame, columns) if out.format == "table" else frame

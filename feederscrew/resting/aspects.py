@@ -92,7 +92,7 @@ def find(part, *, as_published=False, unstable=False, exponent=None, launch=reco
     order = _ranked(table, chances["csa"], part, moments)
     named = _named(table, chances, order, _said(groups, hull))
     ground = by_class.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
-    weighted = recommended.EXPONENTS[launch] if exponent is None else exponent
+    weighted = surface.EXPONENTS["hard"] if exponent is None else exponent
     return _answered(_tumbled(named, ground, part, weighted), launch, exponent)
 
 

@@ -191,7 +191,7 @@ def test_a_soft_surface_is_quasistatic(run, stl):
 
 
 @pytest.mark.parametrize(
-    ("words", "told"), [((), None), (("--surface", "soft"), "soft"), (("--surface-exponent", "0"), 0.0)]
+    ("words", "told"), [((), "hard"), (("--surface", "soft"), "soft"), (("--surface-exponent", "0"), 0.0)]
 )
 def test_the_surface_is_recorded(run, stl, tmp_path, words, told):
     assert run("aspects", stl, "-o", "res", "--no-pictures", *words).exit_code == 0
@@ -247,12 +247,13 @@ def test_a_drop_test_joins_the_columns(run, stl):
 
 def test_one_answer_with_an_interval_comes_last(run, stl):
     told = document(run("aspects", stl, "--format", "json"))
-    assert told["recommended"] == "surface, launch feed"
+    assert told["recommended"] == "tempered hops, launch feed"
     last = ["p_recommended", "p_recommended_low", "p_recommended_high"]
     for row in told["aspects"]:
         assert list(row)[-3:] == last
-        assert row["p_recommended"] == row["p_surface"]
-        assert 0.0 <= row[last[1]] <= row["p_surface"] <= row[last[2]] <= 1.0
+        between = sorted((row["p_quasistatic"], row["p_hops"]))
+        assert between[0] - 0.01 <= row["p_recommended"] <= between[1] + 0.01
+        assert 0.0 <= row[last[1]] <= row["p_recommended"] <= row[last[2]] <= 1.0
 
 
 def test_the_answer_is_the_drop_test_where_there_is_one(run, stl):
