@@ -88,10 +88,13 @@ def _typed(ctx, name):
 
 def _report(found, out):
     from feederscrew.batch import summary
+    from feederscrew.units import counted
 
     out.say(*(f"Error: {fault}" for fault in found.faults))
     if found.strangers:
-        out.warn(f"{len(found.strangers)} folders are of parts not in this batch: {found.strangers[0]}, ...")
+        folders, one = counted(len(found.strangers), "folder"), len(found.strangers) == 1
+        told = f"{'is of a part' if one else 'are of parts'} not in this batch: {found.strangers[0]}"
+        out.warn(f"{folders} {told}{'' if one else ', ...'}")
     kept = f", {found.kept} of them as they were" if found.kept else ""
-    out.say(f"Wrote {out.directory} ({len(found.rows)} parts{kept}; open index.html)")
+    out.say(f"Wrote {out.directory} ({counted(len(found.rows), 'part')}{kept}; open index.html)")
     out.show(summary.frame(found.rows), {"parts": list(found.rows)}, hidden=summary.HIDDEN)

@@ -10,14 +10,24 @@ def keys(context, option, typed):
 
 def rules(context, option, typed):
     """Rules whose probabilities a rate can take."""
+    return [name for name in known_rules() if name.startswith(typed)]
+
+
+def known_rules():
+    """Every rule by name."""
     from feederscrew.resting.rules.registry import CHOICES
 
-    return [name for name in CHOICES if name.startswith(typed)]
+    return CHOICES
 
 
 def materials(context, option, typed):
     """Materials with a known density, without blanks that a shell would part."""
+    names = [name.replace(" ", "_") for name in known_materials()]
+    return [name for name in names if name.startswith(typed)]
+
+
+def known_materials():
+    """Every material by name."""
     from feederscrew.part.density import MATERIALS
 
-    names = [material.name.replace(" ", "_") for material in MATERIALS]
-    return [name for name in names if name.startswith(typed)]
+    return [material.name for material in MATERIALS]

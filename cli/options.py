@@ -22,6 +22,23 @@ UNITS = click.Choice(["mm", "cm", "m", "in"])
 LAUNCHES = click.Choice(["place", "drop", "flip", "roll", "feed", "tumble"])  # the last: once that of roll
 
 
+class Named(click.Option):
+    """An option that takes a name out of a list; its help lists them, looked up when help is asked for."""
+
+    def __init__(self, *arguments, names, **keywords):
+        super().__init__(*arguments, **keywords)
+        self.names = names
+
+    def get_help_record(self, context):
+        """The help with the names behind it."""
+        told = self.help
+        self.help = f"{told.removesuffix('.')}: {', '.join(self.names())}."
+        try:
+            return super().get_help_record(context)
+        finally:
+            self.help = told
+
+
 class Number(click.FloatRange):
     """A number within limits; not 'nan', which is within any."""
 
@@ -66,8 +83,10 @@ def _reading():
         click.option(
             "--density",
             metavar="DENSITY",
+            cls=Named,
+            names=completion.known_materials,
             shell_complete=completion.materials,
-            help='A material or a value: steel, "7.85 g/cm3".',
+            help='A value, as "7.85 g/cm3", or a material.',
         ),
         click.option(
             "--centre-of-mass",
@@ -110,6 +129,8 @@ def rule(command):
         default="recommended",
         show_default=True,
         metavar="NAME",
+        cls=Named,
+        names=completion.known_rules,
         shell_complete=completion.rules,
         help="Whose probabilities are taken.",
     )(command)
@@ -154,7 +175,7 @@ def output(command):
             show_default=True,
             help="What is printed on stdout.",
         ),
-        click.option("-q", "--quiet", is_flag=True, help="No warnings and no talk."),
+        click.option("-q", "--quiet", is_flag=True, help="Suppress warnings and messages."),
         click.option("-v", "--verbose", is_flag=True, help="Say what is read and how long each step takes."),
     )
 

@@ -18,7 +18,7 @@ def rate(part, aspect, heading, rule, gap, fill, play, tolerance, bowl, out):
 
     Parts per minute in the wanted aspect and heading. The queue before the devices holds every
     orientation: it offers velocity times fill over the mean pitch; delivered is what is offered times
-    the efficiency, the share that leaves well oriented. What is returned is offered again.
+    the efficiency, the share that leaves correctly oriented. What is returned is offered again.
 
     Devices are a list in the bowl file, in the order parts meet them: 'devices:' with lines such as
     '- wiper: 6 mm', '- gap: 9 mm' or '- yield:' with the share that passes for each aspect below it;

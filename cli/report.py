@@ -27,7 +27,7 @@ PLACE = (
         "--format", type=click.Choice(["html", "md"]), default="html", show_default=True,
         help="One HTML file, or Markdown with pictures beside it.",
     ),
-    click.option("-q", "--quiet", is_flag=True, help="No warnings and no talk."),
+    click.option("-q", "--quiet", is_flag=True, help="Suppress warnings and messages."),
     click.option("-v", "--verbose", is_flag=True, help="Say what is read and how long each chapter takes."),
 )  # fmt: skip
 

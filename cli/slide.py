@@ -40,7 +40,7 @@ def slide(betas, as_published, bowl, pictures, out):
     """Example: feeder slide --beta 20 --set friction.static=0.4 -o results
 
     Map the limiting friction over alpha - theta (from the part's heading to the vibration) and the
-    acceleration ratio G = A w2/g, and what a part does there at the bowl's own friction: ride, slip
+    acceleration ratio G = A w2/g, and what a part does there at the bowl's own friction: stick, slip
     forward, backward or both ways within a cycle, or hop.
 
     mu_limit is the thesis's [4.27] for a level floor; mu_forward and mu_backward are the friction

@@ -1,6 +1,8 @@
 """What goes where: data to stdout, talk to stderr, files to the folder of ``-o``."""
 
 import contextlib
+import shutil
+import sys
 import time
 from dataclasses import dataclass, field
 
@@ -87,7 +89,7 @@ class Output:
         from feederscrew.output import tables
 
         shown = frame.without(hidden) if self.format == "table" else frame
-        click.echo(tables.text(shown, self.format), nl=False)
+        click.echo(tables.text(shown, self.format, _window()), nl=False)
 
     def json(self, document):
         """Print a document as JSON."""
@@ -139,6 +141,11 @@ class Output:
             )
         self.depend(folder.path / name for name in sorted(folder.staged))
         self.say(f"Wrote {folder.path} ({', '.join(sorted(folder.staged))}, run.json)")
+
+
+def _window():
+    """Letters of a line where the answer goes to a terminal; None where it goes to a file or a program."""
+    return shutil.get_terminal_size().columns if sys.stdout.isatty() else None
 
 
 def placeless(arguments):

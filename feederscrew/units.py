@@ -119,6 +119,11 @@ def one_line(text):
     return line if len(line) <= 40 else f"{line[:37]}..."
 
 
+def counted(number, noun):
+    """A number of things for people: '1 part', '2 parts'."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
 def shown(text):
     """A user's text fit for a message, in quotes."""
     return f"'{one_line(text)}'"

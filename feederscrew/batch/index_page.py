@@ -7,6 +7,7 @@ from feederscrew.batch.store import PARTS
 from feederscrew.batch.task import DONE
 from feederscrew.batch.work import THUMBNAIL
 from feederscrew.output.page.blocks import MarkedCell, Matrix, Page, Picture, Section
+from feederscrew.units import counted
 
 NAME = "index.html"
 HEADINGS = (
@@ -30,7 +31,7 @@ def page(store, rows):
     Page
     """
     failed = sum(row["status"] != DONE for row in rows)
-    told = f"{len(rows)} part{'s' * (len(rows) != 1)}" + (f", {failed} of them failed" if failed else "")
+    told = counted(len(rows), "part") + (f", {failed} of them failed" if failed else "")
     lines = tuple(_row(store, row) for row in rows)
     return Page(told, "", (Section((Matrix(HEADINGS, lines), NUMBERS)),))
 

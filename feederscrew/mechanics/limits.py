@@ -19,7 +19,7 @@ import numpy as np
 
 from feederscrew.errors import ConfigError
 
-REGIMES = ("ride", "forward", "backward", "both", "hop")  # a regime code is a place in this list
+REGIMES = ("stick", "forward", "backward", "both", "hop")  # a regime code is a place in this list
 RIDE, FORWARD, BACKWARD, BOTH, HOP = range(len(REGIMES))
 ROUNDING = 1e-9  # [1] a throw number this near 1 counts as hopping: there the forces hang on rounding
 
@@ -234,7 +234,7 @@ def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0, bank=0.0, w
     ratio, beta, alpha_minus_theta, climb, bank, wall_drag : array_like
         As for ``forward_limit``.
     friction : array_like [1]
-        Static; a part whose friction equals a limit still rides.
+        Static; a part whose friction equals a limit still sticks.
 
     Returns
     -------

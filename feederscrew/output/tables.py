@@ -35,6 +35,7 @@ UNITS = {  # the end of a column's name, and how a heading writes it
     "_g": "g",
     "_s": "s",
 }
+GAP, LEAST = "  ", 12  # between columns; letters that a column always has
 DIGITS = 4  # significant, in a table for people
 NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
 
@@ -108,7 +109,7 @@ def _as_column(values):
     return cells
 
 
-def text(frame, format):
+def text(frame, format, width=None):
     """Return a frame as ``'csv'`` (six significant digits) or as a ``'table'`` for people.
 
     Parameters
@@ -117,6 +118,8 @@ def text(frame, format):
         From ``frame``.
     format : str
         ``'table'`` or ``'csv'``.
+    width : int, optional
+        Letters of a line of the window; a wider table is folded, its first column at the head of each piece.
 
     Returns
     -------
@@ -126,7 +129,7 @@ def text(frame, format):
     if format == "csv":
         return _csv(frame)
     if format == "table":
-        return _aligned(frame)
+        return _aligned(frame, width)
     raise ValueError(f"format is {format!r}, not 'table' or 'csv'")
 
 
@@ -214,11 +217,35 @@ def is_share(name):
     return name.startswith("p_") and name != "p_value"
 
 
-def _aligned(frame):
+def _aligned(frame, width):
     """Columns side by side: texts to the left, numbers with their points in one line."""
     columns = [_column(name, column) for name, column in frame.items()]
-    lines = ["  ".join(cells).rstrip() for cells in zip(*columns)]
-    return "".join(f"{line}\n" for line in lines if line)  # a line of units where no column has one
+    pieces = [columns] if width is None or not columns else _folded(columns, width)
+    return "\n".join("".join(f"{line}\n" for line in _lines(piece) if line) for piece in pieces)
+
+
+def _lines(columns):
+    """Line by line; a line of units is empty where no column has one."""
+    return [GAP.join(cells).rstrip() for cells in zip(*columns)]
+
+
+def _folded(columns, width):
+    """Pieces that fit into so many letters, each headed by the first column; texts too long are cut."""
+    first, *rest = columns
+    head = _cut(first, max(width // 2, LEAST))
+    room = max(width - len(head[0]) - len(GAP), LEAST)
+    pieces, taken = [[head]], 0
+    for column in (_cut(column, room) for column in rest):
+        taken += len(column[0]) + len(GAP) * (len(pieces[-1]) > 1)
+        if taken > room and len(pieces[-1]) > 1:
+            pieces.append([head])
+            taken = len(column[0])
+        pieces[-1].append(column)
+    return pieces
+
+
+def _cut(column, most):
+    return [cell if len(cell) <= most else f"{cell[: most - 1]}…" for cell in column]
 
 
 def _column(name, values):

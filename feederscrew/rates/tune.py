@@ -10,7 +10,7 @@ from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError, FeederError
 
 KNOBS = ("drive.amplitude", "drive.vibration_angle", "drive.frequency")  # turned one at a time
-GENTLE = ("forward", "ride", "both", "backward", "hop", "no steady state")  # regimes, the most wanted first
+GENTLE = ("forward", "stick", "both", "backward", "hop", "no steady state")  # regimes, the most wanted first
 STEPS = 241  # values of a knob that are looked at
 HIGHEST_THROW = 3.5  # beyond the best throw number, about 3, velocity falls and rests on chance
 HALVINGS = 45

@@ -77,9 +77,9 @@ def test_a_steeper_track_than_friction_slides_at_rest():
 
 def test_regimes_of_one_row():
     codes = limits.regimes(np.array([0.2, 0.6, 1.2, 3.0]), 30 * DEG, 0.5, climb=3 * DEG)
-    assert [limits.REGIMES[code] for code in codes] == ["ride", "forward", "both", "hop"]
+    assert [limits.REGIMES[code] for code in codes] == ["stick", "forward", "both", "hop"]
     turned = limits.regimes(np.array([0.2, 0.6, 1.2, 3.0]), 30 * DEG, 0.5, np.pi, climb=-3 * DEG)
-    assert [limits.REGIMES[code] for code in turned] == ["ride", "backward", "both", "hop"]
+    assert [limits.REGIMES[code] for code in turned] == ["stick", "backward", "both", "hop"]
 
 
 def test_friction_at_a_limit_rides():

@@ -58,7 +58,9 @@ def test_the_regime_map_shows_its_codes_and_names_them():
     assert (np.asarray(image.get_array()) == np.round(colours)[one.grid.codes.T]).all()
     named = texts(figure)
     for name, share in one.grid.shares().items():
-        label = "hops: no friction holds it" if name == "hop" else slide_plots.REGIMES[name][1]
+        label = (
+            "no friction prevents forward slip (part hops)" if name == "hop" else slide_plots.REGIMES[name][1]
+        )
         assert (label in [text.replace("\n", " ") for text in named]) == (share > 0), name
 
 

@@ -99,3 +99,26 @@ def test_four_significant_digits(value, shown):
 def test_columns_of_another_length_are_refused():
     with pytest.raises(ValueError, match="same length"):
         tables.frame({"a": [1, 2], "b": [1]})
+
+
+def test_a_wide_table_is_folded_to_the_window():
+    frame = tables.frame({"part": ["a.stl", "b.stl"]} | {f"length{k}_mm": [1.5, 22.25] for k in range(20)})
+    assert max(map(len, tables.text(frame, "table").splitlines())) > 190
+    folded = tables.text(frame, "table", 60).splitlines()
+    assert max(map(len, folded)) <= 60
+    heads = [line.split() for line in folded if line.startswith("part")]
+    assert [name for head in heads for name in head[1:]] == [f"length{k}" for k in range(20)]
+    assert sum(line.startswith("b.stl") for line in folded) == len(heads)
+
+
+def test_a_table_that_fits_and_a_csv_are_left_as_they_are():
+    frame = tables.frame({"part": ["a.stl"], "length_mm": [1.5]})
+    assert tables.text(frame, "table", 60) == tables.text(frame, "table")
+    assert tables.text(frame, "csv", 4) == tables.text(frame, "csv")
+
+
+def test_a_long_text_is_cut_where_the_window_ends():
+    frame = tables.frame({"part": ["a.stl"], "reason": ["word " * 50], "x": [1]})
+    lines = tables.text(frame, "table", 50).splitlines()
+    assert max(map(len, lines)) <= 50
+    assert any(line.endswith("…") for line in lines)

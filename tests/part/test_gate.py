@@ -39,11 +39,11 @@ TAKEN = {  # file: volume [mm3], its relative tolerance, warnings
             "if the file is in inches or centimetres, pass `units` in",
         ),
     ),
-    "inverted_lbracket": (1379.2795, 1e-6, ("all facets faced inwards: turned",)),
+    "inverted_lbracket": (1379.2795, 1e-6, ("all facets pointed inwards; reversed",)),
     "mixed_winding_lbracket": (
         1379.2795,
         1e-6,
-        ("76 of 532 facets faced the other way than the rest: turned",),
+        ("76 of 532 facets pointed the other way than the rest; reversed",),
     ),
     "solid_header_binary": (1675.738, 1e-6, ()),
 }
@@ -182,7 +182,7 @@ def test_loose_facets_are_no_solid(tmp_path, rng):
 def test_open_and_inside_out(tmp_path):
     part = of(tmp_path, files.inside_out(BOX[1:]), allow_open=True)
     assert mm3(part) == pytest.approx(VOLUME, rel=1e-6)
-    assert part.warnings[-1] == "all facets faced inwards: turned"
+    assert part.warnings[-1] == "all facets pointed inwards; reversed"
 
 
 @pytest.mark.parametrize("flipped", [[0], [3, 5], [0, 2, 4, 7, 9]])
@@ -191,7 +191,7 @@ def test_mixed_winding_is_turned(tmp_path, flipped):
     triangles[flipped] = triangles[flipped][:, ::-1]
     part = of(tmp_path, triangles)
     assert mm3(part) == pytest.approx(VOLUME)
-    assert part.warnings == (f"{len(flipped)} of 12 facets faced the other way than the rest: turned",)
+    assert part.warnings == (f"{len(flipped)} of 12 facets pointed the other way than the rest; reversed",)
 
 
 def test_moebius_strip_is_refused(tmp_path):
@@ -210,14 +210,14 @@ def test_facets_given_twice(tmp_path):
     part = of(tmp_path, np.concatenate([BOX, BOX[:3]]))
     assert mm3(part) == pytest.approx(VOLUME)
     assert len(part.faces) == 12
-    assert part.warnings == ("3 facets that were there twice left out",)
+    assert part.warnings == ("3 duplicate facets removed",)
 
 
 def test_inner_walls_of_glued_boxes(tmp_path):
     first, second = files.box((10, 10, 10)), files.box((10, 10, 10), (10, 0, 0))
     part = of(tmp_path, np.concatenate([first, mirrored_wall(second)]))
     assert mm3(part) == pytest.approx(2000.0)
-    assert part.warnings == ("2 pairs of facets back to back (inner walls) left out",)
+    assert part.warnings == ("2 pairs of facets back to back (inner walls) removed",)
 
 
 def mirrored_wall(triangles):
@@ -226,7 +226,7 @@ def mirrored_wall(triangles):
 
 
 @pytest.mark.parametrize(
-    ("count", "said"), [(1, "1 facet without area left out"), (2, "2 facets without area left out")]
+    ("count", "said"), [(1, "1 facet without area removed"), (2, "2 facets without area removed")]
 )
 def test_facets_without_area_are_left_out_and_said_in_one_warning(tmp_path, count, said):
     needle = BOX[:count].copy()
@@ -315,7 +315,7 @@ def test_cavities_are_taken_off(tmp_path):
 def test_cavity_in_a_part_inside_out(tmp_path):
     part = of(tmp_path, files.inside_out(np.concatenate([HOUSING, CAVITY])))
     assert mm3(part) == pytest.approx(992.0)
-    assert part.warnings == ("all facets faced inwards: turned",)
+    assert part.warnings == ("all facets pointed inwards; reversed",)
 
 
 @pytest.mark.parametrize(

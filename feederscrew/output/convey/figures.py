@@ -3,6 +3,7 @@
 import matplotlib
 import numpy as np
 from matplotlib.colors import ListedColormap, TwoSlopeNorm
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from feederscrew.conveying.closed_forms import throw_of_flight
@@ -15,7 +16,7 @@ MM_S = factor("mm/s", "velocity")
 PHASE_COLOURS = {"stick": "#5c6b78", "forward": "#009e73", "backward": "#d55e00", "flight": "#0072b2"}
 PLATE = "#aab4bd"
 REGIMES = {  # colour and label; what a designer wants is the strongest
-    "ride": ("#eef2f5", "rides"),
+    "stick": ("#eef2f5", "sticks"),
     "forward": ("#79bfa4", "slips forward only"),
     "backward": ("#e3a08a", "slips back only"),
     "both": ("#f3dfae", "slips both ways"),
@@ -176,6 +177,8 @@ def _velocity(figure, axes, grid):
     bar.set_ylim(lowest, highest)
     if known.min() < 0.0 < known.max():
         axes.contour(x, y, velocity, [0.0], colors=style.INK, linewidths=1.2)
+        line = Line2D([], [], color=style.INK, linewidth=1.2, label="velocity 0")
+        axes.legend(handles=[line], fontsize=8, frameon=True, loc="upper right", labelcolor=style.INK)
     several = grid.values["several"].T.astype(float)
     if several.any():
         with matplotlib.rc_context({"hatch.linewidth": 0.5}):

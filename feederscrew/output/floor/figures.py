@@ -41,7 +41,8 @@ def plan(posture, heading, found):
     pushed = turned(found.acceleration * posture.mass - found.friction, heading)
     forces = [("drive", pushed, DRIVE), ("friction", turned(found.friction, heading), FRICTION)]
     _arrows(axes, forces, size)
-    if np.isfinite(found.offset).all():
+    pressed = bool(np.isfinite(found.offset).all() and found.normal_force > 0.0)
+    if pressed:
         place = turned(found.offset, heading) / MM
         axes.plot(*place, "x", color=NORMAL, markersize=8, markeredgewidth=2, zorder=7)
         _note(axes, place, f"N = {newtons(found.normal_force)}", NORMAL, (8, -12))
@@ -52,7 +53,7 @@ def plan(posture, heading, found):
     )  # fmt: skip
     axes.set_aspect("equal")
     axes.margins(0.4, 0.24)
-    _legend(figure, posture)
+    _legend(figure, posture, pressed)
     return figure
 
 
@@ -184,14 +185,14 @@ def _heading_line(axes, heading, size):
     axes.annotate("x'", end, (3, 10), textcoords="offset points", fontsize=9, color=plots.INK, style="italic")
 
 
-def _legend(figure, posture):
+def _legend(figure, posture, pressed):
     handles = [
         Patch(facecolor=CONTACT, alpha=0.35, label="contact polygon"),
         Line2D([], [], marker="+", linestyle="", color=CONTACT, markeredgewidth=1.6, label="its centroid"),
-        Line2D(
-            [], [], marker="x", linestyle="", color=NORMAL, markeredgewidth=2, label="normal force acts here"
-        ),
     ]
+    if pressed:
+        label = "normal force acts here"
+        handles.append(Line2D([], [], marker="x", linestyle="", color=NORMAL, markeredgewidth=2, label=label))
     if posture.axis is not None:
         handles.append(Line2D([], [], label="rolling axis", **marks.AXIS))
     figure.legend(

@@ -56,7 +56,7 @@ def _map(study, kind):
     grid = tables.MAPS[kind](study, FINE)
     return regime_map(
         grid, "acceleration_z_m_s2", title=_title(study), labels=LABELS[kind], value=ACCELERATION,
-        own=own[kind], note=" ".join(tables.map_notes(kind, grid)),
+        own=own[kind], note=tables.map_notes(kind, grid),
     )  # fmt: skip
 
 

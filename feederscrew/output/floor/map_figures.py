@@ -1,5 +1,7 @@
 """Maps over two quantities with regions marked, and states along a cycle: what floor and track share."""
 
+import textwrap
+
 import matplotlib
 import numpy as np
 from matplotlib.patches import Patch
@@ -18,9 +20,10 @@ STATES = {"stick": "#9fb3c4", "slide": "#4f9d7f", "hop": "#c9ced3", "tip": style
 HATCH = "#8d979f"
 SHADES = "cividis"
 HALF = 0.5
+LETTERS = 100  # of a line under a title
 
 
-def regime_map(grid, column, *, title, labels, value, own=None, note=""):
+def regime_map(grid, column, *, title, labels, value, own=None, note=()):
     """Values in colour with contour lines, and every region where they mean something else.
 
     Parameters
@@ -36,8 +39,8 @@ def regime_map(grid, column, *, title, labels, value, own=None, note=""):
         What the colour bar shows.
     own : pair of float, optional
         The bowl's own point, in the axes' units.
-    note : str
-        Told under the title.
+    note : sequence of str
+        Told under the title, a line each.
 
     Returns
     -------
@@ -52,11 +55,22 @@ def regime_map(grid, column, *, title, labels, value, own=None, note=""):
     if own is not None:
         _own_point(axes, own)
     if note:
-        axes.text(0.0, 1.01, note, transform=axes.transAxes, fontsize=7.5, color=style.INK, va="bottom")
-        axes.set_title(title, loc="left", fontsize=10, color=style.INK, fontweight="bold", pad=16)
+        _note(axes, note)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
     _legend(figure, found)
     return figure
+
+
+def _note(axes, lines):
+    """Sentences under the title, each from a line of its own."""
+    told = [piece for line in lines for piece in textwrap.wrap(line, LETTERS)]
+    axes.text(
+        0.0, 1.01, "\n".join(told), transform=axes.transAxes, fontsize=7.5, color=style.INK, va="bottom"
+    )
+    axes.set_title(
+        axes.get_title(loc="left"), loc="left", fontsize=10, color=style.INK, fontweight="bold",
+        pad=6 + 10 * len(told),
+    )  # fmt: skip
 
 
 def state_band(axes, phase, states, names):

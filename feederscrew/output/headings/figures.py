@@ -2,6 +2,7 @@
 
 import numpy as np
 from matplotlib.patches import Polygon
+from matplotlib.ticker import MaxNLocator
 
 from feederscrew.geometry.polygons import turned
 from feederscrew.output import style as plots
@@ -12,6 +13,7 @@ COLUMNS = 4
 MOST = 16  # headings of one picture, the most frequent
 WALL, FALLS = "#5d6b78", "#b5482a"
 SIDE = 2.5  # [in] of one picture
+TICKS = 4  # steps of an axis, at most: their numbers stand apart in it
 
 
 def headings(posture, found, track, title):
@@ -40,6 +42,8 @@ def headings(posture, found, track, title):
         _one(axes, posture, found, row, track, size)
     for axes in every[count:]:
         axes.set_visible(False)
+    figure.supxlabel("along the track [mm]", fontsize=9, color=plots.INK)
+    figure.supylabel("away from the wall [mm]", fontsize=9, color=plots.INK)
     return figure
 
 
@@ -64,6 +68,8 @@ def _one(axes, posture, found, row, track, size):
     marks.centre_of_mass(axes, 0.05 * size / MM)
     reach = 1.15 * size / MM
     axes.set(xlim=(-reach, reach), ylim=(-1.3 * size / MM, max(reach, (track.width - size) / MM * 1.05)))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(TICKS))
     axes.set_aspect("equal")
 
 

@@ -7,6 +7,7 @@ from feederscrew.output import style
 from feederscrew.output.columns import MM
 from feederscrew.output.plate.tables import MM_S, travels
 from feederscrew.resting.rules import registry
+from feederscrew.units import counted
 
 COLOURS = [rule.colour for rule in registry.RULES] + list(style.SPARE)
 LABELLED = 0.02  # share of the parts from which an aspect carries its name, or a line in a trend
@@ -27,7 +28,7 @@ def one(study):
     Figure
     """
     aspects, result = study.aspects, study.plates[0]
-    title = f"{study.part.name}: {result.parts} parts, throw number {result.throw_number:.3g}"
+    title = f"{study.part.name}: {counted(result.parts, 'part')}, throw number {result.throw_number:.3g}"
     figure = style.figure(8.2, 3.8)
     left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
     style.tidy(left, title=title, x="time on the plate [s]", y="parts [%]", grid="y")
@@ -132,8 +133,8 @@ def named(axes, x, results, names):
         stroke = f"{result.bowl.drive.amplitude / MM:.3g} mm"
         axes.annotate(
             f"{name} {stroke}" if several else stroke,
-            (at, np.nanmax(result.occupancy.velocity) / MM_S), (-5, 4), textcoords="offset points",
-            ha="right", fontsize=7, color=style.INK,
+            (at, np.nanmax(result.occupancy.velocity) / MM_S), (0, 4), textcoords="offset points",
+            ha="center", fontsize=7, color=style.INK,
         )  # fmt: skip
     axes.margins(x=0.2, y=0.15)
 

@@ -6,6 +6,7 @@ from feederscrew import units
 from feederscrew.dropping.plate.occupancy import FEW
 from feederscrew.output import tables
 from feederscrew.output.columns import MM
+from feederscrew.units import counted
 
 MM_S = units.factor("mm/s", "velocity")
 SURFACE = ("restitution", "friction")  # of a launch: the plate's own
@@ -88,12 +89,12 @@ def remarks(study):
         if plate.unsettled:
             told.append(f"{where}: {plate.unsettled} of {plate.parts} parts lay on no aspect to the end")
         if plate.lost:
-            told.append(f"{where}: {plate.lost} parts could not be followed and are left out")
+            told.append(f"{where}: {counted(plate.lost, 'part')} could not be followed, not counted")
         if 0 < plate.transitions < FEW:
             few = f"too few transitions ({plate.transitions}) for p_limit"
             told.append(f"{where}: {few}; give more `drops` or `seconds`")
     if study.partial:
-        told.append(f"partial: stopped after {plate.parts} parts on the plate of {where}")
+        told.append(f"partial: stopped after {counted(plate.parts, 'part')} on the plate of {where}")
     return told
 
 

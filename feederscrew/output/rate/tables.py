@@ -74,12 +74,12 @@ def summary(document):
     """Return the document as a frame for people: the chain from velocity to rate."""
     d = document
     rows = [
-        ("well-oriented parts per minute", _with_range(d, "parts_per_minute")),
+        ("correctly oriented parts per minute", _with_range(d, "parts_per_minute")),
         ("aspect and heading", f"{d['aspect']} at {d['heading_deg']:.4g} deg"),
         ("velocity [mm/s]", _with_range(d, "velocity_mm_s")),
         ("parts offered per minute", _with_range(d, "offered_per_minute")),
-        ("efficiency, well oriented of what is offered [%]", f"{100.0 * d['efficiency']:.4g}"),
-        ("purity, well oriented of what leaves [%]", _number(100.0 * d["purity"])),
+        ("efficiency, correctly oriented of what is offered [%]", f"{100.0 * d['efficiency']:.4g}"),
+        ("purity, correctly oriented of what leaves [%]", _number(100.0 * d["purity"])),
         ("mean pitch [mm]", f"{d['pitch_mm']:.4g} (wanted part {d['length_mm']:.4g}, gap {d['gap_mm']:.4g})"),
         (f"probability of the orientation, {d['rule']} [%]", _with_range(d, "p_orientation", 100.0)),
         ("share that passes the devices [%]", f"{100.0 * d['passes_devices']:.4g}"),
@@ -100,10 +100,10 @@ def remarks(study):
             "what lands in the wanted orientation is turned or returned; what leaves in it was turned",
         ]
     if found.through == 0.0:
-        stations = zip(found.orientations.stations, found.orientations.passes[found.row])
-        return [
-            f"the wanted orientation is returned by: {', '.join(name for name, p in stations if p == 0.0)}"
-        ]
+        stations = zip(("the track", *map(_named, study.devices)), found.orientations.passes[found.row])
+        names = [name for name, share in stations if share == 0.0]
+        verb = "reject" if len(names) > 1 else "rejects"
+        return [f"{' and '.join(names)} {verb} the orientation you want; rate is 0"]
     return turned
 
 
@@ -111,6 +111,10 @@ def _turned(devices):
     """What is not certain of the devices."""
     kinds = [device.kind for device in devices if KINDS[device.kind].turns]
     return [f"{', '.join(kinds)}: quasi-static, until a trial confirms it"] if kinds else []
+
+
+def _named(device):
+    return f"{device.kind} ({device.text})" if np.isfinite(device.limit) else device.kind
 
 
 def _range(name, found, unit):

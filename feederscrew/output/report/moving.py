@@ -35,7 +35,7 @@ HEADINGS = {  # columns of the table, and their names here
     "falls_off": "falls off",
 }
 WORDS = {  # of a regime, for a tile
-    "ride": "rides, does not travel",
+    "stick": "sticks, does not travel",
     "forward": "slips forward only",
     "backward": "slips back only",
     "both": "slips both ways",
@@ -158,7 +158,7 @@ def _rate_tile(document):
     share = f"{percent(document['p_orientation'])} % of drops"
     what = f"{document['aspect']} at {document['heading_deg']:.3g} deg, {share}"
     return Tile(
-        "leaves well oriented",
+        "leaves correctly oriented",
         f"{number(document['parts_per_minute'], SHORT)} a minute",
         f"{low} to {high}; {what} ({document['rule']})",
     )

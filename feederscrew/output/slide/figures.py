@@ -16,7 +16,7 @@ HIGHEST = 2.0  # [1] friction at which pictures are cut: hardly any pair has mor
 LEVELS = (0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 4.0)  # [1] of the contour lines
 NEAR = 0.1  # [1] of a level: the bowl's own friction, nearer than that, takes its place
 REGIMES = {  # colour and label; what a designer wants is the strongest
-    "ride": ("#eef2f5", "rides"),
+    "stick": ("#eef2f5", "sticks"),
     "forward": ("#79bfa4", "slips forward only"),
     "backward": ("#e3a08a", "slips back only"),
     "both": ("#f3dfae", "slips both ways"),
@@ -25,6 +25,7 @@ REGIMES = {  # colour and label; what a designer wants is the strongest
 HATCH = "#b4bcc3"
 LETTER = (0.0125, 0.055)  # width of a letter and height of a line, over the picture's
 SHADES = "cividis"
+OWN = "static friction of this bowl:\nit slips where a curve is above"
 HALO = [withStroke(linewidth=2.5, foreground="white")]
 LABEL = {"fontsize": 8.5, "color": style.INK, "path_effects": HALO, "zorder": 4}
 
@@ -138,6 +139,7 @@ def curves(slides):
     _own_point(
         axes, first.ratio, first.friction, f"this bowl, G = {first.ratio:.3g}, μ = {first.friction:g}", drop=9
     )
+    axes.plot([], [], color=style.ACCENT, linewidth=1.0, alpha=0.7, marker="o", label=OWN)
     axes.legend(fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), labelcolor=style.INK)
     return figure
 
@@ -161,7 +163,14 @@ def _hop_region(axes, slide, start):
         axes.axhspan(start, top, facecolor=REGIMES["hop"][0], hatch="////", linewidth=0, zorder=1.5)
     axes.axhline(start, color=style.INK, linewidth=1.0, zorder=1.6)
     x = -0.5 * axes.get_xlim()[1] if slide.ratio > start else 0.0  # beside the bowl's own point
-    axes.text(x, (start + top) / 2, "hops: no friction holds it", ha="center", va="center", **LABEL)
+    axes.text(
+        x,
+        (start + top) / 2,
+        "no friction prevents forward slip (part hops)",
+        ha="center",
+        va="center",
+        **LABEL,
+    )
 
 
 def _own_point(axes, x, y, text, drop=0):

@@ -62,11 +62,12 @@ def remarks(study):
         empty, cells = one.grid.unanswered("mu_limit"), one.grid.codes.size
         if shares["hop"] == 0.0:
             lines.append(f"{beta}: the drive does not lift the part, so no cell hops.")
-        if shares["ride"] + shares["hop"] == 1.0:
+        if shares["stick"] + shares["hop"] == 1.0:
             lines.append(f"{beta}: nothing slips before it hops at static friction {one.friction:g}.")
         if empty:
             lines.append(
-                f"{beta}: mu_limit is empty in {empty} of {cells} cells, where no friction holds the part."
+                f"{beta}: mu_limit is empty in {empty} of {cells} cells, "
+                "where no friction prevents forward slip (part hops)."
             )
     return lines
 

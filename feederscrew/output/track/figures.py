@@ -112,7 +112,8 @@ def _above(axes, found):
     scale.draw(axes, foot, np.array([-1.0, 0.0]), now.traction, "R4", FRICTION)
     scale.draw(axes, foot, np.array([0.0, 1.0]), now.radial_friction, "R3", FRICTION)
     scale.draw(axes, np.zeros(2), *_unit(_drive(found)[:2]), "drive", DRIVE)
-    axes.plot(*foot, "x", color=NORMAL, markersize=8, markeredgewidth=2, zorder=7)
+    if now.normal_force > 0.0 and np.isfinite(now.offset).all():
+        axes.plot(*foot, "x", color=NORMAL, markersize=8, markeredgewidth=2, zorder=7)
     marks.centre_of_mass(axes, 0.02 * size / MM)
 
 

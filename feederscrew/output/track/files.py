@@ -62,7 +62,7 @@ def _map(study, grid):
     return regime_map(
         grid, SHOWN, title=_title(study), labels=map_tables.labels(grid),
         value="acceleration V'_X at the upper reversal [m/s²]",
-        own=map_tables.own_point(grid, study.bowl), note=" ".join(map_tables.remarks(grid)),
+        own=map_tables.own_point(grid, study.bowl), note=map_tables.remarks(grid),
     )  # fmt: skip
 
 

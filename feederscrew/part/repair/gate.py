@@ -18,7 +18,7 @@ MOST_OPEN = 100_000  # edges: with more it is not a surface with holes
 FARTHEST = 1e30  # [unit of the file]
 EMPTY = 1e-10  # [1] of the size cubed: less volume is rounding
 SHALLOW, DEEP = 1e-4, 2e-2  # [1] of the size: how far facets may pass through others, unsaid and at all
-INVERTED = "all facets faced inwards: turned"
+INVERTED = "all facets pointed inwards; reversed"
 CLOSE = "close it in CAD, or pass `allow_open` to compute from what there is"
 UNITE = "unite what overlaps in CAD, or pass `allow_open` to compute from what there is"
 NEARER = "export it near the origin"
@@ -94,7 +94,7 @@ def _crossed(vertices, faces, tolerance, size, where, unit, allow_open):
 
 def _without_area(count):
     """What to say of facets left out because two of their corners are one."""
-    return (f"{_many(count, 'facet')} without area left out: two corners in one place",) if count else ()
+    return (f"{_many(count, 'facet')} without area removed: two corners in one place",) if count else ()
 
 
 def _finite(vertices, faces, where, unit):

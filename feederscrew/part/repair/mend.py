@@ -69,9 +69,9 @@ def _without_repeats(vertices, faces, edges, tolerance, where):
     repeated = len(faces) - len(kept) - 2 * back_to_back
     said = ()
     if repeated:
-        said += (f"{_many(repeated, 'facet that was', 'facets that were')} there twice left out",)
+        said += (f"{_many(repeated, 'duplicate facet', 'duplicate facets')} removed",)
     if back_to_back:
-        said += (f"{_many(back_to_back, 'pair', 'pairs')} of facets back to back (inner walls) left out",)
+        said += (f"{_many(back_to_back, 'pair', 'pairs')} of facets back to back (inner walls) removed",)
     return *weld.compacted(vertices, faces[kept]), said
 
 
@@ -98,7 +98,11 @@ def _one_way_round(vertices, faces, edges, tolerance, where):
     turned = np.bincount(shell, odd) > 0.5 * np.bincount(shell)
     odd = odd != turned[shell]
     faces = np.where(odd[:, None], faces[:, ::-1], faces)
-    return vertices, faces, (f"{odd.sum()} of {len(faces)} facets faced the other way than the rest: turned",)
+    return (
+        vertices,
+        faces,
+        (f"{odd.sum()} of {len(faces)} facets pointed the other way than the rest; reversed",),
+    )
 
 
 def _parity(mates, askew, count, where):

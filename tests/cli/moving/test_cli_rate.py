@@ -50,13 +50,13 @@ def test_files(run, config):
     assert {path.name for path in folder.iterdir()} == {"rate.json", "orientations.csv", "run.json"}
     rows = list(csv.DictReader(io.StringIO((folder / "orientations.csv").read_text())))
     assert list(rows[0])[-4:] == ["track", "wiper_1", "yield_2", "passes"]
-    assert "well-oriented parts per minute" in result.stdout
+    assert "correctly oriented parts per minute" in result.stdout
 
 
 def test_an_orientation_that_a_device_returns(run, config):
     result = run("rate", PART, "--aspect", "A", "--config", config)
     assert result.exit_code == 0
-    assert result.stderr == "Warning: the wanted orientation is returned by: wiper\n"
+    assert result.stderr == "Warning: wiper (18 mm) rejects the orientation you want; rate is 0\n"
 
 
 @pytest.mark.parametrize(

@@ -35,7 +35,7 @@ def test_one_file_with_every_chapter(run):
     assert [label for label, _ in tiles] == [
         "wanted",
         "travels",
-        "leaves well oriented",
+        "leaves correctly oriented",
         "lies along the wall at",
     ]
     assert tiles[0][1] == "aspect B"

@@ -164,3 +164,18 @@ def test_an_interrupt_before_that_writes_nothing():
 
     with pytest.raises(KeyboardInterrupt):
         offers.write(Held(), [offers.Offer("a.csv", stopped)])
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="asks for a pseudo terminal of Linux")
+def test_a_table_fits_the_window():
+    import pty
+
+    ours, theirs = pty.openpty()
+    environment = {**os.environ, "COLUMNS": "72"}
+    done = program("aspects", NUT, "-q", stdout=theirs, env=environment)
+    os.close(theirs)
+    lines = os.read(ours, 100_000).decode().splitlines()
+    os.close(ours)
+    assert done.returncode == 0
+    assert max(map(len, lines)) <= 72
+    assert sum(line.startswith("aspect ") for line in lines) == 2

@@ -101,8 +101,8 @@ def test_standard_input(run):
 
 def test_warnings_go_to_stderr_and_into_the_document(run):
     done = run("inertia", BROKEN / "inverted_lbracket.stl", "--format", "json")
-    assert document(done)["warnings"] == ["all facets faced inwards: turned"]
-    assert done.stderr.splitlines()[0] == "Warning: all facets faced inwards: turned"
+    assert document(done)["warnings"] == ["all facets pointed inwards; reversed"]
+    assert done.stderr.splitlines()[0] == "Warning: all facets pointed inwards; reversed"
 
 
 def test_open_surface_is_labelled(run):
@@ -119,7 +119,8 @@ def test_file_without_an_honest_number_is_one_line(run, name):
     done = run("inertia", path)
     assert done.exit_code == 1
     assert done.stdout == ""
-    assert done.stderr == f"Error: {path}: {files.refused(path)}\n"
+    told = files.refused(path).replace("`allow_open`", "--allow-open")
+    assert done.stderr == f"Error: {path}: {told}\n"
 
 
 def test_impossible_density_names_the_unit(run, stl):
