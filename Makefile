@@ -64,8 +64,10 @@ results/%/inertia.csv: parts/%.stl | $(READY)
 results/%/slide.csv: configs/%.yaml | $(READY)
 	$(FEEDER) slide --config $< -o results --quiet > /dev/null
 
-bench: $(READY_TO_TEST) ## benchmarks, a few minutes
-	for script in benchmarks/*.py; do $(BIN)/python $$script || exit 1; done
+BENCHES := waits conveying speed aspects tooling
+
+bench: $(READY_TO_TEST) ## what people wait for and the kernels, under ten minutes
+	for name in $(BENCHES); do $(BIN)/python benchmarks/$$name.py || exit 1; done
 
 docs: docs/aspects.png docs/regimes.png docs/drop.png docs/bowl.png $(READY) ## pictures, outputs and tables of the README
 	$(BIN)/python docs/readme.py

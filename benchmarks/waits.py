@@ -4,8 +4,8 @@ Run: python benchmarks/waits.py            (prints the table)
      python benchmarks/waits.py --write    (puts it into docs/speed.md as well)
 
 Where there is a bare floor, both are paired. Every call is a process of its own. Its processor time, with
-that of its children, is told beside the time by the clock: where they are far apart, the machine had other things
-to do. Ratios are of runs in turn, A B A B.
+that of its children, is told beside the time by the clock: where they are far apart, the machine was busy.
+Ratios are of runs in turn, A B A B.
 """
 
 import argparse

@@ -160,7 +160,7 @@ def test_a_further_start_joins_what_is_known():
     for _ in range(period):
         state = turn(rules, state, np.zeros(TALLY))
         known.append(settling.noted(state))
-    _, joined = settling.follow(rules, at_rest(rules), np.array(known))
+    _, joined = settling.follow(rules, at_rest(rules), np.array(known), settling.TRANSIENT)
     assert joined == settling.JOINS
     alone, other = np.empty(steady.COLUMNS), surveyed(setting)
     velocities = []
