@@ -3,8 +3,12 @@
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from hypothesis import settings
 
 from feederscrew_cli.main import feeder
+
+settings.register_profile("same", derandomize=True, deadline=None)
+settings.load_profile("same")  # the same examples everywhere: new ones are for `make fuzz` to look for
 
 
 @pytest.fixture
