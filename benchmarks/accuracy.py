@@ -141,6 +141,7 @@ def main(chosen):
             for name, some in (("made", bodies), ("real", real))
         }
     )
+    intervals.weights_of_hops(bodies, series)
     intervals.closed_forms(bodies + real)
     intervals.measured(series)
     cards()

@@ -8,9 +8,11 @@ is judged by. The widths of ``recommended.WIDTHS`` are those printed here, round
 import numpy as np
 
 from feederscrew.dropping.ensemble import NORMAL
+from feederscrew.resting.counts.deviation import total_variation
 from feederscrew.resting.rules import recommended
 
 HELD = 0.95
+WEIGHTS = tuple(np.linspace(0.0, 1.0, 11))
 SMALL = 1e-9
 
 
@@ -74,6 +76,40 @@ def _coverage(bodies, launch, ends):
         inside += ((low - SMALL <= truth) & (truth <= high + SMALL))[stable].tolist()
         widths += (high - low)[stable].tolist()
     return np.mean(inside), np.mean(widths)
+
+
+def weights_of_hops(bodies, series):
+    """Print which weight of the hops drop tests of made bodies ask for, and what it does on measured sets.
+
+    Out of sample: the weight is chosen on drop tests alone. In sample: the one in use, chosen with the
+    measured sets of that launch in view as well.
+    """
+    print(
+        "\nTempered hops: weight of the hops nearest to drop tests of bodies without a rolling class, and in"
+    )
+    print("use; mean total variation there, and the error on the measured sets of that launch")
+    flat = [body for body in bodies if not body.rolling]
+    for launch in recommended.LAUNCHES:
+        away = [_mean_apart(flat, weight, launch) for weight in WEIGHTS]
+        chosen, used = WEIGHTS[int(np.argmin(away))], recommended.SHARES[launch]
+        for label, weight in (("chosen", chosen), ("in use", used)):
+            told = f"  {launch:8}{label:>8}{weight:5.1f}{_mean_apart(flat, weight, launch):7.3f}"
+            print(told + "".join(_missed(sets, weight, launch) for sets in series.values()))
+
+
+def _mean_apart(bodies, weight, launch):
+    return np.mean([_apart(body, weight, body.drop(launch)) for body in bodies])
+
+
+def _missed(sets, weight, launch):
+    """The error of one series in words; nothing where another launch was used."""
+    own = [one for one in sets if one.launch == launch and not one.body.rolling]
+    error = [_apart(one.body, weight, one.shares) ** 2 for one in own]
+    return f"   {own[0].series} {np.sqrt(np.mean(error)):.4f}" if own else ""
+
+
+def _apart(body, weight, truth):
+    return total_variation(recommended.tempered(body.aspects.probabilities, weight)[1], truth)
 
 
 def measured(series):

@@ -125,11 +125,12 @@ def bodies():
         yield name, shape_of_part(part, found)[0], found.rows
 
 
-def rates(shape, count, launch=THROW):
+def rates(shape, count, launch=THROW, steps=None):
     """Drops a second and core, and the faces."""
     starts = sample(launch, shape, count, np.random.default_rng(1))
     faces, times, work = np.empty(count, int), np.empty(count), drop.scratch(shape)
-    given = shape, work, starts.states, starts.restitutions, starts.frictions, drop.Steps(), faces, times
+    steps = steps or drop.Steps()
+    given = shape, work, starts.states, starts.restitutions, starts.frictions, steps, faces, times
     return count / seconds(drop.settle_all, *given, repeats=2), faces
 
 
@@ -192,7 +193,7 @@ def mujoco_drop(engine, model, data, shape, stiffness, friction, state):
         here[[0, 1, 2, 6, 7, 8, 9]], here[3:6], here[10:] = data.qpos, data.qvel[:3], data.qvel[3:]
         here[2] += 0.5 * stiffness * np.sum(np.minimum(data.contact.dist, 0.0) ** 2)
         body.rotation(here, turn)
-        corner, _ = body.lowest(shape.vertices, shape.links, turn, 0)
+        corner, _ = body.lowest(shape.vertices, shape.solid.links, turn, 0)
         face = drop.decided(shape, here, turn, corner, max(data.ncon, 1), friction, 0, drop.Steps())
         if face != drop.UNSETTLED:
             return face
