@@ -138,7 +138,7 @@ def _limits(bowl, station, every):
     period = 1.0 / bowl.drive.frequency
     every_s = max(np.ceil(seconds / SPARE / LOOKS / period), 1.0) * period
     return {
-        "limits": (seconds, patience, GETS_ON * patience * speed),
+        "limits": (seconds, patience, GETS_ON * patience * speed, 0.5 * size),
         "every": every_s, "places": int(LOOKS * SPARE) + 60,
     }  # fmt: skip
 

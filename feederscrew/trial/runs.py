@@ -16,7 +16,7 @@ from feederscrew.trial.kernel import contact, motion
 
 PASSED, RETURNED, RUNNING = motion.PASSED, motion.RETURNED, motion.RUNNING
 PERIOD = 80  # steps of a period of the drive
-SWEEPS, CONVERGED = 60, 1e-5  # of the contact solver: at most, and what a sweep may still change
+SWEEPS, CONVERGED = 60, 1e-4  # of the contact solver: at most, and what a sweep may still change
 CONTACTS = 48  # of a part at a time
 BATCH = 5  # parts a core takes at a time
 
@@ -32,6 +32,7 @@ class Scratch(NamedTuple):
     spots: np.ndarray  # (C, 3)
     shown: np.ndarray  # (C, 3)
     near: np.ndarray  # (B,) int
+    low: np.ndarray  # (C,) int
     vectors: np.ndarray  # (3, 3)
     contacts: np.ndarray  # (CONTACTS, WIDTH)
     memory: np.ndarray  # (2,) how many of them the step before had, and how long it was
@@ -195,8 +196,9 @@ def ride(known, station, states, times, *, limits, every, places, jobs=1, progre
         At the start, without dimensions.
     times : (N,) float [s]
         Of the start, which sets the phase of the drive.
-    limits : (float [s], float [s], float [m])
-        After how long a part is given up; and the time in which it must get on, and how far.
+    limits : (float [s], float [s], float [m], float [m])
+        After how long a part is given up; the time in which it must get on, and how far; how far it may go
+        back from where it began.
     every : float [s]
         Between two places noted; whole steps.
     places : int
@@ -260,6 +262,7 @@ def surface_of(known, station, limits):
         longest=limits[0] / known.unit,
         patience=limits[1] / known.unit,
         progress=limits[2] / known.length,
+        back=(station.begin - limits[3]) / known.length,
     )
 
 
@@ -269,7 +272,7 @@ def scratch(solid, borders):
     return Scratch(
         state=np.zeros(body.STATE), saved=np.zeros(body.STATE), push=np.zeros(body.STATE), turn=np.zeros(9),
         tangent=np.zeros(2), spots=np.zeros((count, 3)), shown=np.zeros((count, 3)),
-        near=np.zeros(max(borders, 1), np.int64), vectors=np.zeros((3, 3)),
+        near=np.zeros(max(borders, 1), np.int64), vectors=np.zeros((3, 3)), low=np.zeros(count, np.int64),
         contacts=np.zeros((CONTACTS, contact.WIDTH)), memory=np.zeros(2),
     )  # fmt: skip
 

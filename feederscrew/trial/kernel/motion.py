@@ -42,6 +42,7 @@ class Surface(NamedTuple):
     longest: float  # time after which it is given up
     patience: float  # time in which a part must get on
     progress: float  # ... so far along the wall, or down
+    back: float  # way along the wall, behind which a part has gone back
 
 
 @compiled
@@ -77,19 +78,11 @@ def found(surface, solid, work, reach):
         plate = surface.plates[k]
         if search.seen(plate, state, work.spots, work.shown) > reach:
             continue
-        count = search.corners_on(
-            plate,
-            surface.borders,
-            work.shown,
-            work.spots,
-            turn,
-            solid.inertia,
-            tangent,
-            reach,
-            contacts,
-            count,
-        )
         nears = edges.near_borders(plate, surface.borders, state, solid.radius + reach, work.near)
+        count = search.corners_on(
+            plate, surface.borders, work.shown, work.spots, turn, solid.inertia, tangent, reach, nears, state,
+            work.low, contacts, count,
+        )  # fmt: skip
         if nears:
             count = edges.edges_on(
                 plate, surface.borders, work.near, nears, solid, work.shown, work.spots, turn, tangent, reach,
@@ -309,8 +302,11 @@ def travel(surface, solid, floor, work, time, every, path, notes):
         if state[Z] < -solid.radius:
             outcome = RETURNED
             break
-        if way(surface, state) > surface.exit:
+        place = way(surface, state)
+        if place > surface.exit:
             outcome = PASSED
+            break
+        if place < surface.back:
             break
     notes[TIME], notes[MOVED] = time - begun, way(surface, state) - start
     notes[SUNK], notes[PLACES] = -sunk, noted

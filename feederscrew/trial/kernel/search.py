@@ -16,6 +16,7 @@ SLANT = 0.02  # [1] by which a contact's normal may lie beyond the faces it is b
 PARALLEL = 0.03  # [1] sine of the angle below which two edges do not cross: their ends touch instead
 LEVEL = 0.7  # [1] of a normal against a plate's front: one that lies flatter stops a part
 DEEP = 0.03  # how far behind a surface an edge may be found, in units of the part's length
+WAYS, FALL = 6, 20.0  # corners are sought in so many directions, a lower one rather than one further out
 ORIGIN, ACROSS, ALONG, FRONT, DEPTH, ROUNDED, FIRST, LAST = 0, 3, 6, 9, 12, 13, 14, 15  # of a plate's row
 BOX = 16  # where its borders are: least and greatest of both coordinates
 
@@ -89,15 +90,27 @@ def seen(plate, state, spots, shown):
 
 
 @compiled
-def corners_on(plate, borders, shown, spots, turn, inertia, tangent, reach, contacts, count):
-    """Contacts of the part's corners with a plate's surface, and with its sides behind rounded borders."""
-    first, last = int(plate[FIRST]), int(plate[LAST])
+def _centre(plate, state):
+    """Where the centre of mass is seen on a plate."""
+    x, y, z = state[X] - plate[0], state[Y] - plate[1], state[Z] - plate[2]
+    a = plate[ACROSS] * x + plate[ACROSS + 1] * y + plate[ACROSS + 2] * z
+    return a, plate[ALONG] * x + plate[ALONG + 1] * y + plate[ALONG + 2] * z
+
+
+@compiled
+def sides_on(plate, borders, shown, spots, turn, inertia, tangent, reach, low, contacts, count):
+    """Contacts of the part's corners with a plate's sides; writes which corners lie on its surface.
+
+    Returns
+    -------
+    contacts so far, corners on the surface
+    """
+    first, last, lows = int(plate[FIRST]), int(plate[LAST]), 0
     for k in range(len(shown)):
         height = shown[k, 2]
         if height > reach or height < -plate[DEPTH]:
             continue
         solid = inside(borders, first, last, shown[k, 0], shown[k, 1])
-        nx, ny, nz, gap = plate[FRONT], plate[FRONT + 1], plate[FRONT + 2], height
         if height < -plate[ROUNDED]:
             n, off = _beside(borders, first, last, shown[k, 0], shown[k, 1])
             if off < (-height if solid else reach):
@@ -105,12 +118,69 @@ def corners_on(plate, borders, shown, spots, turn, inertia, tangent, reach, cont
                 nx = u * plate[ACROSS] + v * plate[ALONG]
                 ny = u * plate[ACROSS + 1] + v * plate[ALONG + 1]
                 nz = u * plate[ACROSS + 2] + v * plate[ALONG + 2]
-                solid = True
+                count = add(
+                    contacts, count, turn, inertia, tangent, spots[k, 0], spots[k, 1], spots[k, 2],
+                    nx, ny, nz, gap, 0.0,
+                )  # fmt: skip
+                solid = False
         if solid:
-            count = add(
-                contacts, count, turn, inertia, tangent, spots[k, 0], spots[k, 1], spots[k, 2],
-                nx, ny, nz, gap, 0.0,
-            )  # fmt: skip
+            low[lows] = k
+            lows += 1
+    return count, lows
+
+
+@compiled
+def all_low(plate, borders, shown, reach, state, low):
+    """Write which corners lie on a plate's surface where no border is near; how many."""
+    a, b = _centre(plate, state)
+    lows = 0
+    if inside(borders, int(plate[FIRST]), int(plate[LAST]), a, b):
+        for k in range(len(shown)):
+            if shown[k, 2] <= reach and shown[k, 2] >= -plate[DEPTH]:
+                low[lows] = k
+                lows += 1
+    return lows
+
+
+@compiled
+def _outermost(shown, low, count):
+    """Keep of many corners the lowest and those furthest out around it, in front of the others; how many."""
+    kept = 0
+    for m in range(WAYS + 1):
+        c, s = math.cos(2.0 * math.pi * m / WAYS), math.sin(2.0 * math.pi * m / WAYS)
+        if m == WAYS:
+            c = s = 0.0
+        best, first = -math.inf, 0
+        for n in range(count):
+            k = low[n]
+            score = c * shown[k, 0] + s * shown[k, 1] - FALL * shown[k, 2]
+            if score > best:
+                best, first = score, n
+        if first >= kept:
+            low[kept], low[first] = low[first], low[kept]
+            kept += 1
+    return kept
+
+
+@compiled
+def corners_on(
+    plate, borders, shown, spots, turn, inertia, tangent, reach, nears, state, low, contacts, count
+):
+    """Contacts of the part's corners with a plate: its surface, and its sides behind rounded borders."""
+    if nears:
+        count, lows = sides_on(
+            plate, borders, shown, spots, turn, inertia, tangent, reach, low, contacts, count
+        )
+    else:
+        lows = all_low(plate, borders, shown, reach, state, low)
+    if lows > WAYS + 1:
+        lows = _outermost(shown, low, lows)
+    for m in range(lows):
+        k = low[m]
+        count = add(
+            contacts, count, turn, inertia, tangent, spots[k, 0], spots[k, 1], spots[k, 2],
+            plate[FRONT], plate[FRONT + 1], plate[FRONT + 2], shown[k, 2], 0.0,
+        )  # fmt: skip
     return count
 
 

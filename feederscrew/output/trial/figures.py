@@ -1,0 +1,121 @@
+"""Charts of trials: orientations in and out, and the paths over a device from above."""
+
+import numpy as np
+from matplotlib.patches import Polygon
+
+from feederscrew.output import style
+from feederscrew.output.columns import MM
+from feederscrew.trial import course
+
+COLOURS = {"passed": "#0072b2", "returned": "#d55e00", "hanging": "#cc79a7", "stuck": "#7a5c3e"}
+TRACK = "#e3e8ec"
+MOST = 24  # orientations that come most often have a row
+
+
+def matrix(run):
+    """Draw in which orientation parts came, and in which they left or what became of them.
+
+    Parameters
+    ----------
+    run : TrialRun
+
+    Returns
+    -------
+    Figure
+    """
+    rows = [k for k in np.argsort(-run.shares, kind="stable") if run.tried[k]][:MOST]
+    out = [m for m in range(run.matrix.shape[1]) if run.matrix[rows, m].any()]
+    names = [one.name for one in run.known.lying] + ["other"]
+    lost = [fate for fate in range(1, len(course.FATES)) if run.counts[rows, fate].any()]
+    counts = np.column_stack([run.matrix[rows][:, out], run.counts[rows][:, lost]])
+    shown = counts / run.tried[rows][:, None]
+    titles = [names[m] for m in out] + [course.FATES[fate] for fate in lost]
+    figure = style.figure(max(4.2, 1.8 + 0.62 * len(titles)), 1.5 + 0.3 * len(rows))
+    axes = figure.add_subplot()
+    axes.imshow(shown, cmap="Blues", vmin=0.0, vmax=1.25, aspect="auto")
+    for r, c in zip(*np.nonzero(counts)):
+        axes.text(
+            c, r, counts[r, c], ha="center", va="center", fontsize=8,
+            color="white" if shown[r, c] > 0.7 else style.INK,
+        )  # fmt: skip
+    style.tidy(axes, title="Orientations in and out, parts", x="leaves as", y="comes as", grid="none")
+    axes.set_xticks(range(len(titles)), titles)
+    odd = [" *" if run.odd[k] else "" for k in rows]
+    axes.set_yticks(range(len(rows)), [names[k] + mark for k, mark in zip(rows, odd)])
+    if any(odd):
+        axes.set_xlabel("leaves as   (* not what the static rule says)", fontsize=9, color=style.INK)
+    return figure
+
+
+def paths(run):
+    """Draw where the centres of mass went over each device, unrolled, from above.
+
+    Parameters
+    ----------
+    run : TrialRun
+
+    Returns
+    -------
+    Figure
+    """
+    found, radius = run.course, run.bowl.track.radius
+    figure = style.figure(7.2, 0.6 + 2.3 * len(found.stations))
+    panels = figure.subplots(len(found.stations), 1, squeeze=False)[:, 0]
+    for axes, station, ride, riders in zip(panels, found.stations, found.rides, found.riders):
+        _track(axes, station, radius)
+        widest = 0.0
+        for one, path in zip(riders, ride.paths):
+            way, off = unrolled(path, radius)
+            ended = ride.outcomes[list(riders).index(one)] != 1
+            fate = course.FATES[found.fates[one]] if ended else "passed"
+            axes.plot(way / MM, off / MM, color=COLOURS[fate], linewidth=0.7, alpha=0.7)
+            if ended and len(way):
+                axes.plot(way[-1] / MM, off[-1] / MM, "x", color=COLOURS[fate], markersize=4)
+            widest = max(widest, off.max(initial=0.0))
+        title = f"{station.device.kind.replace('_', ' ')} {station.device.text}".strip()
+        style.tidy(axes, title=title, x="along the wall [mm]", y="from the wall [mm]", grid="none")
+        axes.set(
+            xlim=(station.begin / MM - 2.0, station.exit / MM + 2.0), ylim=(1.25 * widest / MM + 4.0, -1.0)
+        )
+    for fate, colour in COLOURS.items():
+        panels[0].plot([], [], color=colour, label=fate)
+    panels[0].legend(fontsize=7, frameon=False, ncols=4, loc="lower right")
+    return figure
+
+
+def unrolled(path, radius):
+    """Return lengths along the wall and distances from it (K,) [m] of a path (K, 8), as far as it goes."""
+    known = path[np.isfinite(path[:, 0])]
+    x, y = known[:, 1], radius - known[:, 2]
+    return radius * np.arctan2(x, y), radius - np.hypot(x, y)
+
+
+def solids(station):
+    """Return the rings (K, 2) [m] of what is solid of the track, in the bowl's frame."""
+    first, last = station.plates[0, 14:16].astype(int)
+    borders, rings, ring = station.borders[first:last], [], []
+    for k, border in enumerate(borders):
+        ring.append(border[:2])
+        after = borders[k + 1, :2] if k + 1 < len(borders) else None
+        if after is None or np.hypot(*(after - border[2:4])) > 1e-12:
+            rings.append(np.array(ring))
+            ring = []
+    return rings
+
+
+def _track(axes, station, radius):
+    axes.set_facecolor("white")
+    for place, ring in enumerate(solids(station)):
+        x, y = ring[:, 0], radius - ring[:, 1]
+        flat = np.column_stack([radius * np.arctan2(x, y), radius - np.hypot(x, y)]) / MM
+        hole = place > 0 and _turns_right(ring)
+        colour = "white" if hole else TRACK
+        axes.add_patch(Polygon(flat, facecolor=colour, edgecolor=style.INK, linewidth=0.6, zorder=0.5))
+    for plate in station.plates[1:]:
+        place = radius * np.arctan2(plate[0], radius - plate[1])
+        axes.axvline(place / MM, color=style.INK, linewidth=2.0)
+
+
+def _turns_right(ring):
+    after = np.roll(ring, -1, axis=0)
+    return (ring[:, 0] * after[:, 1] - ring[:, 1] * after[:, 0]).sum() < 0.0
