@@ -35,7 +35,7 @@ class Seat:
 
 
 @dataclass(frozen=True, eq=False)
-class Frame:
+class TrackAxes:
     """Directions in track axes, (..., 3) each; leading axes are those of the bowl's fields."""
 
     up: np.ndarray  # against gravity
@@ -124,7 +124,7 @@ def frame(bowl, walls):
 
     Returns
     -------
-    Frame
+    TrackAxes
     """
     phi, delta, beta, alpha, radius = np.broadcast_arrays(
         bowl.track.climb, bowl.track.bank, bowl.drive.vibration_angle, bowl.drive.direction, bowl.track.radius
@@ -145,7 +145,7 @@ def frame(bowl, walls):
     normals = cosine[..., None] * radial[..., None, :] + sine[..., None] * ahead[..., None, :]
     level = cosine[..., None] * ahead[..., None, :] - sine[..., None] * radial[..., None, :]
     courses = np.cos(phi)[..., None, None] * level + np.sin(phi)[..., None, None] * up[..., None, :]
-    return Frame(up, radial, drive, normals, courses)
+    return TrackAxes(up, radial, drive, normals, courses)
 
 
 def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False):
@@ -155,7 +155,7 @@ def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False):
     ----------
     seat : Seat
     bowl : Bowl
-    axes : Frame
+    axes : TrackAxes
     phase : array_like [rad]
         w t.
     speed : array_like [m/s]

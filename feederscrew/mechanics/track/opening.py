@@ -34,7 +34,7 @@ def contact_wrenches(seat, axes, points, *, floor=0.0, wall=(0.0, 0.0), traction
     Parameters
     ----------
     seat : Seat
-    axes : Frame
+    axes : TrackAxes
     points : (3, 2) float [m]
         Floor points, in track axes from the foot of the centre of mass.
     floor, wall : float, (2,) float [1]

@@ -25,7 +25,7 @@ def acceleration(seat, bowl, axes, least):
     seat : Seat
     bowl : Bowl
         Single values.
-    axes : Frame
+    axes : TrackAxes
     least : float [m/s2]
         A reaction per unit of mass more negative than this would be a pull.
 

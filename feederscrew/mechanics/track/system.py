@@ -38,7 +38,7 @@ def sliding(seat, axes, load, closed, floor, wall, course=AHEAD):
     Parameters
     ----------
     seat : Seat
-    axes : Frame
+    axes : TrackAxes
     load : (..., 3) float [N]
         All that acts but contacts.
     closed : pair of bool
