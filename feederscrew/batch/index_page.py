@@ -54,4 +54,8 @@ def _number(value):
 
 def _picture(store, row):
     content = store.file(row["folder"], THUMBNAIL) if row["status"] == DONE else None
-    return None if content is None else Picture(THUMBNAIL, content, f"{row['folder']} on aspect A")
+    return (
+        None
+        if content is None
+        else Picture(THUMBNAIL, content, f"{row['folder']} on aspect {row['aspect'] or 'A'}")
+    )

@@ -58,8 +58,6 @@ def _results(task):
     study = aspects(part)
     found = study.aspects
     offers.write(files, aspects_files.offers(study), pictures=choices.pictures)
-    if choices.pictures and part.vertices is not None:
-        files.write(THUMBNAIL, contact_sheet.thumbnail(part, found))
     conveying = travel(request.conditions)
     files.write("convey.json", tables.json_text(conveying))
     row = {
@@ -72,6 +70,8 @@ def _results(task):
         **_rate(part, found, task, files),
         **_drops(part, found, task, files),
     }
+    if choices.pictures and part.vertices is not None:
+        files.write(THUMBNAIL, contact_sheet.thumbnail(part, found, row.get("aspect")))
     return Outcome(
         name=request.name,
         key=task.key,

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from feederscrew.mechanics import limits
 from feederscrew.mechanics.floor import balance
 from feederscrew.mechanics.floor.balance import HOP, STATES
 from feederscrew.mechanics.published import floor as published_floor
@@ -67,15 +68,18 @@ def cells(posture, bowl, heading):
     -------
     dict of str to array
         ``acceleration_z_m_s2`` V'_z, NaN where the part has lost contact; ``published_z_m_s2`` the printed
-        formula, which goes on there; ``alignment_acceleration_rad_s2``; 'regime', places in ``REGIMES``.
+        formula, which goes on there; ``alignment_acceleration_rad_s2``; ``throw_number``, above 1 where it
+        hops; 'regime', places in ``REGIMES``.
     """
     found = balance.motion(posture, bowl, heading)
     printed = published_floor.motion(posture, bowl, heading)
     contact = found.state != HOP
+    ratio = limits.acceleration_ratio(bowl.drive.amplitude, bowl.drive.frequency, bowl.gravity)
     return {
         "acceleration_z_m_s2": np.where(contact, found.acceleration[..., 0], np.nan),
         "published_z_m_s2": printed.acceleration[..., 0],
         "alignment_acceleration_rad_s2": np.where(contact, found.turning, np.nan),
         "published_alignment_rad_s2": printed.turning,
+        "throw_number": limits.throw_number(ratio, bowl.drive.vibration_angle),
         "regime": found.state,
     }

@@ -6,6 +6,7 @@ import numpy as np
 
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
+from feederscrew.mechanics import limits
 from feederscrew.mechanics.floor.balance import HOP, STATES
 from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import card_seat, seat
@@ -64,8 +65,8 @@ def cells(posture, bowl, heading=None):
     Returns
     -------
     dict of str to array
-        Columns of the map and 'regime', places in ``REGIMES``; NaN where the part does not
-        fit; no acceleration where it hops.
+        Columns of the map, ``throw_number``, above 1 where it hops, and 'regime', places in ``REGIMES``; NaN
+        where the part does not fit; no acceleration where it hops.
     """
     shape = np.broadcast_shapes(*(np.shape(value) for _, _, value in _fields(bowl)))
     found = {name: np.full(shape, np.nan) for name in COLUMNS} | {"regime": np.full(shape, UNFIT)}
@@ -73,6 +74,9 @@ def cells(posture, bowl, heading=None):
         there = _answers(balance.motion(place, _picked(bowl, shape, here)))
         for name, values in there.items():
             found[name][here] = values
+    drive, track = bowl.drive, bowl.track
+    ratio = limits.acceleration_ratio(drive.amplitude, drive.frequency, bowl.gravity)
+    found["throw_number"] = limits.throw_number(ratio, drive.vibration_angle, track.climb, track.bank)
     return found
 
 

@@ -14,7 +14,8 @@ PANEL, ALONE = 400, 720  # [px] width of one panel, and of one that is alone
 LETTER = 22  # [px] width of a letter of the name
 TALLEST = 1.15  # height of a panel over its width
 LINE, SMALL = 24, 17  # [px] of text, and of the rules' smaller text
-BAR, BARS = 102, 132  # [px] length of a bar for a probability of 1, and where it starts
+SCALE = 200  # [px] of the head that the scale bar takes
+BAR, BARS = 94, 140  # [px] length of a bar for a probability of 1, and where it starts
 RIGHT = 370  # [px] where the numbers beside the bars end
 HEAD, FOOT = 92, 76  # [px] above and below the panels
 ROOM = 1.1  # of a panel over the largest part in it
@@ -160,7 +161,7 @@ def _head_and_foot(figure, sheet, part, solid):
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set_axis_off()
     axes.set(xlim=(0, width), ylim=(0, height))
-    longest = width // LETTER
+    longest = (width - SCALE) // LETTER
     name = part.name if len(part.name) <= longest else f"{part.name[: longest - 3]}..."
     axes.text(30, height - 34, name, fontsize=13, fontweight="bold", color=style.INK, va="center")
     facts = f"{part.material}, {1e3 * part.mass:.4g} g" + ", open surface" * part.open_surface

@@ -19,22 +19,25 @@ TEXT, EDGE = 52, 20  # [px] under each thumbnail, round the sheet
 LETTERS = 26  # of a line of text
 
 
-def thumbnail(part, found):
-    """Draw a small picture of a part on its most likely aspect.
+def thumbnail(part, found, aspect=None):
+    """Draw a small picture of a part on one aspect.
 
     Parameters
     ----------
     part : Part
         With a mesh.
     found : Aspects
+    aspect : str, optional
+        Its name, the one that the text below speaks of; the first without it.
 
     Returns
     -------
     bytes
         A PNG of ``WIDTH`` by ``HEIGHT`` pixels, the same for the same part.
     """
+    row = list(found.names).index(aspect) if aspect in found.names else 0
     solid = render.Rays(part.vertices, part.faces, part.centre_of_mass)
-    standing = stance(outermost(solid.points), found.normals[0], found.heights[0] / solid.size)
+    standing = stance(outermost(solid.points), found.normals[row], found.heights[row] / solid.size)
     lowest, highest = standing.framed
     pixel = ROOM * max((highest - lowest) / (WIDTH, HEIGHT))
     left, bottom = 0.5 * (lowest + highest) - 0.5 * pixel * np.array([WIDTH, HEIGHT])

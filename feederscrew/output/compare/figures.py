@@ -18,6 +18,7 @@ FIXED = {
 }
 OWN = ("#545f6b", "#cc79a7", "#a9b3bd", "#8f4a71", "#7d6b5d", "#5b3a8e")  # a user's profiles, in turn
 BAR = 0.20  # [in] of paper a bar gets
+WIDEST = 13.0  # [in] of all charts side by side
 LEAST_ROOM = 0.17  # [in] of a bar below which its number is left out
 
 
@@ -93,20 +94,25 @@ def comparison(title, names, measured, rules, compared):
     -------
     Figure
     """
-    rows = max(len(rules), 1)
     width = float(np.clip(len(names) * (len(measured) + 1.9) * BAR + 1.0, 4.2, 12.0))
     side = max(3.4, 0.42 * (len(measured) + len(rules)) + 1.3)
-    figure = style.figure(width + side, max(2.2 * rows, side))
-    grid = figure.add_gridspec(rows, 2, width_ratios=(width, side))
+    across = max(1, min(len(rules), int(WIDEST / width)))
+    rows = -(-max(len(rules), 1) // across)
+    figure = style.figure(across * width + side, max(2.2 * rows, side))
+    grid = figure.add_gridspec(rows, across + 1, width_ratios=(*[width] * across, side))
     charts = {name: {**measured, name: values} for name, values in rules.items()} or {title: measured}
     room = (width - 1.0) / (len(names) * (len(measured) + 1.9))
-    for row, (rule, profiles) in enumerate(charts.items()):
-        axes = figure.add_subplot(grid[row, 0])
-        heading = f"{title}: {look(rule)[0]} and what was measured" if rules else title
-        style.tidy(axes, title=heading, x="aspect" if row == rows - 1 else "", y="share [%]", grid="y")
+    for place, (rule, profiles) in enumerate(charts.items()):
+        row, column = divmod(place, across)
+        axes = figure.add_subplot(grid[row, column])
+        heading = (f"{title}: " if place == 0 else "") + look(rule)[0] if rules else title
+        lowest, first = place + across >= len(charts), column == 0
+        style.tidy(
+            axes, title=heading, x="aspect" if lowest else "", y="share [%]" if first else "", grid="y"
+        )
         bars(axes, names, profiles, room=room)
     _legend(figure, measured, rules)
-    _matrix(figure.add_subplot(grid[:, 1]), [*measured, *rules], compared)
+    _matrix(figure.add_subplot(grid[:, across]), [*measured, *rules], compared)
     return figure
 
 

@@ -5,11 +5,12 @@ import textwrap
 import matplotlib
 import numpy as np
 from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
 
 from feederscrew.output import style
 
 HATCHES = {  # regime: hatch, colour of the face, what it says
-    "hop": ("////", "#e1e5e8", "hops: contact is lost"),
+    "hop": ("////", "#e1e5e8", "hops: contact is lost (dashed: throw number k)"),
     "tip": ("....", "#f2d3c4", "tips"),
     "stick": ("", "#eef2f5", "sticks"),
     "leaves the wall": ("\\\\\\\\", "#dfe9d2", "leaves the wall"),
@@ -20,6 +21,7 @@ STATES = {"stick": "#9fb3c4", "slide": "#4f9d7f", "hop": "#c9ced3", "tip": style
 HATCH = "#8d979f"
 SHADES = "cividis"
 HALF = 0.5
+THROWS = (1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0, 50.0, 100.0)  # that a line may be drawn for
 LETTERS = 100  # of a line under a title
 
 
@@ -52,6 +54,7 @@ def regime_map(grid, column, *, title, labels, value, own=None, note=()):
     if np.isfinite(shown).any():
         _values(figure, axes, (x, y, shown), value, np.isin(grid.codes.T, _places(grid, SOLID)))
     found = [name for name in HATCHES if _region(axes, grid, name)]
+    _throws(axes, grid)
     if own is not None:
         _own_point(axes, own)
     if note:
@@ -138,6 +141,23 @@ def _region(axes, grid, name):
             grid.first.shown, grid.second.shown, cover, [HALF], colors=style.INK, linewidths=0.9, zorder=4
         )
     return True
+
+
+def _throws(axes, grid):
+    """Lines of equal throw number where the part hops: all that this balance can say there."""
+    if "hop" not in grid.names or "throw_number" not in grid.values or min(grid.codes.shape) < 2:
+        return
+    throw = np.where(grid.names.index("hop") == grid.codes, grid.values["throw_number"], np.nan).T
+    known = throw[np.isfinite(throw)]
+    if not known.size or known.min() == known.max():
+        return
+    levels = [level for level in THROWS if known.min() < level < known.max()]
+    if len(levels) < 2:
+        levels = MaxNLocator(5).tick_values(known.min(), known.max())
+    if len(levels):
+        x, y, shown = grid.first.shown, grid.second.shown, np.ma.masked_invalid(throw)
+        lines = axes.contour(x, y, shown, levels, colors=style.INK, linewidths=0.8, linestyles="--", zorder=5)
+        axes.clabel(lines, fmt=lambda level: f"k = {level:g}", fontsize=7)
 
 
 def _own_point(axes, own):

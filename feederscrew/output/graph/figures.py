@@ -8,7 +8,10 @@ from feederscrew.output.columns import MM
 MOST = 12  # aspects a picture can show
 CLEAR = 4.0  # [pt] between an arrow and a disc
 BEND = 0.12  # of an arrow, so that there and back lie apart
-TAIL = 0.36  # of the way: where the lift is written
+SPOTS = (0.36, 0.3, 0.42, 0.24, 0.48, 0.54, 0.6, 0.66, 0.72)  # of the way: where the lift may be written
+LETTER = (0.032, 0.085)  # width and height of one, over the ring's radius
+DISC = (0.14, 0.14)  # half a disc, over the ring's radius
+PALE = "#9ba3aa"  # of ways that are not the easiest
 REACH = 1.45  # of the picture, where the ring of discs has radius 1
 
 
@@ -47,42 +50,68 @@ def graph(title, names, ways, shares):
 
 
 def _arrows(axes, ways, places, sizes):
-    """Every way between two discs that are shown; the easiest out of each stands out."""
-    lowest = {}
+    """The easiest way between every two discs that are shown; the easiest out of each stands out."""
+    lowest, between = {}, {}
     for way in ways:
         lowest[way.start] = min(way.lift, lowest.get(way.start, np.inf))
-    for way in ways:
-        if way.start in places and way.end in places:
-            ends = (places[way.start], sizes[way.start]), (places[way.end], sizes[way.end])
-            arrow(axes, *ends, way.lift, way.lift <= lowest[way.start])
+        pair = (way.start, way.end)
+        if set(pair) <= set(places) and way.lift < between.get(pair, np.inf):
+            between[pair] = way.lift
+    taken = [(*place, *DISC) for place in places.values()]
+    for (start, end), lift in sorted(between.items(), key=lambda item: -item[1]):  # the easy ones on top
+        ends = (places[start], sizes[start]), (places[end], sizes[end])
+        taken.append(arrow(axes, *ends, lift, lift <= lowest[start], taken))
 
 
-def arrow(axes, begin, end, lift, easiest):
-    """Draw one way between two discs (place, size), bent to leave room for the way back."""
+def arrow(axes, begin, end, lift, easiest, taken=()):
+    """Draw one way between two discs (place, size), bent to leave room for the way back.
+
+    Parameters
+    ----------
+    axes : Axes
+    begin, end : pair of (2,) float and float
+        Place and size of a disc.
+    lift : float [m]
+    easiest : bool
+        Out of that disc.
+    taken : sequence of 4 float
+        Boxes of discs and labels that are there already: middle, half width, half height.
+
+    Returns
+    -------
+    tuple of 4 float
+        The box of its own label.
+    """
     (start, from_size), (end, to_size) = begin, end
-    colour = style.ACCENT if easiest else style.INK
-    look = {"arrowstyle": "->", "color": colour, "alpha": 1.0 if easiest else 0.45}
+    colour, text = style.ACCENT if easiest else PALE, _shown(lift)
+    box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
+    look = {"ha": "center", "va": "center", "fontsize": 7, "zorder": 5, "bbox": box}
+    look["color"] = style.ACCENT if easiest else style.INK
     if np.allclose(start, end):
-        axes.annotate(_shown(lift), 1.32 * start, ha="center", va="center", fontsize=7, color=colour)
-        return
-    axes.annotate(
-        "",
-        end,
-        start,
-        arrowprops={
-            **look,
-            "connectionstyle": f"arc3,rad={BEND}",
-            "shrinkA": 0.5 * np.sqrt(from_size) + CLEAR,
-            "shrinkB": 0.5 * np.sqrt(to_size) + CLEAR,
-        },
-    )
+        axes.annotate(text, 1.32 * start, **look)
+        return (*1.32 * start, *_half(text))
+    bent = {"connectionstyle": f"arc3,rad={BEND}", "arrowstyle": "-|>,head_length=0.5,head_width=0.22"}
+    shrunk = {f"shrink{e}": 0.5 * np.sqrt(size) + CLEAR for e, size in (("A", from_size), ("B", to_size))}
+    order = {"zorder": 2 if easiest else 1}
+    axes.annotate("", end, start, arrowprops={**bent, **shrunk, "color": colour, "linewidth": 1.1}, **order)
     along = end - start
     beside = np.array([along[1], -along[0]]) * BEND  # of the middle control point of the arc
-    axes.annotate(
-        _shown(lift), start + TAIL * along + 2.0 * TAIL * (1.0 - TAIL) * beside,
-        ha="center", va="center", fontsize=7, color=colour, zorder=5,
-        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},
-    )  # fmt: skip
+    spots = [start + t * along + 2.0 * t * (1.0 - t) * beside for t in SPOTS]
+    hidden = [sum(_overlap((*spot, *_half(text)), other) for other in taken) for spot in spots]
+    spot = spots[int(np.argmin(hidden))]
+    axes.annotate(text, spot, **look)
+    return (*spot, *_half(text))
+
+
+def _half(text):
+    """Half the width and the height of a label, over the ring's radius."""
+    return 0.5 * LETTER[0] * len(text), 0.5 * LETTER[1]
+
+
+def _overlap(one, other):
+    """Area that two boxes share."""
+    sides = [one[k + 2] + other[k + 2] - abs(one[k] - other[k]) for k in (0, 1)]
+    return max(sides[0], 0.0) * max(sides[1], 0.0)
 
 
 def _shown(lift):

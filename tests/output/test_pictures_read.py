@@ -1,0 +1,119 @@
+"""Pictures can be read: nothing under something else, nothing off the page, nothing that says nothing."""
+
+from itertools import combinations, pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from feederscrew.bowl import read, settings
+from feederscrew.bowl.vary import ranges
+from feederscrew.output import style
+from feederscrew.output.batch import contact_sheet
+from feederscrew.output.compare import figures as compare
+from feederscrew.output.convey import figures as convey
+from feederscrew.output.floor import figures as floor_figures
+from feederscrew.output.floor import map_figures
+from feederscrew.output.graph import figures as graph
+from feederscrew.output.headings import figures as headings_figures
+from feederscrew.part import load
+from feederscrew.resting.aspects import find
+from feederscrew.resting.tumbling.by_class import Transition
+from feederscrew.studies import convey as convey_study
+from feederscrew.studies.floor import floor
+from feederscrew.studies.headings import headings
+from feederscrew.studies.track import track
+
+PARTS = Path(__file__).parents[2] / "parts"
+NUT = load(PARTS / "squarenut_m5.stl")
+HOPS = read(None, ("drive.amplitude=2 mm",))
+
+
+def boxes(figure, texts):
+    figure.draw_without_rendering()
+    return [text.get_window_extent() for text in texts if text.get_text()]
+
+
+def ways(count):
+    return [
+        Transition(i, j, 1e-3 * (1 + i + j), np.zeros(3))
+        for i in range(count)
+        for j in range(count)
+        if i != j
+    ]
+
+
+@pytest.mark.parametrize("count", [2, 5])
+def test_labels_of_the_tipping_graph_stand_apart(count):
+    names = [chr(65 + k) for k in range(count)]
+    figure = graph.graph("nut", names, ways(count), np.full(count, 1.0 / count))
+    texts = [text for text in figure.axes[0].texts if text.get_text()]
+    assert len(texts) == count + count * (count - 1)
+    assert not any(a.overlaps(b) for a, b in combinations(boxes(figure, texts), 2))
+
+
+def test_a_way_of_the_tipping_graph_is_drawn_once_with_its_head():
+    twice = [*ways(2), Transition(0, 1, 0.5e-3, np.zeros(3))]
+    figure = graph.graph("nut", ["A", "B"], twice, np.array([0.5, 0.5]))
+    arrows = [text.arrow_patch for text in figure.axes[0].texts if getattr(text, "arrow_patch", None)]
+    assert len(arrows) == 2
+    assert all(arrow.get_arrowstyle().fillend for arrow in arrows)
+    assert "0.5" in [text.get_text() for text in figure.axes[0].texts]
+
+
+def test_a_thumbnail_shows_the_aspect_that_is_named():
+    found = find(NUT)
+    first, other = (contact_sheet.thumbnail(NUT, found, name) for name in ("A", "C"))
+    assert first == contact_sheet.thumbnail(NUT, found)
+    assert first != other
+
+
+def test_headings_name_their_axes_and_their_numbers_stand_apart():
+    study = headings(NUT, read().track)
+    figure = headings_figures.headings(study.postures[0], study.headings[0], study.track, "nut")
+    assert (figure.get_supxlabel(), figure.get_supylabel()) == (
+        "along the track [mm]",
+        "away from the wall [mm]",
+    )
+    for axes in figure.axes:
+        assert not any(a.overlaps(b) for a, b in pairwise(boxes(figure, axes.get_xticklabels())))
+
+
+def test_a_map_where_the_bowl_hops_shows_the_throw_number():
+    study = track(NUT, HOPS)
+    grid = study.over(settings(None, ("drive.amplitude=2 mm",)))
+    figure = map_figures.regime_map(grid, "acceleration_x_m_s2", title="nut", labels=("x", "y"), value="")
+    assert any(text.get_text().startswith("k = ") for text in figure.axes[0].texts)
+
+
+def test_sentences_under_a_title_have_a_line_each():
+    grid = track(NUT, HOPS).over(settings(None, ("drive.amplitude=2 mm",)))
+    figure = map_figures.regime_map(
+        grid, "acceleration_x_m_s2", title="nut", labels=("x", "y"), value="", note=("one", "two")
+    )
+    assert "one\ntwo" in [text.get_text() for text in figure.axes[0].texts]
+
+
+def test_no_cross_where_nothing_presses():
+    for bowl, crosses in ((HOPS, 0), (read(), 1)):
+        study = floor(NUT, bowl)
+        figure = floor_figures.plan(study.posture, study.heading, study.now)
+        marks = [line for line in figure.axes[0].lines if line.get_marker() == "x"]
+        assert (len(marks), len(figure.legends[0].get_texts())) == (crosses, 2 + crosses)
+
+
+def test_the_zero_line_of_a_map_of_velocities_is_named():
+    spans = ranges(["drive.vibration_angle=5:60:8", "track.climb=0:12:8"])
+    found = convey_study.velocity_map(settings(None), spans)
+    figure = convey.velocity_map(found.grid)
+    named = figure.axes[0].get_legend()
+    assert (found.grid.values["velocity"] < 0.0).any() == (named is not None)
+
+
+def test_a_comparison_with_every_rule_fits_a_screen():
+    shares = np.array([0.7, 0.3])
+    rules = dict.fromkeys(
+        ("pmi", "csa", "stability", "quasistatic", "crsa", "barrier", "surface", "hops"), shares
+    )
+    figure = compare.comparison("coin", ["A", "B"], {"tosses": shares}, rules, {("tosses", "pmi"): 0.1})
+    assert figure.get_figheight() * style.DPI <= 1200
