@@ -17,6 +17,7 @@ from feederscrew.bowl import documentation
 from feederscrew_cli.main import feeder
 
 WORKED = ("docs/bowl.md", "docs/tooling.md")  # pages whose console examples are outputs as well
+TUTORIAL = "docs/tutorial.md"  # written with them; a test of its own runs it
 ROOT = Path(__file__).resolve().parent.parent
 BLOCK = re.compile(r"```console( sampled)?\n\$ (feeder .*)\n((?:(?!```).*\n)*)```")
 CUT = "...\n"
@@ -69,7 +70,8 @@ def _between(text, name, content):
 def main():
     """Write or check; the exit status."""
     os.chdir(ROOT)
-    pages = {"README.md": filled, **{page: lambda text: BLOCK.sub(_block, text) for page in WORKED}}
+    worked = WORKED if "--check" in sys.argv else (*WORKED, TUTORIAL)
+    pages = {"README.md": filled, **{page: lambda text: BLOCK.sub(_block, text) for page in worked}}
     return max([_brought_up(Path(page), fill) for page, fill in pages.items()])
 
 
