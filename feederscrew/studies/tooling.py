@@ -14,7 +14,7 @@ from feederscrew.tooling.design import MARGIN, design, place
 from feederscrew.tooling.orientations import Orientation, named, orientations
 from feederscrew.tooling.result import Design
 
-LATE = "the search stopped at the time limit: another machine may find more - raise --limit"
+LATE = "the search stopped at the time limit: another machine may find more - raise the limit"
 
 
 @dataclass(frozen=True, eq=False)

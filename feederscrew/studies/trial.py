@@ -12,7 +12,7 @@ from feederscrew.conveying import answer
 from feederscrew.documents import hint
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.dropping.plate.drive import throw_number
-from feederscrew.errors import FeederError
+from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import Aspects, find
@@ -241,8 +241,8 @@ def trial(
     """
     found = find(part)
     if rule not in found.chances:
-        raise FeederError(
-            f"--rule {rule}", "has no probabilities of this part", hint(rule, list(found.chances))
+        raise ArgumentError(
+            f"rule {rule}", "has no probabilities of this part", hint(rule, list(found.chances))
         )
     count = parts or (FEW if queue else PARTS)
     solid_of(part)  # refuses a part without a surface before anything else

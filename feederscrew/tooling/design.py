@@ -90,7 +90,7 @@ def _short(given, found, efficiency, turn):
         comes = given.shares[given.wanted] / given.shares.sum()
         why = (
             f"{100.0 * comes:.3g} % of the parts come as {one.name}, and devices that return parts add none; "
-            "--turn allows devices that turn parts over"
+            "`turn` allows devices that turn parts over"
         )
         if turn:
             why = "no step or ledge, nor two of them, turns more parts into it that can then be isolated"

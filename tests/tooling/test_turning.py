@@ -109,4 +109,4 @@ def test_turning_brings_more_where_returning_wastes(lying):
     assert turned.efficiency == pytest.approx((shares * flow.leaving[:, wanted]).sum())
     short = design(lying, shares, wanted, holes=False, efficiency=0.99)
     assert "the efficiency asked for is missed by" in short.reasons[-1]
-    assert "--turn allows" in short.reasons[-1]
+    assert "`turn` allows" in short.reasons[-1]
