@@ -117,3 +117,25 @@ def test_a_comparison_with_every_rule_fits_a_screen():
     )
     figure = compare.comparison("coin", ["A", "B"], {"tosses": shares}, rules, {("tosses", "pmi"): 0.1})
     assert figure.get_figheight() * style.DPI <= 1200
+
+
+def test_the_point_of_the_bowl_among_the_curves_is_named():
+    from feederscrew.output.slide import figures as slide
+    from feederscrew.studies.slide import slide as study
+
+    found = study(read(), (0.3, 0.6))
+    labels = [text.get_text() for text in slide.curves(found.maps).axes[0].get_legend().get_texts()]
+    assert slide.OWN in labels
+
+
+def test_a_long_name_leaves_the_scale_bar_alone():
+    from dataclasses import replace
+
+    from feederscrew.output.aspects import picture
+
+    figure = picture.aspects(replace(NUT, name="n" * 60), find(NUT), [0])
+    texts = {text.get_text(): text for axes in figure.axes for text in axes.texts}
+    name = next(text for told, text in texts.items() if told.startswith("nnn"))
+    scale = next(text for told, text in texts.items() if told.endswith(" mm"))
+    a, b = boxes(figure, [name, scale])
+    assert a.x1 < b.x0

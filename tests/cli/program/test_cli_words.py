@@ -1,0 +1,78 @@
+"""What the program says, in the words of the trade."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import part_files as files
+import pytest
+
+from feederscrew.part.density import MATERIALS
+from feederscrew.resting.rules import registry
+
+PARTS = Path(__file__).parents[3] / "parts"
+NUT = PARTS / "squarenut_m5.stl"
+BROKEN = Path(__file__).parents[2] / "data" / "broken"
+WIPER = "devices:\n  - wiper: 3 mm\n"
+
+
+def words(text):
+    return " ".join(text.split())
+
+
+def test_help_names_the_rules_and_the_materials(run):
+    told = words(run("rate", "--help").stdout)
+    assert f"Whose probabilities are taken: {', '.join(registry.CHOICES)}." in told
+    assert f"or a material: {', '.join(material.name for material in MATERIALS)}." in told
+    assert "-q, --quiet Suppress warnings and messages." in told
+
+
+def test_a_new_bowl_file_shows_a_block_of_devices(run):
+    told = run("config", "init").stdout
+    assert "# devices:  # along the track, in the order parts meet them\n#   - wiper: 6 mm  # " in told
+
+
+def test_several_bodies_are_refused_with_the_option_that_takes_them(run):
+    done = run("inertia", BROKEN / "two_nuts.stl")
+    assert done.stderr.endswith("; or pass --allow-open to take them as one part\n")
+
+
+def test_a_device_that_rejects_what_is_wanted(run, tmp_path):
+    (tmp_path / "bowl.yaml").write_text(WIPER)
+    done = run("rate", NUT, "--aspect", "C", "--config", "bowl.yaml")
+    assert done.stderr == "Warning: wiper (3 mm) rejects the orientation you want; rate is 0\n"
+    assert "correctly oriented parts per minute" in done.stdout
+
+
+def test_one_part_is_one(run, tmp_path):
+    shutil.copy(NUT, tmp_path / "a.stl")
+    done = run("batch", "a.stl", "-o", "out", "--no-pictures", "--jobs", 1)
+    assert "Wrote out (1 part; open index.html)\n" in done.stderr
+
+
+def test_duplicates_are_removed_and_what_points_inwards_is_reversed(tmp_path):
+    from feederscrew.part import load
+
+    box = files.box()
+    twice = load(files.written(tmp_path, [*box, *box[:3]]))
+    assert twice.warnings == ("3 duplicate facets removed",)
+    assert load(files.written(tmp_path, files.inside_out(box))).warnings == (
+        "all facets pointed inwards; reversed",
+    )
+
+
+@pytest.mark.parametrize("beta", ["1e-308", "5e-324", "0", "90"])
+def test_any_vibration_angle_is_mapped(run, beta):
+    done = run("slide", "--beta", beta, "--no-pictures", "-o", "out")
+    assert (done.exit_code, "Error" in done.stderr) == (0, False), done.output
+
+
+def test_drops_without_a_compiler():
+    code = "import sys; from feederscrew_cli.main import feeder; feeder(sys.argv[1:])"
+    call = [sys.executable, "-c", code, "drop", str(NUT), "--drops", "2", "--jobs", "1", "--format", "csv"]
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
+    done = subprocess.run(call, env=environment, capture_output=True, text=True, timeout=120, check=False)
+    assert (done.returncode, "Traceback" in done.stderr) == (0, False), done.stderr
+    assert done.stdout.startswith("aspect,")
