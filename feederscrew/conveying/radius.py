@@ -41,7 +41,7 @@ def at_radius(bowl, radius):
     """
     if np.any(bowl.drive.phase != 0.0):
         what = "is not 0 deg, an elliptical drive is not a screw motion to follow inwards"
-        raise ConfigError("drive.phase", what, "leave out the curve over the radius, or the phase")
+        raise ConfigError("drive.phase", what, "leave out `curve`, or the phase")
     rise = np.sin(bowl.drive.vibration_angle + bowl.track.climb) * bowl.drive.amplitude
     turn = np.cos(bowl.drive.vibration_angle + bowl.track.climb) * bowl.drive.amplitude / bowl.track.radius
     reach = turn * np.asarray(radius)
