@@ -21,6 +21,14 @@ class PassagesStudy:
     shares: np.ndarray  # (M,) [1]
     passages: tuple[tuple[Passage, ...], ...]  # (M,) up to the device that returns it
 
+    @property
+    def wanted(self):
+        """Place of the most frequent orientation that leaves; of the most frequent one where none does."""
+        leaves = [not one.falls_off and all(k.verdict.passes > 0.0 for k in met)
+                  for one, met in zip(self.orientations, self.passages)]  # fmt: skip
+        shares = np.round(self.shares, 9)
+        return int(np.argmax(np.where(leaves, shares, 0.0) if any(leaves) else shares))
+
 
 def passages(part: Part, bowl: Bowl, aspects: Aspects, rule: str) -> PassagesStudy:
     """Study what a bowl's devices do with each orientation of a part.

@@ -143,7 +143,7 @@ def _gate(every, wanted, device, must):
     play = round(0.5 * widest / FINE) * FINE if np.isfinite(widest) else play
 
     def at(play):
-        text = f"{{of: {aspect}@{np.degrees(heading):.12g}, play: {millimetres(play)}}}"
+        text = f"{{of: {aspect}@{np.degrees(heading):.6g}, play: {millimetres(play)}}}"
         return replace(device, like=(aspect, heading, float(play)), text=text)
 
     return judged(every, wanted, at(play), must, at(widest), at(0.0))

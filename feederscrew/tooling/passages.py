@@ -35,6 +35,21 @@ class Passage:
     weight: tuple[float, float]  # [m] where the weight meets the track
     opening: shapely.Geometry | None  # [m] of a gate, in distances from the wall and heights
 
+    def angle(self, station):
+        """Return where the part then is on a track section [rad]: from the wall's tangent at its start.
+
+        Parameters
+        ----------
+        station : Station
+            Of this device.
+        """
+        one = self.orientation
+        if station.blade is not None or self.picture == "turned":
+            return (station.start + 0.5 * station.length) / one.track.radius
+        if self.device.kind not in ("gap", "cut_out"):
+            return (station.start + 0.5 * station.length) / one.track.radius
+        return station.start / one.track.radius - _shift(self.device, one, self.verdict.shift)
+
 
 def passage(device, one, every, known=()):
     """Return an orientation at the place of a device where its margin is least.
@@ -88,6 +103,28 @@ def _within(hull, weight):
     return hull.boundary.distance(point) if hull.contains(point) else -hull.distance(point)
 
 
+def fate(one, met):
+    """Return in words what becomes of an orientation at the end of its passages.
+
+    Parameters
+    ----------
+    one : Orientation
+        As it comes.
+    met : sequence of Passage
+        None of which returned it.
+
+    Returns
+    -------
+    str
+    """
+    last = met[-1].after if met else one
+    if last.falls_off:
+        return "falls off the track"
+    if last.kind == "hanging":
+        return f"leaves {last.name}"
+    return "leaves" if last.name == one.name else f"leaves as {last.name}"
+
+
 def _after(device, one, found, every, known):
     """The orientation in which most parts go on from a device."""
     if found.onto:
@@ -121,6 +158,14 @@ def until_returned(devices, one, every):
     return found
 
 
+def _shift(device, one, shift):
+    """By how much [rad] a gap or cut-out is turned ahead of the part where the margin is least."""
+    if device.kind == "cut_out":
+        return shift
+    width = min(one.track.width, 0.999 * one.track.radius)
+    return feet.least(one.standing, feet.gap(device.limit, one.track.radius, width))[1]
+
+
 def _hole(device, one, shift):
     """What a device cuts away where the margin is least, about the radial line of the foot."""
     track, length = one.track, LONG * one.length
@@ -128,9 +173,6 @@ def _hole(device, one, shift):
     ring = hole(device, track.radius, length, width)
     if ring is None:
         return None
-    if device.kind == "gap":
-        _, shift = feet.least(one.standing, feet.gap(device.limit, track.radius, width))
-    elif device.kind != "cut_out":
-        shift = -0.5 * length / track.radius
+    shift = _shift(device, one, shift) if device.kind in ("gap", "cut_out") else -0.5 * length / track.radius
     ring = bent(feet.through_the_wall(ring), track.radius, shift, CHORD)
     return shapely.make_valid(shapely.Polygon(ring))

@@ -14,7 +14,7 @@ from feederscrew.tooling.verdicts import verdict
 ROUND = 1e-4  # [m] to which a height or width is rounded
 MORE = 1.05  # a chain is tried if it brings so many times what the best shorter one does
 TRIED = 4  # chains of each length
-HIGHEST = 1.0  # of the part's greatest length: over a higher step it tumbles freely
+HIGHEST = 0.5  # of the part's greatest length: over a higher step it tumbles freely
 
 
 def chains(given):

@@ -161,3 +161,18 @@ def test_it_prints_on_a4(visit, text, tmp_path):
     boxes = {tuple(map(float, box.split())) for box in re.findall(rb"/MediaBox \[([\d. ]+)\]", paper)}
     assert len(boxes) == 1
     assert next(iter(boxes)) == pytest.approx((0.0, 0.0, 595.3, 841.9), abs=1.0)
+
+
+def test_the_part_turns_over_the_cut(visit, tmp_path):
+    (tmp_path / "bowl.yaml").write_text("devices:\n  - gap: 9 mm\n")
+    cut = report(load(str(BRACKET)), str(tmp_path / "bowl.yaml"), (), command="feeder report x.stl")
+    text = html(page(cut, chapters=[chapter for chapter in CHAPTERS if chapter[0] == "tooling"]))
+    probe = PROBE.replace('[...document.getElementById("aspects.csv").rows]', "[]")
+    dom, console = visit(text.replace("</body>", probe), "--dump-dom")
+    assert console == []
+    assert '<div id="cuts" hidden' not in dom
+    told = json.loads(unescape(re.search(r"<title>(.*?)</title>", dom, re.S).group(1)))
+    assert told["views"] == 2
+    assert told["back"] == told["start"]
+    assert told["turned"] != told["start"]
+    assert told["start"][0] > 0.02 * 680 * 544

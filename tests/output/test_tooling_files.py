@@ -142,7 +142,8 @@ def test_the_bowl_file_gives_the_promised_efficiency_and_purity(isolated, tmp_pa
 
 def test_files(isolated):
     offered = {one.name: one.make() for one in files.offers(*isolated)}
-    assert set(offered) == {f"tooling.{kind}" for kind in ("csv", "json", "png", "yaml", "dxf", "svg", "stl")}
+    names = {f"tooling.{kind}" for kind in ("csv", "json", "png", "yaml", "dxf", "svg", "stl")}
+    assert set(offered) == names | {"tooling_3d.png"}
     assert offered["tooling.svg"].startswith("<svg ")
     assert offered["tooling.svg"].count('class="CUT"') == 1
 

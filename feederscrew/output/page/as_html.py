@@ -192,17 +192,17 @@ def _entry(entry):
 
 
 def _views(views):
-    figures = "\n".join(_view(place, *caption) for place, caption in enumerate(views.captions))
+    figures = "\n".join(_view(views.of, place, *caption) for place, caption in enumerate(views.captions))
     scene = json.dumps(views.scene, separators=(",", ":")).replace("<", "\\u003c")
     return (
-        f'<div id="views" hidden>\n<p class="quiet">{HINT}</p>\n'
+        f'<div id="{views.name}" hidden class="turnable">\n<p class="quiet">{HINT}</p>\n'
         f'<div class="views">\n{figures}\n</div>\n</div>\n'
-        f'<script type="application/json" id="scene">{scene}</script>'
+        f'<script type="application/json" class="scene" data-views="{views.name}">{scene}</script>'
     )
 
 
-def _view(place, name, kind, bars):
-    label = f"Aspect {escape(name)} in three dimensions; arrow keys turn it"
+def _view(of, place, name, kind, bars):
+    label = f"{of} {escape(name)} in three dimensions; arrow keys turn it"
     shares = "\n".join(_bar(bar) for bar in bars)
     return (
         f'<figure class="view">\n'

@@ -66,10 +66,12 @@ class ShareBar:
 
 @dataclass(frozen=True, eq=False)
 class Views:
-    """The part on each aspect, to be turned; ``scene`` is JSON for the viewer."""
+    """The part, to be turned: on each aspect, or over cuts; ``scene`` is JSON for the viewer."""
 
     scene: dict
     captions: tuple[tuple[str, str, tuple[ShareBar, ...]], ...]  # name, kind, bars
+    name: str = "views"  # of the block; no two of a page have the same
+    of: str = "Aspect"  # what the captions name
 
 
 @dataclass(frozen=True)

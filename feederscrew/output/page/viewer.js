@@ -8,9 +8,7 @@
   const CREASE = 24; // degrees: facets that meet under less are one curved side
   const WIDTH = 680, HEIGHT = 544; // pixels of a view
   const REACH = 1.16; // of the picture over the part
-  const COLOURS = { steel: 0xc3d3e4, edge: 0x22303c, accent: 0xd55e00, floor: 0xe3e8ed };
-
-  const data = JSON.parse(document.getElementById("scene").textContent);
+  const COLOURS = { steel: 0xc3d3e4, track: 0xdfe1e4, edge: 0x22303c, accent: 0xd55e00, floor: 0xe3e8ed };
 
   function renderer() {
     const canvas = document.createElement("canvas");
@@ -26,13 +24,13 @@
     return new Kind(bytes.buffer);
   }
 
-  function partMesh() {
+  function surfaceOf(told, colour) {
     const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(decoded(data.positions, Float32Array), 3));
-    geometry.setIndex(new THREE.BufferAttribute(decoded(data.index, Uint32Array), 1));
+    geometry.setAttribute("position", new THREE.BufferAttribute(decoded(told.positions, Float32Array), 3));
+    geometry.setIndex(new THREE.BufferAttribute(decoded(told.index, Uint32Array), 1));
     const creased = THREE.toCreasedNormals(geometry, (CREASE * Math.PI) / 180);
     const surface = new THREE.MeshStandardMaterial({
-      color: COLOURS.steel, metalness: 0.0, roughness: 0.62, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+      color: colour, metalness: 0.0, roughness: 0.62, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     });
     const edges = new THREE.EdgesGeometry(geometry, CREASE);
     const line = new THREE.LineBasicMaterial({ color: COLOURS.edge, transparent: true, opacity: 0.75 });
@@ -51,32 +49,41 @@
     ];
   }
 
-  function centreMark() {
+  function centreMark(data) {
     const material = new THREE.MeshBasicMaterial({ color: COLOURS.accent, depthTest: false, transparent: true, opacity: 0.85 });
     const mark = new THREE.Mesh(new THREE.SphereGeometry(0.022 * data.radius, 16, 12), material);
     mark.renderOrder = 2;
     return mark;
   }
 
-  function floorDisc() {
+  function floorDisc(data) {
     const material = new THREE.MeshBasicMaterial({ color: COLOURS.floor, transparent: true, opacity: 0.55, depthWrite: false });
     const disc = new THREE.Mesh(new THREE.CircleGeometry(data.radius, 96), material);
     disc.position.z = -0.004 * data.radius;
     return disc; // seen from above only, so that from below the contact face is free
   }
 
-  function stage() {
-    const scene = new THREE.Scene(), part = new THREE.Group();
-    const contact = contactLines(), lamp = new THREE.DirectionalLight(0xffffff, 2.1), fill = new THREE.DirectionalLight(0xffffff, 0.7);
-    part.add(...partMesh(), ...contact, centreMark());
-    scene.add(part, floorDisc(), new THREE.HemisphereLight(0xffffff, 0xd8dee5, 1.9), lamp, fill);
-    const tall = REACH * data.radius, wide = (tall * WIDTH) / HEIGHT;
-    const camera = new THREE.OrthographicCamera(-wide, wide, tall, -tall, 0.1 * data.radius, 20 * data.radius);
-    camera.up.set(0, 0, 1);
-    return { scene, part, contact, lamp, fill, camera };
+  function trackOf(told) {
+    const group = new THREE.Group();
+    group.add(...surfaceOf(told, COLOURS.track));
+    return group;
   }
 
-  function placePart({ part, contact }, pose) {
+  function stage(data) {
+    const scene = new THREE.Scene(), part = new THREE.Group();
+    const contact = contactLines(), lamp = new THREE.DirectionalLight(0xffffff, 2.1), fill = new THREE.DirectionalLight(0xffffff, 0.7);
+    const tracks = (data.tracks || []).map(trackOf), floor = floorDisc(data);
+    part.add(...surfaceOf(data, COLOURS.steel), ...contact, centreMark(data));
+    scene.add(part, floor, ...tracks, new THREE.HemisphereLight(0xffffff, 0xd8dee5, 1.9), lamp, fill);
+    const tall = REACH * (data.reach || 1) * data.radius, wide = (tall * WIDTH) / HEIGHT;
+    const camera = new THREE.OrthographicCamera(-wide, wide, tall, -tall, 0.1 * data.radius, 20 * data.radius);
+    camera.up.set(0, 0, 1);
+    return { data, scene, part, contact, tracks, floor, lamp, fill, camera };
+  }
+
+  function placePart({ part, contact, tracks, floor }, pose) {
+    tracks.forEach((track, k) => (track.visible = k === pose.track));
+    floor.visible = pose.track === undefined;
     part.quaternion.set(...pose.quaternion);
     part.position.z = pose.height;
     const corners = new THREE.BufferAttribute(new Float32Array(pose.contact), 3), fan = [];
@@ -87,7 +94,7 @@
     }
   }
 
-  function placeCamera({ camera, lamp, fill }, view, height) {
+  function placeCamera({ data, camera, lamp, fill }, view, height) {
     const a = (view.azimuth * Math.PI) / 180, e = (view.elevation * Math.PI) / 180, far = 8 * data.radius;
     const out = new THREE.Vector3(Math.cos(a) * Math.cos(e), Math.sin(a) * Math.cos(e), Math.sin(e));
     camera.position.copy(out).multiplyScalar(far);
@@ -98,7 +105,7 @@
     fill.position.set(0.75, 0.05, 0.66).applyQuaternion(camera.quaternion);
   }
 
-  function start(view) {
+  function start(view, data) {
     Object.assign(view, { azimuth: data.azimuth, elevation: data.elevation });
   }
 
@@ -108,7 +115,7 @@
     view.draw();
   }
 
-  function listen(canvas, view) {
+  function listen(canvas, view, data) {
     const keys = { ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, STEP], ArrowDown: [0, -STEP] };
     let last = null;
     canvas.addEventListener("pointerdown", (event) => {
@@ -121,7 +128,7 @@
       last = [event.clientX, event.clientY];
     });
     for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => (last = null));
-    canvas.addEventListener("dblclick", () => { start(view); view.draw(); });
+    canvas.addEventListener("dblclick", () => { start(view, data); view.draw(); });
     canvas.addEventListener("keydown", (event) => {
       if (!keys[event.key]) return;
       event.preventDefault();
@@ -137,7 +144,7 @@
   }
 
   function show(pen, set, canvas) {
-    const view = {}, pose = data.poses[Number(canvas.dataset.pose)], paper = canvas.getContext("2d");
+    const view = {}, data = set.data, pose = data.poses[Number(canvas.dataset.pose)], paper = canvas.getContext("2d");
     canvas.width = WIDTH;
     canvas.height = HEIGHT;
     view.draw = () => {
@@ -147,15 +154,17 @@
       paper.clearRect(0, 0, WIDTH, HEIGHT);
       paper.drawImage(pen.domElement, 0, 0);
     };
-    start(view);
-    listen(canvas, view);
+    start(view, data);
+    listen(canvas, view, data);
     view.draw();
   }
 
   const pen = renderer();
   if (!pen) return;
-  const set = stage();
   document.body.classList.add("has-views");
-  document.getElementById("views").hidden = false;
-  for (const canvas of document.querySelectorAll(".view canvas")) show(pen, set, canvas);
+  for (const told of document.querySelectorAll("script.scene")) {
+    const set = stage(JSON.parse(told.textContent)), block = document.getElementById(told.dataset.views);
+    block.hidden = false;
+    for (const canvas of block.querySelectorAll(".view canvas")) show(pen, set, canvas);
+  }
 })();

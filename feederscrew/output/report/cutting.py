@@ -1,7 +1,9 @@
 """What the bowl's devices do with each orientation of the part."""
 
-from feederscrew.output.page.blocks import Picture, Section, Table, Text
-from feederscrew.output.tooling import files, tables
+from feederscrew.bowl.devices import KINDS
+from feederscrew.output.page.blocks import Picture, Section, Table, Text, Views
+from feederscrew.output.report.scene import over_cuts
+from feederscrew.output.tooling import files, relief, tables
 
 
 def tooling(case):
@@ -15,4 +17,27 @@ def tooling(case):
     )
     drawn = files.chain_picture(study.devices, study.orientations, study.shares)
     picture = Picture(drawn.name, drawn.make(), drawn.alt)
-    return Section((lead, Table(tables.passages(study)), picture))
+    return Section((lead, *_turning(study), *_views(study), Table(tables.passages(study)), picture))
+
+
+def _turning(study):
+    """What is not certain of the devices."""
+    kinds = [device.kind for device in study.devices if KINDS[device.kind].turns]
+    if kinds:
+        yield Text(
+            f"Where parts land that {' and '.join(dict.fromkeys(kinds))} turn over is quasi-static, until a "
+            "trial confirms it."
+        )
+
+
+def _views(study):
+    """The part over the track, to be turned: the most frequent that leaves, and the nearest that falls."""
+    given = study.devices, study.orientations, study.shares, study.wanted
+    shown = relief.poses(*given)
+    if not shown:
+        return
+    part = study.orientations[0].posture.solid
+    scene = over_cuts(part, [met for met, _ in shown], study.orientations)
+    yield Views(scene, tuple((met.orientation.name, told, ()) for met, told in shown), "cuts", "Orientation")
+    offered = files.solid_picture(*given)
+    yield Picture(offered.name, offered.make(), offered.alt, printed=True)

@@ -7,7 +7,9 @@ from scipy.spatial.transform import Rotation
 
 from feederscrew.output.columns import MM
 from feederscrew.output.solid.stance import outermost, stance
+from feederscrew.output.tooling import relief
 
+REACH = 1.25  # of the part's radius: how much of the track around it is seen
 MOST_FACETS = 200_000  # that a browser is shown
 FINEST = 2.0**10  # cells across the part of the first grid tried on a larger mesh
 
@@ -44,6 +46,58 @@ def scene(part, found, rows):
         "azimuth": _short(np.degrees(np.arctan2(back[1], back[0]))),
         "elevation": _short(np.degrees(np.arcsin(back[2]))),
         "poses": [_pose(found, row, standing) for row, standing in zip(rows, stances)],
+    }
+
+
+def over_cuts(part, met, every):
+    """Return what the viewer draws of a part over the cuts of a track.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    met : sequence of Passage
+        Each becomes a pose, its device's section of track with it.
+    every : sequence of Orientation
+        Of the part.
+
+    Returns
+    -------
+    dict
+        As ``scene``, with ``tracks``: the sections in mm, ahead, inwards and up from the foot of the centre
+        of mass; and ``reach``, how far the view goes, in radii of the part.
+    """
+    points = (part.vertices - part.centre_of_mass) / MM
+    vertices, faces = reduced(points, part.faces)
+    tracks = [relief.track_below(one, every) for one in met]
+    return {
+        "positions": _base64(vertices, "<f4"),
+        "index": _base64(faces, "<u4"),
+        "radius": _short(np.sqrt((points**2).sum(axis=1).max())),
+        "facets": len(faces),
+        "all": len(part.faces),
+        "azimuth": _short(np.degrees(np.arctan2(relief.VIEW[1], relief.VIEW[0]))),
+        "elevation": _short(np.degrees(np.arctan2(relief.VIEW[2], np.hypot(*relief.VIEW[:2])))),
+        "reach": REACH,
+        "tracks": [{"positions": _base64(v / MM, "<f4"), "index": _base64(f, "<u4")} for v, f in tracks],
+        "poses": [_over_cut(one, place) for place, one in enumerate(met)],
+    }
+
+
+def _over_cut(met, place):
+    """Name, rotation from the file's axes to the track's, height, hull of the support, and the track."""
+    one = met.orientation
+    hull = np.zeros((0, 3))
+    if met.picture == "above" and one.kind != "hanging" and len(met.supported) > 3:
+        flat = met.supported[:-1] - [0.0, one.distance]
+        hull = np.column_stack([flat, np.full(len(flat), -one.posture.height)])
+        hull = np.einsum("ni,ij->nj", hull, one.axes) / MM
+    return {
+        "name": one.name,
+        "quaternion": [_short(q) for q in Rotation.from_matrix(one.axes).as_quat(canonical=True)],
+        "height": _short(one.posture.height / MM),
+        "contact": [_short(x) for x in hull.ravel()],
+        "track": place,
     }
 
 

@@ -77,8 +77,8 @@ def picture(solid, stance, frame, colour=STEEL):
     depths, normals = stance.camera.cast(solid, across[box[1]], up[box[0]])
     part = image[box]
     met = np.isfinite(depths)
-    part[met] = _lit(normals[met], stance.camera, colour)
-    part[_edges(depths, normals, stance.camera, up[0] - up[1])] = EDGE
+    part[met] = lit(normals[met], stance.camera, colour)
+    part[edges(depths, normals, stance.camera, up[0] - up[1])] = EDGE
     rows, columns = frame.rows, frame.columns
     return image.reshape(rows, SAMPLES, columns, SAMPLES, 3).mean(axis=(1, 3)).clip(0.0, 1.0)
 
@@ -91,8 +91,8 @@ def _covered(bounds, across, up):
     return slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
 
 
-def _lit(normals, camera: Camera, colour):
-    """Colour of matt surfaces (N, 3) under the lights; a face seen from behind is lit as from the front."""
+def lit(normals, camera: Camera, colour):
+    """Return the colour of matt surfaces (N, 3) under the lights; from behind it is that from the front."""
     seen = normals @ np.column_stack([camera.right, camera.up, camera.back]).astype(SINGLE)
     seen *= np.where(seen[:, 2:] < 0.0, SINGLE(-1.0), SINGLE(1.0))
     light = np.full(len(seen), AMBIENT, dtype=SINGLE)
@@ -101,8 +101,8 @@ def _lit(normals, camera: Camera, colour):
     return light[:, None] * colour.astype(SINGLE)
 
 
-def _edges(depths, normals, camera, step):
-    """Samples on an outline (two wide) or on a sharp edge (one wide)."""
+def edges(depths, normals, camera, step):
+    """Return which samples lie on an outline (two wide) or on a sharp edge (one wide)."""
     met = np.isfinite(depths)
     depths = np.where(met, depths, 2.0 * AWAY)
     facing = np.maximum(np.abs(normals @ camera.back.astype(SINGLE)), 0.05)

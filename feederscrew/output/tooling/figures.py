@@ -4,11 +4,11 @@ import textwrap
 
 import numpy as np
 import shapely
-from matplotlib.lines import Line2D
-from matplotlib.patches import PathPatch, Polygon
-from matplotlib.path import Path
+from matplotlib.patches import Polygon
+from shapely import affinity
 
 from feederscrew.output import style
+from feederscrew.output.tooling import sheet
 from feederscrew.tooling import passages
 from feederscrew.tooling.verdicts import seen
 from feederscrew.units import factor
@@ -21,8 +21,11 @@ TRACK, AIR, PART, TOUCHING = "#e3e8ec", "#ffffff", "#9fb3c4", "#56697a"
 LEAST_SHARE = 5e-3  # [1] orientations that come less often have no row
 WIDEST = 420  # pixels of a column
 LINE = 17  # pixels between lines of text
+KEY = (
+    "from above: wall below, parts move to the right; light: part, dark: what touches the track, "
+    "outline: hull of the support, dot: weight"
+)
 LETTERS = 38  # of a line of text in the last column
-SHRINK = 0.82  # of a size in points
 
 
 def chain(devices, every, shares, wanted=None):
@@ -51,12 +54,12 @@ def chain(devices, every, shares, wanted=None):
     )  # fmt: skip
     _heading(page, title, _missing(every, rows, shares))
     for place, device in enumerate(shown):
-        _text(page, LEFT + place * column + 8, HEAD - 22, _device(device, place), weight="bold")
+        sheet.text(page, LEFT + place * column + 8, HEAD - 22, _device(device, place), weight="bold")
     size = _scale(every, rows, column)
     for place, k in enumerate(rows):
         top = HEAD + place * ROW
         found = passages.until_returned(shown, every[k], every)
-        _rule(page, top)
+        sheet.rule(page, top)
         _told(page, top, every[k], shares[k], found, k == wanted)
         for step, one in enumerate(found):
             _cell(page, (LEFT + step * column, top, column, ROW), one, size)
@@ -85,17 +88,17 @@ def limits(study):
         (LEFT + COLUMN + 8, "along the track"),
         (830, "isolated by"),
     ):
-        _text(page, left, HEAD - 22, text, weight="bold")
+        sheet.text(page, left, HEAD - 22, text, weight="bold")
     size = _scale(every, rows, COLUMN)
     for place, k in enumerate(rows):
         top, one, found = HEAD + place * ROW, every[k], study.designs[k]
-        _rule(page, top)
+        sheet.rule(page, top)
         _measured(page, top, one, shares[k])
         colour = style.INK if found is None else PASSES if found.isolated else FALLS
         _above(_axes(page, (LEFT, top, COLUMN, ROW), size, True), one, None, None, colour)
         _ahead(_axes(page, (LEFT + COLUMN, top, COLUMN, ROW), size, False), one, None, colour)
         for line, text in enumerate(_isolated(found)):
-            _text(page, 830, top + 30 + line * LINE, text, colour=colour)
+            sheet.text(page, 830, top + 30 + line * LINE, text, colour=colour)
     return page
 
 
@@ -104,6 +107,9 @@ def _cell(page, box, found, size):
     good = found.verdict.passes > 0.0
     colour = PASSES if good else FALLS
     axes = _axes(page, box, size, found.picture == "above")
+    if found.picture == "turned":
+        _turned(page, axes, found, box, colour)
+        return
     if found.picture == "above":
         _above(axes, found.orientation, found.hole, found, colour)
     else:
@@ -118,7 +124,35 @@ def _cell(page, box, found, size):
         if found.picture == "above"
         else "is stopped"
     )
-    _text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, margin {margin:+.2f} mm", colour=colour)
+    sheet.text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, margin {margin:+.2f} mm", colour=colour)
+
+
+def _turned(page, axes, found, box, colour):
+    """The part before and after a device that may turn it: along a step, across a ledge."""
+    along = found.device.kind == "step"
+    turned = found.after is not found.orientation
+    one, other = (_side(k, along) for k in (found.orientation, found.after))
+    wide = one.bounds[2] - one.bounds[0]
+    if turned:
+        room = 0.5 * (axes.get_xlim()[1] - wide - (other.bounds[2] - other.bounds[0]))
+        other = affinity.translate(other, wide + max(min(room, 12.0), 2.0) - other.bounds[0], 0.0)
+        sheet.fill(axes, other, f"{PART}b0", colour, 4, width=1.8)
+    one = affinity.translate(one, -one.bounds[0], 0.0)
+    sheet.fill(axes, one, "none" if turned else f"{PART}b0", "#4d5b68" if turned else colour, 5, width=1.2)
+    right = (other if turned else one).bounds[2]
+    axes.plot([0.0, right], [0.0, 0.0], color=style.INK, lw=1.5, zorder=6)
+    share = max(share for _, share in found.verdict.onto)
+    word = f"turns into {found.after.name}" if turned else "stays as it lies"
+    word += f", {100.0 * share:.3g} %" if share < 0.9995 else ""
+    sheet.text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, quasi-static", colour=colour)
+
+
+def _side(one, along):
+    """What is seen of an orientation from the side, or along the track [mm], from its own left end."""
+    x, y, up = one.posture.corners.T
+    turn = one.heading
+    level = np.cos(turn) * x - np.sin(turn) * y if along else np.sin(turn) * x + np.cos(turn) * y
+    return shapely.MultiPoint(np.column_stack([level, up]) / MM).convex_hull
 
 
 def _above(axes, one, hole, found, colour):
@@ -127,16 +161,16 @@ def _above(axes, one, hole, found, colour):
     half = min(0.95 * max(one.length, one.width) / MM, right)
     track = shapely.box(-half, 0.0, half, one.track.width / MM)
     curved = _sunk(track, one.track.radius / MM)
-    _fill(axes, curved if hole is None else curved.difference(_mm(hole)), TRACK, "#b8c2cb", 1)
+    sheet.fill(axes, curved if hole is None else curved.difference(sheet.mm(hole)), TRACK, "#b8c2cb", 1)
     outline = np.add(one.outline, [0.0, one.distance]) / MM
     axes.add_patch(Polygon(outline, fc=PART, ec="#4d5b68", lw=0.9, alpha=0.45, zorder=3))
-    touching = _mm(passages.foot(one))
+    touching = sheet.mm(passages.foot(one))
     if hole is not None:
-        _fill(axes, _mm(hole).intersection(curved), "none", style.INK, 6, width=0.8)
-    left_over = touching if hole is None else touching.difference(_mm(hole))
-    _fill(axes, left_over, TOUCHING, TOUCHING, 4)
+        sheet.fill(axes, sheet.mm(hole).intersection(curved), "none", style.INK, 6, width=0.8)
+    left_over = touching if hole is None else touching.difference(sheet.mm(hole))
+    sheet.fill(axes, left_over, TOUCHING, TOUCHING, 4)
     hull = left_over.convex_hull if found is None else shapely.MultiPoint(found.supported / MM).convex_hull
-    _fill(axes, hull, "none", colour, 5, width=1.8)
+    sheet.fill(axes, hull, "none", colour, 5, width=1.8)
     weight = 0.0, (one.distance - one.shift) / MM
     axes.plot(*weight, "o", ms=5.5, color=colour, mec="white", mew=0.8, zorder=7)
 
@@ -146,12 +180,12 @@ def _ahead(axes, one, opening, colour):
     top = axes.get_ylim()[1]
     right = min(axes.get_xlim()[1], one.track.width / MM, 1.5 * max(one.length, one.width) / MM)
     if opening is not None:
-        plate = shapely.box(0.0, 0.0, right, top).difference(_mm(opening))
-        _fill(axes, plate, "#c3ccd4", "#8593a0", 2)
+        plate = shapely.box(0.0, 0.0, right, top).difference(sheet.mm(opening))
+        sheet.fill(axes, plate, "#c3ccd4", "#8593a0", 2)
     axes.plot([0.0, 0.0, right], [top, 0.0, 0.0], color=style.INK, lw=1.5, zorder=6)
-    shown = _mm(seen(one))
-    _fill(axes, shown, f"{PART}b0", "none", 4)
-    _fill(axes, shown, "none", colour, 5, width=1.8)
+    shown = sheet.mm(seen(one))
+    sheet.fill(axes, shown, f"{PART}b0", "none", 4)
+    sheet.fill(axes, shown, "none", colour, 5, width=1.8)
 
 
 def _sunk(track, radius):
@@ -183,58 +217,38 @@ def _scale(every, rows, column):
     return max(max(pair) for pair in needed) / MM
 
 
-def _fill(axes, area, face, edge, order, width=0.8):
-    """Draw a shapely geometry [mm]: areas with their holes, lines and points."""
-    for part in shapely.get_parts(area):
-        if part.geom_type == "Polygon":
-            rings = [np.asarray(ring.coords) for ring in (part.exterior, *part.interiors)]
-            path = Path.make_compound_path(*(Path(ring, closed=True) for ring in rings))
-            axes.add_patch(PathPatch(path, fc=face, ec=edge, lw=width, zorder=order))
-        elif part.geom_type == "LineString":
-            axes.plot(*np.asarray(part.coords).T, color=edge, lw=2.0, zorder=order)
-        elif part.geom_type == "Point":
-            axes.plot(part.x, part.y, "s", color=edge, ms=3.0, zorder=order)
-
-
-def _mm(area):
-    return shapely.transform(area, lambda points: points / MM)
-
-
 def _heading(page, title, missing):
-    _text(page, 16, 26, title, size=11, weight="bold")
-    _text(page, 16, 50, "from above: wall below, parts move to the right; light: part, dark: what touches "
-          "the track, outline: hull of the support, dot: weight", size=8)  # fmt: skip
-    _text(page, 16, 68, missing, size=8)
+    sheet.text(page, 16, 26, title, size=11, weight="bold")
+    sheet.text(page, 16, 50, KEY, size=8)
+    sheet.text(page, 16, 68, missing, size=8)
 
 
 def _told(page, top, one, share, found, is_wanted):
     """What becomes of an orientation, at the left of its row."""
-    through = not one.falls_off and all(passage.verdict.passes > 0.0 for passage in found)
-    if one.falls_off:
-        word, colour = "falls off the track", FALLS
-    elif through:
-        word, colour = "leaves the bowl", PASSES
+    if all(passage.verdict.passes > 0.0 for passage in found):
+        word = passages.fate(one, found)
+        colour = PASSES if word.startswith("leaves") else FALLS
     else:
         word, colour = f"returned by {found[-1].device.kind}", FALLS
-    _text(page, 16, top + 30, one.name, size=12, weight="bold", colour=colour)
-    _text(page, 16, top + 52, f"{100.0 * share:.3g} % of the parts")
-    _text(page, 16, top + 52 + LINE, word, colour=colour)
+    sheet.text(page, 16, top + 30, one.name, size=12, weight="bold", colour=colour)
+    sheet.text(page, 16, top + 52, f"{100.0 * share:.3g} % of the parts")
+    sheet.text(page, 16, top + 52 + LINE, word, colour=colour)
     if is_wanted:
-        _text(page, 16, top + 52 + 2 * LINE, "wanted", weight="bold")
+        sheet.text(page, 16, top + 52 + 2 * LINE, "wanted", weight="bold")
 
 
 def _measured(page, top, one, share):
     """Share and limits of an orientation, at the left of its row."""
-    _text(page, 16, top + 24, one.name, size=12, weight="bold")
-    _text(page, 110, top + 24, f"{100.0 * share:.3g} %")
+    sheet.text(page, 16, top + 24, one.name, size=12, weight="bold")
+    sheet.text(page, 110, top + 24, f"{100.0 * share:.3g} %")
     balcony = f"{one.balcony / MM:.2f} mm" if np.isfinite(one.balcony) else "none"
     lines = [
         ("track at least", balcony), ("canyon up to", f"{one.canyon / MM:.2f} mm"),
         ("gap up to", f"{one.gap / MM:.2f} mm"), ("height", f"{one.height / MM:.2f} mm"),
     ]  # fmt: skip
     for place, (name, value) in enumerate(lines):
-        _text(page, 16, top + 50 + place * LINE, name)
-        _text(page, 138, top + 50 + place * LINE, value)
+        sheet.text(page, 16, top + 50 + place * LINE, name)
+        sheet.text(page, 138, top + 50 + place * LINE, value)
 
 
 def _isolated(found):
@@ -268,16 +282,3 @@ def _missing(every, rows, shares):
     if not left:
         return ""
     return f"without a row, as less than {100.0 * LEAST_SHARE:g} % of the parts come so: {', '.join(left)}"
-
-
-def _rule(page, top):
-    wide, high = page.get_size_inches() * style.DPI
-    y = 1.0 - top / high
-    page.add_artist(Line2D([16.0 / wide, 1.0 - 16.0 / wide], [y, y], color=style.FAINT, lw=0.8))
-
-
-def _text(page, x, y, text, *, size=9, colour=style.INK, weight="normal"):
-    wide, high = page.get_size_inches() * style.DPI
-    page.text(
-        x / wide, 1.0 - y / high, text, fontsize=SHRINK * size, color=colour, fontweight=weight, va="center"
-    )

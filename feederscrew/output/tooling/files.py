@@ -35,6 +35,7 @@ def offers(study, settings):
         offer.text("tooling.dxf", _drawn, "dxf", study),
         offer.text("tooling.svg", _drawn, "svg", study),
         offer.text("tooling.stl", _printed, study),
+        *_views(study),
     ]
 
 
@@ -67,6 +68,39 @@ def chain_picture(devices, every, shares):
         return figures.chain(devices, every, shares)
 
     return offer.picture("tooling.png", "Each orientation where each device bears least", draw)
+
+
+def _views(study):
+    """The part over the cuts in three dimensions, where there is a cut to see."""
+    if all(device.kind in ("step", "tip", "yield") for device in study.design.devices):
+        return []
+
+    given = study.design.devices, study.orientations, study.shares, study.wanted
+    return [solid_picture(*given)]
+
+
+def solid_picture(devices, every, shares, wanted):
+    """Offer the picture of a part over the cuts, in three dimensions.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+    every : sequence of Orientation
+    shares : (M,) float [1]
+    wanted : int
+
+    Returns
+    -------
+    Offer
+    """
+
+    def draw():
+        from feederscrew.output.tooling import relief
+
+        return relief.figure(devices, every, shares, wanted)
+
+    told = "The part over the cut: what passes, and the nearest that falls"
+    return offer.picture("tooling_3d.png", told, draw)
 
 
 def _drawn(kind, study):

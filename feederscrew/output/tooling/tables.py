@@ -4,6 +4,7 @@ import numpy as np
 
 from feederscrew.bowl.devices import KINDS
 from feederscrew.output import columns, tables
+from feederscrew.tooling import passages as passages_of
 from feederscrew.units import factor
 
 MM, DEG = factor("mm", "length"), factor("deg", "angle")
@@ -116,11 +117,9 @@ def passages(study):
 
 
 def _outcome(one, met):
-    if one.falls_off:
-        return "falls off the track"
     if met and met[-1].verdict.passes <= 0.0:
         return f"returned by {met[-1].device.kind}"
-    return "leaves"
+    return passages_of.fate(one, met)
 
 
 def _row(one, share, found):

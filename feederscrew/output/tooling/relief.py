@@ -1,0 +1,207 @@
+"""The part in three dimensions over a cut: what shall leave, and the nearest of what falls."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from feederscrew.output import style
+from feederscrew.output.solid.render import AWAY, Camera, Rays
+from feederscrew.output.solid.shading import EDGE, SAMPLES, STEEL, Shot, edges, lit
+from feederscrew.tooling import passages, solid
+from feederscrew.tooling.strip import strip
+from feederscrew.units import factor
+
+MM = factor("mm", "length")
+WIDE, HIGH, HEAD = 620, 520, 96  # pixels of one view and of the lines over it
+METAL = np.array([0.90, 0.91, 0.92])
+PASSES, FALLS = "#0072b2", "#d55e00"
+VIEW = np.array([0.55, 0.80, 0.85])  # to the viewer: ahead, inwards, up
+ROOM = 0.80  # of the part's largest extent, to each side of it
+LEAST_SHARE = 5e-3  # [1] what comes less often is not the nearest that falls
+
+
+def figure(devices, every, shares, wanted):
+    """Draw the wanted orientation over the cut that it passes least, and the nearest of those that fall.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+    every : sequence of Orientation
+    shares : (M,) float [1]
+    wanted : int
+
+    Returns
+    -------
+    Figure or None
+        None where no device cuts or gates the track.
+    """
+    shown = [device for device in devices if device.kind != "yield"]
+    views = [view for view in (_leaves(shown, every, wanted), _falls(shown, every, shares, wanted)) if view]
+    if not views:
+        return None
+    page = style.page(WIDE * len(views), HEAD + HIGH)
+    for place, (met, words, colour) in enumerate(views):
+        box = page.add_axes((place / len(views), 0.0, 1.0 / len(views), HIGH / (HEAD + HIGH)))
+        image, frame, camera, centre = _image(met, every)
+        box.imshow(image, extent=frame.extent, interpolation="none")
+        _marks(box, met, every, camera, centre, colour)
+        box.set(xlim=frame.extent[:2], ylim=frame.extent[2:])
+        box.axis("off")
+        for line, text in enumerate(words):
+            page.text(
+                (place + 0.03) / len(views), 1.0 - (30 + 24 * line) / (HEAD + HIGH), text, va="center",
+                fontsize=9 if line == 0 else 7.5, color=colour, fontweight="bold" if line == 0 else "normal",
+            )  # fmt: skip
+    return page
+
+
+def poses(devices, every, shares, wanted):
+    """Return the passages worth a view, of what leaves and of what falls by least, each with a few words."""
+    shown = [device for device in devices if device.kind != "yield"]
+    found = [_leaves(shown, every, wanted), _falls(shown, every, shares, wanted)]
+    return [(met, _short(met)) for met, _, _ in (one for one in found if one)]
+
+
+def _short(met):
+    """'gap +0.64 mm': device and margin."""
+    if met.orientation.kind == "hanging":
+        return "in the rails"
+    return f"{met.device.kind.replace('_', ' ')} {met.verdict.margin / MM:+.2f} mm"
+
+
+def _drawable(met):
+    return [one for one in met if one.picture and one.picture != "turned"]
+
+
+def _leaves(devices, every, wanted):
+    """The passage of the wanted orientation with the least margin, with lines of text."""
+    met = _drawable(passages.until_returned(devices, every[wanted], every))
+    if not met:
+        return None
+    least = min(met, key=lambda one: one.verdict.margin)
+    if least.verdict.hangs:
+        words = f"{least.orientation.name} hangs between the rails", "by its head, from here on"
+        return replace(least, orientation=least.after), words, PASSES
+    return least, _told(least, "passes"), PASSES
+
+
+def _falls(devices, every, shares, wanted):
+    """The passage of the orientation that fails by least, with lines of text."""
+    found = []
+    for k, one in enumerate(every):
+        if k != wanted and shares[k] >= LEAST_SHARE and not one.falls_off:
+            met = passages.until_returned(devices, one, every)
+            found += [last for last in met[-1:] if last.verdict.passes <= 0.0 and _drawable([last])]
+    if not found:
+        return None
+    nearest = max(found, key=lambda one: round(one.verdict.margin, 9))
+    word = "falls at" if nearest.picture == "above" else "is stopped at"
+    return nearest, _told(nearest, word), FALLS
+
+
+def _told(met, word):
+    kind = met.device.kind.replace("_", " ")
+    where = "where it bears least" if met.picture == "above" else "in front of it"
+    return (
+        f"{met.orientation.name} {word} the {kind}, margin {met.verdict.margin / MM:+.2f} mm",
+        f"{where}; outline: hull of its support, dot: its weight" if met.picture == "above" else where,
+    )
+
+
+def track_below(met, every):
+    """Return the section of track of a passage, as the part stands on it.
+
+    Parameters
+    ----------
+    met : Passage
+    every : sequence of Orientation
+        Of the part.
+
+    Returns
+    -------
+    vertices : (V, 3) float [m]
+        Ahead, inwards and up from the foot of the centre of mass.
+    faces : (F, 3) int
+    """
+    section, one = station_of(met, every), met.orientation
+    corners, faces = solid.solid(section)
+    angle, radius = met.angle(section.stations[0]), one.track.radius
+    c, s, down = np.cos(angle), np.sin(angle), corners[:, 1] - radius
+    ahead = c * corners[:, 0] + s * down
+    from_wall = radius - s * corners[:, 0] + c * down
+    return np.column_stack([ahead, from_wall - one.distance, corners[:, 2]]), faces
+
+
+def placed(met, station):
+    """Return the corners (V, 3) [m] of the part of a passage on a track section that holds its station."""
+    one = met.orientation
+    points = np.array(one.posture.surface)
+    c, s = np.cos(one.heading), np.sin(one.heading)
+    x, y = c * points[:, 0] - s * points[:, 1], s * points[:, 0] + c * points[:, 1] + one.distance
+    return on_section(np.column_stack([x, y, points[:, 2]]), met.angle(station), one.track.radius)
+
+
+def on_section(points, angle, radius):
+    """Return points (N, 3) [m], ahead, from the wall and up, as they lie at an angle of a track section."""
+    c, s, up = np.cos(angle), np.sin(angle), radius - points[:, 1]
+    return np.column_stack([c * points[:, 0] + s * up, radius + s * points[:, 0] - c * up, points[:, 2]])
+
+
+def station_of(met, every):
+    """Return a track section with nothing but the device of a passage."""
+    return strip(met.orientation.track, [met.device], every)
+
+
+def _image(met, every):
+    """The rendered view of a passage, its place, the camera, and the point in its middle."""
+    section = station_of(met, every)
+    corners, faces = placed(met, section.stations[0]), met.orientation.posture.solid.faces
+    angle = met.angle(section.stations[0])
+    centre = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
+    track, sides = solid.solid(section)
+    whole = Rays(np.vstack([track, corners]), np.vstack([sides, faces + len(track)]), centre)
+    part, camera = Rays(corners, faces, centre), _camera(angle)
+    half = ROOM * np.ptp(corners, axis=0).max() / whole.size
+    pixel = 2.0 * half / WIDE
+    frame = Shot(-half, -half * HIGH / WIDE, pixel, WIDE, HIGH)
+    across, up = frame.positions(SAMPLES)
+    depths, normals = camera.cast(whole, across, up)
+    scale = whole.size / part.size
+    near, _ = camera.cast(part, across * scale, up * scale)
+    image = np.ones((*depths.shape, 3))
+    met_all = np.isfinite(depths)
+    is_part = np.isfinite(near) & ((near - AWAY) / scale + AWAY <= np.where(met_all, depths, np.inf) + 1e-3)
+    for mask, colour in ((met_all & ~is_part, METAL), (met_all & is_part, STEEL)):
+        image[mask] = lit(normals[mask], camera, colour)
+    image[edges(depths, normals, camera, up[0] - up[1])] = EDGE
+    image = image.reshape(HIGH, SAMPLES, WIDE, SAMPLES, 3).mean(axis=(1, 3)).clip(0.0, 1.0)
+    return image, frame, (camera, whole.size), centre
+
+
+def _camera(angle):
+    """From inside the bowl, ahead of the part and above it."""
+    ahead = np.array([np.cos(angle), np.sin(angle), 0.0])
+    inwards, up = np.array([-ahead[1], ahead[0], 0.0]), np.array([0.0, 0.0, 1.0])
+    back = VIEW[0] * ahead + VIEW[1] * inwards + VIEW[2] * up
+    back /= np.sqrt((back**2).sum())
+    right = np.cross(up, back)
+    right /= np.sqrt((right**2).sum())
+    return Camera(right=right, up=np.cross(back, right), back=back)
+
+
+def _marks(axes, met, every, camera, centre, colour):
+    """Hull of the support and the weight, seen through the part."""
+    if met.picture != "above" or met.orientation.kind == "hanging":
+        return
+    camera, size = camera
+    radius = met.orientation.track.radius
+    angle = met.angle(station_of(met, every).stations[0])
+
+    def seen(flat):
+        points = np.column_stack([flat, np.zeros(len(flat))])
+        return camera.project(on_section(points, angle, radius) - centre) / size
+
+    if len(met.supported) > 1:
+        hull = seen(np.vstack([met.supported, met.supported[:1]]))
+        axes.plot(*hull.T, color=colour, lw=1.6)
+    axes.plot(*seen(np.array([met.weight])).T, "o", ms=6.0, color=colour, mec="white", mew=0.8)
