@@ -13,14 +13,19 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from feederscrew.bowl.devices import Device
 from feederscrew.output import tables
 from feederscrew.output.aspects import tables as aspects_tables
 from feederscrew.output.page.as_html import html
+from feederscrew.output.page.blocks import Page, Section, Views
 from feederscrew.output.report import page
 from feederscrew.output.report.chapters import CHAPTERS
+from feederscrew.output.report.scene import over_cuts
+from feederscrew.output.tooling import relief
 from feederscrew.part import load
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.report import report
+from feederscrew.tooling.orientations import orientations
 
 BRACKET = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -163,10 +168,14 @@ def test_it_prints_on_a4(visit, text, tmp_path):
     assert next(iter(boxes)) == pytest.approx((0.0, 0.0, 595.3, 841.9), abs=1.0)
 
 
-def test_the_part_turns_over_the_cut(visit, tmp_path):
-    (tmp_path / "bowl.yaml").write_text("devices:\n  - gap: 9 mm\n")
-    cut = report(load(str(BRACKET)), str(tmp_path / "bowl.yaml"), (), command="feeder report x.stl")
-    text = html(page(cut, chapters=[chapter for chapter in CHAPTERS if chapter[0] == "tooling"]))
+def test_the_part_turns_over_the_cut(visit, case):
+    every = orientations(case.part, case.resting.aspects, case.bowl.track)
+    shown = relief.poses([Device("gap", "test", limit=9e-3)], every, [0.1] * len(every), 0)
+    views = Views(
+        over_cuts(case.part, [met for met, _ in shown], every),
+        tuple((met.orientation.name, told, ()) for met, told in shown), "cuts", "Orientation",
+    )  # fmt: skip
+    text = html(Page("part", "", (Section((views,), anchor="cuts-chapter", title="Tooling"),), "report"))
     probe = PROBE.replace('[...document.getElementById("aspects.csv").rows]', "[]")
     dom, console = visit(text.replace("</body>", probe), "--dump-dom")
     assert console == []

@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew.output import style
 from feederscrew.output.solid.render import AWAY, Camera, Rays
-from feederscrew.output.solid.shading import EDGE, SAMPLES, STEEL, Shot, edges, lit
+from feederscrew.output.solid.shading import EDGE, STEEL, Shot, edges, lit
 from feederscrew.tooling import passages, solid
 from feederscrew.tooling.strip import strip
 from feederscrew.units import factor
@@ -16,6 +16,7 @@ WIDE, HIGH, HEAD = 620, 520, 96  # pixels of one view and of the lines over it
 METAL = np.array([0.90, 0.91, 0.92])
 PASSES, FALLS = "#0072b2", "#d55e00"
 VIEW = np.array([0.55, 0.80, 0.85])  # to the viewer: ahead, inwards, up
+SAMPLES = 2  # rays a pixel, each way
 ROOM = 0.80  # of the part's largest extent, to each side of it
 LEAST_SHARE = 5e-3  # [1] what comes less often is not the nearest that falls
 
@@ -167,7 +168,12 @@ def _image(met, every):
     across, up = frame.positions(SAMPLES)
     depths, normals = camera.cast(whole, across, up)
     scale = whole.size / part.size
-    near, _ = camera.cast(part, across * scale, up * scale)
+    near = np.full(depths.shape, np.inf)
+    low, high = (end(camera.project(corners - centre), axis=0) / whole.size for end in (np.min, np.max))
+    columns = np.flatnonzero((across > low[0]) & (across < high[0]))
+    rows = np.flatnonzero((up > low[1]) & (up < high[1]))
+    box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    near[box], _ = camera.cast(part, across[columns] * scale, up[rows] * scale)
     image = np.ones((*depths.shape, 3))
     met_all = np.isfinite(depths)
     is_part = np.isfinite(near) & ((near - AWAY) / scale + AWAY <= np.where(met_all, depths, np.inf) + 1e-3)
