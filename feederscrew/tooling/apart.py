@@ -1,18 +1,34 @@
 """Why two orientations cannot be told apart, and what change of the part would help."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import shapely
 
 from feederscrew.mechanics.wall import sameness
 from feederscrew.tooling.chain import LOWER, UPPER, limits
+from feederscrew.tooling.verdicts import opening_margin, seen
 
-FEATURES = {  # what a device of one number measures of a part, in the part's own terms
+ROUNDS = 4  # of the fit of one hull over the other
+
+FEATURES = {  # what a device measures of a part, in the part's own terms
     "wiper": "height",
     "narrowed_track": "distance from the wall to the centre of mass",
     "pressure_break": "width",
     "canyon": "distance from the wall to the centre of mass",
     "gap": "reach of the foot ahead of and behind the centre of mass",
+    "profile": "outline seen along the track",
 }
+SIDES = (("ahead", "behind"), ("on the inner side", "at the wall"), ("on top", "at the bottom"))
+
+
+@dataclass(frozen=True)
+class Difference:
+    """How two orientations differ as they lie on the track."""
+
+    shape: float  # [m] greatest distance between their hulls, laid over each other as well as can be
+    side: str  # where that is
+    shift: tuple[float, float, float]  # [m] of the centre of mass within the hull: ahead, inwards, up
 
 
 def reason(wanted, other, margin):
@@ -28,17 +44,20 @@ def reason(wanted, other, margin):
     -------
     str
     """
-    apart = difference(wanted, other)
-    kind, step = _nearest(wanted, other)
-    need = f"{1e3 * max(2.0 * margin - step, 0.0):.2g} mm more in {FEATURES[kind]} would part them"
+    names = f"{wanted.name} and {other.name}"
     if wanted.mirror == other.name:
         return (
-            f"{wanted.name} and {other.name} are mirror images fore and aft: no device of one number parts "
+            f"{names} are mirror images fore and aft: no device of one number parts "
             f"them and no hole was found; a feature on one side only would, of {2e3 * margin:.2g} mm or more"
         )
-    if apart < 4.0 * margin:
+    apart, need = difference(wanted, other), smallest_change(wanted, other, margin)
+    if apart.shape < min(margin, 0.5 * max(map(abs, apart.shift))):
+        same = f"have the same outside to {1e3 * max(apart.shape, 1e-5):.2g} mm"
+        return f"{names} {same}, {_inside(apart)}; {need}"
+    if apart.shape < 4.0 * margin:
         return (
-            f"{wanted.name} and {other.name} differ by {1e3 * apart:.2g} mm at most, as by a chamfer; {need}"
+            f"{names} differ by {1e3 * apart.shape:.2g} mm at most, {apart.side}, as by a chamfer or a "
+            f"rounding; {need}"
         )
     if carries_more(other, wanted, margin):
         return (
@@ -46,9 +65,25 @@ def reason(wanted, other, margin):
             f"higher or wider: only turning it over helps; {need}"
         )
     return (
-        f"{wanted.name} and {other.name} differ by {1e3 * step:.2g} mm in {FEATURES[kind]} and nowhere else "
-        f"that a hole or gate can reach, as the open and closed end of a cup: needs an inner feature; {need}"
+        f"{names} differ by {1e3 * apart.shape:.2g} mm {apart.side}, which no device of one number, gate or "
+        f"hole that was tried can use; {need}"
     )
+
+
+def _inside(apart):
+    """What differs of two orientations with the same outside."""
+    ahead, inwards, up = (1e3 * abs(by) for by in apart.shift)
+    return (
+        f"only the inside differs, as by a bore off the middle or a closed end: the centre of mass lies "
+        f"elsewhere by {ahead:.2g} mm along the track, {inwards:.2g} mm across it and {up:.2g} mm in height; "
+        "needs a feature on the outside"
+    )
+
+
+def smallest_change(wanted, other, margin):
+    """Return in words the least that has to be added to what some device measures of a part."""
+    kind, step = _nearest(wanted, other)
+    return f"{1e3 * max(2.0 * margin - step, 0.0):.2g} mm more in {FEATURES[kind]} would part them"
 
 
 def carries_more(one, other, margin):
@@ -63,15 +98,28 @@ def carries_more(one, other, margin):
 
 
 def difference(wanted, other):
-    """Return the greatest distance [m] between the hulls of two orientations as they lie on the track."""
+    """Return how two orientations differ as they lie on the track: a Difference.
+
+    Parameters
+    ----------
+    wanted, other : Orientation
+    """
     (first, _), (second, _) = (sameness.looks(one.posture, [one.heading]) for one in (wanted, other))
     sizes = [np.ptp(one.posture.corners, axis=0).max() for one in (wanted, other)]
-    return float(np.abs(first[0, 0] * sizes[0] - second[0, 0] * sizes[1]).max())
+    away, there = first[0, 0] * sizes[0] - second[0, 0] * sizes[1], sameness.directions()
+    shift = np.zeros(3)
+    for _ in range(ROUNDS):  # least squares: the directions are spread evenly
+        left = away - (there * shift).sum(axis=1)
+        shift = shift + 3.0 * (there * left[:, None]).mean(axis=0)
+    left = np.abs(away - (there * shift).sum(axis=1))
+    where = there[int(np.argmax(np.round(left, 9)))]
+    axis = int(np.argmax(np.abs(where)))
+    return Difference(float(left.max()), SIDES[axis][int(where[axis] < 0.0)], tuple(float(x) for x in shift))
 
 
 def _nearest(wanted, other):
-    """The device of one number at which two orientations are farthest apart, and by how much [m]."""
-    found = []
+    """The device at which two orientations are farthest apart, and by how much [m]."""
+    found = [(-opening_margin(seen(wanted), seen(other)), "profile")]
     for kind in (*UPPER, *LOWER):
         first, second = limits(kind, (wanted, other))
         step = second - first if kind in UPPER else first - second

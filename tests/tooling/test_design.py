@@ -13,7 +13,7 @@ from feederscrew.rates import queue
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling import cutting
+from feederscrew.tooling import apart, cutting
 from feederscrew.tooling.design import design, place
 from feederscrew.tooling.orientations import named, orientations
 from feederscrew.tooling.verdicts import verdict
@@ -170,3 +170,20 @@ def test_the_search_ends_by_a_count_of_verdicts_and_says_when_by_time(bracket):
     assert [cut.device for cut in first.cuts] == [cut.device for cut in second.cuts]
     assert not first.late
     assert design(every, shares, wanted, search=cutting.Search(until=0.0)).late
+
+
+def test_an_inside_that_differs_is_told_from_a_chamfer():
+    """A block with a bore off its middle: turned by half it has the same outside, its weight elsewhere."""
+    solid, bore = shapes.box(20, 12, 5), shapes.cylinder(2.5, 8.0, 48)
+    bore.apply_translation([5.0, 0.0, 0.0])
+    part = shapes.part(solid.difference(bore))
+    every = named(orientations(part, find(part), bowls.read(None, SETTINGS).track))
+    flat = [one for one in every if one.height < 0.006 and one.length > 0.019]
+    apart_by = apart.difference(flat[0], flat[1])
+    off = 5.0 * 5.0 * np.pi * 2.5**2 / (20 * 12 * 5 - 5.0 * np.pi * 2.5**2)  # [mm] of the centre of mass
+    assert apart_by.shape < 2e-4
+    assert sorted(abs(1e3 * by) for by in apart_by.shift)[-1] == pytest.approx(2.0 * off, rel=0.02)
+    tall = [one for one in every if one.height > 0.019 and one.length > 0.011]
+    told = apart.reason(tall[0], next(one for one in tall if one.aspect != tall[0].aspect), MARGIN)
+    assert "have the same outside" in told and "needs a feature on the outside" in told
+    assert f"{2.0 * off:.2g} mm in height" in told
