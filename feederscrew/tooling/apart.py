@@ -52,7 +52,7 @@ def reason(wanted, other, margin):
         )
     apart, need = difference(wanted, other), smallest_change(wanted, other, margin)
     if apart.shape < min(margin, 0.5 * max(map(abs, apart.shift))):
-        same = f"have the same outside to {1e3 * max(apart.shape, 1e-5):.2g} mm"
+        same = f"have the same outside to {1e3 * max(apart.shape, 1e-5):.2f} mm"
         return f"{names} {same}, {_inside(apart)}; {need}"
     if apart.shape < 4.0 * margin:
         return (
@@ -75,7 +75,7 @@ def _inside(apart):
     ahead, inwards, up = (1e3 * abs(by) for by in apart.shift)
     return (
         f"only the inside differs, as by a bore off the middle or a closed end: the centre of mass lies "
-        f"elsewhere by {ahead:.2g} mm along the track, {inwards:.2g} mm across it and {up:.2g} mm in height; "
+        f"elsewhere by {ahead:.2f} mm along the track, {inwards:.2f} mm across it and {up:.2f} mm in height; "
         "needs a feature on the outside"
     )
 

@@ -186,4 +186,4 @@ def test_an_inside_that_differs_is_told_from_a_chamfer():
     tall = [one for one in every if one.height > 0.019 and one.length > 0.011]
     told = apart.reason(tall[0], next(one for one in tall if one.aspect != tall[0].aspect), MARGIN)
     assert "have the same outside" in told and "needs a feature on the outside" in told
-    assert f"{2.0 * off:.2g} mm in height" in told
+    assert f"{2.0 * off:.2f} mm in height" in told
