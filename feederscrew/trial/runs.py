@@ -33,6 +33,9 @@ class Scratch(NamedTuple):
     shown: np.ndarray  # (C, 3)
     near: np.ndarray  # (B,) int
     low: np.ndarray  # (C,) int
+    edges: np.ndarray  # (E,) int
+    faces: np.ndarray  # (T,) int
+    box: np.ndarray  # (4,)
     vectors: np.ndarray  # (3, 3)
     contacts: np.ndarray  # (CONTACTS, WIDTH)
     memory: np.ndarray  # (2,) how many of them the step before had, and how long it was
@@ -273,6 +276,8 @@ def scratch(solid, borders):
         state=np.zeros(body.STATE), saved=np.zeros(body.STATE), push=np.zeros(body.STATE), turn=np.zeros(9),
         tangent=np.zeros(2), spots=np.zeros((count, 3)), shown=np.zeros((count, 3)),
         near=np.zeros(max(borders, 1), np.int64), vectors=np.zeros((3, 3)), low=np.zeros(count, np.int64),
+        edges=np.zeros(len(solid.edges), np.int64), faces=np.zeros(len(solid.triangles), np.int64),
+        box=np.zeros(4),
         contacts=np.zeros((CONTACTS, contact.WIDTH)), memory=np.zeros(2),
     )  # fmt: skip
 

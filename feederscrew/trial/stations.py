@@ -11,10 +11,11 @@ from feederscrew.tooling.strip import BLADE, FRAME, bent, hole, opening
 
 BEHIND = 0.5  # of the part's size: how far the track is drawn behind the wall
 ROUNDED = 5e-5  # [m] by which the borders of a cut are rounded: less depth does not catch
-CHORD = 2e-6  # [m] by which an arc may be seen too flat
+CHORD = 5e-6  # [m] by which an arc may be seen too flat
+SMOOTH = 2e-6  # [m] corners of a border that stand out by less are left out
 CORNER = 1e-4  # [rad] a border that turns by less has no corner
 SPARE = 0.1  # of the part's size: how far before a device parts begin, and behind it they end
-THIN = 1e3  # a solid without an end behind its surface
+THICK = 4e-3  # [m] of the track: deeper down its sides hold nothing
 BARE = Device("track", "")
 
 
@@ -54,7 +55,7 @@ def station(device, track, every, start=0.0):
     if device.kind == "rails":  # those that hang are led on, they do not come back onto the track
         cut = hole(device, track.radius, room + 2.0 * size, width)
     begin, beyond = start - (0.5 + SPARE) * size, last + (0.5 + SPARE) * size
-    ends = begin - size, beyond + size
+    ends = begin - 1.2 * size, beyond + 0.8 * size
     plates = [_track_plate(cut, track, width, size, ends, start)]
     gate = None if device.kind == "yield" else opening(device, every, width)
     if gate is not None:
@@ -68,15 +69,17 @@ def plain(track, every, length):
     """Return a stretch of the bare track, from 0 to ``length`` [m]."""
     size = max(np.hypot(one.length, max(one.width, one.height)) for one in every)
     width = min(track.width, 0.95 * track.radius)
-    plate = _track_plate(None, track, width, size, (-2.0 * size, length + 2.0 * size), 0.0)
+    plate = _track_plate(None, track, width, size, (-1.2 * size, length + 0.8 * size), 0.0)
     return Station(BARE, *_stacked([plate]), begin=0.0, exit=length)
 
 
 def _track_plate(cut, track, width, size, ends, start):
     """The track's surface: a sector about the bowl's axis without the hole."""
     behind = BEHIND * size
-    ring = np.array([[ends[0], -behind], [ends[1], -behind], [ends[1], width], [ends[0], width]])
-    area = shapely.Polygon(bent(ring, track.radius, chord=CHORD))
+    coarse = np.linspace(*ends, max(int((ends[1] - ends[0]) / behind), 2) + 1)  # nothing comes there
+    fine = np.linspace(*ends, int((ends[1] - ends[0]) / np.sqrt(8.0 * track.radius * CHORD)) + 2)[::-1]
+    ring = np.vstack([_arc(coarse, -behind, track.radius), _arc(fine, width, track.radius)])
+    area = shapely.Polygon(ring)
     if cut is not None:
         taken = np.array(cut, float)
         taken[:, 0] += start
@@ -84,7 +87,13 @@ def _track_plate(cut, track, width, size, ends, start):
         taken[:, 1] = np.where(taken[:, 1] >= width - 1e-9, width + behind, taken[:, 1])
         area = area.difference(shapely.make_valid(shapely.Polygon(bent(taken, track.radius, chord=CHORD))))
     frame = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    return frame, THIN, _rings(area, lambda a, b: _drawn_end(a, b, track.radius, ends))
+    return frame, THICK, _rings(area, lambda a, b: _drawn_end(a, b, track.radius, ends))
+
+
+def _arc(places, across, radius):
+    """Points (K, 2) [m] at lengths along the wall and one distance from it, in the bowl's frame."""
+    theta, off = places / radius, radius - across
+    return np.column_stack([off * np.sin(theta), radius - off * np.cos(theta)])
 
 
 def _drawn_end(a, b, radius, ends):
@@ -111,7 +120,7 @@ def _gate_plate(gate, track, width, every, middle):
 def _rings(area, is_end):
     """Borders (B, 8) of a solid area: start, end, normal away, corner at the start, end of drawing."""
     found = []
-    for one in shapely.get_parts(area):
+    for one in shapely.get_parts(shapely.simplify(area, SMOOTH)):
         if one.geom_type != "Polygon" or one.area <= 0.0:
             continue
         one = shapely.geometry.polygon.orient(one)  # the solid on the left

@@ -2,7 +2,6 @@
 
 import math
 
-from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import compiled
 from feederscrew.trial.kernel.contact import add
 from feederscrew.trial.kernel.search import ACROSS, ALONG, DEEP, FIRST, FRONT, LAST, ROUNDED, _crossing
@@ -23,47 +22,61 @@ def _vector(plate, turn, x, y, z, vector):
 
 
 @compiled
-def near_borders(plate, borders, state, radius, found):
-    """Write which borders a part of a radius may touch; how many."""
-    x, y, z = state[X] - plate[0], state[Y] - plate[1], state[Z] - plate[2]
-    a = plate[ACROSS] * x + plate[ACROSS + 1] * y + plate[ACROSS + 2] * z
-    b = plate[ALONG] * x + plate[ALONG + 1] * y + plate[ALONG + 2] * z
+def low_edges(solid, shown, reach, found, box):
+    """Write which edges of the part reach a plate's surface, and the box they are in; how many."""
+    box[0] = box[2] = math.inf
+    box[1] = box[3] = -math.inf
     count = 0
-    for k in range(int(plate[FIRST]), int(plate[LAST])):
-        p, q, u, v = borders[k, 0] - a, borders[k, 1] - b, borders[k, 2] - a, borders[k, 3] - b
-        if min(p, u) > radius or max(p, u) < -radius or min(q, v) > radius or max(q, v) < -radius:
-            continue
-        if borders[k, END] < 0.5:
+    for k in range(len(solid.edges)):
+        p, q = shown[solid.edges[k, 0]], shown[solid.edges[k, 1]]
+        if min(p[2], q[2]) <= reach and max(p[2], q[2]) >= -DEEP:
             found[count] = k
             count += 1
+            for e in range(2):
+                box[2 * e] = min(box[2 * e], p[e], q[e])
+                box[2 * e + 1] = max(box[2 * e + 1], p[e], q[e])
     return count
 
 
 @compiled
-def edges_on(plate, borders, near, nears, solid, shown, spots, turn, tangent, reach, work, contacts, count):
-    """Contacts of the part's edges with borders."""
-    edges = solid.edges
-    for k in range(len(edges)):
-        i, j = edges[k, 0], edges[k, 1]
-        low, high = shown[i, 2], shown[j, 2]
-        if min(low, high) > reach or max(low, high) < -DEEP:
+def near_borders(plate, borders, box, reach, found):
+    """Write which borders come into a box; how many."""
+    count = 0
+    for k in range(int(plate[FIRST]), int(plate[LAST])):
+        p, q, u, v = borders[k, 0], borders[k, 1], borders[k, 2], borders[k, 3]
+        if min(p, u) > box[1] + reach or max(p, u) < box[0] - reach:
             continue
-        ready = False
-        p, q = shown[i], shown[j]
+        if min(q, v) > box[3] + reach or max(q, v) < box[2] - reach or borders[k, END] > 0.5:
+            continue
+        found[count] = k
+        count += 1
+    return count
+
+
+@compiled
+def edges_on(plate, borders, nears, lows, solid, turn, reach, work, contacts, count):
+    """Contacts of the part's low edges with near borders."""
+    shown, spots = work.shown, work.spots
+    for n in range(lows):
+        k = work.edges[n]
+        i, j = solid.edges[k, 0], solid.edges[k, 1]
+        p, q, ready = shown[i], shown[j], False
         for m in range(nears):
-            n = near[m]
-            if _apart(p, q, borders[n], reach):
+            border = borders[work.near[m]]
+            if _apart(p, q, border, reach):
                 continue
             if not ready:
                 ready, s = True, solid.sides[k]
-                _vector(plate, turn, s[0], s[1], s[2], work[0])
-                _vector(plate, turn, s[3], s[4], s[5], work[1])
-            share, u, v, w, gap = _crossing(p, q, borders[n], work, plate[ROUNDED], reach)
+                _vector(plate, turn, s[0], s[1], s[2], work.vectors[0])
+                _vector(plate, turn, s[3], s[4], s[5], work.vectors[1])
+            share, u, v, w, gap = _crossing(p, q, border, work.vectors, plate[ROUNDED], reach)
             if gap < math.inf:
                 x = spots[i, 0] + share * (spots[j, 0] - spots[i, 0])
                 y = spots[i, 1] + share * (spots[j, 1] - spots[i, 1])
                 z = spots[i, 2] + share * (spots[j, 2] - spots[i, 2])
-                count = _front(plate, solid.inertia, turn, tangent, x, y, z, u, v, w, gap, contacts, count)
+                count = _front(
+                    plate, solid.inertia, turn, work.tangent, x, y, z, u, v, w, gap, contacts, count
+                )
     return count
 
 
@@ -89,26 +102,47 @@ def _front(plate, inertia, turn, tangent, x, y, z, u, v, w, gap, contacts, count
 
 
 @compiled
-def faces_on(plate, borders, near, nears, solid, state, turn, tangent, reach, work, contacts, count):
-    """Contacts of the part's faces with the convex corners of borders."""
+def low_faces(solid, plate, turn, shown, reach, found, vector):
+    """Write which triangles of the part face a plate and reach its surface; how many."""
+    _inverse(plate, turn, vector)
+    u, v, w = vector[0], vector[1], vector[2]
+    count, known = 0, len(shown)
+    for k in range(len(solid.triangles)):
+        n = solid.normals[k]
+        if n[0] * u + n[1] * v + n[2] * w > -STEEP:
+            continue
+        least = math.inf
+        for e in range(3):
+            i = solid.triangles[k, e]
+            least = min(least, shown[i, 2]) if i < known else -math.inf
+        if least <= reach:
+            found[count] = k
+            count += 1
+    return count
+
+
+@compiled
+def faces_on(plate, borders, nears, solid, state, turn, reach, work, contacts, count):
+    """Contacts of the part's faces with the convex corners of near borders."""
+    lows, vector = -1, work.vectors[2]
     for m in range(nears):
-        border = borders[near[m]]
+        border = borders[work.near[m]]
         if border[BEND] < 0.5:
             continue
-        _corner(plate, border, state, work[2])
-        x, y, z = work[2, 0], work[2, 1], work[2, 2]
-        if x * x + y * y + z * z > (solid.radius + reach) ** 2:
-            continue
+        if lows < 0:
+            lows = low_faces(solid, plate, turn, work.shown, reach, work.faces, vector)
+        _corner(plate, border, state, vector)
+        x, y, z = vector[0], vector[1], vector[2]
         a = turn[0] * x + turn[3] * y + turn[6] * z
         b = turn[1] * x + turn[4] * y + turn[7] * z
         c = turn[2] * x + turn[5] * y + turn[8] * z
-        k, off = _face_at(solid, plate, turn, a, b, c, reach, work)
+        k, off = _face_at(solid, work.faces, lows, a, b, c, reach)
         if k >= 0:
             n = solid.normals[k]
             nx = -(turn[0] * n[0] + turn[1] * n[1] + turn[2] * n[2])
             ny = -(turn[3] * n[0] + turn[4] * n[1] + turn[5] * n[2])
             nz = -(turn[6] * n[0] + turn[7] * n[1] + turn[8] * n[2])
-            count = add(contacts, count, turn, solid.inertia, tangent, x, y, z, nx, ny, nz, off, 0.0)
+            count = add(contacts, count, turn, solid.inertia, work.tangent, x, y, z, nx, ny, nz, off, 0.0)
     return count
 
 
@@ -120,16 +154,12 @@ def _corner(plate, border, state, vector):
 
 
 @compiled
-def _face_at(solid, plate, turn, a, b, c, reach, work):
+def _face_at(solid, faces, lows, a, b, c, reach):
     """Triangle of the part that a corner touches, and the gap; -1 for none."""
-    _inverse(plate, turn, work[2])
-    u, v, w = work[2, 0], work[2, 1], work[2, 2]
     best, found = math.inf, -1
-    for k in range(len(solid.triangles)):
-        n = solid.normals[k]
-        if n[0] * u + n[1] * v + n[2] * w > -STEEP:
-            continue
-        first = solid.vertices[solid.triangles[k, 0]]
+    for m in range(lows):
+        k = faces[m]
+        n, first = solid.normals[k], solid.vertices[solid.triangles[k, 0]]
         off = (a - first[0]) * n[0] + (b - first[1]) * n[1] + (c - first[2]) * n[2]
         if -DEEP < off < reach and off < best and _within(solid, k, a, b, c):
             best, found = off, k

@@ -19,7 +19,7 @@ from feederscrew.trial.kernel import contact, edges, search
 RUNNING, PASSED, RETURNED = 0, 1, 2
 REACH = 2e-3  # how far ahead contacts are looked for, beside the way of two steps
 SLOP = 2e-4  # depth that is left alone
-LIFT = 0.1  # of a greater depth, taken back in a step
+LIFT, MOST = 0.1, 0.01  # of a greater depth, taken back in a step; of so much at most
 STILL = 1e-5  # speed along a contact below which it sticks while static friction holds
 LEFT = 1e-6  # of a step: less is nothing
 AT_ONCE = 0.02  # of a step: what happens sooner happens at its start
@@ -78,20 +78,19 @@ def found(surface, solid, work, reach):
         plate = surface.plates[k]
         if search.seen(plate, state, work.spots, work.shown) > reach:
             continue
-        nears = edges.near_borders(plate, surface.borders, state, solid.radius + reach, work.near)
+        lows = edges.low_edges(solid, work.shown, reach, work.edges, work.box)
+        nears = edges.near_borders(plate, surface.borders, work.box, reach, work.near)
         count = search.corners_on(
             plate, surface.borders, work.shown, work.spots, turn, solid.inertia, tangent, reach, nears, state,
             work.low, contacts, count,
         )  # fmt: skip
         if nears:
             count = edges.edges_on(
-                plate, surface.borders, work.near, nears, solid, work.shown, work.spots, turn, tangent, reach,
-                work.vectors, contacts, count,
-            )  # fmt: skip
+                plate, surface.borders, nears, lows, solid, turn, reach, work, contacts, count
+            )
             count = edges.faces_on(
-                plate, surface.borders, work.near, nears, solid, state, turn, tangent, reach, work.vectors,
-                contacts, count,
-            )  # fmt: skip
+                plate, surface.borders, nears, solid, state, turn, reach, work, contacts, count
+            )
     return count
 
 
@@ -159,7 +158,7 @@ def lifted(surface, solid, work, count):
         push[k] = 0.0
     for n in range(count):
         row = work.contacts[n]
-        row[contact.WANTED] = LIFT * max(-row[contact.GAP] - SLOP, 0.0)
+        row[contact.WANTED] = LIFT * min(max(-row[contact.GAP] - SLOP, 0.0), MOST)
     contact.solve(push, work.contacts, count, False, surface.sweeps, surface.converged, 0.0)
     work.memory[0] = -1.0
     for k in range(3):

@@ -136,7 +136,7 @@ def all_low(plate, borders, shown, reach, state, low):
     lows = 0
     if inside(borders, int(plate[FIRST]), int(plate[LAST]), a, b):
         for k in range(len(shown)):
-            if shown[k, 2] <= reach and shown[k, 2] >= -plate[DEPTH]:
+            if shown[k, 2] <= reach and shown[k, 2] >= -DEEP:
                 low[lows] = k
                 lows += 1
     return lows
