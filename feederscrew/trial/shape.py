@@ -8,6 +8,7 @@ from feederscrew import check
 from feederscrew.dropping.shape import principal_axes
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
+from feederscrew.part.hull import convex_hull
 
 FLAT = 2e-3  # [rad] facets that meet at a smaller angle are one face
 MOST = 20000  # facets of a part
@@ -52,7 +53,8 @@ def solid_of(part):
     if len(part.faces) > MOST:
         what = f"has {len(part.faces)} facets, too many to follow on the track"
         raise FeederError(part.source, what, f"export it more coarsely, with {MOST} facets at most")
-    length = float(np.cbrt(part.hull.volume))
+    hull = convex_hull(part.vertices, part.centre_of_mass, part.source)
+    length = float(np.cbrt(hull.volume))
     moments, principal = principal_axes(part.inertia)
     corners = vectors.product(part.vertices - part.centre_of_mass, principal) / length
     normals = _normals(corners, part.faces)

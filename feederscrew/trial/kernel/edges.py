@@ -4,7 +4,7 @@ import math
 
 from feederscrew.geometry.compiled import compiled
 from feederscrew.trial.kernel.contact import add
-from feederscrew.trial.kernel.search import ACROSS, ALONG, DEEP, FIRST, FRONT, LAST, ROUNDED, _crossing
+from feederscrew.trial.kernel.search import ACROSS, ALONG, DEEP, FIRST, FRONT, LAST, ROUNDED, _crossing, front
 
 BEND, END = 6, 7  # columns of a border: a convex corner at its start; no border but the end of the drawing
 STEEP = 0.02  # [1] slope against a plate's front from which a face may lie on a corner
@@ -74,7 +74,7 @@ def edges_on(plate, borders, nears, lows, solid, turn, reach, work, contacts, co
                 x = spots[i, 0] + share * (spots[j, 0] - spots[i, 0])
                 y = spots[i, 1] + share * (spots[j, 1] - spots[i, 1])
                 z = spots[i, 2] + share * (spots[j, 2] - spots[i, 2])
-                count = _front(
+                count = front(
                     plate, solid.inertia, turn, work.tangent, x, y, z, u, v, w, gap, contacts, count
                 )
     return count
@@ -90,15 +90,6 @@ def _apart(p, q, border, reach):
     if min(p[1], q[1]) > max(border[1], border[3]) + reach:
         return True
     return max(p[1], q[1]) < min(border[1], border[3]) - reach
-
-
-@compiled
-def _front(plate, inertia, turn, tangent, x, y, z, u, v, w, gap, contacts, count):
-    """Add a contact whose normal is given in a plate's coordinates."""
-    nx = u * plate[ACROSS] + v * plate[ALONG] + w * plate[FRONT]
-    ny = u * plate[ACROSS + 1] + v * plate[ALONG + 1] + w * plate[FRONT + 1]
-    nz = u * plate[ACROSS + 2] + v * plate[ALONG + 2] + w * plate[FRONT + 2]
-    return add(contacts, count, turn, inertia, tangent, x, y, z, nx, ny, nz, gap, 0.0)
 
 
 @compiled

@@ -22,6 +22,15 @@ BOX = 16  # where its borders are: least and greatest of both coordinates
 
 
 @compiled
+def front(plate, inertia, turn, tangent, x, y, z, u, v, w, gap, contacts, count):
+    """Add a contact whose normal is given in a plate's coordinates."""
+    nx = u * plate[ACROSS] + v * plate[ALONG] + w * plate[FRONT]
+    ny = u * plate[ACROSS + 1] + v * plate[ALONG + 1] + w * plate[FRONT + 1]
+    nz = u * plate[ACROSS + 2] + v * plate[ALONG + 2] + w * plate[FRONT + 2]
+    return add(contacts, count, turn, inertia, tangent, x, y, z, nx, ny, nz, gap, 0.0)
+
+
+@compiled
 def placed(vertices, turn, spots):
     """Write the corners of a part (V, 3), turned into the bowl's frame, from the centre of mass."""
     for k in range(len(vertices)):
@@ -113,14 +122,17 @@ def sides_on(plate, borders, shown, spots, turn, inertia, tangent, reach, low, c
         solid = inside(borders, first, last, shown[k, 0], shown[k, 1])
         if height < -plate[ROUNDED]:
             n, off = _beside(borders, first, last, shown[k, 0], shown[k, 1])
-            if off < (-height if solid else reach):
-                u, v, gap = borders[n, 4], borders[n, 5], (-off if solid else off)
-                nx = u * plate[ACROSS] + v * plate[ALONG]
-                ny = u * plate[ACROSS + 1] + v * plate[ALONG + 1]
-                nz = u * plate[ACROSS + 2] + v * plate[ALONG + 2]
-                count = add(
-                    contacts, count, turn, inertia, tangent, spots[k, 0], spots[k, 1], spots[k, 2],
-                    nx, ny, nz, gap, 0.0,
+            behind = plate[DEPTH] + height
+            if off < (min(-height, behind) if solid else reach):
+                u, v, w, gap = borders[n, 4], borders[n, 5], 0.0, (-off if solid else off)
+            elif solid and behind < -height:  # it came in from behind
+                u, v, w, gap = 0.0, 0.0, -1.0, -behind
+            else:
+                u, v, w, gap = 0.0, 0.0, 0.0, 0.0
+            if u != 0.0 or v != 0.0 or w != 0.0:
+                count = front(
+                    plate, inertia, turn, tangent, spots[k, 0], spots[k, 1], spots[k, 2], u, v, w, gap,
+                    contacts, count,
                 )  # fmt: skip
                 solid = False
         if solid:

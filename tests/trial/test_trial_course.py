@@ -1,0 +1,155 @@
+"""Parts through devices: at the limits of the closed forms, and what is told of them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.resting.aspects import find
+from feederscrew.studies import trial as studies
+from feederscrew.tooling.orientations import orientations
+from feederscrew.trial import course, row, runs, shape, stations
+
+OWN = [
+    "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",
+    "friction.static=0.4", "track.radius=50 m", "track.width=60 mm", "track.climb=2 deg", "track.bank=0 deg",
+]  # fmt: skip
+PART = shapes.part(shapes.box(20, 12, 5))
+
+
+@pytest.fixture
+def bowl(tmp_path):
+    def read(*lines):
+        path = tmp_path / "bowl.yaml"
+        path.write_text("devices:\n" + "".join(f"  - {line}\n" for line in lines))
+        return bowls.read(path if lines else None, OWN)
+
+    return read
+
+
+def sent(bowl, length, parts=2):
+    """What became of the flat block of a length along the wall."""
+    every = orientations(PART, find(PART), bowl.track)
+    flat = [k for k, one in enumerate(every) if one.height < 6e-3 and abs(one.length - length) < 1e-3]
+    return course.course(PART, bowl, every, flat, bowl.devices, parts=parts, seed=3)
+
+
+@pytest.mark.parametrize(
+    ("device", "length", "passes"),
+    [
+        ("gap: 9.9 mm", 0.02, True),  # half its length
+        ("gap: 11.5 mm", 0.02, False),  # beyond what its way while it tips over adds
+        ("narrowed_track: 6.1 mm", 0.02, True),  # half its width
+        ("narrowed_track: 5.9 mm", 0.02, False),
+        ("canyon: 9.9 mm", 0.012, True),
+        ("canyon: 11.5 mm", 0.012, False),  # beyond what the wall pushes it back over the edge
+        ("wiper: 5.1 mm", 0.012, True),
+        ("wiper: 4.9 mm", 0.012, False),
+    ],
+)
+def test_a_part_at_the_limit_of_a_device(bowl, device, length, passes):
+    seen = sent(bowl(device), length)
+    assert (seen.fates == course.PASSED).all() == passes
+    assert (seen.fates == course.PASSED).any() == passes
+    assert (seen.depths < 2.5e-4).all()
+    if passes:
+        assert (seen.orientations[-1] == seen.entered).all()
+        assert (seen.ended == 2).all()
+
+
+@pytest.mark.parametrize(("over", "falls"), [(-1e-4, False), (1e-4, True)])
+def test_a_part_laid_over_an_edge_tips_at_its_centre_of_mass(bowl, over, falls):
+    one = bowl("gap: 40 mm")
+    still = replace(one, drive=replace(one.drive, amplitude=0.0), track=replace(one.track, climb=0.0))
+    every = orientations(PART, find(PART), one.track)
+    flat = next(k for k in every if k.height < 6e-3 and k.length > 0.015)
+    solid, length, principal = shape.solid_of(PART)
+    known, cut = runs.setting(solid, length, still), stations.station(one.devices[0], still.track, every)
+    state = runs.laid(flat, principal, length, still.track, place=over, aside=1e-3)
+    ride = runs.ride(known, cut, state[None], np.zeros(1), limits=(0.6, 1.0, 0.0, 1.0), every=0.01, places=9)
+    assert (ride.outcomes[0] == runs.RETURNED) == falls
+    assert falls or ride.states[0][2] * length == pytest.approx(2.5e-3, abs=1e-6)
+
+
+def test_a_bridge_stands_on_its_legs():
+    arch = shapes.prism([(-10, 0), (-7, 0), (-7, 4), (7, 4), (7, 0), (10, 0), (10, 8), (-10, 8)], 12)
+    solid, length, _ = shape.solid_of(shapes.part(arch))
+    bottom = 1e3 * length * solid.vertices
+    assert len(solid.edges) == 22  # 24 edges; both under the arch turn inwards
+    assert len(solid.corners) == 16
+    assert np.ptp(bottom, axis=0).max() == pytest.approx(20.0)
+
+
+def test_the_sides_of_an_edge_lie_in_its_faces():
+    solid, _, _ = shape.solid_of(PART)
+    ends = solid.vertices[solid.edges]
+    along = ends[:, 1] - ends[:, 0]
+    for side in (solid.sides[:, :3], solid.sides[:, 3:]):
+        np.testing.assert_allclose(np.einsum("ei,ei->e", side, along), 0.0, atol=1e-12)
+        inward = ends.mean(axis=1) + 1e-3 * side
+        half = np.abs(solid.vertices).max(axis=0)
+        assert (np.abs(inward) <= half + 1e-12).all()
+
+
+def test_the_order_of_work_changes_nothing(bowl):
+    one = bowl("gap: 9 mm")
+    every = orientations(PART, find(PART), one.track)
+    both = [
+        course.course(PART, one, every, [0, 1], one.devices, parts=6, seed=7, jobs=jobs) for jobs in (1, 2)
+    ]
+    np.testing.assert_array_equal(both[0].seconds, both[1].seconds)
+    np.testing.assert_array_equal(both[0].rides[-1].states, both[1].rides[-1].states)
+
+
+def test_a_study_tells_what_the_static_rule_says_beside(bowl):
+    found = studies.trial(PART, [bowl("gap: 9 mm")], "A", parts=4, seed=1)
+    run = found.runs[0]
+    tried = np.flatnonzero(run.tried)
+    assert run.shares.sum() == pytest.approx(1.0)
+    assert (run.holding[tried] == run.tried[tried]).all()
+    assert run.sorts and run.purity == 1.0 and 0.0 < run.efficiency < 1.0
+    assert run.parts <= run.velocity / run.known.lengths[run.wanted]
+    low, high = run.ends[tried].T
+    assert ((low <= 1.0) & (high >= 0.0) & (low < high)).all()
+    assert not any("hop" in told for told in found.warnings)
+
+
+def test_a_hop_over_the_tooling_is_said(bowl):
+    one = bowl("gap: 9 mm")
+    hard = replace(one, drive=replace(one.drive, amplitude=4e-4))
+    found = studies.trial(PART, [one, hard], "A", parts=2)
+    assert any("hop" in told and told.startswith("amplitude 0.4 mm") for told in found.warnings)
+    assert found.highest >= 0.15e-3
+
+
+def test_a_row_delivers_no_more_than_the_track_carries(bowl):
+    found = studies.trial(PART, [bowl()], "A", parts=2, queue=5, seconds=4.0)
+    run = found.runs[0]
+    assert 0.0 < run.queue.delivered <= 4.0 * run.velocity / 0.012 * 1.05
+    assert run.queue.velocity == pytest.approx(run.velocity, rel=0.06)
+    assert run.jams == run.queue.returned == 0
+
+
+def test_parts_in_a_row_push_each_other(bowl):
+    solid, length, _ = shape.solid_of(PART)
+    known = runs.setting(solid, length, bowl())
+    floor = known.floor._replace(step=2.0 * np.pi / known.floor.rate / 400)
+    parts = np.zeros((2, 8))
+    parts[:, row.row.PLACE], parts[:, row.row.LENGTH] = [5.0, 2.0], 2.0
+    parts[:, row.row.FRICTION], parts[0, row.row.HELD] = 0.4, 1.0
+    work = [np.zeros(2) for _ in range(3)]
+    row.row.follow(parts, np.arange(2), known.gravity, floor, 0.0, 0.2, 400 * 60, *work)
+    assert parts[0, row.row.PLACE] == pytest.approx(5.0, abs=1e-6)
+    assert parts[0, row.row.PLACE] - parts[1, row.row.PLACE] == pytest.approx(2.0, abs=1e-3)
+    assert parts[1, row.row.PUSH] > 0.0
+
+
+def test_a_station_is_drawn_with_its_hole():
+    bowl = bowls.read(None, OWN)
+    every = orientations(PART, find(PART), bowl.track)
+    made = stations.plain(bowl.track, every, 0.05)
+    assert made.plates.shape == (1, 16) and made.exit == 0.05
+    real = made.borders[made.borders[:, 7] < 0.5]
+    np.testing.assert_allclose(real[:, 1], 0.06, atol=1e-4)  # the free edge alone is a border

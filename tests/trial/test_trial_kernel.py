@@ -1,0 +1,134 @@
+"""One part on the moving track against closed forms."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.conveying import answer
+from feederscrew.dropping.kernel import body
+from feederscrew.resting.aspects import find
+from feederscrew.tooling.orientations import orientations
+from feederscrew.trial import runs, shape, stations
+
+BOWL = bowls.read(
+    None,
+    [
+        "drive.amplitude=0.15 mm",
+        "drive.frequency=60 Hz",
+        "drive.vibration_angle=20 deg",
+        "friction.static=0.4",
+    ]
+    + ["track.radius=50 m", "track.width=60 mm", "track.climb=2 deg", "track.bank=0 deg", "restitution=0.3"],
+)
+
+
+@pytest.fixture(scope="module")
+def block():
+    part = shapes.part(shapes.box(20, 12, 5))
+    return part, orientations(part, find(part), BOWL.track)
+
+
+def flat(every, length):
+    return next(one for one in every if one.height < 6e-3 and abs(one.length - length) < 1e-3)
+
+
+def rode(block, one, bowl, state, seconds, every=None):
+    """One part from a state over the bare track, for so long."""
+    part, all_of_it = block
+    solid, length, _ = shape.solid_of(part)
+    known = runs.setting(solid, length, bowl)
+    way = stations.plain(bowl.track, all_of_it, 1.0)
+    period = 1.0 / bowl.drive.frequency
+    limits = (seconds, 2.0 * seconds, 0.0, 10.0)
+    return known, runs.ride(
+        known, way, state[None], np.zeros(1), limits=limits, every=every or period, places=2000
+    )
+
+
+def laid(block, one, bowl, **own):
+    _, length, principal = shape.solid_of(block[0])
+    return runs.laid(one, principal, length, bowl.track, place=0.0, aside=1e-3, **own)
+
+
+def test_a_flat_part_slides_as_the_point_mass(block):
+    one = flat(block[1], 0.02)
+    _, ride = rode(block, one, BOWL, laid(block, one, BOWL), 0.6)
+    path = ride.paths[0][np.isfinite(ride.paths[0][:, 0])]
+    half = len(path) // 2
+    speed = (path[-1, 1] - path[half, 1]) / (path[-1, 0] - path[half, 0])
+    assert speed == pytest.approx(answer.answer(BOWL).velocity, rel=0.02)
+    assert ride.depths[0] < 1e-6
+
+
+@pytest.mark.parametrize(("climb", "slides"), [(0.99, False), (1.01, True)])
+def test_a_part_at_rest_slides_beyond_its_friction_angle(block, climb, slides):
+    track = replace(BOWL.track, climb=climb * np.arctan(0.4))
+    bowl = replace(BOWL, track=track, drive=replace(BOWL.drive, amplitude=0.0))
+    one = flat(block[1], 0.02)
+    _, ride = rode(block, one, bowl, laid(block, one, bowl), 0.5)
+    steep = np.sin(track.climb) - 0.4 * np.cos(track.climb)
+    assert ride.ways[0] == pytest.approx(
+        -0.5 * bowl.gravity * steep * 0.25 if slides else 0.0, abs=2e-6, rel=0.02
+    )
+
+
+def test_a_sliding_part_stops_where_friction_says(block):
+    bowl = replace(BOWL, track=replace(BOWL.track, climb=0.0), drive=replace(BOWL.drive, amplitude=0.0))
+    one = flat(block[1], 0.02)
+    state = laid(block, one, bowl)
+    state[body.VX] = 1.0
+    known, ride = rode(block, one, bowl, state, 0.3)
+    assert ride.ways[0] == pytest.approx(known.length * 0.5 / 0.4, rel=5e-3)  # v2 / (2 mu g)
+
+
+def test_a_corner_hit_rebounds_by_its_restitution(block):
+    part = shapes.part(shapes.box(10, 10, 10))
+    every = orientations(part, find(part), BOWL.track)
+    bowl = replace(BOWL, track=replace(BOWL.track, climb=0.0), drive=replace(BOWL.drive, amplitude=0.0))
+    solid, length, _ = shape.solid_of(part)
+    state = np.zeros(body.STATE)
+    up = solid.corners[0] / np.linalg.norm(solid.corners[0])  # this corner down, under the centre of mass
+    turn = np.cross(up, [0.0, 0.0, -1.0])
+    half = 0.5 * np.arctan2(np.linalg.norm(turn), -up[2])
+    axis = turn / np.linalg.norm(turn)
+    state[body.Q], state[body.Q + 1 : body.Q + 4] = np.cos(half), np.sin(half) * axis
+    fall = 1.0
+    state[:3] = 0.0, 2.0, np.linalg.norm(solid.corners[0]) + fall
+    landing = np.sqrt(2.0 * fall)
+    known = runs.setting(solid, length, bowl)
+    _, ride = rode((part, every), None, bowl, state, (landing + 0.3 * landing) * known.unit)
+    height = ride.states[0][body.Z] - np.linalg.norm(solid.corners[0])
+    assert height == pytest.approx(0.3**2 * fall, rel=0.03)  # e2 h, at the top of its rebound
+
+
+def test_a_tumbling_part_wins_no_energy(block):
+    bowl = replace(BOWL, track=replace(BOWL.track, climb=0.0), drive=replace(BOWL.drive, amplitude=0.0))
+    one = flat(block[1], 0.02)
+    state = laid(block, one, bowl)
+    state[body.Z] += 1.0
+    state[body.W : body.W + 3] = 2.0, -1.5, 1.0
+    solid, _, _ = shape.solid_of(block[0])
+    before, energies = _energy(state, solid.inertia), []
+    for _ in range(12):
+        _, ride = rode(block, one, bowl, state, 0.01)
+        state = np.array(ride.states[0])
+        energies.append(_energy(state, solid.inertia))
+    assert np.all(np.diff([before, *energies]) < 1e-6)
+
+
+def _energy(state, inertia):
+    v, w = state[body.VX : body.VX + 3], state[body.W : body.W + 3]
+    return 0.5 * (v**2).sum() + 0.5 * (inertia * w**2).sum() + state[body.Z]
+
+
+def test_the_state_of_a_part_turns_about_the_axis_of_the_bowl(block):
+    one = flat(block[1], 0.012)
+    state = laid(block, one, BOWL)[None]
+    radius = BOWL.track.radius / shape.solid_of(block[0])[1]
+    there = runs.moved(state, 30.0, radius)
+    assert runs.ways(there, radius)[0] == pytest.approx(30.0)
+    np.testing.assert_allclose(runs.moved(there, -30.0, radius), state, atol=1e-9)
+    np.testing.assert_allclose(runs.quaternion(runs.matrix(state[0])), state[0][6:10], atol=1e-12)
