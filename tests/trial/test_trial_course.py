@@ -140,7 +140,7 @@ def test_parts_in_a_row_push_each_other(bowl):
     parts[:, row.row.PLACE], parts[:, row.row.LENGTH] = [5.0, 2.0], 2.0
     parts[:, row.row.FRICTION], parts[0, row.row.HELD] = 0.4, 1.0
     work = [np.zeros(2) for _ in range(3)]
-    row.row.follow(parts, np.arange(2), known.gravity, floor, 0.0, 0.2, 400 * 60, *work)
+    row.row.follow(parts, np.arange(2), known.gravity, floor, 0.0, 0.2, 400 * 120, *work)
     assert parts[0, row.row.PLACE] == pytest.approx(5.0, abs=1e-6)
     assert parts[0, row.row.PLACE] - parts[1, row.row.PLACE] == pytest.approx(2.0, abs=1e-3)
     assert parts[1, row.row.PUSH] > 0.0
