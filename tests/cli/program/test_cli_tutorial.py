@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 from feederscrew_cli.main import feeder
 
-PAGE = Path(__file__).parents[1] / "docs" / "tutorial.md"
+PAGE = Path(__file__).parents[3] / "docs" / "tutorial.md"
 BLOCK = re.compile(r"```console sampled\n\$ feeder (.*)\n((?:(?!```).*\n)*)```")
 FILES = {"tooling.dxf", "tooling.svg", "tooling.stl", "tooling.yaml", "tooling.png", "tooling.csv"}
 
