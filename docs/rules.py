@@ -17,9 +17,9 @@ SETS, END_OF_SETS = "<!-- measured sets -->\n", "<!-- end of measured sets -->"
 MEASURED = PAGE.parent / "measured"
 HEAD = "| Column | What it is | When to trust it | Source |\n|---|---|---|---|\n"
 ANSWERS = (
-    "| `p_drop` | a simulated drop test | parts thrown or fed onto a hard surface | own: see below |\n"
-    "| `p_recommended`, `_low`, `_high` | `p_drop` where there is one, else `p_surface`; how far it may be "
-    "off | one answer; not for part cards | own: see below |\n"
+    "| `p_drop` | a simulated drop test | any launch onto a hard surface | own: see below |\n"
+    "| `p_recommended`, `_low`, `_high` | the answer for `--launch`: a closed form where one is good enough, "
+    "else `p_drop` | one answer; not for part cards | own: see below |\n"
 )
 
 

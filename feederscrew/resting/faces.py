@@ -8,6 +8,7 @@ from scipy.sparse.csgraph import connected_components
 
 from feederscrew.geometry import vectors
 from feederscrew.geometry.solid_angle import solid_angles
+from feederscrew.resting import rounds
 from feederscrew.resting.basins.landscape import RIPPLE_OF_RADIUS, SMOOTH, angle, edges
 
 COARSE = 1.0 / np.cos(0.5 * SMOOTH) - 1.0  # the ripple a smooth edge leaves at most, as a share of the height
@@ -207,15 +208,17 @@ def _describe(hull, triangles, lowest, stable):
     foot = _plane(hull, lowest, triangles, of_a_curve=True) if curved else triangles
     weights = np.maximum(hull.areas[foot], np.finfo(float).tiny)
     normal = vectors.unit(vectors.product(weights, hull.normals[foot]))
+    axis = _axis(normals, areas, normal) if curved else np.full(3, np.nan)
+    polygon = _outline(hull.vertices[np.unique(hull.triangles[foot])], normal)
     return Face(
         kind="rolling" if curved else "flat",
         stable=stable,
         normal=normal,
-        axis=_axis(normals, areas, normal) if curved else np.full(3, np.nan),
-        height=float(np.average(hull.heights[foot], weights=weights)),
+        axis=axis,
+        height=rounds.height(polygon, axis, float(np.average(hull.heights[foot], weights=weights))),
         area=float(areas.sum()),
         solid_angle=float(solid_angles(np.zeros(3), hull.corners[triangles]).sum()),
-        polygon=_outline(hull.vertices[np.unique(hull.triangles[foot])], normal),
+        polygon=polygon,
         triangles=triangles,
         roughness=float(np.average(_off_plane(hull, foot, normal), weights=weights)),
     )

@@ -192,7 +192,7 @@ def test_a_flipped_part_spins_in_the_plane_of_its_greatest_face(rng):
 
 def test_the_former_name_of_a_launch_is_known():
     assert named("tumble") is PRESETS["roll"]
-    with pytest.raises(KeyError):
+    with pytest.raises(ValueError, match="launch is 'kick', not one of"):
         named("kick")
 
 

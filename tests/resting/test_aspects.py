@@ -60,9 +60,17 @@ def test_a_cylinder_rolls_on_its_side(sections):
     assert sorted(zip(found.kinds, found.faces)) == [("flat", 2), ("rolling", 1)]
     side, end = found.kinds.index("rolling"), found.kinds.index("flat")
     assert abs(found.axes[side] @ found.normals[end]) == pytest.approx(1, abs=1e-6)
-    assert found.heights[side] == pytest.approx(5e-3 * np.cos(np.pi / sections), rel=1e-6)
+    assert found.heights[side] == pytest.approx(5e-3, rel=1e-6)  # of the circle, whatever the file's sections
     exact = 2 * np.pi * (1 - 10 / np.hypot(10, 5))
     assert found.solid_angles[end] == pytest.approx(exact, rel=8 / sections**2)
+
+
+def test_the_height_over_two_circles_is_that_over_their_common_line():
+    found = aspects(trimesh.creation.revolve([(0, 0), (6, 0), (3, 8), (0, 8)], sections=32))
+    middle = 8.0 * (6.0**2 + 2 * 6.0 * 3.0 + 3 * 3.0**2) / (4 * (6.0**2 + 6.0 * 3.0 + 3.0**2))
+    side = found.kinds.index("rolling")
+    exact = (6.0 - middle * 3.0 / 8.0) / np.hypot(1.0, 3.0 / 8.0)
+    assert found.heights[side] == pytest.approx(1e-3 * exact, rel=1e-6)
 
 
 def test_a_cone_rolls_too():

@@ -26,7 +26,7 @@ WIDTHS = {
     ("feed", False): 0.10, ("feed", True): 0.21,
 }  # fmt: skip
 """[1] Half the 95 % interval of the closed form on a share of a half, by launch and whether the part has a
-rolling class: such that it holds 95 % of the shares in drop tests of bodies that chose nothing
+rolling class: such that it holds 95 % of the shares in drop tests of made bodies and real parts
 (``benchmarks/accuracy.py`` prints it, with its coverage of bodies and sets left out)."""
 LAUNCHED = 0.09  # [1]
 """... of a drop test beside its sampling: what was measured under a launch of that name, less what was
