@@ -75,7 +75,7 @@ def find(part, *, as_published=False, unstable=False, exponent=None, launch=reco
     ------
     MeshError
         If the centre of mass is not strictly inside the convex hull.
-    ValueError
+    ArgumentError
         If there is no such launch.
     """
     launch = recommended.launch_named(launch)

@@ -7,6 +7,7 @@ from drop_bodies import cuboids
 
 from feederscrew.dropping import ensemble
 from feederscrew.dropping.launches import PRESETS
+from feederscrew.errors import ArgumentError
 from feederscrew.resting.aspects import find
 from feederscrew.resting.rules import recommended, registry
 
@@ -30,7 +31,7 @@ def chances(p, **others):
 def test_the_launches_are_those_that_can_be_simulated():
     assert tuple(PRESETS) == recommended.LAUNCHES
     assert recommended.launch_named("tumble") == "roll"
-    with pytest.raises(ValueError, match="launch is 'thrown', not one of place, drop"):
+    with pytest.raises(ArgumentError, match="launch: is 'thrown' - give one of place, drop"):
         recommended.launch_named("thrown")
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew import check
+from feederscrew.errors import ArgumentError
 from feederscrew.resting.rules import registry
 
 LAUNCHES = ("place", "drop", "flip", "roll", "feed")
@@ -51,12 +52,12 @@ def launch_named(name):
 
     Raises
     ------
-    ValueError
+    ArgumentError
         If there is no such launch.
     """
     launch = FORMER.get(name, name)
     if launch not in LAUNCHES:
-        raise ValueError(f"launch is {name!r}, not one of {', '.join(LAUNCHES)}")
+        raise ArgumentError("launch", f"is {name!r:.30}", f"give one of {', '.join(LAUNCHES)}")
     return launch
 
 
