@@ -39,7 +39,7 @@ class TrialRun:
     known: stream.Orientations  # and what the static rule says of each
     shares: np.ndarray  # (M,) [1] in which they are offered: of those tried, sums to 1
     course: course.Course
-    queue: row.Row | None  # None where it was not asked for
+    queue: row.PushedRow | None  # None where it was not asked for
 
     @cached_property
     def counts(self):

@@ -38,9 +38,9 @@ class Course:
     seconds: np.ndarray  # (N,) [s] in all
     depths: np.ndarray  # (N,) [m] the deepest that anything was in anything
     fell: np.ndarray  # (N,) [m] along the wall from the device's start, where it ended
-    rides: tuple  # runs.Rides of each station, of the parts that came so far
+    rides: tuple  # runs.Runs of each station, of the parts that came so far
     riders: tuple  # (P,) int, which parts those are
-    stations: tuple  # stations.Station
+    stations: tuple  # stations.Stage
     length: float  # [m] the unit of length of the states
     principal: np.ndarray  # (3, 3) [1]
     partial: bool

@@ -13,11 +13,10 @@ SPREAD = 0.03  # [1] standard deviation of the friction from part to part
 GAPS = 0.2  # of a part's length: mean free way between parts as they come
 HOLD = 1.0  # [s] a part that stays at a device is taken out by hand after so long
 PERIOD = 800  # steps of a period of the drive: a stop within a step is not sought
-FULL = 1e-5  # [m] parts nearer to each other touch
 
 
 @dataclass(frozen=True, eq=False)
-class Row:
+class PushedRow:
     """What a row of N parts did; D devices."""
 
     seconds: float  # [s]
@@ -27,7 +26,7 @@ class Row:
     jams: int  # stayed at a device and were taken out
     velocity: float  # [m/s] mean of all parts
     gap: float  # [m] mean free way between neighbours
-    touching: float  # [1] share of neighbours that touch
+    touching: float  # [1] share of the parts that push the one ahead in a period of the drive
     pressure: np.ndarray  # (D,) [N] greatest mean force on a part held at a device; 0 where none was
 
 
@@ -36,7 +35,7 @@ def row_of(known, mass, every, shares, seen, places, *, parts, seconds, seed):
 
     Parameters
     ----------
-    known : runs.Setting
+    known : runs.BowlOfPart
     mass : float [kg]
     every : sequence of Orientation
         M of them.
@@ -53,7 +52,7 @@ def row_of(known, mass, every, shares, seen, places, *, parts, seconds, seed):
 
     Returns
     -------
-    Row
+    PushedRow
     """
     lined = _Lined(known, every, np.cumsum(shares), seen, places, np.random.default_rng((seed, parts)))
     lined.fill(parts)
@@ -115,7 +114,7 @@ class _Lined:
         )
         if len(free):
             self.free += free.mean()
-            self.touch += float((free * self.known.length < FULL).mean())
+            self.touch += float((behind[:, row.PUSH] > 0.0).mean())
         self.looks += 1
 
     def look(self, period):
@@ -180,7 +179,7 @@ class _Lined:
     def told(self, seconds, mass):
         """What they did, in SI units."""
         length, unit = self.known.length, self.known.unit
-        return Row(
+        return PushedRow(
             seconds=seconds,
             delivered=self.whole + self.fraction() - self.start,
             leaving=check.frozen(self.leaving),

@@ -12,16 +12,16 @@ from feederscrew.dropping.plate import drive
 from feederscrew.dropping.pool import gather
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import on_disk
-from feederscrew.trial.kernel import contact, motion
+from feederscrew.trial.kernel import contact, motion, travel
 
-PASSED, RETURNED, RUNNING = motion.PASSED, motion.RETURNED, motion.RUNNING
+PASSED, RETURNED, RUNNING = travel.PASSED, travel.RETURNED, travel.RUNNING
 PERIOD = 80  # steps of a period of the drive
 SWEEPS, CONVERGED = 60, 1e-4  # of the contact solver: at most, and what a sweep may still change
 CONTACTS = 48  # of a part at a time
 BATCH = 5  # parts a core takes at a time
 
 
-class Scratch(NamedTuple):
+class WorkingArrays(NamedTuple):
     """Arrays the kernel works in."""
 
     state: np.ndarray
@@ -42,7 +42,7 @@ class Scratch(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Rides:
+class Runs:
     """What became of N parts at one station, in SI units; K places of each."""
 
     outcomes: np.ndarray  # (N,) int: PASSED, RETURNED or RUNNING
@@ -55,10 +55,10 @@ class Rides:
 
 
 @dataclass(frozen=True, eq=False)
-class Setting:
+class BowlOfPart:
     """A part in a bowl, without dimensions."""
 
-    solid: object  # trial.shape.Solid
+    solid: object  # trial.shape.TrueSolid
     length: float  # [m] the unit of length
     unit: float  # [s] the unit of time
     floor: Floor
@@ -74,21 +74,21 @@ def setting(solid, length, bowl):
 
     Parameters
     ----------
-    solid : Solid
+    solid : TrueSolid
     length : float [m]
         Its unit.
     bowl : Bowl
 
     Returns
     -------
-    Setting
+    BowlOfPart
     """
     floor, track, friction = drive.floor_of(bowl, length), bowl.track, bowl.friction
     if bowl.drive.amplitude == 0.0:
         floor = floor._replace(along=0.0, up=0.0)
     back = friction.backward
     c, s = np.cos(track.climb), np.sin(track.climb)
-    return Setting(
+    return BowlOfPart(
         solid=solid,
         length=length,
         unit=float(np.sqrt(length / bowl.gravity)),
@@ -193,8 +193,8 @@ def ride(known, station, states, times, *, limits, every, places, jobs=1, progre
 
     Parameters
     ----------
-    known : Setting
-    station : Station
+    known : BowlOfPart
+    station : Stage
     states : (N, 13) float
         At the start, without dimensions.
     times : (N,) float [s]
@@ -213,7 +213,7 @@ def ride(known, station, states, times, *, limits, every, places, jobs=1, progre
 
     Returns
     -------
-    Rides
+    Runs
         After an interrupt from the keyboard, the batches that were finished, up to the first that was not.
 
     Raises
@@ -239,11 +239,11 @@ def ride(known, station, states, times, *, limits, every, places, jobs=1, progre
     paths[:, :, 0] *= known.unit
     paths[:, :, 1:4] *= known.length
     found = {
-        "outcomes": outcomes, "states": ends, "seconds": notes[:, motion.TIME] * known.unit,
-        "ways": notes[:, motion.MOVED] * known.length, "depths": notes[:, motion.SUNK] * known.length,
+        "outcomes": outcomes, "states": ends, "seconds": notes[:, travel.TIME] * known.unit,
+        "ways": notes[:, travel.MOVED] * known.length, "depths": notes[:, travel.SUNK] * known.length,
         "paths": paths,
     }  # fmt: skip
-    return Rides(**{name: check.frozen(value) for name, value in found.items()}, partial=partial)
+    return Runs(**{name: check.frozen(value) for name, value in found.items()}, partial=partial)
 
 
 def surface_of(known, station, limits):
@@ -251,7 +251,7 @@ def surface_of(known, station, limits):
     plates, borders = np.array(station.plates), np.array(station.borders)
     plates[:, [0, 1, 2, 12, 13]] /= known.length
     borders[:, :4] /= known.length
-    return motion.Surface(
+    return motion.StageSurface(
         radius=known.radius,
         gravity=known.gravity,
         plates=plates,
@@ -272,7 +272,7 @@ def surface_of(known, station, limits):
 def scratch(solid, borders):
     """Return the arrays the kernel works in."""
     count = len(solid.corners)
-    return Scratch(
+    return WorkingArrays(
         state=np.zeros(body.STATE), saved=np.zeros(body.STATE), push=np.zeros(body.STATE), turn=np.zeros(9),
         tangent=np.zeros(2), spots=np.zeros((count, 3)), shown=np.zeros((count, 3)),
         near=np.zeros(max(borders, 1), np.int64), vectors=np.zeros((3, 3)), low=np.zeros(count, np.int64),
@@ -284,7 +284,7 @@ def scratch(solid, borders):
 
 def compiled():
     """Whether the kernel of the trial is on disk already."""
-    return on_disk(motion.travel_all)
+    return on_disk(travel.travel_all)
 
 
 def _batch(known, surface, stride, places, states, times):
@@ -292,7 +292,7 @@ def _batch(known, surface, stride, places, states, times):
     ends, count = np.array(states, float), len(states)
     outcomes, notes = np.zeros(count, np.int64), np.zeros((count, 4))
     paths = np.full((count, places, 8), np.nan)
-    motion.travel_all(
+    travel.travel_all(
         surface, known.solid, known.floor, scratch(known.solid, len(surface.borders)), ends,
         np.asarray(times) / known.unit, stride, paths, notes, outcomes,
     )  # fmt: skip

@@ -14,7 +14,7 @@ FLAT = 2e-3  # [rad] facets that meet at a smaller angle are one face
 MOST = 20000  # facets of a part
 
 
-class Solid(NamedTuple):
+class TrueSolid(NamedTuple):
     """A rigid body about its centre of mass, along its principal axes; V corners, E edges, T triangles."""
 
     vertices: np.ndarray  # (V, 3) every corner
@@ -37,7 +37,7 @@ def solid_of(part):
 
     Returns
     -------
-    solid : Solid
+    solid : TrueSolid
     length : float [m]
         Cube root of the hull's volume, the unit of length.
     principal : (3, 3) float [1]
@@ -65,7 +65,7 @@ def solid_of(part):
     place = np.argsort(order, kind="stable")
     corners = check.frozen(corners[order])
     return (
-        Solid(
+        TrueSolid(
             vertices=corners,
             corners=corners[: touches.sum()],
             edges=check.frozen(place[ends]),

@@ -20,7 +20,7 @@ BARE = Device("track", "")
 
 
 @dataclass(frozen=True, eq=False)
-class Station:
+class Stage:
     """One device, or a stretch of the bare track, as solid geometry in the bowl's frame."""
 
     device: Device
@@ -45,7 +45,7 @@ def station(device, track, every, start=0.0):
 
     Returns
     -------
-    Station
+    Stage
     """
     size = max(np.hypot(one.length, max(one.width, one.height)) for one in every)
     room = 1.3 * max(one.length for one in every)
@@ -62,7 +62,7 @@ def station(device, track, every, start=0.0):
         middle = start + 0.5 * room
         plates.append(_gate_plate(gate, track, width, every, middle))
         beyond = middle + (0.5 + SPARE) * size
-    return Station(device, *_stacked(plates), begin=begin, exit=beyond)
+    return Stage(device, *_stacked(plates), begin=begin, exit=beyond)
 
 
 def plain(track, every, length):
@@ -70,7 +70,7 @@ def plain(track, every, length):
     size = max(np.hypot(one.length, max(one.width, one.height)) for one in every)
     width = min(track.width, 0.95 * track.radius)
     plate = _track_plate(None, track, width, size, (-1.2 * size, length + 0.8 * size), 0.0)
-    return Station(BARE, *_stacked([plate]), begin=0.0, exit=length)
+    return Stage(BARE, *_stacked([plate]), begin=0.0, exit=length)
 
 
 def _track_plate(cut, track, width, size, ends, start):

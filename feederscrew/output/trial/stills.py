@@ -49,7 +49,7 @@ def stills(part, run):
         )
         device = found.stations[place].device
         title = f"{run.known.lying[found.entered[one]].name} at {device.kind} {device.text}: {fate}"
-        page.text(EDGE, top - 30, style.words(title), fontsize=11, fontweight="bold", color=style.INK)
+        page.text(EDGE, top - 30, title, fontsize=11, fontweight="bold", color=style.INK)
         path = ride.paths[n][np.isfinite(ride.paths[n][:, 0])]
         for k, at in enumerate(_chosen(path)):
             left = EDGE + k * (WIDTH + GAP)

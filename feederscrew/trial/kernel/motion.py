@@ -1,4 +1,4 @@
-"""Compiled steps of one part in the bowl's frame, and its way past one station.
+"""Compiled steps of one part in the bowl's frame.
 
 The frame is fixed to the bowl: the track is z = 0, the wall a cylinder that is tangent to x at the origin,
 with its axis at (0, radius). The drive is a force that changes with time, and gravity turns with the place.
@@ -12,21 +12,18 @@ import numpy as np
 
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel import floor as floors
-from feederscrew.dropping.kernel.body import VX, VY, VZ, W, X, Y, Z
+from feederscrew.dropping.kernel.body import VX, VY, VZ, W, X, Y
 from feederscrew.geometry.compiled import compiled
 from feederscrew.trial.kernel import contact, edges, search
 
-RUNNING, PASSED, RETURNED = 0, 1, 2
 REACH = 2e-3  # how far ahead contacts are looked for, beside the way of two steps
 SLOP = 2e-4  # depth that is left alone
 LIFT, MOST = 0.1, 0.01  # of a greater depth, taken back in a step; of so much at most
 STILL = 1e-5  # speed along a contact below which it sticks while static friction holds
-LEFT = 1e-6  # of a step: less is nothing
 AT_ONCE = 0.02  # of a step: what happens sooner happens at its start
-TIME, MOVED, SUNK, PLACES = 0, 1, 2, 3  # what a run notes: time, way along the wall, depth, places
 
 
-class Surface(NamedTuple):
+class StageSurface(NamedTuple):
     """What a part meets at one station, in units of its length; P plates, B borders."""
 
     radius: float  # of the wall
@@ -242,82 +239,3 @@ def _no_more(state, inertia, limit):
         for k in range(3):
             state[VX + k] *= scale
             state[W + k] *= scale
-
-
-@compiled
-def way(surface, state):
-    """How far along the wall the centre of mass is."""
-    return surface.radius * math.atan2(state[X], surface.radius - state[Y])
-
-
-@compiled
-def travel(surface, solid, floor, work, time, every, path, notes):
-    """Follow a part until it has passed, has dropped out or its time is up.
-
-    Parameters
-    ----------
-    surface : Surface
-    solid : Solid
-    floor : Floor
-        Its ``step`` is the time step.
-    work : Scratch
-        Its ``state`` holds the start, and the end afterwards.
-    time : float
-        At the start: the phase of the drive.
-    every : int
-        Steps between two places noted.
-    path : (K, 8) float
-        Filled with time, position and attitude, from the first row on; nothing more once it is full.
-    notes : (4,) float
-        Filled with the time taken, the way along the wall, the greatest depth and the places noted.
-
-    Returns
-    -------
-    int
-        PASSED, RETURNED or RUNNING.
-    """
-    state, dt, begun, start = work.state, floor.step, time, way(surface, work.state)
-    work.memory[0] = -1.0
-    steps, noted, sunk, outcome = math.ceil(surface.longest / dt), 0, 0.0, RUNNING
-    apart, mark, level = math.ceil(surface.patience / dt), start, state[Z]
-    for k in range(steps):
-        if k % apart == apart - 1:
-            place = way(surface, state)
-            if place - mark < surface.progress and level - state[Z] < surface.progress:
-                break
-            mark, level = place, state[Z]
-        if k % every == 0 and noted < len(path):
-            path[noted, 0] = time - begun
-            for e in range(3):
-                path[noted, 1 + e] = state[e]
-            for e in range(4):
-                path[noted, 4 + e] = state[body.Q + e]
-            noted += 1
-        rest = dt
-        while rest > LEFT * dt:
-            deepest, taken = step(surface, solid, floor, work, begun + (k + 1) * dt - rest, rest)
-            sunk, rest = min(sunk, deepest), rest - taken
-        time = begun + (k + 1) * dt
-        if state[Z] < -solid.radius:
-            outcome = RETURNED
-            break
-        place = way(surface, state)
-        if place > surface.exit:
-            outcome = PASSED
-            break
-        if place < surface.back:
-            break
-    notes[TIME], notes[MOVED] = time - begun, way(surface, state) - start
-    notes[SUNK], notes[PLACES] = -sunk, noted
-    return outcome
-
-
-@compiled
-def travel_all(surface, solid, floor, work, starts, times, every, paths, notes, outcomes):
-    """Follow every row of (N, 13) starts, which hold the ends afterwards; fills paths, notes and outcomes."""
-    for n in range(len(starts)):
-        for k in range(body.STATE):
-            work.state[k] = starts[n, k]
-        outcomes[n] = travel(surface, solid, floor, work, times[n], every, paths[n], notes[n])
-        for k in range(body.STATE):
-            starts[n, k] = work.state[k]

@@ -1,0 +1,91 @@
+"""Compiled way of one part past one station, until it has passed, has dropped out or is given up."""
+
+import math
+
+from feederscrew.dropping.kernel import body
+from feederscrew.dropping.kernel.body import X, Y, Z
+from feederscrew.geometry.compiled import compiled
+from feederscrew.trial.kernel.motion import step
+
+RUNNING, PASSED, RETURNED = 0, 1, 2
+TIME, MOVED, SUNK, PLACES = 0, 1, 2, 3  # what a run notes: time, way along the wall, depth, places
+LEFT = 1e-6  # of a step: less is nothing
+
+
+@compiled
+def way(surface, state):
+    """How far along the wall the centre of mass is."""
+    return surface.radius * math.atan2(state[X], surface.radius - state[Y])
+
+
+@compiled
+def travel(surface, solid, floor, work, time, every, path, notes):
+    """Follow a part until it has passed, has dropped out or its time is up.
+
+    Parameters
+    ----------
+    surface : StageSurface
+    solid : TrueSolid
+    floor : Floor
+        Its ``step`` is the time step.
+    work : WorkingArrays
+        Its ``state`` holds the start, and the end afterwards.
+    time : float
+        At the start: the phase of the drive.
+    every : int
+        Steps between two places noted.
+    path : (K, 8) float
+        Filled with time, position and attitude, from the first row on; nothing more once it is full.
+    notes : (4,) float
+        Filled with the time taken, the way along the wall, the greatest depth and the places noted.
+
+    Returns
+    -------
+    int
+        PASSED, RETURNED or RUNNING.
+    """
+    state, dt, begun, start = work.state, floor.step, time, way(surface, work.state)
+    work.memory[0] = -1.0
+    steps, noted, sunk, outcome = math.ceil(surface.longest / dt), 0, 0.0, RUNNING
+    apart, mark, level = math.ceil(surface.patience / dt), start, state[Z]
+    for k in range(steps):
+        if k % apart == apart - 1:
+            place = way(surface, state)
+            if place - mark < surface.progress and level - state[Z] < surface.progress:
+                break
+            mark, level = place, state[Z]
+        if k % every == 0 and noted < len(path):
+            path[noted, 0] = time - begun
+            for e in range(3):
+                path[noted, 1 + e] = state[e]
+            for e in range(4):
+                path[noted, 4 + e] = state[body.Q + e]
+            noted += 1
+        rest = dt
+        while rest > LEFT * dt:
+            deepest, taken = step(surface, solid, floor, work, begun + (k + 1) * dt - rest, rest)
+            sunk, rest = min(sunk, deepest), rest - taken
+        time = begun + (k + 1) * dt
+        if state[Z] < -solid.radius:
+            outcome = RETURNED
+            break
+        place = way(surface, state)
+        if place > surface.exit:
+            outcome = PASSED
+            break
+        if place < surface.back:
+            break
+    notes[TIME], notes[MOVED] = time - begun, way(surface, state) - start
+    notes[SUNK], notes[PLACES] = -sunk, noted
+    return outcome
+
+
+@compiled
+def travel_all(surface, solid, floor, work, starts, times, every, paths, notes, outcomes):
+    """Follow every row of (N, 13) starts, which hold the ends afterwards; fills paths, notes and outcomes."""
+    for n in range(len(starts)):
+        for k in range(body.STATE):
+            work.state[k] = starts[n, k]
+        outcomes[n] = travel(surface, solid, floor, work, times[n], every, paths[n], notes[n])
+        for k in range(body.STATE):
+            starts[n, k] = work.state[k]

@@ -1,0 +1,85 @@
+"""``feeder trial`` from the command line."""
+
+import csv
+import io
+import json
+
+import pytest
+import shapes
+
+BOWL = """\
+drive: {amplitude: 0.15 mm, frequency: 60 Hz, vibration_angle: 20 deg}
+friction: {static: 0.4}
+track: {radius: 2 m, width: 60 mm, climb: 2 deg, bank: 0 deg}
+devices:
+  - narrowed_track: 8 mm
+"""
+CONTRACT = {
+    *(
+        "velocity_mm_s",
+        "parts_per_minute",
+        "efficiency",
+        "purity",
+        "jams",
+        "engine",
+        "warnings",
+        "orientations",
+    ),
+}
+ROW = {
+    *("aspect", "heading_deg", "length_mm", "tried", "passed", "passed_low", "passed_high", "returned"),
+    *("hanging", "stuck", "predicted", "margin_mm"),
+}
+
+
+@pytest.fixture
+def block(tmp_path):
+    path = tmp_path / "block.stl"
+    shapes.box(20, 12, 5).export(path)
+    (tmp_path / "bowl.yaml").write_text(BOWL)
+    return path, tmp_path / "bowl.yaml"
+
+
+def test_the_document_keeps_its_contract(run, block):
+    part, bowl = block
+    result = run(
+        "trial", part, "--aspect", "A", "--config", bowl, "--parts", "4", "--queue", "3", "--seconds", "0.5",
+        "--format", "json",
+    )  # fmt: skip
+    assert result.exit_code == 0
+    found = json.loads(result.stdout)
+    assert set(found) >= CONTRACT
+    assert all(set(one) >= ROW for one in found["orientations"])
+    assert [(one["passed"], one["returned"], one["predicted"]) for one in found["orientations"]] == [
+        (2, 0, "passes"), (0, 2, "returned"),
+    ]  # fmt: skip
+    assert found["queue"]["engine"] in found["engine"]
+
+
+def test_files_and_amplitudes(run, block, tmp_path):
+    part, bowl = block
+    result = run(
+        "trial", part, "--aspect", "A", "--config", bowl, "--parts", "2", "--amplitude", "90%,100%",
+        "--format", "csv", "-o", tmp_path / "out",
+    )  # fmt: skip
+    assert result.exit_code == 0
+    rows = list(csv.DictReader(io.StringIO(result.stdout)))
+    assert [row["amplitude_mm"] for row in rows] == ["0.135", "0.135", "0.15", "0.15"]
+    folder = tmp_path / "out" / "block"
+    names = {"trial.csv", "trial_stations.csv", "trial.json", "trial.png", "trial_paths.png"}
+    assert {path.name for path in folder.iterdir()} == names | {"trial_stills.png", "run.json"}
+    assert "the tooling sorts up to an amplitude of 0.15 mm" in result.stderr
+    assert json.loads((folder / "trial.json").read_text())["highest_amplitude_mm"] == pytest.approx(0.15)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["--aspect", "Q"], "there is no aspect 'Q' - choose one of"),
+        (["--rule", "nothing"], "--rule nothing: has no probabilities of this part - "),
+        (["--amplitude", "9 m"], "--amplitude: drive.amplitude: '9 m' is out of range - give 0 mm to 20 mm"),
+    ],
+)
+def test_faults_are_one_line(run, block, given, said):
+    result = run("trial", block[0], "--config", block[1], *given)
+    assert result.exit_code in (1, 2) and said in result.stderr and "Traceback" not in result.stderr
