@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-MOST = 300_000  # facets that are looked at: a second a hundred thousand
-CHUNK = 20_000  # facets compared with the rest at a time
+MOST, MOST_PAIRS = 300_000, 20_000_000  # facets, and pairs of boxes that overlap: looked at within seconds
+FINE = 1e7  # steps of a unit in which planes are told apart
+CHUNK = 4_000_000  # pairs of boxes at a time, at most: what a hundred MB hold
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +31,7 @@ def crossings(vertices, faces, tolerance):
     Returns
     -------
     Crossings
-        None are looked for in more than ``MOST`` facets.
+        None are looked for in more than ``MOST`` facets, nor after ``MOST_PAIRS`` pairs.
 
     References
     ----------
@@ -50,17 +51,30 @@ def _candidates(corners, faces):
 
     if len(corners) > MOST:
         return
-    low, high = corners.min(axis=1), corners.max(axis=1)
+    low, high, plane = corners.min(axis=1), corners.max(axis=1), _planes(corners)
     x, y, z = np.argsort(-np.ptp(low, axis=0), kind="stable")
     boxes = shapely.box(low[:, x], low[:, y], high[:, x], high[:, y])
     tree = shapely.STRtree(boxes)
-    for start in range(0, len(boxes), CHUNK):
-        i, j = tree.query(boxes[start : start + CHUNK])
-        i = i + start
-        kept = (i < j) & (low[i, z] <= high[j, z]) & (low[j, z] <= high[i, z])
+    seen, step = 0, max(1, CHUNK // len(boxes))
+    for start in range(0, len(boxes), step):
+        i, j = tree.query(boxes[start : start + step])
+        i, seen = i + start, seen + len(i)
+        if seen > MOST_PAIRS:
+            return
+        kept = (i < j) & (plane[i] != plane[j])
+        i, j = i[kept], j[kept]
+        kept = (low[i, z] <= high[j, z]) & (low[j, z] <= high[i, z])
         i, j = i[kept], j[kept]
         shared = (faces[i][:, :, None] == faces[j][:, None, :]).sum(axis=(1, 2))
         yield np.column_stack([i, j])[shared < 2]
+
+
+def _planes(corners):
+    """(F,) int the plane of each facet, those of one plane mostly the same: they do not cut each other."""
+    normals = _normals(corners)
+    offsets = np.einsum("fx,fx->f", normals, corners[:, 0]) / np.abs(corners).max()
+    keys = np.round(np.column_stack([normals, offsets]) * FINE)
+    return np.unique(keys, axis=0, return_inverse=True)[1].reshape(-1)
 
 
 def _cuts(vertices, faces, pairs, tolerance):
