@@ -139,3 +139,19 @@ def test_a_long_name_leaves_the_scale_bar_alone():
     scale = next(text for told, text in texts.items() if told.endswith(" mm"))
     a, b = boxes(figure, [name, scale])
     assert a.x1 < b.x0
+
+
+def test_the_strokes_of_plates_stand_within_their_axes():
+    from types import SimpleNamespace
+
+    from feederscrew.output.plate import figures
+
+    axes = style.figure(4.0, 3.8).add_subplot()
+    x = np.array([0.696, 0.714, 0.732])
+    speeds = [np.full(3, 1e-3 * v) for v in (20.8, 21.7, 22.8)]
+    results = [SimpleNamespace(bowl=read(), occupancy=SimpleNamespace(velocity=speed)) for speed in speeds]
+    axes.plot(x, [1e3 * speed[0] for speed in speeds])
+    figures.named(axes, x, results, ["bowl"] * 3)
+    frame = axes.get_window_extent()
+    for box in boxes(axes.figure, axes.texts):
+        assert frame.x0 <= box.x0 and box.x1 <= frame.x1
