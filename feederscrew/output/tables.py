@@ -7,6 +7,8 @@ import math
 
 import numpy as np
 
+from feederscrew.output import window
+
 UNITS = {  # the end of a column's name, and how a heading writes it
     "_n_per_mm": "N/mm",
     "_per_minute": "1/min",
@@ -35,7 +37,6 @@ UNITS = {  # the end of a column's name, and how a heading writes it
     "_g": "g",
     "_s": "s",
 }
-GAP, LEAST = "  ", 12  # between columns; letters that a column always has
 DIGITS = 4  # significant, in a table for people
 NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
 
@@ -219,33 +220,14 @@ def is_share(name):
 
 def _aligned(frame, width):
     """Columns side by side: texts to the left, numbers with their points in one line."""
-    columns = [_column(name, column) for name, column in frame.items()]
-    pieces = [columns] if width is None or not columns else _folded(columns, width)
+    columns = {name: _column(name, column) for name, column in frame.items()}
+    pieces = [list(columns.values())] if width is None or not columns else window.folded(columns, width)
     return "\n".join("".join(f"{line}\n" for line in _lines(piece) if line) for piece in pieces)
 
 
 def _lines(columns):
     """Line by line; a line of units is empty where no column has one."""
-    return [GAP.join(cells).rstrip() for cells in zip(*columns)]
-
-
-def _folded(columns, width):
-    """Pieces that fit into so many letters, each headed by the first column; texts too long are cut."""
-    first, *rest = columns
-    head = _cut(first, max(width // 2, LEAST))
-    room = max(width - len(head[0]) - len(GAP), LEAST)
-    pieces, taken = [[head]], 0
-    for column in (_cut(column, room) for column in rest):
-        taken += len(column[0]) + len(GAP) * (len(pieces[-1]) > 1)
-        if taken > room and len(pieces[-1]) > 1:
-            pieces.append([head])
-            taken = len(column[0])
-        pieces[-1].append(column)
-    return pieces
-
-
-def _cut(column, most):
-    return [cell if len(cell) <= most else f"{cell[: most - 1]}…" for cell in column]
+    return [window.GAP.join(cells).rstrip() for cells in zip(*columns)]
 
 
 def _column(name, values):

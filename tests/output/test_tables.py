@@ -122,3 +122,14 @@ def test_a_long_text_is_cut_where_the_window_ends():
     lines = tables.text(frame, "table", 50).splitlines()
     assert max(map(len, lines)) <= 50
     assert any(line.endswith("…") for line in lines)
+
+
+def test_an_interval_stays_with_its_value_and_rows_keep_their_names():
+    frame = tables.frame(
+        {"aspect": ["A", "A"], "heading_deg": [0.0, 90.0], "long_name_of_a_column_mm": [1.0, 2.0]}
+        | {f"{name}{end}": [0.5, 0.25] for name in ("p_pmi", "p_csa") for end in ("", "_low", "_high")}
+    )
+    lines = tables.text(frame, "table", 46).splitlines()
+    heads = [line.split() for line in lines if line.startswith("aspect")]
+    assert all(head[:2] == ["aspect", "heading"] for head in heads)
+    assert [head[2:] for head in heads[-2:]] == [["PMI", "low", "high"], ["CSA", "low", "high"]]
