@@ -116,7 +116,7 @@ def _typed(text):
     except units.QuantityError as error:
         raise ArgumentError(ARGUMENT, error.what, error.mend) from None
     if value <= 0.0:
-        raise ArgumentError(ARGUMENT, f"{units.shown(text)} is not above 0", "e.g. 7.85 g/cm3")
+        raise ArgumentError(ARGUMENT, "must be above 0", "e.g. 7.85 g/cm3")
     if not LIGHTEST <= value <= HEAVIEST:
         what = f"{units.shown(text)} is the density of no solid"
         meant = _plausible(number, but=unit)
