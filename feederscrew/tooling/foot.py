@@ -8,7 +8,8 @@ import numpy as np
 
 from feederscrew import check
 
-SAGITTA = 2e-6  # [m] by which a hole's bulging edge may be seen too flat
+SAGITTA = 4e-6  # of the radius: by which a hole's bulging edge may be seen too flat ...
+FLATTEST = 2e-6  # [m] ... and at most; a short base of the support makes up to ten times that of the margin
 BEHIND = 1e-3  # [m] a hole that reaches the wall is cut on into it
 
 
@@ -124,7 +125,7 @@ def scratch(foot, hole):
         rows=np.empty((rows, 6)),
         events=np.empty(2 * rows),
         bounds=np.empty(2 * rows),
-        ends=np.empty((2 * rows, 2)),
+        ways=np.empty(2 * rows),
         cuts=np.empty(CUTS),
         keep=np.empty(len(foot.corners), dtype=np.int64),
         held=np.empty(len(hole.nodes), dtype=np.int64),
@@ -207,11 +208,12 @@ def _reflex(corners):
 
 def _bulging(corners, radius):
     """Points along the edges beyond which the track left bulges, as nodes (N, 3)."""
+    flat = min(SAGITTA * radius, FLATTEST)
     for start, end in zip(corners, np.roll(corners, -1, axis=0)):
         if end[0] >= start[0]:
             continue
         r = max(radius - max(start[1], end[1]), 1e-3 * radius)
-        pieces = int(np.ceil(abs(end[0] - start[0]) * r / radius / np.sqrt(8.0 * r * SAGITTA)))
+        pieces = int(np.ceil(abs(end[0] - start[0]) * r / radius / np.sqrt(8.0 * r * flat)))
         shares = np.arange(1, pieces)[:, None] / max(pieces, 1)
         between = start + shares * (end - start)
         yield np.column_stack([between[:, 0] / radius, radius - between[:, 1], 0.0 * between[:, 0]])

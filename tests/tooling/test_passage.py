@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from feederscrew.tooling import foot as feet
@@ -110,6 +110,9 @@ seeds = st.integers(0, 10_000)
 
 @settings(max_examples=25, deadline=None)
 @given(seeds)
+@example(24)  # a short base of the support makes much of a bulge seen too flat
+@example(415)  # 415, 525: a valley below what stays the same, between two events
+@example(525)
 def test_invariances(seed):
     """Foot and hole mirrored, all of it scaled, the hole begun elsewhere, sides cut in two: the same."""
     rng = np.random.default_rng(seed)

@@ -74,7 +74,7 @@ def inset(points, count, far):
 
 
 @compiled
-def inset_beside(points, count, foot, keep):
+def inset_beside(points, count, foot, keep, moving=False):
     """Return the same of a foot of which some corners are kept, its own hull known.
 
     Parameters
@@ -85,6 +85,8 @@ def inset_beside(points, count, foot, keep):
     foot : Foot
     keep : (V,) int
         Which of its corners are kept.
+    moving : bool
+        Leave out the sides of the foot's own hull, which hide how the others move; infinite without others.
 
     Returns
     -------
@@ -105,7 +107,10 @@ def inset_beside(points, count, foot, keep):
         last = k + 1
         while not keep[foot.hull[last % total]]:
             last += 1
-        found = foot.insets[k] if last == k + 1 else _between(points, count, foot, k, last % total)
+        own = last == k + 1
+        if own and moving:
+            continue
+        found = foot.insets[k] if own else _between(points, count, foot, k, last, moving)
         if found < 0.0:
             return inset(points, count, foot.reach)
         line = min(line, found)
@@ -113,8 +118,14 @@ def inset_beside(points, count, foot, keep):
 
 
 @compiled
-def _between(points, count, foot, k, last):
-    """The least line distance along the hull from one kept corner of the foot to the next, or less than 0."""
+def _between(points, count, foot, k, last, moving):
+    """The least line distance along the hull from one kept corner of the foot to the next, or less than 0.
+
+    A line along one of the foot's own sides does not move.
+    """
+    total = len(foot.hull)
+    aside, behind = foot.insets[k], foot.insets[(last - 1) % total]
+    last %= total
     ax, ay = foot.corners[foot.hull[k], 0], foot.centre - foot.corners[foot.hull[k], 1]
     ex, ey = foot.corners[foot.hull[last], 0], foot.centre - foot.corners[foot.hull[last], 1]
     line = math.inf
@@ -123,7 +134,9 @@ def _between(points, count, foot, k, last):
         if there < 0:
             return -1.0
         bx, by = points[there, 0], points[there, 1]
-        line = min(line, (ax * (by - ay) - ay * (bx - ax)) / math.sqrt((bx - ax) ** 2 + (by - ay) ** 2))
+        found = (ax * (by - ay) - ay * (bx - ax)) / math.sqrt((bx - ax) ** 2 + (by - ay) ** 2)
+        if not moving or (abs(found - aside) > LEVEL and abs(found - behind) > LEVEL):
+            line = min(line, found)
         ax, ay = bx, by
         if line < 0.0 or (abs(ax - ex) < NEAR and abs(ay - ey) < NEAR):
             break

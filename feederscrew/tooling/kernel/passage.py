@@ -27,6 +27,7 @@ from feederscrew.tooling.kernel.hull import inset_beside
 CLOSE = 1e-9  # [m] a lower margin is looked for if it may be lower by more
 INSTANT = 1e-12  # [rad] a shorter piece is one of rounding
 SAMPLES = 4  # parts of a piece that may hold the least margin
+STEEP = 2.0  # of a point's mean speed in a piece: no faster does a margin fall beside a sample
 SECTIONS = 40
 ASIDE = 1e-3  # of a sample's distance: there the margin is seen to rise or to fall
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
@@ -58,7 +59,7 @@ class VerdictArrays(NamedTuple):
     rows: np.ndarray  # (N, 6) stretches
     events: np.ndarray  # (2 N,) [rad]
     bounds: np.ndarray  # (2 N,) [m] the margin between two events is not less
-    ends: np.ndarray  # (2 N, 2) [m] the margin at both ends of what lies between two events
+    ways: np.ndarray  # (2 N,) [m] how far any of its points moves between two events
     cuts: np.ndarray  # (10,)
     keep: np.ndarray  # (V,) int, corners with track below
     held: np.ndarray  # (P,) int, corners of the hole with the foot above
@@ -89,7 +90,8 @@ def least(foot, hole, scratch, out):
         if scratch.events[i + 1] - scratch.events[i] > INSTANT:
             active = _status(foot, hole, scratch, i)
             low, high = scratch.events[i], scratch.events[i + 1]
-            scratch.bounds[i] = _ends(foot, hole, scratch, low, high, active, scratch.ends[i], out)
+            before, after, way = _ends(foot, hole, scratch, low, high, active, out)
+            scratch.bounds[i], scratch.ways[i] = 0.5 * (before + after - way), way
     for i in range(number - 1):
         if scratch.bounds[i] < out[0] - CLOSE:
             _within(foot, hole, scratch, i, out)
@@ -141,20 +143,22 @@ def _over(edges, theta, radius):
 
 
 @compiled
-def _ends(foot, hole, scratch, low, high, active, ends, out):
-    """Margins at both ends of a piece, told to ``out``; return what the margin between is at least."""
+def _ends(foot, hole, scratch, low, high, active, out):
+    """Margins at both ends of a piece, told to ``out``, and how far any point moves between them."""
     first = _gather(foot, hole, scratch, low, active, True, scratch.points)
     before = inset_beside(scratch.points, first, foot, scratch.keep)
     second = _gather(foot, hole, scratch, high, active, True, scratch.others)
     after = inset_beside(scratch.others, second, foot, scratch.keep)
     _lower(out, before, low)
     _lower(out, after, high)
-    ends[0], ends[1] = before, after
     way = 0.0
     for k in range(active):
         dx = scratch.points[k, 0] - scratch.others[k, 0]
         way = max(way, math.hypot(dx, scratch.points[k, 1] - scratch.others[k, 1]))
-    return 0.5 * (before + after - way)
+    for k in range(len(hole.nodes)):
+        if hole.nodes[k, 2] == 0.0 or scratch.held[k]:
+            way = max(way, hole.nodes[k, 1] * (high - low))
+    return before, after, way
 
 
 @compiled
@@ -165,15 +169,20 @@ def _lower(out, margin, phi):
 
 @compiled
 def _within(foot, hole, scratch, i, out):
-    """Look for a lower margin within a piece: some samples, then the golden section about the lowest."""
+    """Look for a lower margin within a piece: some samples, then the golden section about the lowest.
+
+    Of the hull's sides only those that move count: the others are told at the ends.
+    """
     active = _status(foot, hole, scratch, i)
     start, step = scratch.events[i], (scratch.events[i + 1] - scratch.events[i]) / SAMPLES
-    lowest, at, last = scratch.ends[i, 0], 0, scratch.ends[i, 1]
-    for k in range(1, SAMPLES + 1):
-        margin = last if k == SAMPLES else _margin(foot, hole, scratch, start + k * step, active)
+    lowest, at = math.inf, 0
+    for k in range(SAMPLES + 1):
+        margin = _margin(foot, hole, scratch, start + k * step, active)
         if margin < lowest:
             lowest, at = margin, k
     _lower(out, lowest, start + at * step)
+    if lowest - STEEP * scratch.ways[i] / SAMPLES > out[0]:
+        return
     for beside in (at - 1, at + 1):  # an end may be the lowest sample, and the margin still fall from there
         if 0 <= beside <= SAMPLES:
             way = (beside - at) * step
@@ -205,7 +214,7 @@ def _section(foot, hole, scratch, start, end, active, out):
 @compiled
 def _margin(foot, hole, scratch, phi, active):
     count = _gather(foot, hole, scratch, phi, active, True, scratch.points)
-    return inset_beside(scratch.points, count, foot, scratch.keep)
+    return inset_beside(scratch.points, count, foot, scratch.keep, True)
 
 
 @compiled
