@@ -35,6 +35,7 @@ class Jobs(click.ParamType):
 )
 @options.overrides
 @options.rule
+@options.launch
 @click.option(
     "--drops",
     metavar="N",
@@ -53,16 +54,16 @@ class Jobs(click.ParamType):
 @options.pictures
 @options.output
 @click.pass_context
-def batch(ctx, sources, configs, overrides, rule, drops, jobs, scheduler, resume, pictures, out):
+def batch(ctx, sources, configs, overrides, rule, launch, drops, jobs, scheduler, resume, pictures, out):
     """Example: feeder batch parts/ --config bowl.yaml -o results/all --jobs 2
 
     Compute every part in every bowl: its aspects, how it travels, and the rate of the orientation
-    that leaves the bowl most often. A part that fails is told, and the others go on; exit status 1
-    says that some failed.
+    that leaves the bowl most often, or of the aspect that a list asks for. A part that fails is told,
+    and the others go on; exit status 1 says that some failed.
 
     PARTS are part files, folders of them, patterns ("parts/**/*.stl") and lists: a CSV whose first
-    line names its columns, out of part, units, density, centre_of_mass and config. -o DIR gets summary.csv
-    with a row a part, index.html, contact_sheet.png, and a folder a part in DIR/parts.
+    line names its columns, out of part, units, density, centre_of_mass, aspect and config. -o DIR gets
+    summary.csv with a row a part, index.html, contact_sheet.png, and a folder a part in DIR/parts.
     """
     ctx.with_resource(ended_within(PATIENCE))
     from feederscrew import batch as batches
@@ -71,7 +72,7 @@ def batch(ctx, sources, configs, overrides, rule, drops, jobs, scheduler, resume
         raise click.UsageError("Missing option '-o' - say where the results go")
     requests = batches.gather(sources, configs, overrides)
     workers = batches.crew(jobs, None if _typed(ctx, "jobs") else scheduler)
-    choices = batches.Choices(rule=rule, drops=drops, pictures=pictures)
+    choices = batches.Choices(rule=rule, drops=drops, launch=launch, pictures=pictures)
     with Progress(len(requests), not out.quiet) as progress:
         found = batches.run(
             requests, out.directory, workers=workers, choices=choices, resume=resume, tell=progress.tell

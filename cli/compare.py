@@ -10,10 +10,13 @@ from feederscrew_cli import options, waiting
 @click.command(short_help="Measured aspects against every rule, of one part or over many files.")
 @options.parts
 @click.option("--with", "counts", metavar="CSV", type=options.Place(), help="Counts or fractions of PART.")
+@click.option(
+    "--launch", type=options.LAUNCHES, help="What was done to PART.  [default: as the file says, else feed]"
+)
 @click.option("--as-published", is_flag=True, help="Count each class once in PMI, as Tables 3-8 and 3-9 do.")
 @options.pictures
 @options.output
-def compare(sources, reading, counts, as_published, pictures, out):
+def compare(sources, reading, counts, launch, as_published, pictures, out):
     """Example: feeder compare parts/arc_chute.yaml --with counts.csv -o results
 
     How far what was measured on PART is from each rule, and from the rest: the deviation of the
@@ -31,21 +34,21 @@ def compare(sources, reading, counts, as_published, pictures, out):
     docs/measured/*.csv). With -o: compare.csv, compare.png and run.json.
     """
     if counts is None:
-        _over_files(sources, as_published, pictures, out)
+        _over_files(sources, launch, as_published, pictures, out)
     elif len(sources) > 1:
         raise click.UsageError("--with goes with one PART - leave it out to compare many files")
     else:
-        _of_part(reading | {"source": sources[0]}, counts, as_published, pictures, out)
+        _of_part(reading | {"source": sources[0]}, counts, launch, as_published, pictures, out)
 
 
-def _of_part(part, counts, as_published, pictures, out):
+def _of_part(part, counts, launch, as_published, pictures, out):
     """One part against one file."""
     from feederscrew.output import columns, offers
     from feederscrew.output.compare import files, tables
     from feederscrew.studies.compare import compare as compare_study
 
     solid = out.part(part)
-    study = compare_study(solid, counts, as_published=as_published)
+    study = compare_study(solid, counts, launch=launch, as_published=as_published)
     out.warn(*study.warnings)
     inputs = {each.source: each.sha256 for each in (solid, study.measured)}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
@@ -54,7 +57,7 @@ def _of_part(part, counts, as_published, pictures, out):
     out.show(tables.comparisons(study), tables.document(study), hidden=tables.hidden(study))
 
 
-def _over_files(sources, as_published, pictures, out):
+def _over_files(sources, launch, as_published, pictures, out):
     """Many files, each with its own part."""
     from feederscrew.output import offers
     from feederscrew.output.compare import sets
@@ -63,7 +66,7 @@ def _over_files(sources, as_published, pictures, out):
     if any(Path(source).suffix.lower() != ".csv" for source in sources):
         raise click.UsageError("Missing option '--with' - or name CSV files that say which part they are of")
     with waiting.bar(out, "files") as bar:
-        study = compare_sets(sources, as_published=as_published, progress=bar.reach)
+        study = compare_sets(sources, launch=launch, as_published=as_published, progress=bar.reach)
     out.warn(*study.warnings)
     with out.folder("measured", study.inputs) as folder:
         offers.write(folder, sets.offers(study), pictures=pictures)

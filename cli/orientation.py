@@ -2,7 +2,7 @@
 
 import click
 
-from feederscrew_cli import options
+from feederscrew_cli import options, waiting
 from feederscrew_cli.angle import Angle
 from feederscrew_cli.quantity import Quantity
 
@@ -43,6 +43,62 @@ def chain(command):
     for option in reversed(CHAIN):
         command = option(command)
     return command
+
+
+LAUNCH = click.option("--launch", type=options.LAUNCHES, help="What is done to the part.  [default: feed]")
+FED = click.option(
+    "--launch",
+    type=options.LAUNCHES,
+    help="What is done to the part.  [default: fed onto the moving floor of --config, else feed]",
+)
+PROBABILITIES = click.option(
+    "--probabilities",
+    metavar="CSV",
+    type=options.Place(),
+    help="Take the shares of a file of counts, or of drop.csv.",
+)
+
+
+def taken(launch):
+    """Add the options that say whose shares of the aspects are taken; the command receives ``taken``."""
+
+    def decorate(command):
+        keywords = ("launch", "probabilities")
+        return options.stacked(options.packed(command, "taken", keywords), launch, PROBABILITIES)
+
+    return decorate
+
+
+def shares(out, part, bowl, taken, path=None):
+    """Return the aspects of a part with the answer that the options name, a ``studies.rate.Shares``.
+
+    Without any, parts are fed onto the moving floor of the bowl of ``path``; where that is None, the
+    recommended answer is taken.
+    """
+    from feederscrew.studies import rate as study
+
+    return study.shares(part, bowl, **choice(taken, path), **telling(out))
+
+
+def choice(taken, path=None):
+    """Return the keywords of ``studies.rate.shares`` that the options name; a wrong call if two clash."""
+    asked = click.get_current_context().get_parameter_source("rule") is click.core.ParameterSource.COMMANDLINE
+    others = [name for name, given in (("--launch", taken["launch"]), ("--rule", asked)) if given]
+    if taken["probabilities"] is not None and others:
+        raise click.UsageError(f"--probabilities takes the place of {others[0]} - leave one of them out")
+    named = asked or any(value is not None for value in taken.values())
+    return {**taken, "fed": path is not None and not named}
+
+
+def telling(out):
+    """Return the keywords of ``studies.rate.shares`` that tell how far it is."""
+    bar = waiting.bar(out, "parts")
+
+    def before(_):
+        waiting.drops(out)
+        click.get_current_context().with_resource(bar)
+
+    return {"before": before, "progress": bar.reach}
 
 
 def doubt(command):

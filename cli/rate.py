@@ -10,10 +10,11 @@ from feederscrew_cli import options, orientation
 @click.command(short_help="Well-oriented parts per minute, with each factor of the chain.")
 @options.part
 @orientation.chain
+@orientation.taken(orientation.FED)
 @orientation.doubt
 @options.bowl
 @options.output
-def rate(part, aspect, heading, rule, gap, fill, play, tolerance, bowl, out):
+def rate(part, aspect, heading, rule, gap, fill, taken, play, tolerance, bowl, out):
     """Example: feeder rate parts/lbracket_30x20x15.stl --aspect A --config bowl.yaml
 
     Parts per minute in the wanted aspect and heading. The queue before the devices holds every
@@ -24,6 +25,10 @@ def rate(part, aspect, heading, rule, gap, fill, play, tolerance, bowl, out):
     '- wiper: 6 mm', '- gap: 9 mm' or '- yield:' with the share that passes for each aspect below it;
     feeder config init lists every kind. --play and --tolerance give the share that passes a device by
     its margin, instead of all or none.
+
+    The shares of the aspects are, with --config, what lies at the track's entry: parts fed from a hopper
+    onto the moving floor of that bowl until time or the rates of change settle it. Else they are the
+    recommended answer for --launch, those of --rule, or those of a file (docs/counts.md).
     With -o: rate.json and orientations.csv, what each device does with each orientation.
     """
     from feederscrew import bowl as bowls
@@ -33,9 +38,11 @@ def rate(part, aspect, heading, rule, gap, fill, play, tolerance, bowl, out):
 
     solid, settings = out.part(part), bowls.settings(**bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
-    with out.folder(solid.name, {solid.source: solid.sha256}, effective) as folder:
+    record = bowls.record(settings)
+    known = orientation.shares(out, solid, record, taken, bowl["path"])
+    with out.folder(solid.name, {solid.source: solid.sha256} | known.inputs, effective) as folder:
         found = study(
-            solid, bowls.record(settings), aspect,
+            solid, record, aspect, known=known,
             heading=heading, rule=rule, gap=gap, fill=fill, sigma=math.hypot(play, tolerance),
         )  # fmt: skip
         document = tables.document(found)

@@ -49,14 +49,16 @@ def _all(decorators):
 @click.command(short_help="All that is known of a part in a bowl, on one page to turn, print and keep.")
 @options.part
 @_all(WANTED)
+@orientation.taken(orientation.FED)
 @options.bowl
 @_all(PLACE)
-def report(part, bowl, directory, format, quiet, verbose, **wanted):
+def report(part, bowl, taken, directory, format, quiet, verbose, **wanted):
     """Example: feeder report parts/lbracket_30x20x15.stl --config bowl.yaml -o results
 
     Everything the other commands tell of PART in a bowl: its aspects in 3-D views that can be turned, how
     often it lands on each, how it tips, slides and travels, the reactions on the track and the rate, with
-    what the methods leave out and what it takes to get the numbers again.
+    what the methods leave out and what it takes to get the numbers again. How often it lands on each aspect
+    is, with --config, what arrives from the bowl's own moving floor, as for `feeder rate`.
 
     PART is a mesh or a part card. report.html needs no other file and no network; --format md writes
     report.md with its pictures beside it. A chapter that cannot be computed says why.
@@ -69,7 +71,8 @@ def report(part, bowl, directory, format, quiet, verbose, **wanted):
     out = talk.Output.of(format=format, directory=directory, quiet=quiet, verbose=verbose)
     solid = out.part(part)
     waiting.conveying(out)
-    found = study(solid, **bowl, **wanted, command=repeated(out.arguments))
+    chosen = orientation.choice(taken, bowl["path"]) | orientation.telling(out)
+    found = study(solid, **bowl, **wanted, **chosen, command=repeated(out.arguments))
     effective = columns.conditions(solid) | texts(found.settings)
     with out.folder(solid.name, found.inputs, effective) as folder:
         made = page(found, out.step)

@@ -2,7 +2,7 @@
 
 import click
 
-from feederscrew_cli import options
+from feederscrew_cli import options, orientation
 from feederscrew_cli.angle import Angle
 from feederscrew_cli.progress import Progress
 from feederscrew_cli.quantity import Quantity
@@ -58,12 +58,14 @@ from feederscrew_cli.quantity import Quantity
     metavar="TIME",
     help="The last resort, after which the best so far is taken, and said to be so.",
 )
+@orientation.taken(orientation.FED)
 @options.bowl
 @options.pictures
 @options.output
 def tooling(
-    part, aspect, heading, rule, margin, purity, efficiency, turn, seed, verdicts, limit, bowl, pictures, out
-):
+    part, aspect, heading, rule, margin, purity, efficiency, turn, seed, verdicts, limit, taken, bowl,
+    pictures, out,
+):  # fmt: skip
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
     Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect:
@@ -83,10 +85,12 @@ def tooling(
 
     solid, settings = out.part(part), bowls.settings(**bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
-    with out.folder(solid.name, {solid.source: solid.sha256}, effective) as folder:
+    record = bowls.record(settings)
+    known = orientation.shares(out, solid, record, taken, bowl["path"])
+    with out.folder(solid.name, {solid.source: solid.sha256} | known.inputs, effective) as folder:
         with Progress(None, not out.quiet, "orientations") as bar:
             found = study(
-                solid, bowls.record(settings), aspect,
+                solid, record, aspect, known=known.aspects,
                 heading=heading, rule=rule, margin=margin, purity=purity, efficiency=efficiency, turn=turn,
                 seed=seed, verdicts=verdicts, seconds=limit, told=bar.reach,
             )  # fmt: skip

@@ -16,14 +16,16 @@ from feederscrew_cli.quantity import Quantity
     help="Well-oriented parts: 120/min.",
 )
 @orientation.chain
+@orientation.taken(orientation.LAUNCH)
 @options.bowl
 @options.output
-def tune(part, target, aspect, heading, rule, gap, fill, bowl, out):
+def tune(part, target, aspect, heading, rule, gap, fill, taken, bowl, out):
     """Example: feeder tune parts/lbracket_30x20x15.stl --aspect A --target 20/min
 
-    Every setting of amplitude, vibration angle or frequency alone that reaches the target, one-way
+    Every setting of amplitude, vibration angle or frequency alone that reaches at least the target, one-way
     and gentle motions first, each with its regime, hardest impact, the margins to slip forward, slip
     back and hop (below 0: beyond it), and the rate if friction is a fifth lower or higher.
+    The shares of the aspects are those of --launch, --rule or --probabilities, whatever the drive.
     With -o: tune.csv and tune.json.
     """
     from feederscrew import bowl as bowls
@@ -34,9 +36,11 @@ def tune(part, target, aspect, heading, rule, gap, fill, bowl, out):
     solid, settings = out.part(part), bowls.settings(**bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
     waiting.conveying(out)
-    with out.folder(solid.name, {solid.source: solid.sha256}, effective) as folder:
+    record = bowls.record(settings)
+    known = orientation.shares(out, solid, record, taken)
+    with out.folder(solid.name, {solid.source: solid.sha256} | known.inputs, effective) as folder:
         found = study(
-            solid, bowls.record(settings), aspect, target,
+            solid, record, aspect, target, known=known,
             heading=heading, rule=rule, gap=gap, fill=fill,
         )  # fmt: skip
         out.warn(*found.warnings)

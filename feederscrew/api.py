@@ -246,6 +246,9 @@ def rate(
     devices: Sequence[Device] | None = None,
     gap: float = 0.0,
     fill: float = 1.0,
+    launch: str | None = None,
+    probabilities: str | PathLike[str] | None = None,
+    fed: bool = False,
 ) -> Rate:
     """Compute the well-oriented parts per second, with each factor.
 
@@ -266,10 +269,17 @@ def rate(
         Between one part and the next.
     fill : float [1]
         Share of the track that is occupied.
+    launch : str, optional
+        What is done to the part: 'place', 'drop', 'flip', 'roll' or 'feed', which is usual.
+    probabilities : str or Path, optional
+        File of counts whose shares are taken.
+    fed : bool
+        Take what arrives at the track's entry from the moving floor of the bowl.
 
     Returns
     -------
     Rate
     """
-    study = _rate.rate(part, bowl, aspect, heading=heading, rule=rule, devices=devices, gap=gap, fill=fill)
-    return study.rate
+    known = _rate.shares(part, bowl, launch=launch, probabilities=probabilities, fed=fed)
+    own = {"heading": heading, "rule": rule, "devices": devices, "gap": gap, "fill": fill}
+    return _rate.rate(part, bowl, aspect, known=known, **own).rate

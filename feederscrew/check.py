@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from feederscrew.errors import ArgumentError
+
 
 def shaped(name, value, shape):
     """Finite float array of a given shape.
@@ -48,3 +50,35 @@ def frozen(array):
     array = np.ascontiguousarray(array)
     array.setflags(write=False)
     return array
+
+
+def argument(name, value, low=-np.inf, high=np.inf):
+    """Return a finite number from low to high.
+
+    Parameters
+    ----------
+    name : str
+        The argument, as the caller of the library knows it.
+    value : float
+    low, high : float
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    ArgumentError
+        If it is not such a number; the line names the argument.
+    """
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise ArgumentError(name, f"is {value!r:.40}, not a number", "give a number") from None
+    if low <= number <= high and np.isfinite(number):
+        return number
+    ends = [f"from {low:g}"] if np.isfinite(low) else []
+    ends += [f"to {high:g}"] if np.isfinite(high) else []
+    raise ArgumentError(
+        name, f"is {number:g}", f"give a number {' '.join(ends)}" if ends else "give a number"
+    )

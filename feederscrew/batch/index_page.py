@@ -42,7 +42,7 @@ def _row(store, row):
     start = (MarkedCell("", picture=_picture(store, row)), folder, MarkedCell(row["config"]))
     if row["status"] != DONE:
         return (*start, MarkedCell("failed", "failed"), *[MarkedCell("")] * 4, MarkedCell(said, "failed"))
-    leaves = f"{row['aspect']} at {row['heading_deg']:.4g}\u00b0" if row["aspect"] else "-"
+    leaves = row["orientation"] or "-"
     numbers = [_number(row[name]) for name in ("mass_g", "aspects")]
     rates = [_number(row[name]) for name in ("velocity_mm_s", "parts_per_minute")]
     return (*start, *numbers, MarkedCell(leaves), *rates, MarkedCell(said))
@@ -57,5 +57,7 @@ def _picture(store, row):
     return (
         None
         if content is None
-        else Picture(THUMBNAIL, content, f"{row['folder']} on aspect {row['aspect'] or 'A'}")
+        else Picture(
+            THUMBNAIL, content, f"{row['folder']} on aspect {row['aspect'] or 'it rests on most often'}"
+        )
     )

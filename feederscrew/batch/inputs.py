@@ -51,7 +51,7 @@ def gather(sources, configs=(), overrides=()):
     bowls_by_path = {path: _conditions(path, overrides, faults) for path in paths}
     raise_all(faults)
     requests = dict.fromkeys(
-        Request(row.source, bowls_by_path[path], row.options, line=row.line)
+        Request(row.source, bowls_by_path[path], row.options, line=row.line, aspect=row.aspect)
         for row in rows
         for path in ([row.config] if row.config else wanted)
     )

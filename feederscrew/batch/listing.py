@@ -8,9 +8,9 @@ from pathlib import Path
 from feederscrew import documents
 from feederscrew.errors import ConfigError
 
-PART, CONFIG = "part", "config"
+PART, ASPECT, CONFIG = "part", "aspect", "config"
 OPTIONS = ("units", "density", "centre_of_mass")
-COLUMNS = (PART, *OPTIONS, CONFIG)
+COLUMNS = (PART, *OPTIONS, ASPECT, CONFIG)
 LARGEST = 20_000_000  # [bytes] a few hundred thousand parts
 
 
@@ -22,6 +22,7 @@ class Row:
     options: tuple[tuple[str, str], ...] = ()  # those given
     config: str | None = None  # bowl file; None for those of the command line
     line: str = ""  # 'parts.csv:3'
+    aspect: str | None = None  # the one wanted
 
 
 def read(path, faults):
@@ -84,4 +85,4 @@ def _row(path, line, header, cells, faults):
     beside = Path(path).parent
     options = tuple((name, given[name]) for name in OPTIONS if given.get(name))
     config = str(beside / given[CONFIG]) if given.get(CONFIG) else None
-    return [Row(str(beside / given[PART]), options, config, where)]
+    return [Row(str(beside / given[PART]), options, config, where, given.get(ASPECT) or None)]

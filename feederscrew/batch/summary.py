@@ -9,13 +9,13 @@ from feederscrew.output import tables
 NAME = "summary.csv"
 COLUMNS = (
     "part", "folder", "config", "status", "reason", "material", "mass_g", "aspects", "aspect", "heading_deg",
-    "rule", "p_orientation", "passes_devices", "velocity_mm_s", "regime", "pitch_mm",
+    "orientation", "rule", "answer", "p_orientation", "passes_devices", "velocity_mm_s", "regime", "pitch_mm",
     "parts_per_minute", "parts_per_minute_low", "parts_per_minute_high",
     "drops", "drop_aspect", "p_drop", "note", "warnings",
 )  # fmt: skip
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 HIDDEN = (  # from a table for people
-    "folder", "aspects", "material", "rule", "regime", "passes_devices",
+    "folder", "aspects", "material", "aspect", "heading_deg", "rule", "answer", "regime", "passes_devices",
     "parts_per_minute_low", "parts_per_minute_high", "drops", "drop_aspect", "p_drop", "note", "warnings",
 )  # fmt: skip
 
@@ -73,5 +73,5 @@ def tiles(store, rows):
     (bytes or None, str, str)
     """
     for row in rows:
-        said = f"{row['aspect'] or '-'}: {rate(row)}" if row["status"] == DONE else "failed"
+        said = f"{row['orientation'] or '-'}: {rate(row)}" if row["status"] == DONE else "failed"
         yield store.file(row["folder"], THUMBNAIL), row["folder"], said

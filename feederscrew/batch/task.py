@@ -9,6 +9,7 @@ from importlib import metadata
 from feederscrew import __version__
 from feederscrew.bowl import Bowl
 from feederscrew.output.folder import LIBRARIES
+from feederscrew.resting.rules.recommended import LAUNCH
 
 DONE, FAILED = "done", "failed"
 
@@ -28,6 +29,7 @@ class Choices:
 
     rule: str = "recommended"  # whose probabilities the rate takes
     drops: int = 0  # simulated drops of each part
+    launch: str = LAUNCH  # what is done to it
     pictures: bool = True
 
 
@@ -39,6 +41,7 @@ class Request:
     conditions: Conditions
     options: tuple[tuple[str, str], ...] = ()  # units, density, centre_of_mass: those that were given
     name: str = ""  # of its folder, unlike any other of the batch
+    aspect: str | None = None  # the one wanted; None for the orientation that leaves most often
     line: str = field(default="", compare=False)  # 'parts.csv:3', where a list names it
 
 

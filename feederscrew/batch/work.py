@@ -1,5 +1,6 @@
 """The whole pipeline for one part, from the bytes of its file to the bytes of its results."""
 
+import dataclasses
 import functools
 import io
 
@@ -15,12 +16,13 @@ from feederscrew.output.rate import files as rate_files
 from feederscrew.output.rate import tables as rate_tables
 from feederscrew.part import load
 from feederscrew.rates import queue
-from feederscrew.studies.aspects import aspects
+from feederscrew.resting.aspects import find
+from feederscrew.resting.rules.recommended import dropped, launch_named
+from feederscrew.studies.aspects import AspectsStudy, aspects
 from feederscrew.studies.convey import convey
-from feederscrew.studies.rate import rate
+from feederscrew.studies.rate import Shares, rate
 
 THUMBNAIL = "thumbnail.png"
-LAUNCH = "feed"  # from a hopper into a bowl
 SEED_DIGITS = 8  # hexadecimal, of the file's sha256
 
 
@@ -55,7 +57,7 @@ def work(task):
 def _results(task):
     request, choices, files = task.request, task.choices, Files()
     part = load(request.source, **dict(request.options), stdin=io.BytesIO(task.data))
-    study = aspects(part)
+    study, tested = _answered(part, task, files)
     found = study.aspects
     offers.write(files, aspects_files.offers(study), pictures=choices.pictures)
     conveying = travel(request.conditions)
@@ -68,7 +70,7 @@ def _results(task):
         "velocity_mm_s": conveying["velocity_mm_s"],
         "regime": conveying["regime"],
         **_rate(part, found, task, files),
-        **_drops(part, found, task, files),
+        **tested,
     }
     if choices.pictures and part.vertices is not None:
         files.write(THUMBNAIL, contact_sheet.thumbnail(part, found, row.get("aspect")))
@@ -81,7 +83,7 @@ def _results(task):
         row=row,
         effective=columns.conditions(part)
         | dict(request.conditions.texts)
-        | {"rule": choices.rule, "drops": choices.drops},
+        | {"rule": choices.rule, "drops": choices.drops, "launch": choices.launch},
         warnings=(*part.warnings, *found.warnings),
         files=files,
     )
@@ -95,28 +97,36 @@ def travel(conditions):
 
 
 def _rate(part, found, task, files):
-    """The rate of the orientation that leaves the bowl most often, for the summary."""
+    """The rate of the aspect wanted, else of the orientation that leaves most often, for the summary."""
     if part.vertices is None:
         return {"note": "a part card has no outline: no rate"}
     conditions, rule = task.request.conditions, task.choices.rule
-    study = rate(part, conditions.bowl, rule=rule, aspects=found)
+    study = rate(part, conditions.bowl, task.request.aspect, rule=rule, known=Shares(found))
     document = rate_tables.document(study)
     offers.write(files, rate_files.offers(study))
     wanted = ("aspect", "heading_deg", "pitch_mm", "p_orientation", "passes_devices")
     rates = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
-    return {"rule": rule, **{name: document[name] for name in (*wanted, *rates)}}
+    way = study.rate.orientations.lying[study.rate.row].name
+    named = {"orientation": way, "rule": rule, "answer": study.answer}
+    return named | {name: document[name] for name in (*wanted, *rates)}
 
 
-def _drops(part, found, task, files):
-    """The drop test, where it is asked for: its random numbers hang on the part's file alone."""
-    if not task.choices.drops or part.vertices is None:
-        return {}
+def _answered(part, task, files):
+    """The study of a part's aspects and, for the summary, the drop test where one is asked for.
+
+    Its random numbers hang on the part's file alone; its answer is then the recommended one.
+    """
+    choices = task.choices
+    if not choices.drops or part.vertices is None:
+        return aspects(part, launch=choices.launch), {}
     from feederscrew.output.drop import files as drop_files
     from feederscrew.studies.drop import drop
 
-    seed = int(task.sha256[:SEED_DIGITS], 16)
-    study = drop(part, LAUNCH, drops=task.choices.drops, seed=seed, aspects=found)
-    offers.write(files, drop_files.offers(study), pictures=task.choices.pictures)
-    shares = study.result.tally.p
-    first = int(np.argmax(shares))
-    return {"drops": task.choices.drops, "drop_aspect": found.names[first], "p_drop": shares[first]}
+    found, seed = find(part, launch=choices.launch), int(task.sha256[:SEED_DIGITS], 16)
+    study = drop(part, choices.launch, drops=choices.drops, seed=seed, aspects=found)
+    offers.write(files, drop_files.offers(study), pictures=choices.pictures)
+    tally = study.result.tally
+    answer = dropped(tally, found.stable, launch_named(choices.launch))
+    first = int(np.argmax(tally.p))
+    told = {"drops": choices.drops, "drop_aspect": found.names[first], "p_drop": tally.p[first]}
+    return AspectsStudy(part, dataclasses.replace(found, recommended=answer), tally), told

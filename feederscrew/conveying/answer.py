@@ -101,6 +101,8 @@ def throw_number(bowl):
 
 def conveying(bowl):
     """The bowl itself, once it can convey; raises ConfigError otherwise."""
+    if not np.all(bowl.gravity > 0.0):
+        raise ConfigError("gravity", "is not above 0", "give m/s2, 9.81 on earth")
     if np.any(bowl.drive.direction != 0.0):
         what = "is not 0 deg, but a track can only convey along itself"
         raise ConfigError("drive.direction", what, "leave it out: it is for the floor (feeder floor)")

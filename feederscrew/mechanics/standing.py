@@ -3,19 +3,21 @@
 from feederscrew.resting import aspects
 from feederscrew.resting.posture import posture
 
-LIKELIEST, LISTED = "the likeliest by CSA", "the first of the card"
+LIKELIEST, LISTED = "the likeliest ({})", "the first of the card"
 
 
-def standing(part, aspect, block):
+def standing(part, aspect, block, answered=aspects.find):
     """The part on an aspect.
 
     Parameters
     ----------
     part : Part
     aspect : str or None
-        Its name; None for the one that a card's block is of, else for the first of ``resting.aspects.find``.
+        Its name; None for the one that a card's block is of, else for the likeliest, of a card the first.
     block : str
         Of a part card: 'floor' or 'track'.
+    answered : function
+        From a part to its Aspects with the answer that says which is the likeliest; asked only for that.
 
     Returns
     -------
@@ -27,10 +29,12 @@ def standing(part, aspect, block):
     FeederError
         If there is no such aspect.
     """
-    found = aspects.find(part)
     if aspect is not None:
-        return posture(part, found, aspect), None
+        return posture(part, aspects.find(part), aspect), None
     analysed = (part.printed or {}).get(block, {}).get("aspect")
     if analysed is not None:
-        return posture(part, found, analysed), f"the one of the card's {block} block"
-    return posture(part, found, found.names[0]), LISTED if part.vertices is None else LIKELIEST
+        return posture(part, aspects.find(part), analysed), f"the one of the card's {block} block"
+    found = answered(part)
+    if found.recommended is None:
+        return posture(part, found, found.names[0]), LISTED
+    return posture(part, found, found.likeliest), LIKELIEST.format(found.recommended.rule)

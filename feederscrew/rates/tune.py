@@ -14,7 +14,7 @@ GENTLE = ("forward", "stick", "both", "backward", "hop", "no steady state")  # r
 STEPS = 241  # values of a knob that are looked at
 HIGHEST_THROW = 3.5  # beyond the best throw number, about 3, velocity falls and rests on chance
 HALVINGS = 45
-REACHED = 1e-6  # of the velocity; a jump across the wanted velocity does not reach it
+REACHED = 1e-6  # of the velocity
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class Solution:
 
 
 def solutions(bowl, target, parts_per_metre):
-    """Every setting of amplitude, angle or frequency alone that reaches a rate.
+    """Every setting of amplitude, angle or frequency alone that reaches at least a rate.
 
     Parameters
     ----------
@@ -47,28 +47,24 @@ def solutions(bowl, target, parts_per_metre):
     Returns
     -------
     list of Solution
-        One-way and gentle regimes first.
+        Each reaches at least the rate: more of it where the velocity jumps over the wanted one; those come
+        last. One-way and gentle regimes first.
 
     Raises
     ------
     FeederError
-        If none does; the line says what the bowl reaches at most, or where its rate jumps over the target.
+        If none does; the line says what the bowl reaches at most.
     """
-    found, jumps, peaks = [], [], []
+    velocity, found, peaks = target / parts_per_metre, [], []
     for name in KNOBS:
         key, values = BY_NAME[name], _values(bowl, BY_NAME[name])
         speeds = _speeds(bowl, key, values)
-        for one in _crossings(bowl, key, values, speeds, target / parts_per_metre):
-            reached = (
-                abs(one.answer.velocity - target / parts_per_metre) <= REACHED * target / parts_per_metre
-            )
-            (found if reached else jumps).append(one)
+        fast = _crossings(bowl, key, values, speeds, velocity)
+        found += [one for one in fast if one.answer.velocity >= (1.0 - REACHED) * velocity]
         peaks += [(speed, key, value) for speed, value in zip(speeds, values) if np.isfinite(speed)]
-    if not found and jumps:
-        raise _jumped(target, parts_per_metre, min(jumps, key=lambda one: one.order))
     if not found:
         raise _unreachable(target, parts_per_metre, max(peaks, key=lambda peak: peak[0], default=None))
-    return sorted(found, key=lambda one: one.order)
+    return sorted(found, key=lambda one: (one.answer.velocity > (1.0 + REACHED) * velocity, *one.order))
 
 
 def turned(bowl, key, value):
@@ -106,15 +102,6 @@ def _crossings(bowl, key, values, speeds, velocity):
         low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
     fast = np.where(rises, high, low)
     return [Solution(key, float(value), answer.answer(turned(bowl, key, value))) for value in fast]
-
-
-def _jumped(target, parts_per_metre, one):
-    """The fault that the velocity jumps over the wanted one, and what it jumps to."""
-    per_minute, key = units.factor("/min", "rate"), one.key
-    beyond = f"{one.answer.velocity * parts_per_metre / per_minute:.4g}/min"
-    at = f"{key.name} {one.value / units.factor(key.unit, key.dimension):.4g} {key.unit}"
-    what = f"no setting gives {target / per_minute:.6g}/min: at {at} the rate jumps over it, to {beyond}"
-    return ArgumentError("target", what, "ask for what the bowl gives on either side of the jump")
 
 
 def _unreachable(target, parts_per_metre, peak):

@@ -49,6 +49,16 @@ class Aspects:
         answer = {} if self.recommended is None else {"recommended": self.recommended.p}
         return self.probabilities | answer
 
+    @property
+    def likeliest(self):
+        """Name of the aspect it rests on most often: by the recommended answer, of a card by CSA."""
+        return self.names[int(np.argmax(np.nan_to_num(self.chances[self.ranking])))]
+
+    @property
+    def ranking(self):
+        """Name of the answer that ranks the aspects: 'recommended', of a card 'csa'."""
+        return "csa" if self.recommended is None else "recommended"
+
 
 def find(part, *, as_published=False, unstable=False, exponent=None, launch=recommended.LAUNCH):
     """Find the resting aspects of a part, with their probability by every rule.

@@ -100,6 +100,11 @@ def aspects(
     return _dropped(part, found, recommended.launch_named(launch), drops, progress)
 
 
+def answered(part: Part) -> Aspects:
+    """Return the aspects of a part with the recommended answer of the launch that is usual."""
+    return aspects(part).aspects
+
+
 def _dropped(part, found, launch, drops, progress):
     """The study with a drop test, whose answer takes the place of the closed form's."""
     from feederscrew.studies.drop import drop

@@ -17,7 +17,7 @@ from feederscrew.machine.springs import Springs, gain, leaf_stress, springs
 from feederscrew.machine.stroke import Stroke, angles, greatest_amplitude, stroke
 from feederscrew.part.record import Part
 from feederscrew.rates import queue
-from feederscrew.resting import aspects
+from feederscrew.studies.aspects import answered
 
 STEEL = 7850.0  # [kg/m3] of a fill without a part
 FULL_WAVE = 2.0
@@ -90,7 +90,9 @@ def machine(settings):
     return _sheet(bowl, settings, 2.0 * bowl.sizing.depth * bowl.track.radius, STEEL, None)
 
 
-def bowl(settings, part, target, *, aspect=None, heading=None, rule="recommended", gap=0.0, fill=1.0):
+def bowl(
+    settings, part, target, *, aspect=None, heading=None, rule="recommended", gap=0.0, fill=1.0, known=None
+):
     """Compute the bowl, the drive and the stroke that bring a part at a rate.
 
     Parameters
@@ -107,6 +109,8 @@ def bowl(settings, part, target, *, aspect=None, heading=None, rule="recommended
     rule : str
     gap : float [m]
     fill : float [1]
+    known : Aspects, optional
+        Of the part, with the answer to take, where they are known already.
 
     Returns
     -------
@@ -118,7 +122,8 @@ def bowl(settings, part, target, *, aspect=None, heading=None, rule="recommended
     FeederError
         If no bowl is so large, or none reaches the target.
     """
-    plain, found = answer.conveying(bowls.record(settings)), aspects.find(part)
+    plain = answer.conveying(bowls.record(settings))
+    found = answered(part) if known is None else known
     straight = replace(sizing.STRAIGHT, climb=plain.track.climb)
     wanted = None if aspect is None else queue.wanted(part, found, straight, aspect, heading)
     lying = sizing.lying(part, found, wanted)
@@ -127,8 +132,8 @@ def bowl(settings, part, target, *, aspect=None, heading=None, rule="recommended
     track = replace(plain.track, radius=0.5 * size.diameter, width=size.track_width, climb=size.climb)
     if wanted is not None:
         wanted = queue.wanted(part, found, track, *wanted)
-    known = queue.orientations(part, found, track, plain.devices)
-    flow = throughput.flow(known, rule, target=wanted, gap=gap, fill=fill)
+    ways = queue.orientations(part, found, track, plain.devices)
+    flow = throughput.flow(ways, rule, target=wanted, gap=gap, fill=fill)
     driven = _driven(replace(plain, track=track), size, settings, target, flow)
     order = Order(
         part=part,

@@ -8,9 +8,10 @@ from pathlib import Path
 from feederscrew.errors import Faults, FeederError
 from feederscrew.part import load
 from feederscrew.part.record import Part
-from feederscrew.resting.aspects import Aspects, find
+from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import deviation, profiles, sheet
-from feederscrew.resting.rules.recommended import Recommended
+from feederscrew.resting.rules.recommended import LAUNCH, Recommended
+from feederscrew.studies.aspects import aspects as resting
 
 MOST = 500  # files of one comparison
 
@@ -45,7 +46,11 @@ class SetStudy:
     measured: profiles.Measured
     profile: profiles.Profile
     answers: dict[str, profiles.Profile]  # by rule, and the recommended one where there is one
-    recommended: Recommended | None  # for the launch of the head
+
+    @property
+    def recommended(self) -> Recommended | None:
+        """The answer for the launch that was used; None of a card."""
+        return self.aspects.recommended
 
     @property
     def apart(self) -> dict[str, float]:
@@ -94,7 +99,9 @@ class SetsStudy:
         return tuple(dict.fromkeys(told))
 
 
-def compare(part: Part, counts: str | PathLike[str], *, as_published: bool = False) -> CompareStudy:
+def compare(
+    part: Part, counts: str | PathLike[str], *, launch: str | None = None, as_published: bool = False
+) -> CompareStudy:
     """Study how far counts or fractions by aspect are from every rule.
 
     Parameters
@@ -103,6 +110,8 @@ def compare(part: Part, counts: str | PathLike[str], *, as_published: bool = Fal
         From a mesh or from a part card.
     counts : str or Path
         CSV file with one line an aspect, one column a profile.
+    launch : str, optional
+        What was done to the part; without it what the head of the file says, else 'feed'.
     as_published : bool
         Count each class once in the PMI rule, as the thesis's tables do.
 
@@ -115,15 +124,21 @@ def compare(part: Part, counts: str | PathLike[str], *, as_published: bool = Fal
     FeederError
         Every fault of the file, each with its line.
     """
-    found = find(part, as_published=as_published)
-    rules = profiles.of_rules(found)
-    measured = profiles.read(counts, found.names, [rule.name for rule in rules])
+    text, sha256 = sheet.content(counts)
+    table = sheet.parse(text, str(counts))
+    found, rules = _answers(part, table.head, launch, as_published)
+    names = [rule.name for rule in rules]
+    measured = profiles.measured(table, str(counts), sha256, found.names, names)
     compared = deviation.compare((*measured.profiles, *rules))
     return CompareStudy(part, found, measured, rules, tuple(compared))
 
 
 def compare_sets(
-    files: Iterable[str | PathLike[str]], *, as_published: bool = False, progress=None
+    files: Iterable[str | PathLike[str]],
+    *,
+    launch: str | None = None,
+    as_published: bool = False,
+    progress=None,
 ) -> SetsStudy:
     """Study how far many measured sets are from every rule and from the recommended answer.
 
@@ -131,7 +146,7 @@ def compare_sets(
     ----------
     files : iterable of str or Path
         Files of counts whose head names the part file, from the folder of the counts.
-    as_published : bool
+    launch, as_published
         As for ``compare``.
     progress : function, optional
         Told after every file how many are done of how many.
@@ -151,7 +166,7 @@ def compare_sets(
     sets, faults, inputs = [], [], {}
     for done, path in enumerate(files, 1):
         try:
-            sets += _sets(path, as_published, inputs)
+            sets += _sets(path, launch, as_published, inputs)
         except FeederError as fault:
             faults += fault.faults if isinstance(fault, Faults) else [fault]
         if progress:
@@ -161,7 +176,7 @@ def compare_sets(
     return SetsStudy(tuple(sets), inputs)
 
 
-def _sets(path, as_published, inputs):
+def _sets(path, launch, as_published, inputs):
     """Every profile of one file against every answer."""
     text, sha256 = sheet.content(path)
     table = sheet.parse(text, path)
@@ -169,11 +184,18 @@ def _sets(path, as_published, inputs):
         raise FeederError(path, "does not say which part was counted", "add a line '# part: FILE' at its top")
     beside = Path(path).parent / table.head.part
     part = load(str(beside), **table.head.reading)
-    aspects = find(part, as_published=as_published)
-    rules = {rule.name: rule for rule in profiles.of_rules(aspects)}
-    measured = profiles.measured(table, path, sha256, aspects.names, list(rules))
+    aspects, rules = _answers(part, table.head, launch, as_published)
+    answers = {rule.name: rule for rule in rules}
+    measured = profiles.measured(table, path, sha256, aspects.names, list(answers))
     inputs |= {path: sha256, str(beside): part.sha256}
-    answer = aspects.recommended
-    if answer is not None:
-        rules["recommended"] = profiles.answer(answer.p[aspects.stable])
-    return [SetStudy(part, aspects, measured, profile, rules, answer) for profile in measured.profiles]
+    return [SetStudy(part, aspects, measured, profile, answers) for profile in measured.profiles]
+
+
+def _answers(part, head, launch, as_published):
+    """The aspects of a part with the answer for a launch, and the profiles of all rules and of that."""
+    launch = launch or head.launch or LAUNCH
+    aspects = resting(part, as_published=as_published, launch=launch).aspects
+    rules = profiles.of_rules(aspects)
+    if aspects.recommended is not None:
+        rules += (profiles.answer(aspects.recommended.p[aspects.stable]),)
+    return aspects, rules

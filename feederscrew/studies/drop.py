@@ -3,9 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from feederscrew import check
 from feederscrew.dropping import runs, traces
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, find
+from feederscrew.resting.rules.recommended import launch_named
 
 BESIDE = ("csa", "surface")  # rules that the drops are shown with
 
@@ -86,9 +88,18 @@ def drop(
     KeyboardInterrupt
         If the user stops it before there is anything to count; later, the result is partial.
     """
+    launch_named(launch)
+    check_run(drops, seed, jobs)
     found = find(part) if aspects is None else aspects
     result = runs.test(
         part, found, launch, dict(conditions or {}),
         drops=drops, until=until, seed=seed, jobs=jobs, traced=traced, progress=progress, before=before,
     )  # fmt: skip
     return DropStudy(part, found, result)
+
+
+def check_run(drops, seed, jobs):
+    """Raise an ArgumentError that names the argument of a run that cannot be used."""
+    for name, value, low in (("drops", drops, 1), ("seed", seed, 0), ("jobs", jobs, 1)):
+        if value is not None:
+            check.argument(name, value, low)

@@ -13,6 +13,7 @@ from feederscrew.mechanics.published import floor as published
 from feederscrew.mechanics.standing import standing
 from feederscrew.part.record import Part
 from feederscrew.resting.posture import Posture
+from feederscrew.studies.aspects import answered
 
 TOP_ANGLE, TOP_FRICTION = np.pi / 2.0, 1.0  # [rad], [1] as Figure 5-6
 LEAST_FREQUENCY, TOP_FREQUENCY, TOP_AMPLITUDE = 10.0, 120.0, 0.5e-3  # [Hz], [Hz], [m] as Figure 5-7, or more
@@ -116,7 +117,7 @@ def floor(part, bowl, aspect=None, heading=0.0):
         If the part has no such aspect, or the drive is not ``limits.plain``.
     """
     limits.plain(bowl)
-    stand, why = standing(part, aspect, "floor")
+    stand, why = standing(part, aspect, "floor", answered)
     cycle, course = balance.over_cycle(stand, bowl, heading)
     return FloorStudy(
         part=part,

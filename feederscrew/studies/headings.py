@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from feederscrew.bowl.record import Track
 from feederscrew.mechanics.wall import headings as wall
 from feederscrew.part.record import Part
-from feederscrew.resting import aspects
+from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture, posture
+from feederscrew.studies.aspects import answered
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,7 +18,7 @@ class HeadingsStudy:
     track: Track
     postures: tuple[Posture, ...]
     headings: tuple[wall.Headings, ...]  # one a posture
-    chances: dict[str, float]  # probability of each aspect of the part by CSA, the rule that ranks them
+    chances: dict[str, float]  # probability of each aspect of the part by the answer that ranks them
 
     def only(self, aspect):
         """Return the study of one of its aspects."""
@@ -26,7 +27,7 @@ class HeadingsStudy:
         return HeadingsStudy(self.part, self.track, postures, found, self.chances)
 
 
-def headings(part, track, aspect=None):
+def headings(part, track, aspect=None, aspects: Aspects | None = None):
     """Study the stable headings of a part's aspects.
 
     Parameters
@@ -36,6 +37,8 @@ def headings(part, track, aspect=None):
     track : Track
     aspect : str, optional
         Only this one; without it, every stable aspect.
+    aspects : Aspects, optional
+        Of the part, with the answer to take, where they are known already.
 
     Returns
     -------
@@ -46,7 +49,7 @@ def headings(part, track, aspect=None):
     FeederError
         If there is no such aspect, the bowl is smaller than the part, or the part is a card.
     """
-    found = aspects.find(part)
+    found = answered(part) if aspects is None else aspects
     names = [name for name, stays in zip(found.names, found.stable) if stays] if aspect is None else [aspect]
     postures = tuple(posture(part, found, name) for name in names)
     return HeadingsStudy(
@@ -54,5 +57,5 @@ def headings(part, track, aspect=None):
         track=track,
         postures=postures,
         headings=tuple(wall.headings(one, track) for one in postures),
-        chances=dict(zip(found.names, found.probabilities["csa"].tolist())),
+        chances=dict(zip(found.names, found.chances[found.ranking].tolist())),
     )

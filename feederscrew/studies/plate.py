@@ -3,10 +3,15 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping.plate import runs
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, find
+from feederscrew.resting.rules.recommended import launch_named
+from feederscrew.studies.drop import check_run
+
+LEAST = 1e-6  # [s]
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +82,10 @@ def plate(
     KeyboardInterrupt
         If nothing was finished.
     """
+    launch_named(launch)
+    check_run(drops, seed, jobs)
+    if seconds is not None:
+        check.argument("seconds", seconds, LEAST)
     found = find(part)
     plates = runs.test(
         part, found, bowls, launch, dict(conditions or {}),

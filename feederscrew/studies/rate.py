@@ -1,18 +1,93 @@
 """The study of ``feeder rate``: well-oriented parts per minute of one part from one bowl."""
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+from os import PathLike
 
 import numpy as np
 
+from feederscrew import check
 from feederscrew.bowl.devices import Device, strangers
 from feederscrew.bowl.record import Bowl
 from feederscrew.machine import speeds
 from feederscrew.part.record import Part
-from feederscrew.rates import queue
-from feederscrew.resting.aspects import Aspects, find
+from feederscrew.rates import chances, queue
+from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.counts import profiles
+from feederscrew.resting.rules.recommended import LAUNCH, launch_named
+from feederscrew.studies.aspects import aspects as resting
 
 ALIKE = 1.0 - 1e-9  # of the most frequent orientation: as frequent
+LEAST = 1e-6  # of what must be above 0
+SEED = 1  # of the parts that are fed onto the moving floor
+
+
+@dataclass(frozen=True, eq=False)
+class Shares:
+    """The aspects of a part with the one answer that is taken for their shares."""
+
+    aspects: Aspects  # their ``recommended`` is that answer
+    measured: profiles.Measured | None = None  # the file it was read from, if it was
+
+    @property
+    def inputs(self) -> dict[str, str]:
+        """The sha256 of the file, by its path."""
+        return {} if self.measured is None else {self.measured.source: self.measured.sha256}
+
+
+def shares(
+    part: Part,
+    bowl: Bowl,
+    *,
+    launch: str | None = None,
+    probabilities: str | PathLike[str] | None = None,
+    fed: bool = False,
+    progress=None,
+    before=None,
+) -> Shares:
+    """Return the aspects of a part with the answer that rate, report, tune, batch and tooling take.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        Its floor, for ``fed``.
+    launch : str, optional
+        What is done to the part; 'feed' without it.
+    probabilities : str or Path, optional
+        File of counts in place of an answer of ours, by aspect or by orientation.
+    fed : bool
+        Feed parts onto the moving floor of the bowl: what lies at the track's entry then.
+    progress, before : function, optional
+        Of drops and of parts on the floor, as for ``studies.aspects``.
+
+    Returns
+    -------
+    Shares
+
+    Raises
+    ------
+    FeederError
+        Every fault of the file; if the part has no shape to drop.
+    """
+    launch = LAUNCH if launch is None else launch_named(launch)
+    own = {"progress": progress, "before": before}
+    if probabilities is not None:
+        found = resting(part, drops=0).aspects
+        measured = profiles.read(probabilities, found.names)
+        return Shares(chances.counted(found, measured), measured)
+    if not fed or part.vertices is None:
+        return Shares(resting(part, launch=launch, **own).aspects)
+    from feederscrew.dropping.plate.arrival import arrival
+
+    found = resting(part, drops=0).aspects
+    if np.count_nonzero(found.stable) < 2:
+        return Shares(found)
+    if before:
+        before(None)
+    arrived = arrival(part, found, bowl, seed=SEED, jobs=os.cpu_count() or 1, progress=progress)
+    return Shares(chances.arrived(found, arrived, SEED))
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,12 +100,20 @@ class RateStudy:
     devices: tuple[Device, ...]  # in the order parts meet them
     rule: str  # whose probabilities are taken
     rate: queue.Rate
+    measured: profiles.Measured | None = None  # the counts that are taken, if they are
+
+    @property
+    def answer(self) -> str:
+        """Say whose probabilities are taken: 'hops, launch feed', 'csa'."""
+        known = self.aspects.recommended
+        return known.rule if self.rule == queue.RECOMMENDED and known is not None else self.rule
 
     @property
     def warnings(self):
         """What a user must not overlook, a sentence each: of the devices, the aspects, the velocity."""
         odd = speeds.remark(self.rate.velocity.value, self.bowl.sizing)
-        return (*strangers(self.devices, self.aspects.names), *self.aspects.warnings, *odd)
+        other = () if self.measured is None else self.measured.warnings(self.part)
+        return (*strangers(self.devices, self.aspects.names), *self.aspects.warnings, *other, *odd)
 
 
 def rate(
@@ -44,7 +127,7 @@ def rate(
     gap: float = 0.0,
     fill: float = 1.0,
     sigma: float = 0.0,
-    aspects: Aspects | None = None,
+    known: Shares | None = None,
 ) -> RateStudy:
     """Study how many well-oriented parts leave a bowl.
 
@@ -68,8 +151,8 @@ def rate(
         Share of the track that is occupied.
     sigma : float [m]
         Standard deviation of play and tolerance together, of every device.
-    aspects : Aspects, optional
-        Of the part, where they are known already.
+    known : Shares, optional
+        Of the part; without them those of the launch 'feed'.
 
     Returns
     -------
@@ -81,20 +164,32 @@ def rate(
         If the part has no outline or no such aspect, no such rule has probabilities of it, or the bowl has
         no steady state.
     """
+    checked(bowl, heading, gap, fill, sigma)
     chain = bowl.devices if devices is None else tuple(devices)
-    found = find(part) if aspects is None else aspects
+    known = shares(part, bowl) if known is None else known
+    found = known.aspects
     target = None if aspect is None else queue.wanted(part, found, bowl.track, aspect, heading)
-    known = queue.orientations(part, found, bowl.track, chain, sigma)
+    lying = chances.oriented(queue.orientations(part, found, bowl.track, chain, sigma), known.measured)
     speed = queue.velocity(bowl)
-    target = most_frequent(known, rule) if target is None else target
+    target = most_frequent(lying, rule) if target is None else target
     return RateStudy(
         part=part,
         bowl=bowl,
         aspects=found,
         devices=chain,
         rule=rule,
-        rate=queue.rate(known, speed, target, rule, gap=gap, fill=fill),
+        rate=queue.rate(lying, speed, target, rule, gap=gap, fill=fill),
+        measured=known.measured,
     )
+
+
+def checked(bowl, heading, gap, fill, sigma=0.0):
+    """Raise an ArgumentError that names the argument that cannot be used."""
+    check.argument("gap", gap, 0.0)
+    check.argument("fill", fill, LEAST, 1.0)
+    check.argument("sigma", sigma, 0.0)
+    if heading is not None:
+        check.argument("heading", heading)
 
 
 def most_frequent(known, rule):

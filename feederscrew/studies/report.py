@@ -3,14 +3,11 @@
 from dataclasses import dataclass, field
 from functools import cached_property
 
-import numpy as np
-
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.settings import Setting
 from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
-from feederscrew.resting.aspects import find
 from feederscrew.resting.posture import posture
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import convey
@@ -19,13 +16,13 @@ from feederscrew.studies.floor import floor
 from feederscrew.studies.headings import headings
 from feederscrew.studies.inertia import inertia
 from feederscrew.studies.passages import passages
-from feederscrew.studies.rate import rate
+from feederscrew.studies.rate import Shares, rate, shares
 from feederscrew.studies.slide import slide
 from feederscrew.studies.track import track
 
 ANGLES, STROKES = 56, 48  # cells of the velocity map
 LEAST_STROKE = 0.1e-3  # [m] the velocity map goes at least so far
-RECOMMENDED, RANKING = "recommended", "csa"  # the default rule; the one that ranks the aspects of a card
+RECOMMENDED = "recommended"  # the default rule
 ROOM = 2.5  # and to so many times the bowl's own stroke
 
 
@@ -38,13 +35,13 @@ class ReportStudy:
     bowl: Bowl
     path: str | None  # of the bowl file
     aspect: str  # the wanted one
-    likeliest: str  # by the rule that ranks them
     heading: float | None  # [rad]
     rule: str
     gap: float  # [m]
     fill: float  # [1]
     target: float | None  # [1/s] that a bowl is sized for
     counted: str | None  # aspect that counts for the target; None: whatever passes
+    shares: Shares  # whose probabilities are taken
     inputs: dict[str, str] = field(default_factory=dict)  # sha256 by path
     command: str = ""  # that repeats it
 
@@ -58,6 +55,11 @@ class ReportStudy:
         """Of the wanted aspect."""
         return self.resting.aspects.names.index(self.aspect)
 
+    @property
+    def likeliest(self) -> str:
+        """The aspect it rests on most often."""
+        return self.resting.aspects.likeliest
+
     @cached_property
     def inertia(self):
         """Mass properties, an InertiaStudy."""
@@ -66,7 +68,7 @@ class ReportStudy:
     @cached_property
     def headings(self):
         """The stable headings of every aspect, a HeadingsStudy."""
-        return headings(self.part, self.bowl.track)
+        return headings(self.part, self.bowl.track, aspects=self.resting.aspects)
 
     @cached_property
     def convey(self):
@@ -86,7 +88,7 @@ class ReportStudy:
         """Well-oriented parts, a RateStudy."""
         return rate(
             self.part, self.bowl, self.aspect, heading=self.heading, rule=self.rule,
-            gap=self.gap, fill=self.fill, aspects=self.resting.aspects,
+            gap=self.gap, fill=self.fill, known=self.shares,
         )  # fmt: skip
 
     @cached_property
@@ -104,6 +106,7 @@ class ReportStudy:
             return machines.bowl(
                 self.settings, self.part, self.target,
                 **wanted, rule=self.rule, gap=self.gap, fill=self.fill,
+                known=self.resting.aspects,
             )  # fmt: skip
         given = any(s.given and s.key.section == "machine" for s in self.settings)
         return machines.machine(self.settings) if given else None
@@ -135,7 +138,12 @@ def report(
     gap=0.0,
     fill=1.0,
     target=None,
+    launch=None,
+    probabilities=None,
+    fed=False,
     command="",
+    progress=None,
+    before=None,
 ):
     """Check everything that can be wrong with the inputs of a report, before anything long is computed.
 
@@ -145,7 +153,7 @@ def report(
     path, overrides
         As for ``bowl.read``.
     aspect : str, optional
-        The wanted one; without it, the likeliest by the rule that ranks them (CSA).
+        The wanted one; without it, the likeliest.
     heading : float [rad], optional
     rule : str
         Whose probabilities count for the rate.
@@ -153,6 +161,8 @@ def report(
     fill : float [1]
     target : float [1/s], optional
         Rate that a bowl is sized for.
+    launch, probabilities, fed, progress, before
+        As for ``studies.rate.shares``.
     command : str
         That repeats the report.
 
@@ -166,30 +176,27 @@ def report(
         If there is no such aspect or rule, or the bowl file has faults.
     """
     settings = bowls.settings(path, overrides)
-    found = find(part)
-    rule = RANKING if part.vertices is None and rule == RECOMMENDED else rule  # a card has no such answer
+    bowl = bowls.record(settings)
+    taken = {"launch": launch, "probabilities": probabilities, "fed": fed}
+    known = shares(part, bowl, **taken, progress=progress, before=before)
+    found = known.aspects
+    rule = found.ranking if rule == RECOMMENDED else rule  # a card has no such answer
     if rule not in found.chances:
-        known = ", ".join(found.chances)
-        raise ArgumentError(f"rule {rule}", "has no probabilities of this part", f"choose one of {known}")
-    first = likeliest(found)
+        names = ", ".join(found.chances)
+        raise ArgumentError(f"rule {rule}", "has no probabilities of this part", f"choose one of {names}")
     return ReportStudy(
         resting=AspectsStudy(part, found),
         settings=settings,
-        bowl=bowls.record(settings),
+        bowl=bowl,
         path=path,
-        aspect=posture(part, found, first if aspect is None else aspect).name,
-        likeliest=first,
+        aspect=posture(part, found, found.likeliest if aspect is None else aspect).name,
         heading=heading,
         rule=rule,
         gap=gap,
         fill=fill,
         target=target,
         counted=aspect,
-        inputs={part.source: part.sha256} | bowls.identity(path),
+        shares=known,
+        inputs={part.source: part.sha256} | bowls.identity(path) | known.inputs,
         command=command,
     )
-
-
-def likeliest(found):
-    """Return the aspect the part rests on most often by CSA; the first where no rule tells."""
-    return found.names[int(np.argmax(np.nan_to_num(found.probabilities[RANKING])))]

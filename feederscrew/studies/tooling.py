@@ -8,7 +8,8 @@ import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.part.record import Part
-from feederscrew.resting.aspects import Aspects, find
+from feederscrew.resting.aspects import Aspects
+from feederscrew.studies.aspects import answered
 from feederscrew.tooling.cutting import VERDICTS, Search
 from feederscrew.tooling.design import MARGIN, design, place
 from feederscrew.tooling.orientations import Orientation, named, orientations
@@ -37,6 +38,12 @@ class ToolingStudy:
         return None if self.wanted is None else self.designs[self.wanted]
 
     @property
+    def answer(self) -> str:
+        """Say whose probabilities are taken: 'hops, launch feed', 'csa'."""
+        known = self.aspects.recommended
+        return known.rule if self.rule == "recommended" and known is not None else self.rule
+
+    @property
     def warnings(self):
         """What a user must not overlook, a sentence each."""
         late = any(one is not None and one.late for one in self.designs)
@@ -58,6 +65,7 @@ def tooling(
     verdicts: int = VERDICTS,
     seconds: float = 600.0,
     told: Callable[[int, int], None] | None = None,
+    known: Aspects | None = None,
 ) -> ToolingStudy:
     """Study which orientations of a part can be isolated by cuts, and how.
 
@@ -88,6 +96,8 @@ def tooling(
         The last resort: what is found until then may differ from machine to machine, and is marked.
     told : callable, optional
         Called with how many designs are done of how many.
+    known : Aspects, optional
+        Of the part, with the answer to take, where they are known already.
 
     Returns
     -------
@@ -98,7 +108,7 @@ def tooling(
     FeederError
         If the part has no mesh, is too large for the bowl, or has no such orientation or rule.
     """
-    found = find(part)
+    found = answered(part) if known is None else known
     every = named(orientations(part, found, bowl.track))
     if rule not in found.chances:
         from feederscrew.documents import hint

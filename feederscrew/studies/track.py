@@ -19,6 +19,7 @@ from feederscrew.mechanics.track.opening import Opening, first_to_open
 from feederscrew.mechanics.wall.headings import Headings
 from feederscrew.part.record import Part
 from feederscrew.resting.posture import Posture
+from feederscrew.studies.aspects import answered
 
 USUAL = ("track.bank=0deg:30deg:41", "track.climb=0deg:8deg:41")  # of a map
 
@@ -93,7 +94,7 @@ def track(part, bowl, aspect=None, heading=None):
         the drive is not ``limits.plain``.
     """
     limits.plain(bowl)
-    posture, why = standing(part, aspect, "track")
+    posture, why = standing(part, aspect, "track", answered)
     seat, found, row = cells.seated(posture, bowl, heading)
     levers = _levers(part, posture, seat)
     now, held_across = _from_rest(seat, bowl)

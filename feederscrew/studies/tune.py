@@ -5,13 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew import check
 from feederscrew.bowl.devices import Device, strangers
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer, sensitivity
 from feederscrew.part.record import Part
-from feederscrew.rates import queue
+from feederscrew.rates import chances, queue
 from feederscrew.rates import tune as knobs
-from feederscrew.resting.aspects import Aspects, find
+from feederscrew.resting.aspects import Aspects
+from feederscrew.studies.rate import LEAST, Shares, checked, shares
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +54,7 @@ def tune(
     devices: Sequence[Device] | None = None,
     gap: float = 0.0,
     fill: float = 1.0,
+    known: Shares | None = None,
 ) -> TuneStudy:
     """Study which amplitude, angle or frequency alone reaches a rate.
 
@@ -64,8 +67,8 @@ def tune(
         The one wanted.
     target : float [1/s]
         Well-oriented parts, above 0.
-    heading, rule, devices, gap, fill
-        As for ``rate``.
+    heading, rule, devices, gap, fill, known
+        As for ``rate``; the shares stay as they are while the drive changes.
 
     Returns
     -------
@@ -76,11 +79,14 @@ def tune(
     FeederError
         If the part never leaves in that orientation, or no setting reaches the rate.
     """
+    check.argument("target", target, LEAST)
+    checked(bowl, heading, gap, fill)
     chain = bowl.devices if devices is None else tuple(devices)
-    found = find(part)
+    known = shares(part, bowl) if known is None else known
+    found = known.aspects
     wanted = queue.wanted(part, found, bowl.track, aspect, heading)
-    known = queue.orientations(part, found, bowl.track, chain)
-    density = queue.parts_per_metre(known, wanted, rule, gap=gap, fill=fill)
+    lying = chances.oriented(queue.orientations(part, found, bowl.track, chain), known.measured)
+    density = queue.parts_per_metre(lying, wanted, rule, gap=gap, fill=fill)
     return TuneStudy(
         part=part,
         bowl=bowl,

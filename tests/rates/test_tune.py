@@ -73,8 +73,9 @@ def test_a_part_that_only_travels_back():
 def test_a_target_that_the_velocity_jumps_over():
     gentle = ("drive.amplitude=0.05 mm", "drive.frequency=60 Hz", "drive.vibration_angle=30 deg")
     bouncing = bowls.read(None, gentle)  # from rest its velocity jumps onto the regular bounce of a period
-    with pytest.raises(FeederError) as caught:
-        tune.solutions(bouncing, 0.866, PER_METRE)
-    line = str(caught.value)
-    assert line.startswith("target: no setting gives 51.96/min: at drive.amplitude 0.3308 mm the rate jumps")
-    assert float(line.split(", to ")[1].split("/min")[0]) > 51.96
+    found = tune.solutions(bouncing, 0.866, PER_METRE)
+    rates = [one.answer.velocity * PER_METRE for one in found]
+    assert all(rate >= 0.866 * (1.0 - tune.REACHED) for rate in rates)
+    beyond = found[rates.index(max(rates))]
+    assert max(rates) > 0.87 and beyond.key.name == "drive.amplitude"
+    assert 1e3 * beyond.value == pytest.approx(0.3308, abs=1e-4)

@@ -1,6 +1,6 @@
 """What lies at the track's entry: parts fed from a hopper onto the moving floor of a bowl."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -58,9 +58,15 @@ def arrival(part, aspects, bowl, *, drops=PARTS, seed=1, jobs=1, progress=None):
     KeyboardInterrupt
         If the user stops it before anything is known.
     """
+    found = None
     for seconds in SPELLS:
         own = {"drops": drops, "seconds": seconds, "seed": seed, "jobs": jobs, "progress": progress}
-        shaken = runs.test(part, aspects, [bowl], LAUNCH, {}, pace=PACE, **own)[0]
+        try:
+            shaken = runs.test(part, aspects, [bowl], LAUNCH, {}, pace=PACE, **own)[0]
+        except KeyboardInterrupt:
+            if found is None:
+                raise
+            return replace(found, shaken=replace(found.shaken, partial=True))
         found = judged(shaken)
         if found.settled or shaken.partial:
             break

@@ -1,4 +1,4 @@
-"""Many parts on one sheet, each as it rests on its first aspect."""
+"""Many parts on one sheet, each on the aspect that leaves the bowl."""
 
 import io
 from itertools import islice
@@ -20,7 +20,7 @@ LETTERS = 26  # of a line of text
 
 
 def thumbnail(part, found, aspect=None):
-    """Draw a small picture of a part on one aspect.
+    """Draw a small picture of a part on one of its aspects.
 
     Parameters
     ----------
@@ -28,15 +28,15 @@ def thumbnail(part, found, aspect=None):
         With a mesh.
     found : Aspects
     aspect : str, optional
-        Its name, the one that the text below speaks of; the first without it.
+        Its name; without one, the likeliest.
 
     Returns
     -------
     bytes
         A PNG of ``WIDTH`` by ``HEIGHT`` pixels, the same for the same part.
     """
-    row = list(found.names).index(aspect) if aspect in found.names else 0
     solid = render.Rays(part.vertices, part.faces, part.centre_of_mass)
+    row = found.names.index(aspect or found.likeliest)
     standing = stance(outermost(solid.points), found.normals[row], found.heights[row] / solid.size)
     lowest, highest = standing.framed
     pixel = ROOM * max((highest - lowest) / (WIDTH, HEIGHT))

@@ -27,6 +27,7 @@ def document(study):
         "gap_mm": found.gap / MM,
         "pitch_mm": found.pitch / MM,
         "rule": rule,
+        "answer": study.answer,
         **_range("p_orientation", found.probability, 1.0),
         "p_aspect": found.probability.value / known.heading_shares[row],
         "p_heading": known.heading_shares[row],
@@ -81,7 +82,8 @@ def summary(document):
         ("efficiency, correctly oriented of what is offered [%]", f"{100.0 * d['efficiency']:.4g}"),
         ("purity, correctly oriented of what leaves [%]", _number(100.0 * d["purity"])),
         ("mean pitch [mm]", f"{d['pitch_mm']:.4g} (wanted part {d['length_mm']:.4g}, gap {d['gap_mm']:.4g})"),
-        (f"probability of the orientation, {d['rule']} [%]", _with_range(d, "p_orientation", 100.0)),
+        ("probability of the orientation [%]", _with_range(d, "p_orientation", 100.0)),
+        ("whose probabilities", d["answer"]),
         ("share that passes the devices [%]", f"{100.0 * d['passes_devices']:.4g}"),
         ("fill of the track [%]", f"{100.0 * d['fill']:.4g}"),
     ]

@@ -45,6 +45,6 @@ def _head(study):
     one, found = study.orientations[study.wanted], study.design
     return [
         f"# Tooling that lets aspect {one.aspect} at heading {one.name.partition('@')[2]} deg leave.",
-        f"# Efficiency {100.0 * found.efficiency:.4g} %, purity {100.0 * found.purity:.4g} %, by the "
-        f"probabilities of rule {study.rule}.",
+        f"# Efficiency {100.0 * found.efficiency:.4g} %, purity {100.0 * found.purity:.4g} %, by "
+        f"{study.answer}.",
     ]

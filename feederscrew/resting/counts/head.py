@@ -5,12 +5,12 @@ from dataclasses import dataclass, fields
 
 from feederscrew.documents import hint
 from feederscrew.errors import FeederError
+from feederscrew.resting.rules.recommended import LAUNCHES
 from feederscrew.units import shown
 
 LINE = re.compile(r"#\s*([A-Za-z_ -]{1,30}?)\s*:\s*(.*)")
 DIGEST = re.compile(r"(?:sha256:)?([0-9a-f]{8,64})", re.IGNORECASE)
 LONGEST = 500  # letters of a value
-LAUNCHES = ("place", "drop", "flip", "roll", "feed")
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,15 @@ def test_rate_reads_the_chain(run, block, tmp_path):
     document = told(run, "tooling", block, "--aspect", "A", "--heading", "90deg", *WIDE)
     lines = "".join(f"  - {cut['device']}: {cut['text']}\n" for cut in document["chain"])
     (tmp_path / "tooling.yaml").write_text(f"track: {{width: 200 mm}}\ndevices:\n{lines}")
-    made = told(run, "rate", block, "--aspect", "A", "--heading", "90deg", "--config", "tooling.yaml")
+    wanted = ("--aspect", "A", "--heading", "90deg", "--config", "tooling.yaml")
+    made = told(run, "rate", block, *wanted, "--launch", "feed")
+    assert made["answer"].endswith("launch feed")
+    own = [told(run, *call) for call in (("rate", block, *wanted), ("tooling", block, *wanted))]
+    chances = [
+        {(one["aspect"], round(one["heading_deg"], 3)): one for one in each["orientations"]} for each in own
+    ]
+    for way, one in chances[0].items():
+        assert one["p_recommended"] == pytest.approx(chances[1][way]["share"], abs=1e-12)
     assert made["purity"] == pytest.approx(1.0)
     assert made["efficiency"] == pytest.approx(document["efficiency"], rel=1e-9)
     assert made["parts_per_minute"] == pytest.approx(made["offered_per_minute"] * made["efficiency"])
@@ -63,8 +71,7 @@ def test_rate_reads_the_chain(run, block, tmp_path):
         "90deg",
         "--config",
         "tooling.yaml",
-        "--play",
-        "1 mm",
+        *("--play", "1 mm", "--launch", "feed"),
     )
     assert 0.5 < doubtful["passes_devices"] < 1.0
     assert doubtful["efficiency"] < made["efficiency"]

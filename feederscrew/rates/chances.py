@@ -1,0 +1,126 @@
+"""Whose probabilities a rate takes: the recommended answer from counts, or from the bowl's own floor."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.dropping.ensemble import wilson
+from feederscrew.errors import FeederError
+from feederscrew.resting.rules.recommended import LAUNCH, Recommended
+
+NEAR = 3.0  # [deg] so near a counted heading must be to one the part can have
+UNDECIDED = "the shares at the track's entry are undecided: {}"
+STOPPED = "the parts on the floor were stopped after {}"
+NOTHING = "no part came to lie on the moving floor: the closed form is taken"
+
+
+def arrived(aspects, found, seed):
+    """Return the aspects with what arrives at the track's entry as their recommended answer.
+
+    Parameters
+    ----------
+    aspects : Aspects
+    found : Arrival
+    seed : int
+        Of its launches.
+
+    Returns
+    -------
+    Aspects
+        With a warning where the shares are undecided.
+    """
+    parts = found.shaken.parts
+    if not np.isfinite(found.p).all():
+        return replace(aspects, warnings=(*aspects.warnings, NOTHING))
+    said = () if found.settled else (UNDECIDED.format(found.reason),)
+    said += (STOPPED.format(parts),) if found.shaken.partial else ()
+    rule = f"fed onto the moving floor, {parts} parts, seed {seed}"
+    answer = Recommended(rule=rule, launch=LAUNCH, p=found.p, low=found.low, high=found.high)
+    return replace(aspects, recommended=answer, warnings=(*aspects.warnings, *said))
+
+
+def counted(aspects, measured):
+    """Return the aspects with measured counts as their recommended answer.
+
+    Parameters
+    ----------
+    aspects : Aspects
+        Without facets it rolls off.
+    measured : Measured
+        Of that part, with one column.
+
+    Returns
+    -------
+    Aspects
+        The interval is Wilson's, of 95 %; shares without counts have none.
+
+    Raises
+    ------
+    FeederError
+        If there are several columns.
+    """
+    column = _only(measured)
+    p = column.fractions / column.fractions.sum()
+    low, high = wilson(column.values, column.values.sum()) if column.counted else (p, p)
+    total = f", {column.values.sum():.0f} parts" if column.counted else ""
+    launch = measured.head.launch or LAUNCH
+    answer = Recommended(
+        rule=f"{measured.source}{total}",
+        launch=launch,
+        p=check.frozen(p),
+        low=check.frozen(np.minimum(low, p)),
+        high=check.frozen(np.maximum(high, p)),
+    )
+    return replace(aspects, recommended=answer)
+
+
+def _only(measured):
+    if len(measured.profiles) != 1:
+        names = ", ".join(profile.name for profile in measured.profiles[:5])
+        what = f"has {len(measured.profiles)} columns of shares ({names})"
+        raise FeederError(measured.source, what, "leave one of them in the file")
+    return measured.profiles[0]
+
+
+def oriented(known, measured):
+    """Return the orientations with the shares that were counted for each of them.
+
+    Parameters
+    ----------
+    known : Orientations
+    measured : Measured or None
+        As it stands where it counts aspects, and where there is none.
+
+    Returns
+    -------
+    Orientations
+
+    Raises
+    ------
+    FeederError
+        If a part was counted in an orientation that the part cannot have on this track.
+    """
+    if measured is None or measured.by_orientation is None:
+        return known
+    values = np.zeros(len(known.lying))
+    for (aspect, heading), count in zip(measured.lying, measured.by_orientation[:, 0]):
+        if count > 0.0:
+            values[_row(known, aspect, heading, measured.source)] += count
+    shares = values / values.sum()
+    low, high = wilson(values, values.sum()) if _only(measured).counted else (shares, shares)
+    ends = np.column_stack([np.minimum(low, shares), np.maximum(high, shares)])
+    rules = known.rules | {"recommended": check.frozen(shares)}
+    return replace(known, rules=rules, interval=check.frozen(ends))
+
+
+def _row(known, aspect, heading, source):
+    """The row of an aspect at the heading nearest to one that was counted."""
+    away = np.degrees(np.abs(np.arctan2(np.sin(known.headings - heading), np.cos(known.headings - heading))))
+    away = np.where(np.array(known.aspects) == aspect, away, np.inf)
+    row = int(np.argmin(away))
+    if away[row] > NEAR:
+        names = ", ".join(one.name for one in known.lying if one.aspect == aspect) or "none"
+        what = f"counts {aspect}@{np.degrees(heading):.4g}, which the part does not have on this track"
+        raise FeederError(source, what, f"known are {names}")
+    return row

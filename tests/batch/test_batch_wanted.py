@@ -1,0 +1,59 @@
+"""The aspect that a list asks for, the launch, and what the summary and the pictures call them."""
+
+from pathlib import Path
+
+import pytest
+import shapes
+
+from feederscrew import batch
+from feederscrew.batch import summary, task, work
+from feederscrew.output.batch import contact_sheet
+from feederscrew.part import load
+from feederscrew.resting.aspects import find
+
+
+@pytest.fixture
+def block(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shapes.box(8.0, 12.0, 20.0).export(tmp_path / "block.stl")
+    return tmp_path / "block.stl"
+
+
+def row(request, **choices):
+    made = work.work(task.Task.of(request, batch.Choices(**choices), Path(request.source).read_bytes()))
+    assert made.status == task.DONE, made.reason
+    return made
+
+
+def test_a_list_asks_for_an_aspect(block, tmp_path):
+    (tmp_path / "list.csv").write_text("part,aspect\nblock.stl,\nblock.stl,C\nblock.stl,q\n")
+    usual, wanted, none = batch.gather(["list.csv"])
+    assert (usual.aspect, wanted.aspect) == (None, "C") and wanted.name == "block-2"
+    made = row(wanted)
+    assert made.row["aspect"] == "C" and made.row["orientation"].startswith("C@")
+    part = load(str(block))
+    assert made.files[work.THUMBNAIL] == contact_sheet.thumbnail(part, find(part), "C")
+    assert made.files[work.THUMBNAIL] != row(usual).files[work.THUMBNAIL]
+    failed = work.work(task.Task.of(none, batch.Choices(), block.read_bytes()))
+    assert failed.reason == "list.csv:4: block.stl: there is no aspect 'q' - choose one of A, B, C"
+
+
+def test_the_launch_and_the_drops_are_the_answer(block):
+    (asked,) = batch.gather([str(block)])
+    placed, fed = (row(asked, launch=launch, pictures=False) for launch in ("place", "feed"))
+    assert placed.row["answer"].endswith("launch place") and fed.row["answer"].endswith("launch feed")
+    assert placed.key != fed.key and placed.effective["launch"] == "place"
+    dropped = row(asked, drops=200, pictures=False)
+    assert dropped.row["answer"] == "drop test, launch feed"
+    if dropped.row["aspect"] == dropped.row["drop_aspect"]:
+        assert dropped.row["p_orientation"] <= dropped.row["p_drop"]
+
+
+def test_a_tile_names_the_orientation():
+    made = {"folder": "block", "status": task.DONE, "orientation": "C@90", "parts_per_minute": 12.0}
+
+    class Store:
+        def file(self, folder, name):
+            return None
+
+    assert list(summary.tiles(Store(), [made])) == [(None, "block", "C@90: 12 / min")]

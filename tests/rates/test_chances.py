@@ -1,0 +1,121 @@
+"""Whose shares a rate takes: counts, orientations that were counted, the bowl's own floor."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.errors import FeederError
+from feederscrew.rates import chances
+from feederscrew.resting.aspects import find
+from feederscrew.resting.counts import profiles
+from feederscrew.studies import rate as study
+
+
+@pytest.fixture(scope="module")
+def part():
+    return shapes.part(shapes.box(8.0, 12.0, 20.0))
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return bowls.record(bowls.settings(path=None, overrides=("track.width=40 mm",)))
+
+
+def counts(tmp_path, text):
+    (tmp_path / "c.csv").write_text(text)
+    return str(tmp_path / "c.csv")
+
+
+def test_counts_are_the_answer_with_wilsons_interval(part, plain, tmp_path):
+    path = counts(tmp_path, "# launch: roll\naspect,tray\nA,60\nB,30\nC,10\n")
+    known = study.shares(part, plain, probabilities=path)
+    answer = known.aspects.recommended
+    assert answer.p.tolist() == pytest.approx([0.6, 0.3, 0.1]) and answer.launch == "roll"
+    assert answer.rule == f"{path}, 100 parts" and list(known.inputs) == [path]
+    assert answer.low[2] == pytest.approx(0.0552, abs=1e-4)  # Wilson's for 10 of 100
+    assert answer.high[2] == pytest.approx(0.1744, abs=1e-4)
+    found = study.rate(part, plain, known=known)
+    ways, total = found.rate.orientations, dict.fromkeys("ABC", 0.0)
+    for one, share in zip(ways.lying, ways.rules["recommended"], strict=True):
+        total[one.aspect] += share
+    assert list(total.values()) == pytest.approx([0.6, 0.3, 0.1])
+
+
+def test_orientations_that_were_counted_stand_as_they_are(part, plain, tmp_path):
+    known = study.rate(part, plain).rate.orientations
+    a, b = (next(one for one in known.lying if one.aspect == name) for name in "AB")
+    text = f"orientation,track\n{a.name},30\n{b.name},10\nC@0,0\n"
+    shares = study.shares(part, plain, probabilities=counts(tmp_path, text))
+    found = study.rate(part, plain, known=shares).rate.orientations
+    taken = dict(zip([one.name for one in found.lying], found.rules["recommended"]))
+    assert taken.pop(a.name) == 0.75 and taken.pop(b.name) == 0.25 and not any(taken.values())
+    row = [one.name for one in found.lying].index(a.name)
+    assert found.interval[row, 0] < 0.75 < found.interval[row, 1]
+    nowhere = counts(tmp_path, f"orientation,track\nA@47,30\n{b.name},10\nC@0,0\n")
+    with pytest.raises(FeederError, match=r"counts A@47, which the part does not have on this track - known"):
+        study.rate(part, plain, known=study.shares(part, plain, probabilities=nowhere))
+
+
+def test_several_columns_are_refused(part, plain, tmp_path):
+    path = counts(tmp_path, "aspect,x,y\nA,60,1\nB,30,1\nC,10,1\n")
+    with pytest.raises(
+        FeederError, match=r"has 2 columns of shares \(x, y\) - leave one of them in the file"
+    ):
+        study.shares(part, plain, probabilities=path)
+
+
+def arrival(**values):
+    ends = {"low": np.array([0.5, 0.1, 0.0]), "high": np.array([0.8, 0.4, 0.2])}
+    usual = {"p": np.array([0.7, 0.2, 0.1]), **ends, "settled": True, "reason": ""}
+    return SimpleNamespace(**(usual | values), shaken=SimpleNamespace(parts=80, partial=False))
+
+
+def test_what_arrives_is_named_and_what_is_undecided_is_said(part):
+    aspects = find(part)
+    found = chances.arrived(aspects, arrival(), 1)
+    assert found.recommended.rule == "fed onto the moving floor, 80 parts, seed 1"
+    assert found.recommended.p.tolist() == [0.7, 0.2, 0.1] and found.warnings == aspects.warnings
+    doubtful = chances.arrived(aspects, arrival(settled=False, reason="they change - wait"), 1)
+    assert doubtful.warnings[-1] == "the shares at the track's entry are undecided: they change - wait"
+    stopped = arrival()
+    stopped.shaken.partial = True
+    assert chances.arrived(aspects, stopped, 1).warnings[-1] == "the parts on the floor were stopped after 80"
+    nothing = chances.arrived(aspects, arrival(p=np.full(3, np.nan)), 1)
+    assert nothing.recommended is aspects.recommended and nothing.warnings[-1] == chances.NOTHING
+
+
+def test_a_bowl_of_its_own_feeds_parts_onto_its_floor(part, plain):
+    gentle = replace(plain, drive=replace(plain.drive, amplitude=0.02e-3))
+    known = study.shares(part, gentle, fed=True)
+    answer = known.aspects.recommended
+    assert answer.rule.startswith("fed onto the moving floor, 100 parts")
+    assert answer.p.sum() == pytest.approx(1.0) and (answer.low <= answer.p).all()
+    assert (answer.high > answer.p).all() and answer.p[0] > answer.p[1] > answer.p[2]
+
+
+def test_a_stop_before_the_longer_spell_keeps_the_shorter(part, plain, monkeypatch):
+    from feederscrew.dropping.plate import arrival as floor
+
+    monkeypatch.setattr(floor, "judged", lambda _: floor.Arrival(0, 0, 0, False, "open", ran[0]))
+    ran = []
+
+    def test(*_, seconds, **__):
+        if ran:
+            raise KeyboardInterrupt
+        ran.append(floor.runs.Shaken(plain, {}, 1.0, 5, seconds, None, 0, False))
+        return ran
+
+    monkeypatch.setattr(floor.runs, "test", test)
+    found = floor.arrival(part, None, plain)
+    assert found.shaken.partial and not found.settled
+
+
+def test_a_measured_file_without_counts_has_no_interval(part):
+    aspects = find(part)
+    made = profiles.Measured("c.csv", "", profiles.parse("aspect,x\nA,0.5\nB,0.25\nC,0.25\n", "c", "ABC"))
+    answer = chances.counted(aspects, made).recommended
+    np.testing.assert_array_equal(answer.low, answer.high)

@@ -1,0 +1,56 @@
+"""Arguments of the library that cannot be used: one line that names the argument, never an answer."""
+
+import math
+from dataclasses import replace
+
+import pytest
+import shapes
+
+import feederscrew as fs
+
+
+@pytest.fixture(scope="module")
+def part():
+    return shapes.part(shapes.box(8.0, 12.0, 20.0))
+
+
+BOWL = fs.read_bowl(None, ("track.width=40 mm",))
+LAUNCHES = "give one of place, drop, flip, roll, feed"
+
+
+@pytest.mark.parametrize(
+    ("call", "line"),
+    [
+        (lambda part: fs.rate(part, BOWL, "C", gap=-1), "gap: is -1 - give a number from 0"),
+        (lambda part: fs.rate(part, BOWL, "C", fill=5), "fill: is 5 - give a number from 1e-06 to 1"),
+        (lambda part: fs.rate(part, BOWL, "C", fill="x"), "fill: is 'x', not a number - give a number"),
+        (lambda part: fs.rate(part, BOWL, "C", heading=math.nan), "heading: is nan - give a number"),
+        (lambda part: fs.rate(part, BOWL, "C", launch="throw"), f"launch: is 'throw' - {LAUNCHES}"),
+        (lambda part: fs.drop(part, drops=-5), "drops: is -5 - give a number from 1"),
+        (lambda part: fs.drop(part, launch="throw"), f"launch: is 'throw' - {LAUNCHES}"),
+        (lambda part: fs.drop(part, seed=-1), "seed: is -1 - give a number from 0"),
+        (lambda part: fs.drop(part, jobs=0), "jobs: is 0 - give a number from 1"),
+        (lambda part: fs.shake(part, [BOWL], drops=-5), "drops: is -5 - give a number from 1"),
+        (lambda part: fs.shake(part, [BOWL], seconds=-1), "seconds: is -1 - give a number from 1e-06"),
+        (
+            lambda _: fs.convey(replace(BOWL, gravity=-1.0)),
+            "gravity: is not above 0 - give m/s2, 9.81 on earth",
+        ),
+        (
+            lambda part: fs.rate(part, replace(BOWL, gravity=-1.0), "C"),
+            "gravity: is not above 0 - give m/s2, 9.81 on earth",
+        ),
+    ],
+)
+def test_an_argument_that_cannot_be_used_is_named(part, call, line):
+    with pytest.raises(fs.FeederError) as caught:
+        call(part)
+    assert str(caught.value) == line
+
+
+def test_a_bowl_keeps_what_its_file_lists(part, tmp_path):
+    (tmp_path / "b.yaml").write_text("track: {width: 40 mm}\ndevices:\n  - wiper: 10 mm\n")
+    bowl = fs.read_bowl(tmp_path / "b.yaml")
+    found = fs.rate(part, bowl, "A")
+    assert found.orientations.stations == ("track", "wiper")
+    assert fs.rate(part, bowl, "A", devices=()).orientations.stations == ("track",)
