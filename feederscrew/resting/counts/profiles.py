@@ -121,7 +121,7 @@ def measured(table, where, sha256, names, taken=()):
 
     Parameters
     ----------
-    table : Sheet
+    table : CountSheet
         Whole numbers are counts; fractions sum to 1 and percents to 100, both within ``ROUNDING`` of the
         whole. Of a table of ``feeder drop`` only the counts are taken. Rows are aspects or, where the first
         column is 'orientation', aspects at a heading in degrees: 'A@180'.

@@ -38,7 +38,7 @@ class Few:
 
 
 @dataclass(frozen=True)
-class Sheet:
+class CountSheet:
     """The table of one file, and the head above it."""
 
     head: Head
@@ -85,7 +85,7 @@ def parse(text, where):
 
     Returns
     -------
-    Sheet
+    CountSheet
 
     Raises
     ------
@@ -106,7 +106,7 @@ def parse(text, where):
     head, faults = heads.parse([line for line in lines if line[0] < first], where)
     if faults:
         raise Faults(faults[:TOLD])
-    return Sheet(head, first, tuple(cells), tuple((k, _cells(where, k, line)) for k, line in table[1:]))
+    return CountSheet(head, first, tuple(cells), tuple((k, _cells(where, k, line)) for k, line in table[1:]))
 
 
 def _cells(where, number, line):
