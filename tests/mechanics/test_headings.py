@@ -291,3 +291,14 @@ def _inside_out(mesh, where):
     mesh.apply_translation(where)
     mesh.invert()
     return mesh
+
+
+@pytest.mark.parametrize("facets", [16, 32, 64])
+@pytest.mark.parametrize("bank", [6.0, 12.0, 15.0, 20.0])
+def test_a_pin_on_a_track_banked_towards_its_wall_falls_off_nowhere(facets, bank):
+    """It rolls into the corner at the wall: only what is beyond the free edge falls off."""
+    part = shapes.part(shapes.cylinder(3.0, 20.0, facets))
+    aspects = find(part)
+    lying = posture(part, aspects, aspects.names[aspects.kinds.index("rolling")])
+    found = headings(lying, replace(TRACK, bank=bank * DEG))
+    assert not found.falls_off.any() and not found.overhangs.any()

@@ -3,7 +3,7 @@
 import numpy as np
 
 from feederscrew import units
-from feederscrew.conveying import answer, sensitivity
+from feederscrew.conveying import answer, sensitivity, steady
 from feederscrew.output import tables
 
 MM_S = units.factor("mm/s", "velocity")
@@ -84,7 +84,10 @@ def remarks(document):
     if document["runs_away"]:
         said.append(RUNS_AWAY)
     if document["status"] == "averaged":
-        said.append(f"not periodic: an average; its spread is {between(low, high)} mm/s")
+        said.append(
+            f"not periodic: an average; means over {steady.BLOCK} periods span {between(low, high)} mm/s, "
+            "single periods more"
+        )
     elif high - low > answer.COEXIST * abs(high):
         said.append(
             f"several steady velocities, {between(low, high)} mm/s, depending on how the part arrives"

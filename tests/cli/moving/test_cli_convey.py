@@ -246,3 +246,18 @@ def test_a_key_that_changes_no_velocity_gives_a_level_curve(run):
     rows = [line.split(",") for line in done.stdout.splitlines()[1:]]
     assert [row[0] for row in rows] == ["1", "3", "5"]
     assert len({tuple(row[1:]) for row in rows}) == 1
+
+
+def test_an_average_says_what_its_range_is_of():
+    """Means over blocks of periods lie close together; the single periods do not."""
+    from feederscrew.output.convey import tables
+
+    told = {
+        "status": "averaged",
+        "runs_away": False,
+        "velocity_low_mm_s": 115.6,
+        "velocity_high_mm_s": 115.64,
+    }
+    assert tables.remarks(told) == [
+        "not periodic: an average; means over 32 periods span 115.6 to 115.6 mm/s, single periods more"
+    ]
