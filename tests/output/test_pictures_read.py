@@ -64,7 +64,7 @@ def test_a_way_of_the_tipping_graph_is_drawn_once_with_its_head():
 def test_a_thumbnail_shows_the_aspect_that_is_named():
     found = find(NUT)
     first, other = (contact_sheet.thumbnail(NUT, found, name) for name in ("A", "C"))
-    assert first == contact_sheet.thumbnail(NUT, found)
+    assert contact_sheet.thumbnail(NUT, found, found.likeliest) == contact_sheet.thumbnail(NUT, found)
     assert first != other
 
 
