@@ -39,6 +39,7 @@ from feederscrew_cli.quantity import Quantity
     metavar="SHARE",
     help="Of what is offered, that is asked for: the search goes on for it, or says what is missing.",
 )
+@click.option("--step", is_flag=True, help="Write tooling.step as well; needs feederscrew[cad].")
 @click.option("--turn", is_flag=True, help="Allow steps and ledges that turn parts over, before the cuts.")
 @click.option(
     "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the search for holes."
@@ -63,8 +64,8 @@ from feederscrew_cli.quantity import Quantity
 @options.pictures
 @options.output
 def tooling(
-    part, aspect, heading, rule, margin, purity, efficiency, turn, seed, verdicts, limit, taken, bowl,
-    pictures, out,
+    part, aspect, heading, rule, margin, purity, efficiency, turn, step, seed, verdicts, limit, taken,
+    bowl, pictures, out,
 ):  # fmt: skip
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
@@ -83,6 +84,10 @@ def tooling(
     from feederscrew.output.tooling import files, tables
     from feederscrew.studies.tooling import tooling as study
 
+    if step:
+        from feederscrew.output.tooling import step as steps
+
+        steps.check()
     solid, settings = out.part(part), bowls.settings(**bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
     record = bowls.record(settings)
@@ -97,5 +102,5 @@ def tooling(
         document = tables.document(found)
         out.warn(*found.warnings)
         out.say(*tables.remarks(found, efficiency))
-        offers.write(folder, files.offers(found, settings), pictures=pictures)
+        offers.write(folder, files.offers(found, settings, step), pictures=pictures)
         out.show(tables.summary(found), document, hidden=tables.HIDDEN)

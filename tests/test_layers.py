@@ -19,6 +19,7 @@ DOORS = {
     "embreex": {"feederscrew/output"},
     "ezdxf": {"feederscrew/bowl/drawing.py"},
     "manifold3d": {"feederscrew/tooling/solid.py"},
+    "OCP": {"feederscrew/output/tooling/step.py"},
     "click": {"cli"},
     "numba": {"feederscrew/geometry", "feederscrew/conveying"},
 }

@@ -15,7 +15,8 @@ import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
-from feederscrew.output.tooling import bowl_file, drawing, figures, files, stl
+from feederscrew.errors import FeederError
+from feederscrew.output.tooling import bowl_file, drawing, figures, files, step, stl
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
@@ -158,3 +159,18 @@ def test_texts_of_the_pictures_do_not_meet(lying, isolated):
         width, height = figure.canvas.get_width_height()
         assert all(box.x0 >= 0 and box.x1 <= width and box.y0 >= 0 and box.y1 <= height for box in boxes)
         assert not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2))
+
+
+def test_step_where_opencascade_is(lying):
+    reading = pytest.importorskip("OCP.STEPControl")
+    short = strip(lying[0].track, lying[0].devices[1:3], lying[1])
+    made = step.step(short)
+    assert made == step.step(short)
+    assert made.startswith(b"ISO-10303-21;") and b"track section" in made
+    assert reading is not None
+
+
+def test_step_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "OCP.STEPControl", None)
+    with pytest.raises(FeederError, match=r"^--step: needs OpenCASCADE, which is not installed - pip"):
+        step.check()

@@ -7,7 +7,7 @@ from feederscrew.output.tooling import bowl_file, tables
 from feederscrew.tooling.strip import strip
 
 
-def offers(study, settings):
+def offers(study, settings, step=False):
     """Offer the files of a ToolingStudy, as a list of Offer.
 
     Parameters
@@ -15,6 +15,8 @@ def offers(study, settings):
     study : ToolingStudy
     settings : sequence of Setting
         Of its bowl.
+    step : bool
+        Offer the section of track as STEP as well, which needs OpenCASCADE.
 
     Returns
     -------
@@ -35,6 +37,7 @@ def offers(study, settings):
         offer.text("tooling.dxf", _drawn, "dxf", study),
         offer.text("tooling.svg", _drawn, "svg", study),
         offer.text("tooling.stl", _printed, study),
+        *([offer.text("tooling.step", _quoted, study)] if step else []),
         *_views(study),
     ]
 
@@ -117,6 +120,12 @@ def _printed(study):
     from feederscrew.output.tooling import stl
 
     return stl.stl(_strip(study))
+
+
+def _quoted(study):
+    from feederscrew.output.tooling import step
+
+    return step.step(_strip(study))
 
 
 def _strip(study):
