@@ -12,6 +12,7 @@ from feederscrew.dropping import runs, stills, traces
 from feederscrew.dropping.traces import telling
 from feederscrew.output import style, tables
 from feederscrew.output.drop import trace_curve, trace_strip, trace_tables
+from feederscrew.output.tables import data_frame
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies.drop import DropStudy
@@ -154,13 +155,13 @@ def test_a_drop_that_never_settles_has_no_class(tmp_path):
     assert result.tally.unsettled == 2
     assert trace.row == trace.face == -1 and not trace.still
     told = trace_tables.traces(DropStudy(part, aspects, result))
-    assert set(told["aspect"]) == {"none"} and told["event"].iloc[-1] != "still"
+    assert set(told["aspect"]) == {"none"} and told["event"][-1] != "still"
     assert style.png(trace_strip.strip(part, aspects, trace, "box"))
 
 
 def test_the_table_is_what_was_followed(bracket):
     part, aspects, result = bracket
-    told = trace_tables.traces(DropStudy(part, aspects, result))
+    told = data_frame(trace_tables.traces(DropStudy(part, aspects, result)))
     assert list(told) == [
         "drop", "time_s", "x_mm", "y_mm", "z_mm", "q_w", "q_x", "q_y", "q_z", "energy_mm", "event", "aspect",
     ]  # fmt: skip

@@ -172,5 +172,5 @@ def test_step_where_opencascade_is(lying):
 
 def test_step_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "OCP.STEPControl", None)
-    with pytest.raises(FeederError, match=r"^--step: needs OpenCASCADE, which is not installed - pip"):
+    with pytest.raises(FeederError, match=r"^step: needs OpenCASCADE, which is not installed - pip"):
         step.check()

@@ -148,7 +148,7 @@ def figure(study):
             axes.text(column, row, f"{value:.3f}", ha="center", va="center", fontsize=7, color=colour)
     style.tidy(axes, title="Total variation between what was measured and each answer", grid="none")
     axes.set_xticks(range(len(answers)), [look(name)[0] for name in answers], rotation=30, ha="right")
-    axes.set_yticks(range(len(study.sets)), [style.words(_told(one)) for one in study.sets])
+    axes.set_yticks(range(len(study.sets)), [_told(one) for one in study.sets])
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)
     return made

@@ -35,6 +35,7 @@ CALLS = {
     "headings": [PART],
     "bowl": ["--help"],  # minutes without a compiler
     "tooling": ["--help"],
+    "trial": ["--help"],
     "batch": [PART, "-o", "results/all", "--no-pictures", "--jobs", "1"],
     "report": [PART, "-o", "results", *STEEP],
     "reproduce": ["-o", "results"],
