@@ -282,3 +282,33 @@ def test_the_likeliest_aspect_is_wanted_unless_another_is():
     assert case.aspect == "3"  # of a card in the order of its source, 11, 14 and 75 % by CSA
     (tile,) = page(case, chapters=LIGHT[:1]).tiles
     assert tile == blocks.Tile("rests most often on", "aspect 3", "42.8 to 74.7 % of drops, by 3 rules")
+
+
+def velocities(text):
+    """Every velocity that a page in Markdown prints, by what it is called: a label, and its values."""
+    found = {}
+    for label, value in re.findall(r"^\| ([^|]*velocity[^|]*\[mm/s\]) \| ([^|]*) \|$", text, re.M):
+        found.setdefault(label, set()).add(value.partition(" (")[0])
+    return found
+
+
+def test_one_drive_has_one_velocity(bracket):
+    """The chapters of velocity, rate, bowl and track: what is called alike is equal."""
+    wanted = [chapter for chapter in CHAPTERS if chapter[0] in ("velocity", "rate", "bowl", "track")]
+    case = report(bracket, None, (), target=1.0)
+    made = page(case, chapters=wanted)
+    text = markdown(made, BESIDE)
+    found, plain = velocities(text), "velocity [mm/s]"
+    assert text.count(f"| {plain} |") == 2 and all(len(values) == 1 for values in found.values())
+    (value,) = found[plain]
+    assert float(value) == pytest.approx(1e3 * case.convey.answer.velocity, rel=1e-3)
+    assert made.tiles[0].value == f"{float(value):.1f} mm/s"
+    assert "velocity at this stroke [mm/s]" in found and "velocity as it empties [mm/s]" in text
+    along = "velocity along the wall, with its friction and the bank [mm/s]"
+    assert float(*found[along]) == pytest.approx(1e3 * case.track.course.mean, rel=1e-4)
+
+
+def test_the_rate_says_whose_probabilities_it_takes(bracket):
+    case = report(bracket, None, ())
+    (tile,) = page(case, chapters=[chapter for chapter in CHAPTERS if chapter[0] == "rate"]).tiles
+    assert tile.note.endswith(f"({case.rate.answer})") and case.rate.answer != "recommended"

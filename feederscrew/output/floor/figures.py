@@ -86,7 +86,7 @@ def cycle(found, course, title):
     lower.axhline(course.mean / MM, color=MOTION, linestyle="--", linewidth=0.9)
     lower.axhline(0, color=plots.INK, linewidth=0.8)
     lower.text(
-        2, course.mean / MM, f" mean {course.mean / MM:.3g} mm/s",
+        2, course.mean / MM, f" mean on a level floor {course.mean / MM:.3g} mm/s",
         fontsize=8, color=MOTION, va="bottom",
     )  # fmt: skip
     for axes in (upper, lower):

@@ -125,7 +125,7 @@ def _travel(study):
         "vibration angle [deg]",
         f"{bowl.drive.vibration_angle / DEG:.3g} to the track, {upright:.3g} to the horizontal",
     )
-    yield "velocity [mm/s]", f"{found.velocity / MM_S:.3g}, {found.regime}"
+    yield "velocity at this stroke [mm/s]", f"{found.velocity / MM_S:.3g}, {found.regime}"
     yield "hardest impact [mm/s]", f"{found.hardest_impact / MM_S:.3g}"
     if study.order is None:
         speeds = (study.velocities[0] / MM_S, study.velocities[-1] / MM_S)

@@ -1,6 +1,7 @@
 """The bowl that a part needs, or the machine of the bowl file."""
 
 from feederscrew.output import offers
+from feederscrew.output import tables as plain
 from feederscrew.output.machine import offers as machine_files
 from feederscrew.output.machine import tables
 from feederscrew.output.page.blocks import Notes, Picture, Section, Table, Text, Tile
@@ -27,9 +28,15 @@ def bowl(case):
         Table(tables.summary(found)),
         Table(tables.leaf_sets(found.changes)),
         Table(tables.leaf_sets(found.sets)),
-        Table(tables.emptying(found)),
+        Table(_renamed(tables.emptying(found))),
     )
     return Section(blocks, tiles=(_tile(found),), warnings=found.remarks)
+
+
+def _renamed(frame):
+    """A table of velocities at the strokes of a bowl that empties, which are not that of the bowl file."""
+    shown = {"velocity_mm_s": "velocity_as_it_empties_mm_s"}
+    return plain.frame({shown.get(name, name): column for name, column in frame.items()})
 
 
 def _tile(found):

@@ -160,7 +160,7 @@ def _rate_tile(document):
     return Tile(
         "leaves correctly oriented",
         f"{number(document['parts_per_minute'], SHORT)} a minute",
-        f"{low} to {high}; {what} ({document['rule']})",
+        f"{low} to {high}; {what} ({document['answer']})",
     )
 
 

@@ -75,7 +75,7 @@ def cycle(found, course, title):
         middle.plot(phase, found.walls[:, k], color=color, label=f"R{k + 1}")
     middle.plot(phase, found.radial_friction, color=NORMAL, linestyle="--", label="R3")
     plots.tidy(lower, x="phase ωt [deg]; upper reversal at 90°", y="velocity [mm/s]")
-    lower.plot(phase, course.velocity / MM, color="#2f7d5b", label=f"mean {course.mean / MM:.3g} mm/s")
+    lower.plot(phase, course.velocity / MM, color="#2f7d5b", label=mean(course))
     for axes in (upper, middle, lower):
         phase_axis(axes)
         axes.axhline(0, color=plots.INK, linewidth=0.8)
@@ -85,6 +85,12 @@ def cycle(found, course, title):
     state_band(upper, phase, found.state, STATES)
     state_legend(figure, found.state, STATES)
     return figure
+
+
+def mean(course):
+    """Say the mean velocity of a cycle, and of what it is; a part that rolls or gets faster has none."""
+    velocity = f"{course.mean / MM:.3g} mm/s" if course.settled else "none: it gets faster"
+    return f"mean, with the\nwall's friction:\n{velocity}"
 
 
 def _above(axes, found):

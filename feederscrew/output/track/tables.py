@@ -22,6 +22,9 @@ HELD_ACROSS = (
     "at rest at the upper reversal, friction across the track or up the wall can hold the part; by the least "
     "friction along the track, which the reactions show and the cycle follows, it would slide"
 )
+ALONG = (
+    "velocity along the wall, with its friction and the bank [mm/s]"  # not that of a point mass, of convey
+)
 TURNED = 1.0  # [deg] of heading: less is not worth a word
 LABELS = {
     "normal_force_N": "normal force N",
@@ -175,6 +178,7 @@ def summary(document):
     rows |= {
         "state at the upper reversal": now["state"],
         "regime over the cycle": document["regime"],
+        ALONG: None if document["mean_velocity_m_s"] is None else document["mean_velocity_m_s"] / MM,
         "heading [deg]": document["heading_deg"],
         "first contact to open": document["first_to_open"],
         "opens at this many times the drive": document["opens_at_drive_factor"],
