@@ -25,6 +25,8 @@ HELD_ACROSS = (
 ALONG = (
     "velocity along the wall, with its friction and the bank [mm/s]"  # not that of a point mass, of convey
 )
+UNKNOWN = "not known: it hops"
+IN_FLIGHT = "in flight"  # no contact of all
 TURNED = 1.0  # [deg] of heading: less is not worth a word
 LABELS = {
     "normal_force_N": "normal force N",
@@ -58,7 +60,7 @@ def instant(found):
         "wall_1_friction_N": float(found.wall_friction[0]),
         "wall_2_friction_N": float(found.wall_friction[1]),
         "floor_couple_N_mm": float(found.couple) / MM,
-        "opened": opened(found.closed),
+        "opened": [] if found.state == HOP else opened(found.closed),
         "tips": tips(found.inside),
         "state": STATES[int(found.state)],
     }
@@ -98,7 +100,10 @@ def over_cycle(found, course):
         "floor_couple_N_mm": found.couple[shown] / MM,
         "velocity_m_s": course.velocity[shown],
         "friction_needed": found.needed[shown, 0],
-        "opened": [" ".join(opened(pair)) for pair in found.closed[shown]],
+        "opened": [
+            IN_FLIGHT if state == HOP else " ".join(opened(pair))
+            for state, pair in zip(found.state[shown], found.closed[shown])
+        ],
         "tips": [tips(inside) for inside in found.inside[shown]],
     }
 
@@ -137,7 +142,7 @@ def document(found, settings, *, as_published=False):
         "tipping_axis": _axis(found.opening),
         "friction_needed": friction_needed(found.cycle),
         "held_across": found.held_across,
-        "stays_on_wall": bool(found.cycle.closed.any(axis=-1).all()),
+        "stays_on_wall": stays_on_wall(found.cycle),
         "bank_without_radial_friction_deg": float(np.degrees(found.bank_without_radial_friction)),
         "mean_velocity_m_s": mean_velocity(found),
         "settled": found.course.settled,
@@ -164,6 +169,11 @@ def friction_needed(cycle):
     return dict(zip(CONTACTS, cycle.needed.max(axis=0).tolist()))
 
 
+def stays_on_wall(cycle):
+    """Whether a wall contact is closed at every instant; None where it hops: the flight is not followed."""
+    return None if HOP in cycle.state else bool(cycle.closed.any(axis=-1).all())
+
+
 def shown(document, format):
     """What goes to stdout: the cycle as CSV; for people the upper reversal, or what print leaves out."""
     if format == "csv":
@@ -182,7 +192,7 @@ def summary(document):
         "heading [deg]": document["heading_deg"],
         "first contact to open": document["first_to_open"],
         "opens at this many times the drive": document["opens_at_drive_factor"],
-        "stays against the wall": document["stays_on_wall"],
+        "stays against the wall": UNKNOWN if document["stays_on_wall"] is None else document["stays_on_wall"],
         **{f"friction needed to hold it, {name.replace('_', ' ')}": needed[name] for name in CONTACTS},
         "bank without radial friction [deg]": document["bank_without_radial_friction_deg"],
     }
@@ -198,9 +208,10 @@ def remarks(found):
         lines.append(HELD_ACROSS)
     if HOP in cycle.state:
         lines.append(
-            "the part loses contact within the cycle: its flight is not followed here, but by feeder convey"
+            "the part loses contact within the cycle: its flight is not followed here, but by feeder convey; "
+            "whether it stays against the wall is not known"
         )
-    if not cycle.closed.all():
+    elif not cycle.closed.all():
         share = 100.0 * np.mean(~cycle.closed.all(axis=-1))
         lines.append(f"a wall contact is open for {share:.0f} % of the cycle: {_which(cycle.closed)}")
     if found.posture.kind == "rolling":

@@ -195,3 +195,19 @@ def test_a_card_gives_the_same_under_another_name(run, tmp_path, card, aspect):
     (axes,) = (word for word in other if f"axes: {word}" in text)
     copy.write_text(text.replace(f"axes: {axes}", f"axes: {other[axes]}"))
     assert document(run, copy, *printed)["instant"] != first["instant"]
+
+
+@pytest.mark.parametrize("amplitude", ["0.25 mm", "0.5 mm"])
+def test_while_it_hops_nothing_is_said_of_the_wall(run, amplitude):
+    """Neither "stays against the wall: yes" nor "a contact is open 100 % of the cycle": it is in flight."""
+    hopping = (BRACKET, "--aspect", "C", "--set", f"drive.amplitude={amplitude}")
+    found = document(run, *hopping)
+    assert found["regime"] == "hop" and found["stays_on_wall"] is None
+    cycle = found["cycle"]
+    assert all(
+        (state == "hop") == (opened == "in flight") for state, opened in zip(cycle["state"], cycle["opened"])
+    )
+    told = run("track", *hopping)
+    assert "stays against the wall" in told.stdout and "not known: it hops" in told.stdout
+    assert "whether it stays against the wall is not known" in told.stderr
+    assert "% of the cycle" not in told.stderr
