@@ -1,10 +1,11 @@
 """Every orientation of a part in the queue, and what becomes of it at each device."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from feederscrew import check
+from feederscrew.rates.tipping import Tipping, tipping
 from feederscrew.tooling import orientations as tooling
 from feederscrew.tooling.course import course
 from feederscrew.tooling.orientations import Orientation
@@ -23,6 +24,7 @@ class Orientations:
     leaves_as: np.ndarray  # (M,) int, the state in which parts wanted as a row are fed
     rules: dict[str, np.ndarray]  # (M,) probability of aspect and heading by each rule
     interval: np.ndarray  # (M, 2) lowest and highest probability by the recommended rule
+    tipping: Tipping | None = None  # on the track of a bowl; None where no drive is known
 
     @property
     def aspects(self):
@@ -61,7 +63,7 @@ class Orientations:
         return np.where(np.isinf(known), np.nan, known)
 
 
-def orientations(part, aspects, track, chain=(), sigma=0.0):
+def orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None):
     """Return every stable aspect and heading of a part, and what becomes of it at each device.
 
     Parameters
@@ -74,12 +76,17 @@ def orientations(part, aspects, track, chain=(), sigma=0.0):
     chain : sequence of Device
     sigma : float [m]
         Standard deviation of play and tolerance together, of every device.
+    bowl : Bowl, optional
+        Of that track: what its drive turns over on the track goes back, as what falls off does.
 
     Returns
     -------
     Orientations
     """
     lying = tooling.orientations(part, aspects, track)
+    tips = None if bowl is None else tipping(lying, bowl)
+    if tips is not None:
+        lying = tuple(replace(one, turns_over=bool(over)) for one, over in zip(lying, tips.over))
     found = course(chain, lying, sigma)
     rules = {rule: np.array([one.chances[rule] for one in lying]) for rule in aspects.chances}
     return Orientations(
@@ -92,6 +99,7 @@ def orientations(part, aspects, track, chain=(), sigma=0.0):
         leaves_as=check.frozen(np.array([found.leaves_as(row) for row in range(len(lying))])),
         rules={rule: check.frozen(chance) for rule, chance in rules.items()},
         interval=check.frozen(_interval(aspects, lying)),
+        tipping=tips,
     )
 
 

@@ -169,7 +169,8 @@ def rate(
     known = shares(part, bowl) if known is None else known
     found = known.aspects
     target = None if aspect is None else queue.wanted(part, found, bowl.track, aspect, heading)
-    lying = chances.oriented(queue.orientations(part, found, bowl.track, chain, sigma), known.measured)
+    ways = queue.orientations(part, found, bowl.track, chain, sigma, bowl)
+    lying = chances.oriented(ways, known.measured)
     speed = queue.velocity(bowl)
     target = most_frequent(lying, rule) if target is None else target
     return RateStudy(

@@ -98,14 +98,14 @@ def course(devices, every, sigma=0.0):
         states=tuple(states),
         verdicts=tuple(tuple(told + [None] * (len(states) - len(told))) for told in verdicts),
         matrices=check.frozen(_matrices(ways, len(states))),
-        starts=check.frozen(np.array([0.0 if one.falls_off else 1.0 for one in every])),
+        starts=check.frozen(np.array([0.0 if one.returned else 1.0 for one in every])),
     )
 
 
 def _way(device, place, one, found, states):
     """Where a state goes on from a device: (place, share) of what passes; new hanging states are added."""
     if found.onto:
-        return [(onto, share) for onto, share in found.onto if not states[onto].falls_off]
+        return [(onto, share) for onto, share in found.onto if not states[onto].returned]
     if not found.hangs:
         return [(place, found.passes)]
     known = [other for other in states if isinstance(other, Hanging)]

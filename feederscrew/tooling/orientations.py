@@ -34,11 +34,20 @@ class Orientation:
     falls_off: bool  # the bare track does not carry it
     kind: str  # 'flat', 'rolling' or 'hanging'
     mirror: str = ""  # name of its mirror image, fore and aft; '' where there is none
+    touching: np.ndarray | None = (
+        None  # of its corners, where it touches the wall; None where that is not known
+    )
+    turns_over: bool = False  # the drive tips it over on the track
 
     @property
     def name(self):
         """'D@179': aspect and heading in whole degrees."""
         return f"{self.aspect}@{np.degrees(self.heading):.0f}"
+
+    @property
+    def returned(self):
+        """Whether the track itself does not carry it."""
+        return self.falls_off or self.turns_over
 
     @property
     def shift(self):
@@ -167,4 +176,5 @@ def _orientation(lying, known, row, chances, track):
         distance=float(known.distances[row]),
         falls_off=bool(known.falls_off[row] and known.overhangs[row] > 0.0),  # one that rolls stays on
         kind=lying.kind,
+        touching=known.touching[row],
     )

@@ -95,7 +95,9 @@ def remarks(study):
     found = study.rate
     if found.velocity.value <= 0.0:
         return ["the part does not travel up the track: see feeder convey"]
-    turned = _turned(study.devices)
+    turned = [*_tipping(found), *_turned(study.devices)]
+    if found.orientations.lying[found.row].turns_over:
+        return turned
     if found.through == 0.0 and found.efficiency > 0.0:
         return [
             *turned,
@@ -107,6 +109,30 @@ def remarks(study):
         verb = "reject" if len(names) > 1 else "rejects"
         return [f"{' and '.join(names)} {verb} the orientation you want; rate is 0"]
     return turned
+
+
+def _tipping(found):
+    """What tips on the track at this drive, and what becomes of it."""
+    known = found.orientations
+    if known.tipping is None:
+        return []
+    over = [one.name for one in known.lying if one.turns_over]
+    rocks = known.tipping.tips & ~known.tipping.over
+    said = []
+    if over:
+        lost = "; rate is 0" if known.lying[found.row].turns_over else ""
+        said.append(f"{_list(over)} can tip over on the track at this drive and count as returned{lost}")
+    if rocks[found.row]:
+        tilt, lean = (np.degrees(angle[found.row]) for angle in (known.tipping.tilt, known.tipping.balance))
+        said.append(
+            f"{known.lying[found.row].name} rocks on the track: a stroke tilts it by {tilt:.2g} deg at most, "
+            f"and from {lean:.3g} deg it would tip over"
+        )
+    return said
+
+
+def _list(names):
+    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
 def _turned(devices):

@@ -1,0 +1,98 @@
+"""Orientations that the drive turns over on the track, apart from those that it only rocks.
+
+While the line of action of the normal force lies outside the contact polygon, the part turns about the
+nearest side. Over a settled cycle the moments about that side hold it down, or the bare track would not carry
+it: it rocks. It turns over where one stroke alone is enough to lift its centre of mass over the side.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.errors import ConfigError
+from feederscrew.geometry.polygons import cross, inset, sides
+from feederscrew.mechanics import limits
+from feederscrew.mechanics.cycle import phases
+from feederscrew.mechanics.floor.balance import HOP, TIP
+from feederscrew.mechanics.track import balance
+from feederscrew.mechanics.track.frame import seat
+
+INSTANTS = 12  # of one period
+FLAT = "flat"  # a part that rolls lies on a line, and rolls where others tip
+
+
+@dataclass(frozen=True, eq=False)
+class Tipping:
+    """What the drive does to M orientations that lie on the track."""
+
+    tips: np.ndarray  # (M,) bool, at some instant of the cycle
+    tilt: np.ndarray  # (M,) [rad] that one stroke brings at most; 0 where it does not tip
+    balance: np.ndarray  # (M,) [rad] from which it goes on by itself; NaN where it does not tip
+
+    @property
+    def over(self):
+        """(M,) bool, whether one stroke is enough to turn it over."""
+        return self.tips & (self.tilt >= np.nan_to_num(self.balance, nan=np.inf))
+
+
+def tipping(lying, bowl):
+    """Return which orientations tip on the track of a bowl, and which turn over there.
+
+    Parameters
+    ----------
+    lying : sequence of Orientation
+        M of them, that know where they touch the wall.
+    bowl : Bowl
+        Single values.
+
+    Returns
+    -------
+    Tipping
+        None tips where that is not known: a part that rolls or hops, a drive that is not straight.
+
+    Notes
+    -----
+    The greatest moment about a side is taken for half a period, on the moment of inertia m (r^2 + h^2) of the
+    centre of mass about that side, r beside it and h above it: an upper estimate. It is over at atan(r/h).
+    """
+    found = [_one(one, bowl) for one in lying] if _plain(bowl) else [_NEVER] * len(lying)
+    tips, tilt, lean = (np.array(column) for column in zip(*found))
+    return Tipping(check.frozen(tips), check.frozen(tilt), check.frozen(lean))
+
+
+_NEVER = (False, 0.0, np.nan)
+
+
+def _plain(bowl):
+    try:
+        return limits.plain(bowl) is bowl
+    except ConfigError:
+        return False
+
+
+def _one(one, bowl):
+    """Whether one orientation tips, by how much a stroke tilts it, and from where it goes on."""
+    if one.falls_off or one.kind != FLAT or one.touching is None:
+        return _NEVER
+    place, phase = seat(one.posture, one.heading, one.touching, bowl.track.bank), phases(INSTANTS)
+    rest = balance.motion(place, bowl, phase)
+    if (rest.state == HOP).any() or not (rest.state == TIP).any():
+        return _NEVER
+    motions = [rest] + [balance.motion(place, bowl, phase, np.full(INSTANTS, s)) for s in (-1.0, 1.0)]
+    force = np.concatenate([found.normal_force for found in motions])
+    offset = np.concatenate([found.offset for found in motions])
+    moment = force * np.maximum(-inset(place.contact, offset), 0.0)
+    worst = int(np.nanargmax(moment))
+    beside = _to_side(place.contact, offset[worst])
+    arm = beside**2 + place.height**2
+    tilt = 0.5 * moment[worst] / (place.mass * arm) * (0.5 / bowl.drive.frequency) ** 2
+    return True, float(tilt), float(np.arctan2(beside, place.height))
+
+
+def _to_side(contact, point):
+    """Distance of the foot of the centre of mass from the side that a point lies farthest beyond [m]."""
+    along = sides(contact)
+    along = along / np.hypot(*along.T)[:, None]
+    beyond = cross(along, point - contact)
+    return max(float(cross(along, -contact)[np.argmin(beyond)]), 0.0)
