@@ -2,6 +2,7 @@
 
 import difflib
 import math
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from feederscrew.errors import ConfigError, Faults
 from feederscrew.units import shown
 
 LARGEST = 200_000  # [bytes]: a bowl file or part card has a few hundred; parsing time grows with size
+PIECE = 1 << 22  # [bytes] of a stream that are asked for at once
 DEEPEST = 12  # levels of nesting
 
 
@@ -89,7 +91,7 @@ def content(path, most, wanted, kind=ConfigError):
         raise kind("''", "is an empty path", f"name {wanted}")
     try:
         with Path(path).open("rb") as file:
-            return file.read(most + 1)
+            return upto(file, most)
     except FileNotFoundError:
         if Path(path).is_symlink():
             raise kind(path, "is a link to a file that is not there", "mend or remove the link") from None
@@ -99,6 +101,41 @@ def content(path, most, wanted, kind=ConfigError):
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise kind(path, f"cannot be read ({reason})", "check the path and its permissions") from None
+
+
+def upto(file, most):
+    """Read a binary file up to one byte more than is of use, without a buffer of that size.
+
+    Parameters
+    ----------
+    file : binary file
+        A regular file is read by its size, a stream in pieces.
+    most : int
+        Bytes that are of use.
+
+    Returns
+    -------
+    bytes or bytearray
+        Longer than ``most`` where there is more.
+    """
+    begun = file.read(min(_size(file), most) + 1)
+    piece = file.read(PIECE) if len(begun) <= most else b""
+    if not piece:
+        return begun
+    data = bytearray(begun + piece)
+    while piece and len(data) <= most:
+        piece = file.read(PIECE)
+        data += piece
+    del data[most + 1 :]
+    return bytes(data) if len(data) <= most else data
+
+
+def _size(file):
+    """Bytes of a regular file; 0 of a stream."""
+    try:
+        return os.fstat(file.fileno()).st_size
+    except (OSError, ValueError):  # one in memory has no descriptor
+        return 0
 
 
 def load(text, name):

@@ -1,5 +1,8 @@
 """YAML trees with their places, and what is said of texts that are no settings."""
 
+import io
+import tracemalloc
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -119,3 +122,35 @@ def test_any_text_is_a_tree_or_faults_of_one_line(text):
     except FeederError as error:
         faults = [error]
     assert all("\n" not in str(fault) for fault in faults)
+
+
+@pytest.mark.parametrize("size", [0, 1, 10, 11, 12])
+def test_a_file_is_read_up_to_one_byte_more_than_is_of_use(tmp_path, size):
+    path, text = tmp_path / "x", b"0123456789ab"[:size]
+    path.write_bytes(text)
+    assert documents.content(path, 10, "a file") == text[:11]
+    assert documents.upto(io.BytesIO(text), 10) == text[:11]
+
+
+def test_a_stream_is_read_whole_in_pieces(monkeypatch):
+    class Dripping(io.BytesIO):
+        def read(self, size=-1):
+            return super().read(min(size, 7))
+
+    monkeypatch.setattr(documents, "PIECE", 16)
+    text = bytes(range(100))
+    assert documents.upto(Dripping(text), 1000) == text
+    assert documents.upto(Dripping(text), 50) == text[:51]
+
+
+def test_a_small_file_takes_little_memory(tmp_path):
+    """Not a buffer of the greatest size that would be read."""
+    path = tmp_path / "x"
+    path.write_bytes(b"solid" * 1000)
+    tracemalloc.start()
+    try:
+        for read in (documents.content(path, 1 << 30, "a file"), documents.upto(io.BytesIO(b"x"), 1 << 30)):
+            assert len(read) in (1, 5000)
+        assert tracemalloc.get_traced_memory()[1] < 50e6
+    finally:
+        tracemalloc.stop()

@@ -110,7 +110,7 @@ def _bytes(source, where, stdin):
     if source != "-" and stdin is None:
         return documents.content(source, LARGEST, "a part file", MeshError)
     try:
-        return (stdin or sys.stdin.buffer).read(LARGEST + 1)
+        return documents.upto(stdin or sys.stdin.buffer, LARGEST)
     except (OSError, ValueError) as error:
         raise MeshError(where, f"cannot be read ({error})", "check what it comes from") from None
 
