@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew import check
-from feederscrew.rates.tipping import Tipping, tipping
+from feederscrew.rates.tipping import TrackTipping, tipping
 from feederscrew.tooling import orientations as tooling
 from feederscrew.tooling.course import course
 from feederscrew.tooling.orientations import Orientation
@@ -24,7 +24,7 @@ class Orientations:
     leaves_as: np.ndarray  # (M,) int, the state in which parts wanted as a row are fed
     rules: dict[str, np.ndarray]  # (M,) probability of aspect and heading by each rule
     interval: np.ndarray  # (M, 2) lowest and highest probability by the recommended rule
-    tipping: Tipping | None = None  # on the track of a bowl; None where no drive is known
+    tipping: TrackTipping | None = None  # on the track of a bowl; None where no drive is known
 
     @property
     def aspects(self):

@@ -23,7 +23,7 @@ FLAT = "flat"  # a part that rolls lies on a line, and rolls where others tip
 
 
 @dataclass(frozen=True, eq=False)
-class Tipping:
+class TrackTipping:
     """What the drive does to M orientations that lie on the track."""
 
     tips: np.ndarray  # (M,) bool, at some instant of the cycle
@@ -48,7 +48,7 @@ def tipping(lying, bowl):
 
     Returns
     -------
-    Tipping
+    TrackTipping
         None tips where that is not known: a part that rolls or hops, a drive that is not straight.
 
     Notes
@@ -58,7 +58,7 @@ def tipping(lying, bowl):
     """
     found = [_one(one, bowl) for one in lying] if _plain(bowl) else [_NEVER] * len(lying)
     tips, tilt, lean = (np.array(column) for column in zip(*found))
-    return Tipping(check.frozen(tips), check.frozen(tilt), check.frozen(lean))
+    return TrackTipping(check.frozen(tips), check.frozen(tilt), check.frozen(lean))
 
 
 _NEVER = (False, 0.0, np.nan)
