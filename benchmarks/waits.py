@@ -29,7 +29,7 @@ PRINTED = {
     "track": ("track", PART),
     "headings": ("headings", PART),
     "rate": ("rate", PART, "--aspect", "A"),
-    "tune": ("tune", PART, "--aspect", "A", "--target", "60/min"),
+    "tune": ("tune", PART, "--aspect", "A", "--target", "5/min"),
 }
 MIB = 1024.0  # KiB
 REPEATS = 3
