@@ -28,7 +28,7 @@ HEADINGS = {  # columns of the table, and their names here
     "aspect": "aspect",
     "heading_deg": "heading_deg",
     "share": "p_of this aspect",
-    "aspect_share": "p_of all drops (CSA)",
+    "aspect_share": "p_of all drops",
     "length_mm": "length_mm",
     "width_mm": "width_mm",
     "overhang_mm": "overhang_mm",
