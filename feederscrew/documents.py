@@ -119,15 +119,19 @@ def upto(file, most):
         Longer than ``most`` where there is more.
     """
     begun = file.read(min(_size(file), most) + 1)
-    piece = file.read(PIECE) if len(begun) <= most else b""
+    piece = _next(file, most - len(begun))
     if not piece:
         return begun
-    data = bytearray(begun + piece)
-    while piece and len(data) <= most:
-        piece = file.read(PIECE)
+    data = bytearray(begun)
+    while piece:
         data += piece
-    del data[most + 1 :]
+        piece = _next(file, most - len(data))
     return bytes(data) if len(data) <= most else data
+
+
+def _next(file, left):
+    """The next piece of a stream of which so many bytes are still of use; empty at its end or beyond."""
+    return file.read(min(PIECE, left + 1)) if left >= 0 else b""
 
 
 def _size(file):

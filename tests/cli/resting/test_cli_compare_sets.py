@@ -55,28 +55,28 @@ def test_each_set_is_compared_with_every_answer(run, files, tmp_path):
 
 
 def test_for_people_and_for_programs(run, files):
-    some = [path for path in files if path.stem in ("coin", "t_shape")]
+    some = [path for path in files if path.stem in ("short_cube", "t_shape")]
     table = run("compare", *some).stdout.splitlines()
     assert table[0].split()[:4] == ["set", "launch", "parts", "inside"] and len(table) == 3
     told = json.loads(run("compare", *some, "--format", "json").stdout)
-    coin = told["sets"][0]
-    assert coin["launch"] == "flip" and coin["fractions"] == [0.868, 0.132]
-    assert sum(coin["answers"]["recommended"]) == pytest.approx(1.0, abs=1e-9)
-    assert coin["recommended"]["low"][1] <= coin["answers"]["recommended"][1]
+    cube = told["sets"][0]
+    assert cube["launch"] == "drop" and cube["fractions"] == [0.62, 0.38]
+    assert sum(cube["answers"]["recommended"]) == pytest.approx(1.0, abs=1e-9)
+    assert cube["recommended"]["low"][1] <= cube["answers"]["recommended"][1]
 
 
 def test_another_mesh_than_the_one_counted_is_a_warning(run, files, tmp_path):
-    (coin,) = [path for path in files if path.stem == "coin"]
-    text = coin.read_text().replace("# part: ", f"# part: {coin.parent}/").replace("# mesh: 0c", "# mesh: ff")
+    (cube,) = [path for path in files if path.stem == "short_cube"]
+    text = cube.read_text().replace("# part: ", f"# part: {cube.parent}/").replace("# mesh: c0", "# mesh: ff")
     (tmp_path / "c.csv").write_text(text)
     done = run("compare", "c.csv")
     assert done.exit_code == 0
     (line,) = done.stderr.splitlines()
-    assert line.startswith("Warning: c.csv: counted with another part file: its mesh is ffa14317, that of ")
-    old = run("compare", coin.parent / "coin.stl", "--with", "c.csv")
+    assert line.startswith("Warning: c.csv: counted with another part file: its mesh is ff5f7fbd, that of ")
+    old = run("compare", cube.parent / "short_cube.stl", "--with", "c.csv")
     assert line in old.stderr.splitlines() and old.exit_code == 0
-    counts = coin.parent / "cuboid_047.csv"
-    told = run("calibrate", coin.parent / "cuboid_075.stl", "--with", counts).stderr
+    counts = cube.parent / "cuboid_047.csv"
+    told = run("calibrate", cube.parent / "cuboid_075.stl", "--with", counts).stderr
     assert f"Warning: {counts}: counted with another part file" in told
 
 
