@@ -44,7 +44,8 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     a closed form where one is good enough for that launch and part, else a drop test of 2,000 drops.
 
     PART is a mesh (STL, OBJ, PLY, OFF, GLB, 3MF, STEP), a part card (YAML), or - for standard
-    input. With -o: aspects.csv, aspects.json, aspects.png, probabilities.png and run.json.
+    input. With -o: aspects.csv, aspects.json, aspects.png, probabilities.png, names.yaml (for --names) and
+    run.json.
     """
     from feederscrew.output import offers
     from feederscrew.output.aspects import files, tables
@@ -55,7 +56,7 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     exponent = chosen.pop("surface_exponent")
     chosen["surface"] = chosen["surface"] if exponent is None else exponent
     effective = conditions(solid) | chosen | ({"surface": "hard"} if chosen["surface"] is None else {})
-    with out.folder(solid.name, {solid.source: solid.sha256}, effective) as folder:
+    with out.folder(solid.name, solid.inputs, effective) as folder:
         study = _study(solid, chosen, out)
         frame = tables.aspects(study)
         shown = tables.printed(frame, columns) if out.format == "table" else frame

@@ -62,8 +62,8 @@ def batch(ctx, sources, configs, overrides, rule, launch, drops, jobs, scheduler
     and the others go on; exit status 1 says that some failed.
 
     PARTS are part files, folders of them, patterns ("parts/**/*.stl") and lists: a CSV whose first
-    line names its columns, out of part, units, density, centre_of_mass, aspect and config. -o DIR gets
-    summary.csv with a row a part, index.html, contact_sheet.png, and a folder a part in DIR/parts.
+    line names its columns, out of part, units, density, centre_of_mass, names, aspect and config. -o DIR
+    gets summary.csv with a row a part, index.html, contact_sheet.png, and a folder a part in DIR/parts.
     """
     ctx.with_resource(ended_within(PATIENCE))
     from feederscrew import batch as batches

@@ -52,7 +52,7 @@ def bowl(part, target, bowl, pictures, out, **wanted):
     _fitting(part, target)
     settings, path = bowls.settings(**bowl), bowl["path"]
     solid = out.part(part) if part["source"] else None
-    identity = {solid.source: solid.sha256} if solid else {}
+    identity = solid.inputs if solid else {}
     effective = (columns.conditions(solid) if solid else {}) | bowls.texts(settings)
     name = solid.name if solid else bowls.name(path)
     with out.folder(name, identity | bowls.identity(path), effective) as folder:

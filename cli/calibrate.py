@@ -28,7 +28,7 @@ def calibrate(part, counts, out):
     solid = out.part(part)
     study = calibrate_study(solid, counts)
     out.warn(*study.measured.warnings(solid), *tables.remarks(study))
-    inputs = {each.source: each.sha256 for each in (solid, study.measured)}
+    inputs = solid.inputs | {study.measured.source: study.measured.sha256}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
         offers.write(folder, files.offers(study))
     out.show(tables.exponents(study), tables.document(study))

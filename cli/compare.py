@@ -50,7 +50,7 @@ def _of_part(part, counts, launch, as_published, pictures, out):
     solid = out.part(part)
     study = compare_study(solid, counts, launch=launch, as_published=as_published)
     out.warn(*study.warnings)
-    inputs = {each.source: each.sha256 for each in (solid, study.measured)}
+    inputs = solid.inputs | {study.measured.source: study.measured.sha256}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
         out.say("\n".join(study.measured.notes))
         offers.write(folder, files.offers(study), pictures=pictures)

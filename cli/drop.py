@@ -86,7 +86,7 @@ def _on_floor(part, launch, own, test, pictures, out):
         from feederscrew.studies.drop import drop as drop_study
 
     solid = out.part(part)
-    with out.folder(solid.name, {solid.source: solid.sha256}, columns.conditions(solid)) as folder:
+    with out.folder(solid.name, solid.inputs, columns.conditions(solid)) as folder:
         with waiting.bar(out, "drops") as bar:
             told = {"progress": bar.reach, "before": lambda: waiting.drops(out)}
             study = drop_study(solid, launch, own, **told, **test)

@@ -33,7 +33,7 @@ def floor(part, aspect, heading, as_published, bowl, pictures, out):
 
     solid, given = out.part(part), settings(**bowl)
     conditions = columns.conditions(solid) | texts(given)
-    with out.folder(solid.name, {solid.source: solid.sha256}, conditions) as folder:
+    with out.folder(solid.name, solid.inputs, conditions) as folder:
         found = study(solid, record(given), aspect, heading)
         out.say(*tables.remarks(found), *(tables.map_remarks(found) if folder else ()))
         offered = files.offers(found, texts(given), as_published=as_published)

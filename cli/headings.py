@@ -29,7 +29,7 @@ def headings(part, aspect, bowl, pictures, out):
 
     solid, given = out.part(part), settings(**bowl)
     conditions = columns.conditions(solid) | texts(given)
-    with out.folder(solid.name, {solid.source: solid.sha256}, conditions) as folder:
+    with out.folder(solid.name, solid.inputs, conditions) as folder:
         found = study(solid, record(given).track, aspect)
         out.say(*tables.remarks(found))
         offers.write(folder, files.offers(found, texts(given)), pictures=pictures)

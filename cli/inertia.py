@@ -24,7 +24,7 @@ def inertia(part, out):
 
     solid = out.part(part)
     study = inertia_study(solid)
-    with out.folder(solid.name, {solid.source: solid.sha256}, columns.conditions(solid)) as folder:
+    with out.folder(solid.name, solid.inputs, columns.conditions(solid)) as folder:
         out.say(f"Material: {solid.material}")
         offers.write(folder, files.offers(study, out.format))
     out.show(tables.rows(study), tables.document(study))

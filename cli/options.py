@@ -73,7 +73,7 @@ def parts(command):
     )
 
 
-READING = ("units", "density", "centre_of_mass", "allow_open")
+READING = ("units", "density", "centre_of_mass", "names", "allow_open")
 
 
 def _reading():
@@ -92,6 +92,12 @@ def _reading():
             "--centre-of-mass",
             metavar="X,Y,Z",
             help="Where it is, in the file's units and axes, if the part is not homogeneous.",
+        ),
+        click.option(
+            "--names",
+            metavar="FILE",
+            type=Place(),
+            help="Names of its aspects (names.yaml of aspects -o): they stay when the ranks change.",
         ),
         click.option(
             "--allow-open", is_flag=True, help="Compute from an open surface; every output says so."

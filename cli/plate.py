@@ -50,7 +50,7 @@ def run(part, plate, launch, own, test, pictures, out):
     out = replace(out, command="drop plate")
     solid = out.part(part)
     out.say(*tables.notes(bowls))
-    inputs = {solid.source: solid.sha256} | inputs
+    inputs = solid.inputs | inputs
     with out.folder(solid.name, inputs, columns.conditions(solid) | values) as folder:
         with waiting.bar(out, "parts") as bar:
             told = {"progress": bar.reach, "before": lambda: waiting.plate(out)}

@@ -40,7 +40,7 @@ def rate(part, aspect, heading, rule, gap, fill, taken, play, tolerance, bowl, o
     effective = columns.conditions(solid) | bowls.texts(settings)
     record = bowls.record(settings)
     known = orientation.shares(out, solid, record, taken, bowl["path"])
-    with out.folder(solid.name, {solid.source: solid.sha256} | known.inputs, effective) as folder:
+    with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
         found = study(
             solid, record, aspect, known=known,
             heading=heading, rule=rule, gap=gap, fill=fill, sigma=math.hypot(play, tolerance),

@@ -92,7 +92,7 @@ def tooling(
     effective = columns.conditions(solid) | bowls.texts(settings)
     record = bowls.record(settings)
     known = orientation.shares(out, solid, record, taken, bowl["path"])
-    with out.folder(solid.name, {solid.source: solid.sha256} | known.inputs, effective) as folder:
+    with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
         with Progress(None, not out.quiet, "orientations") as bar:
             found = study(
                 solid, record, aspect, known=known.aspects,

@@ -41,7 +41,7 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out):
     _fitting(spans)
     solid, given, varied = out.part(part), settings(**bowl), ranges(spans)
     conditions = columns.conditions(solid) | texts(given)
-    with out.folder(solid.name, {solid.source: solid.sha256}, conditions) as folder:
+    with out.folder(solid.name, solid.inputs, conditions) as folder:
         found = study(solid, record(given), aspect, heading)
         grid = found.over(given, varied) if spans or folder else None
         out.say(*tables.remarks(found), *(map_tables.remarks(grid) if grid else ()))

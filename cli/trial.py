@@ -56,7 +56,7 @@ def trial(part, aspect, rule, parts, queue, seconds, amplitudes, seed, jobs, bow
     solid, settings = out.part(part), bowls.settings(**bowl)
     driven = bowls.strokes(bowls.record(settings), amplitudes)
     effective = columns.conditions(solid) | bowls.texts(settings)
-    with out.folder(solid.name, {solid.source: solid.sha256}, effective) as folder:
+    with out.folder(solid.name, solid.inputs, effective) as folder:
         with waiting.bar(out, "runs") as bar:
             found = study(
                 solid, driven, aspect,

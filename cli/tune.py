@@ -38,7 +38,7 @@ def tune(part, target, aspect, heading, rule, gap, fill, taken, bowl, out):
     waiting.conveying(out)
     record = bowls.record(settings)
     known = orientation.shares(out, solid, record, taken)
-    with out.folder(solid.name, {solid.source: solid.sha256} | known.inputs, effective) as folder:
+    with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
         found = study(
             solid, record, aspect, target, known=known,
             heading=heading, rule=rule, gap=gap, fill=fill,

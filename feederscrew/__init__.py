@@ -29,11 +29,13 @@ if TYPE_CHECKING:
         rate,
         read_bowl,
         shake,
+        write_names,
     )  # fmt: skip
 
 __all__ = [
     "Answer", "Aspects", "Bowl", "ConfigError", "Faults", "FeederError", "MeshError", "Part", "Posture",
     "Rate", "aspects", "convey", "drop", "find_aspects", "load", "posture", "rate", "read_bowl", "shake",
+    "write_names",
 ]  # fmt: skip
 
 

@@ -18,6 +18,7 @@ from feederscrew.output.tables import data_frame as _data_frame
 from feederscrew.part import Part
 from feederscrew.rates.queue import Rate
 from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.naming import write_names
 from feederscrew.resting.posture import Posture, posture
 from feederscrew.studies import aspects as _aspects
 from feederscrew.studies import convey as _convey
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Answer", "Aspects", "Bowl", "ConfigError", "Faults", "FeederError", "MeshError", "Part", "Posture",
     "Rate", "aspects", "convey", "drop", "find_aspects", "load", "posture", "rate", "read_bowl", "shake",
+    "write_names",
 ]  # fmt: skip
 
 
@@ -40,6 +42,7 @@ def load(
     units: str | None = None,
     density: str | None = None,
     centre_of_mass: str | None = None,
+    names: str | PathLike[str] | None = None,
     allow_open: bool = False,
     stdin: IO[bytes] | None = None,
 ) -> Part:
@@ -55,6 +58,8 @@ def load(
         A material or a value, '7.85 g/cm3'; steel without it.
     centre_of_mass : str, optional
         'x,y,z' in the file's axes and units, if the part is not homogeneous.
+    names : str or Path, optional
+        File of names of its aspects, as ``write_names`` writes it; letters without it.
     allow_open : bool
         Compute from an open surface.
     stdin : binary file, optional
@@ -74,6 +79,7 @@ def load(
         units=units,
         density=density,
         centre_of_mass=centre_of_mass,
+        names=names,
         allow_open=allow_open,
         stdin=stdin,
     )

@@ -14,6 +14,7 @@ from feederscrew.conveying import answer
 from feederscrew.documents import raise_all
 from feederscrew.errors import ConfigError, FeederError
 from feederscrew.output.folder import safe_name
+from feederscrew.part import naming
 from feederscrew.part.reading.formats import CARD, FORMATS
 
 MESHES = {suffix for name, known in FORMATS.items() if name != CARD for suffix in known.suffixes}
@@ -49,13 +50,27 @@ def gather(sources, configs=(), overrides=()):
     rows = [row for source in sources for row in _rows(source, faults)]
     paths = dict.fromkeys([*wanted, *(row.config for row in rows if row.config)])
     bowls_by_path = {path: _conditions(path, overrides, faults) for path in paths}
+    names = {path: _names(path, faults) for path in dict.fromkeys(row.names for row in rows)}
     raise_all(faults)
     requests = dict.fromkeys(
-        Request(row.source, bowls_by_path[path], row.options, line=row.line, aspect=row.aspect)
+        _request(row, bowls_by_path[path], names[row.names])
         for row in rows
         for path in ([row.config] if row.config else wanted)
     )
     return _named(list(requests))
+
+
+def _request(row, conditions, names):
+    return Request(row.source, conditions, row.options, line=row.line, aspect=row.aspect, names=names)
+
+
+def _names(path, faults):
+    """The names of one file; None where there is none, or where it has faults."""
+    try:
+        return None if path is None else naming.read(path)
+    except FeederError as fault:
+        faults += getattr(fault, "faults", [fault])
+        return None
 
 
 def _rows(source, faults):

@@ -8,9 +8,9 @@ from pathlib import Path
 from feederscrew import documents
 from feederscrew.errors import ConfigError
 
-PART, ASPECT, CONFIG = "part", "aspect", "config"
+PART, NAMES, ASPECT, CONFIG = "part", "names", "aspect", "config"
 OPTIONS = ("units", "density", "centre_of_mass")
-COLUMNS = (PART, *OPTIONS, ASPECT, CONFIG)
+COLUMNS = (PART, *OPTIONS, NAMES, ASPECT, CONFIG)
 LARGEST = 20_000_000  # [bytes] a few hundred thousand parts
 
 
@@ -23,6 +23,7 @@ class Row:
     config: str | None = None  # bowl file; None for those of the command line
     line: str = ""  # 'parts.csv:3'
     aspect: str | None = None  # the one wanted
+    names: str | None = None  # file of names of its aspects
 
 
 def read(path, faults):
@@ -84,5 +85,5 @@ def _row(path, line, header, cells, faults):
         return []
     beside = Path(path).parent
     options = tuple((name, given[name]) for name in OPTIONS if given.get(name))
-    config = str(beside / given[CONFIG]) if given.get(CONFIG) else None
-    return [Row(str(beside / given[PART]), options, config, where, given.get(ASPECT) or None)]
+    config, names = (str(beside / given[file]) if given.get(file) else None for file in (CONFIG, NAMES))
+    return [Row(str(beside / given[PART]), options, config, where, given.get(ASPECT) or None, names)]

@@ -9,6 +9,7 @@ from importlib import metadata
 from feederscrew import __version__
 from feederscrew.bowl import Bowl
 from feederscrew.output.folder import LIBRARIES
+from feederscrew.part.naming import AspectNames
 from feederscrew.resting.rules.recommended import LAUNCH
 
 DONE, FAILED = "done", "failed"
@@ -42,6 +43,7 @@ class Request:
     options: tuple[tuple[str, str], ...] = ()  # units, density, centre_of_mass: those that were given
     name: str = ""  # of its folder, unlike any other of the batch
     aspect: str | None = None  # the one wanted; None for the orientation that leaves most often
+    names: AspectNames | None = None  # of its aspects
     line: str = field(default="", compare=False)  # 'parts.csv:3', where a list names it
 
 

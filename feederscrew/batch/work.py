@@ -56,7 +56,7 @@ def work(task):
 
 def _results(task):
     request, choices, files = task.request, task.choices, Files()
-    part = load(request.source, **dict(request.options), stdin=io.BytesIO(task.data))
+    part = load(request.source, **dict(request.options), names=request.names, stdin=io.BytesIO(task.data))
     study, tested = _answered(part, task, files)
     found = study.aspects
     offers.write(files, aspects_files.offers(study), pictures=choices.pictures)
@@ -83,7 +83,8 @@ def _results(task):
         row=row,
         effective=columns.conditions(part)
         | dict(request.conditions.texts)
-        | {"rule": choices.rule, "drops": choices.drops, "launch": choices.launch},
+        | {"rule": choices.rule, "drops": choices.drops, "launch": choices.launch}
+        | ({"names": request.names.source} if request.names else {}),
         warnings=(*part.warnings, *found.warnings),
         files=files,
     )

@@ -18,6 +18,7 @@ ANSWER = "#8fa5b5"  # the recommended answer
 ACCENT = "#d55e00"  # what a picture is about: the contact polygon, the operating point
 PAGE = 0.95  # [1] of it that one line may take
 LONG_WORD = re.compile(r"(\S{24})\S{24,}(\S{20})")  # a name of more than 67 letters, its middle left out
+LEVEL = 50  # letters that stand side by side under an axis
 SPARE = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
 
 
@@ -96,6 +97,13 @@ def tidy(axes, *, title="", x="", y="", grid="both"):
     if grid != "none":
         axes.grid(axis=grid, color=FAINT, linewidth=0.6)
     return axes
+
+
+def named_ticks(axes, places, names):
+    """Write names under an x axis, slanting where they would touch each other."""
+    slanting = len(names) * max(map(len, names), default=0) > LEVEL
+    look = {"rotation": 30, "ha": "right", "rotation_mode": "anchor"} if slanting else {}
+    axes.set_xticks(places, names, **look)
 
 
 def method(name, place=0):

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew.part.hull import Hull
+from feederscrew.part.naming import AspectNames
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,5 +42,12 @@ class Part:
     aspects: tuple[CardAspect, ...] = ()  # of a part card
     printed: dict | None = None  # further data of a part card, as read: 'floor', 'track'
     hull: Hull | None = None  # about the centre of mass; None for a part card
+    names: AspectNames | None = None  # that the user gives its aspects
     open_surface: bool = False  # computed with ``allow_open``: every output must say so
     warnings: tuple[str, ...] = ()
+
+    @property
+    def inputs(self):
+        """The sha256 of each file it was read from, by its path."""
+        named = {} if self.names is None else {self.names.source: self.names.sha256}
+        return {self.source: self.sha256} | named

@@ -1,7 +1,6 @@
 """The resting aspects of a part, equal ones joined into classes, named and ranked."""
 
 from dataclasses import dataclass, field, replace
-from string import ascii_uppercase
 
 import numpy as np
 
@@ -9,6 +8,7 @@ from feederscrew import check
 from feederscrew.geometry import compiled, vectors
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.moments import Moments
+from feederscrew.resting import naming
 from feederscrew.resting.basins.landscape import landscape
 from feederscrew.resting.classes import body_frame, classes
 from feederscrew.resting.faces import EQUAL, stable_faces, unstable_faces
@@ -100,7 +100,8 @@ def find(part, *, as_published=False, unstable=False, exponent=None, launch=reco
     table = _geometry(groups, part)
     chances = _probabilities(table, as_published)
     order = _ranked(table, chances["csa"], part, moments)
-    named = _named(table, chances, order, _said(groups, hull))
+    names, said = naming.named([groups[k] for k in order], table["normals"][order], hull, part.names)
+    named = _named(names, table, chances, order, (*_said(groups, hull), *said))
     ground = by_class.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
     weighted = surface.EXPONENTS["hard"] if exponent is None else exponent
     return _answered(_tumbled(named, ground, part, weighted), launch, exponent)
@@ -206,26 +207,17 @@ def _ranked(table, chance, part, moments):
     return np.lexsort((*-direction.T, height, rank))
 
 
-def _named(table, chances, order, warnings):
+def _named(names, table, chances, order, warnings):
     """The record, rows in their order."""
     arrays = {k: check.frozen(v[order]) for k, v in table.items() if isinstance(v, np.ndarray)}
     return Aspects(
-        names=tuple(_letters(k) for k in range(len(order))),
+        names=names,
         kinds=tuple(table["kinds"][k] for k in order),
         polygons=tuple(table["polygons"][k] for k in order),
         probabilities={rule: check.frozen(chance[order]) for rule, chance in chances.items()},
         warnings=warnings,
         **arrays,
     )
-
-
-def _letters(k):
-    """A, B ... Z, AA, AB ... for 0, 1 ..."""
-    name = ""
-    while k >= 0:
-        name = ascii_uppercase[k % 26] + name
-        k = k // 26 - 1
-    return name
 
 
 def _said(groups, hull):

@@ -183,11 +183,12 @@ def _sets(path, launch, as_published, inputs):
     if not table.head.part:
         raise FeederError(path, "does not say which part was counted", "add a line '# part: FILE' at its top")
     beside = Path(path).parent / table.head.part
-    part = load(str(beside), **table.head.reading)
+    names = str(Path(path).parent / table.head.names) if table.head.names else None
+    part = load(str(beside), names=names, **table.head.reading)
     aspects, rules = _answers(part, table.head, launch, as_published)
     answers = {rule.name: rule for rule in rules}
     measured = profiles.measured(table, path, sha256, aspects.names, list(answers))
-    inputs |= {path: sha256, str(beside): part.sha256}
+    inputs |= {path: sha256} | part.inputs
     return [SetStudy(part, aspects, measured, profile, answers) for profile in measured.profiles]
 
 

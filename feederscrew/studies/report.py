@@ -197,6 +197,6 @@ def report(
         target=target,
         counted=aspect,
         shares=known,
-        inputs={part.source: part.sha256} | bowls.identity(path) | known.inputs,
+        inputs=part.inputs | bowls.identity(path) | known.inputs,
         command=command,
     )

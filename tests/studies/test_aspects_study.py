@@ -63,7 +63,8 @@ def test_the_files_are_offered_and_made_only_when_asked_for(monkeypatch):
     study = aspects(shapes.part(shapes.box(10.0, 20.0, 30.0)))
     offered = offers.by_name(files.offers(study, tipping=True))
     assert sorted(offered) == [
-        "aspects.csv", "aspects.json", "aspects.png", "graph.csv", "graph.png", "probabilities.png",
+        "aspects.csv", "aspects.json", "aspects.png", "graph.csv", "graph.png", "names.yaml",
+        "probabilities.png",
     ]  # fmt: skip
     assert all(offer.alt for offer in offered.values() if offer.is_picture)
     assert offered["aspects.csv"].make().startswith("aspect,kind,faces,stable,")

@@ -69,7 +69,7 @@ def answered(names, answer, profiles, title=""):
     for place, (step, (name, values)) in enumerate(zip(steps, profiles.items())):
         label, colour = style.method(name, place)
         axes.plot(places + step, 100.0 * np.asarray(values), "o", markersize=3.6, color=colour, label=label)
-    axes.set_xticks(places, names)
+    style.named_ticks(axes, places, names)
     axes.tick_params(axis="x", length=0)
     axes.set_xlim(-0.55, len(names) - 0.45)
     every = [high, *(100.0 * np.asarray(values) for values in profiles.values())]
@@ -109,7 +109,7 @@ def grouped(axes, names, profiles, room=UPRIGHT):
         x = places + (place - 0.5 * (len(profiles) - 1)) * width
         axes.bar(x, percent, 0.9 * width, color=colour, label=label)
         _numbers(axes, x, percent, np.isfinite(values), upright=room < UPRIGHT)
-    axes.set_xticks(places, names)
+    style.named_ticks(axes, places, names)
     axes.tick_params(axis="x", length=0)
     reach = max(0.5 * len(names), 1.0) + 0.5 * width
     axes.set_xlim(places.mean() - reach, places.mean() + reach)

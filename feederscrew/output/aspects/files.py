@@ -17,7 +17,7 @@ def offers(study, *, tipping=False):
     Returns
     -------
     list of Offer
-        ``aspects.png`` only of a part that has a shape.
+        ``names.yaml`` and ``aspects.png`` only of a part that has a shape.
     """
     offered = [
         offer.table("aspects.csv", tables.aspects, study),
@@ -25,6 +25,7 @@ def offers(study, *, tipping=False):
         offer.picture("probabilities.png", "Probability of each aspect by every rule", _probabilities, study),
     ]
     if study.part.vertices is not None:
+        offered.append(offer.text("names.yaml", tables.names, study))
         offered.append(offer.picture("aspects.png", "The part as it rests on each aspect", _sheet, study))
     return offered + (graph.offers(study) if tipping else [])
 

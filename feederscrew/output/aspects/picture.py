@@ -123,8 +123,10 @@ def _caption(figure, sheet, panel, found, row, answer):
     axes.set_axis_off()
     axes.set(xlim=(0, sheet.image[0]), ylim=(-sheet.caption, 0))
     what = f"{found.kinds[row]} ×{found.faces[row]}" if found.stable[row] else "not stable"
-    axes.text(30, -0.6 * LINE, found.names[row], fontsize=11, fontweight="bold", color=style.INK, va="center")
-    axes.text(62, -0.6 * LINE, what, fontsize=8, color=style.INK, va="center")
+    look = {"color": style.INK, "va": "center"}
+    name = axes.text(30, -0.6 * LINE, found.names[row], fontsize=11, fontweight="bold", **look)
+    beside = {"xycoords": name, "xytext": (6, 0), "textcoords": "offset points"}
+    axes.annotate(what, (1.0, 0.5), fontsize=8, **beside, **look)
     if not found.stable[row]:
         return
     top = -1.55 * LINE

@@ -6,6 +6,7 @@ from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
 from feederscrew.output import columns, tables
 from feederscrew.output.columns import DEG, G_MM2, MM, MM2, UJ
+from feederscrew.resting import naming
 from feederscrew.units import shown
 
 MOST = 24  # rows that a picture shows
@@ -117,6 +118,11 @@ def document(study):
     rule = None if answer is None else answer.rule
     of_part = columns.part(study.part, study.aspects.warnings)
     return of_part | {"recommended": rule, "aspects": aspects(study)}
+
+
+def names(study):
+    """Return the text of ``names.yaml``: the aspects by name, to be edited and read again."""
+    return naming.text(study.part, study.aspects)
 
 
 def profiles(study):

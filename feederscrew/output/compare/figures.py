@@ -71,7 +71,7 @@ def bars(axes, names, profiles, printed=None, room=BAR):
             _numbers(axes, x, 100.0 * values, upright=room < 0.3)
         if name in (printed or {}):
             _ticks(axes, x, 100.0 * printed[name], width)
-    axes.set_xticks(places, names)
+    style.named_ticks(axes, places, names)
     axes.tick_params(axis="x", length=0)
     axes.set_xlim(-0.55, len(names) - 0.45)
     axes.set_ylim(0.0, 114.0 * max(values.max() for values in profiles.values()))

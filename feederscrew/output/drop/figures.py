@@ -27,7 +27,7 @@ def counts(title, aspects, tally, rules):
     for place, (name, values) in enumerate(rules.items()):
         label, colour = style.method(name, place)
         axes.plot(places, 100.0 * values, ls="none", marker="_", ms=16, mew=2, color=colour, label=label)
-    axes.set_xticks(places, aspects.names)
+    style.named_ticks(axes, places, aspects.names)
     figure.legend(loc="outside lower center", ncols=min(len(rules) + 2, 6), frameon=False, fontsize=8)
     return figure
 

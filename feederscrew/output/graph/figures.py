@@ -11,6 +11,7 @@ BEND = 0.12  # of an arrow, so that there and back lie apart
 SPOTS = (0.36, 0.3, 0.42, 0.24, 0.48, 0.54, 0.6, 0.66, 0.72)  # of the way: where the lift may be written
 LETTER = (0.032, 0.085)  # width and height of one, over the ring's radius
 DISC = (0.14, 0.14)  # half a disc, over the ring's radius
+LETTERS = 2  # of a name that fits into a disc
 PALE = "#9ba3aa"  # of ways that are not the easiest
 REACH = 1.45  # of the picture, where the ring of discs has radius 1
 
@@ -38,10 +39,10 @@ def graph(title, names, ways, shares):
     turn = np.pi / 2 - 2.0 * np.pi * np.arange(len(shown)) / max(len(shown), 1)
     places = {k: np.array([np.cos(a), np.sin(a)]) for k, a in zip(shown, turn)}
     sizes = 500.0 + 2500.0 * np.nan_to_num(shares)  # [pt2] squares about the discs
-    _arrows(axes, ways, places, sizes)
+    _arrows(axes, ways, places, sizes, names)
     for k, place in places.items():
         axes.scatter(*place, s=sizes[k], color="white", edgecolor=style.INK, zorder=3)
-        axes.annotate(names[k], place, ha="center", va="center", fontsize=11, zorder=4, color=style.INK)
+        _name(axes, names[k], place)
     axes.set_xlim(-REACH, REACH)
     axes.set_ylim(-REACH, REACH)
     axes.set_aspect("equal")
@@ -49,7 +50,15 @@ def graph(title, names, ways, shares):
     return figure
 
 
-def _arrows(axes, ways, places, sizes):
+def _name(axes, name, place):
+    """A letter within its disc, a longer name across it."""
+    letter = len(name) <= LETTERS
+    box = {} if letter else {"bbox": {"facecolor": "white", "edgecolor": "none", "pad": 1.0}}
+    look = {"ha": "center", "va": "center", "color": style.INK, "fontsize": 11 if letter else 9}
+    axes.annotate(name, place, zorder=4, **look, **box)
+
+
+def _arrows(axes, ways, places, sizes, names):
     """The easiest way between every two discs that are shown; the easiest out of each stands out."""
     lowest, between = {}, {}
     for way in ways:
@@ -57,7 +66,7 @@ def _arrows(axes, ways, places, sizes):
         pair = (way.start, way.end)
         if set(pair) <= set(places) and way.lift < between.get(pair, np.inf):
             between[pair] = way.lift
-    taken = [(*place, *DISC) for place in places.values()]
+    taken = [(*place, max(DISC[0], _half(names[k])[0]), DISC[1]) for k, place in places.items()]
     for (start, end), lift in sorted(between.items(), key=lambda item: -item[1]):  # the easy ones on top
         ends = (places[start], sizes[start]), (places[end], sizes[end])
         taken.append(arrow(axes, *ends, lift, lift <= lowest[start], taken))

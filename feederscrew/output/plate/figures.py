@@ -69,7 +69,7 @@ def shares(axes, aspects, seen):
         places + 0.3, 100.0 * seen.limit, spread, fmt="_", ms=9, mew=2, color=style.ACCENT, capsize=3, lw=1.0,
         label=None if np.isnan(seen.limit).all() else "where the rates lead",
     )  # fmt: skip
-    axes.set_xticks(places, aspects.names)
+    style.named_ticks(axes, places, aspects.names)
     axes.tick_params(axis="x", length=0)
 
 

@@ -1,10 +1,12 @@
 """From a file and the options of the command line to a ``Part``."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from feederscrew import check, documents
 from feederscrew.errors import ArgumentError, MeshError
-from feederscrew.part import card
+from feederscrew.part import card, naming
 from feederscrew.part.density import density as density_of
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.reading import source as read
@@ -23,7 +25,7 @@ GIVEN_CENTRE = (
 OVERLAP = 1e-6  # [1] of the hull's volume
 
 
-def load(source, *, units=None, density=None, centre_of_mass=None, allow_open=False, stdin=None):
+def load(source, *, units=None, density=None, centre_of_mass=None, names=None, allow_open=False, stdin=None):
     """A part from a mesh file or a part card.
 
     Parameters
@@ -36,6 +38,8 @@ def load(source, *, units=None, density=None, centre_of_mass=None, allow_open=Fa
         A material or a value, '7.85 g/cm3'; steel without it.
     centre_of_mass : str, optional
         'x,y,z' in the file's axes and units, or with units: where it is, if the part is not homogeneous.
+    names : str or Path or AspectNames, optional
+        File of names of the aspects, or what ``naming.read`` made of it; letters without it.
     allow_open : bool
         Compute from an open surface or several bodies, and say so.
     stdin : binary file, optional
@@ -64,9 +68,11 @@ def load(source, *, units=None, density=None, centre_of_mass=None, allow_open=Fa
     value, material = density_of(density)
     file = read.file(source, stdin)
     if read.is_card(file):
-        _refuse_beside_card(units=units, density=density, centre_of_mass=centre_of_mass)
+        _refuse_beside_card(units=units, density=density, centre_of_mass=centre_of_mass, names=names)
         return card.part(file)
-    return _solid(file, read.soup(file), units, (value, material), centre_of_mass, allow_open)
+    known = names if names is None or isinstance(names, naming.AspectNames) else naming.read(names)
+    solid = _solid(file, read.soup(file), units, (value, material), centre_of_mass, allow_open)
+    return replace(solid, names=known)
 
 
 def _solid(file, soup, wanted, stuff, centre_text, allow_open):

@@ -22,6 +22,7 @@ class Head:
     units: str = ""  # how the part file is read: as --units, --density, --centre-of-mass
     density: str = ""
     centre_of_mass: str = ""
+    names: str = ""  # path of the file that names the aspects, from the folder of the counts
     config: str = ""  # path of the bowl file, from the folder of the counts
     launch: str = ""  # what was done to the part: a name of ``recommended.LAUNCHES``
     surface: str = ""  # it landed on

@@ -27,6 +27,7 @@ def test_a_batch_writes_a_summary_and_a_folder_a_part(run, tmp_path):
         "aspects.csv",
         "aspects.json",
         "convey.json",
+        "names.yaml",
         "orientations.csv",
         "rate.json",
     }

@@ -165,7 +165,7 @@ def test_shared_options_arrive_as_keywords(tmp_path):
     assert json.loads(told(*call).stdout) == {
         "part": {
             "source": "nut.stl", "units": "in", "density": None,
-            "centre_of_mass": "-1,2,3", "allow_open": False,
+            "centre_of_mass": "-1,2,3", "names": None, "allow_open": False,
         },
         "bowl": {"path": None, "overrides": ["a=1", "b=2"]},
     }  # fmt: skip

@@ -88,7 +88,7 @@ def test_o_writes_tables_pictures_and_the_record(run, tmp_path, stl):
     done = run("aspects", stl, "-o", "res")
     assert done.exit_code == 0, done.output
     folder = tmp_path / "res/box"
-    names = {"aspects.csv", "aspects.json", "aspects.png", "probabilities.png", "run.json"}
+    names = {"aspects.csv", "aspects.json", "aspects.png", "names.yaml", "probabilities.png", "run.json"}
     assert {path.name for path in folder.iterdir()} == names
     before = {path: path.read_bytes() for path in folder.iterdir()}
     run("aspects", stl, "-o", "res")
@@ -103,6 +103,7 @@ def test_no_pictures(run, tmp_path, stl):
     assert {path.name for path in (tmp_path / "res/box").iterdir()} == {
         "aspects.csv",
         "aspects.json",
+        "names.yaml",
         "run.json",
     }
 
