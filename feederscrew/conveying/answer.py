@@ -29,6 +29,8 @@ class Answer:
     velocity: float  # [m/s] up the track, from rest; NaN where there is no steady state
     low: float  # [m/s] least over the starts
     high: float  # [m/s]
+    slowest: float  # [m/s] in one period of the drive, out of those after which the motion repeats
+    fastest: float  # [m/s] the same; where nothing repeats, out of those followed
     fractions: dict[str, float]  # of the time, by phase
     longest_flight: float  # [periods]
     hardest_impact: float  # [m/s] along the normal
@@ -196,6 +198,8 @@ def _answer(bowl, setting, out):
         velocity=float(out[steady.VELOCITY]) * speed,
         low=float(out[steady.LOW]) * speed,
         high=float(out[steady.HIGH]) * speed,
+        slowest=float(out[steady.SLOWEST]) * speed,
+        fastest=float(out[steady.FASTEST]) * speed,
         fractions={name: float(out[steady.FRACTIONS + k]) for k, name in enumerate(PHASES)},
         longest_flight=float(out[steady.FLIGHT_TIME]),
         hardest_impact=float(out[steady.IMPACT]) * speed,

@@ -28,7 +28,8 @@ from feederscrew.mechanics import limits
 PERIODIC, AVERAGED, NO_STEADY_STATE = range(3)
 STATUSES = ("periodic", "averaged", "no steady state")
 STATUS, PERIOD, VELOCITY, LOW, HIGH, FRACTIONS = range(6)  # places in a row of results
-FLIGHT_TIME, IMPACT, HOPS, THROW, REGIME, RUNAWAY, COLUMNS = range(FRACTIONS + 4, FRACTIONS + 11)
+FLIGHT_TIME, IMPACT, HOPS, SLOWEST, FASTEST = range(FRACTIONS + 4, FRACTIONS + 9)
+THROW, REGIME, RUNAWAY, COLUMNS = range(FASTEST + 1, FASTEST + 5)
 BLOCK, BLOCKS = 32, 8  # periods averaged where there is no period, and in how many lots their spread is taken
 BRIEF, FEW = 64, 4  # periods followed, and lots averaged, of further starts where the first has no period
 KNOWN = 64  # states of steady motions that are noted, for further starts to join
@@ -46,9 +47,10 @@ def steady(rules, state, out):
     ----------
     rules : Law
     state : State
-    out : (15,) float
+    out : (17,) float
         Filled with status, period, velocity and its spread [A w], fraction of the time in each phase,
-        longest flight [periods], hardest impact [A w], flights a period.
+        longest flight [periods], hardest impact [A w], flights a period, velocity in the slowest and in the
+        fastest period of the drive [A w].
     """
     _steady(rules, state, out, np.empty((KNOWN, 3)), 0, TRANSIENT)
 
@@ -68,8 +70,9 @@ def _steady(rules, state, out, known, count, patience):
 def _cycle(rules, state, repeat, out, known, noticed):
     """Averages over the periods after which the motion repeats; the least of them is its period."""
     tally, start, period = np.zeros(TALLY), state, repeat
+    out[SLOWEST], out[FASTEST] = math.inf, -math.inf
     for count in range(1, repeat + 1):
-        state = turn(rules, state, tally)
+        state = _noted_turn(rules, state, tally, out)
         if noticed < KNOWN:
             known[noticed, 0], known[noticed, 1], known[noticed, 2] = noted(state)
             noticed += 1
@@ -78,6 +81,8 @@ def _cycle(rules, state, repeat, out, known, noticed):
     out[STATUS], out[PERIOD] = PERIODIC, period
     _averages(out, tally, float(repeat))
     out[LOW] = out[HIGH] = out[VELOCITY]
+    if period == 1:
+        out[SLOWEST] = out[FASTEST] = out[VELOCITY]
     return noticed
 
 
@@ -86,9 +91,10 @@ def _long_run(rules, state, out, blocks):
     for _ in range(LOTS):
         tally, way, first = np.zeros(TALLY), 0.0, state.speed
         low, high = math.inf, -math.inf
+        out[SLOWEST], out[FASTEST] = math.inf, -math.inf
         for _ in range(blocks):
             for _ in range(BLOCK):
-                state = turn(rules, state, tally)
+                state = _noted_turn(rules, state, tally, out)
             velocity = (tally[TRAVEL] - way) / (BLOCK * TURN)
             way, low, high = tally[TRAVEL], min(low, velocity), max(high, velocity)
         out[STATUS], out[PERIOD], out[LOW], out[HIGH] = AVERAGED, 0.0, low, high
@@ -98,6 +104,15 @@ def _long_run(rules, state, out, blocks):
             break
         if escape(rules, out[FRACTIONS + FLIGHT]) <= 0.0:
             break
+
+
+def _noted_turn(rules, state, tally, out):
+    """The state a period of the drive on; the range of the velocities in single periods grows by its own."""
+    way = tally[TRAVEL]
+    state = turn(rules, state, tally)
+    velocity = (tally[TRAVEL] - way) / TURN
+    out[SLOWEST], out[FASTEST] = min(out[SLOWEST], velocity), max(out[FASTEST], velocity)
+    return state
 
 
 def _slid(tally):
@@ -141,7 +156,7 @@ def survey(setting, out):
     Parameters
     ----------
     setting : OperatingPoint
-    out : (15,) float
+    out : (17,) float
         As ``steady`` fills it from rest, its spread widened to all starts; NaN without a steady state.
         Then the throw number, the regime, and whether a part that slides fast enough runs away: 1 or 0.
     """

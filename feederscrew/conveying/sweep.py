@@ -43,8 +43,9 @@ KERNEL = (
         settling._on,
         settling._runs,
     ),
-    *(steady.steady, steady._steady, steady._cycle, steady._long_run, steady._slid, steady.escape),
+    *(steady.steady, steady._steady, steady._cycle, steady._long_run, steady._noted_turn, steady._slid),
     *(
+        steady.escape,
         steady._apart,
         steady._averages,
         steady.survey,
@@ -70,7 +71,7 @@ def sweep(settings, workers=None):
 
     Returns
     -------
-    (N, 15) float
+    (N, 17) float
         Rows as ``steady.survey`` fills them.
 
     Raises

@@ -186,6 +186,18 @@ def test_trace_is_one_cycle(setting):
     assert made == pytest.approx(out[steady.VELOCITY], rel=1e-9)
 
 
+@pytest.mark.parametrize(("stroke", "period"), [("0.25", 1), ("0.51", 2), ("0.69", 3)])
+def test_the_slowest_and_the_fastest_period_are_those_of_the_trace(stroke, period):
+    found = answer.answer(bowls.read(None, (f"drive.amplitude={stroke} mm", "restitution=0.3")))
+    drawn = trace(found.setting)
+    slip = drawn.part_along - drawn.plate_along
+    single = np.diff(np.interp(np.arange(round(drawn.time[-1]) + 1), drawn.time, slip)) / (2.0 * np.pi)
+    ends = np.array([found.slowest, found.fastest]) / found.speed
+    assert found.period == period and ends == pytest.approx([single.min(), single.max()], rel=1e-6)
+    assert found.slowest <= found.velocity <= found.fastest
+    assert (found.slowest == found.fastest) == (period == 1)
+
+
 def test_keys_of_the_drive_and_of_bristles_reach_the_kernel():
     keys = ("drive.phase=20 deg", "drive.second_harmonic=0.3", "drive.second_harmonic_phase=40 deg")
     setting = answer.answer(

@@ -25,6 +25,8 @@ def document(study):
         "status": found.status,
         "period": found.period,
         **{column: getattr(found, name) / MM_S for name, column in VELOCITIES.items()},
+        "velocity_slowest_period_mm_s": found.slowest / MM_S,
+        "velocity_fastest_period_mm_s": found.fastest / MM_S,
         "regime": found.regime,
         "runs_away": found.runs_away,
         "acceleration_ratio": found.setting.ratio,
@@ -47,6 +49,7 @@ def summary(document):
     rows = [
         ("velocity [mm/s]", number(document["velocity_mm_s"])),
         ("lowest to highest [mm/s]", between(document["velocity_low_mm_s"], document["velocity_high_mm_s"])),
+        *_single_periods(document),
         ("status", document["status"] + _of_periods(document["period"])),
         ("regime", document["regime"]),
         ("acceleration ratio A w2/g", number(document["acceleration_ratio"])),
@@ -86,7 +89,7 @@ def remarks(document):
     if document["status"] == "averaged":
         said.append(
             f"not periodic: an average; means over {steady.BLOCK} periods span {between(low, high)} mm/s, "
-            "single periods more"
+            f"single periods {_slowest_to_fastest(document)}"
         )
     elif high - low > answer.COEXIST * abs(high):
         said.append(
@@ -158,6 +161,17 @@ def _change(name, pair):
 
 def _margin(limit, margin):
     return "never holds" if np.isnan(limit) else f"{number(limit)} (margin {number(margin)})"
+
+
+def _single_periods(document):
+    """A row with the range over single periods, where they are not all alike."""
+    if document["period"] == 1 or document["status"] == "no steady state":
+        return []
+    return [("slowest to fastest period [mm/s]", _slowest_to_fastest(document))]
+
+
+def _slowest_to_fastest(document):
+    return between(*(document[f"velocity_{which}_period_mm_s"] for which in ("slowest", "fastest")))
 
 
 def _of_periods(period):

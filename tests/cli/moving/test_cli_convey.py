@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -248,16 +249,15 @@ def test_a_key_that_changes_no_velocity_gives_a_level_curve(run):
     assert len({tuple(row[1:]) for row in rows}) == 1
 
 
-def test_an_average_says_what_its_range_is_of():
-    """Means over blocks of periods lie close together; the single periods do not."""
-    from feederscrew.output.convey import tables
-
-    told = {
-        "status": "averaged",
-        "runs_away": False,
-        "velocity_low_mm_s": 115.6,
-        "velocity_high_mm_s": 115.64,
-    }
-    assert tables.remarks(told) == [
-        "not periodic: an average; means over 32 periods span 115.6 to 115.6 mm/s, single periods more"
-    ]
+def test_the_range_over_single_periods_is_told(run):
+    """Means over blocks of periods lie close together, and one velocity is no range; single periods differ."""
+    asked = ("convey", "--set", "restitution=0.3", "--set")
+    thrice = run(*asked, "drive.amplitude=0.69 mm").stdout
+    assert re.search(r"slowest to fastest period \[mm/s\] +108.2 to 191.1\n", thrice), thrice
+    assert re.search(r"status +periodic, every 3 periods\n", thrice)
+    never = run(*asked, "drive.amplitude=0.57 mm")
+    assert re.search(
+        r"not periodic: an average; means over 32 periods span 1\d\d.* mm/s, single periods 5\d.* to 1[56].",
+        never.stderr,
+    )
+    assert "slowest" not in run("convey").stdout
