@@ -3,7 +3,8 @@
 Examples: python benchmarks/accuracy.py --drops 4000 --keep /tmp/kept --jobs 2
           python benchmarks/accuracy.py --parts ~/cad/screws --measured ~/tosses
 
-Measured: files of counts (docs/counts.md), each of which names its part and its launch. A table of the errors
+Measured: files of counts (docs/counts.md), each of which names its part and its launch. Feeding tests among
+them are set beside the static rules, device by device. A table of the errors
 of every rule and of the drop tests of every launch by series, where `recommended` is the answer for the
 launch that was used: the root of the mean square of the total variation, which for parts with two classes is
 the error of the share. Measured sets get MORE drops. Then total variation from the drop tests of every
@@ -51,10 +52,10 @@ class Measured:
         return np.nan_to_num(first * (1.0 - first) / self.count)
 
 
-def tossed(folder, **known):
-    """The measured sets of a folder that are of parts with a shape and name their launch, by series."""
+def tossed(sets, **known):
+    """The measured sets that are of parts with a shape and name their launch, by series."""
     found = {}
-    for study in compare_sets(sorted(folder.glob("*.csv"))).sets:
+    for study in sets:
         if study.part.vertices is not None and study.measured.head.launch:
             one = Measured(study, **known)
             found.setdefault(one.series, []).append(one)
@@ -77,6 +78,21 @@ def measured(series):
     for name, of in told.items():
         errors = [np.sqrt(np.mean([one.error(of(one)) ** 2 for one in sets])) for sets in series.values()]
         print(f"{name:28}" + "".join(f"{error:16.4f}" for error in errors))
+
+
+def fed(feedings):
+    """Print what passed each device of every feeding test, and what the static rules say."""
+    print("\nFeeding tests: share that passed, predicted, its interval, and whether it agrees")
+    for one in feedings:
+        ends = zip(one.measured.shares, one.answers["recommended"], one.low, one.high, one.agrees)
+        for device, (share, said, low, high, agrees) in zip(one.stations, ends):
+            told = f"{share:8.3f}{said:8.3f}   {low:.3f} to {high:.3f}   {'yes' if agrees else 'no'}"
+            print(f"  {one.measured.source:40}{device:18}{told}")
+    if feedings:
+        off = [one.answers["recommended"] - one.measured.shares for one in feedings]
+        agreed = np.concatenate([one.agrees for one in feedings])
+        error = np.sqrt(np.nanmean(np.concatenate(off) ** 2))
+        print(f"  root of the mean square {error:.3f}; {agreed.sum()} of {len(agreed)} agree")
 
 
 def against_drops(groups):
@@ -122,16 +138,18 @@ def main(chosen):
     known = {"drops": chosen.drops, "keep": chosen.keep, "jobs": chosen.jobs}
     if chosen.keep:
         chosen.keep.mkdir(exist_ok=True)
-    series = tossed(chosen.measured, **known)
+    files = compare_sets(sorted(chosen.measured.glob("*.csv")))
+    series = tossed(files.sets, **known)
     kinds = {"made": (made, chosen.made, MADE), "round": (rounds, chosen.round, ROUND)}
     bodies = [
         Body(f"{name}_{k:02d}", shapes.part(mesh), **known)
         for name, (make, count, seed) in kinds.items()
         for k, mesh in enumerate(make(count, np.random.default_rng(seed)))
     ]
-    files = sorted(chosen.parts.glob("*.stl"))
-    real = [Body(f"part_{path.stem}", load(str(path), allow_open=True), **known) for path in files]
+    stl = sorted(chosen.parts.glob("*.stl"))
+    real = [Body(f"part_{path.stem}", load(str(path), allow_open=True), **known) for path in stl]
     measured(series)
+    fed(files.feedings)
     against_drops(
         {
             f"{name}, {'with a' if rolling else 'no'} rolling class": [

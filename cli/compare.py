@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from feederscrew_cli import options, waiting
+from feederscrew_cli import options, orientation, waiting
 
 
 @click.command(short_help="Measured aspects against every rule, of one part or over many files.")
@@ -32,6 +32,9 @@ def compare(sources, reading, counts, launch, as_published, pictures, out):
     Without --with, every FILE is such a CSV whose head names its part: the total variation of each set
     from each rule and from the recommended answer for the launch that was used (feeder compare
     docs/measured/*.csv). With -o: compare.csv, compare.png and run.json.
+
+    A feeding test counts by device ('device,passed,rejected') and names its bowl ('# config: FILE'): the
+    share that passed each device beside what the static rules say, with both intervals (devices.csv).
     """
     if counts is None:
         _over_files(sources, launch, as_published, pictures, out)
@@ -44,13 +47,15 @@ def compare(sources, reading, counts, launch, as_published, pictures, out):
 def _of_part(part, counts, launch, as_published, pictures, out):
     """One part against one file."""
     from feederscrew.output import columns, offers
-    from feederscrew.output.compare import files, tables
+    from feederscrew.output.compare import of_kind
     from feederscrew.studies.compare import compare as compare_study
 
     solid = out.part(part)
-    study = compare_study(solid, counts, launch=launch, as_published=as_published)
+    chosen = {"launch": launch, "as_published": as_published}
+    study = compare_study(solid, counts, **chosen, **orientation.telling(out))
     out.warn(*study.warnings)
-    inputs = solid.inputs | {study.measured.source: study.measured.sha256}
+    files, tables = of_kind(study)
+    inputs = solid.inputs | study.inputs
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
         out.say("\n".join(study.measured.notes))
         offers.write(folder, files.offers(study), pictures=pictures)
@@ -70,5 +75,5 @@ def _over_files(sources, launch, as_published, pictures, out):
     out.warn(*study.warnings)
     with out.folder("measured", study.inputs) as folder:
         offers.write(folder, sets.offers(study), pictures=pictures)
-    people = out.format == "table"
-    out.show(sets.printed(study) if people else sets.frame(study), sets.document(study))
+    for shown in sets.shown(study, out.format):
+        out.show(shown, sets.document(study))

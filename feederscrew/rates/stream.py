@@ -27,6 +27,11 @@ class Orientations:
     tipping: TrackTipping | None = None  # on the track of a bowl; None where no drive is known
 
     @property
+    def names(self):
+        """Of the stations: 'track', 'wiper_1', 'gap_2'."""
+        return tuple(f"{name}_{place}" if place else name for place, name in enumerate(self.stations))
+
+    @property
     def aspects(self):
         """(M,) names of the aspects."""
         return tuple(one.aspect for one in self.lying)

@@ -5,22 +5,23 @@ from os import PathLike
 
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.resting.counts import profiles
-from feederscrew.resting.counts.calibration_file import Fit, fits
+from feederscrew.resting.counts import passed, profiles, sheet
+from feederscrew.resting.counts.calibration_file import Fit, fit_of_passes, fits
+from feederscrew.studies import passages
 
 
 @dataclass(frozen=True, eq=False)
 class CalibrateStudy:
-    """An exponent for every column of counts of one part."""
+    """An exponent for every column of counts of one part, or for its feeding test."""
 
     part: Part
     aspects: Aspects
-    measured: profiles.Measured
+    measured: profiles.Measured | passed.DeviceCounts
     fits: tuple[Fit, ...]
 
 
 def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
-    """Study which exponent of the surface-weighted rule explains counts by aspect.
+    """Study which exponent of the surface-weighted rule explains counts by aspect or by device.
 
     Parameters
     ----------
@@ -39,6 +40,11 @@ def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
         Every fault of the file, each with its line; if the part has no shape, no column holds counts, or
         they do not tell an exponent.
     """
-    found = find(part)
-    measured = profiles.read(counts, found.names)
-    return CalibrateStudy(part, found, measured, tuple(fits(part, found, measured)))
+    text, sha256 = sheet.content(counts)
+    table, found = sheet.parse(text, str(counts)), find(part)
+    if not passed.by_device(table):
+        measured = profiles.measured(table, str(counts), sha256, found.names)
+        return CalibrateStudy(part, found, measured, tuple(fits(part, found, measured)))
+    tested = passed.understood(table, str(counts), sha256)
+    flow, _ = passages.counted_ways(part, found, passages.bowl_of(tested)[1], tested)
+    return CalibrateStudy(part, found, tested, (fit_of_passes(part, found, tested, flow),))

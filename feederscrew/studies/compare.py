@@ -9,9 +9,10 @@ from feederscrew.errors import Faults, FeederError
 from feederscrew.part import load
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.counts import deviation, profiles, sheet
+from feederscrew.resting.counts import deviation, passed, profiles, sheet
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
 from feederscrew.studies.aspects import aspects as resting
+from feederscrew.studies.passages import FeedingStudy, feeding
 
 MOST = 500  # files of one comparison
 
@@ -30,6 +31,11 @@ class CompareStudy:
     def profiles(self) -> tuple[profiles.Profile, ...]:
         """What was measured, then the rules."""
         return (*self.measured.profiles, *self.rules)
+
+    @property
+    def inputs(self) -> dict[str, str]:
+        """The sha256 of the file of counts, by its path."""
+        return {self.measured.source: self.measured.sha256}
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -72,10 +78,11 @@ class SetStudy:
 
 @dataclass(frozen=True, eq=False)
 class SetsStudy:
-    """Many measured profiles, each against every answer for its part."""
+    """Many measured profiles, each against every answer for its part, and feeding tests."""
 
     sets: tuple[SetStudy, ...]
     inputs: dict[str, str]  # sha256 by path
+    feedings: tuple[FeedingStudy, ...] = ()  # the files that count by device
 
     @property
     def answers(self) -> tuple[str, ...]:
@@ -95,29 +102,40 @@ class SetsStudy:
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
         told = [line for one in self.sets for line in one.measured.warnings(one.part)]
-        told += [f"{one.part.source}: {line}" for one in self.sets for line in one.aspects.warnings]
+        told += [line for one in self.feedings for line in one.measured.warnings(one.part)]
+        every = (*self.sets, *self.feedings)
+        told += [f"{one.part.source}: {line}" for one in every for line in one.aspects.warnings]
         return tuple(dict.fromkeys(told))
 
 
 def compare(
-    part: Part, counts: str | PathLike[str], *, launch: str | None = None, as_published: bool = False
-) -> CompareStudy:
-    """Study how far counts or fractions by aspect are from every rule.
+    part: Part,
+    counts: str | PathLike[str],
+    *,
+    launch: str | None = None,
+    as_published: bool = False,
+    progress=None,
+    before=None,
+) -> CompareStudy | FeedingStudy:
+    """Study how far what was counted by aspect, or by device, is from every rule.
 
     Parameters
     ----------
     part : Part
         From a mesh or from a part card.
     counts : str or Path
-        CSV file with one line an aspect, one column a profile.
+        CSV file with one line an aspect, one column a profile; or with one line a device.
     launch : str, optional
         What was done to the part; without it what the head of the file says, else 'feed'.
     as_published : bool
         Count each class once in the PMI rule, as the thesis's tables do.
+    progress, before : function, optional
+        Of the parts on the moving floor, as for ``rate.shares``; a file by device needs them.
 
     Returns
     -------
-    CompareStudy
+    CompareStudy or FeedingStudy
+        The second of a file that counts by device.
 
     Raises
     ------
@@ -126,6 +144,9 @@ def compare(
     """
     text, sha256 = sheet.content(counts)
     table = sheet.parse(text, str(counts))
+    if passed.by_device(table):
+        tested = passed.understood(table, str(counts), sha256)
+        return feeding(part, tested, launch=launch, progress=progress, before=before)
     found, rules = _answers(part, table.head, launch, as_published)
     names = [rule.name for rule in rules]
     measured = profiles.measured(table, str(counts), sha256, found.names, names)
@@ -163,21 +184,22 @@ def compare_sets(
     files = [str(path) for path in files]
     if not 0 < len(files) <= MOST:
         raise FeederError("files", f"are {len(files)}", f"name 1 to {MOST} files of counts")
-    sets, faults, inputs = [], [], {}
+    studies, faults, inputs = [], [], {}
     for done, path in enumerate(files, 1):
         try:
-            sets += _sets(path, launch, as_published, inputs)
+            studies += _studies(path, launch, as_published, inputs)
         except FeederError as fault:
             faults += fault.faults if isinstance(fault, Faults) else [fault]
         if progress:
             progress(done, len(files))
     if faults:
         raise Faults(faults)
-    return SetsStudy(tuple(sets), inputs)
+    sets = tuple(one for one in studies if isinstance(one, SetStudy))
+    return SetsStudy(sets, inputs, tuple(one for one in studies if isinstance(one, FeedingStudy)))
 
 
-def _sets(path, launch, as_published, inputs):
-    """Every profile of one file against every answer."""
+def _studies(path, launch, as_published, inputs):
+    """Every profile of one file against every answer; of a file by device one FeedingStudy."""
     text, sha256 = sheet.content(path)
     table = sheet.parse(text, path)
     if not table.head.part:
@@ -185,10 +207,14 @@ def _sets(path, launch, as_published, inputs):
     beside = Path(path).parent / table.head.part
     names = str(Path(path).parent / table.head.names) if table.head.names else None
     part = load(str(beside), names=names, **table.head.reading)
+    inputs |= {path: sha256} | part.inputs
+    if passed.by_device(table):
+        fed = feeding(part, passed.understood(table, path, sha256), launch=launch)
+        inputs |= fed.inputs
+        return [fed]
     aspects, rules = _answers(part, table.head, launch, as_published)
     answers = {rule.name: rule for rule in rules}
     measured = profiles.measured(table, path, sha256, aspects.names, list(answers))
-    inputs |= {path: sha256} | part.inputs
     return [SetStudy(part, aspects, measured, profile, answers) for profile in measured.profiles]
 
 

@@ -1,13 +1,21 @@
-"""What the devices of a bowl do with each orientation of a part: the chapter on tooling of a report."""
+"""What the devices of a bowl do with each orientation of a part, and what passed them in a feeding test."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
+from feederscrew import bowl as bowls
+from feederscrew import check
 from feederscrew.bowl.devices import Device
 from feederscrew.bowl.record import Bowl
+from feederscrew.dropping.ensemble import wilson
+from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
+from feederscrew.rates import passing, stream
 from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.counts.passed import DeviceCounts
+from feederscrew.studies.rate import shares
 from feederscrew.tooling.orientations import Orientation, orientations
 from feederscrew.tooling.passages import Passage, until_returned
 
@@ -55,3 +63,121 @@ def passages(part: Part, bowl: Bowl, aspects: Aspects, rule: str) -> PassagesStu
         shares=np.nan_to_num([one.chances[rule] for one in every]),
         passages=tuple(tuple(until_returned(devices, one, every)) for one in every),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class FeedingStudy:
+    """A feeding test of one part in one bowl; D devices that were counted."""
+
+    part: Part
+    bowl: Bowl
+    config: str  # path of the bowl file
+    aspects: Aspects
+    measured: DeviceCounts
+    stations: tuple[str, ...]  # (D,) as 'gap_2'
+    answers: dict[str, np.ndarray]  # (D,) [1] share that passes, by whose shares of the aspects
+    low: np.ndarray  # (D,) [1] of the recommended answer's interval
+    high: np.ndarray  # (D,) [1]
+
+    @property
+    def answer(self) -> str:
+        """Say whose shares of the aspects the prediction takes."""
+        return self.aspects.recommended.rule
+
+    @property
+    def ends(self):
+        """(D, 2) [1] the 95 % interval of the share that was measured."""
+        pairs = zip(self.measured.passed, self.measured.rejected)
+        return np.array([[float(end[0]) for end in wilson([on], on + off)] for on, off in pairs])
+
+    @property
+    def agrees(self):
+        """(D,) bool, whether the predicted and the measured interval have something in common."""
+        low, high = self.ends.T
+        return (self.low <= high) & (low <= self.high)
+
+    @property
+    def inputs(self) -> dict[str, str]:
+        """The sha256 of the files, by path."""
+        return {self.measured.source: self.measured.sha256} | bowls.identity(self.config)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a user must not overlook, a sentence each."""
+        return (*self.aspects.warnings, *self.measured.warnings(self.part))
+
+
+def feeding(part: Part, counts: DeviceCounts, *, launch=None, progress=None, before=None) -> FeedingStudy:
+    """Study what passed the devices of the bowl that a feeding test names.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    counts : DeviceCounts
+    launch : str, optional
+        What was done to the part; without it what the head of the file says, else parts are fed onto the
+        moving floor of that bowl.
+    progress, before : function, optional
+        As for ``rate.shares``.
+
+    Returns
+    -------
+    FeedingStudy
+
+    Raises
+    ------
+    FeederError
+        If the file names no bowl, or a device that the bowl has not.
+    """
+    config, bowl = bowl_of(counts)
+    launch = launch or counts.head.launch or None
+    found = shares(part, bowl, launch=launch, fed=launch is None, progress=progress, before=before).aspects
+    flow, stations = counted_ways(part, found, bowl, counts)
+    known = found.recommended
+    low, high = passing.passing_ends(flow, known.low, known.high)
+    return FeedingStudy(
+        part=part,
+        bowl=bowl,
+        config=config,
+        aspects=found,
+        measured=counts,
+        stations=stations,
+        answers={rule: check.frozen(passing.passing(flow, p)) for rule, p in found.chances.items()},
+        low=check.frozen(low),
+        high=check.frozen(high),
+    )
+
+
+def bowl_of(counts):
+    """Return the path of the bowl file that a feeding test names, and its Bowl."""
+    if not counts.head.config:
+        what = "counts by device but does not name the bowl"
+        raise FeederError(counts.source, what, "add a line '# config: FILE' at its top")
+    config = str(Path(counts.source).parent / counts.head.config)
+    return config, bowls.read(config)
+
+
+def counted_ways(part, aspects, bowl, counts):
+    """Return which share of each aspect's parts comes to each counted device, and which goes on from it.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    aspects : Aspects
+        Of that part.
+    bowl : Bowl
+        With its devices and its drive, as ``feeder rate`` takes them.
+    counts : DeviceCounts
+
+    Returns
+    -------
+    (2, D, A) float [1]
+    tuple of str
+        (D,) names of the devices.
+    """
+    known = stream.orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
+    places = passing.places(known, counts)
+    flow = passing.ways(known, aspects.names)[:, places]
+    return flow, tuple(known.names[place] for place in places)

@@ -22,7 +22,7 @@ def exponents(study):
     return tables.frame(
         {
             "counts": [fit.name for fit in fits],
-            "parts": [float(fit.counts.sum()) for fit in fits],
+            "parts": [fit.parts for fit in fits],
             "exponent": [each.exponent for each in found],
             "exponent_low": [each.low for each in found],
             "exponent_high": [each.high for each in found],

@@ -6,6 +6,7 @@ import numpy as np
 
 from feederscrew.output import offers as offer
 from feederscrew.output import tables
+from feederscrew.output.compare import feeding
 
 DARK = 0.3  # [1] total variation drawn in the darkest shade
 ROW, COLUMN = 0.24, 0.78  # [in] of a cell of the picture
@@ -14,10 +15,17 @@ ROW, COLUMN = 0.24, 0.78  # [in] of a cell of the picture
 def offers(study):
     """Offer the table of a SetsStudy and its picture, as a list of Offer."""
     alt = "How far each rule and the recommended answer are from each measured set"
-    return [
-        offer.table("compare.csv", frame, study),
-        offer.picture("compare.png", alt, figure, study),
-    ]
+    offered = [offer.table("compare.csv", frame, study), offer.picture("compare.png", alt, figure, study)]
+    tested = [offer.table(feeding.NAME, feeding.frame, study.feedings)]
+    return (offered if study.sets else []) + (tested if study.feedings else [])
+
+
+def shown(study, form):
+    """Return what is printed: for people both tables, else that of the sets or of the feeding tests."""
+    if form != "table":
+        return [frame(study) if study.sets else feeding.frame(study.feedings)]
+    tested = [feeding.printed(study.feedings)] if study.feedings else []
+    return ([printed(study)] if study.sets else []) + tested
 
 
 def frame(study):
@@ -103,7 +111,11 @@ def document(study):
     -------
     dict
     """
-    return {"sets": [_one(one) for one in study.sets], "total_variation": frame(study)}
+    return {
+        "sets": [_one(one) for one in study.sets],
+        "total_variation": frame(study),
+        "feeding_tests": [feeding.document(one) for one in study.feedings],
+    }
 
 
 def _one(one):

@@ -47,10 +47,7 @@ def orientations(known, rule):
     known : Orientations
     rule : str
     """
-    stations = {
-        f"{name}_{place}" if place else name: known.passes[:, place]
-        for place, name in enumerate(known.stations)
-    }
+    stations = dict(zip(known.names, known.passes.T))
     return tables.frame(
         {
             "aspect": known.aspects,

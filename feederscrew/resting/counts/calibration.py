@@ -6,11 +6,12 @@ import numpy as np
 from scipy import optimize, stats
 
 from feederscrew import check
-from feederscrew.resting.counts.deviation import ChiSquare, chi_square
+from feederscrew.resting.counts.deviation import ChiSquare, chi_square, chi_square_passes
 from feederscrew.resting.rules.surface import surface_shares
 
 LOWEST, HIGHEST = -2.0, 8.0  # [1] exponents tried
 CONFIDENCE = 0.95
+SAME = 1e-9  # [1] so near two heights or shares are the same
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,21 +58,80 @@ def calibrate(counts, shares, heights, radius):
     counts, shares, heights = _aligned(counts, shares, heights)
     known = shares > 0.0
 
-    def loss(exponent):
-        fitted = surface_shares(shares, heights, radius, exponent)
-        return -float((counts[known] * np.log(fitted[known])).sum())
+    def fitted(exponent):
+        return surface_shares(shares, heights, radius, exponent)
 
+    def loss(exponent):
+        return -float((counts[known] * np.log(fitted(exponent)[known])).sum())
+
+    return _likeliest(loss, fitted, lambda p: chi_square(counts, p, estimated=1))
+
+
+def calibrate_passes(passed, rejected, ways, shares, heights, radius):
+    """Fit the exponent of surface_shares to what passed the devices of a bowl, by maximum likelihood.
+
+    Parameters
+    ----------
+    passed, rejected : (D,) float [1]
+        Parts, by device.
+    ways : (2, D, A) float [1]
+        Share of each aspect's parts that comes to each device, and that goes on from it.
+    shares, heights, radius
+        As for ``calibrate``.
+
+    Returns
+    -------
+    Calibration
+
+    Raises
+    ------
+    ValueError
+        If no device passes a share that hangs on the shares of the aspects.
+
+    Notes
+    -----
+    A device that all aspects pass alike says nothing of the exponent and is left out.
+    """
+    told = _telling(ways, shares)
+    passed, rejected = (np.asarray(counts, float)[told] for counts in (passed, rejected))
+    came, on = np.asarray(ways)[:, told]
+    if not told.any() or np.ptp(heights[shares > 0.0]) <= SAME * heights.max():
+        raise ValueError("the devices pass all aspects alike: the counts say nothing about the exponent")
+
+    def fitted(exponent):
+        return surface_shares(shares, heights, radius, exponent)
+
+    def expected(p):
+        return np.einsum("da,a->d", on, p) / np.einsum("da,a->d", came, p)
+
+    def loss(exponent):
+        share = expected(fitted(exponent))
+        return -float((passed * np.log(share) + rejected * np.log1p(-share)).sum())
+
+    return _likeliest(loss, fitted, lambda p: chi_square_passes(passed, rejected, expected(p), estimated=1))
+
+
+def _telling(ways, shares):
+    """(D,) bool, the devices of which aspects pass unlike shares."""
+    came, on = np.asarray(ways)[:, :, shares > 0.0]
+    each = np.where(came > 0.0, on / np.where(came > 0.0, came, 1.0), np.nan)
+    alike = np.nanmax(each, axis=1, initial=0.0) - np.nanmin(each, axis=1, initial=1.0) <= SAME
+    return ~alike
+
+
+def _likeliest(loss, fitted, test):
+    """The exponent of least loss, with its interval and a test of the shares fitted."""
     best = optimize.minimize_scalar(loss, bounds=(LOWEST, HIGHEST), method="bounded", options={"xatol": 1e-9})
     limit = best.fun + 0.5 * stats.chi2.ppf(CONFIDENCE, 1)
     ends = [_crossing(loss, limit, best.x, end) for end in (LOWEST, HIGHEST)]
-    fitted = surface_shares(shares, heights, radius, best.x)
+    shares = fitted(best.x)
     return Calibration(
         exponent=float(best.x),
         low=ends[0],
         high=ends[1],
         bounded=LOWEST in ends or HIGHEST in ends,
-        shares=check.frozen(fitted),
-        chi_square=chi_square(counts, fitted, estimated=1),
+        shares=check.frozen(shares),
+        chi_square=test(shares),
     )
 
 
@@ -83,7 +143,7 @@ def _aligned(counts, shares, heights):
         raise ValueError("counts must not be negative, nor all zero")
     if (counts[shares <= 0.0] > 0.0).any():
         raise ValueError("counts has parts on an aspect that no direction rolls to")
-    if np.ptp(heights[shares > 0.0]) <= 1e-9 * heights.max():
+    if np.ptp(heights[shares > 0.0]) <= SAME * heights.max():
         raise ValueError("heights are all the same: the counts say nothing about the exponent")
     return counts, shares, heights
 

@@ -135,6 +135,34 @@ def chi_square_between(first, second):
     return _test(observed, expected)
 
 
+def chi_square_passes(passed, rejected, expected, estimated=0):
+    """Test whether parts that passed several devices may come from given shares (one binomial a device).
+
+    Parameters
+    ----------
+    passed, rejected : (D,) int
+        Observed, by device.
+    expected : (D,) float [1]
+        Shares that pass, above 0 and below 1.
+    estimated : int
+        Parameters of the shares that were fitted to these counts.
+
+    Returns
+    -------
+    ChiSquare
+        Devices at which fewer than ``LEAST`` are expected to pass or to be rejected are left out, and
+        counted in ``joined``.
+    """
+    passed, rejected = (_weights(values) for values in _pair(passed, rejected))
+    came, expected = passed + rejected, check.shaped("expected", expected, passed.shape)
+    enough = came * np.minimum(expected, 1.0 - expected) >= LEAST
+    freedom, few = int(enough.sum()) - estimated, int((~enough).sum())
+    if freedom <= 0:
+        return ChiSquare(np.nan, 0, np.nan, few)
+    away = (passed - came * expected) ** 2 / (came * expected * (1.0 - expected))
+    return _tested(float(away[enough].sum()), freedom, few)
+
+
 def compare(profiles):
     """Compute every measure between every two profiles.
 
@@ -170,13 +198,16 @@ def _counted(a, b):
 
 def _test(observed, expected, estimated=0):
     """Pearson's statistic over groups that expect enough."""
-    from scipy.special import gammaincc
-
     observed, expected, joined = _joined(observed, expected)
     freedom = expected.shape[1] - 1 - estimated
     if freedom <= 0:
         return ChiSquare(np.nan, 0, np.nan, joined)
-    statistic = float(((observed - expected) ** 2 / expected).sum())
+    return _tested(float(((observed - expected) ** 2 / expected).sum()), freedom, joined)
+
+
+def _tested(statistic, freedom, joined):
+    from scipy.special import gammaincc
+
     return ChiSquare(statistic, freedom, float(gammaincc(0.5 * freedom, 0.5 * statistic)), joined)
 
 

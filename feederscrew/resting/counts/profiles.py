@@ -16,7 +16,7 @@ from feederscrew.units import shown
 ROUNDING = 0.005  # of the whole: how far printed fractions may miss their sum
 WHOLE = {"counts": 0.0, "fractions": 1.0, "percent": 100.0}  # what a column sums to; counts, to anything
 DROPPED = ("height_mm", "count")  # columns by which a table of ``feeder drop`` is known
-ASPECT, ORIENTATION = "aspect", "orientation"  # what a file counts by: the name of its first column
+ASPECT, ORIENTATION, DEVICE = "aspect", "orientation", "device"  # what a file counts by: its first column
 INTEGER = re.compile(r"\+?\d+", re.ASCII)
 FULL_TURN = 360.0  # [deg]
 MOST = 1e12  # of a count
@@ -52,16 +52,21 @@ class Measured:
 
     def warnings(self, part):
         """Say, a sentence each, where the head was not written for a part."""
-        if part.sha256.startswith(self.head.mesh):
-            return ()
-        told = f"{self.source}: counted with another part file: its mesh is {self.head.mesh[:8]}"
-        return (f"{told}, that of {part.source} {part.sha256[:8]}",)
+        return of_another_part(self.source, self.head, part)
 
     @property
     def notes(self):
         """What the columns were taken for, a line a kind."""
         told = {kind: [_told(p) for p in self.profiles if p.kind == kind] for kind in WHOLE}
         return tuple(f"{self.source}: {kind}: {', '.join(names)}" for kind, names in told.items() if names)
+
+
+def of_another_part(source, head, part):
+    """Say, a sentence each, where the head of a file was not written for a part."""
+    if part.sha256.startswith(head.mesh):
+        return ()
+    told = f"{source}: counted with another part file: its mesh is {head.mesh[:8]}"
+    return (f"{told}, that of {part.source} {part.sha256[:8]}",)
 
 
 def of_rules(aspects):
@@ -191,6 +196,9 @@ def _columns(where, header, taken):
     first, *columns = header
     if ";" in first or "\t" in first:
         raise FeederError(where, "the columns are not separated by commas", "separate them by commas")
+    if first.lower() == DEVICE:
+        what = "counts by device, which does not say how often the part lies on each aspect"
+        raise FeederError(where, what, "give counts by aspect or by orientation")
     if first.lower() not in (ASPECT, ORIENTATION):
         raise FeederError(where, f"the first column is {shown(first)}, not aspect", EXAMPLE)
     if not columns:

@@ -110,3 +110,43 @@ def test_floods_are_refused_early(run, request, tmp_path, counts):
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert most < 10e6
+
+
+def test_a_feeding_test_stands_beside_the_static_rules(run, request, tmp_path):
+    """The same file for compare and calibrate; here with shares of a launch, so that nothing is dropped."""
+    root = request.config.rootpath
+    example = (root / "docs/measured/example/feeding.csv").read_text()
+    (tmp_path / "bowl.yaml").write_text((root / "docs/measured/example/bowl.yaml").read_text())
+    part = root / "parts/lbracket_30x20x15.stl"
+    (tmp_path / "c.csv").write_text(example.replace("../../../parts", f"{part.parent}") + "track,1000,0\n")
+    call = ("compare", part, "--with", "c.csv", "--launch", "feed")
+    done = run(*call, "--format", "csv", "-o", "out")
+    assert done.exit_code == 0, done.output
+    rows = list(csv.DictReader(io.StringIO(done.stdout)))
+    assert [row["device"] for row in rows] == ["wiper_1", "gap_2", "track"]
+    assert (tmp_path / "out" / part.stem / "devices.csv").read_text() == done.stdout
+    rate = json.loads(
+        run(
+            "rate", part, "--aspect", "A", "--config", "bowl.yaml", "--launch", "feed", "--format", "json"
+        ).stdout
+    )
+    chances = [(one["p_recommended"], one["wiper_1"]) for one in rate["orientations"]]
+    predicted = sum(p * share for p, share in chances) / sum(p for p, _ in chances)
+    assert float(rows[0]["predicted"]) == pytest.approx(predicted, abs=1e-5)
+    assert float(rows[0]["measured"]) == pytest.approx(0.941) and rows[0]["agrees"] == "True"
+    many = json.loads(run("compare", "c.csv", "--launch", "feed", "--format", "json").stdout)
+    assert many["sets"] == [] and many["feeding_tests"][0]["config"] == "bowl.yaml"
+    fitted = json.loads(run("calibrate", part, "--with", "c.csv", "--format", "json").stdout)["calibrations"]
+    assert fitted[0]["counts"] == "devices" and fitted[0]["exponent_low"] < fitted[0]["exponent"] < 8.0
+
+
+def test_counts_by_device_name_their_bowl_and_are_no_shares(run, request, tmp_path):
+    part = request.config.rootpath / "parts/lbracket_30x20x15.stl"
+    (tmp_path / "c.csv").write_text("device,passed,rejected\nwiper,3,4\n")
+    for command in ("compare", "calibrate"):
+        done = run(command, part, "--with", "c.csv")
+        what = "c.csv: counts by device but does not name the bowl - add a line '# config: FILE' at its top"
+        assert (done.exit_code, done.stderr) == (1, f"Error: {what}\n")
+    done = run("rate", part, "--aspect", "A", "--probabilities", "c.csv")
+    what = "c.csv:1: counts by device, which does not say how often the part lies on each aspect"
+    assert (done.exit_code, done.stderr) == (1, f"Error: {what} - give counts by aspect or by orientation\n")
