@@ -2,7 +2,7 @@
 
 import click
 
-from feederscrew_cli import options
+from feederscrew_cli import options, orientation
 from feederscrew_cli.interrupt import ended_within
 from feederscrew_cli.progress import Progress
 
@@ -35,7 +35,7 @@ class Jobs(click.ParamType):
 )
 @options.overrides
 @options.rule
-@options.launch
+@orientation.FED
 @click.option(
     "--drops",
     metavar="N",
@@ -58,8 +58,9 @@ def batch(ctx, sources, configs, overrides, rule, launch, drops, jobs, scheduler
     """Example: feeder batch parts/ --config bowl.yaml -o results/all --jobs 2
 
     Compute every part in every bowl: its aspects, how it travels, and the rate of the orientation
-    that leaves the bowl most often, or of the aspect that a list asks for. A part that fails is told,
-    and the others go on; exit status 1 says that some failed.
+    that leaves the bowl most often, or of the aspect that a list asks for. How often parts lie on each
+    aspect is, with a bowl file, what arrives from its moving floor, as for `feeder rate`: one to three
+    seconds a part. A part that fails is told, and the others go on; exit status 1 says that some failed.
 
     PARTS are part files, folders of them, patterns ("parts/**/*.stl") and lists: a CSV whose first
     line names its columns, out of part, units, density, centre_of_mass, names, aspect and config. -o DIR
@@ -72,7 +73,8 @@ def batch(ctx, sources, configs, overrides, rule, launch, drops, jobs, scheduler
         raise click.UsageError("Missing option '-o' - say where the results go")
     requests = batches.gather(sources, configs, overrides)
     workers = batches.crew(jobs, None if _typed(ctx, "jobs") else scheduler)
-    choices = batches.Choices(rule=rule, drops=drops, launch=launch, pictures=pictures)
+    fed = orientation.choice({"launch": launch, "probabilities": None}, configs)["fed"]
+    choices = batches.Choices(rule=rule, drops=drops, launch=launch, fed=fed, pictures=pictures)
     with Progress(len(requests), not out.quiet) as progress:
         found = batches.run(
             requests, out.directory, workers=workers, choices=choices, resume=resume, tell=progress.tell

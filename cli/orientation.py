@@ -45,7 +45,6 @@ def chain(command):
     return command
 
 
-LAUNCH = click.option("--launch", type=options.LAUNCHES, help="What is done to the part.  [default: feed]")
 FED = click.option(
     "--launch",
     type=options.LAUNCHES,
@@ -59,14 +58,9 @@ PROBABILITIES = click.option(
 )
 
 
-def taken(launch):
+def taken(command):
     """Add the options that say whose shares of the aspects are taken; the command receives ``taken``."""
-
-    def decorate(command):
-        keywords = ("launch", "probabilities")
-        return options.stacked(options.packed(command, "taken", keywords), launch, PROBABILITIES)
-
-    return decorate
+    return options.stacked(options.packed(command, "taken", ("launch", "probabilities")), FED, PROBABILITIES)
 
 
 def shares(out, part, bowl, taken, path=None):

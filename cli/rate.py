@@ -10,7 +10,7 @@ from feederscrew_cli import options, orientation
 @click.command(short_help="Well-oriented parts per minute, with each factor of the chain.")
 @options.part
 @orientation.chain
-@orientation.taken(orientation.FED)
+@orientation.taken
 @orientation.doubt
 @options.bowl
 @options.output

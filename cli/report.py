@@ -49,7 +49,7 @@ def _all(decorators):
 @click.command(short_help="All that is known of a part in a bowl, on one page to turn, print and keep.")
 @options.part
 @_all(WANTED)
-@orientation.taken(orientation.FED)
+@orientation.taken
 @options.bowl
 @_all(PLACE)
 def report(part, bowl, taken, directory, format, quiet, verbose, **wanted):

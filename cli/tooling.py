@@ -59,7 +59,7 @@ from feederscrew_cli.quantity import Quantity
     metavar="TIME",
     help="The last resort, after which the best so far is taken, and said to be so.",
 )
-@orientation.taken(orientation.FED)
+@orientation.taken
 @options.bowl
 @options.pictures
 @options.output

@@ -16,7 +16,7 @@ from feederscrew_cli.quantity import Quantity
     help="Well-oriented parts: 120/min.",
 )
 @orientation.chain
-@orientation.taken(orientation.LAUNCH)
+@orientation.taken
 @options.bowl
 @options.output
 def tune(part, target, aspect, heading, rule, gap, fill, taken, bowl, out):
@@ -25,7 +25,8 @@ def tune(part, target, aspect, heading, rule, gap, fill, taken, bowl, out):
     Every setting of amplitude, vibration angle or frequency alone that reaches at least the target, one-way
     and gentle motions first, each with its regime, hardest impact, the margins to slip forward, slip
     back and hop (below 0: beyond it), and the rate if friction is a fifth lower or higher.
-    The shares of the aspects are those of --launch, --rule or --probabilities, whatever the drive.
+    The shares of the aspects are those of `feeder rate` at the bowl's own drive, and stay so while the
+    drive changes: ask `feeder rate` again at the setting you choose.
     With -o: tune.csv and tune.json.
     """
     from feederscrew import bowl as bowls
@@ -37,7 +38,7 @@ def tune(part, target, aspect, heading, rule, gap, fill, taken, bowl, out):
     effective = columns.conditions(solid) | bowls.texts(settings)
     waiting.conveying(out)
     record = bowls.record(settings)
-    known = orientation.shares(out, solid, record, taken)
+    known = orientation.shares(out, solid, record, taken, bowl["path"])
     with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
         found = study(
             solid, record, aspect, target, known=known,

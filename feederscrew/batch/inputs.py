@@ -126,7 +126,7 @@ def _conditions(path, overrides, faults):
         settings = bowls.settings(path, overrides)
         bowl = answer.conveying(bowls.record(settings))
         texts = tuple(bowls.texts(settings).items())
-        return Conditions(bowls.name(path), bowl, texts)
+        return Conditions(bowls.name(path), bowl, texts, given=path is not None)
     except FeederError as fault:
         faults += getattr(fault, "faults", [_placed(fault, path)])
         return None

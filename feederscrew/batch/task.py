@@ -22,6 +22,7 @@ class Conditions:
     name: str  # the file's stem; 'bowl' for the defaults
     bowl: Bowl
     texts: tuple[tuple[str, str], ...]  # key and value in effect, as text
+    given: bool = False  # whether a bowl file was named
 
 
 @dataclass(frozen=True)
@@ -30,8 +31,14 @@ class Choices:
 
     rule: str = "recommended"  # whose probabilities the rate takes
     drops: int = 0  # simulated drops of each part
-    launch: str = LAUNCH  # what is done to it
+    launch: str | None = None  # what is done to it; None: the usual one
+    fed: bool = False  # onto the moving floor of a bowl file that was named, where no launch is
     pictures: bool = True
+
+    @property
+    def launched(self):
+        """The launch where parts are not fed onto a moving floor."""
+        return self.launch or LAUNCH
 
 
 @dataclass(frozen=True)

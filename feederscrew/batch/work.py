@@ -18,9 +18,9 @@ from feederscrew.part import load
 from feederscrew.rates import queue
 from feederscrew.resting.aspects import find
 from feederscrew.resting.rules.recommended import dropped, launch_named
-from feederscrew.studies.aspects import AspectsStudy, aspects
+from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.convey import convey
-from feederscrew.studies.rate import Shares, rate
+from feederscrew.studies.rate import Shares, rate, shares
 
 THUMBNAIL = "thumbnail.png"
 SEED_DIGITS = 8  # hexadecimal, of the file's sha256
@@ -83,7 +83,7 @@ def _results(task):
         row=row,
         effective=columns.conditions(part)
         | dict(request.conditions.texts)
-        | {"rule": choices.rule, "drops": choices.drops, "launch": choices.launch}
+        | {"rule": choices.rule, "drops": choices.drops, "launch": choices.launched, "fed": _fed(task)}
         | ({"names": request.names.source} if request.names else {}),
         warnings=(*part.warnings, *found.warnings),
         files=files,
@@ -115,19 +115,28 @@ def _rate(part, found, task, files):
 def _answered(part, task, files):
     """The study of a part's aspects and, for the summary, the drop test where one is asked for.
 
-    Its random numbers hang on the part's file alone; its answer is then the recommended one.
+    Its random numbers hang on the part's file alone; its answer is then the recommended one. Without one the
+    answer is that of ``feeder rate`` for the same part and bowl.
     """
     choices = task.choices
     if not choices.drops or part.vertices is None:
-        return aspects(part, launch=choices.launch), {}
+        bowl = task.request.conditions.bowl
+        known = shares(part, bowl, launch=choices.launched, fed=_fed(task), jobs=1)
+        return AspectsStudy(part, known.aspects), {}
     from feederscrew.output.drop import files as drop_files
     from feederscrew.studies.drop import drop
 
-    found, seed = find(part, launch=choices.launch), int(task.sha256[:SEED_DIGITS], 16)
-    study = drop(part, choices.launch, drops=choices.drops, seed=seed, aspects=found)
+    found, seed = find(part, launch=choices.launched), int(task.sha256[:SEED_DIGITS], 16)
+    study = drop(part, choices.launched, drops=choices.drops, seed=seed, aspects=found)
     offers.write(files, drop_files.offers(study), pictures=choices.pictures)
     tally = study.result.tally
-    answer = dropped(tally, found.stable, launch_named(choices.launch))
+    answer = dropped(tally, found.stable, launch_named(choices.launched))
     first = int(np.argmax(tally.p))
     told = {"drops": choices.drops, "drop_aspect": found.names[first], "p_drop": tally.p[first]}
     return AspectsStudy(part, dataclasses.replace(found, recommended=answer), tally), told
+
+
+def _fed(task):
+    """Whether parts are fed onto the moving floor of the bowl that was named."""
+    choices = task.choices
+    return choices.fed and task.request.conditions.given and not (choices.drops or choices.launch)

@@ -43,6 +43,7 @@ def shares(
     launch: str | None = None,
     probabilities: str | PathLike[str] | None = None,
     fed: bool = False,
+    jobs: int | None = None,
     progress=None,
     before=None,
 ) -> Shares:
@@ -59,6 +60,8 @@ def shares(
         File of counts in place of an answer of ours, by aspect or by orientation.
     fed : bool
         Feed parts onto the moving floor of the bowl: what lies at the track's entry then.
+    jobs : int, optional
+        Cores for that; all there are without it. Nothing else depends on it.
     progress, before : function, optional
         Of drops and of parts on the floor, as for ``studies.aspects``.
 
@@ -86,7 +89,7 @@ def shares(
         return Shares(found)
     if before:
         before(None)
-    arrived = arrival(part, found, bowl, seed=SEED, jobs=os.cpu_count() or 1, progress=progress)
+    arrived = arrival(part, found, bowl, seed=SEED, jobs=jobs or os.cpu_count() or 1, progress=progress)
     return Shares(chances.arrived(found, arrived, SEED))
 
 

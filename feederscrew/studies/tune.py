@@ -68,7 +68,8 @@ def tune(
     target : float [1/s]
         Well-oriented parts, above 0.
     heading, rule, devices, gap, fill, known
-        As for ``rate``; the shares stay as they are while the drive changes.
+        As for ``rate``; the shares, and what turns over on the track, stay as they are at the bowl's own
+        drive.
 
     Returns
     -------
@@ -85,7 +86,7 @@ def tune(
     known = shares(part, bowl) if known is None else known
     found = known.aspects
     wanted = queue.wanted(part, found, bowl.track, aspect, heading)
-    lying = chances.oriented(queue.orientations(part, found, bowl.track, chain), known.measured)
+    lying = chances.oriented(queue.orientations(part, found, bowl.track, chain, bowl=bowl), known.measured)
     density = queue.parts_per_metre(lying, wanted, rule, gap=gap, fill=fill)
     return TuneStudy(
         part=part,

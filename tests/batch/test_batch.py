@@ -200,7 +200,7 @@ def test_the_row_is_what_the_commands_say(run):
 
 
 def test_a_bug_on_one_part_is_a_reason_and_no_more(monkeypatch):
-    monkeypatch.setattr(works, "aspects", lambda part, launch: 1 / 0)
+    monkeypatch.setattr(works, "shares", lambda *given, **named: 1 / 0)
     outcome = works.work(of(asked(NUT)[0]))
     assert (outcome.status, outcome.files) == ("failed", {})
     assert outcome.reason == f"{NUT}: unexpected ZeroDivisionError: division by zero - please report it"

@@ -87,3 +87,23 @@ def test_compare_holds_the_answer_for_the_launch_of_the_file(run, block, tmp_pat
         pairs = told(run, "compare", block, "--with", "c.csv", *option)["comparisons"]
         found += [c["total_variation"] for c in pairs if (c["first"], c["second"]) == ("tray", "recommended")]
     assert found[0] == found[1] != found[2]
+
+
+def test_rate_tune_and_batch_take_the_same_answer(run, block, config):
+    given = ("--config", config, "--set", "drive.peak_to_peak=0.3 mm")
+    rate = told(run, "rate", block, "--aspect", "A", *given)
+    fed = "fed onto the moving floor, 100 parts, seed 1"
+    (row,) = told(run, "batch", block, *given, "-o", "all", "--no-pictures", "--jobs", "1")["parts"]
+    names = ("aspect", "p_orientation", "parts_per_minute", "parts_per_minute_low", "answer")
+    assert {name: row[name] for name in names} == {name: rate[name] for name in names}
+    assert rate["answer"] == fed
+    setting = told(run, "tune", block, "--aspect", "A", "--target", "5/min", *given)["settings"][0]
+    densities = [one["parts_per_minute"] / one["velocity_mm_s"] for one in (setting, rate)]
+    assert densities[0] == pytest.approx(densities[1], rel=1e-9)
+
+
+@pytest.mark.parametrize("option", [("--launch", "drop"), ("--rule", "csa")])
+def test_a_batch_with_a_launch_or_a_rule_feeds_nothing(run, block, config, option):
+    call = ("batch", block, "--config", config, "-o", "all", "--no-pictures", "--jobs", "1", *option)
+    (row,) = told(run, *call)["parts"]
+    assert row["answer"].endswith({"drop": "launch drop", "csa": "csa"}[option[1]])
