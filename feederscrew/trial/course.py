@@ -37,6 +37,7 @@ class Course:
     velocities: np.ndarray  # (N,) [m/s] on the bare track; NaN of one that did not travel
     seconds: np.ndarray  # (N,) [s] in all
     depths: np.ndarray  # (N,) [m] the deepest that anything was in anything
+    gains: np.ndarray  # (N,) [m] largest rise of the energy over what gravity and the drive gave, as a height
     fell: np.ndarray  # (N,) [m] along the wall from the device's start, where it ended
     rides: tuple  # runs.Runs of each station, of the parts that came so far
     riders: tuple  # (P,) int, which parts those are
@@ -199,7 +200,7 @@ class _Found:
         self.orientations[0] = entered
         self.fates, self.ended = np.full(parts, STUCK), np.full(parts, -1)
         self.velocities, self.fell = np.full(parts, np.nan), np.full(parts, np.nan)
-        self.seconds, self.depths = np.zeros(parts), np.zeros(parts)
+        self.seconds, self.depths, self.gains = np.zeros(parts), np.zeros(parts), np.zeros(parts)
         self.rides, self.riders, self.partial, self.known = [], [], False, parts
 
     def add(self, place, station, ride, riders, bowl):
@@ -210,6 +211,7 @@ class _Found:
             self.partial, self.known = True, int(riders[-1]) + 1
         self.seconds[riders] += ride.seconds
         self.depths[riders] = np.maximum(self.depths[riders], ride.depths)
+        self.gains[riders] = np.maximum(self.gains[riders], ride.gains)
         if place == 0:
             self.velocities[riders] = velocities(ride, bowl.track.radius)
         passed = ride.outcomes == runs.PASSED
@@ -230,8 +232,9 @@ class _Found:
         """All of it as a record."""
         first = slice(0, self.known)
         arrays = {
-            "entered": self.entered, "fates": self.fates, "ended": self.ended,
-            "velocities": self.velocities, "seconds": self.seconds, "depths": self.depths, "fell": self.fell,
+            "entered": self.entered, "fates": self.fates, "ended": self.ended, "fell": self.fell,
+            "velocities": self.velocities, "seconds": self.seconds, "depths": self.depths,
+            "gains": self.gains,
         }  # fmt: skip
         return Course(
             **{name: check.frozen(array[first]) for name, array in arrays.items()},

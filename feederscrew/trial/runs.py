@@ -50,6 +50,7 @@ class Runs:
     seconds: np.ndarray  # (N,) [s]
     ways: np.ndarray  # (N,) [m] along the wall
     depths: np.ndarray  # (N,) [m] the deepest that anything was in anything
+    gains: np.ndarray  # (N,) [m] largest rise of the energy over what gravity and the drive gave, as a height
     paths: np.ndarray  # (N, K, 8) time [s], position [m], attitude; NaN after the end
     partial: bool  # stopped by the user before all parts were done
 
@@ -236,12 +237,11 @@ def ride(known, station, states, times, *, limits, every, places, jobs=1, progre
 
     results, partial = gather(work, jobs)
     outcomes, ends, notes, paths = (np.concatenate(column) for column in zip(*results))
-    paths[:, :, 0] *= known.unit
-    paths[:, :, 1:4] *= known.length
+    paths *= np.array([known.unit, *[known.length] * 3, 1.0, 1.0, 1.0, 1.0])
     found = {
         "outcomes": outcomes, "states": ends, "seconds": notes[:, travel.TIME] * known.unit,
         "ways": notes[:, travel.MOVED] * known.length, "depths": notes[:, travel.SUNK] * known.length,
-        "paths": paths,
+        "gains": notes[:, travel.WON] * known.length, "paths": paths,
     }  # fmt: skip
     return Runs(**{name: check.frozen(value) for name, value in found.items()}, partial=partial)
 
@@ -290,7 +290,7 @@ def compiled():
 def _batch(known, surface, stride, places, states, times):
     """Outcomes, ends, notes and paths of some parts."""
     ends, count = np.array(states, float), len(states)
-    outcomes, notes = np.zeros(count, np.int64), np.zeros((count, 4))
+    outcomes, notes = np.zeros(count, np.int64), np.zeros((count, travel.NOTES))
     paths = np.full((count, places, 8), np.nan)
     travel.travel_all(
         surface, known.solid, known.floor, scratch(known.solid, len(surface.borders)), ends,

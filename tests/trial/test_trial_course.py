@@ -54,6 +54,7 @@ def test_a_part_at_the_limit_of_a_device(bowl, device, length, passes):
     assert (seen.fates == course.PASSED).all() == passes
     assert (seen.fates == course.PASSED).any() == passes
     assert (seen.depths < 2.5e-4).all()
+    assert (seen.gains < 1e-6).all()
     if passes:
         assert (seen.orientations[-1] == seen.entered).all()
         assert (seen.ended == 2).all()

@@ -9,6 +9,7 @@ from feederscrew.trial import course, row
 
 PER_MINUTE, MM_S = units.factor("/min", "rate"), units.factor("mm/s", "velocity")
 MM, DEG = columns.MM, columns.DEG
+UM = 1e-3 * MM
 HIDDEN = ("fell_mm", "seconds")
 
 
@@ -40,7 +41,8 @@ def _run(run):
         "engine": ENGINE + queued,
         "sorts": bool(run.sorts),
         "part_seconds": float(run.course.seconds.sum()),
-        "deepest_um": float(run.course.depths.max(initial=0.0)) / (1e-3 * MM),
+        "largest_penetration_mm": _most(run.course.depths) / MM,
+        "energy_won_um": _most(run.course.gains) / UM,
         "wanted": _name(run, run.wanted),
         "stations": [station.device.kind for station in run.course.stations],
         "orientations": orientations(run),
@@ -68,6 +70,8 @@ def orientations(run):
             "predicted": "passes" if run.predicted[k] else "returned",
             "margin_mm": None if np.isnan(margin[k]) else float(margin[k]) / MM,
             "disagrees": bool(run.odd[k]),
+            "penetration_mm": _most(run.course.depths[run.course.entered == k]) / MM,
+            "energy_won_um": _most(run.course.gains[run.course.entered == k]) / UM,
             "velocity_mm_s": _mean(run.course.velocities[run.course.entered == k]) / MM_S,
             "seconds": _mean(run.course.seconds[run.course.entered == k]),
             "fell_mm": _mean(
@@ -132,6 +136,11 @@ def summary(study):
             f"{run.velocity / MM_S:.4g} mm/s, {run.parts / PER_MINUTE:.4g} parts per minute, efficiency "
             f"{100.0 * run.efficiency:.4g} %, purity {100.0 * np.nan_to_num(run.purity):.4g} %"
         )
+        yield (
+            f"in {run.course.seconds.sum():.4g} part-seconds nothing was deeper in anything than "
+            f"{_most(run.course.depths) / MM:.2g} mm, and no part won more energy than lifts it by "
+            f"{_most(run.course.gains) / UM:.2g} um"
+        )
         if run.queue is not None:
             yield (
                 f"queue ({row.ENGINE}): {run.queue.delivered:.4g} delivered in {run.queue.seconds:.4g} s, "
@@ -161,6 +170,10 @@ def _ended(run, k):
     own = (found.entered == k) & (found.fates != course.PASSED)
     places, counts = np.unique(found.ended[own], return_counts=True)
     return ", ".join(f"{found.stations[p].device.kind} {n}" for p, n in zip(places, counts))
+
+
+def _most(values):
+    return float(values.max(initial=0.0))
 
 
 def _mean(values):

@@ -43,18 +43,27 @@ class StageSurface(NamedTuple):
 
 
 @compiled
-def pull(surface, floor, time, dt, state):
-    """Change velocities by gravity and by the drive over dt."""
+def forces(surface, floor, time, dt, state):
+    """Changes of a part's velocity by gravity and by the drive over dt, and of the bowl's spin."""
     x, y = state[X], surface.radius - state[Y]
     off = math.sqrt(x * x + y * y)
     c, s = y / off, x / off
     ahead, rise = floors.quickening(floor, time, dt)
-    spin, share = ahead / surface.radius, off / surface.radius
-    along, across = dt * surface.gravity[0] - ahead * share, dt * surface.gravity[1]
-    state[VX] += c * along - s * across
-    state[VY] += s * along + c * across
-    state[VZ] += dt * surface.gravity[2] - rise
-    return spin
+    along, across = dt * surface.gravity[0] - ahead * off / surface.radius, dt * surface.gravity[1]
+    upward = dt * surface.gravity[2] - rise
+    return c * along - s * across, s * along + c * across, upward, ahead / surface.radius
+
+
+@compiled
+def pull(surface, floor, time, dt, work):
+    """Change velocities by gravity and by the drive over dt."""
+    state = work.state
+    u, v, w, spin = forces(surface, floor, time, dt, state)
+    state[VX] += u
+    state[VY] += v
+    state[VZ] += w
+    for k in range(3):
+        state[W + k] -= spin * work.turn[6 + k]
 
 
 @compiled
@@ -148,8 +157,8 @@ def reversal(work, count):
 
 
 @compiled
-def lifted(surface, solid, work, count):
-    """Take a part of what is too deep back, without a speed; what that costs is taken from its motion."""
+def lift(surface, solid, floor, work, time, dt, count):
+    """Take a part of what is too deep back, without a speed, as far as the part's motion can pay for it."""
     state, push = work.state, work.push
     for k in range(body.STATE):
         push[k] = 0.0
@@ -158,10 +167,14 @@ def lifted(surface, solid, work, count):
         row[contact.WANTED] = LIFT * min(max(-row[contact.GAP] - SLOP, 0.0), MOST)
     contact.solve(push, work.contacts, count, False, surface.sweeps, surface.converged, 0.0)
     work.memory[0] = -1.0
+    u, v, w, _ = forces(surface, floor, time, dt, work.saved)
+    cost = max(-(u * push[VX] + v * push[VY] + w * push[VZ]) / dt, 0.0)
+    moving = body.moving_energy(state, solid.inertia)
+    share = moving / cost if cost > moving else 1.0
     for k in range(3):
-        state[k] += push[VX + k]
-    body.rotate(state, push[W], push[W + 1], push[W + 2], 1.0)
-    return push[VZ]
+        state[k] += share * push[VX + k]
+    body.rotate(state, push[W], push[W + 1], push[W + 2], share)
+    _no_more(state, solid.inertia, moving - share * cost)
 
 
 @compiled
@@ -173,10 +186,8 @@ def pushed(surface, solid, floor, work, time, dt, count):
     depth of the deepest contact, whether one strikes, share of the step after which its course changes
     """
     state, inertia = work.state, solid.inertia
-    spin = pull(surface, floor, time, dt, state)
     _freely(state, inertia, dt)
-    for k in range(3):
-        state[W + k] -= spin * work.turn[6 + k]
+    pull(surface, floor, time, dt, work)
     if count == 0:
         return 0.0, False, 1.0
     deepest, strikes, share = wanted(surface, work, count, dt)
@@ -199,7 +210,7 @@ def step(surface, solid, floor, work, time, dt):
     -------
     depth of its deepest contact, time taken
     """
-    state, saved, inertia = work.state, work.saved, solid.inertia
+    state, saved = work.state, work.saved
     body.rotation(state, work.turn)
     quick = math.sqrt(state[VX] ** 2 + state[VY] ** 2 + state[VZ] ** 2) + solid.radius * body.rate(state)
     count = found(surface, solid, work, REACH + 2.0 * dt * quick)
@@ -217,8 +228,7 @@ def step(surface, solid, floor, work, time, dt):
     r = share * state[W + 2] + (1.0 - share) * saved[W + 2]
     body.rotate(state, p, q, r, dt)
     if deepest < -SLOP:
-        lift = lifted(surface, solid, work, count)
-        _no_more(state, inertia, body.moving_energy(state, inertia) + surface.gravity[2] * max(lift, 0.0))
+        lift(surface, solid, floor, work, time, dt, count)
     return deepest, dt
 
 

@@ -5,10 +5,11 @@ import math
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import compiled
+from feederscrew.trial.kernel.balance import unpaid
 from feederscrew.trial.kernel.motion import step
 
 RUNNING, PASSED, RETURNED = 0, 1, 2
-TIME, MOVED, SUNK, PLACES = 0, 1, 2, 3  # what a run notes: time, way along the wall, depth, places
+TIME, MOVED, SUNK, WON, NOTES = 0, 1, 2, 3, 4  # what a run notes: time, way, depth, energy; how many
 LEFT = 1e-6  # of a step: less is nothing
 
 
@@ -36,8 +37,9 @@ def travel(surface, solid, floor, work, time, every, path, notes):
         Steps between two places noted.
     path : (K, 8) float
         Filled with time, position and attitude, from the first row on; nothing more once it is full.
-    notes : (4,) float
-        Filled with the time taken, the way along the wall, the greatest depth and the places noted.
+    notes : (NOTES,) float
+        Filled with the time taken, the way along the wall, the greatest depth and the greatest rise of the
+        energy over what gravity and the drive gave.
 
     Returns
     -------
@@ -47,6 +49,7 @@ def travel(surface, solid, floor, work, time, every, path, notes):
     state, dt, begun, start = work.state, floor.step, time, way(surface, work.state)
     work.memory[0] = -1.0
     steps, noted, sunk, outcome = math.ceil(surface.longest / dt), 0, 0.0, RUNNING
+    excess = lowest = won = 0.0
     apart, mark, level = math.ceil(surface.patience / dt), start, state[Z]
     for k in range(steps):
         if k % apart == apart - 1:
@@ -63,8 +66,12 @@ def travel(surface, solid, floor, work, time, every, path, notes):
             noted += 1
         rest = dt
         while rest > LEFT * dt:
-            deepest, taken = step(surface, solid, floor, work, begun + (k + 1) * dt - rest, rest)
+            now = begun + (k + 1) * dt - rest
+            deepest, taken = step(surface, solid, floor, work, now, rest)
             sunk, rest = min(sunk, deepest), rest - taken
+            excess += unpaid(surface, solid, floor, work, now, taken)
+            lowest = min(lowest, excess)
+            won = max(won, excess - lowest)
         time = begun + (k + 1) * dt
         if state[Z] < -solid.radius:
             outcome = RETURNED
@@ -76,7 +83,7 @@ def travel(surface, solid, floor, work, time, every, path, notes):
         if place < surface.back:
             break
     notes[TIME], notes[MOVED] = time - begun, way(surface, state) - start
-    notes[SUNK], notes[PLACES] = -sunk, noted
+    notes[SUNK], notes[WON] = -sunk, won
     return outcome
 
 

@@ -54,6 +54,9 @@ def test_the_document_keeps_its_contract(run, block):
         (2, 0, "passes"), (0, 2, "returned"),
     ]  # fmt: skip
     assert found["queue"]["engine"] in found["engine"]
+    assert 0.0 <= found["largest_penetration_mm"] < 1.0 and 0.0 <= found["energy_won_um"] < 1.0
+    worst = max(one["penetration_mm"] for one in found["orientations"])
+    assert worst == pytest.approx(found["largest_penetration_mm"])
 
 
 def test_files_and_amplitudes(run, block, tmp_path):
