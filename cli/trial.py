@@ -4,7 +4,7 @@ import os
 
 import click
 
-from feederscrew_cli import options, waiting
+from feederscrew_cli import options, orientation, waiting
 from feederscrew_cli.interrupt import held_back
 
 
@@ -12,6 +12,7 @@ from feederscrew_cli.interrupt import held_back
 @options.part
 @click.option("--aspect", metavar="NAME", help="Only its orientations.  [default: every orientation]")
 @options.rule
+@orientation.taken(orientation.LAUNCH)
 @click.option(
     "--parts", type=click.IntRange(1, 10**6), help="One at a time.  [default: 200; with --queue 60]"
 )
@@ -32,13 +33,15 @@ from feederscrew_cli.interrupt import held_back
 @options.bowl
 @options.pictures
 @options.output
-def trial(part, aspect, rule, parts, queue, seconds, amplitudes, seed, jobs, bowl, pictures, out):
+def trial(part, aspect, rule, taken, parts, queue, seconds, amplitudes, seed, jobs, bowl, pictures, out):
     """Example: feeder trial parts/lbracket_30x20x15.stl --config tooling.yaml --parts 100 -o results
 
     Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed,
     while all of it vibrates with the drive: one part at a time, its orientations in turn. Each part
-    passes, is returned, hangs or is stuck. Beside each orientation stands what the static rule of feeder
-    tooling says, and its margin; those that do something else come first.
+    passes, is returned, hangs or is stuck. Orientations count in the shares in which they arrive: the
+    recommended answer for --launch, that of --rule, or those of a file (docs/counts.md). Beside each
+    stands what the static rule of feeder tooling says, and its margin; those that do something else come
+    first.
 
     --amplitude gives the greatest drive at which the tooling still sorts. --queue adds a row of parts
     that push each other, a reduced model in one dimension. The same seed gives the same numbers whatever
@@ -56,11 +59,12 @@ def trial(part, aspect, rule, parts, queue, seconds, amplitudes, seed, jobs, bow
     solid, settings = out.part(part), bowls.settings(**bowl)
     driven = bowls.strokes(bowls.record(settings), amplitudes)
     effective = columns.conditions(solid) | bowls.texts(settings)
-    with out.folder(solid.name, solid.inputs, effective) as folder:
+    known = orientation.shares(out, solid, driven[0], taken)
+    with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
         with waiting.bar(out, "runs") as bar:
             found = study(
                 solid, driven, aspect,
-                rule=rule, parts=parts, queue=queue, seconds=seconds, seed=seed,
+                rule=rule, known=known, parts=parts, queue=queue, seconds=seconds, seed=seed,
                 jobs=jobs or os.cpu_count(), progress=bar.reach, before=lambda: waiting.trial(out),
             )  # fmt: skip
         document = tables.document(found)

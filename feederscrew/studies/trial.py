@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -10,150 +9,20 @@ from feederscrew.bowl.devices import strangers
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.documents import hint
-from feederscrew.dropping.ensemble import wilson
 from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.part.record import Part
-from feederscrew.rates import stream
-from feederscrew.resting.aspects import Aspects, find
+from feederscrew.rates import chances, stream
+from feederscrew.rates.queue import RECOMMENDED
+from feederscrew.resting.aspects import Aspects
+from feederscrew.studies.rate import Shares
+from feederscrew.studies.rate import shares as arriving
 from feederscrew.trial import course, row, runs
+from feederscrew.trial.result import TrialRun
 from feederscrew.trial.shape import solid_of
 
 ENGINE = "feeder's own kernel"
-CLEAR = 2.5e-4  # [m] margin from which a static verdict should hold
-HELD = 0.95  # [1] of the trials in which it should
 PARTS, FEW = 200, 60  # parts one at a time; fewer where they only tell what a queue meets
-HOPS = (
-    "throw number {:.3g}: parts hop over the tooling - the static verdicts stand below 1, at an amplitude "
-    "of {:.3g} mm"
-)
-ODD = "{}: {} of {} do what the static verdict says ({}, margin {:.2f} mm)"
-
-
-@dataclass(frozen=True, eq=False)
-class TrialRun:
-    """What parts did in one bowl; M orientations, S stations."""
-
-    bowl: Bowl
-    throw_number: float  # [1]
-    known: stream.Orientations  # and what the static rule says of each
-    shares: np.ndarray  # (M,) [1] in which they are offered: of those tried, sums to 1
-    course: course.Course
-    queue: row.PushedRow | None  # None where it was not asked for
-
-    @cached_property
-    def counts(self):
-        """(M, 4) int, parts by the orientation laid down and by fate, columns as ``course.FATES``."""
-        found = np.zeros((len(self.shares), len(course.FATES)), int)
-        np.add.at(found, (self.course.entered, self.course.fates), 1)
-        return found
-
-    @property
-    def tried(self):
-        """(M,) int."""
-        return self.counts.sum(axis=1)
-
-    @property
-    def ends(self):
-        """(M, 2) [1] Wilson intervals of the share that passes; 0 to 1 where none was tried."""
-        rows = zip(self.counts[:, course.PASSED], self.tried)
-        return np.array([[float(end[0]) for end in wilson([one], total)] for one, total in rows])
-
-    @cached_property
-    def matrix(self):
-        """(M, M + 1) int, from orientation in to orientation out; the last column is none of the known."""
-        found = np.zeros((len(self.shares), len(self.shares) + 1), int)
-        out = self.course.orientations[-1]
-        whole = self.course.fates == course.PASSED
-        np.add.at(found, (self.course.entered[whole], out[whole]), 1)  # OTHER is the last
-        return found
-
-    @property
-    def leaving(self):
-        """(M + 1,) [1] share of the parts offered that leaves in each orientation."""
-        tried = np.maximum(self.tried, 1)[:, None]
-        return (self.shares[:, None] * self.matrix / tried).sum(axis=0)
-
-    @property
-    def wanted(self):
-        """The orientation in which most leave; None where none does."""
-        leaving = self.leaving
-        return int(np.argmax(leaving)) if leaving.any() else None
-
-    @property
-    def efficiency(self):
-        """Share of the parts offered that leaves in the orientation in which most do [1]."""
-        return float(self.leaving.max())
-
-    @property
-    def purity(self):
-        """Share of that orientation in what leaves [1]; NaN where nothing does."""
-        total = self.leaving.sum()
-        return float(self.leaving.max() / total) if total > 0.0 else np.nan
-
-    @property
-    def velocity(self):
-        """Mean velocity on the bare track [m/s], each orientation by its share; NaN where none travels."""
-        found, weights = (
-            self.course.velocities,
-            (self.shares / np.maximum(self.tried, 1))[self.course.entered],
-        )
-        travels = np.isfinite(found)
-        weight = weights[travels].sum()
-        return float((weights * found)[travels].sum() / weight) if weight > 0.0 else np.nan
-
-    @property
-    def parts(self):
-        """Delivered parts [1/s]: counted in the queue, else what the velocity offers times the efficiency."""
-        if self.queue is not None:
-            return self.queue.delivered / self.queue.seconds
-        if self.wanted is None or not self.velocity > 0.0:
-            return 0.0
-        offered = self.velocity / float((self.shares * self.known.lengths).sum())
-        most = self.velocity / self.known.lengths[min(self.wanted, len(self.shares) - 1)]
-        return float(min(offered * self.efficiency, most))
-
-    @property
-    def jams(self):
-        """Parts that neither passed nor were returned; in a queue, those that had to be taken out."""
-        if self.queue is not None:
-            return self.queue.jams
-        return int(self.counts[:, [course.HANGING, course.STUCK]].sum())
-
-    @property
-    def predicted(self):
-        """(M,) bool, whether the static rule lets an orientation pass."""
-        return self.known.through > 0.5
-
-    @cached_property
-    def holding(self):
-        """(M,) int, of the parts tried those that did what the static rule says."""
-        passed = self.counts[:, course.PASSED]
-        return np.where(self.predicted, passed, self.tried - passed)
-
-    @property
-    def odd(self):
-        """(M,) bool, where fewer than ``HELD`` did what a verdict of a clear margin says."""
-        margin = np.abs(np.nan_to_num(self.known.margin, nan=np.inf))
-        return (self.tried > 0) & (margin > CLEAR) & (self.holding < HELD * self.tried)
-
-    @property
-    def sorts(self):
-        """Whether the tooling still does what it is made for: every clear verdict holds."""
-        return not self.odd.any()
-
-    @property
-    def remarks(self):
-        """What a user must not overlook, a sentence each."""
-        drive = self.bowl.drive
-        if self.throw_number > 1.0:
-            yield HOPS.format(self.throw_number, 1e3 * drive.amplitude / self.throw_number)
-        for k in np.flatnonzero(self.odd):
-            said = "passes" if self.predicted[k] else "is returned"
-            margin = 1e3 * self.known.margin[k]
-            yield ODD.format(self.known.lying[k].name, self.holding[k], self.tried[k], said, margin)
-        if not self.velocity > 0.0:
-            yield "the part does not travel up the track: see feeder convey"
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,6 +34,18 @@ class TrialStudy:
     rule: str  # whose probabilities are taken
     seed: int
     runs: tuple[TrialRun, ...]  # one an amplitude; fewer after an interrupt
+
+    @property
+    def answer(self):
+        """Say whose shares parts arrive in: 'hops, launch feed', 'csa'."""
+        known = self.aspects.recommended
+        return known.rule if self.rule == RECOMMENDED and known is not None else self.rule
+
+    @property
+    def launch(self):
+        """What is done to the parts: 'feed', 'drop'; None where a rule knows no launch."""
+        known = self.aspects.recommended
+        return known.launch if self.rule == RECOMMENDED and known is not None else None
 
     @property
     def partial(self):
@@ -194,6 +75,7 @@ def trial(
     aspect: str | None = None,
     *,
     rule: str = "recommended",
+    known: Shares | None = None,
     parts: int | None = None,
     queue: int | None = None,
     seconds: float = 10.0,
@@ -214,6 +96,8 @@ def trial(
         Only its orientations are tried; every orientation without it.
     rule : str
         Whose probabilities say in which shares orientations are offered.
+    known : Shares, optional
+        What arrives; without them what the launch 'feed' gives.
     parts : int, optional
         One at a time, the orientations in turn; 200 without it, 60 with a queue.
     queue : int, optional
@@ -239,26 +123,28 @@ def trial(
     KeyboardInterrupt
         If nothing was finished.
     """
-    found = find(part)
+    solid_of(part)  # refuses a part without a surface before anything else
+    known = arriving(part, bowls[0]) if known is None else known
+    found = known.aspects
     if rule not in found.chances:
         raise ArgumentError(
             f"rule {rule}", "has no probabilities of this part", hint(rule, list(found.chances))
         )
     count = parts or (FEW if queue else PARTS)
-    solid_of(part)  # refuses a part without a surface before anything else
     made = []
     for bowl in bowls:
         answer.answer(bowl)  # refuses a drive that cannot convey
-        known = stream.orientations(part, found, bowl.track, bowl.devices)
-        tried = _tried(part, found, known, aspect)
+        ways = stream.orientations(part, found, bowl.track, bowl.devices)
+        ways = chances.oriented(ways, known.measured)
+        tried = _tried(part, found, ways, aspect)
         own = {"parts": max(count, len(tried)), "seed": seed, "jobs": jobs, "before": before}
         told = _after(len(made), progress, len(bowls))
-        seen = course.course(part, bowl, known.lying, tried, bowl.devices, **own, progress=told)
-        shares = _shares(known, rule, tried)
+        seen = course.course(part, bowl, ways.lying, tried, bowl.devices, **own, progress=told)
+        shares = _shares(ways, rule, tried)
         line = None
         if queue and not seen.partial:
-            line = _queue(part, bowl, known.lying, shares, seen, queue, seconds, seed)
-        made.append(TrialRun(bowl, throw_number(bowl), known, shares, seen, line))
+            line = _queue(part, bowl, ways.lying, shares, seen, queue, seconds, seed)
+        made.append(TrialRun(bowl, throw_number(bowl), ways, shares, seen, line))
         if seen.partial:
             break
     return TrialStudy(part, found, rule, seed, tuple(made))

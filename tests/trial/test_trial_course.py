@@ -8,6 +8,7 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
+from feederscrew.studies import rate
 from feederscrew.studies import trial as studies
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import course, row, runs, shape, stations
@@ -115,6 +116,19 @@ def test_a_study_tells_what_the_static_rule_says_beside(bowl):
     low, high = run.ends[tried].T
     assert ((low <= 1.0) & (high >= 0.0) & (low < high)).all()
     assert not any("hop" in told for told in found.warnings)
+
+
+def test_orientations_arrive_as_the_launch_gives_them(bowl):
+    one = bowl("narrowed_track: 8 mm")
+    found = {}
+    for launch in ("place", "feed"):
+        known = rate.shares(PART, one, launch=launch)
+        found[launch] = studies.trial(PART, [one], known=known, parts=12).runs[0]
+        given = found[launch].known.rules["recommended"]
+        np.testing.assert_allclose(found[launch].shares, given / given.sum())
+        leaving = found[launch].shares * found[launch].counts[:, course.PASSED] / found[launch].tried
+        assert found[launch].efficiency <= leaving.sum() + 1e-12
+    assert abs(found["place"].efficiency - found["feed"].efficiency) > 0.01
 
 
 def test_a_hop_over_the_tooling_is_said(bowl):

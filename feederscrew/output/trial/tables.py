@@ -18,6 +18,8 @@ def document(study):
     told = {
         **columns.part(study.part, study.warnings),
         "rule": study.rule,
+        "answer": study.answer,
+        "launch": study.launch,
         "seed": study.seed,
         "partial": study.partial,
         **_run(study.runs[0]),
@@ -130,6 +132,7 @@ def stations(run):
 
 def summary(study):
     """Return what is said beside the table, a sentence each."""
+    yield f"orientations in the shares of {study.answer}"
     for run in study.runs:
         at = f"amplitude {run.bowl.drive.amplitude / MM:.4g} mm, throw number {run.throw_number:.3g}: "
         yield at + (

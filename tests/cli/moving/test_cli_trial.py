@@ -44,7 +44,7 @@ def test_the_document_keeps_its_contract(run, block):
     part, bowl = block
     result = run(
         "trial", part, "--aspect", "A", "--config", bowl, "--parts", "4", "--queue", "3", "--seconds", "0.5",
-        "--format", "json",
+        "--launch", "place", "--format", "json",
     )  # fmt: skip
     assert result.exit_code == 0
     found = json.loads(result.stdout)
@@ -54,6 +54,7 @@ def test_the_document_keeps_its_contract(run, block):
         (2, 0, "passes"), (0, 2, "returned"),
     ]  # fmt: skip
     assert found["queue"]["engine"] in found["engine"]
+    assert found["launch"] == "place" and found["answer"].endswith("launch place")
     assert 0.0 <= found["largest_penetration_mm"] < 1.0 and 0.0 <= found["energy_won_um"] < 1.0
     worst = max(one["penetration_mm"] for one in found["orientations"])
     assert worst == pytest.approx(found["largest_penetration_mm"])

@@ -1,0 +1,145 @@
+"""What a trial in one bowl shows: by orientation, beside what the static rule says of each."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from feederscrew.bowl.record import Bowl
+from feederscrew.dropping.ensemble import wilson
+from feederscrew.rates import stream
+from feederscrew.trial import course, row
+
+CLEAR = 2.5e-4  # [m] margin from which a static verdict should hold
+HELD = 0.95  # [1] of the trials in which it should
+HOPS = (
+    "throw number {:.3g}: parts hop over the tooling - the static verdicts stand below 1, at an amplitude "
+    "of {:.3g} mm"
+)
+ODD = "{}: {} of {} do what the static verdict says ({}, margin {:.2f} mm)"
+
+
+@dataclass(frozen=True, eq=False)
+class TrialRun:
+    """What parts did in one bowl; M orientations, S stations."""
+
+    bowl: Bowl
+    throw_number: float  # [1]
+    known: stream.Orientations  # and what the static rule says of each
+    shares: np.ndarray  # (M,) [1] in which they are offered: of those tried, sums to 1
+    course: course.Course
+    queue: row.PushedRow | None  # None where it was not asked for
+
+    @cached_property
+    def counts(self):
+        """(M, 4) int, parts by the orientation laid down and by fate, columns as ``course.FATES``."""
+        found = np.zeros((len(self.shares), len(course.FATES)), int)
+        np.add.at(found, (self.course.entered, self.course.fates), 1)
+        return found
+
+    @property
+    def tried(self):
+        """(M,) int."""
+        return self.counts.sum(axis=1)
+
+    @property
+    def ends(self):
+        """(M, 2) [1] Wilson intervals of the share that passes; 0 to 1 where none was tried."""
+        rows = zip(self.counts[:, course.PASSED], self.tried)
+        return np.array([[float(end[0]) for end in wilson([one], total)] for one, total in rows])
+
+    @cached_property
+    def matrix(self):
+        """(M, M + 1) int, from orientation in to orientation out; the last column is none of the known."""
+        found = np.zeros((len(self.shares), len(self.shares) + 1), int)
+        out = self.course.orientations[-1]
+        whole = self.course.fates == course.PASSED
+        np.add.at(found, (self.course.entered[whole], out[whole]), 1)  # OTHER is the last
+        return found
+
+    @property
+    def leaving(self):
+        """(M + 1,) [1] share of the parts offered that leaves in each orientation."""
+        tried = np.maximum(self.tried, 1)[:, None]
+        return (self.shares[:, None] * self.matrix / tried).sum(axis=0)
+
+    @property
+    def wanted(self):
+        """The orientation in which most leave; None where none does."""
+        leaving = self.leaving
+        return int(np.argmax(leaving)) if leaving.any() else None
+
+    @property
+    def efficiency(self):
+        """Share of the parts offered that leaves in the orientation in which most do [1]."""
+        return float(self.leaving.max())
+
+    @property
+    def purity(self):
+        """Share of that orientation in what leaves [1]; NaN where nothing does."""
+        total = self.leaving.sum()
+        return float(self.leaving.max() / total) if total > 0.0 else np.nan
+
+    @property
+    def velocity(self):
+        """Mean velocity on the bare track [m/s], each orientation by its share; NaN where none travels."""
+        found, weights = (
+            self.course.velocities,
+            (self.shares / np.maximum(self.tried, 1))[self.course.entered],
+        )
+        travels = np.isfinite(found)
+        weight = weights[travels].sum()
+        return float((weights * found)[travels].sum() / weight) if weight > 0.0 else np.nan
+
+    @property
+    def parts(self):
+        """Delivered parts [1/s]: counted in the queue, else what the velocity offers times the efficiency."""
+        if self.queue is not None:
+            return self.queue.delivered / self.queue.seconds
+        if self.wanted is None or not self.velocity > 0.0:
+            return 0.0
+        offered = self.velocity / float((self.shares * self.known.lengths).sum())
+        most = self.velocity / self.known.lengths[min(self.wanted, len(self.shares) - 1)]
+        return float(min(offered * self.efficiency, most))
+
+    @property
+    def jams(self):
+        """Parts that neither passed nor were returned; in a queue, those that had to be taken out."""
+        if self.queue is not None:
+            return self.queue.jams
+        return int(self.counts[:, [course.HANGING, course.STUCK]].sum())
+
+    @property
+    def predicted(self):
+        """(M,) bool, whether the static rule lets an orientation pass."""
+        return self.known.through > 0.5
+
+    @cached_property
+    def holding(self):
+        """(M,) int, of the parts tried those that did what the static rule says."""
+        passed = self.counts[:, course.PASSED]
+        return np.where(self.predicted, passed, self.tried - passed)
+
+    @property
+    def odd(self):
+        """(M,) bool, where fewer than ``HELD`` did what a verdict of a clear margin says."""
+        margin = np.abs(np.nan_to_num(self.known.margin, nan=np.inf))
+        return (self.tried > 0) & (margin > CLEAR) & (self.holding < HELD * self.tried)
+
+    @property
+    def sorts(self):
+        """Whether the tooling still does what it is made for: every clear verdict holds."""
+        return not self.odd.any()
+
+    @property
+    def remarks(self):
+        """What a user must not overlook, a sentence each."""
+        drive = self.bowl.drive
+        if self.throw_number > 1.0:
+            yield HOPS.format(self.throw_number, 1e3 * drive.amplitude / self.throw_number)
+        for k in np.flatnonzero(self.odd):
+            said = "passes" if self.predicted[k] else "is returned"
+            margin = 1e3 * self.known.margin[k]
+            yield ODD.format(self.known.lying[k].name, self.holding[k], self.tried[k], said, margin)
+        if not self.velocity > 0.0:
+            yield "the part does not travel up the track: see feeder convey"
