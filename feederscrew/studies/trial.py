@@ -34,6 +34,7 @@ class TrialStudy:
     rule: str  # whose probabilities are taken
     seed: int
     runs: tuple[TrialRun, ...]  # one an amplitude; fewer after an interrupt
+    stopped: bool = False  # by the user, before the next of them told anything
 
     @property
     def answer(self):
@@ -50,7 +51,7 @@ class TrialStudy:
     @property
     def partial(self):
         """Whether the user stopped it before all parts were done."""
-        return any(run.course.partial for run in self.runs)
+        return self.stopped or any(run.partial for run in self.runs)
 
     @property
     def highest(self):
@@ -66,6 +67,9 @@ class TrialStudy:
         for run in self.runs:
             lead = f"amplitude {1e3 * run.bowl.drive.amplitude:.4g} mm: " if several else ""
             told += [lead + one for one in run.remarks]
+        if self.partial:
+            parts = sum(len(run.course.entered) for run in self.runs)
+            told.append(f"partial: stopped after {parts} parts")
         return tuple(told)
 
 
@@ -131,23 +135,28 @@ def trial(
             f"rule {rule}", "has no probabilities of this part", hint(rule, list(found.chances))
         )
     count = parts or (FEW if queue else PARTS)
-    made = []
+    made, stopped = [], False
     for bowl in bowls:
         answer.answer(bowl)  # refuses a drive that cannot convey
         ways = stream.orientations(part, found, bowl.track, bowl.devices)
         ways = chances.oriented(ways, known.measured)
         tried = _tried(part, found, ways, aspect)
-        own = {"parts": max(count, len(tried)), "seed": seed, "jobs": jobs, "before": before}
-        told = _after(len(made), progress, len(bowls))
-        seen = course.course(part, bowl, ways.lying, tried, bowl.devices, **own, progress=told)
         shares = _shares(ways, rule, tried)
-        line = None
-        if queue and not seen.partial:
-            line = _queue(part, bowl, ways.lying, shares, seen, queue, seconds, seed)
-        made.append(TrialRun(bowl, throw_number(bowl), ways, shares, seen, line))
-        if seen.partial:
+        own = {"parts": max(count, len(tried)), "seed": seed, "jobs": jobs, "before": before}
+        own["progress"] = _after(len(made), progress, len(bowls))
+        try:
+            seen = course.course(part, bowl, ways.lying, tried, bowl.devices, **own)
+            line = None
+            if queue and not seen.partial:
+                line = _queue(part, bowl, ways.lying, shares, seen, queue, seconds, seed)
+            made.append(TrialRun(bowl, throw_number(bowl), ways, shares, seen, line))
+        except KeyboardInterrupt:
+            if not made:
+                raise
+            stopped = True
+        if stopped or made[-1].partial:
             break
-    return TrialStudy(part, found, rule, seed, tuple(made))
+    return TrialStudy(part, found, rule, seed, tuple(made), stopped)
 
 
 def _after(before, progress, bowls):

@@ -8,7 +8,7 @@ from feederscrew import check
 from feederscrew.conveying import answer
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
-from feederscrew.trial import runs, stations
+from feederscrew.trial import groups, runs, stations
 from feederscrew.trial.shape import solid_of
 
 PASSED, RETURNED, HANGING, STUCK = range(4)
@@ -87,23 +87,38 @@ def course(part, bowl, every, tried, devices, *, parts, seed=1, jobs=1, progress
     entered = np.resize(np.asarray(tried, int), parts)
     states, times = _starts(bowl, every, entered, principal, length, seed)
     looks = _Looks(every, solid, length, bowl.track.radius)
-    told = _Told(progress, parts * len(chain))
     found = _Found(len(chain), parts, looks, entered)
-    riders = np.arange(parts)
+    for first in range(0, parts, groups.SIZE):
+        begun = slice(first, min(first + groups.SIZE, parts))
+        told = groups.Told(progress, first, parts, len(chain), begun.stop - first)
+        try:
+            _through(known, bowl, every, chain, states[begun], times[begun], first, found, told, jobs)
+        except KeyboardInterrupt:
+            if not first:
+                raise
+            found.stopped(first)
+            break
+    return found.course(chain, length, principal)
+
+
+def _through(known, bowl, every, chain, states, times, first, found, told, jobs):
+    """Send one group of parts through the chain; an interrupt is passed on, whatever is finished by then."""
+    riders = first + np.arange(len(states))
     for place, station in enumerate(chain):
-        if not len(riders) or found.partial:
+        if not len(riders):
             break
         ride = runs.ride(
-            known, station, states, times, jobs=jobs, progress=told.of(place * parts),
-            **_limits(bowl, station, every),
-        )  # fmt: skip
-        stays = found.add(place, station, ride, riders[: len(ride.outcomes)], bowl)
-        riders = riders[: len(ride.outcomes)][stays]
-        times = (times[: len(ride.seconds)] + ride.seconds)[stays]
+            known, station, states, times, jobs=jobs, progress=told.of(place), **_limits(bowl, station, every)
+        )
+        if ride.partial:
+            raise KeyboardInterrupt
+        stays = found.add(place, ride, riders, bowl)
+        riders, times = riders[stays], (times + ride.seconds)[stays]
         if place + 1 < len(chain):
             begun = runs.ways(ride.states[stays], known.radius)
-            states = runs.moved(ride.states[stays], chain[place + 1].begin / length - begun, known.radius)
-    return found.course(chain, length, principal)
+            states = runs.moved(
+                ride.states[stays], chain[place + 1].begin / known.length - begun, known.radius
+            )
 
 
 def _chain(bowl, every, devices):
@@ -142,17 +157,6 @@ def _limits(bowl, station, every):
         "limits": (seconds, patience, GETS_ON * patience * speed, 0.5 * size),
         "every": every_s, "places": int(LOOKS * SPARE) + 60,
     }  # fmt: skip
-
-
-class _Told:
-    """Progress over all stations."""
-
-    def __init__(self, progress, total):
-        self.progress, self.total = progress, total
-
-    def of(self, before):
-        """What one station tells."""
-        return self.progress and (lambda done: self.progress(before + done, self.total))
 
 
 class _Looks:
@@ -201,14 +205,17 @@ class _Found:
         self.fates, self.ended = np.full(parts, STUCK), np.full(parts, -1)
         self.velocities, self.fell = np.full(parts, np.nan), np.full(parts, np.nan)
         self.seconds, self.depths, self.gains = np.zeros(parts), np.zeros(parts), np.zeros(parts)
-        self.rides, self.riders, self.partial, self.known = [], [], False, parts
+        self.rides, self.riders = [[] for _ in range(count)], [[] for _ in range(count)]
+        self.partial, self.known = False, parts
 
-    def add(self, place, station, ride, riders, bowl):
+    def stopped(self, known):
+        """Keep the first parts only: what was to come is not known."""
+        self.partial, self.known = True, known
+
+    def add(self, place, ride, riders, bowl):
         """Note what one station did; which of its parts go on."""
-        self.rides.append(ride)
-        self.riders.append(riders)
-        if ride.partial:  # later parts are unknown: only the first ones count
-            self.partial, self.known = True, int(riders[-1]) + 1
+        self.rides[place].append(ride)
+        self.riders[place].append(riders)
         self.seconds[riders] += ride.seconds
         self.depths[riders] = np.maximum(self.depths[riders], ride.depths)
         self.gains[riders] = np.maximum(self.gains[riders], ride.gains)
@@ -236,12 +243,25 @@ class _Found:
             "velocities": self.velocities, "seconds": self.seconds, "depths": self.depths,
             "gains": self.gains,
         }  # fmt: skip
+        riders, rides = self._of_all()
         return Course(
             **{name: check.frozen(array[first]) for name, array in arrays.items()},
             orientations=check.frozen(self.orientations[:, first]),
-            rides=tuple(self.rides), riders=tuple(self.riders), stations=tuple(chain),
+            rides=rides, riders=riders, stations=tuple(chain),
             length=length, principal=check.frozen(principal), partial=self.partial,
         )  # fmt: skip
+
+    def _of_all(self):
+        """Riders and rides of each station, of all groups that are known whole."""
+        for riders, rides in zip(self.riders, self.rides):
+            while riders and riders[-1][0] >= self.known:
+                riders.pop()
+                rides.pop()
+        met = [k for k, riders in enumerate(self.riders) if riders]
+        return (
+            tuple(check.frozen(np.concatenate(self.riders[k])) for k in met),
+            tuple(groups.joined(self.rides[k]) for k in met),
+        )
 
 
 def velocities(ride, radius):

@@ -30,6 +30,11 @@ class TrialRun:
     course: course.Course
     queue: row.PushedRow | None  # None where it was not asked for
 
+    @property
+    def partial(self):
+        """Whether the user stopped it before all was done."""
+        return self.course.partial or (self.queue is not None and self.queue.partial)
+
     @cached_property
     def counts(self):
         """(M, 4) int, parts by the orientation laid down and by fate, columns as ``course.FATES``."""

@@ -28,6 +28,7 @@ class PushedRow:
     gap: float  # [m] mean free way between neighbours
     touching: float  # [1] share of the parts that push the one ahead in a period of the drive
     pressure: np.ndarray  # (D,) [N] greatest mean force on a part held at a device; 0 where none was
+    partial: bool  # stopped by the user: of the seconds until then
 
 
 def row_of(known, mass, every, shares, seen, places, *, parts, seconds, seed):
@@ -58,10 +59,14 @@ def row_of(known, mass, every, shares, seen, places, *, parts, seconds, seed):
     lined.fill(parts)
     unit, period = known.unit, 2.0 * np.pi / known.floor.rate
     count = max(round(seconds / unit / period), 1)
-    for turn in range(count):
-        lined.ride(turn * period)
-        lined.look(period * unit)
-    return lined.told(count * period * unit, mass)
+    try:
+        for turn in range(count):
+            lined.ride(turn * period)
+            lined.look(period * unit)
+    except KeyboardInterrupt:
+        if not lined.looks:
+            raise
+    return lined.told(lined.looks * period * unit, mass, partial=lined.looks < count)
 
 
 class _Lined:
@@ -176,7 +181,7 @@ class _Lined:
         share = (first[row.PLACE] + 0.5 * first[row.LENGTH] - self.outlet) / first[row.LENGTH]
         return float(min(max(share, 0.0), 1.0))
 
-    def told(self, seconds, mass):
+    def told(self, seconds, mass, partial):
         """What they did, in SI units."""
         length, unit = self.known.length, self.known.unit
         return PushedRow(
@@ -189,4 +194,5 @@ class _Lined:
             gap=self.free * length / max(self.looks, 1),
             touching=self.touch / max(self.looks, 1),
             pressure=check.frozen(self.pressure * mass * length / unit**2),
+            partial=partial,
         )

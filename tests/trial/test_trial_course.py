@@ -11,7 +11,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.studies import rate
 from feederscrew.studies import trial as studies
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import course, row, runs, shape, stations
+from feederscrew.trial import course, groups, row, runs, shape, stations
 
 OWN = [
     "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",
@@ -103,6 +103,33 @@ def test_the_order_of_work_changes_nothing(bowl):
     ]
     np.testing.assert_array_equal(both[0].seconds, both[1].seconds)
     np.testing.assert_array_equal(both[0].rides[-1].states, both[1].rides[-1].states)
+
+
+def test_an_interrupt_keeps_the_groups_that_went_through_everything(bowl, monkeypatch):
+    monkeypatch.setattr(groups, "SIZE", 4)
+    one = bowl("narrowed_track: 8 mm")
+    every = orientations(PART, find(PART), one.track)
+    told = []
+
+    def stop(done, total):
+        told.append((done, total))
+        if done > 2 * 4:
+            raise KeyboardInterrupt
+
+    own = {"parts": 8, "seed": 7}
+    part = course.course(PART, one, every, [0, 1], one.devices, progress=stop, **own)
+    whole = course.course(PART, one, every, [0, 1], one.devices, **own)
+    assert told[:3] == [(4, 16), (8, 16), (12, 16)]
+    assert part.partial and not whole.partial and len(part.fates) == 4
+    for name in ("fates", "ended", "seconds"):
+        np.testing.assert_array_equal(getattr(part, name), getattr(whole, name)[:4])
+    assert [len(ride.seconds) for ride in part.rides] == [len(riders) for riders in part.riders]
+
+    def at_once(done, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        course.course(PART, one, every, [0, 1], one.devices, progress=at_once, **own)
 
 
 def test_a_study_tells_what_the_static_rule_says_beside(bowl):

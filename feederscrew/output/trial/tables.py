@@ -151,8 +151,6 @@ def summary(study):
             )
     if len(study.runs) > 1 and np.isfinite(study.highest):
         yield f"the tooling sorts up to an amplitude of {study.highest / MM:.4g} mm of those tried"
-    if study.partial:
-        yield "stopped early: only what was finished is counted"
 
 
 def _name(run, k):

@@ -87,3 +87,34 @@ def test_files_and_amplitudes(run, block, tmp_path):
 def test_faults_are_one_line(run, block, given, said):
     result = run("trial", block[0], "--config", block[1], *given)
     assert result.exit_code in (1, 2) and said in result.stderr and "Traceback" not in result.stderr
+
+
+def test_an_interrupt_prints_and_writes_what_is_there(run, block, tmp_path, monkeypatch):
+    from feederscrew.trial import course, groups
+
+    through = course._through
+
+    def stop(*given):
+        if given[6] == 2:  # the first part of the second group
+            raise KeyboardInterrupt
+        return through(*given)
+
+    monkeypatch.setattr(groups, "SIZE", 2)
+    monkeypatch.setattr(course, "_through", stop)
+    own = ("--aspect", "A", "--config", block[1], "--parts", "6", "--no-pictures", "-o", tmp_path / "out")
+    result = run("trial", block[0], *own)
+    assert result.exit_code == 0 and "Warning: partial: stopped after 2 parts" in result.stderr
+    found = json.loads((tmp_path / "out" / "block" / "trial.json").read_text())
+    assert found["partial"] and sum(one["tried"] for one in found["orientations"]) == 2
+
+
+def test_an_interrupt_before_anything_is_done_leaves_nothing(run, block, tmp_path, monkeypatch):
+    from feederscrew.trial import course
+
+    def stop(*given):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(course, "_through", stop)
+    result = run("trial", block[0], "--config", block[1], "-o", tmp_path / "out")
+    assert result.exit_code == 130 and result.stderr.strip().endswith("Stopped.")
+    assert not (tmp_path / "out").exists()
