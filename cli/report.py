@@ -16,6 +16,13 @@ WANTED = (
         metavar="RATE",
         help="Size a bowl for this rate as well: 120/min.",
     ),
+    click.option(
+        "--trial",
+        "sent",
+        type=click.IntRange(1, 10**4),
+        metavar="N",
+        help="Send N parts along the track and through the devices, to be played.",
+    ),
 )
 PLACE = (
     click.option(

@@ -1,5 +1,6 @@
 """The study of ``feeder report``: what the other studies find of one part in one bowl, each on request."""
 
+import os
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -19,6 +20,7 @@ from feederscrew.studies.passages import passages
 from feederscrew.studies.rate import Shares, rate, shares
 from feederscrew.studies.slide import slide
 from feederscrew.studies.track import track
+from feederscrew.studies.trial import trial
 
 ANGLES, STROKES = 56, 48  # cells of the velocity map
 LEAST_STROKE = 0.1e-3  # [m] the velocity map goes at least so far
@@ -44,6 +46,7 @@ class ReportStudy:
     shares: Shares  # whose probabilities are taken
     inputs: dict[str, str] = field(default_factory=dict)  # sha256 by path
     command: str = ""  # that repeats it
+    sent: int | None = None  # parts of a trial; None without one
 
     @property
     def part(self) -> Part:
@@ -99,6 +102,14 @@ class ReportStudy:
         return passages(self.part, self.bowl, self.resting.aspects, self.rule)
 
     @cached_property
+    def trial(self):
+        """Parts sent through the devices one by one, a TrialStudy; None where it was not asked for."""
+        if self.sent is None:
+            return None
+        own = {"rule": self.rule, "known": self.shares, "parts": self.sent, "jobs": os.cpu_count() or 1}
+        return trial(self.part, [self.bowl], **own)
+
+    @cached_property
     def machine(self):
         """The bowl for the target, or the machine of the bowl file; None without either."""
         if self.target is not None:
@@ -142,6 +153,7 @@ def report(
     probabilities=None,
     fed=False,
     command="",
+    sent=None,
     progress=None,
     before=None,
 ):
@@ -165,6 +177,8 @@ def report(
         As for ``studies.rate.shares``.
     command : str
         That repeats the report.
+    sent : int, optional
+        Parts of a trial, which is a chapter then.
 
     Returns
     -------
@@ -199,4 +213,5 @@ def report(
         shares=known,
         inputs=part.inputs | bowls.identity(path) | known.inputs,
         command=command,
+        sent=sent,
     )

@@ -61,6 +61,25 @@ def triangles(section):
     return _in_order(corners * MM)
 
 
+def prism(area, low, high):
+    """Return the closed surface of a body over an area of the plane between two heights.
+
+    Parameters
+    ----------
+    area : shapely geometry [m]
+        Polygons; what else is in it is left out.
+    low, high : float [m]
+
+    Returns
+    -------
+    vertices : (V, 3) float [m]
+    faces : (F, 3) int
+        Corners counter-clockwise seen from outside.
+    """
+    mesh = _extruded(area, low, high).to_mesh64()
+    return np.asarray(mesh.vert_properties)[:, :3] * MM, np.asarray(mesh.tri_verts).astype(int)
+
+
 def _levels(section):
     """Stretches of the track between steps: from, to (a little into the next one), height [m]."""
     found, start, level = [], 0.0, 0.0

@@ -18,7 +18,8 @@ from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.report import page
 from feederscrew.output.report.chapters import CHAPTERS
 from feederscrew.output.report.files import BESIDE
-from feederscrew.output.report.scene import reduced, scene
+from feederscrew.output.report.scene import scene
+from feederscrew.output.solid.meshes import reduced
 from feederscrew.part import load
 from feederscrew.resting import aspects
 from feederscrew.studies.report import report

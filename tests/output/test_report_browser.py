@@ -11,8 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import shapes
 from PIL import Image
 
+from feederscrew import bowl as bowls
 from feederscrew.bowl.devices import Device
 from feederscrew.output import tables
 from feederscrew.output.aspects import tables as aspects_tables
@@ -22,9 +24,11 @@ from feederscrew.output.report import page
 from feederscrew.output.report.chapters import CHAPTERS
 from feederscrew.output.report.scene import over_cuts
 from feederscrew.output.tooling import relief
+from feederscrew.output.trial import playback
 from feederscrew.part import load
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.report import report
+from feederscrew.studies.trial import trial
 from feederscrew.tooling.orientations import orientations
 
 BRACKET = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
@@ -185,3 +189,45 @@ def test_the_part_turns_over_the_cut(visit, case):
     assert told["back"] == told["start"]
     assert told["turned"] != told["start"]
     assert told["start"][0] > 0.02 * 680 * 544
+
+
+PLAY = """<script>
+(async () => {
+  const figure = document.querySelectorAll(".view")[1], canvas = figure.querySelector("canvas");
+  const button = figure.querySelector(".play"), bar = figure.querySelector("input");
+  const wait = (seconds) => new Promise((done) => setTimeout(done, 1000 * seconds));
+  const seen = () => {
+    const pixels = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+    let sum = 0;
+    for (let k = 0; k < pixels.length; k += 4) sum = (31 * sum + pixels[k] + 7 * pixels[k + 3]) % 1000003;
+    return { told: figure.querySelector("output").textContent, sum, button: button.textContent };
+  };
+  const told = { start: seen() };
+  button.click(); await wait(0.2); told.playing = seen();
+  button.click(); told.paused = seen(); await wait(0.1); told.still = seen();
+  bar.value = 1; bar.dispatchEvent(new Event("input")); told.end = seen();
+  button.click(); await wait(0.05); told.again = seen(); button.click();
+  document.title = JSON.stringify(told);
+})();
+</script>
+</body>"""
+
+
+def test_a_trial_plays(visit, tmp_path):
+    block = shapes.part(shapes.box(20, 12, 5))
+    (tmp_path / "bowl.yaml").write_text("devices:\n  - gap: 9 mm\n")
+    run = trial(block, [bowls.read(tmp_path / "bowl.yaml")], "A", parts=2).runs[0]
+    scene, captions = playback.scene(block, run)
+    fates = [told.rpartition(" ")[2] for _, told in captions]
+    assert fates[0] == "passed" != fates[1]
+    views = Views(scene, tuple((*told, ()) for told in captions), "trial-views", "Orientation", plays=True)
+    text = html(Page("part", "", (Section((views,), anchor="trial", title="Trial"),), "report"))
+    dom, console = visit(text.replace("</body>", PLAY), "--dump-dom")
+    assert console == []
+    told = json.loads(unescape(re.search(r"<title>(.*?)</title>", dom, re.S).group(1)))
+    times = {name: float(one["told"].split()[0]) for name, one in told.items()}
+    assert times["start"] == 0.0 < times["playing"] <= times["paused"] == times["still"] < times["end"]
+    assert [told[name]["button"] for name in ("start", "playing", "paused")] == ["play", "pause", "play"]
+    assert told["paused"]["sum"] == told["still"]["sum"]
+    assert len({told[name]["sum"] for name in ("start", "paused", "end")}) == 3
+    assert 0.0 < times["again"] < times["end"]  # from the start once it has come to the end

@@ -22,6 +22,15 @@ HINT = (
     "Drag a view to turn it, or use the arrow keys; double-click sets it back. "
     "Orange is the face it rests on, the dot its centre of mass."
 )
+PLAYED = (
+    "Play runs the trial, in real time or, where it takes longer than ten seconds, faster; the bar goes to "
+    "any moment. Drag a view to turn it, or use the arrow keys; double-click sets it back."
+)
+PLAYER = (
+    '<span class="player"><button type="button" class="play">play</button> '
+    '<input type="range" min="0" max="1" step="any" value="0" aria-label="moment of the trial"> '
+    "<output>0.00 s</output></span>"
+)
 LICENCE = "three.LICENSE.txt"
 
 
@@ -192,23 +201,25 @@ def _entry(entry):
 
 
 def _views(views):
-    figures = "\n".join(_view(views.of, place, *caption) for place, caption in enumerate(views.captions))
+    player = PLAYER if views.plays else ""
+    figures = "\n".join(_view(views.of, place, *told, player) for place, told in enumerate(views.captions))
     scene = json.dumps(views.scene, separators=(",", ":")).replace("<", "\\u003c")
+    hint = PLAYED if views.plays else HINT
     return (
-        f'<div id="{views.name}" hidden class="turnable">\n<p class="quiet">{HINT}</p>\n'
-        f'<div class="views">\n{figures}\n</div>\n</div>\n'
+        f'<div id="{views.name}" hidden class="turnable">\n<p class="quiet">{hint}</p>\n'
+        f'<div class="{"views played" if views.plays else "views"}">\n{figures}\n</div>\n</div>\n'
         f'<script type="application/json" class="scene" data-views="{views.name}">{scene}</script>'
     )
 
 
-def _view(of, place, name, kind, bars):
+def _view(of, place, name, kind, bars, player):
     label = f"{of} {escape(name)} in three dimensions; arrow keys turn it"
     shares = "\n".join(_bar(bar) for bar in bars)
     return (
         f'<figure class="view">\n'
         f'<canvas data-pose="{place}" tabindex="0" role="img" aria-label="{label}"></canvas>\n'
         f"<figcaption><strong>{escape(name)}</strong> <span>{escape(kind)}</span> "
-        f'<button type="button">from below</button>\n{shares}</figcaption>\n</figure>'
+        f'<button type="button">from below</button>\n{player}{shares}</figcaption>\n</figure>'
     )
 
 

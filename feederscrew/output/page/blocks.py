@@ -66,12 +66,13 @@ class ShareBar:
 
 @dataclass(frozen=True, eq=False)
 class Views:
-    """The part, to be turned: on each aspect, or over cuts; ``scene`` is JSON for the viewer."""
+    """The part, to be turned: on each aspect, over cuts, or on its way; ``scene`` is JSON for the viewer."""
 
     scene: dict
     captions: tuple[tuple[str, str, tuple[ShareBar, ...]], ...]  # name, kind, bars
     name: str = "views"  # of the block; no two of a page have the same
     of: str = "Aspect"  # what the captions name
+    plays: bool = False  # each has a path that the part moves along
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,8 @@
   const TURN = 0.5; // degrees a pixel dragged
   const STEP = 10; // degrees an arrow key
   const CREASE = 24; // degrees: facets that meet under less are one curved side
+  const TICK = 16; // milliseconds between two pictures of a trial
+  const LONGEST = 10; // seconds a trial plays; a longer one plays faster
   const WIDTH = 680, HEIGHT = 544; // pixels of a view
   const REACH = 1.16; // of the picture over the part
   const COLOURS = { steel: 0xc3d3e4, track: 0xdfe1e4, edge: 0x22303c, accent: 0xd55e00, floor: 0xe3e8ed };
@@ -72,20 +74,21 @@
   function stage(data) {
     const scene = new THREE.Scene(), part = new THREE.Group();
     const contact = contactLines(), lamp = new THREE.DirectionalLight(0xffffff, 2.1), fill = new THREE.DirectionalLight(0xffffff, 0.7);
+    const paths = (data.paths || []).map((path) => decoded(path, Float32Array));
     const tracks = (data.tracks || []).map(trackOf), floor = floorDisc(data);
     part.add(...surfaceOf(data, COLOURS.steel), ...contact, centreMark(data));
     scene.add(part, floor, ...tracks, new THREE.HemisphereLight(0xffffff, 0xd8dee5, 1.9), lamp, fill);
     const tall = REACH * (data.reach || 1) * data.radius, wide = (tall * WIDTH) / HEIGHT;
     const camera = new THREE.OrthographicCamera(-wide, wide, tall, -tall, 0.1 * data.radius, 20 * data.radius);
     camera.up.set(0, 0, 1);
-    return { data, scene, part, contact, tracks, floor, lamp, fill, camera };
+    return { data, scene, part, contact, tracks, paths, floor, lamp, fill, camera };
   }
 
   function placePart({ part, contact, tracks, floor }, pose) {
     tracks.forEach((track, k) => (track.visible = k === pose.track));
     floor.visible = pose.track === undefined;
     part.quaternion.set(...pose.quaternion);
-    part.position.z = pose.height;
+    part.position.set(0, 0, pose.height);
     const corners = new THREE.BufferAttribute(new Float32Array(pose.contact), 3), fan = [];
     for (let k = 1; k + 1 < corners.count; k++) fan.push(0, k, k + 1);
     for (const line of contact) {
@@ -94,12 +97,25 @@
     }
   }
 
-  function placeCamera({ data, camera, lamp, fill }, view, height) {
+  // A path has 8 numbers a row: time, place, attitude. Places between rows are on a straight line.
+  function placeOnPath({ part }, path, time) {
+    let low = 0, high = path.length / 8 - 1;
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (path[8 * middle] > time) high = middle;
+      else low = middle;
+    }
+    const span = path[8 * high] - path[8 * low], share = span > 0 ? Math.min(1, Math.max(0, (time - path[8 * low]) / span)) : 0;
+    const [a, b] = [low, high].map((row) => path.subarray(8 * row + 1, 8 * row + 8));
+    part.position.set(a[0], a[1], a[2]).lerp(new THREE.Vector3(b[0], b[1], b[2]), share);
+    part.quaternion.set(a[3], a[4], a[5], a[6]).slerp(new THREE.Quaternion(b[3], b[4], b[5], b[6]), share);
+  }
+
+  function placeCamera({ data, camera, lamp, fill }, view, target) {
     const a = (view.azimuth * Math.PI) / 180, e = (view.elevation * Math.PI) / 180, far = 8 * data.radius;
     const out = new THREE.Vector3(Math.cos(a) * Math.cos(e), Math.sin(a) * Math.cos(e), Math.sin(e));
-    camera.position.copy(out).multiplyScalar(far);
-    camera.position.z += height;
-    camera.lookAt(0, 0, height);
+    camera.position.copy(out).multiplyScalar(far).add(target);
+    camera.lookAt(target);
     camera.updateMatrixWorld();
     lamp.position.set(-0.45, 0.6, 0.66).applyQuaternion(camera.quaternion);
     fill.position.set(0.75, 0.05, 0.66).applyQuaternion(camera.quaternion);
@@ -143,19 +159,51 @@
     });
   }
 
+  function play(figure, view, path) {
+    const last = path[path.length - 8], quick = Math.max(1, last / LONGEST);
+    const button = figure.querySelector(".play"), bar = figure.querySelector("input"), told = figure.querySelector("output");
+    let ticking = null, before = 0;
+    const reach = (time) => {
+      view.time = Math.min(Math.max(time, 0), last);
+      bar.value = view.time / last;
+      told.textContent = `${view.time.toFixed(2)} s`;
+      view.draw();
+    };
+    const run = (on) => {
+      clearInterval(ticking);
+      ticking = on ? setInterval(tick, TICK) : null;
+      button.textContent = on ? "pause" : "play";
+      before = performance.now();
+    };
+    const tick = () => {
+      const now = performance.now();
+      reach(view.time + (quick * (now - before)) / 1000);
+      before = now;
+      if (view.time >= last) run(false);
+    };
+    button.addEventListener("click", () => {
+      if (!ticking && view.time >= last) reach(0);
+      run(!ticking);
+    });
+    bar.addEventListener("input", () => { run(false); reach(bar.value * last); });
+  }
+
   function show(pen, set, canvas) {
-    const view = {}, data = set.data, pose = data.poses[Number(canvas.dataset.pose)], paper = canvas.getContext("2d");
+    const view = { time: 0 }, data = set.data, pose = data.poses[Number(canvas.dataset.pose)], paper = canvas.getContext("2d");
+    const path = set.paths[pose.path];
     canvas.width = WIDTH;
     canvas.height = HEIGHT;
     view.draw = () => {
       placePart(set, pose);
-      placeCamera(set, view, pose.height);
+      if (path) placeOnPath(set, path, view.time);
+      placeCamera(set, view, set.part.position);
       pen.render(set.scene, set.camera);
       paper.clearRect(0, 0, WIDTH, HEIGHT);
       paper.drawImage(pen.domElement, 0, 0);
     };
     start(view, data);
     listen(canvas, view, data);
+    if (path) play(canvas.parentElement, view, path);
     view.draw();
   }
 

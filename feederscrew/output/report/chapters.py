@@ -15,6 +15,7 @@ CHAPTERS = (  # anchor, title, what computes it
     ("velocity", "How fast it travels", moving.convey),
     ("rate", "How many leave a minute", moving.rate),
     ("tooling", "Which orientations the devices return", cutting.tooling),
+    ("trial", "What parts did that were sent through", cutting.trial),
     ("bowl", "The bowl and its drive", driving.bowl),
     ("track", "On the track, against the wall", moving.track),
     ("floor", "On the bowl floor", moving.floor),

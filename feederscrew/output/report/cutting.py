@@ -1,9 +1,20 @@
-"""What the bowl's devices do with each orientation of the part."""
+"""What the bowl's devices do with each orientation of the part, by the rule and in a trial."""
+
+from dataclasses import replace
 
 from feederscrew.bowl.devices import KINDS
-from feederscrew.output.page.blocks import Picture, Section, Table, Text, Views
+from feederscrew.output import tables as tables_of
+from feederscrew.output.page.blocks import Notes, Picture, Section, Table, Text, Views
 from feederscrew.output.report.scene import over_cuts
 from feederscrew.output.tooling import files, relief, tables
+from feederscrew.output.trial import files as trial_files
+from feederscrew.output.trial import playback
+from feederscrew.output.trial import tables as trial_tables
+
+TRIED = (  # columns of the trial's table that a page has room for
+    *("aspect", "heading_deg", "share", "tried", "passed", "returned", "hanging", "stuck"),
+    *("leaves_as", "ended_at", "predicted", "margin_mm", "disagrees"),
+)
 
 
 def tooling(case):
@@ -18,6 +29,26 @@ def tooling(case):
     drawn = files.chain_picture(study.devices, study.orientations, study.shares)
     picture = Picture(drawn.name, drawn.make(), drawn.alt)
     return Section((lead, *_turning(study), *_views(study), Table(tables.passages(study)), picture))
+
+
+def trial(case):
+    """Parts that were sent along the track one by one; None where no trial was asked for."""
+    study = case.trial
+    if study is None:
+        return None
+    run = study.runs[0]
+    lead = Text(
+        f"{len(run.course.entered)} parts of true shape, one at a time and their orientations in turn, on "
+        "the track as it is cut while it vibrates; beside each orientation what the static rule says."
+    )
+    told = Notes(tuple(trial_tables.summary(study)))
+    scene, captions = playback.scene(study.part, run)
+    views = Views(scene, tuple((*one, ()) for one in captions), "trial-views", "Orientation", plays=True)
+    matrix, paths, stills = (Picture(one.name, one.make(), one.alt) for one in trial_files.pictures(study))
+    frame = trial_tables.frame(study)
+    table = Table(tables_of.frame({name: frame[name] for name in TRIED}))
+    blocks = (lead, told, views, replace(stills, printed=True), table, matrix, paths)
+    return Section(blocks, warnings=study.warnings)
 
 
 def _turning(study):

@@ -90,9 +90,9 @@ def unrolled(path, radius):
     return radius * np.arctan2(x, y), radius - np.hypot(x, y)
 
 
-def solids(station):
-    """Return the rings (K, 2) [m] of what is solid of the track, in the bowl's frame."""
-    first, last = station.plates[0, 14:16].astype(int)
+def solids(station, plate=0):
+    """Return the rings (K, 2) [m] of what is solid of a plate, in its frame: for the track the bowl's."""
+    first, last = station.plates[plate, 14:16].astype(int)
     borders, rings, ring = station.borders[first:last], [], []
     for k, border in enumerate(borders):
         ring.append(border[:2])

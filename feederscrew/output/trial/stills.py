@@ -9,7 +9,8 @@ from feederscrew.output.solid import render, shading
 from feederscrew.output.solid.shading import Shot
 from feederscrew.output.solid.stance import outermost, placed
 from feederscrew.output.trial.figures import solids
-from feederscrew.trial import course, runs
+from feederscrew.output.trial.shown import shown
+from feederscrew.trial import runs
 
 STILLS, WIDTH, HEIGHT, GAP, EDGE, HEAD, CAPTION = 6, 250, 210, 10, 24, 54, 26  # stills of a row, pixels
 VIEW = 2.9  # [size] across a still
@@ -30,49 +31,26 @@ def stills(part, run):
     -------
     Figure
     """
-    found = run.course
-    place = _station(found)
+    found, rides = run.course, shown(run)
     solid = render.Rays(part.vertices, part.faces, part.centre_of_mass)
-    riders, ride = found.riders[place], found.rides[place]
-    shown = [_first(ride.outcomes == runs.PASSED), _first(ride.outcomes != runs.PASSED)]
-    shown = [n for n in shown if n is not None]
     width = 2 * EDGE + STILLS * (WIDTH + GAP) - GAP
-    height = EDGE + len(shown) * (HEAD + HEIGHT + CAPTION)
+    height = EDGE + len(rides) * (HEAD + HEIGHT + CAPTION)
     figure = style.page(width, height)
     page = figure.add_axes((0, 0, 1, 1), xlim=(0, width), ylim=(0, height))
     page.set_axis_off()
-    for row, n in enumerate(shown):
+    for row, ride in enumerate(rides):
         top = height - row * (HEAD + HEIGHT + CAPTION)
-        one = riders[n]
-        fate = (
-            course.FATES[course.PASSED] if ride.outcomes[n] == runs.PASSED else course.FATES[found.fates[one]]
-        )
-        device = found.stations[place].device
-        title = f"{run.known.lying[found.entered[one]].name} at {device.kind} {device.text}: {fate}"
-        page.text(EDGE, top - 30, title, fontsize=11, fontweight="bold", color=style.INK)
-        path = ride.paths[n][np.isfinite(ride.paths[n][:, 0])]
-        for k, at in enumerate(_chosen(path)):
+        page.text(EDGE, top - 30, ride.title(found), fontsize=11, fontweight="bold", color=style.INK)
+        for k, at in enumerate(_chosen(ride.path)):
             left = EDGE + k * (WIDTH + GAP)
             box = (left / width, (top - HEAD - HEIGHT) / height, WIDTH / width, HEIGHT / height)
             axes = figure.add_axes(box, xticks=[], yticks=[])
             axes.spines[:].set_color(style.FAINT)
-            axes.imshow(_still(solid, found, place, run.bowl.track.radius, path, at), interpolation="nearest")
-            told = f"{path[at, 0]:.2f} s, {1e3 * path[at, 3] / (1e3 * MM):.1f} mm high"
+            image = _still(solid, found, ride.place, run.bowl.track.radius, ride.path, at)
+            axes.imshow(image, interpolation="nearest")
+            told = f"{ride.path[at, 0]:.2f} s, {ride.path[at, 3] / MM:.1f} mm high"
             page.text(left + 4, top - HEAD - HEIGHT - 16, told, fontsize=7, color=style.INK)
     return figure
-
-
-def _station(found):
-    """The first station at which some part does not pass; the last where all do."""
-    for place, ride in enumerate(found.rides):
-        if (ride.outcomes != runs.PASSED).any():
-            return place
-    return len(found.rides) - 1
-
-
-def _first(where):
-    known = np.flatnonzero(where)
-    return int(known[0]) if len(known) else None
 
 
 def _chosen(path):

@@ -1,0 +1,47 @@
+"""Meshes as the viewer of a page takes them: not too many facets, in single precision, in base64."""
+
+import base64
+
+import numpy as np
+
+MOST_FACETS = 200_000  # that a browser is shown
+FINEST = 2.0**10  # cells across the part of the first grid tried on a larger mesh
+
+
+def reduced(vertices, faces, most=MOST_FACETS):
+    """A mesh of at most so many facets: corners of one grid cell become one, facets that vanish go.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float
+    faces : (F, 3) int
+    most : int
+
+    Returns
+    -------
+    vertices : (W, 3) float
+    faces : (G, 3) int
+    """
+    cells, lowest = FINEST, vertices.min(axis=0)
+    extent = np.ptp(vertices, axis=0).max()
+    kept, corners = faces, vertices
+    while len(kept) > most:
+        grid = np.floor((vertices - lowest) * (cells / extent)).astype(np.int64)
+        _, place = np.unique(grid, axis=0, return_inverse=True)
+        place = place.ravel()
+        count = np.bincount(place)
+        corners = np.column_stack([np.bincount(place, vertices[:, k]) / count for k in range(3)])
+        kept = place[faces]
+        kept = kept[(kept != np.roll(kept, 1, axis=1)).all(axis=1)]
+        cells /= np.sqrt(2.0)
+    return corners, kept
+
+
+def encoded(array, kind):
+    """Return an array's bytes, of a numpy ``kind``, as text in base64."""
+    return base64.b64encode(np.ascontiguousarray(array, dtype=kind).tobytes()).decode()
+
+
+def short(value):
+    """Return a number with the seven digits that single precision has."""
+    return float(f"{value:.7g}")

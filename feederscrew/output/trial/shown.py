@@ -1,0 +1,58 @@
+"""Which parts of a trial are worth a picture: one that passes a device and one that it stops."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew.trial import course, runs
+
+
+@dataclass(frozen=True, eq=False)
+class ShownRide:
+    """One part at one station."""
+
+    place: int  # station
+    orientation: str  # it was laid down in
+    fate: str  # of course.FATES
+    path: np.ndarray  # (K, 8) time [s], position [m], attitude w x y z (principal axes to bowl)
+
+    def title(self, found):
+        """'A@0 at gap 9 mm: returned'."""
+        device = found.stations[self.place].device
+        where = f"{device.kind.replace('_', ' ')} {device.text}".strip()
+        return f"{self.orientation} at {where}: {self.fate}"
+
+
+def shown(run):
+    """Return one part that passes and one that does not, at the first device that stops any.
+
+    Parameters
+    ----------
+    run : TrialRun
+
+    Returns
+    -------
+    list of ShownRide
+        One of them, where all do the same.
+    """
+    place = _station(run.course)
+    ride = run.course.rides[place]
+    passes = ride.outcomes == runs.PASSED
+    return [_of(run, place, int(np.flatnonzero(which)[0])) for which in (passes, ~passes) if which.any()]
+
+
+def _station(found):
+    """The first device at which some part does not pass; where all do the last station."""
+    for place, ride in list(enumerate(found.rides))[1:]:
+        if (ride.outcomes != runs.PASSED).any():
+            return place
+    return len(found.rides) - 1
+
+
+def _of(run, place, n):
+    found, ride = run.course, run.course.rides[place]
+    one = found.riders[place][n]
+    passed = ride.outcomes[n] == runs.PASSED
+    fate = course.FATES[course.PASSED if passed else found.fates[one]]
+    path = ride.paths[n][np.isfinite(ride.paths[n][:, 0])]
+    return ShownRide(place, run.known.lying[found.entered[one]].name, fate, path)

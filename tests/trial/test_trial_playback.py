@@ -1,0 +1,29 @@
+"""What the viewer of a report is given of a trial."""
+
+import base64
+
+import numpy as np
+import pytest
+import shapes
+from scipy.spatial.transform import Rotation
+
+from feederscrew import bowl as bowls
+from feederscrew.output.trial import playback
+from feederscrew.studies.trial import trial
+
+
+def decoded(text):
+    return np.frombuffer(base64.b64decode(text), "<f4")
+
+
+def test_a_path_is_that_of_the_part():
+    block = shapes.part(shapes.box(20, 12, 5))
+    run = trial(block, [bowls.read(None)], "A", parts=2).runs[0]
+    scene, _ = playback.scene(block, run)
+    path = decoded(scene["paths"][0]).reshape(-1, 8)
+    points = decoded(scene["positions"]).reshape(-1, 3)
+    lowest = [(Rotation.from_quat(row[4:]).apply(points)[:, 2] + row[3]).min() for row in path]
+    np.testing.assert_allclose(lowest, 0.0, atol=0.02)  # [mm] it slides on the track
+    assert (np.diff(path[:, 0]) > 0.0).all() and path[-1, 1] > path[0, 1] + 10.0
+    track = decoded(scene["tracks"][0]["positions"]).reshape(-1, 3)
+    assert track[:, 2].min() == pytest.approx(-4.0) and track[:, 2].max() > 10.0  # the wall
