@@ -7,19 +7,25 @@ import pytest
 import shapes
 from scipy.spatial.transform import Rotation
 
-from feederscrew import bowl as bowls
-from feederscrew.output.trial import playback
-from feederscrew.studies.trial import trial
+from feederscrew.output.page.blocks import Views
+from feederscrew.output.report import page
+from feederscrew.output.report.chapters import CHAPTERS
+from feederscrew.output.trial import tables
+from feederscrew.studies.report import report
 
 
 def decoded(text):
     return np.frombuffer(base64.b64decode(text), "<f4")
 
 
-def test_a_path_is_that_of_the_part():
+def test_the_chapter_plays_the_path_of_the_part():
     block = shapes.part(shapes.box(20, 12, 5))
-    run = trial(block, [bowls.read(None)], "A", parts=2).runs[0]
-    scene, _ = playback.scene(block, run)
+    case = report(block, None, (), aspect="A", launch="feed", sent=7)
+    (chapter,) = page(case, chapters=[one for one in CHAPTERS if one[0] == "trial"]).sections
+    (views,) = (one for one in chapter.blocks if isinstance(one, Views))
+    assert views.plays and len(views.captions) == len(views.scene["poses"]) == len(views.scene["paths"])
+    assert sum(row["tried"] for row in tables.orientations(case.trial.runs[0])) == 7
+    scene = views.scene
     path = decoded(scene["paths"][0]).reshape(-1, 8)
     points = decoded(scene["positions"]).reshape(-1, 3)
     lowest = [(Rotation.from_quat(row[4:]).apply(points)[:, 2] + row[3]).min() for row in path]

@@ -12,7 +12,7 @@ from feederscrew.output.report.chapters import CHAPTERS
 
 PARTS = Path(__file__).parents[3] / "parts"
 PART = PARTS / "lbracket_30x20x15.stl"
-ON_OCCASION = ("bowl", "tooling")  # chapters of a target or a machine, and of devices
+ON_OCCASION = ("bowl", "tooling", "trial")  # chapters of a target or a machine, of devices, of parts sent
 LIGHT = [chapter for chapter in CHAPTERS if chapter[0] in ("aspects", "part", "headings", "repeat")]
 
 
