@@ -21,6 +21,8 @@ class TrueSolid(NamedTuple):
     corners: np.ndarray  # (C, 3) the first of them, in which convex edges end: no other can touch
     edges: np.ndarray  # (E, 2) int, convex edges, both ends
     sides: np.ndarray  # (E, 6) in both faces of an edge, unit vectors away from it
+    firsts: np.ndarray  # (C + 1,) int, where the neighbours of each corner begin in ``beside``
+    beside: np.ndarray  # (N,) int, corners joined to a corner by an edge of the surface
     triangles: np.ndarray  # (T, 3) int, counter-clockwise from outside
     normals: np.ndarray  # (T, 3)
     inertia: np.ndarray  # (3,) principal moments at mass 1
@@ -64,13 +66,17 @@ def solid_of(part):
     order = np.argsort(~touches, kind="stable")
     place = np.argsort(order, kind="stable")
     corners = check.frozen(corners[order])
+    triangles = place[part.faces]
+    firsts, beside = neighbours(triangles, int(touches.sum()))
     return (
         TrueSolid(
             vertices=corners,
             corners=corners[: touches.sum()],
             edges=check.frozen(place[ends]),
             sides=check.frozen(sides),
-            triangles=check.frozen(place[part.faces]),
+            firsts=check.frozen(firsts),
+            beside=check.frozen(beside),
+            triangles=check.frozen(triangles),
             normals=check.frozen(normals),
             inertia=check.frozen(moments / (part.mass * length**2)),
             radius=float(vectors.length(corners).max()),
@@ -86,6 +92,27 @@ def _normals(corners, faces):
     normal = np.cross(b - a, c - a)
     size = vectors.length(normal)
     return normal / np.where(size > 0.0, size, 1.0)[:, None]
+
+
+def neighbours(triangles, count):
+    """Return which of the first corners of a surface are joined by an edge of a triangle.
+
+    Parameters
+    ----------
+    triangles : (T, 3) int
+    count : int
+        Only corners before this one count.
+
+    Returns
+    -------
+    firsts : (count + 1,) int
+        Where the neighbours of each corner begin.
+    beside : (N,) int
+        All of them, one corner after the other.
+    """
+    ends = np.concatenate([triangles[:, [k, m]] for k in range(3) for m in range(3) if k != m])
+    ends = np.unique(ends[(ends < count).all(axis=1)], axis=0)
+    return np.searchsorted(ends[:, 0], np.arange(count + 1)), np.ascontiguousarray(ends[:, 1])
 
 
 def convex_edges(corners, faces, normals):

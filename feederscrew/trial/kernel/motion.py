@@ -87,7 +87,7 @@ def found(surface, solid, work, reach):
         lows = edges.low_edges(solid, work.shown, reach, work.edges, work.box)
         nears = edges.near_borders(plate, surface.borders, work.box, reach, work.near)
         count = search.corners_on(
-            plate, surface.borders, work.shown, work.spots, turn, solid.inertia, tangent, reach, nears, state,
+            plate, surface.borders, work.shown, work.spots, turn, solid, tangent, reach, nears, state,
             work.low, contacts, count,
         )  # fmt: skip
         if nears:

@@ -107,7 +107,19 @@ def _centre(plate, state):
 
 
 @compiled
-def sides_on(plate, borders, shown, spots, turn, inertia, tangent, reach, low, contacts, count):
+def points_to(solid, shown, k, u, v, w):
+    """Whether a corner of the part is its foremost one against a direction, as far as its neighbours tell."""
+    for n in range(solid.firsts[k], solid.firsts[k + 1]):
+        m = solid.beside[n]
+        x, y, z = shown[m, 0] - shown[k, 0], shown[m, 1] - shown[k, 1], shown[m, 2] - shown[k, 2]
+        ahead = u * x + v * y + w * z
+        if ahead < 0.0 and ahead * ahead > SLANT * SLANT * (x * x + y * y + z * z):
+            return False
+    return True
+
+
+@compiled
+def sides_on(plate, borders, shown, spots, turn, solid, tangent, reach, low, contacts, count):
     """Contacts of the part's corners with a plate's sides; writes which corners lie on its surface.
 
     Returns
@@ -119,23 +131,24 @@ def sides_on(plate, borders, shown, spots, turn, inertia, tangent, reach, low, c
         height = shown[k, 2]
         if height > reach or height < -plate[DEPTH]:
             continue
-        solid = inside(borders, first, last, shown[k, 0], shown[k, 1])
+        covered = inside(borders, first, last, shown[k, 0], shown[k, 1])
         if height < -plate[ROUNDED]:
             n, off = _beside(borders, first, last, shown[k, 0], shown[k, 1])
             behind = plate[DEPTH] + height
-            if off < (min(-height, behind) if solid else reach):
-                u, v, w, gap = borders[n, 4], borders[n, 5], 0.0, (-off if solid else off)
-            elif solid and behind < -height:  # it came in from behind
+            if off < (min(-height, behind) if covered else reach):
+                u, v, w, gap = borders[n, 4], borders[n, 5], 0.0, (-off if covered else off)
+            elif covered and behind < -height:  # it came in from behind
                 u, v, w, gap = 0.0, 0.0, -1.0, -behind
             else:
                 u, v, w, gap = 0.0, 0.0, 0.0, 0.0
             if u != 0.0 or v != 0.0 or w != 0.0:
-                count = front(
-                    plate, inertia, turn, tangent, spots[k, 0], spots[k, 1], spots[k, 2], u, v, w, gap,
-                    contacts, count,
-                )  # fmt: skip
-                solid = False
-        if solid:
+                covered = False
+                if points_to(solid, shown, k, u, v, w):
+                    count = front(
+                        plate, solid.inertia, turn, tangent, spots[k, 0], spots[k, 1], spots[k, 2],
+                        u, v, w, gap, contacts, count,
+                    )  # fmt: skip
+        if covered and points_to(solid, shown, k, 0.0, 0.0, 1.0):
             low[lows] = k
             lows += 1
     return count, lows
@@ -176,12 +189,12 @@ def _outermost(shown, low, count):
 
 @compiled
 def corners_on(
-    plate, borders, shown, spots, turn, inertia, tangent, reach, nears, state, low, contacts, count
+    plate, borders, shown, spots, turn, solid, tangent, reach, nears, state, low, contacts, count
 ):
     """Contacts of the part's corners with a plate: its surface, and its sides behind rounded borders."""
     if nears:
         count, lows = sides_on(
-            plate, borders, shown, spots, turn, inertia, tangent, reach, low, contacts, count
+            plate, borders, shown, spots, turn, solid, tangent, reach, low, contacts, count
         )
     else:
         lows = all_low(plate, borders, shown, reach, state, low)
@@ -190,7 +203,7 @@ def corners_on(
     for m in range(lows):
         k = low[m]
         count = add(
-            contacts, count, turn, inertia, tangent, spots[k, 0], spots[k, 1], spots[k, 2],
+            contacts, count, turn, solid.inertia, tangent, spots[k, 0], spots[k, 1], spots[k, 2],
             plate[FRONT], plate[FRONT + 1], plate[FRONT + 2], shown[k, 2], 0.0,
         )  # fmt: skip
     return count
