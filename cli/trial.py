@@ -12,7 +12,7 @@ from feederscrew_cli.interrupt import held_back
 @options.part
 @click.option("--aspect", metavar="NAME", help="Only its orientations.  [default: every orientation]")
 @options.rule
-@orientation.taken(orientation.LAUNCH)
+@orientation.taken
 @click.option(
     "--parts", type=click.IntRange(1, 10**6), help="One at a time.  [default: 200; with --queue 60]"
 )
@@ -38,8 +38,8 @@ def trial(part, aspect, rule, taken, parts, queue, seconds, amplitudes, seed, jo
 
     Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed,
     while all of it vibrates with the drive: one part at a time, its orientations in turn. Each part
-    passes, is returned, hangs or is stuck. Orientations count in the shares in which they arrive: the
-    recommended answer for --launch, that of --rule, or those of a file (docs/counts.md). Beside each
+    passes, is returned, hangs or is stuck. Orientations count in the shares in which they arrive: from
+    the moving floor of the bowl file, or as --launch, --rule or a file (docs/counts.md) says. Beside each
     stands what the static rule of feeder tooling says, and its margin; those that do something else come
     first.
 
@@ -59,7 +59,7 @@ def trial(part, aspect, rule, taken, parts, queue, seconds, amplitudes, seed, jo
     solid, settings = out.part(part), bowls.settings(**bowl)
     driven = bowls.strokes(bowls.record(settings), amplitudes)
     effective = columns.conditions(solid) | bowls.texts(settings)
-    known = orientation.shares(out, solid, driven[0], taken)
+    known = orientation.shares(out, solid, driven[0], taken, bowl["path"])
     with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
         with waiting.bar(out, "runs") as bar:
             found = study(
