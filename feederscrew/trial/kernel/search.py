@@ -188,9 +188,7 @@ def _outermost(shown, low, count):
 
 
 @compiled
-def corners_on(
-    plate, borders, shown, spots, turn, solid, tangent, reach, nears, state, low, contacts, count
-):
+def corners_on(plate, borders, shown, spots, turn, solid, tangent, reach, nears, state, low, contacts, count):
     """Contacts of the part's corners with a plate: its surface, and its sides behind rounded borders."""
     if nears:
         count, lows = sides_on(
