@@ -11,7 +11,8 @@ from feederscrew.part.moments import Moments
 from feederscrew.resting import naming
 from feederscrew.resting.basins.landscape import landscape
 from feederscrew.resting.classes import body_frame, classes
-from feederscrew.resting.faces import EQUAL, stable_faces, unstable_faces
+from feederscrew.resting.faces import stable_faces, unstable_faces
+from feederscrew.resting.forms import FLAT, LEVEL, forms, said
 from feederscrew.resting.rules import published, recommended, registry, surface
 from feederscrew.resting.rules.quantities import ClassQuantities
 from feederscrew.resting.rules.recommended import Recommended
@@ -26,6 +27,7 @@ class Aspects:
 
     names: tuple[str, ...]
     kinds: tuple[str, ...]  # 'flat' or 'rolling'
+    forms: tuple[str, ...]  # 'flat', or what rolls: 'cylinder', 'cone', 'ball'; ``forms.forms`` lists them
     faces: np.ndarray  # (A,) int, equal aspects in the class
     stable: np.ndarray  # (A,) bool
     normals: np.ndarray  # (A, 3) outward, of one face of the class; points down when the part rests on it
@@ -48,6 +50,16 @@ class Aspects:
         """Probability of each aspect by every name a user may ask for: the rules, and 'recommended'."""
         answer = {} if self.recommended is None else {"recommended": self.recommended.p}
         return self.probabilities | answer
+
+    @property
+    def rolling_circles(self):
+        """(A,) [m] radius of the circle in which the centre of mass rolls; infinite where straight, else NaN.
+
+        The axis of a cone, or of a part on two circles, meets the floor at a point that stays where it is.
+        """
+        down = (self.axes * self.normals).sum(axis=1)
+        level, off = np.sqrt(np.maximum(1.0 - down**2, 0.0)), np.abs(down) > LEVEL
+        return np.where(off, self.heights * level / np.where(off, np.abs(down), 1.0), np.inf + 0.0 * down)
 
     @property
     def likeliest(self):
@@ -97,11 +109,11 @@ def find(part, *, as_published=False, unstable=False, exponent=None, launch=reco
     moments = Moments(part.vertices, part.faces, part.centre_of_mass)
     label = classes(faces, part, moments)
     groups = [[face for face, at in zip(faces, label) if at == k] for k in range(label.max() + 1)]
-    table = _geometry(groups, part)
+    table = _geometry(groups, part) | {"forms": forms(groups, hull)}
     chances = _probabilities(table, as_published)
     order = _ranked(table, chances["csa"], part, moments)
-    names, said = naming.named([groups[k] for k in order], table["normals"][order], hull, part.names)
-    named = _named(names, table, chances, order, (*_said(groups, hull), *said))
+    names, told = naming.named([groups[k] for k in order], table["normals"][order], hull, part.names)
+    named = _named(names, table, chances, order, told)
     ground = by_class.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
     weighted = surface.EXPONENTS["hard"] if exponent is None else exponent
     return _answered(_tumbled(named, ground, part, weighted), launch, exponent)
@@ -207,36 +219,16 @@ def _ranked(table, chance, part, moments):
     return np.lexsort((*-direction.T, height, rank))
 
 
-def _named(names, table, chances, order, warnings):
+def _named(names, table, chances, order, told):
     """The record, rows in their order."""
     arrays = {k: check.frozen(v[order]) for k, v in table.items() if isinstance(v, np.ndarray)}
     return Aspects(
         names=names,
-        kinds=tuple(table["kinds"][k] for k in order),
-        polygons=tuple(table["polygons"][k] for k in order),
+        **{name: tuple(table[name][k] for k in order) for name in ("kinds", "forms", "polygons")},
         probabilities={rule: check.frozen(chance[order]) for rule, chance in chances.items()},
-        warnings=warnings,
+        warnings=(*said(table["forms"]), *told),
         **arrays,
     )
-
-
-def _said(groups, hull):
-    """What a user must know of the aspects found."""
-    balls = [group[0] for group in groups if group[0].kind == "rolling" and np.isnan(group[0].axis).all()]
-    centred = [np.ptp(hull.heights[ball.triangles]) < EQUAL * ball.height for ball in balls]
-    if len(groups) == 1 and centred == [True]:
-        return ("the part is a ball: it rests on no aspect, its one class rolls in every direction",)
-    said = []
-    if any(centred):
-        said.append(
-            "a rolling class is the side of a ball about the centre of mass: it rolls in every direction"
-        )
-    if not all(centred):
-        said.append(
-            "a rolling class is the side of a ball whose middle is not the centre of mass: it rests on one"
-            " point of it and rocks in every direction"
-        )
-    return tuple(said)
 
 
 def _from_card(part):
@@ -247,7 +239,8 @@ def _from_card(part):
     nothing = check.frozen(np.full((len(rows), 3), np.nan))
     return Aspects(
         names=tuple(row.name for row in rows),
-        kinds=("flat",) * len(rows),
+        kinds=(FLAT,) * len(rows),
+        forms=(FLAT,) * len(rows),
         faces=quantities.faces,
         stable=stable,
         normals=nothing,

@@ -12,7 +12,6 @@ from feederscrew.part.hull import convex_hull
 from feederscrew.part.record import Part
 
 COINCIDE = 1e-5  # of the part's size: a contact centroid nearer to the foot gives no direction
-LEVEL = 1e-3  # [1] slope of an axis that counts as level: a file's noise on a short cylinder
 ALIKE = 1e-6  # of the part's size: sides whose lengths differ by less are equally long
 
 
@@ -37,22 +36,14 @@ class Posture:
     corners: np.ndarray | None = None  # (V, 3) [m] hull corners, z from the floor; None of a card
     solid: Part | None = None  # that stands so; None where only its plan is known
     axes: np.ndarray | None = None  # (3, 3) [1] x, y, z of the posture as rows, in the file's axes
-    run: float = np.nan  # [1] how far the rolling axis runs level while it falls by one; infinite if level
+    rolling_circle: float = np.nan  # [m] as ``Aspects.rolling_circles``
+    form: str = "flat"  # 'cylinder', 'cone', 'ball' and so on, as ``Aspects.forms``
 
     @property
     def surface(self):
         """Every corner (V, 3) of the part's mesh as it stands [m], z from the floor."""
         body = self.solid.vertices - self.solid.centre_of_mass
         return np.einsum("ij,vj->vi", self.axes, body) + np.array([0.0, 0.0, self.height])
-
-    @property
-    def rolling_circle(self):
-        """Return the radius [m] of the circle in which the centre of mass rolls; infinite where straight.
-
-        The axis of a cone, or of a part that lies on two circles, meets the floor at a point that stays where
-        it is: the part rolls round it. NaN where the part does not roll about an axis.
-        """
-        return self.height * self.run
 
     @property
     def turning_inertia(self):
@@ -121,7 +112,8 @@ def _of_mesh(part, aspects, row):
         corners=check.frozen(np.column_stack([vectors.product(corners[:, :2], turn.T), corners[:, 2]])),
         solid=part,
         axes=check.frozen(axes),
-        run=_run(axes, aspects.axes[row]),
+        rolling_circle=float(aspects.rolling_circles[row]),
+        form=aspects.forms[row],
     )
 
 
@@ -164,14 +156,6 @@ def _rolling_axis(axes, direction):
         return None
     flat = vectors.product(axes, direction)[:2]
     return check.frozen(flat / np.hypot(*flat))
-
-
-def _run(axes, direction):
-    """Level distance over height of a line along a rolling axis; NaN where there is none."""
-    if not np.isfinite(direction).all():
-        return np.nan
-    x, y, z = vectors.product(axes, direction)
-    return float(np.hypot(x, y) / abs(z)) if abs(z) > LEVEL else np.inf
 
 
 def _of_card(part, aspects, row):

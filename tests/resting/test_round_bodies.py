@@ -154,9 +154,10 @@ def test_a_cone_rolls_in_a_circle_round_its_tip():
     part, found = aspects_of([(0, 0), (0, 5), (12, 0)], 360)
     lying = posture(part, found, found.names[found.kinds.index("rolling")])
     assert lying.rolling_circle == pytest.approx(9e-3 * 12.0 / 13.0, rel=1e-4)
+    assert (lying.form, set(found.forms)) == ("cone", {"cone", "flat"})
     part, found = aspects_of([(0, 0), (0, 5), (12, 5), (12, 0)], 360)
     lying = posture(part, found, found.names[found.kinds.index("rolling")])
-    assert lying.rolling_circle == np.inf
+    assert lying.rolling_circle == np.inf and lying.form == "cylinder"
 
 
 def test_a_ball_with_a_flat_rests_on_a_point_and_on_the_flat():
@@ -169,9 +170,18 @@ def test_a_ball_with_a_flat_rests_on_a_point_and_on_the_flat():
         assert np.isnan(found.axes[row]).all()
         assert found.heights[row] == pytest.approx(1e-3 * (5.0 + centre), rel=2e-3)
         assert found.warnings == (
-            "a rolling class is the side of a ball whose middle is not the centre of mass: it rests on one"
-            " point of it and rocks in every direction",
+            "a rolling class is the side of a ball with a flat, whose middle is not the centre of mass: it"
+            " rests on one point of it and rocks in every direction",
         )
+        assert found.forms[row] == "ball with a flat"
+
+
+def test_a_ball_says_where_its_middle_is():
+    for shift, form in ((0.0, "ball"), (-1.0, "off-centre ball")):
+        part, _ = aspects_of(ball())
+        middle = part.centre_of_mass + np.array([1e-3 * shift, 0.0, 0.0])
+        found = aspects.find(replace(part, centre_of_mass=middle, hull=None))
+        assert found.forms == (form,) and len(found.warnings) == 1 and form.split()[0] in found.warnings[0]
 
 
 def test_a_ball_on_the_floor_rolls_with_two_sevenths_of_the_friction_of_sliding():

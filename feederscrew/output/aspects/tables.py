@@ -45,6 +45,9 @@ def aspects(study):
             "polar_inertia_g_mm2": found.polar_inertias / G_MM2,
             **{f"p_{rule}": chance for rule, chance in found.probabilities.items()},
             **_barriers(found),
+            "form": found.forms,
+            "rolling_circle_mm": np.where(np.isfinite(found.rolling_circles), found.rolling_circles, np.nan)
+            / MM,
             **_interval("p_drop", study.tally),
             **_interval("p_recommended", study.recommended),
             **_labels("surface", "open", study.part.open_surface, len(found.names)),

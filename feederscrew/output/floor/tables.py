@@ -111,6 +111,7 @@ def document(found, settings, *, as_published=False):
         "part": found.part.name,
         "aspect": posture.name,
         "kind": posture.kind,
+        "form": posture.form,
         "heading_deg": float(np.degrees(found.heading)),
         "height_mm": posture.height / MM,
         "drive_offset_mm": posture.offset / MM,
@@ -180,7 +181,8 @@ def remarks(found):
     if rolls(posture):
         limit = float(found.now.limiting_friction)
         lines.append(
-            f"rolling aspect: it rolls, and slips as well where static friction is below {limit:.3g}"
+            f"rolling aspect, {posture.form}: it rolls, and slips as well where static friction is below"
+            f" {limit:.3g}"
         )
     if np.isfinite(posture.rolling_circle):
         lines.append(

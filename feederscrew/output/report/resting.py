@@ -56,7 +56,8 @@ def aspects(case):
     views = (Text(CARD, quiet=True),) if part.vertices is None else (*_views(case, rows, offered),)
     chart = _picture(offered["probabilities.png"])
     lines = (Notes(tuple(said)),) if said and part.vertices is not None else ()
-    shown = table.without(aspects_tables.NORMALS)
+    straight = () if np.isfinite(table["rolling_circle_mm"]).any() else ("rolling_circle_mm",)
+    shown = table.without((*aspects_tables.NORMALS, *straight))
     chances = [name for name in shown if name.startswith("p_")]
     shapes = Table(shown.without(chances))
     return Section(
@@ -117,7 +118,7 @@ def _picture(offer, **keywords):
 
 
 def _caption(found, row):
-    kind = f"{found.kinds[row]} ×{found.faces[row]}" if found.stable[row] else "not stable"
+    kind = f"{found.forms[row]} ×{found.faces[row]}" if found.stable[row] else "not stable"
     return found.names[row], kind, tuple(_bars(found, row)) if found.stable[row] else ()
 
 

@@ -1,0 +1,55 @@
+"""What each resting aspect is by its form, and what a user must know of those that roll."""
+
+import numpy as np
+
+from feederscrew.geometry import vectors
+from feederscrew.resting.faces import EQUAL
+
+FLAT, CYLINDER, CONE = "flat", "cylinder", "cone"
+BALL, OFF_CENTRE, WITH_A_FLAT = "ball", "off-centre ball", "ball with a flat"
+LEVEL = 1e-3  # [1] slope of an axis that counts as level: a file's noise on a short cylinder
+ALONE = "the part is a ball: it rests on no aspect, its one class rolls in every direction"
+CENTRED = "a rolling class is the side of a ball about the centre of mass: it rolls in every direction"
+ROCKS = (
+    "a rolling class is the side of {}, whose middle is not the centre of mass: it rests on one point of it"
+    " and rocks in every direction"
+)
+
+
+def forms(groups, hull):
+    """Return what each class is by its form.
+
+    Parameters
+    ----------
+    groups : sequence of list of Face
+        The faces of each class.
+    hull : Hull
+
+    Returns
+    -------
+    list of str
+        'flat'; 'cylinder', which rolls straight; 'cone', which rolls in a circle, as parts on two unlike
+        circles do; 'ball', about the centre of mass; 'off-centre ball' and 'ball with a flat', which rest on
+        one point of a ball's side and rock: of a part that has no other class, or that has flats as well.
+    """
+    flats = any(group[0].kind == FLAT for group in groups)
+    return [_form(group[0], hull, flats) for group in groups]
+
+
+def _form(face, hull, flats):
+    if face.kind == FLAT:
+        return FLAT
+    if np.isfinite(face.axis).all():
+        return CYLINDER if abs(vectors.dot(face.axis, face.normal)) < LEVEL else CONE
+    if np.ptp(hull.heights[face.triangles]) < EQUAL * face.height:
+        return BALL
+    return WITH_A_FLAT if flats else OFF_CENTRE
+
+
+def said(found):
+    """Say of forms, (A,) str, what a user must know, a sentence each."""
+    if list(found) == [BALL]:
+        return (ALONE,)
+    rocks = dict.fromkeys(form for form in found if form in (OFF_CENTRE, WITH_A_FLAT))
+    told = (CENTRED,) if BALL in found else ()
+    return told + tuple(ROCKS.format(f"{'an' if form[0] == 'o' else 'a'} {form}") for form in rocks)
