@@ -44,6 +44,6 @@ def tune(part, target, aspect, heading, rule, gap, fill, taken, bowl, out):
             solid, record, aspect, target, known=known,
             heading=heading, rule=rule, gap=gap, fill=fill,
         )  # fmt: skip
-        out.warn(*found.warnings)
+        out.warn(*found.warnings, *tables.remarks(found))
         offers.write(folder, files.offers(found))
         out.show(tables.shown(found, out.format), tables.document(found))

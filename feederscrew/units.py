@@ -124,6 +124,12 @@ def counted(number, noun):
     return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
+def listed(names):
+    """Names for people: 'A', 'A and B', 'A, B and C'."""
+    *most, last = names
+    return f"{', '.join(most)} and {last}" if most else last
+
+
 def shown(text):
     """A user's text fit for a message, in quotes."""
     return f"'{one_line(text)}'"

@@ -26,7 +26,8 @@ def remarks(sheet):
     if sheet.order is not None:
         found += _size(sheet)
     lines = [str(one) for one in found]
-    return (*lines, *speeds.remark(sheet.answer.velocity, sheet.bowl.sizing))
+    tipping = () if sheet.order is None else sheet.order.tipping
+    return (*lines, *tipping, *speeds.remark(sheet.answer.velocity, sheet.bowl.sizing))
 
 
 def _tuning(sheet):

@@ -228,12 +228,18 @@ def parts_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
     FeederError
         If there are none: the probability is zero, or the track or a device returns them all.
     """
+    parts = leaving_per_metre(found, target, rule, gap=gap, fill=fill)
+    if not parts > 0.0:
+        where = f"aspect {target[0]}, heading {np.degrees(target[1]):.4g} deg"
+        raise FeederError(where, "never leaves the bowl", "see the devices in feeder rate")
+    return parts
+
+
+def leaving_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
+    """Return the same, 0 where no part leaves so."""
     _check_rule(found, rule)
     row = _row(found, target)
     share = efficiency(found, row, rule)
-    if not share > 0.0:
-        where = f"aspect {target[0]}, heading {np.degrees(target[1]):.4g} deg"
-        raise FeederError(where, "never leaves the bowl", "see the devices in feeder rate")
     return min(share * _queued(found, row, rule, gap, fill), 1.0 / float(fed(found, row).length))
 
 

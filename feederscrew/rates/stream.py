@@ -1,11 +1,11 @@
 """Every orientation of a part in the queue, and what becomes of it at each device."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from feederscrew import check
-from feederscrew.rates.tipping import TrackTipping, tipping
+from feederscrew.rates.tipping import TrackTipping, marked
 from feederscrew.tooling import orientations as tooling
 from feederscrew.tooling.course import course
 from feederscrew.tooling.orientations import Orientation
@@ -88,10 +88,12 @@ def orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None):
     -------
     Orientations
     """
-    lying = tooling.orientations(part, aspects, track)
-    tips = None if bowl is None else tipping(lying, bowl)
-    if tips is not None:
-        lying = tuple(replace(one, turns_over=bool(over)) for one, over in zip(lying, tips.over))
+    return along(tooling.orientations(part, aspects, track), aspects, chain, sigma, bowl)
+
+
+def along(lying, aspects, chain=(), sigma=0.0, bowl=None):
+    """Return what becomes of known orientations; the rest as for ``orientations``."""
+    lying, tips = (lying, None) if bowl is None else marked(lying, bowl)
     found = course(chain, lying, sigma)
     rules = {rule: np.array([one.chances[rule] for one in lying]) for rule in aspects.chances}
     return Orientations(

@@ -5,7 +5,7 @@ nearest side. Over a settled cycle the moments about that side hold it down, or 
 it: it rocks. It turns over where one stroke alone is enough to lift its centre of mass over the side.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from feederscrew.mechanics.cycle import phases
 from feederscrew.mechanics.floor.balance import HOP, TIP
 from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import seat
+from feederscrew.units import listed
 
 INSTANTS = 12  # of one period
 FLAT = "flat"  # a part that rolls lies on a line, and rolls where others tip
@@ -34,6 +35,30 @@ class TrackTipping:
     def over(self):
         """(M,) bool, whether one stroke is enough to turn it over."""
         return self.tips & (self.tilt >= np.nan_to_num(self.balance, nan=np.inf))
+
+
+def marked(lying, bowl):
+    """Return orientations that know whether the drive of a bowl turns them over, and what it does to them.
+
+    Parameters
+    ----------
+    lying : sequence of Orientation
+        M of them.
+    bowl : Bowl
+        Single values.
+
+    Returns
+    -------
+    tuple of Orientation, TrackTipping
+    """
+    found = tipping(lying, bowl)
+    return tuple(replace(one, turns_over=bool(over)) for one, over in zip(lying, found.over)), found
+
+
+def remark(lying):
+    """Say which orientations the drive turns over: one sentence, or none."""
+    over = [one.name for one in lying if one.turns_over]
+    return (f"{listed(over)} can tip over on the track at this drive and count as returned",) if over else ()
 
 
 def tipping(lying, bowl):

@@ -14,6 +14,7 @@ GENTLE = ("forward", "stick", "both", "backward", "hop", "no steady state")  # r
 STEPS = 241  # values of a knob that are looked at
 HIGHEST_THROW = 3.5  # beyond the best throw number, about 3, velocity falls and rests on chance
 HALVINGS = 45
+FASTEST = 20  # settings that are asked what they bring at most
 REACHED = 1e-6  # of the velocity
 
 
@@ -24,6 +25,12 @@ class Solution:
     key: Key  # what was turned
     value: float  # [SI]
     answer: answer.Answer
+    parts_per_metre: float = np.nan  # [1/m] well-oriented parts on a length of track at that drive
+
+    @property
+    def rate(self):
+        """Well-oriented parts [1/s]."""
+        return self.answer.velocity * self.parts_per_metre
 
     @property
     def order(self):
@@ -33,7 +40,7 @@ class Solution:
         return GENTLE.index(found.regime), several, found.hardest_impact
 
 
-def solutions(bowl, target, parts_per_metre):
+def solutions(bowl, target, density):
     """Every setting of amplitude, angle or frequency alone that reaches at least a rate.
 
     Parameters
@@ -41,8 +48,9 @@ def solutions(bowl, target, parts_per_metre):
     bowl : Bowl
     target : float [1/s]
         Well-oriented parts, from rest; above 0.
-    parts_per_metre : float [1/m]
-        From ``rate.parts_per_metre``.
+    density : callable
+        From a bowl to the well-oriented parts on a length of its track [1/m], without those that its drive
+        turns over; of None, as if it turned over none.
 
     Returns
     -------
@@ -55,16 +63,18 @@ def solutions(bowl, target, parts_per_metre):
     FeederError
         If none does; the line says what the bowl reaches at most.
     """
-    velocity, found, peaks = target / parts_per_metre, [], []
-    for name in KNOBS:
-        key, values = BY_NAME[name], _values(bowl, BY_NAME[name])
-        speeds = _speeds(bowl, key, values)
-        fast = _crossings(bowl, key, values, speeds, velocity)
-        found += [one for one in fast if one.answer.velocity >= (1.0 - REACHED) * velocity]
-        peaks += [(speed, key, value) for speed, value in zip(speeds, values) if np.isfinite(speed)]
+    looks = [_look(bowl, BY_NAME[name]) for name in KNOBS]
+    asked, found = [density(None)], []
+    for parts in asked:  # grows by what is left where a setting turns some over
+        for one in _reaching(bowl, looks, target / parts):
+            one = replace(one, parts_per_metre=density(turned(bowl, one.key, one.value)))
+            if one.parts_per_metre >= (1.0 - REACHED) * parts:
+                found.append(one)
+            elif one.parts_per_metre > 0.0 and not np.isclose(one.parts_per_metre, asked, atol=0.0).any():
+                asked.append(one.parts_per_metre)
     if not found:
-        raise _unreachable(target, parts_per_metre, max(peaks, key=lambda peak: peak[0], default=None))
-    return sorted(found, key=lambda one: (one.answer.velocity > (1.0 + REACHED) * velocity, *one.order))
+        raise _unreachable(bowl, looks, target, density)
+    return sorted(found, key=lambda one: (one.rate > (1.0 + REACHED) * target, *one.order))
 
 
 def turned(bowl, key, value):
@@ -87,6 +97,18 @@ def _values(bowl, key):
     return values[throw <= HIGHEST_THROW] if key.word == "vibration_angle" else values
 
 
+def _look(bowl, key):
+    """A key, its values and the velocity at each [m/s]."""
+    values = _values(bowl, key)
+    return key, values, _speeds(bowl, key, values)
+
+
+def _reaching(bowl, looks, velocity):
+    """Every setting that travels at least so fast."""
+    fast = [one for look in looks for one in _crossings(bowl, *look, velocity)]
+    return [one for one in fast if one.answer.velocity >= (1.0 - REACHED) * velocity]
+
+
 def _speeds(bowl, key, values):
     return answer.cells(turned(bowl, key, values))["velocity"]
 
@@ -104,15 +126,21 @@ def _crossings(bowl, key, values, speeds, velocity):
     return [Solution(key, float(value), answer.answer(turned(bowl, key, value))) for value in fast]
 
 
-def _unreachable(target, parts_per_metre, peak):
-    """The fault that no setting is fast enough, and what is the most."""
-    if peak is None:
+def _unreachable(bowl, looks, target, density):
+    """The fault that no setting brings so many parts, and what is the most."""
+    peaks = [(speed, key, value) for key, values, speeds in looks for speed, value in zip(speeds, values)]
+    peaks = sorted((peak for peak in peaks if np.isfinite(peak[0])), key=lambda peak: -peak[0])
+    if not peaks:
         return FeederError("track.climb", "is steeper than friction holds", "lower the climb")
-    speed, key, value = peak
     per_minute = units.factor("/min", "rate")
-    most = f"{speed * parts_per_metre / per_minute:.4g}/min"
-    at = f"{key.name} {value / units.factor(key.unit, key.dimension):.4g} {key.unit}"
-    what = f"no setting reaches {target / per_minute:.6g}/min: the most is {most}, at {at}"
-    if speed <= 0.0:
-        what = f"no setting reaches {target / per_minute:.6g}/min: the part never travels up the track"
-    return ArgumentError("target", what, "lower the target, or change two keys of the drive together")
+    what = f"no setting reaches {target / per_minute:.6g}/min"
+    mend = "lower the target, or change two keys of the drive together"
+    if peaks[0][0] <= 0.0:
+        return ArgumentError("target", f"{what}: the part never travels up the track", mend)
+    for speed, key, value in peaks[:FASTEST]:
+        parts = density(turned(bowl, key, value))
+        if parts > 0.0:
+            at = f"{key.name} {value / units.factor(key.unit, key.dimension):.4g} {key.unit}"
+            most = f"the most is {speed * parts / per_minute:.4g}/min, at {at}"
+            return ArgumentError("target", f"{what}: {most}", mend)
+    return ArgumentError("target", f"{what}: at those drives the part can tip over on the track", mend)

@@ -66,6 +66,10 @@ class Aspects:
         """Name of the aspect it rests on most often: by the recommended answer, of a card by CSA."""
         return self.names[int(np.argmax(np.nan_to_num(self.chances[self.ranking])))]
 
+    def source(self, rule):
+        """Say whose the probabilities of a rule are: 'csa', of the recommended one 'hops, launch feed'."""
+        return self.recommended.rule if rule == "recommended" and self.recommended is not None else rule
+
     @property
     def ranking(self):
         """Name of the answer that ranks the aspects: 'recommended', of a card 'csa'."""

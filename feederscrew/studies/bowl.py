@@ -1,6 +1,7 @@
 """``feeder bowl``: the machine under a bowl, and the bowl for a part and a rate."""
 
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -16,11 +17,14 @@ from feederscrew.machine import building, checks, filling, sizing, throughput, t
 from feederscrew.machine.springs import Springs, gain, leaf_stress, springs
 from feederscrew.machine.stroke import Stroke, angles, greatest_amplitude, stroke
 from feederscrew.part.record import Part
-from feederscrew.rates import queue
+from feederscrew.rates import queue, stream
+from feederscrew.rates.tipping import remark
 from feederscrew.studies.aspects import answered
+from feederscrew.tooling.orientations import orientations
 
 STEEL = 7850.0  # [kg/m3] of a fill without a part
 FULL_WAVE = 2.0
+EVEN = 1e-9  # [1] flows closer than this are equal
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +35,8 @@ class Order:
     target: float  # [1/s]
     wanted: tuple[str, float] | None  # aspect and heading [rad] that count; None: whatever passes
     rule: str  # whose probabilities were taken
+    answer: str  # the same in words: 'hops, launch feed'
+    tipping: tuple[str, ...]  # what the drive turns over on the track, a sentence or none
     lying: sizing.Lying
     size: sizing.Size
     steepest: float  # [rad] climb up to which the part travels
@@ -132,14 +138,16 @@ def bowl(
     track = replace(plain.track, radius=0.5 * size.diameter, width=size.track_width, climb=size.climb)
     if wanted is not None:
         wanted = queue.wanted(part, found, track, *wanted)
-    ways = queue.orientations(part, found, track, plain.devices)
-    flow = throughput.flow(ways, rule, target=wanted, gap=gap, fill=fill)
-    driven = _driven(replace(plain, track=track), size, settings, target, flow)
+    ways = _ways(part, found, track, plain.devices)
+    counted = {"rule": rule, "target": wanted, "gap": gap, "fill": fill}
+    driven, flow = _brought(replace(plain, track=track), size, settings, target, ways, counted)
     order = Order(
         part=part,
         target=target,
         wanted=wanted,
         rule=rule,
+        answer=found.source(rule),
+        tipping=remark(ways(driven).lying),
         lying=lying,
         size=size,
         steepest=throughput.steepest(driven),
@@ -184,6 +192,23 @@ def _size(lying, part, plain, settings, *, sorts):
         width=track.width if "width" in said else None,
         climb=track.climb if "climb" in said else None,
     )
+
+
+def _ways(part, aspects, track, devices):
+    """A function from a bowl, or None, to the orientations along its track."""
+    every = orientations(part, aspects, track)
+    return cache(lambda driven: stream.along(every, aspects, devices, bowl=driven))
+
+
+def _brought(plain, size, settings, target, ways, counted):
+    """The bowl whose drive brings the target, without the parts that this drive turns over, and the flow."""
+    flow = throughput.flow(ways(None), **counted)
+    while True:
+        driven = _driven(plain, size, settings, target, flow)
+        own = throughput.flow(ways(driven), **counted)
+        if own.parts >= flow.parts * (1.0 - EVEN):
+            return driven, own
+        flow = own  # less with every round: there are only so many orientations to turn over
 
 
 def _driven(plain, size, settings, target, flow):

@@ -13,6 +13,7 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
 from feederscrew.rates import passing, stream
+from feederscrew.rates.tipping import marked
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts.passed import DeviceCounts
 from feederscrew.studies.rate import shares
@@ -32,7 +33,7 @@ class PassagesStudy:
     @property
     def wanted(self):
         """Place of the most frequent orientation that leaves; of the most frequent one where none does."""
-        leaves = [not one.falls_off and all(k.verdict.passes > 0.0 for k in met)
+        leaves = [not one.returned and all(k.verdict.passes > 0.0 for k in met)
                   for one, met in zip(self.orientations, self.passages)]  # fmt: skip
         shares = np.round(self.shares, 9)
         return int(np.argmax(np.where(leaves, shares, 0.0) if any(leaves) else shares))
@@ -55,7 +56,7 @@ def passages(part: Part, bowl: Bowl, aspects: Aspects, rule: str) -> PassagesStu
     -------
     PassagesStudy
     """
-    every = orientations(part, aspects, bowl.track)
+    every, _ = marked(orientations(part, aspects, bowl.track), bowl)
     devices = tuple(device for device in bowl.devices if device.kind != "yield")
     return PassagesStudy(
         devices=devices,

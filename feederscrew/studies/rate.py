@@ -108,8 +108,7 @@ class RateStudy:
     @property
     def answer(self) -> str:
         """Say whose probabilities are taken: 'hops, launch feed', 'csa'."""
-        known = self.aspects.recommended
-        return known.rule if self.rule == queue.RECOMMENDED and known is not None else self.rule
+        return self.aspects.source(self.rule)
 
     @property
     def warnings(self):

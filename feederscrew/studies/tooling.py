@@ -8,6 +8,7 @@ import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.part.record import Part
+from feederscrew.rates.tipping import marked, remark
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.aspects import answered
 from feederscrew.tooling.cutting import VERDICTS, Search
@@ -40,14 +41,13 @@ class ToolingStudy:
     @property
     def answer(self) -> str:
         """Say whose probabilities are taken: 'hops, launch feed', 'csa'."""
-        known = self.aspects.recommended
-        return known.rule if self.rule == "recommended" and known is not None else self.rule
+        return self.aspects.source(self.rule)
 
     @property
     def warnings(self):
         """What a user must not overlook, a sentence each."""
         late = any(one is not None and one.late for one in self.designs)
-        return (*self.aspects.warnings, *([LATE] if late else []))
+        return (*self.aspects.warnings, *remark(self.orientations), *([LATE] if late else []))
 
 
 def tooling(
@@ -109,7 +109,7 @@ def tooling(
         If the part has no mesh, is too large for the bowl, or has no such orientation or rule.
     """
     found = answered(part) if known is None else known
-    every = named(orientations(part, found, bowl.track))
+    every, _ = marked(named(orientations(part, found, bowl.track)), bowl)
     if rule not in found.chances:
         from feederscrew.documents import hint
         from feederscrew.errors import ArgumentError

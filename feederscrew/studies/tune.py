@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -12,8 +13,10 @@ from feederscrew.conveying import answer, sensitivity
 from feederscrew.part.record import Part
 from feederscrew.rates import chances, queue
 from feederscrew.rates import tune as knobs
+from feederscrew.rates.stream import along
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.rate import LEAST, Shares, checked, shares
+from feederscrew.tooling.orientations import orientations
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,6 +25,7 @@ class Tuned:
 
     solution: knobs.Solution
     velocity: queue.Range  # [m/s] over all starts and for friction a fifth lower and higher; the low end >= 0
+    over: tuple[str, ...]  # orientations that this drive turns over on the track
     several: bool  # steady velocities, depending on how the part arrives
 
 
@@ -34,7 +38,6 @@ class TuneStudy:
     aspects: Aspects
     devices: tuple[Device, ...]
     target: float  # [1/s] well-oriented parts
-    parts_per_metre: float  # [1/m] well-oriented parts on a length of track
     settings: tuple[Tuned, ...]
 
     @property
@@ -68,8 +71,7 @@ def tune(
     target : float [1/s]
         Well-oriented parts, above 0.
     heading, rule, devices, gap, fill, known
-        As for ``rate``; the shares, and what turns over on the track, stay as they are at the bowl's own
-        drive.
+        As for ``rate``; the shares stay as they are while the drive changes, what turns over does not.
 
     Returns
     -------
@@ -86,27 +88,42 @@ def tune(
     known = shares(part, bowl) if known is None else known
     found = known.aspects
     wanted = queue.wanted(part, found, bowl.track, aspect, heading)
-    lying = chances.oriented(queue.orientations(part, found, bowl.track, chain, bowl=bowl), known.measured)
-    density = queue.parts_per_metre(lying, wanted, rule, gap=gap, fill=fill)
+    ways = _ways(part, bowl, chain, known)
+    queue.parts_per_metre(ways(None), wanted, rule, gap=gap, fill=fill)  # raises where none ever leaves so
+
+    def density(driven):
+        return queue.leaving_per_metre(ways(driven), wanted, rule, gap=gap, fill=fill)
+
     return TuneStudy(
         part=part,
         bowl=bowl,
         aspects=found,
         devices=chain,
         target=target,
-        parts_per_metre=density,
-        settings=tuple(_tuned(one, bowl) for one in knobs.solutions(bowl, target, density)),
+        settings=tuple(_tuned(one, bowl, ways) for one in knobs.solutions(bowl, target, density)),
     )
 
 
-def _tuned(solution, bowl):
-    """Add to a solution what it gives if friction is a fifth lower or higher."""
-    found = solution.answer
-    doubt = sensitivity.friction_doubt(knobs.turned(bowl, solution.key, solution.value))
+def _ways(part, bowl, chain, known):
+    """A function from a bowl with another drive, or None, to the orientations along its track."""
+    every = orientations(part, known.aspects, bowl.track)
+
+    @cache
+    def ways(driven):
+        return chances.oriented(along(every, known.aspects, chain, bowl=driven), known.measured)
+
+    return ways
+
+
+def _tuned(solution, bowl, ways):
+    """Add to a solution what it gives if friction is a fifth lower or higher, and what it turns over."""
+    found, driven = solution.answer, knobs.turned(bowl, solution.key, solution.value)
+    doubt = sensitivity.friction_doubt(driven)
     slowest = np.nanmin([found.low, doubt.less, doubt.more])
     fastest = np.nanmax([found.high, doubt.less, doubt.more])
     return Tuned(
         solution=solution,
         velocity=queue.Range(found.velocity, max(slowest, 0.0), max(fastest, 0.0)),
+        over=tuple(one.name for one in ways(driven).lying if one.turns_over),
         several=bool(found.high - found.low > answer.COEXIST * found.speed),
     )

@@ -105,6 +105,8 @@ def _short(given, found, efficiency, turn):
 def _plain(given, search, holes):
     """The chain of devices that return the others and leave the wanted one lying."""
     every, wanted = given.every, given.wanted
+    if every[wanted].turns_over:
+        return without(given, "can tip over on the track at this drive")
     if every[wanted].falls_off or not every[wanted].margin > 0.0:
         return without(given, "falls off the bare track")
     if not given.coming[wanted] > 0.0 and given.shares[wanted] > 0.0:
@@ -150,7 +152,7 @@ def place(every, aspect, heading, where):
         names = ", ".join(dict.fromkeys(one.aspect for one in every))
         raise FeederError(where, f"there is no aspect {aspect[:20]!r}", f"choose one of {names}")
     if heading is None:
-        return max(known, key=lambda k: (not every[k].falls_off, every[k].heading_share, -k))
+        return max(known, key=lambda k: (not every[k].returned, every[k].heading_share, -k))
     away = [abs(np.remainder(every[k].heading - heading + np.pi, 2.0 * np.pi) - np.pi) for k in known]
     if min(away) > np.radians(1.0):
         names = ", ".join(f"{np.degrees(every[k].heading):.4g}" for k in known)

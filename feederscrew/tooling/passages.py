@@ -118,8 +118,8 @@ def fate(one, met):
     str
     """
     last = met[-1].after if met else one
-    if last.falls_off:
-        return "falls off the track"
+    if last.returned:
+        return "falls off the track" if last.falls_off else "tips over on the track"
     if last.kind == "hanging":
         return f"leaves {last.name}"
     return "leaves" if last.name == one.name else f"leaves as {last.name}"
@@ -147,13 +147,13 @@ def until_returned(devices, one, every):
     Returns
     -------
     list of Passage
-        None of one that falls off the bare track.
+        None of one that the bare track does not carry.
     """
     found = []
-    for device in () if one.falls_off else devices:
+    for device in () if one.returned else devices:
         found.append(passage(device, one, every))
         one = found[-1].after
-        if found[-1].verdict.passes <= 0.0 or one.falls_off:
+        if found[-1].verdict.passes <= 0.0 or one.returned:
             break
     return found
 

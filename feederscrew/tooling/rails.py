@@ -24,7 +24,7 @@ def design(given):
     """
     every, wanted, margin = given.every, given.wanted, given.margin
     device = _between(every[wanted], margin)
-    if device is None or every[wanted].falls_off:
+    if device is None or every[wanted].returned:
         return None
     found = [verdict(device, one, every) for one in every]
     same = np.array([one.hangs and one.margin >= margin for one in found])

@@ -49,7 +49,7 @@ class DesignTask:
     @property
     def stays(self):
         """(M,) bool, whether the bare track carries it."""
-        return np.array([not one.falls_off for one in self.every])
+        return np.array([not one.returned for one in self.every])
 
     @property
     def often(self):

@@ -7,11 +7,17 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.mechanics.floor.balance import TIP
 from feederscrew.output.rate import tables
+from feederscrew.output.tooling.tables import passages as passage_table
+from feederscrew.rates import tune as knobs
 from feederscrew.rates.stream import orientations
 from feederscrew.rates.tipping import tipping
 from feederscrew.resting.aspects import find
+from feederscrew.studies.bowl import bowl as sized
+from feederscrew.studies.passages import passages
 from feederscrew.studies.rate import Shares, rate
+from feederscrew.studies.tooling import tooling
 from feederscrew.studies.track import track
+from feederscrew.studies.tune import tune
 
 ROUGH = ("friction.static=0.9", "track.climb=1 deg")
 BOWL = bowls.read(None, ROUGH)
@@ -79,3 +85,46 @@ def test_nothing_is_said_where_flights_or_another_drive_are_not_followed():
     for more in ("drive.amplitude=0.5 mm", "drive.second_harmonic=0.3"):
         _, told = tilts(1, bowls.read(None, (*ROUGH, more)))
         assert not told.tips.any() and not told.over.any()
+
+
+SAID = "B@0 can tip over on the track at this drive and count as returned"
+
+
+def test_tune_gives_the_rate_that_rate_gives_at_each_setting():
+    part, found = pin(1)
+    study = tune(part, BOWL, "A", 400.0 / 60.0, rule="csa", known=Shares(found))
+    assert any(one.over == ("B@0",) for one in study.settings)
+    assert any(one.over == () for one in study.settings)
+    for one in study.settings:
+        driven = knobs.turned(BOWL, one.solution.key, one.solution.value)
+        again = rate(part, driven, "A", rule="csa", known=Shares(found)).rate
+        assert again.parts.value == pytest.approx(400.0 / 60.0, rel=1e-6)
+        assert again.parts.value == pytest.approx(one.solution.rate, rel=1e-9)
+
+
+def test_tune_leaves_out_what_turns_the_wanted_orientation_over():
+    part, found = pin(1)
+    study = tune(part, BOWL, "B", 5.0 / 60.0, rule="csa", known=Shares(found))
+    assert {one.solution.answer.regime for one in study.settings} == {"hop"}
+
+
+def test_tooling_and_the_passages_of_a_report_return_what_tips_over():
+    part, found = pin(1)
+    study = tooling(part, BOWL, rule="csa", known=found)
+    assert study.warnings == (SAID,)
+    isolated = {one.name: made for one, made in zip(study.orientations, study.designs)}
+    assert isolated["B@0"].reasons == ("B@0 can tip over on the track at this drive",)
+    assert isolated["A@0"].isolated and "B@0" not in isolated["A@0"].left_over
+    told = passage_table(passages(part, BOWL, found, "csa"))
+    assert dict(zip(told["orientation"], told["outcome"]))["B@0"] == "tips over on the track"
+
+
+def test_the_bowl_for_a_rate_reckons_without_what_its_drive_turns_over():
+    part, found = pin(1)
+    given = bowls.settings(None, (*ROUGH, "drive.frequency=50 Hz", "track.radius=60 mm"))
+    sheet = sized(given, part, 8.0, rule="csa", known=found)
+    ways = orientations(part, found, sheet.bowl.track, bowl=sheet.bowl)
+    lost = float((ways.rules["csa"] * (1.0 - ways.through)).sum())
+    assert sheet.order.flow.share == pytest.approx(1.0 - lost)
+    assert sheet.rates(sheet.answer.velocity) >= 8.0 - 1e-9
+    assert lost > 0.0 and SAID in sheet.remarks

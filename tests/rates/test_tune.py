@@ -20,8 +20,12 @@ BOWL = bowls.read(
 PER_METRE = 10.0
 
 
+def per_metre(bowl):
+    return PER_METRE
+
+
 def test_each_solution_reaches_the_target():
-    found = tune.solutions(BOWL, 0.05, PER_METRE)
+    found = tune.solutions(BOWL, 0.05, per_metre)
     assert {one.key.name for one in found} >= {"drive.amplitude", "drive.frequency"}
     for one in found:
         again = answer.answer(tune.turned(BOWL, one.key, one.value))
@@ -30,14 +34,14 @@ def test_each_solution_reaches_the_target():
 
 
 def test_gentle_solutions_lead():
-    found = tune.solutions(BOWL, 0.4, PER_METRE)
+    found = tune.solutions(BOWL, 0.4, per_metre)
     orders = [one.order for one in found]
     assert orders == sorted(orders)
     assert tune.GENTLE.index("forward") < tune.GENTLE.index("both") < tune.GENTLE.index("hop")
 
 
 def test_only_the_knob_is_turned():
-    one = tune.solutions(BOWL, 0.05, PER_METRE)[0]
+    one = tune.solutions(BOWL, 0.05, per_metre)[0]
     there = tune.turned(BOWL, one.key, one.value)
     assert there.track == BOWL.track
     assert getattr(there.drive, one.key.word) == one.value
@@ -45,7 +49,7 @@ def test_only_the_knob_is_turned():
 
 def test_an_unreachable_target_says_what_is_reached():
     with pytest.raises(FeederError) as caught:
-        tune.solutions(BOWL, 100.0, PER_METRE)
+        tune.solutions(BOWL, 100.0, per_metre)
     line = str(caught.value)
     assert line.startswith("target: no setting reaches 6000/min: the most is ")
     assert line.endswith("lower the target, or change two keys of the drive together")
@@ -61,19 +65,19 @@ def test_an_unreachable_target_says_what_is_reached():
 def test_a_climb_too_steep():
     steep = bowls.read(None, ("track.climb=40 deg",))
     with pytest.raises(FeederError, match=r"track\.climb: is steeper than friction holds - lower the climb"):
-        tune.solutions(steep, 0.1, PER_METRE)
+        tune.solutions(steep, 0.1, per_metre)
 
 
 def test_a_part_that_only_travels_back():
     flat = bowls.read(None, ("drive.vibration_angle=0 deg", "drive.amplitude=0.001 mm", "restitution=0"))
     with pytest.raises(FeederError, match="no setting reaches 6/min: the part never travels up the track"):
-        tune.solutions(flat, 0.1, PER_METRE)
+        tune.solutions(flat, 0.1, per_metre)
 
 
 def test_a_target_that_the_velocity_jumps_over():
     gentle = ("drive.amplitude=0.05 mm", "drive.frequency=60 Hz", "drive.vibration_angle=30 deg")
     bouncing = bowls.read(None, gentle)  # from rest its velocity jumps onto the regular bounce of a period
-    found = tune.solutions(bouncing, 0.866, PER_METRE)
+    found = tune.solutions(bouncing, 0.866, per_metre)
     rates = [one.answer.velocity * PER_METRE for one in found]
     assert all(rate >= 0.866 * (1.0 - tune.REACHED) for rate in rates)
     beyond = found[rates.index(max(rates))]

@@ -54,10 +54,11 @@ def _rates(study):
     yield "rate from full to empty [1/min]", f"{rates[0]:.4g} to {rates[-1]:.4g}, amplitude left alone"
     yield "handbook, 1500 E / l [1/min]", f"{asked.handbook / PER_MINUTE:.4g}"
     yield "orientation that counts", _orientation(asked)
+    yield "whose probabilities", asked.answer
 
 
 def _orientation(asked):
-    share = f"{100 * asked.flow.share:.3g} % of the parts ({asked.rule})"
+    share = f"{100 * asked.flow.share:.3g} % of the parts"
     if asked.wanted is None:
         return f"every one that passes track and devices, {share}"
     return f"aspect {asked.wanted[0]} at {asked.wanted[1] / DEG:.3g} deg, {share}"

@@ -55,6 +55,7 @@ def order(study):
         "handbook_per_minute": asked.handbook / PER_MINUTE,
         **dict(zip(("aspect", "heading_deg"), wanted)),
         "rule": asked.rule,
+        "answer": asked.answer,
         "share_counted": asked.flow.share,
         "mean_length_mm": asked.flow.length / MM,
         "longest_mm": room.longest / MM,

@@ -5,6 +5,7 @@ import numpy as np
 from feederscrew import units
 from feederscrew.bowl.devices import KINDS
 from feederscrew.output import columns, tables
+from feederscrew.rates.tipping import remark
 
 PER_MINUTE = units.factor("/min", "rate")
 MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
@@ -113,12 +114,9 @@ def _tipping(found):
     known = found.orientations
     if known.tipping is None:
         return []
-    over = [one.name for one in known.lying if one.turns_over]
     rocks = known.tipping.tips & ~known.tipping.over
-    said = []
-    if over:
-        lost = "; rate is 0" if known.lying[found.row].turns_over else ""
-        said.append(f"{_list(over)} can tip over on the track at this drive and count as returned{lost}")
+    lost = "; rate is 0" if known.lying[found.row].turns_over else ""
+    said = [f"{line}{lost}" for line in remark(known.lying)]
     if rocks[found.row]:
         tilt, lean = (np.degrees(angle[found.row]) for angle in (known.tipping.tilt, known.tipping.balance))
         said.append(
@@ -126,10 +124,6 @@ def _tipping(found):
             f"and from {lean:.3g} deg it would tip over"
         )
     return said
-
-
-def _list(names):
-    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
 def _turned(devices):

@@ -10,6 +10,7 @@ from feederscrew.output.tooling import files, relief, tables
 from feederscrew.output.trial import files as trial_files
 from feederscrew.output.trial import playback
 from feederscrew.output.trial import tables as trial_tables
+from feederscrew.rates.tipping import remark
 
 TRIED = (  # columns of the trial's table that a page has room for
     *("aspect", "heading_deg", "share", "tried", "passed", "returned", "hanging", "stuck"),
@@ -28,7 +29,8 @@ def tooling(case):
     )
     drawn = files.chain_picture(study.devices, study.orientations, study.shares)
     picture = Picture(drawn.name, drawn.make(), drawn.alt)
-    return Section((lead, *_turning(study), *_views(study), Table(tables.passages(study)), picture))
+    blocks = (lead, *_turning(study), *_views(study), Table(tables.passages(study)), picture)
+    return Section(blocks, warnings=remark(study.orientations))
 
 
 def trial(case):

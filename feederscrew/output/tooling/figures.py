@@ -8,8 +8,9 @@ from matplotlib.patches import Polygon
 from shapely import affinity
 
 from feederscrew.output import style
-from feederscrew.output.tooling import sheet
+from feederscrew.output.tooling import sheet, tables
 from feederscrew.tooling import passages
+from feederscrew.tooling.result import LEAST_SHARE  # orientations that come less often have no row
 from feederscrew.tooling.verdicts import seen
 from feederscrew.units import factor
 
@@ -18,7 +19,6 @@ WIDTH = 1200  # pixels
 LEFT, COLUMN, ROW, HEAD, FOOT = 230, 300, 170, 118, 30  # pixels
 PASSES, FALLS = "#0072b2", "#d55e00"
 TRACK, AIR, PART, TOUCHING = "#e3e8ec", "#ffffff", "#9fb3c4", "#56697a"
-LEAST_SHARE = 5e-3  # [1] orientations that come less often have no row
 WIDEST = 420  # pixels of a column
 LINE = 17  # pixels between lines of text
 KEY = (
@@ -80,9 +80,7 @@ def limits(study):
     every, shares = study.orientations, study.shares
     rows = _rows(every, shares, None)
     page = style.page(WIDTH, HEAD + ROW * len(rows) + FOOT)
-    known = [one for one in study.designs if one is not None]
-    title = f"{sum(one.isolated for one in known)} of {len(known)} orientations can be isolated"
-    _heading(page, title, _missing(every, rows, shares))
+    _heading(page, tables.isolated(study), _missing(every, rows, shares))
     for left, text in (
         (LEFT + 8, "from above"),
         (LEFT + COLUMN + 8, "along the track"),
@@ -240,10 +238,10 @@ def _told(page, top, one, share, found, is_wanted):
 def _measured(page, top, one, share):
     """Share and limits of an orientation, at the left of its row."""
     sheet.text(page, 16, top + 24, one.name, size=12, weight="bold")
-    sheet.text(page, 110, top + 24, f"{100.0 * share:.3g} %")
     balcony = f"{one.balcony / MM:.2f} mm" if np.isfinite(one.balcony) else "none"
     lines = [
-        ("track at least", balcony), ("canyon up to", f"{one.canyon / MM:.2f} mm"),
+        ("of the parts", f"{100.0 * share:.3g} %"), ("track at least", balcony),
+        ("canyon up to", f"{one.canyon / MM:.2f} mm"),
         ("gap up to", f"{one.gap / MM:.2f} mm"), ("height", f"{one.height / MM:.2f} mm"),
     ]  # fmt: skip
     for place, (name, value) in enumerate(lines):

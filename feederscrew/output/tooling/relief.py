@@ -8,6 +8,7 @@ from feederscrew.output import style
 from feederscrew.output.solid.render import AWAY, Camera, Rays
 from feederscrew.output.solid.shading import EDGE, STEEL, Shot, edges, lit
 from feederscrew.tooling import passages, solid
+from feederscrew.tooling.result import LEAST_SHARE  # what comes less often is not the nearest that falls
 from feederscrew.tooling.strip import strip
 from feederscrew.units import factor
 
@@ -18,7 +19,6 @@ PASSES, FALLS = "#0072b2", "#d55e00"
 VIEW = np.array([0.55, 0.80, 0.85])  # to the viewer: ahead, inwards, up
 SAMPLES = 2  # rays a pixel, each way
 ROOM = 0.80  # of the part's largest extent, to each side of it
-LEAST_SHARE = 5e-3  # [1] what comes less often is not the nearest that falls
 
 
 def figure(devices, every, shares, wanted):
@@ -90,7 +90,7 @@ def _falls(devices, every, shares, wanted):
     """The passage of the orientation that fails by least, with lines of text."""
     found = []
     for k, one in enumerate(every):
-        if k != wanted and shares[k] >= LEAST_SHARE and not one.falls_off:
+        if k != wanted and shares[k] >= LEAST_SHARE and not one.returned:
             met = passages.until_returned(devices, one, every)
             found += [last for last in met[-1:] if last.verdict.passes <= 0.0 and _drawable([last])]
     if not found:

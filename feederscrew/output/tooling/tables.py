@@ -5,6 +5,7 @@ import numpy as np
 from feederscrew.bowl.devices import KINDS
 from feederscrew.output import columns, tables
 from feederscrew.tooling import passages as passages_of
+from feederscrew.tooling.result import LEAST_SHARE
 from feederscrew.units import factor
 
 MM, DEG = factor("mm", "length"), factor("deg", "angle")
@@ -85,9 +86,7 @@ def remarks(study, efficiency=0.0):
     """Return what a reader should know: what cannot be told apart, and why."""
     found = study.design
     if found is None:
-        good = [one.isolated and one.efficiency >= efficiency for one in study.designs]
-        asked = f" with an efficiency of {100.0 * efficiency:.3g} % or more" if efficiency > 0.0 else ""
-        return [f"{sum(good)} of {len(good)} orientations can be isolated{asked}"]
+        return [isolated(study, efficiency)]
     one = study.orientations[study.wanted]
     said = "is isolated" if found.isolated else "is not isolated"
     lead = (
@@ -95,6 +94,18 @@ def remarks(study, efficiency=0.0):
         f"{100.0 * found.purity:.4g} % of what leaves"
     )
     return [lead, *found.reasons]
+
+
+def isolated(study, efficiency=0.0):
+    """Say how many of the orientations that come often enough to matter can be isolated."""
+    often = np.flatnonzero(study.shares >= LEAST_SHARE)
+    designs = [study.designs[k] for k in often if study.designs[k] is not None]
+    good = [one.isolated and one.efficiency >= efficiency for one in designs]
+    asked = f" with an efficiency of {100.0 * efficiency:.3g} % or more" if efficiency > 0.0 else ""
+    rarer = len(study.designs) - len(often)
+    left_out = f" ({rarer} rarer not counted)" if rarer else ""
+    come = f"in which {100.0 * LEAST_SHARE:g} % or more of the parts come"
+    return f"{sum(good)} of {len(good)} orientations {come} can be isolated{asked}{left_out}"
 
 
 def passages(study):

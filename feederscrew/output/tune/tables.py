@@ -14,7 +14,7 @@ def document(study):
 
 def settings(study):
     """Return the settings of a TuneStudy as a frame, the recommended one first."""
-    rows = [_row(one, study.parts_per_metre / PER_MINUTE) for one in study.settings]
+    rows = [_row(one, one.solution.parts_per_metre / PER_MINUTE) for one in study.settings]
     return tables.frame({name: [row[name] for row in rows] for name in rows[0]})
 
 
@@ -47,6 +47,18 @@ def summary(frame):
     )
 
 
+def remarks(study):
+    """Return what a reader must not overlook: which settings turn parts over on the track."""
+    tipping = [_told(one) for one in study.settings if one.over]
+    return [f"{line} can tip over on the track and count as returned" for line in tipping]
+
+
+def _told(one):
+    key = one.solution.key
+    value = one.solution.value / units.factor(key.unit, key.dimension)
+    return f"at {key.name} {value:.4g} {key.unit}, {units.listed(one.over)}"
+
+
 def _between(row):
     return f"{row['parts_per_minute_low']:.4g} to {row['parts_per_minute_high']:.4g}"
 
@@ -69,4 +81,5 @@ def _row(one, per_minute):
         "margin_backward": found.margins["backward"],
         "margin_hop": found.margins["hop"],
         "several": one.several,
+        "tips_over": " ".join(one.over) or None,
     }

@@ -250,7 +250,7 @@ def test_a_key_that_changes_no_velocity_gives_a_level_curve(run):
 
 
 def test_the_range_over_single_periods_is_told(run):
-    """Means over blocks of periods are close, and one velocity is no range; single periods differ."""
+    """Means over blocks of periods lie close together; single periods differ."""
     asked = ("convey", "--set", "restitution=0.3", "--set")
     thrice = run(*asked, "drive.amplitude=0.69 mm").stdout
     assert re.search(r"slowest to fastest period \[mm/s\] +108.2 to 191.1\n", thrice), thrice

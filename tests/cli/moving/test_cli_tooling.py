@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -119,3 +120,16 @@ def test_a_card_has_no_mesh(run):
     assert [line for line in result.stderr.splitlines() if line.startswith("Error: ")] == [
         "Error: part card: the card of aspect 1 has no outline - give the part as a mesh"
     ]
+
+
+def test_orientations_that_hardly_come_are_not_counted():
+    from feederscrew.output.tooling import tables
+
+    good, bad = (SimpleNamespace(isolated=isolated, efficiency=0.3) for isolated in (True, False))
+    study = SimpleNamespace(shares=np.array([0.6, 0.395, 0.005, 0.0]), designs=(good, bad, good, good))
+    said = "orientations in which 0.5 % or more of the parts come can be isolated"
+    assert tables.isolated(study) == f"2 of 3 {said} (1 rarer not counted)"
+    assert (
+        tables.isolated(study, 0.5)
+        == f"0 of 3 {said} with an efficiency of 50 % or more (1 rarer not counted)"
+    )
