@@ -8,6 +8,7 @@ COUNTS = {
     "bowl": 50,
     "card": 60,
     "counts": 50,
+    "names": 20,
     "list": 200,
 }  # about ten seconds in all
 

@@ -52,6 +52,11 @@ PLAN = {  # seeds, how the damaged file is called, and what reads it
         "counts.csv",
         (("compare", CARD, "--with", "FILE", "--no-pictures", "-o", "out"),),
     ),
+    "names": (
+        ("tests/fuzz/names.yaml",),
+        "names.yaml",
+        (("aspects", str(ROOT / "parts/squarenut_m5.stl"), "--names", "FILE", "--no-pictures", "-o", "out"),),
+    ),
     "list": (("tests/fuzz/list.csv",), "list.csv", (("gather", "FILE"),)),
 }
 TOGETHER = "together"  # the kind of case in which a part, a bowl and the options are damaged at once

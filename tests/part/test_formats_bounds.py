@@ -10,7 +10,7 @@ import pytest
 
 from feederscrew.errors import MeshError
 from feederscrew.part import load
-from feederscrew.part.reading import step
+from feederscrew.part.reading import source, step
 
 MODEL = (
     '<model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>'
@@ -72,6 +72,24 @@ def test_a_step_file_that_takes_too_long_is_refused(tmp_path, monkeypatch):
         load(path)
     reason = "not converted within 1 s"
     assert str(caught.value) == f"{path}: is a damaged STEP ({reason}) - export the part again"
+
+
+def test_a_stream_without_end_is_given_up_at_half_a_gigabyte(monkeypatch):
+    """It was read up to 1 GB, which took 1.09 GB."""
+
+    class Endless(io.RawIOBase):
+        given = 0
+
+        def read(self, count):
+            self.given += count
+            return bytes(count)
+
+    assert source.LARGEST == 512 << 20
+    monkeypatch.setattr(source, "LARGEST", 3 << 20)
+    stream = Endless()
+    with pytest.raises(MeshError, match="standard input: is larger than 3 MB - export it with fewer facets"):
+        load("-", stdin=stream)
+    assert stream.given == (3 << 20) + 1
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="asks Linux for it")

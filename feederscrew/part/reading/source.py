@@ -12,7 +12,7 @@ from feederscrew.errors import MeshError
 from feederscrew.part.reading import formats
 from feederscrew.part.reading.formats import CARD, FORMATS
 
-LARGEST = 1 << 30  # [bytes] twenty million facets: a thousand times what a fed part needs
+LARGEST = 1 << 29  # [bytes] ten million facets: five hundred times what a fed part needs
 EXPORT = "export the part as STL, OBJ, PLY, OFF, GLB, 3MF or STEP"
 
 
@@ -64,7 +64,7 @@ def file(source, stdin=None):
     if not data:
         raise MeshError(where, "is empty", "export the part again")
     if len(data) > LARGEST:
-        raise MeshError(where, f"is larger than {LARGEST >> 30} GB", "export it with fewer facets")
+        raise MeshError(where, f"is larger than {LARGEST >> 20} MB", "export it with fewer facets")
     path = Path("stdin" if source == "-" else source)
     digest = hashlib.sha256(data).hexdigest()
     return File(source, where, path.stem, path.suffix.lower().removeprefix("."), data, digest)
