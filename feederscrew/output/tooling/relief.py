@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew.output import style
-from feederscrew.output.solid.render import AWAY, Camera, Rays
-from feederscrew.output.solid.shading import EDGE, STEEL, Shot, edges, lit
+from feederscrew.output.solid import pair
+from feederscrew.output.solid.render import Camera
 from feederscrew.tooling import passages, solid
 from feederscrew.tooling.result import LEAST_SHARE  # what comes less often is not the nearest that falls
 from feederscrew.tooling.strip import strip
@@ -14,10 +14,8 @@ from feederscrew.units import factor
 
 MM = factor("mm", "length")
 WIDE, HIGH, HEAD = 620, 520, 96  # pixels of one view and of the lines over it
-METAL = np.array([0.90, 0.91, 0.92])
 PASSES, FALLS = "#0072b2", "#d55e00"
 VIEW = np.array([0.55, 0.80, 0.85])  # to the viewer: ahead, inwards, up
-SAMPLES = 2  # rays a pixel, each way
 ROOM = 0.80  # of the part's largest extent, to each side of it
 
 
@@ -160,32 +158,14 @@ def _image(met, every):
     angle = met.angle(section.stations[0])
     centre = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
     track, sides = solid.solid(section)
-    whole = Rays(np.vstack([track, corners]), np.vstack([sides, faces + len(track)]), centre)
-    part, camera = Rays(corners, faces, centre), _camera(angle)
-    half = ROOM * np.ptp(corners, axis=0).max() / whole.size
-    pixel = 2.0 * half / WIDE
-    frame = Shot(-half, -half * HIGH / WIDE, pixel, WIDE, HIGH)
-    across, up = frame.positions(SAMPLES)
-    depths, normals = camera.cast(whole, across, up)
-    scale = whole.size / part.size
-    near = np.full(depths.shape, np.inf)
-    low, high = (end(camera.project(corners - centre), axis=0) / whole.size for end in (np.min, np.max))
-    columns = np.flatnonzero((across > low[0]) & (across < high[0]))
-    rows = np.flatnonzero((up > low[1]) & (up < high[1]))
-    box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-    near[box], _ = camera.cast(part, across[columns] * scale, up[rows] * scale)
-    image = np.ones((*depths.shape, 3))
-    met_all = np.isfinite(depths)
-    is_part = np.isfinite(near) & ((near - AWAY) / scale + AWAY <= np.where(met_all, depths, np.inf) + 1e-3)
-    for mask, colour in ((met_all & ~is_part, METAL), (met_all & is_part, STEEL)):
-        image[mask] = lit(normals[mask], camera, colour)
-    image[edges(depths, normals, camera, up[0] - up[1])] = EDGE
-    image = image.reshape(HIGH, SAMPLES, WIDE, SAMPLES, 3).mean(axis=(1, 3)).clip(0.0, 1.0)
-    return image, frame, (camera, whole.size), centre
+    camera = camera_at(angle)
+    half = ROOM * np.ptp(corners, axis=0).max()
+    image, frame, size = pair.picture((track, sides), (corners, faces), centre, camera, half, WIDE, HIGH)
+    return image, frame, (camera, size), centre
 
 
-def _camera(angle):
-    """From inside the bowl, ahead of the part and above it."""
+def camera_at(angle):
+    """Return the view from inside the bowl, ahead of the part and above it."""
     ahead = np.array([np.cos(angle), np.sin(angle), 0.0])
     inwards, up = np.array([-ahead[1], ahead[0], 0.0]), np.array([0.0, 0.0, 1.0])
     back = VIEW[0] * ahead + VIEW[1] * inwards + VIEW[2] * up

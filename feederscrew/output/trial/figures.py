@@ -33,6 +33,8 @@ def matrix(run):
     figure = style.figure(max(4.2, 1.8 + 0.62 * len(titles)), 1.5 + 0.3 * len(rows))
     axes = figure.add_subplot()
     axes.imshow(shown, cmap="Blues", vmin=0.0, vmax=1.25, aspect="auto")
+    axes.hlines(np.arange(1, len(rows)) - 0.5, -0.5, len(titles) - 0.5, color="white", linewidth=1.5)
+    axes.vlines(np.arange(1, len(titles)) - 0.5, -0.5, len(rows) - 0.5, color="white", linewidth=1.5)
     for r, c in zip(*np.nonzero(counts)):
         axes.text(
             c, r, counts[r, c], ha="center", va="center", fontsize=8,
@@ -59,8 +61,8 @@ def paths(run):
     Figure
     """
     found, radius = run.course, run.bowl.track.radius
-    figure = style.figure(7.2, 0.6 + 2.3 * len(found.stations))
-    panels = figure.subplots(len(found.stations), 1, squeeze=False)[:, 0]
+    figure = style.figure(7.2, 0.6 + 2.6 * len(found.rides))
+    panels = figure.subplots(len(found.rides), 1, squeeze=False)[:, 0]
     for axes, station, ride, riders in zip(panels, found.stations, found.rides, found.riders):
         _track(axes, station, radius)
         widest = 0.0
@@ -74,8 +76,11 @@ def paths(run):
             widest = max(widest, off.max(initial=0.0))
         title = f"{station.device.kind.replace('_', ' ')} {station.device.text}".strip()
         style.tidy(axes, title=title, x="along the wall [mm]", y="from the wall [mm]", grid="none")
+        axes.axhline(0.0, color=style.INK, linewidth=3.0)  # the wall
         axes.set(
-            xlim=(station.begin / MM - 2.0, station.exit / MM + 2.0), ylim=(1.25 * widest / MM + 4.0, -1.0)
+            aspect="equal",
+            xlim=(station.begin / MM - 2.0, station.exit / MM + 2.0),
+            ylim=(1.25 * widest / MM + 4.0, -1.0),
         )
     for fate, colour in COLOURS.items():
         panels[0].plot([], [], color=colour, label=fate)

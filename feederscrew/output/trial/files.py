@@ -18,7 +18,7 @@ def pictures(study):
     """Offer the pictures of its first run: orientations in and out, paths, stills."""
     return [
         offer.picture("trial.png", "Orientations in and out", _matrix, study),
-        offer.picture("trial_paths.png", "Paths over the last device, from above", _paths, study),
+        offer.picture("trial_paths.png", "Paths over each device, from above", _paths, study),
         offer.picture("trial_stills.png", "A part that passes and one that does not", _stills, study),
     ]
 

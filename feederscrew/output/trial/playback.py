@@ -1,20 +1,15 @@
 """Parts that go through a device, for the viewer: mesh and track once, and where the part is when."""
 
 import numpy as np
-import shapely
 from scipy.spatial.transform import Rotation
 
 from feederscrew.output.columns import MM
 from feederscrew.output.solid.meshes import encoded, reduced, short
 from feederscrew.output.tooling import relief
-from feederscrew.output.trial.figures import solids, unrolled
+from feederscrew.output.trial.section import section
 from feederscrew.output.trial.shown import shown
-from feederscrew.tooling import solid
-from feederscrew.tooling.strip import bent
-from feederscrew.trial.kernel import search
 
 REACH = 1.9  # of the part's radius: how much of the track around it is seen
-WALL = 3e-3  # [m] thickness of the wall that is drawn
 ABOVE = 1.5  # of the part's radius: how high the wall is
 STILL, AFTER = 0.05, 0.3  # [mm], [s] a part that moves no more than that to the end is left out after so long
 
@@ -41,7 +36,7 @@ def scene(part, run):
     points = (part.vertices - part.centre_of_mass) / MM
     vertices, faces = reduced(points, part.faces)
     radius = float(np.sqrt((points**2).sum(axis=1).max()))
-    track, sides = _section(found.stations[rides[0].place], run.bowl.track, radius)
+    track, sides = section(found.stations[rides[0].place], run.bowl.track, ABOVE * radius * MM)
     paths = [_path(ride.path, found.principal) for ride in rides]
     return {
         "positions": encoded(vertices, "<f4"),
@@ -52,7 +47,7 @@ def scene(part, run):
         "azimuth": short(np.degrees(np.arctan2(relief.VIEW[1], relief.VIEW[0]))),
         "elevation": short(np.degrees(np.arctan2(relief.VIEW[2], np.hypot(*relief.VIEW[:2])))),
         "reach": REACH,
-        "tracks": [{"positions": encoded(track, "<f4"), "index": encoded(sides, "<u4")}],
+        "tracks": [{"positions": encoded(track / MM, "<f4"), "index": encoded(sides, "<u4")}],
         "paths": [encoded(path, "<f4") for path in paths],
         "poses": [_pose(ride, path, k) for k, (ride, path) in enumerate(zip(rides, paths))],
     }, [(ride.orientation, ride.title(found).partition(" ")[2]) for ride in rides]
@@ -77,34 +72,3 @@ def _path(path, principal):
     moving = np.flatnonzero(np.abs(told[:, 1:4] - told[-1, 1:4]).max(axis=1) > STILL)
     last = told[moving[-1], 0] + AFTER if len(moving) else AFTER
     return told[told[:, 0] <= max(last, told[min(1, len(told) - 1), 0])]
-
-
-def _section(station, track, radius):
-    """The track with its cuts, its wall and gates as one mesh [mm] in the bowl's frame."""
-    meshes = [_plate(station, k, track) for k in range(len(station.plates))]
-    meshes.append(_wall(station, track, ABOVE * radius * MM))
-    first = np.cumsum([0] + [len(vertices) for vertices, _ in meshes])
-    corners = np.concatenate([vertices for vertices, _ in meshes])
-    return corners / MM, np.concatenate([faces + n for (_, faces), n in zip(meshes, first)])
-
-
-def _plate(station, k, track):
-    """One plate as a body (V, 3) [m], as deep as it is, ended at the wall."""
-    row = station.plates[k]
-    area = shapely.Polygon()
-    for ring in solids(station, k):
-        area = area.symmetric_difference(shapely.make_valid(shapely.Polygon(ring)))
-    if k == 0:
-        area = area.intersection(shapely.Point(0.0, track.radius).buffer(track.radius, quad_segs=256))
-    vertices, faces = solid.prism(area, -row[search.DEPTH], 0.0)
-    axes = row[search.ACROSS : search.ACROSS + 9].reshape(3, 3)
-    return row[:3] + np.einsum("vi,ij->vj", vertices, axes), faces
-
-
-def _wall(station, track, height):
-    """The wall behind the track, over its length."""
-    corners = np.concatenate(solids(station))
-    way, _ = unrolled(np.column_stack([np.zeros(len(corners)), corners]), track.radius)
-    low, high = way.min(), way.max()
-    ring = bent(np.array([[low, -WALL], [high, -WALL], [high, 0.0], [low, 0.0]]), track.radius)
-    return solid.prism(shapely.Polygon(ring), -station.plates[0, search.DEPTH], height)

@@ -1,0 +1,64 @@
+"""A part on a track, rendered together: each hides what of the other is behind it."""
+
+import numpy as np
+
+from feederscrew.output.solid.render import AWAY, Rays
+from feederscrew.output.solid.shading import EDGE, STEEL, Shot, edges, lit
+
+METAL = np.array([0.90, 0.91, 0.92])  # the track
+SAMPLES = 2  # rays a pixel, each way
+
+
+def picture(track, part, centre, camera, half, columns, rows):
+    """Render a part on a track as an image.
+
+    Parameters
+    ----------
+    track, part : ((V, 3) float [m], (F, 3) int)
+        Corners and faces of each, in the same axes.
+    centre : (3,) float [m]
+        In the middle of the image.
+    camera : Camera
+    half : float [m]
+        What is seen to either side of it.
+    columns, rows : int
+        Pixels.
+
+    Returns
+    -------
+    image : (rows, columns, 3) float
+        0 to 1, the top row first.
+    frame : Shot
+        Where it lies in the image plane, in units of ``size``.
+    size : float [m]
+    """
+    (ground, sides), (corners, faces) = track, part
+    whole = Rays(np.vstack([ground, corners]), np.vstack([sides, faces + len(ground)]), centre)
+    half = half / whole.size
+    frame = Shot(-half, -half * rows / columns, 2.0 * half / columns, columns, rows)
+    across, up = frame.positions(SAMPLES)
+    depths, normals = camera.cast(whole, across, up)
+    met, is_part = np.isfinite(depths), _part_in_front(part, centre, camera, whole.size, across, up, depths)
+    image = np.ones((*depths.shape, 3))
+    for mask, colour in ((met & ~is_part, METAL), (met & is_part, STEEL)):
+        image[mask] = lit(normals[mask], camera, colour)
+    image[edges(depths, normals, camera, up[0] - up[1])] = EDGE
+    image = image.reshape(rows, SAMPLES, columns, SAMPLES, 3).mean(axis=(1, 3)).clip(0.0, 1.0)
+    return image, frame, whole.size
+
+
+def _part_in_front(part, centre, camera, size, across, up, depths):
+    """(rows, columns) whether the part is what is seen."""
+    corners, faces = part
+    alone = Rays(corners, faces, centre)
+    scale = size / alone.size
+    near = np.full(depths.shape, np.inf)
+    low, high = (end(camera.project(corners - centre), axis=0) / size for end in (np.min, np.max))
+    columns = np.flatnonzero((across > low[0]) & (across < high[0]))
+    rows = np.flatnonzero((up > low[1]) & (up < high[1]))
+    if len(columns) and len(rows):
+        box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+        near[box], _ = camera.cast(alone, across[columns] * scale, up[rows] * scale)
+    return np.isfinite(near) & (
+        (near - AWAY) / scale + AWAY <= np.where(np.isfinite(depths), depths, np.inf) + 1e-3
+    )

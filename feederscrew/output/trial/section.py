@@ -1,0 +1,55 @@
+"""The track of one station as a solid to be seen: what the trial's kernel had the part meet."""
+
+import numpy as np
+import shapely
+
+from feederscrew.output.trial.figures import solids, unrolled
+from feederscrew.tooling import solid
+from feederscrew.tooling.strip import bent
+from feederscrew.trial.kernel import search
+
+WALL = 3e-3  # [m] thickness of the wall that is drawn
+
+
+def section(station, track, height):
+    """Return the track with its cuts, its wall and its gates as one mesh in the bowl's frame.
+
+    Parameters
+    ----------
+    station : Stage
+    track : Track
+    height : float [m]
+        Of the wall.
+
+    Returns
+    -------
+    vertices : (V, 3) float [m]
+    faces : (F, 3) int
+    """
+    meshes = [_plate(station, k, track) for k in range(len(station.plates))]
+    meshes.append(_wall(station, track, height))
+    first = np.cumsum([0] + [len(vertices) for vertices, _ in meshes])
+    corners = np.concatenate([vertices for vertices, _ in meshes])
+    return corners, np.concatenate([faces + n for (_, faces), n in zip(meshes, first)])
+
+
+def _plate(station, k, track):
+    """One plate as a body (V, 3) [m], as deep as it is, ended at the wall."""
+    row = station.plates[k]
+    area = shapely.Polygon()
+    for ring in solids(station, k):
+        area = area.symmetric_difference(shapely.make_valid(shapely.Polygon(ring)))
+    if k == 0:
+        area = area.intersection(shapely.Point(0.0, track.radius).buffer(track.radius, quad_segs=256))
+    vertices, faces = solid.prism(area, -row[search.DEPTH], 0.0)
+    axes = row[search.ACROSS : search.ACROSS + 9].reshape(3, 3)
+    return row[:3] + np.einsum("vi,ij->vj", vertices, axes), faces
+
+
+def _wall(station, track, height):
+    """The wall behind the track, over its length."""
+    corners = np.concatenate(solids(station))
+    way, _ = unrolled(np.column_stack([np.zeros(len(corners)), corners]), track.radius)
+    low, high = way.min(), way.max()
+    ring = bent(np.array([[low, -WALL], [high, -WALL], [high, 0.0], [low, 0.0]]), track.radius)
+    return solid.prism(shapely.Polygon(ring), -station.plates[0, search.DEPTH], height)
