@@ -78,7 +78,6 @@ def paths(run):
         style.tidy(axes, title=title, x="along the wall [mm]", y="from the wall [mm]", grid="none")
         axes.axhline(0.0, color=style.INK, linewidth=3.0)  # the wall
         axes.set(
-            aspect="equal",
             xlim=(station.begin / MM - 2.0, station.exit / MM + 2.0),
             ylim=(1.25 * widest / MM + 4.0, -1.0),
         )
