@@ -138,17 +138,18 @@ def trial(
     made, stopped = [], False
     for bowl in bowls:
         answer.answer(bowl)  # refuses a drive that cannot convey
-        ways = stream.orientations(part, found, bowl.track, bowl.devices)
+        ways = stream.orientations(part, found, bowl.track, bowl.devices, bowl=bowl)
         ways = chances.oriented(ways, known.measured)
         tried = _tried(part, found, ways, aspect)
         shares = _shares(ways, rule, tried)
         own = {"parts": max(count, len(tried)), "seed": seed, "jobs": jobs, "before": before}
+        own |= {"poses": ways.states, "leaves": course.rightly(ways.leaving)}
         own["progress"] = _after(len(made), progress, len(bowls))
         try:
             seen = course.course(part, bowl, ways.lying, tried, bowl.devices, **own)
             line = None
             if queue and not seen.partial:
-                line = _queue(part, bowl, ways.lying, shares, seen, queue, seconds, seed)
+                line = _queue(part, bowl, ways.states, shares, seen, queue, seconds, seed)
             made.append(TrialRun(bowl, throw_number(bowl), ways, shares, seen, line))
         except KeyboardInterrupt:
             if not made:

@@ -11,8 +11,8 @@ from feederscrew.geometry import vectors
 from feederscrew.trial import groups, runs, stations
 from feederscrew.trial.shape import solid_of
 
-PASSED, RETURNED, HANGING, STUCK = range(4)
-FATES = ("passed", "returned", "hanging", "stuck")
+PASSED, TURNED, RETURNED, HANGING, STUCK = range(5)
+FATES = ("passed", "turned", "returned", "hanging", "stuck")
 PLAY = 5e-5  # [m] from the wall, at most, where a part is laid down
 TURN = np.radians(0.1)  # [rad] of its heading, at most
 RUN_UP = 1.0  # of the part's size: how far it travels before the first device
@@ -33,7 +33,7 @@ class Course:
     entered: np.ndarray  # (N,) int, orientation each was laid down in
     orientations: np.ndarray  # (S + 1, N) int, before each station and at the end; OTHER; -2 of one gone
     fates: np.ndarray  # (N,) int, of FATES
-    ended: np.ndarray  # (N,) int, station at which it ended; S of one that passed
+    ended: np.ndarray  # (N,) int, station at which it ended; S of one that passed or was turned
     velocities: np.ndarray  # (N,) [m/s] on the bare track; NaN of one that did not travel
     seconds: np.ndarray  # (N,) [s] in all
     depths: np.ndarray  # (N,) [m] the deepest that anything was in anything
@@ -47,7 +47,10 @@ class Course:
     partial: bool
 
 
-def course(part, bowl, every, tried, devices, *, parts, seed=1, jobs=1, progress=None, before=None):
+def course(
+    part, bowl, every, tried, devices, *,
+    parts, poses=None, leaves=None, seed=1, jobs=1, progress=None, before=None,
+):  # fmt: skip
     """Send parts through a chain of devices.
 
     Parameters
@@ -62,6 +65,10 @@ def course(part, bowl, every, tried, devices, *, parts, seed=1, jobs=1, progress
     devices : sequence of Device
         In the order parts meet them.
     parts : int
+    poses : sequence of Orientation, optional
+        S of them, those of ``every`` first, in which parts may be found; those of ``every`` without it.
+    leaves : (M, S) bool, optional
+        In which of them an orientation may leave and still be said to pass; as it came without it.
     seed : int
         Of play, heading and phase of the drive; each part draws its own.
     jobs : int
@@ -86,7 +93,8 @@ def course(part, bowl, every, tried, devices, *, parts, seed=1, jobs=1, progress
         before()
     entered = np.resize(np.asarray(tried, int), parts)
     states, times = _starts(bowl, every, entered, principal, length, seed)
-    looks = _Looks(every, solid, length, bowl.track.radius)
+    looks = _Looks(every if poses is None else poses, solid, length, bowl.track.radius)
+    leaves = np.eye(len(every), len(looks.known), dtype=bool) if leaves is None else leaves
     found = _Found(len(chain), parts, looks, entered)
     for first in range(0, parts, groups.SIZE):
         begun = slice(first, min(first + groups.SIZE, parts))
@@ -98,7 +106,7 @@ def course(part, bowl, every, tried, devices, *, parts, seed=1, jobs=1, progress
                 raise
             found.stopped(first)
             break
-    return found.course(chain, length, principal)
+    return found.course(chain, length, principal, leaves)
 
 
 def _through(known, bowl, every, chain, states, times, first, found, told, jobs):
@@ -119,6 +127,18 @@ def _through(known, bowl, every, chain, states, times, first, found, told, jobs)
             states = runs.moved(
                 ride.states[stays], chain[place + 1].begin / known.length - begun, known.radius
             )
+
+
+def rightly(leaving):
+    """Return the states (M, S) an orientation leaves in as the static rule says, or as it came if in none.
+
+    Parameters
+    ----------
+    leaving : (M, S) float [1]
+        Share of each orientation that leaves in each state, the M orientations first.
+    """
+    right = leaving > 0.0
+    return right | (np.eye(*right.shape, dtype=bool) & ~right.any(axis=1)[:, None])
 
 
 def _chain(bowl, every, devices):
@@ -235,9 +255,12 @@ class _Found:
         corners = self.looks.corners
         return np.array([s[2] + vectors.product(corners, runs.matrix(s)[2]).min() for s in states])
 
-    def course(self, chain, length, principal):
-        """All of it as a record."""
-        first = slice(0, self.known)
+    def course(self, chain, length, principal, leaves):
+        """All of it as a record; what leaves as it should has passed, what else leaves was turned."""
+        first, out = slice(0, self.known), self.orientations[-1]
+        whole = self.fates == PASSED
+        right = (out >= 0) & leaves[self.entered, np.maximum(out, 0)]
+        self.fates[whole & ~right] = TURNED
         arrays = {
             "entered": self.entered, "fates": self.fates, "ended": self.ended, "fell": self.fell,
             "velocities": self.velocities, "seconds": self.seconds, "depths": self.depths,

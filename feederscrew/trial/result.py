@@ -37,7 +37,7 @@ class TrialRun:
 
     @cached_property
     def counts(self):
-        """(M, 4) int, parts by the orientation laid down and by fate, columns as ``course.FATES``."""
+        """(M, 5) int, parts by the orientation laid down and by fate, columns as ``course.FATES``."""
         found = np.zeros((len(self.shares), len(course.FATES)), int)
         np.add.at(found, (self.course.entered, self.course.fates), 1)
         return found
@@ -55,16 +55,16 @@ class TrialRun:
 
     @cached_property
     def matrix(self):
-        """(M, M + 1) int, from orientation in to orientation out; the last column is none of the known."""
-        found = np.zeros((len(self.shares), len(self.shares) + 1), int)
+        """(M, S + 1) int, from orientation in to orientation out; the last column is none of the known."""
+        found = np.zeros((len(self.shares), len(self.known.states) + 1), int)
         out = self.course.orientations[-1]
-        whole = self.course.fates == course.PASSED
+        whole = np.isin(self.course.fates, (course.PASSED, course.TURNED))
         np.add.at(found, (self.course.entered[whole], out[whole]), 1)  # OTHER is the last
         return found
 
     @property
     def leaving(self):
-        """(M + 1,) [1] share of the parts offered that leaves in each orientation."""
+        """(S + 1,) [1] share of the parts offered that leaves in each orientation."""
         tried = np.maximum(self.tried, 1)[:, None]
         return (self.shares[:, None] * self.matrix / tried).sum(axis=0)
 
@@ -104,7 +104,8 @@ class TrialRun:
         if self.wanted is None or not self.velocity > 0.0:
             return 0.0
         offered = self.velocity / float((self.shares * self.known.lengths).sum())
-        most = self.velocity / self.known.lengths[min(self.wanted, len(self.shares) - 1)]
+        states = self.known.states
+        most = self.velocity / states[min(self.wanted, len(states) - 1)].length
         return float(min(offered * self.efficiency, most))
 
     @property
@@ -121,7 +122,10 @@ class TrialRun:
 
     @cached_property
     def holding(self):
-        """(M,) int, of the parts tried those that did what the static rule says."""
+        """(M,) int, of the parts tried those that did what the static rule says.
+
+        A part that shall not pass may be returned, held or turned into another orientation.
+        """
         passed = self.counts[:, course.PASSED]
         return np.where(self.predicted, passed, self.tried - passed)
 

@@ -7,7 +7,7 @@ from feederscrew.output import style
 from feederscrew.output.columns import MM
 from feederscrew.trial import course
 
-COLOURS = {"passed": "#0072b2", "returned": "#d55e00", "hanging": "#cc79a7", "stuck": "#7a5c3e"}
+COLOURS = {"passed": "#0072b2", "turned": "#56b4e9", "returned": "#d55e00", "hanging": "#cc79a7", "stuck": "#7a5c3e"}
 TRACK = "#e3e8ec"
 MOST = 24  # orientations that come most often have a row
 
@@ -25,8 +25,8 @@ def matrix(run):
     """
     rows = [k for k in np.argsort(-run.shares, kind="stable") if run.tried[k]][:MOST]
     out = [m for m in range(run.matrix.shape[1]) if run.matrix[rows, m].any()]
-    names = [one.name for one in run.known.lying] + ["other"]
-    lost = [fate for fate in range(1, len(course.FATES)) if run.counts[rows, fate].any()]
+    names = [one.name for one in run.known.states] + ["other"]
+    lost = [fate for fate in range(course.RETURNED, len(course.FATES)) if run.counts[rows, fate].any()]
     counts = np.column_stack([run.matrix[rows][:, out], run.counts[rows][:, lost]])
     shown = counts / run.tried[rows][:, None]
     titles = [names[m] for m in out] + [course.FATES[fate] for fate in lost]

@@ -98,7 +98,7 @@ def queue(run):
         "mean_gap_mm": found.gap / MM,
         "touching": found.touching,
         "pressure_mn": found.pressure * 1e3,
-        "leaving": {run.known.lying[k].name: int(n) for k, n in enumerate(found.leaving) if n},
+        "leaving": {run.known.states[k].name: int(n) for k, n in enumerate(found.leaving) if n},
     }
 
 
@@ -154,13 +154,13 @@ def summary(study):
 
 
 def _name(run, k):
-    if k is None or k < 0 or k >= len(run.known.lying):
+    if k is None or k < 0 or k >= len(run.known.states):
         return None if k is None else "other"
-    return run.known.lying[k].name
+    return run.known.states[k].name
 
 
 def _leaves(run, k):
-    """The orientations in which those that passed left: 'A@0 9, other 1'."""
+    """The orientations in which those left that were not held: 'A@0 9, other 1'."""
     count = run.matrix[k]
     return ", ".join(f"{_name(run, m)} {count[m]}" for m in np.flatnonzero(count))
 
@@ -168,7 +168,7 @@ def _leaves(run, k):
 def _ended(run, k):
     """Where those ended that did not pass: 'gap 9'."""
     found = run.course
-    own = (found.entered == k) & (found.fates != course.PASSED)
+    own = (found.entered == k) & ~np.isin(found.fates, (course.PASSED, course.TURNED))
     places, counts = np.unique(found.ended[own], return_counts=True)
     return ", ".join(f"{found.stations[p].device.kind} {n}" for p, n in zip(places, counts))
 
