@@ -17,7 +17,7 @@ from feederscrew.trial.kernel import contact, motion, travel
 PASSED, RETURNED, RUNNING = travel.PASSED, travel.RETURNED, travel.RUNNING
 PERIOD = 80  # steps of a period of the drive
 SWEEPS, CONVERGED = 60, 1e-4  # of the contact solver: at most, and what a sweep may still change
-CONTACTS = 48  # of a part at a time
+CONTACTS = 96  # of a part at a time
 BATCH = 5  # parts a core takes at a time
 
 

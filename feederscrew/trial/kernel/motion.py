@@ -78,8 +78,9 @@ def found(surface, solid, work, reach):
     count = 0
     if off + solid.radius > surface.radius - reach:
         count = search.on_wall(
-            work.spots, state, turn, solid.inertia, surface.radius, tangent, reach, contacts, count
-        )
+            work.shown, work.spots, state, turn, solid.inertia, surface.radius, tangent, reach, work.low,
+            contacts, count,
+        )  # fmt: skip
     for k in range(len(surface.plates)):
         plate = surface.plates[k]
         if search.seen(plate, state, work.spots, work.shown) > reach:
@@ -87,7 +88,7 @@ def found(surface, solid, work, reach):
         lows = edges.low_edges(solid, work.shown, reach, work.edges, work.box)
         nears = edges.near_borders(plate, surface.borders, work.box, reach, work.near)
         count = search.corners_on(
-            plate, surface.borders, work.shown, work.spots, turn, solid, tangent, reach, nears, state,
+            plate, surface.borders, work.shown, work.spots, turn, solid, tangent, reach, nears,
             work.low, contacts, count,
         )  # fmt: skip
         if nears:

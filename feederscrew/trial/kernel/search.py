@@ -41,22 +41,6 @@ def placed(vertices, turn, spots):
 
 
 @compiled
-def on_wall(spots, state, turn, inertia, radius, tangent, reach, contacts, count):
-    """Contacts with the wall, a cylinder about the bowl's axis that a part is inside of."""
-    limit = (radius - reach) * (radius - reach)
-    for k in range(len(spots)):
-        x, y = state[X] + spots[k, 0], state[Y] + spots[k, 1] - radius
-        square = x * x + y * y
-        if square > limit:
-            far = math.sqrt(square)
-            count = add(
-                contacts, count, turn, inertia, tangent, spots[k, 0], spots[k, 1], spots[k, 2],
-                -x / far, -y / far, 0.0, radius - far, 1.0,
-            )  # fmt: skip
-    return count
-
-
-@compiled
 def inside(borders, first, last, a, b):
     """Whether a point of a plate's surface is solid: it is within its borders, holes left out."""
     odd = False
@@ -96,14 +80,6 @@ def seen(plate, state, spots, shown):
     for k in range(len(spots)):
         least = min(least, shown[k, 2])
     return least
-
-
-@compiled
-def _centre(plate, state):
-    """Where the centre of mass is seen on a plate."""
-    x, y, z = state[X] - plate[0], state[Y] - plate[1], state[Z] - plate[2]
-    a = plate[ACROSS] * x + plate[ACROSS + 1] * y + plate[ACROSS + 2] * z
-    return a, plate[ALONG] * x + plate[ALONG + 1] * y + plate[ALONG + 2] * z
 
 
 @compiled
@@ -155,15 +131,15 @@ def sides_on(plate, borders, shown, spots, turn, solid, tangent, reach, low, con
 
 
 @compiled
-def all_low(plate, borders, shown, reach, state, low):
-    """Write which corners lie on a plate's surface where no border is near; how many."""
-    a, b = _centre(plate, state)
+def all_low(plate, borders, shown, reach, low):
+    """Write which corners lie on a plate's surface where no border is near them; how many."""
     lows = 0
-    if inside(borders, int(plate[FIRST]), int(plate[LAST]), a, b):
-        for k in range(len(shown)):
-            if shown[k, 2] <= reach and shown[k, 2] >= -DEEP:
-                low[lows] = k
-                lows += 1
+    for k in range(len(shown)):
+        if shown[k, 2] <= reach and shown[k, 2] >= -DEEP:
+            low[lows] = k
+            lows += 1
+    if lows and not inside(borders, int(plate[FIRST]), int(plate[LAST]), shown[low[0], 0], shown[low[0], 1]):
+        return 0  # all of them are over one hole
     return lows
 
 
@@ -188,14 +164,40 @@ def _outermost(shown, low, count):
 
 
 @compiled
-def corners_on(plate, borders, shown, spots, turn, solid, tangent, reach, nears, state, low, contacts, count):
+def on_wall(shown, spots, state, turn, inertia, radius, tangent, reach, low, contacts, count):
+    """Contacts with the wall, a cylinder about the bowl's axis that a part is inside of."""
+    limit, lows = (radius - reach) * (radius - reach), 0
+    for k in range(len(spots)):
+        x, y = state[X] + spots[k, 0], state[Y] + spots[k, 1] - radius
+        square = x * x + y * y
+        if square > limit:
+            shown[k, 0], shown[k, 1] = tangent[0] * spots[k, 0] + tangent[1] * spots[k, 1], spots[k, 2]
+            shown[k, 2] = radius - math.sqrt(square)
+            low[lows] = k
+            lows += 1
+    if lows > WAYS + 1:
+        lows = _outermost(shown, low, lows)
+    for m in range(lows):
+        k = low[m]
+        gap = shown[k, 2]
+        far = radius - gap
+        x, y = (state[X] + spots[k, 0]) / far, (state[Y] + spots[k, 1] - radius) / far
+        count = add(
+            contacts, count, turn, inertia, tangent, spots[k, 0], spots[k, 1], spots[k, 2],
+            -x, -y, 0.0, gap, 1.0,
+        )  # fmt: skip
+    return count
+
+
+@compiled
+def corners_on(plate, borders, shown, spots, turn, solid, tangent, reach, nears, low, contacts, count):
     """Contacts of the part's corners with a plate: its surface, and its sides behind rounded borders."""
     if nears:
         count, lows = sides_on(
             plate, borders, shown, spots, turn, solid, tangent, reach, low, contacts, count
         )
     else:
-        lows = all_low(plate, borders, shown, reach, state, low)
+        lows = all_low(plate, borders, shown, reach, low)
     if lows > WAYS + 1:
         lows = _outermost(shown, low, lows)
     for m in range(lows):
