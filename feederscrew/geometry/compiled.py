@@ -2,9 +2,10 @@
 
 import functools
 import hashlib
+import sys
 from pathlib import Path
 
-PLAIN = []  # functions that run as they stand and may be called from compiled ones, not yet registered
+PLAIN = []  # functions that compiled ones may call, not yet registered
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
 SOURCES = (
     "geometry/compiled.py",
@@ -16,29 +17,30 @@ SOURCES = (
 )
 
 
-def compilable(function):
-    """Mark a function that runs as it stands on a small hull and is compiled for a large one."""
+def compiled(function):
+    """Mark a function that is compiled into those that call it; called from Python it runs as it stands.
+
+    Such a function has no way in from Python, which would take a third of the compiling, and is compiled
+    once for all numbers it is handed, not once for each constant.
+    """
     PLAIN.append(function)
+    if "numba" in sys.modules:  # an entry may stand above what it calls
+        _register()
     return function
 
 
-def fitting(function, half_edges):
-    """A compilable function as it stands or compiled, whichever is done sooner on a hull of that size."""
-    return function if half_edges <= SMALL else _once(function)
-
-
-def compiled(function, **options):
-    """Compile a function that fills arrays it is handed and makes none of its own."""
+def entry(function):
+    """Compile a function that Python calls; it fills arrays it is handed and makes none of its own."""
     from numba import njit
 
     _register()
     function.__qualname__ = f"{function.__name__}_{_fingerprint()}"  # names the files of the cache
-    return njit(cache=True, nogil=True, **_options(), **options)(function)
+    return njit(cache=True, nogil=True, no_cfunc_wrapper=True, **_options())(function)
 
 
-def inlined(function):
-    """Compile a function into its callers: where handing it its records would cost more than its work."""
-    return compiled(function, forceinline=True)
+def fitting(function, half_edges):
+    """A marked function as it stands or compiled, whichever is done sooner on a hull of that size."""
+    return function if half_edges <= SMALL else _once(function)
 
 
 def on_disk(function):
@@ -49,11 +51,11 @@ def on_disk(function):
 
 
 def due(function, half_edges):
-    """Whether a compilable function must be compiled for a hull of that size: some seconds, once."""
+    """Whether a marked function must be compiled for a hull of that size: some seconds, once."""
     return half_edges > SMALL and not on_disk(_once(function))
 
 
-_once = functools.cache(compiled)
+_once = functools.cache(entry)
 
 
 def _register():

@@ -2,11 +2,14 @@
 
 import math
 
+import numpy as np
+
+from feederscrew import check
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VY, VZ, W, Z
 from feederscrew.dropping.kernel.floor import at_rest
 from feederscrew.dropping.kernel.motion import Steps, advance, scratch, start
-from feederscrew.geometry.compiled import compiled
+from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.resting.tumbling.walk import LOST, roll_from_corner, roll_from_facet
 
 __all__ = ["STEADY", "UNSETTLED", "Steps", "face_below", "scratch", "settle", "settle_all"]
@@ -75,6 +78,41 @@ def decided(shape, state, turn, corner, count, friction, quiet, steps):
 
 
 @compiled
+def record(trace, k, time, state):
+    """Write one row of a trace."""
+    trace[k, 0] = time
+    for j in range(body.STATE):
+        trace[k, 1 + j] = state[j]
+
+
+@entry
+def settle_all(shape, work, starts, restitutions, frictions, steps, faces, times):
+    """Drop every row of (N, 13) starts; fills (N,) faces and times."""
+    floor = at_rest()
+    for n in range(len(starts)):
+        for k in range(body.STATE):
+            work.state[k] = starts[n, k]
+        face, time, rows, rests, quiet = UNSETTLED, 0.0, 0, 0, 0
+        corner, gap = start(shape.solid, work)
+        while time < steps.longest:
+            if rows < len(work.trace):
+                record(work.trace, rows, time, work.state)
+                rows += 1
+            corner, gap, dt, count, struck = advance(
+                shape.solid, work, floor, time, corner, gap, restitutions[n], frictions[n], steps
+            )
+            time += dt
+            if count == 0:
+                continue
+            rests = 0 if struck else rests + 1
+            quiet = quiet + 1 if body.moving_energy(work.state, shape.solid.inertia) < STILL else 0
+            if rests % 8 == 0:
+                face = decided(shape, work.state, work.turn, corner, count, frictions[n], quiet, steps)
+                if face != UNSETTLED:
+                    break
+        faces[n], times[n], work.rows[0] = face, time, rows
+
+
 def settle(shape, work, restitution, friction, steps):
     """Follow one body until its face is decided.
 
@@ -90,39 +128,7 @@ def settle(shape, work, restitution, friction, steps):
     -------
     face, time, rows of the trace filled
     """
-    floor, time, rows, rests, quiet = at_rest(), 0.0, 0, 0, 0
-    corner, gap = start(shape.solid, work)
-    while time < steps.longest:
-        if rows < len(work.trace):
-            record(work.trace, rows, time, work.state)
-            rows += 1
-        corner, gap, dt, count, struck = advance(
-            shape.solid, work, floor, time, corner, gap, restitution, friction, steps
-        )
-        time += dt
-        if count == 0:
-            continue
-        rests = 0 if struck else rests + 1
-        quiet = quiet + 1 if body.moving_energy(work.state, shape.solid.inertia) < STILL else 0
-        if rests % 8 == 0:
-            face = decided(shape, work.state, work.turn, corner, count, friction, quiet, steps)
-            if face != UNSETTLED:
-                return face, time, rows
-    return UNSETTLED, time, rows
-
-
-@compiled
-def record(trace, k, time, state):
-    """Write one row of a trace."""
-    trace[k, 0] = time
-    for j in range(body.STATE):
-        trace[k, 1 + j] = state[j]
-
-
-@compiled
-def settle_all(shape, work, starts, restitutions, frictions, steps, faces, times):
-    """Drop every row of (N, 13) starts; fills (N,) faces and times."""
-    for n in range(len(starts)):
-        for k in range(body.STATE):
-            work.state[k] = starts[n, k]
-        faces[n], times[n], _ = settle(shape, work, restitutions[n], frictions[n], steps)
+    faces, times = np.zeros(1, int), np.zeros(1)
+    given = (check.frozen(np.array(one, float)) for one in ([work.state], [restitution], [friction]))
+    settle_all(shape, work, *given, steps, faces, times)
+    return int(faces[0]), float(times[0]), int(work.rows[0])

@@ -8,7 +8,7 @@ import numpy as np
 from feederscrew.dropping.kernel import body, contact, touch
 from feederscrew.dropping.kernel import floor as floors
 from feederscrew.dropping.kernel.body import VX, VZ, W, X, Z
-from feederscrew.geometry.compiled import compiled
+from feederscrew.geometry.compiled import compiled, entry
 
 CREEP = 1e-5  # speed at which a point that touches may go on falling: errors of a step, not a landing
 
@@ -27,6 +27,7 @@ class Scratch(NamedTuple):
     owners: np.ndarray  # (V + QUARTERS R,) int: rim of each of them, CORNER for none
     contacts: np.ndarray  # (MOST, WIDTH)
     trace: np.ndarray  # (N, 14) time and state at the start of each step, until it is full
+    rows: np.ndarray  # (1,) int: how many rows of it are filled
 
 
 def scratch(shape, rows=0):
@@ -45,6 +46,7 @@ def scratch(shape, rows=0):
         owners=np.zeros(room, int),
         contacts=np.zeros((touch.MOST, contact.WIDTH)),
         trace=np.zeros((rows, 1 + body.STATE)),
+        rows=np.zeros(1, int),
     )
 
 
@@ -180,7 +182,7 @@ def resist(state, inertia, lever, dt):
             state[W + k] *= scale
 
 
-@compiled
+@entry
 def advance(solid, work, floor, time, corner, gap, restitution, friction, steps):
     """One step of the body: through the air, or on the floor after the impact if it falls.
 

@@ -1,10 +1,13 @@
 """Compiled ride: one body on a vibrating floor, looked at again and again."""
 
+import numpy as np
+
+from feederscrew import check
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VY, W, X, Y
 from feederscrew.dropping.kernel.drop import UNSETTLED, face_below, rolling_energy
 from feederscrew.dropping.kernel.motion import advance, start
-from feederscrew.geometry.compiled import compiled
+from feederscrew.geometry.compiled import compiled, entry
 
 SURE = 0.5  # of the barrier: what tilt and spin of a part that lies on a face may hold together
 PATIENCE = 50  # steps for each that a floor without events would take
@@ -33,7 +36,31 @@ def rocking_energy(shape, state, turn):
     return energy
 
 
-@compiled
+@entry
+def ride_all(shape, work, floor, starts, restitutions, frictions, steps, looks, faces, places, taken):
+    """Ride every row of (N, 13) starts; fills (N, K) faces, (N, K, 2) places and (N,) looks taken."""
+    state, most = work.state, int(PATIENCE * looks[-1] / min(steps.contact, floor.step))
+    for n in range(len(starts)):
+        for k in range(body.STATE):
+            state[k] = starts[n, k]
+        time, look = 0.0, 0
+        corner, gap = start(shape.solid, work)
+        for _ in range(most):
+            while look < len(looks) and time >= looks[look]:
+                faces[n, look] = lying(shape, state, work.turn, corner)
+                late = time - looks[look]
+                places[n, look, 0] = state[X] - late * state[VX]
+                places[n, look, 1] = state[Y] - late * state[VY]
+                look += 1
+            if look == len(looks):
+                break
+            corner, gap, dt, _, _ = advance(
+                shape.solid, work, floor, time, corner, gap, restitutions[n], frictions[n], steps
+            )
+            time += dt
+        taken[n] = look
+
+
 def ride(shape, work, floor, restitution, friction, steps, looks, faces, places):
     """Follow one body on a moving floor.
 
@@ -57,28 +84,7 @@ def ride(shape, work, floor, restitution, friction, steps, looks, faces, places)
     int
         Looks taken; fewer than K only where the motion takes far more steps than it should.
     """
-    time, look = 0.0, 0
-    corner, gap = start(shape.solid, work)
-    for _ in range(int(PATIENCE * looks[-1] / min(steps.contact, floor.step))):
-        while look < len(looks) and time >= looks[look]:
-            faces[look] = lying(shape, work.state, work.turn, corner)
-            late = time - looks[look]
-            places[look, 0] = work.state[X] - late * work.state[VX]
-            places[look, 1] = work.state[Y] - late * work.state[VY]
-            look += 1
-        if look == len(looks):
-            break
-        corner, gap, dt, _, _ = advance(
-            shape.solid, work, floor, time, corner, gap, restitution, friction, steps
-        )
-        time += dt
-    return look
-
-
-@compiled
-def ride_all(shape, work, floor, starts, restitutions, frictions, steps, looks, faces, places, taken):
-    """Ride every row of (N, 13) starts; fills (N, K) faces, (N, K, 2) places and (N,) looks taken."""
-    for n in range(len(starts)):
-        for k in range(body.STATE):
-            work.state[k] = starts[n, k]
-        taken[n] = ride(shape, work, floor, restitutions[n], frictions[n], steps, looks, faces[n], places[n])
+    given = (check.frozen(np.array(one, float)) for one in ([work.state], [restitution], [friction]))
+    taken = np.zeros(1, int)
+    ride_all(shape, work, floor, *given, steps, looks, faces[None], places[None], taken)
+    return int(taken[0])

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.geometry.compiled import compilable
+from feederscrew.geometry.compiled import compiled
 
 NAMELESS = -1  # a sink of no face
 
@@ -16,7 +16,7 @@ def roots(forest):
         forest = further
 
 
-@compilable
+@compiled
 def root(forest, k):
     """The tree's root, and the way to it cut short."""
     while forest[k] != k:
@@ -25,7 +25,7 @@ def root(forest, k):
     return k
 
 
-@compilable
+@compiled
 def join(heights, limits, pairs, tops, region, basin, standing):
     """Join sinks along ways sorted by height where the shallower side rises no more than its limit.
 
@@ -51,7 +51,7 @@ def join(heights, limits, pairs, tops, region, basin, standing):
             basin[shallow] = deep
 
 
-@compilable
+@compiled
 def adopt(pairs, tops, tie, names, parent, claims):
     """Let every nameless sink be claimed by what lies behind its lowest saddle, or saddles where they tie.
 

@@ -7,24 +7,24 @@ the arc between the normals of its two facets.
 
 import math
 
-from feederscrew.geometry.compiled import compilable
+from feederscrew.geometry.compiled import compiled
 
 LOST = -1  # a walk that ends nowhere: the hull is not closed and convex
 
 
-@compilable
+@compiled
 def row(array, k):
     """Row of an (N, 3) array as a tuple."""
     return array[k, 0], array[k, 1], array[k, 2]
 
 
-@compilable
+@compiled
 def dot(a, b):
     """Scalar product of two triples."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@compilable
+@compiled
 def triple(a, b, c):
     """a . (b x c)."""
     return (
@@ -34,7 +34,7 @@ def triple(a, b, c):
     )
 
 
-@compilable
+@compiled
 def toward(a, b, step):
     """Unit vector along a + step b."""
     x, y, z = a[0] + step * b[0], a[1] + step * b[1], a[2] + step * b[2]
@@ -42,7 +42,7 @@ def toward(a, b, step):
     return n * x, n * y, n * z
 
 
-@compilable
+@compiled
 def signs(vertices, normals, origins, targets, owners, slopes, sides):
     """Fill (H,) slopes and sides, as ``Edges`` has them, from each half-edge's corners and facet."""
     for h in range(len(origins)):
@@ -51,7 +51,7 @@ def signs(vertices, normals, origins, targets, owners, slopes, sides):
         sides[h] = triple(row(normals, owners[h]), u, w)
 
 
-@compilable
+@compiled
 def depths(vertices, normals, heights, corners, twins, below):
     """Fill (H,) [m]: how far the corner off each edge, of the neighbour, lies below the triangle's plane."""
     for h in range(len(twins)):
@@ -59,7 +59,7 @@ def depths(vertices, normals, heights, corners, twins, below):
         below[h] = heights[t] - dot(row(normals, t), row(vertices, corners[twins[h]]))
 
 
-@compilable
+@compiled
 def exit_of(edges, facet):
     """How the part leaves a facet: (half-edge, -1) over an edge, (-1, corner) over a corner, (-1, -1) not."""
     start = h = edges.facet_edges[facet]
@@ -79,7 +79,7 @@ def exit_of(edges, facet):
     return -1, corner if leaves else -1
 
 
-@compilable
+@compiled
 def next_corner(edges, x, corner, sign):
     """Where the great circle through direction x and a corner leaves the corner's region.
 
@@ -102,7 +102,7 @@ def next_corner(edges, x, corner, sign):
     return best, toward(x, v, sign * step) if best != LOST else x
 
 
-@compilable
+@compiled
 def side_of(edges, h, x):
     """Facet to which the part rolls from direction x on the arc of a half-edge."""
     u, w = row(edges.vertices, edges.origins[h]), row(edges.vertices, edges.targets[h])
@@ -110,7 +110,7 @@ def side_of(edges, h, x):
     return edges.facets[ahead // 3]
 
 
-@compilable
+@compiled
 def support(edges, x, corner):
     """Corner furthest along direction x, climbing from ``corner``."""
     while True:
@@ -129,7 +129,7 @@ def support(edges, x, corner):
         corner = best
 
 
-@compilable
+@compiled
 def roll_from_corner(edges, x, corner):
     """Facet first reached by a part that rolls over a corner from direction x; LOST if none.
 
@@ -148,7 +148,7 @@ def roll_from_corner(edges, x, corner):
     return LOST
 
 
-@compilable
+@compiled
 def roll_from_facet(edges, facet):
     """Facet on which a part comes to rest that is set down on ``facet``; LOST if none."""
     for _ in range(len(edges.normals) + 1):
@@ -164,7 +164,7 @@ def roll_from_facet(edges, facet):
     return LOST
 
 
-@compilable
+@compiled
 def rolls(edges, directions, ends):
     """Fill (N,) ends with the facet a part set down with each of (N, 3) directions down comes to rest on."""
     corner = edges.origins[edges.facet_edges[0]]
@@ -174,13 +174,13 @@ def rolls(edges, directions, ends):
         ends[n] = roll_from_facet(edges, roll_from_corner(edges, x, corner))
 
 
-@compilable
+@compiled
 def triangle_area(a, b, c):
     """Signed area [sr] of a spherical triangle of unit vectors, positive counter-clockwise from outside."""
     return 2.0 * math.atan2(triple(a, b, c), 1.0 + dot(a, b) + dot(b, c) + dot(c, a))
 
 
-@compilable
+@compiled
 def climb(edges, tops, x, corner, left, right):
     """Follow the flow back from direction x over a corner up to a maximum, one of the corners ``tops``.
 
@@ -199,7 +199,7 @@ def climb(edges, tops, x, corner, left, right):
     return LOST, area_left, area_right
 
 
-@compilable
+@compiled
 def trace_saddles(edges, tops, saddles, directions, gauges, pairs, peaks, areas):
     """Sinks joined by each saddle, and the boundary integral of every facet's basin.
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from feederscrew.geometry.compiled import compiled
+from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.tooling.kernel.crossing import (
     ALPHA,
     ARC,
@@ -68,7 +68,7 @@ class VerdictArrays(NamedTuple):
     others: np.ndarray  # (V + N + P + M, 2)
 
 
-@compiled
+@entry
 def least(foot, hole, scratch, out):
     """Fill the least margin over a passage and the shift of the hole at which it occurs.
 

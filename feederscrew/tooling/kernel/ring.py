@@ -2,12 +2,12 @@
 
 import math
 
-from feederscrew.geometry.compiled import compiled
+from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.tooling.kernel.hull import inset_beside
 from feederscrew.tooling.kernel.passage import _under
 
 
-@compiled
+@entry
 def over_ring(foot, low, high, scratch):
     """Return the margin [m] of a foot over the ring between two radii.
 
@@ -59,7 +59,7 @@ def _crossed(foot, side, radius, points, count):
     return count
 
 
-@compiled
+@entry
 def balcony(foot, radius, farthest, scratch):
     """Return the least width [m] of track that carries a foot; beyond ``farthest`` where none does."""
     low, high = 0.0, farthest
@@ -74,7 +74,7 @@ def balcony(foot, radius, farthest, scratch):
     return high
 
 
-@compiled
+@entry
 def canyon(foot, radius, farthest, scratch):
     """Return the greatest width [m] of a strip removed along the wall that carries a foot; -1 for none."""
     low, high = 0.0, farthest
@@ -89,7 +89,7 @@ def canyon(foot, radius, farthest, scratch):
     return low
 
 
-@compiled
+@entry
 def over_rings(foot, low, high, scratch, out):
     """Fill the margins [m] of a foot over many rings, (N,) each."""
     for k in range(len(out)):

@@ -7,7 +7,7 @@ the part ahead pushes it instead, without rebound. What they do across the track
 import math
 
 from feederscrew.dropping.kernel import floor as floors
-from feederscrew.geometry.compiled import compiled
+from feederscrew.geometry.compiled import compiled, entry
 
 PLACE, SPEED, HEIGHT, RISE, LENGTH, FRICTION, HELD, PUSH = range(8)  # columns of a part
 CHANGE = 1e-7  # of a sweep's impulses, over what they are: it has converged
@@ -71,7 +71,7 @@ def step(parts, order, gravity, floor, time, dt, restitution, loads, rubs, pushe
         part[PUSH] += pushes[n]
 
 
-@compiled
+@entry
 def follow(parts, order, gravity, floor, time, restitution, steps, loads, rubs, pushes):
     """Move a row for so many steps of the floor."""
     for k in range(steps):

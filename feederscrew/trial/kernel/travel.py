@@ -4,7 +4,7 @@ import math
 
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import X, Y, Z
-from feederscrew.geometry.compiled import compiled
+from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.trial.kernel.balance import unpaid
 from feederscrew.trial.kernel.motion import step
 
@@ -87,7 +87,7 @@ def travel(surface, solid, floor, work, time, every, path, notes):
     return outcome
 
 
-@compiled
+@entry
 def travel_all(surface, solid, floor, work, starts, times, every, paths, notes, outcomes):
     """Follow every row of (N, 13) starts, which hold the ends afterwards; fills paths, notes and outcomes."""
     for n in range(len(starts)):
