@@ -61,11 +61,11 @@ def follow(rules, state, known, patience):
         The number is ``JOINS`` where the motion has become one that is known.
     """
     tally = np.zeros(TALLY)
-    history = np.full((LONGEST_PERIOD + 1, 3), np.inf)
-    streak = np.zeros(LONGEST_PERIOD + 1, dtype=np.int64)
+    history = np.empty((LONGEST_PERIOD + 1, 3))  # read no further back than it is written
+    streak = np.zeros(LONGEST_PERIOD + 1)
     sliding, sense, even = 0, 0.0, evenly(rules)
     for count in range(patience):
-        state = _afresh(rules, state, tally)
+        state = _on(rules, state, 1, tally)
         sliding, sense = _slid(tally, sliding, sense)
         period = _repeats(history, streak, count, state)
         if period:
@@ -75,11 +75,11 @@ def follow(rules, state, known, patience):
         if _joins(known, state, even):
             return state, JOINS
         if even and count >= FIRST_LEAP:
-            before, state = state.speed, _leap(rules, history, count, state)
+            before, state = state.speed, _leap(rules, history, count, state, tally)
             if state.speed != before:
                 sliding, sense = 0, 0.0  # what it slid before the leap says nothing
                 history[count % (LONGEST_PERIOD + 1), 0] = state.speed
-    return _hasten(rules, state, _period_of_normal(history, patience - 1))
+    return _hasten(rules, state, _period_of_normal(history, patience - 1), tally)
 
 
 def noted(state):
@@ -107,16 +107,15 @@ def _joins(known, state, even):
     return False
 
 
-def _leap(rules, history, count, state):
+def _leap(rules, history, count, state, tally):
     """The state, or where its speed tends to while the motion along the normal repeats every period.
 
     Three speeds in a row tell (Aitken). The leap is kept where the speed then changes less than before it:
     a period is followed to see.
     """
     one, two = (count - 1) % (LONGEST_PERIOD + 1), (count - 2) % (LONGEST_PERIOD + 1)
-    for then in (one, two):
-        if max(abs(state.height - history[then, 1]), abs(state.rising - history[then, 2])) > SAME:
-            return state
+    if _normal_apart(history, one, state) > SAME or _normal_apart(history, two, state) > SAME:
+        return state
     first, second = history[one, 0] - history[two, 0], state.speed - history[one, 0]
     if not (0.0 < second * first < first * first and abs(second) > LEAST_LEAP):
         return state
@@ -124,14 +123,8 @@ def _leap(rules, history, count, state):
     if abs(beyond) > LONGEST_LEAP:
         return state
     leap = _at_speed(rules, state, state.speed + beyond)
-    change = turn(rules, leap, np.zeros(TALLY)).speed - leap.speed
+    change = _on(rules, leap, 1, tally).speed - leap.speed
     return leap if abs(change) < abs(second) else state
-
-
-def _afresh(rules, state, tally):
-    """The state a period on; stops and contacts are counted from nothing."""
-    tally[STOPS], tally[UPWARD], tally[DOWNWARD] = 0.0, 0.0, 0.0
-    return turn(rules, state, tally)
 
 
 def _slid(tally, sliding, sense):
@@ -151,20 +144,25 @@ def _repeats(history, streak, count, state):
         then = (count - q) % (LONGEST_PERIOD + 1)
         apart = abs(state.speed - history[then, 0])
         if apart <= SAME:
-            apart = max(abs(state.height - history[then, 1]), abs(state.rising - history[then, 2]))
-        streak[q] = streak[q] + 1 if apart <= SAME else 0
-        if streak[q] == 2:
+            apart = _normal_apart(history, then, state)
+        streak[q] = streak[q] + 1.0 if apart <= SAME else 0.0
+        if streak[q] == 2.0:
             return q
     row = count % (LONGEST_PERIOD + 1)
     history[row, 0], history[row, 1], history[row, 2] = state.speed, state.height, state.rising
     return 0
 
 
+def _normal_apart(history, row, state):
+    """How far the motion along the normal is from what it was."""
+    return max(abs(state.height - history[row, 1]), abs(state.rising - history[row, 2]))
+
+
 def _grows(history, count, state, sliding, sense):
     """Whether a part that has slid for some periods comes back along the normal, but faster."""
     for q in range(1, min(count, sliding, LONGEST_PERIOD) + 1):
         then = (count - q) % (LONGEST_PERIOD + 1)
-        if max(abs(state.height - history[then, 1]), abs(state.rising - history[then, 2])) <= SAME:
+        if _normal_apart(history, then, state) <= SAME:
             return sense * (state.speed - history[then, 0]) > SAME
     return False
 
@@ -183,7 +181,7 @@ def _period_of_normal(history, count):
     return 0
 
 
-def _hasten(rules, state, period):
+def _hasten(rules, state, period, tally):
     """Find the steady motion of a part whose motion along the normal repeats, but whose speed changes slowly.
 
     Parameters
@@ -192,6 +190,8 @@ def _hasten(rules, state, period):
     state : State
     period : int
         Of the motion along the normal; 0 for none.
+    tally : (11,) float
+        To count with.
 
     Returns
     -------
@@ -204,31 +204,30 @@ def _hasten(rules, state, period):
     it tends to the first fixed point in its way: that is bracketed by doubling the step, then closed in on
     by the secant rule in its Illinois form.
     """
-    tally = np.zeros(TALLY)
-    step = _gained(rules, state, period, tally) if period else 0.0
+    step = _on(rules, state, period, tally).speed - state.speed
     if step == 0.0:
         return state, period
     near, rise, far, fall = state.speed, step, state.speed, step
     while fall * rise > 0.0:
         near, rise = far, fall
         far = near + step
-        fall = _gained(rules, _at_speed(rules, state, far), period, tally)
+        fall = _on(rules, _at_speed(rules, state, far), period, tally).speed - far
         if (_runs(tally) and fall * rise > 0.0 and fall * far > 0.0) or abs(step) > FASTEST:
             return state, RUNS
         step *= 2.0
-    far = _closed_in(rules, state, period, (near, rise, far, fall))
+    far = _closed_in(rules, state, period, (near, rise, far, fall), tally)
     return _at_speed(rules, state, far), period
 
 
-def _closed_in(rules, state, period, bracket):
+def _closed_in(rules, state, period, bracket, tally):
     """The speed that a period does not change, between two of which one grows and the other does not."""
-    tally, side = np.zeros(TALLY), 0
     near, rise, far, fall = bracket
+    side = 0
     for _ in range(LEAPS):
         if abs(far - near) <= CLOSE or fall == 0.0:
             break
         middle = far - fall * (far - near) / (fall - rise)
-        gained = _gained(rules, _at_speed(rules, state, middle), period, tally)
+        gained = _on(rules, _at_speed(rules, state, middle), period, tally).speed - middle
         if gained * rise > 0.0:
             near, rise = middle, gained
             fall = 0.5 * fall if side == 1 else fall
@@ -238,11 +237,6 @@ def _closed_in(rules, state, period, bracket):
             rise = 0.5 * rise if side == -1 else rise
             side = -1
     return far
-
-
-def _gained(rules, state, periods, tally):
-    """Speed gained in some periods [A w]."""
-    return _on(rules, state, periods, tally).speed - state.speed
 
 
 def _at_speed(rules, state, speed):

@@ -173,7 +173,8 @@ def survey(setting, out):
 
 
 def _nothing(out):
-    out[:THROW] = np.nan
+    for place in range(THROW):
+        out[place] = np.nan
     out[STATUS], out[PERIOD] = NO_STEADY_STATE, 0.0
 
 
@@ -186,7 +187,7 @@ def regime(rules):
 
 
 def _widen(rules, out, known, count):
-    other = np.empty(COLUMNS)
+    other = np.zeros(COLUMNS)
     patience = TRANSIENT if out[STATUS] == PERIODIC else BRIEF
     for start in range(2 * BOUNCES + len(DROPS)):
         state = thrown(rules, start)

@@ -14,7 +14,16 @@ from feederscrew.conveying.setting import OperatingPoint, checked
 from feederscrew.conveying.steady import COLUMNS, survey
 
 KERNEL = (
-    *(waves.height, waves.slope, waves.bends, waves.crest, waves.crossings, waves._insert, waves._zero),
+    *(
+        waves.height,
+        waves.slope,
+        waves._knots,
+        waves.bends,
+        waves.crest,
+        waves.crossings,
+        waves._insert,
+        waves._zero,
+    ),
     *(harmonic.harmonic, harmonic.value, harmonic.peak, harmonic.after, harmonic.above),
     *(harmonic.onward, harmonic.reached),
     *(harmonic.gain, harmonic.travel, harmonic._beyond_sine, harmonic._beyond_cosine),
@@ -29,16 +38,15 @@ KERNEL = (
         settling.evenly,
         settling._joins,
         settling._leap,
-        settling._afresh,
         settling._slid,
         settling._repeats,
+        settling._normal_apart,
         settling._grows,
     ),
     *(
         settling._period_of_normal,
         settling._hasten,
         settling._closed_in,
-        settling._gained,
         settling._at_speed,
         settling._on,
         settling._runs,
@@ -130,7 +138,7 @@ def _compiled():
         register_jitable(error_model="numpy")(function)
 
     _loop.__qualname__ = f"loop_{_fingerprint()}"  # names the files of the cache
-    return njit(cache=True, nogil=True, error_model="numpy")(_loop)
+    return njit(cache=True, nogil=True, no_cfunc_wrapper=True, error_model="numpy")(_loop)
 
 
 def _loop(settings, out):

@@ -61,20 +61,29 @@ def bends(wave):
     rate = slope(wave)
     if math.hypot(rate.sine, rate.cosine) > OUTWEIGHS * math.hypot(rate.sine_2, rate.cosine_2):
         top = math.atan2(rate.sine, rate.cosine)
-        return crossings(rate, np.array([top, top + math.pi, math.inf, math.inf]), 0)
+        return crossings(rate, _knots(top, math.pi, 2), 0)
     second = slope(rate)
     third = slope(second)
     top = 0.5 * math.atan2(third.sine_2, third.cosine_2)
-    knots = top + 0.5 * math.pi * np.arange(4.0)
+    knots = _knots(top, 0.5 * math.pi, MOST)
     return crossings(rate, crossings(second, crossings(third, knots, 0), 0), 0)
+
+
+def _knots(first, apart, count):
+    """(4,) float [rad]: so many angles, this far apart, then inf."""
+    angles = np.empty(MOST)
+    for k in range(MOST):
+        angles[k] = first + apart * k if k < count else math.inf
+    return angles
 
 
 def crest(wave):
     """Angle [rad] of its greatest value; the wave has a harmonic."""
     best, found = -math.inf, 0.0
-    for bend in bends(wave):
-        if bend < math.inf and height(wave, bend) > best:
-            best, found = height(wave, bend), bend
+    angles = bends(wave)
+    for k in range(MOST):
+        if angles[k] < math.inf and height(wave, angles[k]) > best:
+            best, found = height(wave, angles[k]), angles[k]
     return found
 
 
@@ -95,7 +104,7 @@ def crossings(wave, knots, sense):
     (4,) float [rad]
         From 0 to 2 pi, ascending, then inf.
     """
-    found = np.full(MOST, math.inf)
+    found = _knots(0.0, 0.0, 0)
     for k in range(MOST):
         if knots[k] == math.inf:
             break
