@@ -7,7 +7,13 @@ from feederscrew.output import style
 from feederscrew.output.columns import MM
 from feederscrew.trial import course
 
-COLOURS = {"passed": "#0072b2", "turned": "#56b4e9", "returned": "#d55e00", "hanging": "#cc79a7", "stuck": "#7a5c3e"}
+COLOURS = {
+    "passed": "#0072b2",
+    "turned": "#56b4e9",
+    "returned": "#d55e00",
+    "hanging": "#cc79a7",
+    "stuck": "#7a5c3e",
+}
 TRACK = "#e3e8ec"
 MOST = 24  # orientations that come most often have a row
 
