@@ -1,6 +1,5 @@
 """The whole pipeline for one part, from the bytes of its file to the bytes of its results."""
 
-import dataclasses
 import functools
 import io
 
@@ -17,8 +16,8 @@ from feederscrew.output.rate import tables as rate_tables
 from feederscrew.part import load
 from feederscrew.rates import queue
 from feederscrew.resting.aspects import find
-from feederscrew.resting.rules.recommended import dropped, launch_named
-from feederscrew.studies.aspects import AspectsStudy
+from feederscrew.resting.rules.recommended import launch_named
+from feederscrew.studies.aspects import AspectsStudy, with_drops
 from feederscrew.studies.convey import convey
 from feederscrew.studies.rate import Shares, rate, shares
 
@@ -130,10 +129,9 @@ def _answered(part, task, files):
     study = drop(part, choices.launched, drops=choices.drops, seed=seed, aspects=found)
     offers.write(files, drop_files.offers(study), pictures=choices.pictures)
     tally = study.result.tally
-    answer = dropped(tally, found.stable, launch_named(choices.launched))
     first = int(np.argmax(tally.p))
     told = {"drops": choices.drops, "drop_aspect": found.names[first], "p_drop": tally.p[first]}
-    return AspectsStudy(part, dataclasses.replace(found, recommended=answer), tally), told
+    return with_drops(part, found, study, launch_named(choices.launched)), told
 
 
 def _fed(task):

@@ -106,10 +106,31 @@ def answered(part: Part) -> Aspects:
 
 
 def _dropped(part, found, launch, drops, progress):
-    """The study with a drop test, whose answer takes the place of the closed form's."""
+    """The study with a drop test."""
     from feederscrew.studies.drop import drop
 
-    tally = drop(part, launch, drops=drops, progress=progress, aspects=found).result.tally
+    return with_drops(part, found, drop(part, launch, drops=drops, progress=progress, aspects=found), launch)
+
+
+def with_drops(part: Part, found: Aspects, test, launch: str) -> AspectsStudy:
+    """Return the study with a drop test, whose answer takes the place of the closed form's.
+
+    Parameters
+    ----------
+    part : Part
+    found : Aspects
+        With the closed form's answer for the launch.
+    test : DropStudy
+        Of that part.
+    launch : str
+        By its present name.
+
+    Returns
+    -------
+    AspectsStudy
+        Where the two answers have nothing in common, with wider intervals and a warning.
+    """
+    tally = test.result.tally
     answer, apart = recommended.reconciled(
         recommended.dropped(tally, found.stable, launch), found.recommended
     )
