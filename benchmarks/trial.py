@@ -22,6 +22,7 @@ from feederscrew.trial import runs, shape, stations
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 import shapes
+import trial_mujoco
 
 OWN = (
     "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.3",
@@ -144,85 +145,32 @@ def hanging():
     return 1e3 * (ride.states[0][2] * ours.length), 1e3 * PIN.centre_of_mass[1], "mm" if low else "", speed
 
 
-def ours():
-    """Print every case with our kernel."""
-    cases = {
-        "sliding velocity on a vibrating plate": sliding,
-        "block tipping over an edge, from its centre": lambda: edge(BLOCK, 5e-3, 2e-2, 0.0),
-        "bridge on its legs over an edge": lambda: edge(ARCH, 8e-3, 2e-2, -7e-3),
-        "headed bar hanging in a slot": hanging,
-        "box on an incline at its friction angle": incline,
-        "restitution of a corner hit": corner,
-    }
-    sliding()  # compiled here
-    print("case: found, exact, error; simulated seconds a second of one core")
-    for name, case in cases.items():
-        found, exact, unit, speed = case()
-        print(f"{name:45s} {found:9.4f} {exact:9.4f} {found - exact:+9.4f} {unit:12s} {speed:8.1f}")
-
-
-BOX = 'type="box" size="0.01 0.006 0.0025"'
-STEP = 1e-4  # [s] as fine as a part of 10 mm needs it there
-
-
-def mujoco_model(part, pull, ratio=1.0):
-    """A box on the end of a wide one in MuJoCo: stiff contacts, friction 0.4."""
-    import mujoco
-
-    own = f'solref="{4 * STEP} {ratio}" solimp="0.99 0.999 0.0001" friction="0.4 0 0" condim="3"'
-    model = mujoco.MjModel.from_xml_string(
-        f'''<mujoco><option timestep="{STEP}" cone="elliptic" impratio="20" gravity="{pull}"/>
-        <worldbody><geom {own} type="box" size="0.5 0.5 0.5" pos="-0.5 0 -0.5"/>
-        <body {part[0]}><freejoint/><geom {own} density="7850" {part[1]}/></body></worldbody></mujoco>'''
-    )
-    return mujoco, model, mujoco.MjData(model)
-
-
-def mujoco_end(part, pull, seconds):
-    """Where the box is after so long, and the simulated seconds a second."""
-    mujoco, model, data = mujoco_model(part, pull)
-    start = time.perf_counter()
-    for _ in range(round(seconds / STEP)):
-        mujoco.mj_step(model, data)
-    return np.array(data.qpos), seconds / (time.perf_counter() - start)
-
-
-def theirs():
-    """Print the cases of plain boxes with MuJoCo: tipping over an edge, incline, corner hit."""
-    low, high = 0.2, 0.6
-    for _ in range(8):
-        slope = 0.5 * (low + high)
-        climb = np.arctan(slope)
-        pull = f"{-9.81 * np.sin(climb)} 0 {-9.81 * np.cos(climb)}"
-        end, speed = mujoco_end(('pos="-0.3 0 0.0025"', BOX), pull, 0.3)
-        creep = 0.5 * 9.81 * 0.09 * 0.005  # what half a hundredth of the slope would give
-        low, high = (low, slope) if end[0] + 0.3 < -creep else (slope, high)
-    print(f"MuJoCo, incline: {0.5 * (low + high):.4f}, exact 0.4; {speed:.1f} s/s")
-    low, high = -2e-3, 2e-3
-    for _ in range(8):
-        middle = 0.5 * (low + high)
-        end, speed = mujoco_end((f'pos="{middle} 0 0.0025"', BOX), "0 0 -9.81", 1.0)
-        low, high = (low, middle) if end[2] < 0.002 else (middle, high)
-    print(f"MuJoCo, block tipping over an edge: {1e3 * 0.5 * (low + high):+.4f} mm, exact 0; {speed:.1f} s/s")
-    cube = 'pos="-0.2 0 0.03" quat="0.8805 0.3647 -0.2798 0.1159"', 'type="box" size="0.005 0.005 0.005"'
-    for ratio in (0.35, 0.2, 0.1):
-        mujoco, model, data = mujoco_model(cube, "0 0 -9.81", ratio)
-        speeds = []
-        for _ in range(1500):
-            mujoco.mj_step(model, data)
-            speeds.append(data.qvel[2])
-        found = max(speeds) / -min(speeds)
-        print(f"MuJoCo, corner hit at damping ratio {ratio}: restitution {found:.2f}, wanted 0.3")
+CASES = {
+    "sliding velocity on a vibrating plate": sliding,
+    "block tipping over an edge, from its centre": lambda: edge(BLOCK, 5e-3, 2e-2, 0.0),
+    "bridge on its legs over an edge": lambda: edge(ARCH, 8e-3, 2e-2, -7e-3),
+    "headed bar hanging in a slot": hanging,
+    "box on an incline at its friction angle": incline,
+    "restitution of a corner hit": corner,
+}
 
 
 def main():
-    ours()
+    """Print every case: what is exact, what each engine finds, and its cost."""
+    sliding()  # compiled here
     try:
-        import mujoco  # noqa: F401
+        import mujoco
     except ImportError:
+        mujoco = None
         print("MuJoCo is not installed: pip install mujoco to compare")
-    else:
-        theirs()
+    print("case: exact; found, error, simulated seconds a second of one core; the same of MuJoCo")
+    for name, case in CASES.items():
+        found, exact, unit, speed = case()
+        line = f"{name:45s} {exact:8.4f} {unit:11s} {found:9.4f} {found - exact:+8.4f} {speed:7.1f}"
+        if mujoco is not None:
+            other, cost = trial_mujoco.CASES[name]()
+            line += f" | {other:9.4f} {other - exact:+8.4f} {cost:7.1f}"
+        print(line, flush=True)
 
 
 if __name__ == "__main__":

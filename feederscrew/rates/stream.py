@@ -63,9 +63,16 @@ class Orientations:
 
     @property
     def margin(self):
-        """(M,) [m] the least over the devices, by which it passes them all or fails; NaN without any."""
+        """(M,) [m] the least over the devices, by which it passes or fails them; NaN where it meets none."""
         known = np.where(np.isnan(self.margins), np.inf, self.margins).min(axis=1)
-        return np.where(np.isinf(known), np.nan, known)
+        lost = np.array([one.returned for one in self.lying])
+        return np.where(np.isinf(known) | lost | ~self.sure, np.nan, known)
+
+    @property
+    def sure(self):
+        """(M,) bool, whether it comes along the bare track as it lies: it does not rock or roll there."""
+        rocks = False if self.tipping is None else self.tipping.tips & ~self.tipping.over
+        return ~(np.array([one.may_roll_back for one in self.lying]) | rocks)
 
 
 def orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None):

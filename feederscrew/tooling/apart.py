@@ -119,7 +119,7 @@ def difference(wanted, other):
 
 def _nearest(wanted, other):
     """The device at which two orientations are farthest apart, and by how much [m]."""
-    found = [(-opening_margin(seen(wanted), seen(other)), "profile")]
+    found = [(-opening_margin(seen(wanted), other), "profile")]
     for kind in (*UPPER, *LOWER):
         first, second = limits(kind, (wanted, other))
         step = second - first if kind in UPPER else first - second

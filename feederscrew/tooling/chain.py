@@ -50,10 +50,11 @@ def candidates(every, wanted, margin):
         sign = 1.0 if kind in UPPER else -1.0
         limit = float(values[wanted] + sign * margin)
         if limit > 0.0 and not (kind == "narrowed_track" and limit >= every[wanted].track.width):
-            found[Device(kind, WHERE, limit=limit)] = sign * (limit - values)
+            device = Device(kind, WHERE, limit=limit)
+            found[device] = np.array([verdict(device, one, every).margin for one in every])
     gate = Device("profile", WHERE, like=(every[wanted].aspect, every[wanted].heading, margin))
     opening = seen(every[wanted]).buffer(margin)
-    found[gate] = np.array([opening_margin(opening, seen(one)) for one in every])
+    found[gate] = np.array([opening_margin(opening, one) for one in every])
     return found
 
 
@@ -124,8 +125,9 @@ def shared_out(found, devices, margin):
 def _cut(every, wanted, device, must):
     if device.kind == "profile":
         return _gate(every, wanted, device, must)
-    values = limits(device.kind, every)
-    upper = device.kind in UPPER
+    values, upper = limits(device.kind, every), device.kind in UPPER
+    if device.kind == "gap":
+        values = values + [0.0 if k == wanted else one.carry for k, one in enumerate(every)]
     nearest = (values[must].min() if upper else values[must].max()) if must.any() else values[wanted]
     middle = float(0.5 * (values[wanted] + nearest))
     if not np.isfinite(nearest):
@@ -138,7 +140,7 @@ def _cut(every, wanted, device, must):
 
 def _gate(every, wanted, device, must):
     aspect, heading, play = device.like
-    outside = [-opening_margin(seen(every[wanted]), seen(one)) for one, some in zip(every, must) if some]
+    outside = [-opening_margin(seen(every[wanted]), one) for one, some in zip(every, must) if some]
     widest = min(outside, default=2.0 * play)
     play = round(0.5 * widest / FINE) * FINE if np.isfinite(widest) else play
 

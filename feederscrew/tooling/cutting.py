@@ -10,6 +10,7 @@ from feederscrew.bowl.device_values import crossed
 from feederscrew.bowl.devices import Device
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling.chain import WHERE, judged, millimetres
+from feederscrew.tooling.verdicts import carried, verdict
 
 STARTS = 220  # random holes tried
 CLIMBS = 6  # the best of them are improved
@@ -75,7 +76,7 @@ class _Judge:
 
     def __init__(self, every, wanted, others, margin, search):
         self.search = search
-        self.wanted, self.others = every[wanted].standing, [every[k].standing for k in others]
+        self.wanted, self.others = every[wanted].standing, [every[k] for k in others]
         self.radius, self.margin = every[wanted].track.radius, margin
         self.length = ROOM * max(one.length for one in (every[wanted], *(every[k] for k in others)))
         self.width = max(one.width for one in (every[wanted], *(every[k] for k in others)))
@@ -87,7 +88,7 @@ class _Judge:
         passing = self._least(0, self.wanted, hole)
         if passing < -self.margin:
             return -math.inf, None
-        margins = [self._least(k + 1, one, hole) for k, one in enumerate(self.others)]
+        margins = [self._falling(k + 1, one, hole) for k, one in enumerate(self.others)]
         returned = sum(found <= -self.margin for found in margins)
         ready = passing >= self.margin
         total = sum(min(-found, 2.0 * self.margin) for found in margins)
@@ -153,6 +154,13 @@ class _Judge:
             return None
         return corners
 
+    def _falling(self, k, one, hole):
+        """Least margin of one that travels; what fails by too little anyway is left as it is placed."""
+        margin = self._least(k, one.standing, hole)
+        if margin > -self.margin or not one.carry > 0.0:
+            return margin
+        return carried(margin, feet.unheld(one.standing, hole), one)
+
     def _least(self, k, foot, hole):
         """Least margin, in arrays kept for holes of that size."""
         self.search.spent += 1
@@ -176,7 +184,8 @@ def _as_cut(every, wanted, held, corners):
         return _margin(every[wanted], scaled(share)) >= 0.0
 
     def returns(share):
-        return all(_margin(every[k], scaled(share)) < 0.0 for k in held)
+        device = _device(scaled(share))
+        return all(verdict(device, every[k], every).margin < 0.0 for k in held)
 
     least = _border(returns, 1.0, 0.0)
     most = _border(passes, 1.0, 2.0)

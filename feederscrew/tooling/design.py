@@ -107,6 +107,8 @@ def _plain(given, search, holes):
     every, wanted = given.every, given.wanted
     if every[wanted].turns_over:
         return without(given, "can tip over on the track at this drive")
+    if every[wanted].may_roll_back:
+        return without(given, "lies on its round side, not along the track, and can roll back")
     if every[wanted].falls_off or not every[wanted].margin > 0.0:
         return without(given, "falls off the bare track")
     if not given.coming[wanted] > 0.0 and given.shares[wanted] > 0.0:

@@ -144,6 +144,13 @@ def least(foot, hole, work=None):
     return float(out[0]), float(out[1])
 
 
+def unheld(foot, hole):
+    """Return the longest way [m] over which a hole leaves a foot without support."""
+    from feederscrew.tooling.kernel import unheld as kernel
+
+    return float(kernel.longest(foot, hole, scratch(foot, hole))) * foot.centre
+
+
 def _hull(x, y):
     """Corners of the convex hull about the origin, counter-clockwise, and the insets of its sides."""
     points = np.column_stack([x, y])

@@ -1,11 +1,13 @@
 """Every way a part can lie on the track, and what a device sees of it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from feederscrew.bowl.record import Track
+from feederscrew.conveying import answer
+from feederscrew.errors import ConfigError
 from feederscrew.geometry.polygons import turned
 from feederscrew.mechanics.wall import sameness
 from feederscrew.mechanics.wall.headings import headings
@@ -14,7 +16,7 @@ from feederscrew.tooling import contact
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling.silhouette import silhouette
 
-BEYOND = 1e-3  # [m] a gap reaches farther than the foot does
+FALLEN = 2.0  # time constants after which a part that tips is lost
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +40,8 @@ class Orientation:
         None  # of its corners, where it touches the wall; None where that is not known
     )
     turns_over: bool = False  # the drive tips it over on the track
+    may_roll_back: bool = False  # on its round side, not along a climbing track: no verdict is sure
+    carry: float = 0.0  # [m] it travels on unsupported before it has tipped: 0 of one that is only placed
 
     @property
     def name(self):
@@ -133,6 +137,68 @@ def orientations(part, aspects, track):
     return tuple(found)
 
 
+def travelling(found, bowl):
+    """Return orientations that know how far a bowl carries them over an edge, and whether they may roll back.
+
+    Parameters
+    ----------
+    found : sequence of Orientation
+    bowl : Bowl
+        Its velocity is that of the point mass; one that does not convey carries nothing.
+
+    Returns
+    -------
+    tuple of Orientation
+
+    Notes
+    -----
+    A part without support leaves its place as an inverted pendulum does, by cosh(t / T) - 1 with
+    T = sqrt((k^2 + h^2) / (g h)), h the height of the centre of mass and k the greater radius of gyration
+    about a level axis. After ``FALLEN`` times T it is taken to be lost; one that finds support again sooner
+    comes back upright. A part on its round side across the track rolls down the climb, since friction of the
+    floor turns it as much as it moves it: without the wall by g sin(climb) / (1 + k^2 / r^2) in the mean,
+    whatever the drive. Friction of the wall may hold it, or even carry it on as it does what slides.
+    """
+    speed, track = _speed(bowl), bowl.track
+    held = np.tan(track.climb) <= bowl.friction.wall * np.sin(track.bank)
+    return tuple(
+        replace(
+            one,
+            carry=FALLEN * speed * _tipping_time(one, bowl.gravity),
+            may_roll_back=bool(not held and _rolls(one)),
+        )
+        for one in found
+    )
+
+
+def _rolls(one):
+    """Whether it rolls about an axis across the track rather than along it, or round in a circle."""
+    if one.kind != "rolling" or one.posture.axis is None:
+        return False
+    if np.isfinite(one.posture.run):
+        return True
+    along, across = one.posture.axis
+    c, s = np.cos(one.heading), np.sin(one.heading)
+    return bool(abs(s * along + c * across) > abs(c * along - s * across))
+
+
+def _speed(bowl):
+    """Velocity up the track [m/s]; 0 of a bowl that does not convey."""
+    try:
+        found = answer.answer(bowl).velocity
+    except ConfigError:
+        return 0.0
+    return max(float(found), 0.0) if np.isfinite(found) else 0.0
+
+
+def _tipping_time(one, gravity):
+    """Time constant [s] of an orientation that tips over an edge below its centre of mass."""
+    inertia, height = one.posture.inertia, one.posture.height
+    mean, lean = 0.5 * (inertia[0, 0] + inertia[1, 1]), 0.5 * (inertia[0, 0] - inertia[1, 1])
+    square = (mean + np.hypot(lean, inertia[0, 1])) / one.posture.mass
+    return float(np.sqrt((square + height**2) / (gravity * height)))
+
+
 def named(found):
     """Return orientations with the names of their mirror images, fore and aft.
 
@@ -144,8 +210,6 @@ def named(found):
     -------
     tuple of Orientation
     """
-    from dataclasses import replace
-
     looks = [_look(one) for one in found]
     pairs = {}
     for i in range(len(found)):

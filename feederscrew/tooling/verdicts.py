@@ -116,7 +116,7 @@ def _canyon(device, one, every):
 
 
 def _gap(device, one, every):
-    return one.gap - device.limit, 0.0
+    return carried(one.gap - device.limit, device.limit - one.gap, one), 0.0
 
 
 def _slot(device, one, every):
@@ -135,7 +135,24 @@ def _rails(device, one, every):
 
 
 def _cut_out(device, one, every):
-    return feet.least(one.standing, feet.polygon(np.array(device.corners), one.track.radius))
+    hole = feet.polygon(np.array(device.corners), one.track.radius)
+    margin, shift = feet.least(one.standing, hole)
+    if margin < 0.0 < one.carry:
+        margin = carried(margin, feet.unheld(one.standing, hole), one)
+    return margin, shift
+
+
+def carried(margin, way, one):
+    """Return the margin [m] of an orientation that travels, from that of one that is placed.
+
+    Parameters
+    ----------
+    margin : float [m]
+    way : float [m]
+        Over which it is not supported; what it travels on before it has tipped is taken from it.
+    one : Orientation
+    """
+    return margin if margin >= 0.0 else min(max(margin, one.carry - way), 0.0)
 
 
 def _profile(device, one, every):
@@ -143,19 +160,23 @@ def _profile(device, one, every):
         opening = seen(_named(device, every)).buffer(device.like[2])
     else:
         opening = shapely.Polygon(device.corners)
-    return opening_margin(opening, seen(one)), 0.0
+    return opening_margin(opening, one), 0.0
 
 
-def opening_margin(opening, shown):
-    """Return by how much [m] what is seen of a part stays within an opening over the track.
+def opening_margin(opening, one):
+    """Return by how much [m] what is seen of a part over the track stays within an opening.
 
     Parameters
     ----------
-    opening, shown : shapely geometry
-        In distance from the wall and height [m]; track and wall themselves are no border of the opening.
+    opening : shapely geometry
+        In distance from the wall and height [m]; track and wall themselves are no border of it.
+    one : Orientation
+        What of it is beyond the track's free edge meets no gate.
     """
+    shown = seen(one).intersection(shapely.box(-FAR, -FAR, one.track.width, FAR))
     below, behind = shapely.box(-FAR, -FAR, FAR, 0.0), shapely.box(-FAR, -FAR, 0.0, FAR)
     outside = shapely.box(-FAR, -FAR, FAR, FAR).difference(shapely.union_all([opening, below, behind]))
+    outside = outside.intersection(shapely.box(-FAR, -FAR, one.track.width, FAR))
     inside = shown.distance(outside)
     if inside > 0.0:
         return inside

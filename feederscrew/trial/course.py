@@ -8,7 +8,9 @@ from feederscrew import check
 from feederscrew.conveying import answer
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
+from feederscrew.tooling.hanging import Hanging
 from feederscrew.trial import groups, runs, stations
+from feederscrew.trial.rounding import rounded
 from feederscrew.trial.shape import solid_of
 
 PASSED, TURNED, RETURNED, HANGING, STUCK = range(5)
@@ -22,6 +24,7 @@ SLOWEST = 1e-3  # [m/s] a slower bowl is given up after the time this takes
 GETS_ON = 0.08  # of the way it should come in the time it has to get on
 ALIKE = 0.05  # of the part's size: a part whose outline is off by more lies in no known orientation
 LOOK_DIRECTIONS = 160
+SWINGS = np.cos(np.radians(40.0))  # a part below the track that is no further from upright hangs
 BELOW = 1e-4  # [m] under the track: a part that reaches so deep hangs
 OTHER = -1  # orientation: none of the known
 
@@ -88,14 +91,16 @@ def course(
         If the part has no shape or the bowl conveys nothing at all.
     """
     solid, length, principal = solid_of(part)
+    solid = rounded(solid, _axes(every, principal))
     known, chain = runs.setting(solid, length, bowl), _chain(bowl, every, devices)
     if before:
         before()
     entered = np.resize(np.asarray(tried, int), parts)
     states, times = _starts(bowl, every, entered, principal, length, seed)
-    looks = _Looks(every if poses is None else poses, solid, length, bowl.track.radius)
+    states[:, 2] -= np.array([_lowest(solid.corners, state) for state in states])
+    looks = _Looks(every if poses is None else poses, solid, length, principal, bowl.track.radius)
     leaves = np.eye(len(every), len(looks.known), dtype=bool) if leaves is None else leaves
-    found = _Found(len(chain), parts, looks, entered)
+    found = _Found([station.drop for station in chain], parts, looks, entered)
     for first in range(0, parts, groups.SIZE):
         begun = slice(first, min(first + groups.SIZE, parts))
         told = groups.Told(progress, first, parts, len(chain), begun.stop - first)
@@ -123,10 +128,35 @@ def _through(known, bowl, every, chain, states, times, first, found, told, jobs)
         stays = found.add(place, ride, riders, bowl)
         riders, times = riders[stays], (times + ride.seconds)[stays]
         if place + 1 < len(chain):
-            begun = runs.ways(ride.states[stays], known.radius)
-            states = runs.moved(
-                ride.states[stays], chain[place + 1].begin / known.length - begun, known.radius
-            )
+            states = _led_on(ride.states[stays], station, chain[place + 1].begin, known)
+
+
+def _led_on(states, station, begin, known):
+    """States (N, 13) behind a station, on the track at the begin [m] of the next one.
+
+    What went down to a lower track goes on at its level; one that begins beside a ledge leads to the wall.
+    """
+    states = runs.moved(states, begin / known.length - runs.ways(states, known.radius), known.radius)
+    if station.drop > 0.0:
+        down = states[:, 2] < 0.0 if station.aside > 0.0 else np.ones(len(states), dtype=bool)
+        states[down, 2] += station.drop / known.length
+        out = states[:, :2] - [0.0, known.radius]
+        out *= 1.0 + down[:, None] * station.aside / known.length / vectors.length(out)[:, None]
+        states[:, :2] = out + [0.0, known.radius]
+    return states
+
+
+def _axes(every, principal):
+    """Axes (N, 3) about which a part rolls, along its principal axes."""
+    found = [
+        vectors.product(one.posture.axis, vectors.product(one.posture.axes[:2], principal))
+        for one in every
+        if one.kind == "rolling" and one.posture.axis is not None and np.isinf(one.posture.run)
+    ]
+    told = {
+        tuple(np.round(axis if axis[np.argmax(np.abs(axis))] > 0.0 else -axis, 4)): axis for axis in found
+    }
+    return [vectors.unit(axis) for axis in told.values()]
 
 
 def rightly(leaving):
@@ -180,10 +210,19 @@ def _limits(bowl, station, every):
 
 
 class _Looks:
-    """Tells in which orientation a part lies, by how far it reaches in many directions."""
+    """Tells in which orientation a part lies, by how far it reaches in many directions.
 
-    def __init__(self, every, solid, length, radius):
+    Parts that hang swing and turn about the vertical: they are known by what of them is up.
+    """
+
+    def __init__(self, every, solid, length, principal, radius):
         self.directions, self.corners = spread(LOOK_DIRECTIONS), solid.corners
+        self.ups = {
+            k: vectors.product(principal.T, one.posture.axes[2])
+            for k, one in enumerate(every)
+            if isinstance(one, Hanging)
+        }
+        self.low = 0.5 * min(one.posture.height for one in every if not isinstance(one, Hanging)) / length
         self.radius, self.near = radius / length, ALIKE * solid.radius
         self.known = np.array([self._standing(one, length) for one in every])
 
@@ -204,6 +243,9 @@ class _Looks:
         reach = vectors.product(seen, self.directions.T).max(axis=0)
         off = np.abs(self.known - reach).max(axis=1)
         best = int(np.argmin(off))
+        if self.ups and state[2] < self.low:
+            up = {k: float(vectors.dot(runs.matrix(level)[2], one)) for k, one in self.ups.items()}
+            return max((k for k in up if up[k] > SWINGS), key=up.get, default=OTHER)
         return best if off[best] < self.near else OTHER
 
 
@@ -218,8 +260,8 @@ def spread(count):
 class _Found:
     """Collects what became of the parts, station by station."""
 
-    def __init__(self, count, parts, looks, entered):
-        self.looks, self.count = looks, count
+    def __init__(self, drops, parts, looks, entered):
+        self.looks, self.drops, count = looks, drops, len(drops)
         self.entered, self.orientations = entered, np.full((count + 1, parts), -2)
         self.orientations[0] = entered
         self.fates, self.ended = np.full(parts, STUCK), np.full(parts, -1)
@@ -245,15 +287,16 @@ class _Found:
         self.ended[riders] = np.where(passed, place + 1, place)
         self.fell[riders] = runs.ways(ride.states, self.looks.radius) * bowl.track.radius / self.looks.radius
         fates = np.where(ride.outcomes == runs.RETURNED, RETURNED, STUCK)
-        low = self._lowest(ride.states) * bowl.track.radius / self.looks.radius
-        fates = np.where((ride.outcomes == runs.RUNNING) & (low < -BELOW), HANGING, fates)
+        low = (
+            np.array([_lowest(self.looks.corners, state) for state in ride.states])
+            * bowl.track.radius
+            / self.looks.radius
+        )
+        lost = low < -BELOW - self.drops[place]
+        fates = np.where((ride.outcomes == runs.RUNNING) & lost, HANGING, fates)
         self.fates[riders] = np.where(passed, PASSED, fates)
         self.orientations[place + 1][riders[passed]] = self.looks.of(ride.states[passed])
         return passed
-
-    def _lowest(self, states):
-        corners = self.looks.corners
-        return np.array([s[2] + vectors.product(corners, runs.matrix(s)[2]).min() for s in states])
 
     def course(self, chain, length, principal, leaves):
         """All of it as a record; what leaves as it should has passed, what else leaves was turned."""
@@ -285,6 +328,11 @@ class _Found:
             tuple(check.frozen(np.concatenate(self.riders[k])) for k in met),
             tuple(groups.joined(self.rides[k]) for k in met),
         )
+
+
+def _lowest(corners, state):
+    """Height of the lowest corner of a part."""
+    return state[2] + vectors.product(corners, runs.matrix(state)[2]).min()
 
 
 def velocities(ride, radius):

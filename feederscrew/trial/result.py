@@ -133,7 +133,8 @@ class TrialRun:
     def odd(self):
         """(M,) bool, where fewer than ``HELD`` did what a verdict of a clear margin says."""
         margin = np.abs(np.nan_to_num(self.known.margin, nan=np.inf))
-        return (self.tried > 0) & (margin > CLEAR) & (self.holding < HELD * self.tried)
+        clear = (margin > CLEAR) & self.known.sure
+        return (self.tried > 0) & clear & (self.holding < HELD * self.tried)
 
     @property
     def sorts(self):

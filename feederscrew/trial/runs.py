@@ -262,6 +262,8 @@ def surface_of(known, station, limits):
         sweeps=SWEEPS,
         converged=CONVERGED,
         exit=station.exit / known.length,
+        drop=station.drop / known.length,
+        under=-np.inf if station.below else -station.drop / known.length,
         longest=limits[0] / known.unit,
         patience=limits[1] / known.unit,
         progress=limits[2] / known.length,

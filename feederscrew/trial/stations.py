@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from feederscrew import check
-from feederscrew.bowl.devices import Device
+from feederscrew.bowl.devices import KINDS, Device
 from feederscrew.tooling.strip import BLADE, FRAME, bent, hole, opening
 
 BEHIND = 0.5  # of the part's size: how far the track is drawn behind the wall
@@ -14,6 +14,7 @@ ROUNDED = 5e-5  # [m] by which the borders of a cut are rounded: less depth does
 CHORD = 5e-6  # [m] by which an arc may be seen too flat
 SMOOTH = 2e-6  # [m] corners of a border that stand out by less are left out
 CORNER = 1e-4  # [rad] a border that turns by less has no corner
+SETTLES = 2.0  # of the part's size: how far behind a turning device parts end
 SPARE = 0.1  # of the part's size: how far before a device parts begin, and behind it they end
 THICK = 4e-3  # [m] of the track: deeper down its sides hold nothing
 BARE = Device("track", "")
@@ -28,6 +29,9 @@ class Stage:
     borders: np.ndarray  # (B, 8) [m], [1]
     begin: float  # [m] along the wall, where the part's centre of mass starts
     exit: float  # [m] where it has passed
+    drop: float = 0.0  # [m] by which the track lies lower there
+    aside: float = 0.0  # [m] from the wall, where a track that lies lower begins
+    below: bool = False  # whether parts leave hanging, their centres of mass below the track
 
 
 def station(device, track, every, start=0.0):
@@ -47,12 +51,15 @@ def station(device, track, every, start=0.0):
     -------
     Stage
     """
+    if KINDS[device.kind].turns:
+        return _turning(device, track, every, start)
     size = max(np.hypot(one.length, max(one.width, one.height)) for one in every)
     room = 1.3 * max(one.length for one in every)
     width = min(track.width, 0.95 * track.radius)
     cut = None if device.kind == "yield" else hole(device, track.radius, room, width)
     last = start + (room if cut is None else float(cut[:, 0].max()))
-    if device.kind == "rails":  # those that hang are led on, they do not come back onto the track
+    hangs = device.kind == "rails"
+    if hangs:  # those that hang are led on, they do not come back onto the track
         cut = hole(device, track.radius, room + 2.0 * size, width)
     begin, beyond = start - (0.5 + SPARE) * size, last + (0.5 + SPARE) * size
     ends = begin - 1.2 * size, beyond + 0.8 * size
@@ -62,7 +69,27 @@ def station(device, track, every, start=0.0):
         middle = start + 0.5 * room
         plates.append(_gate_plate(gate, track, width, every, middle))
         beyond = middle + (0.5 + SPARE) * size
-    return Stage(device, *_stacked(plates), begin=begin, exit=beyond)
+    return Stage(device, *_stacked(plates), begin=begin, exit=beyond, below=hangs)
+
+
+def _turning(device, track, every, start):
+    """A step, or a ledge over a second track that lies half the part's greatest length lower.
+
+    Parts that were turned have twice their size behind it to come to lie against the wall.
+    """
+    size = max(np.hypot(one.length, max(one.width, one.height)) for one in every)
+    width = min(track.width, 0.95 * track.radius)
+    begin, beyond = start - (0.5 + SPARE) * size, start + (SETTLES + 0.5 + SPARE) * size
+    ends = begin - 1.2 * size, beyond + 0.8 * size
+    if device.kind == "step":
+        drop, aside = device.limit, 0.0
+        cut = [[start, 0.0], [ends[1], 0.0], [ends[1], width], [start, width]]
+    else:
+        drop, aside = 0.5 * max(max(one.length, one.height) for one in every), device.limit
+        cut = [[start, aside], [ends[1], aside], [ends[1], width], [start, width]]
+    upper = _track_plate(np.array(cut), track, width, size, ends, 0.0, depth=drop + THICK)
+    lower = _track_plate(None, track, width, size, (start - THICK, ends[1]), 0.0, level=-drop)
+    return Stage(device, *_stacked([upper, lower]), begin=begin, exit=beyond, drop=drop, aside=aside)
 
 
 def plain(track, every, length):
@@ -73,8 +100,8 @@ def plain(track, every, length):
     return Stage(BARE, *_stacked([plate]), begin=0.0, exit=length)
 
 
-def _track_plate(cut, track, width, size, ends, start):
-    """The track's surface: a sector about the bowl's axis without the hole."""
+def _track_plate(cut, track, width, size, ends, start, level=0.0, depth=THICK):
+    """The track's surface at a level: a sector about the bowl's axis without the hole."""
     behind = BEHIND * size
     coarse = np.linspace(*ends, max(int((ends[1] - ends[0]) / behind), 2) + 1)  # nothing comes there
     fine = np.linspace(*ends, int((ends[1] - ends[0]) / np.sqrt(8.0 * track.radius * CHORD)) + 2)[::-1]
@@ -86,8 +113,8 @@ def _track_plate(cut, track, width, size, ends, start):
         taken[:, 1] = np.where(taken[:, 1] <= 0.0, -2.0 * behind, taken[:, 1])
         taken[:, 1] = np.where(taken[:, 1] >= width - 1e-9, width + behind, taken[:, 1])
         area = area.difference(shapely.make_valid(shapely.Polygon(bent(taken, track.radius, chord=CHORD))))
-    frame = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    return frame, THICK, _rings(area, lambda a, b: _drawn_end(a, b, track.radius, ends))
+    frame = np.array([[0.0, 0.0, level], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    return frame, depth, _rings(area, lambda a, b: _drawn_end(a, b, track.radius, ends))
 
 
 def _arc(places, across, radius):
@@ -105,11 +132,9 @@ def _drawn_end(a, b, radius, ends):
 
 
 def _gate_plate(gate, track, width, every, middle):
-    """A gate across the track, seen by the part that arrives: across from the wall, along upwards."""
+    """A gate across the track as wide as that, seen by the part that arrives: from the wall, and upwards."""
     tall = 2.0 * max(max(one.height for one in every), gate.bounds[3]) + FRAME
-    solid = shapely.box(0.0, 0.0, width + FRAME, tall).difference(gate)
-    if gate.bounds[2] >= width:  # a bar overhead leaves the whole width free
-        solid = solid.difference(shapely.box(width, 0.0, width + 2.0 * FRAME, gate.bounds[3]))
+    solid = shapely.box(0.0, 0.0, width, tall).difference(gate)
     theta = middle / track.radius
     c, s = np.cos(theta), np.sin(theta)
     origin = [track.radius * s, track.radius * (1.0 - c), 0.0]

@@ -93,7 +93,7 @@ def remarks(study):
     found = study.rate
     if found.velocity.value <= 0.0:
         return ["the part does not travel up the track: see feeder convey"]
-    turned = [*_tipping(found), *_turned(study.devices)]
+    turned = [*_tipping(found), *_rolling(found), *_turned(study.devices)]
     if found.orientations.lying[found.row].turns_over:
         return turned
     if found.through == 0.0 and found.efficiency > 0.0:
@@ -124,6 +124,15 @@ def _tipping(found):
             f"and from {lean:.3g} deg it would tip over"
         )
     return said
+
+
+def _rolling(found):
+    """What lies on its round side and may roll back."""
+    known = found.orientations.lying
+    back = [one.name for one in known if one.may_roll_back]
+    verb = "lies" if len(back) == 1 else "lie"
+    said = f"{units.listed(back)} {verb} on the round side, not along the track, and can roll back"
+    return [f"{said}: see feeder trial"] if back else []
 
 
 def _turned(devices):

@@ -36,6 +36,8 @@ class StageSurface(NamedTuple):
     sweeps: int
     converged: float
     exit: float  # way along the wall at which a part has passed
+    drop: float  # by which the track lies lower there
+    under: float  # height of the centre of mass below which what comes there has fallen below the track
     longest: float  # time after which it is given up
     patience: float  # time in which a part must get on
     progress: float  # ... so far along the wall, or down

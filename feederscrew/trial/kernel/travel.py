@@ -73,12 +73,12 @@ def travel(surface, solid, floor, work, time, every, path, notes):
             lowest = min(lowest, excess)
             won = max(won, excess - lowest)
         time = begun + (k + 1) * dt
-        if state[Z] < -solid.radius:
+        if state[Z] < -solid.radius - surface.drop:
             outcome = RETURNED
             break
         place = way(surface, state)
         if place > surface.exit:
-            outcome = PASSED
+            outcome = PASSED if state[Z] > surface.under else RETURNED
             break
         if place < surface.back:
             break

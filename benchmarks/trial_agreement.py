@@ -1,0 +1,75 @@
+"""What the static rule says of every orientation, beside what its trials did: the table of docs/trial.md.
+
+Example: python benchmarks/trial_agreement.py 20            (trials of each orientation; all eight parts)
+         python benchmarks/trial_agreement.py 20 dowel_6x20
+
+For each part of ``parts/`` the chain that ``feeder tooling`` finds for the most frequent orientation that
+needs one, in the bowl of the defaults.
+"""
+
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from feederscrew import bowl as bowls
+from feederscrew.part import load
+from feederscrew.studies import tooling, trial
+from feederscrew.trial import course, result
+
+PARTS = Path(__file__).parent.parent / "parts"
+NAMES = (
+    "key_a_d12x20", "washer_m6", "dowel_6x20", "hexbolt_m8x25", "cap_14x10", "squarenut_m5",
+    "shcs_m3x8_simple", "lbracket_30x20x15",
+)  # fmt: skip
+
+
+def chain(part, folder):
+    """A bowl file with the chain for the most frequent orientation that needs one, and which that is."""
+    bowl = bowls.read(None, [])
+    first = tooling.tooling(part, bowl, verdicts=1, seconds=1e-3)
+    for k in np.argsort(-first.shares, kind="stable"):
+        one = first.orientations[k]
+        found = tooling.tooling(part, bowl, one.aspect, heading=one.heading, known=first.aspects).design
+        if found.isolated and found.cuts:
+            lines = [f"  - {cut.device.kind}: {cut.device.text}\n" for cut in found.cuts]
+            path = Path(folder) / f"{part.name}.yaml"
+            path.write_text("devices:\n" + "".join(lines))
+            return bowls.read(path, []), one.name
+    return bowl, "none can be isolated"
+
+
+def rows(run):
+    """One line an orientation: what is said, by which margin, and what became of its parts."""
+    for k, one in enumerate(run.known.lying):
+        said = "passes" if run.predicted[k] else "goes"
+        margin = 1e3 * run.known.margin[k]
+        sure = "track" if one.returned else "clear" if run.known.sure[k] and abs(margin) > 0.25 else "unsure"
+        fates = ", ".join(f"{n} {fate}" for fate, n in zip(course.FATES, run.counts[k]) if n)
+        mark = " <-" if run.odd[k] else ""
+        yield f"  {one.name:7s} {said:6s} {margin:8.3f} {sure:6s} {run.holding[k]:3d} hold: {fates}{mark}"
+
+
+def main():
+    count, names = int(sys.argv[1]) if len(sys.argv) > 1 else 6, sys.argv[2:] or NAMES
+    total = held = asked = 0
+    for name in names:
+        part = load(str(PARTS / f"{name}.stl"))
+        with tempfile.TemporaryDirectory() as folder:
+            bowl, wanted = chain(part, folder)
+            known = trial.arriving(part, bowl)
+            every = len(trial.stream.orientations(part, known.aspects, bowl.track).lying)
+            run = trial.trial(part, [bowl], parts=count * every, jobs=2, known=known).runs[0]
+        devices = ", ".join(f"{device.kind} {device.text}" for device in bowl.devices)
+        print(f"{name}: {devices}; wanted {wanted}")
+        print("\n".join(rows(run)), flush=True)
+        margin = np.abs(np.nan_to_num(run.known.margin, nan=0.0))
+        clear = run.known.sure & (margin > result.CLEAR)
+        total, asked = total + every, asked + int(clear.sum())
+        held += int((clear & ~run.odd).sum())
+    print(f"{total} orientations, {asked} with a margin beyond 0.25 mm, {held} of them as the rule says")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,45 @@
+"""The longest way over which a foot is not supported while a hole passes below it."""
+
+from feederscrew.geometry.compiled import compiled
+from feederscrew.tooling.kernel import passage
+from feederscrew.tooling.kernel.hull import inset_beside
+
+SAMPLES = 8  # parts of a piece between two events
+
+
+@compiled
+def longest(foot, hole, scratch):
+    """Return the longest turn of the hole [rad] through which the margin stays below zero.
+
+    Between samples the margin is taken to change evenly.
+
+    Parameters
+    ----------
+    foot : Foot
+    hole : Hole
+    scratch : VerdictArrays
+    """
+    best = turn = 0.0
+    for i in range(passage._events(foot, hole, scratch) - 1):
+        step = (scratch.events[i + 1] - scratch.events[i]) / SAMPLES
+        if step * SAMPLES <= passage.INSTANT:
+            continue
+        active = passage._status(foot, hole, scratch, i)
+        before = _margin(foot, hole, scratch, scratch.events[i], active)
+        for k in range(1, SAMPLES + 1):
+            after = _margin(foot, hole, scratch, scratch.events[i] + k * step, active)
+            if before < 0.0 and after < 0.0:
+                turn += step
+            elif before < 0.0:
+                best, turn = max(best, turn + step * before / (before - after)), 0.0
+            else:
+                turn = step * after / (after - before) if after < 0.0 else 0.0
+            before = after
+        best = max(best, turn)
+    return best
+
+
+@compiled
+def _margin(foot, hole, scratch, phi, active):
+    count = passage._gather(foot, hole, scratch, phi, active, True, scratch.points)
+    return inset_beside(scratch.points, count, foot, scratch.keep)
