@@ -3,7 +3,7 @@
 A contact is a row of WIDTH numbers. Along floor axis e (x, y, z in turn) it holds the lever p x e in body
 axes, from point p; the rates one unit of impulse along e gives, lever / inertia; its effective mass, of
 both axes in the plane the smaller that serves both; then the upward speed wanted after the impulse; then
-the impulse itself, (x, y, z).
+the impulse itself, (x, y, z), what it was a sweep ago, and what the sweep before that changed of it.
 """
 
 import math
@@ -13,7 +13,10 @@ from feederscrew.dropping.kernel.body import VX, VZ, W, energy, keep
 from feederscrew.dropping.kernel.touch import CORNER, lowest_on
 from feederscrew.geometry.compiled import compiled
 
-LEVER, RATE, MASS, WANTED, IMPULSE, WIDTH = 0, 9, 18, 21, 22, 25
+LEVER, RATE, MASS, WANTED, IMPULSE, LAST, CHANGE, WIDTH = 0, 9, 18, 21, 22, 25, 28, 31
+EVERY = 6  # sweeps from one leap to the next
+STRAIGHT = 0.95  # cosine between two changes that lead the same way
+FURTHEST = 1000.0  # a leap, in changes of a sweep
 
 
 @compiled
@@ -156,6 +159,37 @@ def relax(c, n, friction, u, v, w, p, q, r):
 
 
 @compiled
+def noted(contacts, count):
+    """Keep what the last sweep changed of the impulses, and the impulses themselves."""
+    for n in range(count):
+        for e in range(3):
+            contacts[n, CHANGE + e] = contacts[n, IMPULSE + e] - contacts[n, LAST + e]
+            contacts[n, LAST + e] = contacts[n, IMPULSE + e]
+
+
+@compiled
+def leap(contacts, count):
+    """How often the last sweep's change may be repeated at once, as no contact comes to pull; 0 for never.
+
+    Two sweeps that change the impulses the same way tell the rest of the geometric series (Aitken). Of two
+    corners side by side the impulse creeps from one to the other, by as much in every sweep.
+    """
+    both = before = now = 0.0
+    most = FURTHEST
+    for n in range(count):
+        for e in range(3):
+            change = contacts[n, IMPULSE + e] - contacts[n, LAST + e]
+            both += change * contacts[n, CHANGE + e]
+            before += contacts[n, CHANGE + e] ** 2
+            now += change * change
+        if change < 0.0:
+            most = min(most, -contacts[n, IMPULSE + 2] / change)
+    if both <= 0.0 or both * both < STRAIGHT**2 * before * now:
+        return 0.0
+    return min(most, both / (before - both)) if both < before else most
+
+
+@compiled
 def solve(state, contacts, count, friction, steps):
     """Contact impulses with Coulomb friction: each contact leaves at its wanted speed or faster.
 
@@ -165,7 +199,11 @@ def solve(state, contacts, count, friction, steps):
         return
     u, v, w = state[VX], state[VX + 1], state[VZ]
     p, q, r = state[W], state[W + 1], state[W + 2]
-    for _ in range(steps.sweeps):
+    for sweep in range(steps.sweeps):
+        if sweep % EVERY >= EVERY - 2:
+            noted(contacts, count)
+        state[VX], state[VX + 1], state[VZ] = u, v, w
+        state[W], state[W + 1], state[W + 2] = p, q, r
         change = size = 0.0
         for n in range(count):
             u, v, w, p, q, r, more = relax(contacts, n, friction, u, v, w, p, q, r)
@@ -173,6 +211,14 @@ def solve(state, contacts, count, friction, steps):
             size += contacts[n, IMPULSE + 2]
         if change <= steps.converged * size:
             break
+        if sweep % EVERY == EVERY - 1:
+            on = leap(contacts, count)
+            for n in range(count):
+                for k in range(IMPULSE, LAST):
+                    contacts[n, k] += on * (contacts[n, k] - contacts[n, k + 3])
+            u, v, w = u + on * (u - state[VX]), v + on * (v - state[VX + 1]), w + on * (w - state[VZ])
+            p, q = p + on * (p - state[W]), q + on * (q - state[W + 1])
+            r += on * (r - state[W + 2])
     state[VX], state[VX + 1], state[VZ] = u, v, w
     state[W], state[W + 1], state[W + 2] = p, q, r
 
