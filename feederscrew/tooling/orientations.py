@@ -175,7 +175,7 @@ def _rolls(one):
     """Whether it rolls about an axis across the track rather than along it, or round in a circle."""
     if one.kind != "rolling" or one.posture.axis is None:
         return False
-    if np.isfinite(one.posture.run):
+    if np.isfinite(one.posture.rolling_circle):
         return True
     along, across = one.posture.axis
     c, s = np.cos(one.heading), np.sin(one.heading)

@@ -8,8 +8,8 @@ from feederscrew import check
 from feederscrew.conveying import answer
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
-from feederscrew.tooling.hanging import Hanging
 from feederscrew.trial import groups, runs, stations
+from feederscrew.trial.looks import Looks
 from feederscrew.trial.rounding import rounded
 from feederscrew.trial.shape import solid_of
 
@@ -22,11 +22,7 @@ LOOKS = 300  # places noted of a part at a station
 SPARE = 3.0  # times what it should take is given to a part
 SLOWEST = 1e-3  # [m/s] a slower bowl is given up after the time this takes
 GETS_ON = 0.08  # of the way it should come in the time it has to get on
-ALIKE = 0.05  # of the part's size: a part whose outline is off by more lies in no known orientation
-LOOK_DIRECTIONS = 160
-SWINGS = np.cos(np.radians(40.0))  # a part below the track that is no further from upright hangs
 BELOW = 1e-4  # [m] under the track: a part that reaches so deep hangs
-OTHER = -1  # orientation: none of the known
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +94,7 @@ def course(
     entered = np.resize(np.asarray(tried, int), parts)
     states, times = _starts(bowl, every, entered, principal, length, seed)
     states[:, 2] -= np.array([_lowest(solid.corners, state) for state in states])
-    looks = _Looks(every if poses is None else poses, solid, length, principal, bowl.track.radius)
+    looks = Looks(every if poses is None else poses, solid, length, principal, bowl.track.radius)
     leaves = np.eye(len(every), len(looks.known), dtype=bool) if leaves is None else leaves
     found = _Found([station.drop for station in chain], parts, looks, entered)
     for first in range(0, parts, groups.SIZE):
@@ -151,7 +147,9 @@ def _axes(every, principal):
     found = [
         vectors.product(one.posture.axis, vectors.product(one.posture.axes[:2], principal))
         for one in every
-        if one.kind == "rolling" and one.posture.axis is not None and np.isinf(one.posture.run)
+        if one.kind == "rolling"
+        and one.posture.axis is not None
+        and not np.isfinite(one.posture.rolling_circle)
     ]
     told = {
         tuple(np.round(axis if axis[np.argmax(np.abs(axis))] > 0.0 else -axis, 4)): axis for axis in found
@@ -207,54 +205,6 @@ def _limits(bowl, station, every):
         "limits": (seconds, patience, GETS_ON * patience * speed, 0.5 * size),
         "every": every_s, "places": int(LOOKS * SPARE) + 60,
     }  # fmt: skip
-
-
-class _Looks:
-    """Tells in which orientation a part lies, by how far it reaches in many directions.
-
-    Parts that hang swing and turn about the vertical: they are known by what of them is up.
-    """
-
-    def __init__(self, every, solid, length, principal, radius):
-        self.directions, self.corners = spread(LOOK_DIRECTIONS), solid.corners
-        self.ups = {
-            k: vectors.product(principal.T, one.posture.axes[2])
-            for k, one in enumerate(every)
-            if isinstance(one, Hanging)
-        }
-        self.low = 0.5 * min(one.posture.height for one in every if not isinstance(one, Hanging)) / length
-        self.radius, self.near = radius / length, ALIKE * solid.radius
-        self.known = np.array([self._standing(one, length) for one in every])
-
-    def _standing(self, one, length):
-        c, s = np.cos(one.heading), np.sin(one.heading)
-        turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-        corners = one.posture.corners - np.array([0.0, 0.0, one.posture.height])
-        return vectors.product(vectors.product(corners, turn.T) / length, self.directions.T).max(axis=0)
-
-    def of(self, states):
-        """(N,) orientation of each state, OTHER where it is none of the known."""
-        return np.array([self._of(state) for state in states], int)
-
-    def _of(self, state):
-        place = np.arctan2(state[0], self.radius - state[1])
-        level = runs.moved(state[None], -place * self.radius, self.radius)[0]
-        seen = vectors.product(self.corners, runs.matrix(level).T)
-        reach = vectors.product(seen, self.directions.T).max(axis=0)
-        off = np.abs(self.known - reach).max(axis=1)
-        best = int(np.argmin(off))
-        if self.ups and state[2] < self.low:
-            up = {k: float(vectors.dot(runs.matrix(level)[2], one)) for k, one in self.ups.items()}
-            return max((k for k in up if up[k] > SWINGS), key=up.get, default=OTHER)
-        return best if off[best] < self.near else OTHER
-
-
-def spread(count):
-    """Return unit vectors (count, 3) spread over the sphere, along a spiral."""
-    k = np.arange(count) + 0.5
-    z, turn = 1.0 - 2.0 * k / count, np.pi * (1.0 + np.sqrt(5.0)) * k
-    flat = np.sqrt(1.0 - z * z)
-    return np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])
 
 
 class _Found:

@@ -279,8 +279,7 @@ def scratch(solid, borders):
         tangent=np.zeros(2), spots=np.zeros((count, 3)), shown=np.zeros((count, 3)),
         near=np.zeros(max(borders, 1), np.int64), vectors=np.zeros((3, 3)), low=np.zeros(count, np.int64),
         edges=np.zeros(len(solid.edges), np.int64), faces=np.zeros(len(solid.triangles), np.int64),
-        box=np.zeros(4),
-        contacts=np.zeros((CONTACTS, contact.WIDTH)), memory=np.zeros(2),
+        box=np.zeros(4), contacts=np.zeros((CONTACTS, contact.WIDTH)), memory=np.zeros(2),
     )  # fmt: skip
 
 

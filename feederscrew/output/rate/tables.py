@@ -130,9 +130,11 @@ def _rolling(found):
     """What lies on its round side and may roll back."""
     known = found.orientations.lying
     back = [one.name for one in known if one.may_roll_back]
+    if not back:
+        return []
     verb = "lies" if len(back) == 1 else "lie"
     said = f"{units.listed(back)} {verb} on the round side, not along the track, and can roll back"
-    return [f"{said}: see feeder trial"] if back else []
+    return [f"{said}: see feeder trial"]
 
 
 def _turned(devices):

@@ -1,0 +1,60 @@
+"""In which orientation a part lies or hangs, seen by how far it reaches."""
+
+import numpy as np
+
+from feederscrew.geometry import vectors
+from feederscrew.tooling.hanging import Hanging
+from feederscrew.trial import runs
+
+ALIKE = 0.05  # of the part's size: a part whose outline is off by more lies in no known orientation
+DIRECTIONS = 160
+SWINGS = np.cos(np.radians(40.0))  # a part below the track that is no further from upright hangs
+OTHER = -1  # orientation: none of the known
+
+
+class Looks:
+    """Tells in which orientation a part lies, by how far it reaches in many directions.
+
+    Parts that hang swing and turn about the vertical: they are known by what of them is up.
+    """
+
+    def __init__(self, every, solid, length, principal, radius):
+        self.directions, self.corners = spread(DIRECTIONS), solid.corners
+        self.ups = {
+            k: vectors.product(principal.T, one.posture.axes[2])
+            for k, one in enumerate(every)
+            if isinstance(one, Hanging)
+        }
+        self.low = 0.5 * min(one.posture.height for one in every if not isinstance(one, Hanging)) / length
+        self.radius, self.near = radius / length, ALIKE * solid.radius
+        self.known = np.array([self._standing(one, length) for one in every])
+
+    def _standing(self, one, length):
+        c, s = np.cos(one.heading), np.sin(one.heading)
+        turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        corners = one.posture.corners - np.array([0.0, 0.0, one.posture.height])
+        return vectors.product(vectors.product(corners, turn.T) / length, self.directions.T).max(axis=0)
+
+    def of(self, states):
+        """(N,) orientation of each state, OTHER where it is none of the known."""
+        return np.array([self._of(state) for state in states], int)
+
+    def _of(self, state):
+        place = np.arctan2(state[0], self.radius - state[1])
+        level = runs.moved(state[None], -place * self.radius, self.radius)[0]
+        seen = vectors.product(self.corners, runs.matrix(level).T)
+        reach = vectors.product(seen, self.directions.T).max(axis=0)
+        off = np.abs(self.known - reach).max(axis=1)
+        best = int(np.argmin(off))
+        if self.ups and state[2] < self.low:
+            up = {k: float(vectors.dot(runs.matrix(level)[2], one)) for k, one in self.ups.items()}
+            return max((k for k in up if up[k] > SWINGS), key=up.get, default=OTHER)
+        return best if off[best] < self.near else OTHER
+
+
+def spread(count):
+    """Return unit vectors (count, 3) spread over the sphere, along a spiral."""
+    k = np.arange(count) + 0.5
+    z, turn = 1.0 - 2.0 * k / count, np.pi * (1.0 + np.sqrt(5.0)) * k
+    flat = np.sqrt(1.0 - z * z)
+    return np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])
