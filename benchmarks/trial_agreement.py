@@ -26,25 +26,30 @@ NAMES = (
 
 
 def chain(part, folder):
-    """A bowl file with the chain for the most frequent orientation that needs one, and which that is."""
-    bowl = bowls.read(None, [])
+    """A bowl with the chain for the most frequent orientation that needs one, and which that is.
+
+    Where none can be isolated, the chain that comes nearest for the most frequent one.
+    """
+    bowl, nearest = bowls.read(None, []), None
     first = tooling.tooling(part, bowl, verdicts=1, seconds=1e-3)
     for k in np.argsort(-first.shares, kind="stable"):
         one = first.orientations[k]
         found = tooling.tooling(part, bowl, one.aspect, heading=one.heading, known=first.aspects).design
+        nearest = nearest or (found.cuts and (found, f"{one.name}, not isolated"))
         if found.isolated and found.cuts:
-            lines = [f"  - {cut.device.kind}: {cut.device.text}\n" for cut in found.cuts]
-            path = Path(folder) / f"{part.name}.yaml"
-            path.write_text("devices:\n" + "".join(lines))
-            return bowls.read(path, []), one.name
-    return bowl, "none can be isolated"
+            nearest = found, one.name
+            break
+    lines = [f"  - {cut.device.kind}: {cut.device.text}\n" for cut in nearest[0].cuts]
+    path = Path(folder) / f"{part.name}.yaml"
+    path.write_text("devices:\n" + "".join(lines))
+    return bowls.read(path, []), nearest[1]
 
 
 def rows(run):
     """One line an orientation: what is said, by which margin, and what became of its parts."""
     for k, one in enumerate(run.known.lying):
         said = "passes" if run.predicted[k] else "goes"
-        margin = 1e3 * run.known.margin[k]
+        margin = 1e3 * run.margin[k]
         sure = "track" if one.returned else "clear" if run.known.sure[k] and abs(margin) > 0.25 else "unsure"
         fates = ", ".join(f"{n} {fate}" for fate, n in zip(course.FATES, run.counts[k]) if n)
         mark = " <-" if run.odd[k] else ""
@@ -64,7 +69,7 @@ def main():
         devices = ", ".join(f"{device.kind} {device.text}" for device in bowl.devices)
         print(f"{name}: {devices}; wanted {wanted}")
         print("\n".join(rows(run)), flush=True)
-        margin = np.abs(np.nan_to_num(run.known.margin, nan=0.0))
+        margin = np.abs(np.nan_to_num(run.margin, nan=0.0))
         clear = run.known.sure & (margin > result.CLEAR)
         total, asked = total + every, asked + int(clear.sum())
         held += int((clear & ~run.odd).sum())

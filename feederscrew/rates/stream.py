@@ -63,10 +63,9 @@ class Orientations:
 
     @property
     def margin(self):
-        """(M,) [m] the least over the devices, by which it passes or fails them; NaN where it meets none."""
+        """(M,) [m] the least over the devices, by which it passes them all or fails; NaN without any."""
         known = np.where(np.isnan(self.margins), np.inf, self.margins).min(axis=1)
-        lost = np.array([one.returned for one in self.lying])
-        return np.where(np.isinf(known) | lost | ~self.sure, np.nan, known)
+        return np.where(np.isinf(known), np.nan, known)
 
     @property
     def sure(self):

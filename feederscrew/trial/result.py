@@ -130,9 +130,15 @@ class TrialRun:
         return np.where(self.predicted, passed, self.tried - passed)
 
     @property
+    def margin(self):
+        """(M,) [m] of the static verdict; NaN where there is none: nothing met, lost before, or not sure."""
+        lost = np.array([one.returned for one in self.known.lying])
+        return np.where(lost | ~self.known.sure, np.nan, self.known.margin)
+
+    @property
     def odd(self):
         """(M,) bool, where fewer than ``HELD`` did what a verdict of a clear margin says."""
-        margin = np.abs(np.nan_to_num(self.known.margin, nan=np.inf))
+        margin = np.abs(np.nan_to_num(self.margin, nan=np.inf))
         clear = (margin > CLEAR) & self.known.sure
         return (self.tried > 0) & clear & (self.holding < HELD * self.tried)
 
@@ -149,7 +155,7 @@ class TrialRun:
             yield HOPS.format(self.throw_number, 1e3 * drive.amplitude / self.throw_number)
         for k in np.flatnonzero(self.odd):
             said = "passes" if self.predicted[k] else "is returned"
-            margin = 1e3 * self.known.margin[k]
+            margin = 1e3 * self.margin[k]
             yield ODD.format(self.known.lying[k].name, self.holding[k], self.tried[k], said, margin)
         if not self.velocity > 0.0:
             yield "the part does not travel up the track: see feeder convey"

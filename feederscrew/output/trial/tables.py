@@ -55,7 +55,7 @@ def _run(run):
 
 def orientations(run):
     """Return one row an orientation tried, those that do not do what the static rule says first."""
-    margin, ends, counts = run.known.margin, run.ends, run.counts
+    margin, ends, counts = run.margin, run.ends, run.counts
     first = sorted(np.flatnonzero(run.tried), key=lambda k: (not run.odd[k], k))
     return [
         {
