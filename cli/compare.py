@@ -57,7 +57,7 @@ def _of_part(part, counts, launch, as_published, pictures, out):
     files, tables = of_kind(study)
     inputs = solid.inputs | study.inputs
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
-        out.say("\n".join(study.measured.notes))
+        out.say(*study.measured.notes)
         offers.write(folder, files.offers(study), pictures=pictures)
     out.show(tables.comparisons(study), tables.document(study), hidden=tables.hidden(study))
 

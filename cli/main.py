@@ -12,6 +12,7 @@ import click
 
 from feederscrew import __version__
 from feederscrew.errors import ArgumentError, Faults, FeederError
+from feederscrew.units import printable
 from feederscrew_cli import naming
 from feederscrew_cli.interrupt import INTERRUPTED
 
@@ -89,7 +90,7 @@ class Fence(click.Group):
             return super().invoke(ctx)
         except FeederError as error:
             for line in _lines(error, self.get_command(ctx, ctx.invoked_subcommand)):
-                _tell("Error: " + " ".join(line.splitlines()))  # a file's name may hold a line break
+                _tell(f"Error: {line}")
             return ctx.exit(1)
         except BrokenPipeError:  # before click takes it for its own
             return ctx.exit(_without_stdout(PIPE_CLOSED))
@@ -134,7 +135,7 @@ def _of_options(fault, options):
 
 def _tell(line):
     with contextlib.suppress(OSError):  # stderr may be the full disk
-        click.echo(line, err=True)
+        click.echo(printable(line), err=True)
 
 
 def _near_miss(error):

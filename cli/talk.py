@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 import click
 
+from feederscrew.units import printable
 from feederscrew_cli import naming
 from feederscrew_cli.interrupt import held_back
 
@@ -57,7 +58,7 @@ class Output:
         for text in texts:
             if not self.quiet:
                 with contextlib.suppress(OSError):  # a full disk under stderr must not cost the answer
-                    click.echo(self._named(text), err=True)
+                    click.echo(printable(self._named(text)), err=True)
 
     def _named(self, text):
         return naming.translated(text, self.options)

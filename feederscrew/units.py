@@ -119,6 +119,12 @@ def one_line(text):
     return line if len(line) <= 40 else f"{line[:37]}..."
 
 
+def printable(text):
+    """A text on one line, with an escape for every letter that a terminal may take for a command."""
+    letters = " ".join(text.splitlines())
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in letters)
+
+
 def counted(number, noun):
     """A number of things for people: '1 part', '2 parts'."""
     return f"{number} {noun}{'' if number == 1 else 's'}"

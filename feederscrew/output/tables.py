@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from feederscrew import units
 from feederscrew.output import window
 
 UNITS = {  # the end of a column's name, and how a heading writes it
@@ -262,7 +263,7 @@ def _number(value):
 def _word(value):
     if isinstance(value, (bool, np.bool_)):
         return "yes" if value else "no"
-    return "-" if value is None or value != value else encoded(str(value)).decode()
+    return "-" if value is None or value != value else units.printable(str(value))
 
 
 def _pointed(cells):

@@ -179,3 +179,14 @@ def test_a_table_fits_the_window():
     assert done.returncode == 0
     assert max(map(len, lines)) <= 72
     assert sum(line.startswith("aspect ") for line in lines) == 2
+
+
+def test_a_name_that_would_command_a_terminal_is_shown_by_its_letters(run, tmp_path):
+    from feederscrew.output import tables
+
+    odd = Path(shutil.copy(NUT, tmp_path / "red\x1b[31m\nrow.stl"))
+    good, bad = run("inertia", odd.name, "-o", "out"), run("inertia", f"no {odd.name}")
+    for text in (good.stderr, good.stdout, bad.stderr):
+        assert "\x1b" not in text
+    assert bad.stderr == "Error: no red\\x1b[31m row.stl: no such file - check the path\n"
+    assert tables.text(tables.frame({"part": ["a\nb\x07"]}), "table") == "part\na b\\x07\n"
