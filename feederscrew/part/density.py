@@ -112,11 +112,11 @@ def _nearest(plain):
 def _typed(text):
     try:
         number, unit = units.split(text)
+        if number <= 0.0:
+            raise ArgumentError(ARGUMENT, "must be above 0", "e.g. 7.85 g/cm3")
         value = units.quantity(text, "density", suggest=_plausible(number) or "g/cm3")
     except units.QuantityError as error:
         raise ArgumentError(ARGUMENT, error.what, error.mend) from None
-    if value <= 0.0:
-        raise ArgumentError(ARGUMENT, "must be above 0", "e.g. 7.85 g/cm3")
     if not LIGHTEST <= value <= HEAVIEST:
         what = f"{units.shown(text)} is the density of no solid"
         meant = _plausible(number, but=unit)

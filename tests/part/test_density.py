@@ -49,6 +49,7 @@ def test_density_as_typed(text, value, label):
         ("7.85 kg/m3", "density: '7.85 kg/m3' is the density of no solid - did you mean 7.85 g/cm3?"),
         ("7850 g/cm3", "density: '7850 g/cm3' is the density of no solid - did you mean 7850 kg/m3?"),
         ("0 g/cm3", "density: must be above 0 - e.g. 7.85 g/cm3"),
+        ("0", "density: must be above 0 - e.g. 7.85 g/cm3"),
         ("-7.85 g/cm3", "density: must be above 0 - e.g. 7.85 g/cm3"),
         ("100 g/cm3", "density: '100 g/cm3' is the density of no solid - did you mean 100 kg/m3?"),
         ("7.85", "density: '7.85' has no unit - write 7.85 g/cm3"),

@@ -76,3 +76,10 @@ def test_drops_without_a_compiler():
     done = subprocess.run(call, env=environment, capture_output=True, text=True, timeout=120, check=False)
     assert (done.returncode, "Traceback" in done.stderr) == (0, False), done.stderr
     assert done.stdout.startswith("aspect,")
+
+
+def test_a_part_that_does_not_move_on_the_plate_sticks():
+    from feederscrew.output.floor.map_figures import HATCHES
+    from feederscrew.output.slide.figures import REGIMES
+
+    assert (REGIMES["stick"][1], HATCHES["stick"][2]) == ("sticks", "sticks")
