@@ -1,6 +1,7 @@
 """Headings against the wall: closed forms, a brute-force search, what stays on the track."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import outline, turned
 from feederscrew.mechanics.wall.headings import headings, laid
 from feederscrew.mechanics.wall.outline import axis_of_bowl, rests
+from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.posture import Posture, posture
 
@@ -302,3 +304,14 @@ def test_a_pin_on_a_track_banked_towards_its_wall_falls_off_nowhere(facets, bank
     lying = posture(part, aspects, aspects.names[aspects.kinds.index("rolling")])
     found = headings(lying, replace(TRACK, bank=bank * DEG))
     assert not found.falls_off.any() and not found.overhangs.any()
+
+
+def test_a_screw_across_a_climbing_track_rolls_and_does_not_fall_off():
+    """Its strip of contact is narrow at the free end, and the weight's line passes behind it."""
+    screw = load(Path(__file__).parents[2] / "parts/shcs_m3x8_simple.stl")
+    lying = posture(screw, find(screw), "A")
+    climbing = replace(TRACK, climb=3 * DEG)
+    found = headings(lying, climbing)
+    assert lying.kind == "rolling" and 90.0 in np.degrees(found.headings).round(3)
+    assert not found.falls_off.any() and not found.overhangs.any()
+    assert headings(lying, replace(climbing, width=0.001)).falls_off.all()

@@ -41,7 +41,9 @@ def falls(posture, reach, track):
     Returns
     -------
     bool
-        Towards the wall the part leans on it, and ahead or behind it tips without leaving the track.
+        Towards the wall the part leans on it, and ahead or behind it tips without leaving the track. One
+        that rolls touches along a line through the foot of its centre of mass: it falls where the track
+        ends before that, however wide the strip of its file is.
     """
     if len(reach) == 0:
         return True
@@ -49,6 +51,8 @@ def falls(posture, reach, track):
     ahead, inward = -posture.height * slope / (np.cos(track.climb) * np.cos(track.bank))
     size = np.ptp(posture.outline, axis=0).max()
     most = reach[:, 1].max()
+    if posture.kind == "rolling":
+        return bool(inward > most + SAME * size)
     return bool(inward > np.interp(ahead, *reach.T, left=most, right=most) + SAME * size)
 
 

@@ -13,6 +13,7 @@ COLUMNS = 4
 MOST = 16  # headings of one picture, the most frequent
 WALL, FALLS = "#5d6b78", "#b5482a"
 SIDE = 2.5  # [in] of one picture
+NARROWEST = 0.4  # half a picture's width, over its height above the foot
 TICKS = 4  # steps of an axis, at most: their numbers stand apart in it
 
 
@@ -67,7 +68,9 @@ def _one(axes, posture, found, row, track, size):
     )
     marks.centre_of_mass(axes, 0.05 * size / MM)
     reach = 1.15 * size / MM
-    axes.set(xlim=(-reach, reach), ylim=(-1.3 * size / MM, max(reach, (track.width - size) / MM * 1.05)))
+    top = max(reach, (track.width - size) / MM * 1.05)
+    wide = max(reach, NARROWEST * top)  # beside a wide track a small part has few numbers below it
+    axes.set(xlim=(-wide, wide), ylim=(-1.3 * size / MM, top))
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(TICKS))
     axes.set_aspect("equal")
@@ -82,7 +85,7 @@ def _caption(found, row):
 
 def _track(axes, distance, track, size):
     """The wall and the free edge, concentric."""
-    reach = np.linspace(-1.2, 1.2, 81) * size / track.radius
+    reach = np.linspace(-1.2, 1.2, 81) * max(size, NARROWEST * track.width) / track.radius
     for radius, style in ((track.radius, "-"), (track.radius - track.width, (0, (5, 3)))):
         x, y = radius * np.sin(reach), track.radius - distance - radius * np.cos(reach)
         axes.plot(
