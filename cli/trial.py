@@ -16,9 +16,8 @@ from feederscrew_cli.interrupt import held_back
 @click.option(
     "--parts", type=click.IntRange(1, 10**6), help="One at a time.  [default: 200; with --queue 60]"
 )
-@click.option(
-    "--queue", type=click.IntRange(1, 1000), metavar="N", help="So many in a row that push each other, too."
-)
+@click.option("--queue", type=click.IntRange(1, 1000), metavar="N", help="So many that push each other, too.")
+@click.option("--poured", is_flag=True, help="The queue falls onto the track, not laid down in a row.")
 @click.option(
     "--seconds", type=options.Number(0.05, 3600.0), default=10.0, show_default=True, help="Of the queue."
 )
@@ -33,7 +32,9 @@ from feederscrew_cli.interrupt import held_back
 @options.bowl
 @options.pictures
 @options.output
-def trial(part, aspect, rule, taken, parts, queue, seconds, amplitudes, seed, jobs, bowl, pictures, out):
+def trial(
+    part, aspect, rule, taken, parts, queue, poured, seconds, amplitudes, seed, jobs, bowl, pictures, out
+):
     """Example: feeder trial parts/lbracket_30x20x15.stl --config tooling.yaml --parts 100 -o results
 
     Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed,
@@ -43,13 +44,16 @@ def trial(part, aspect, rule, taken, parts, queue, seconds, amplitudes, seed, jo
     stands what the static rule of feeder tooling says, and its margin; those that do something else come
     first.
 
-    --amplitude gives the greatest drive at which the tooling still sorts. --queue adds a row of parts
-    that push each other, a reduced model in one dimension. The same seed gives the same numbers whatever
-    the number of jobs. Ctrl-C ends the trial early: what is finished is given, marked partial.
+    --amplitude gives the greatest drive at which the tooling still sorts. --queue adds parts that touch,
+    push and climb each other on the same track; what leaves or falls off enters again at the end of the
+    row, and parts per minute are then those it delivers. The same seed gives the same numbers whatever the
+    number of jobs. Ctrl-C ends the trial early: what is finished is given, marked partial.
 
     With -o: trial.csv, trial_stations.csv, trial.json, trial.png (orientations in and out),
     trial_paths.png (paths from above), trial_stills.png and run.json.
     """
+    if poured and not queue:
+        raise click.UsageError("--poured is for a queue - give --queue N as well")
     with held_back():
         from feederscrew import bowl as bowls
         from feederscrew.output import columns, offers
@@ -64,7 +68,7 @@ def trial(part, aspect, rule, taken, parts, queue, seconds, amplitudes, seed, jo
         with waiting.bar(out, "runs") as bar:
             found = study(
                 solid, driven, aspect,
-                rule=rule, known=known, parts=parts, queue=queue, seconds=seconds, seed=seed,
+                rule=rule, known=known, parts=parts, queue=queue, poured=poured, seconds=seconds, seed=seed,
                 jobs=jobs or os.cpu_count(), progress=bar.reach, before=lambda: waiting.trial(out),
             )  # fmt: skip
         document = tables.document(found)

@@ -17,7 +17,8 @@ from feederscrew.rates.queue import RECOMMENDED
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.rate import shares as arriving
-from feederscrew.trial import course, row, runs
+from feederscrew.trial import course
+from feederscrew.trial.queue import queue_of
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.shape import solid_of
 
@@ -82,6 +83,7 @@ def trial(
     known: Shares | None = None,
     parts: int | None = None,
     queue: int | None = None,
+    poured: bool = False,
     seconds: float = 10.0,
     seed: int = 1,
     jobs: int = 1,
@@ -105,7 +107,9 @@ def trial(
     parts : int, optional
         One at a time, the orientations in turn; 200 without it, 60 with a queue.
     queue : int, optional
-        So many parts in a row that push each other, as well.
+        So many parts that push each other, as well.
+    poured : bool
+        Whether those fall onto the track in any attitude; in a row without it.
     seconds : float [s]
         The queue is followed.
     seed : int
@@ -149,7 +153,8 @@ def trial(
             seen = course.course(part, bowl, ways.lying, tried, bowl.devices, **own)
             line = None
             if queue and not seen.partial:
-                line = _queue(part, bowl, ways.states, shares, seen, queue, seconds, seed)
+                crowd = {"parts": queue, "seconds": seconds, "seed": seed, "poured": poured}
+                line = queue_of(part, bowl, ways.lying, ways.states, shares, **crowd, progress=progress)
             made.append(TrialRun(bowl, throw_number(bowl), ways, shares, seen, line))
         except KeyboardInterrupt:
             if not made:
@@ -183,12 +188,3 @@ def _shares(known, rule, tried):
     if not chances.sum() > 0.0:
         chances[tried] = 1.0
     return chances / chances.sum()
-
-
-def _queue(part, bowl, every, shares, seen, parts, seconds, seed):
-    """A row of parts through the same devices."""
-    solid, length, _ = solid_of(part)
-    known = runs.setting(solid, length, bowl)
-    apart = 1.3 * max(one.length for one in every)
-    places = apart * (1.0 + np.arange(len(seen.stations) - 1))
-    return row.row_of(known, part.mass, every, shares, seen, places, parts=parts, seconds=seconds, seed=seed)

@@ -87,7 +87,7 @@ def course(
         If the part has no shape or the bowl conveys nothing at all.
     """
     solid, length, principal = solid_of(part)
-    solid = rounded(solid, _axes(every, principal))
+    solid = rounded(solid, axes(every, principal))
     known, chain = runs.setting(solid, length, bowl), _chain(bowl, every, devices)
     if before:
         before()
@@ -142,8 +142,8 @@ def _led_on(states, station, begin, known):
     return states
 
 
-def _axes(every, principal):
-    """Axes (N, 3) about which a part rolls, along its principal axes."""
+def axes(every, principal):
+    """Return the axes (N, 3) about which a part rolls, along its principal axes."""
     found = [
         vectors.product(one.posture.axis, vectors.product(one.posture.axes[:2], principal))
         for one in every

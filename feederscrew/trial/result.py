@@ -8,7 +8,8 @@ import numpy as np
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.rates import stream
-from feederscrew.trial import course, row
+from feederscrew.trial import course
+from feederscrew.trial.queue import QueuedParts
 
 CLEAR = 2.5e-4  # [m] margin from which a static verdict should hold
 HELD = 0.95  # [1] of the trials in which it should
@@ -28,7 +29,7 @@ class TrialRun:
     known: stream.Orientations  # and what the static rule says of each
     shares: np.ndarray  # (M,) [1] in which they are offered: of those tried, sums to 1
     course: course.Course
-    queue: row.PushedRow | None  # None where it was not asked for
+    queue: QueuedParts | None  # None where it was not asked for
 
     @property
     def partial(self):
@@ -100,7 +101,7 @@ class TrialRun:
     def parts(self):
         """Delivered parts [1/s]: counted in the queue, else what the velocity offers times the efficiency."""
         if self.queue is not None:
-            return self.queue.delivered / self.queue.seconds
+            return self.queue.rate
         if self.wanted is None or not self.velocity > 0.0:
             return 0.0
         offered = self.velocity / float((self.shares * self.known.lengths).sum())

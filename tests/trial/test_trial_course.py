@@ -11,7 +11,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.studies import rate
 from feederscrew.studies import trial as studies
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import course, groups, row, runs, shape, stations
+from feederscrew.trial import course, groups, runs, shape, stations
 
 OWN = [
     "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",
@@ -164,30 +164,6 @@ def test_a_hop_over_the_tooling_is_said(bowl):
     found = studies.trial(PART, [one, hard], "A", parts=2)
     assert any("hop" in told and told.startswith("amplitude 0.4 mm") for told in found.warnings)
     assert found.highest >= 0.15e-3
-
-
-def test_a_row_delivers_no_more_than_the_track_carries(bowl):
-    found = studies.trial(PART, [bowl()], "A", parts=2, queue=5, seconds=4.0)
-    run = found.runs[0]
-    assert 0.0 < run.queue.delivered <= 4.0 * run.velocity / 0.012 * 1.05
-    assert run.queue.velocity == pytest.approx(run.velocity, rel=0.06)
-    assert run.jams == run.queue.returned == 0
-
-
-def test_parts_in_a_row_push_each_other(bowl):
-    solid, length, _ = shape.solid_of(PART)
-    known = runs.setting(solid, length, bowl())
-    floor = known.floor._replace(step=2.0 * np.pi / known.floor.rate / 400)
-    parts = np.zeros((2, 8))
-    parts[:, row.row.PLACE], parts[:, row.row.LENGTH] = [5.0, 2.0], 2.0
-    parts[:, row.row.FRICTION], parts[0, row.row.HELD] = 0.4, 1.0
-    work = [np.zeros(2) for _ in range(3)]
-    row.row.follow(parts, np.arange(2), known.gravity, floor, 0.0, 0.2, 400 * 120, *work)
-    assert parts[0, row.row.PLACE] == pytest.approx(5.0, abs=1e-6)
-    assert parts[0, row.row.PLACE] - parts[1, row.row.PLACE] == pytest.approx(
-        2.0, abs=0.04
-    )  # it slips back in every period
-    assert parts[1, row.row.PUSH] > 0.0
 
 
 def test_a_station_is_drawn_with_its_hole():

@@ -5,7 +5,7 @@ import numpy as np
 from feederscrew import units
 from feederscrew.output import columns, tables
 from feederscrew.studies.trial import ENGINE
-from feederscrew.trial import course, row
+from feederscrew.trial import course
 
 PER_MINUTE, MM_S = units.factor("/min", "rate"), units.factor("mm/s", "velocity")
 MM, DEG = columns.MM, columns.DEG
@@ -31,7 +31,6 @@ def document(study):
 
 
 def _run(run):
-    queued = "" if run.queue is None else f"; queue: {row.ENGINE}"
     return {
         "amplitude_mm": run.bowl.drive.amplitude / MM,
         "throw_number": run.throw_number,
@@ -40,7 +39,7 @@ def _run(run):
         "efficiency": run.efficiency,
         "purity": run.purity,
         "jams": run.jams,
-        "engine": ENGINE + queued,
+        "engine": ENGINE,
         "sorts": bool(run.sorts),
         "part_seconds": float(run.course.seconds.sum()),
         "largest_penetration_mm": _most(run.course.depths) / MM,
@@ -88,17 +87,27 @@ def orientations(run):
 def queue(run):
     """Return what the queue did, as a document."""
     found = run.queue
+    whole = found.leaving.sum()
     return {
-        "engine": row.ENGINE,
+        "parts": found.parts,
+        "on_track": found.on_track,
+        "poured": found.poured,
         "seconds": found.seconds,
+        "counted_seconds": found.counted,
         "delivered": found.delivered,
         "returned": found.returned,
         "jams": found.jams,
+        "climbs": found.climbs,
         "velocity_mm_s": found.velocity / MM_S,
         "mean_gap_mm": found.gap / MM,
         "touching": found.touching,
         "pressure_mn": found.pressure * 1e3,
-        "leaving": {run.known.states[k].name: int(n) for k, n in enumerate(found.leaving) if n},
+        "largest_penetration_mm": found.depth / MM,
+        "profile": {
+            _name(run, k if k < len(found.leaving) - 1 else -1): float(n / whole)
+            for k, n in enumerate(found.leaving)
+            if n
+        },
     }
 
 
@@ -145,12 +154,21 @@ def summary(study):
             f"{_most(run.course.gains) / UM:.2g} um"
         )
         if run.queue is not None:
-            yield (
-                f"queue ({row.ENGINE}): {run.queue.delivered:.4g} delivered in {run.queue.seconds:.4g} s, "
-                f"{run.queue.returned} returned, {run.queue.jams} jams"
-            )
+            yield _queued(run.queue)
     if len(study.runs) > 1 and np.isfinite(study.highest):
         yield f"the tooling sorts up to an amplitude of {study.highest / MM:.4g} mm of those tried"
+
+
+def _queued(found):
+    """What a queue did, in a sentence."""
+    way = "poured" if found.poured else "in a row"
+    force = 1e3 * found.pressure.max(initial=0.0)
+    return (
+        f"queue of {found.parts} {way}, {found.on_track} on the track at a time: {found.delivered:.4g} "
+        f"delivered in the last {found.counted:.4g} of {found.seconds:.4g} s, {found.returned} returned, "
+        f"{found.jams} jams, {found.climbs} climbed on others; gap {found.gap / MM:.3g} mm, "
+        f"{100.0 * found.touching:.3g} % pushed, up to {force:.3g} mN on a part that stands at a device"
+    )
 
 
 def _name(run, k):

@@ -53,7 +53,8 @@ def test_the_document_keeps_its_contract(run, block):
     assert [(one["passed"], one["returned"], one["predicted"]) for one in found["orientations"]] == [
         (2, 0, "passes"), (0, 2, "returned"),
     ]  # fmt: skip
-    assert found["queue"]["engine"] in found["engine"]
+    assert found["queue"]["parts"] == 3 and found["queue"]["seconds"] == 0.5
+    assert found["jams"] == found["queue"]["jams"]
     assert found["launch"] == "place" and found["answer"].endswith("launch place")
     assert 0.0 <= found["largest_penetration_mm"] < 1.0 and 0.0 <= found["energy_won_um"] < 1.0
     worst = max(one["penetration_mm"] for one in found["orientations"])
@@ -79,6 +80,7 @@ def test_files_and_amplitudes(run, block, tmp_path):
 @pytest.mark.parametrize(
     ("given", "said"),
     [
+        (["--poured"], "--poured is for a queue - give --queue N as well"),
         (["--aspect", "Q"], "there is no aspect 'Q' - choose one of"),
         (["--rule", "nothing"], "--rule nothing: has no probabilities of this part - "),
         (["--amplitude", "9 m"], "--amplitude: drive.amplitude: '9 m' is out of range - give 0 mm to 20 mm"),

@@ -1,0 +1,254 @@
+"""A queue of parts through a chain of devices: in a row or poured, touching and pushing each other."""
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.dropping.kernel import body
+from feederscrew.trial import course, crowd, runs
+from feederscrew.trial.kernel.crowd import BEHIND, BELOW
+from feederscrew.trial.looks import Looks
+from feederscrew.trial.rounding import rounded
+from feederscrew.trial.shape import solid_of
+
+GAPS = 0.2  # of a part's length: mean free way between parts as they come in a row
+HOLD = 1.0  # [s] a part that stands at a device with nothing before it is taken out by hand after so long
+MOVED = 0.05  # of the unit of length: a part that has come no further stands
+PART_OF_TURN = 0.5  # of the bowl's circumference: more parts than fit there wait to enter
+CARRIED = 0.1  # of its weight that other parts carry, and ...
+LIFTED = 0.02  # ... as high over the track: a part has climbed on others
+POURED = 1.05  # of the part's radius: apart along the track, and over it, where parts are poured
+
+
+@dataclass(frozen=True, eq=False)
+class QueuedParts:
+    """What a queue of N parts did; D devices, S orientations in which parts may leave."""
+
+    parts: int  # N
+    on_track: int  # of them at a time, at most; the others wait to enter
+    poured: bool
+    seconds: float  # [s] followed
+    counted: float  # [s] of them since the first part came to the outlet; 0 where none did
+    delivered: float  # parts that left the last device then, that in the outlet as the share of its length
+    leaving: np.ndarray  # (S + 1,) int, in which orientation whole ones left; the last is none of the known
+    returned: int  # fell back into the bowl
+    jams: int  # stood at a device and were taken out
+    climbs: int  # times that a part came to lie on others
+    velocity: float  # [m/s] mean of all parts
+    gap: float  # [m] mean free way between neighbours
+    touching: float  # [1] share of the parts that are pushed from behind
+    pressure: np.ndarray  # (D,) [N] greatest mean force of a period on a part that stands at a device
+    depth: float  # [m] the deepest that anything was in anything
+    partial: bool  # stopped by the user: of the seconds until then
+
+    @property
+    def rate(self):
+        """Delivered parts [1/s]; 0 where none came to the outlet."""
+        return self.delivered / self.counted if self.counted > 0.0 else 0.0
+
+
+def queue_of(part, bowl, every, poses, shares, *, parts, seconds, seed, poured=False, progress=None):
+    """Follow a queue of parts that come without end: what leaves is offered again at the end of the row.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    bowl : Bowl
+        With its devices.
+    every : sequence of Orientation
+        M of them.
+    poses : sequence of Orientation
+        S of them in which parts may leave: those, then those that hang.
+    shares : (M,) float [1]
+        In which they come; sums to 1.
+    parts : int
+    seconds : float [s]
+    seed : int
+    poured : bool
+        Whether they fall onto the track in any attitude, not laid down in a row.
+    progress : function, optional
+        Told how many periods of the drive are done, of how many.
+
+    Returns
+    -------
+    QueuedParts
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user stops it before the first period is done.
+    """
+    queue = _Queue(part, bowl, every, poses, shares, parts, poured, seed)
+    count = max(round(seconds * bowl.drive.frequency), 1)
+    try:
+        for turn in range(count):
+            queue.ride(turn)
+            if progress:
+                progress(turn + 1, count)
+    except KeyboardInterrupt:
+        if not queue.periods:
+            raise
+    return queue.told(partial=queue.periods < count)
+
+
+class _Queue:
+    """The queue while it moves; lengths in units of the part's, times in seconds."""
+
+    def __init__(self, part, bowl, every, poses, shares, parts, poured, seed):
+        self.part, self.bowl, self.every = part, bowl, every
+        solid, length, self.principal = solid_of(part)
+        solid = rounded(solid, course.axes(every, self.principal))
+        self.known = known = runs.setting(solid, length, bowl)
+        self.poured, self.parts, self.chances = poured, parts, np.cumsum(shares)
+        self.rng = np.random.default_rng((seed, parts))
+        longest = max(one.length for one in every)
+        room = min(1.5 * longest * parts + 2.0 * longest, PART_OF_TURN * 2.0 * np.pi * bowl.track.radius)
+        self.track = crowd.crowded(bowl, every, bowl.devices, room)
+        self.outlet, self.windows = self.track.outlet / known.length, self.track.windows / known.length
+        self.crowd = crowd.PartsOnTrack(known, self.track, parts)
+        self.looks = Looks(poses, solid, length, self.principal, bowl.track.radius)
+        self.mark, self.since, self.on_others = np.zeros(parts), np.zeros(parts), np.zeros(parts, bool)
+        self.leaving, self.returned, self.jams, self.climbs = np.zeros(len(poses) + 1, int), 0, 0, 0
+        self.way, self.free, self.touch, self.depth = [], [], [], 0.0
+        self.pressure, self.whole, self.first, self.most = np.zeros(len(self.windows)), 0, None, 0
+        self.periods, self.waiting, self.deep = 0, list(range(parts)), solid.radius * length
+        self.enter()
+        self.start = 0.0
+
+    @property
+    def time(self):
+        """Followed so far [s]."""
+        return self.periods / self.bowl.drive.frequency
+
+    def enter(self):
+        """Let waiting parts in at the end of the row, as long as there is room."""
+        lying = np.flatnonzero(self.crowd.on)
+        end = min((self.crowd.extents(n)[0] for n in lying), default=0.0)
+        while self.waiting:
+            state, length = self.fresh()
+            rear, front, _ = crowd.extents(state, self.known.solid, self.known.radius)
+            gap = 0.0 if self.poured else 2.0 * GAPS * self.rng.random() * length
+            place = min(end, 0.0) - gap - front
+            if place + rear < self.track.start / self.known.length:
+                break
+            n = self.waiting.pop(0)
+            self.crowd.lay(n, runs.moved(state[None], place, self.known.radius)[0])
+            self.mark[n], self.since[n], self.on_others[n] = place, self.time, False
+            end = place + rear
+        self.most = max(self.most, int(self.crowd.on.sum()))
+
+    def fresh(self):
+        """A part that is about to enter: its state at the place 0, and its length."""
+        k = min(int(np.searchsorted(self.chances, self.rng.random() * self.chances[-1])), len(self.every) - 1)
+        one, track = self.every[k], self.bowl.track
+        if not self.poured:
+            aside = course.PLAY * self.rng.random()
+            state = runs.laid(one, self.principal, self.known.length, track, place=0.0, aside=aside)
+            return state, one.length / self.known.length
+        radius, state = self.known.solid.radius, np.zeros(body.STATE)
+        turn = self.rng.standard_normal(4)
+        state[:3] = 0.0, radius * POURED, radius * POURED * (1.0 + self.rng.random())
+        state[body.Q : body.Q + 4] = turn / np.sqrt((turn**2).sum())
+        return state, 2.0 * radius
+
+    def ride(self, turn):
+        """Move all for one period of the drive, and look what became of them."""
+        lying = np.flatnonzero(self.crowd.on)
+        before = runs.ways(self.crowd.arrays.states, self.known.radius)
+        self.depth = max(self.depth, self.crowd.ride(turn))
+        self.periods += 1
+        ways = runs.ways(self.crowd.arrays.states, self.known.radius)
+        self.way.append((ways - before)[lying].mean())
+        reach = {n: self.crowd.extents(n) for n in lying}
+        order = sorted(lying, key=lambda n: -ways[n])
+        self.free += [max(reach[a][0] - reach[b][1], 0.0) for a, b in itertools.pairwise(order)]
+        self.touch.append((self.crowd.forces[lying, BEHIND] > 0.0).mean())
+        self.carried(lying, reach)
+        for n in order:
+            self.look(n, ways[n], reach, order)
+        self.enter()
+
+    def carried(self, lying, reach):
+        """Count parts that have come to lie on others."""
+        for n in lying:
+            on = self.crowd.forces[n, BELOW] > CARRIED and reach[n][2] > LIFTED
+            self.climbs += bool(on and not self.on_others[n])
+            self.on_others[n] = on
+
+    def look(self, n, way, reach, order):
+        """What became of one part: left, fell, stands at a device, goes on."""
+        rear, front, _ = reach[n]
+        fell = self.fell(n)
+        if self.first is None and front > self.outlet and not fell:
+            self.first = self.time
+            self.start = self.outside(rear, front)
+        if rear > self.outlet and not fell:
+            self.whole += 1
+            self.leaving[self.looks.of([self.at_outlet(n)])[0]] += 1
+            self.again(n)
+        elif fell or front < self.track.start / self.known.length:
+            self.returned += 1
+            self.again(n)
+        elif way - self.mark[n] > MOVED:
+            self.mark[n], self.since[n] = way, self.time
+        else:
+            self.stand(n, front, reach, order)
+
+    def stand(self, n, front, reach, order):
+        """A part that stands: what pushes it, and whether it is what holds the others up."""
+        at = np.flatnonzero((self.windows[:, 0] < front) & (front < self.windows[:, 1] + MOVED))
+        if not len(at):
+            return
+        force = self.crowd.forces[n, BEHIND]
+        self.pressure[at[0]] = max(self.pressure[at[0]], force)
+        ahead = [reach[m][0] - front for m in order if m != n and self.crowd.on[m] and reach[m][1] > front]
+        if self.time - self.since[n] >= HOLD and min(ahead, default=np.inf) > GAPS:
+            self.jams += 1
+            self.again(n)
+
+    def fell(self, n):
+        """Whether a part has fallen off the track it is at."""
+        return self.crowd.arrays.states[n, body.Z] * self.known.length < self.track.levels.min() - self.deep
+
+    def at_outlet(self, n):
+        """The state of a part as if the track were at the level at which it began."""
+        state = np.array(self.crowd.arrays.states[n])
+        state[body.Z] -= self.track.levels[-1] / self.known.length
+        return state
+
+    def again(self, n):
+        """Take a part off the track; it waits to enter again."""
+        self.crowd.take(n)
+        self.waiting.append(n)
+
+    def outside(self, rear, front):
+        """How much of a part has left [1]."""
+        return float(np.clip((front - self.outlet) / (front - rear), 0.0, 1.0))
+
+    def told(self, partial):
+        """What they did, in SI units."""
+        length, seconds = self.known.length, self.time
+        reach = [self.crowd.extents(n) for n in np.flatnonzero(self.crowd.on)]  # none of them has fallen
+        part = sum(self.outside(rear, front) for rear, front, _ in reach)
+        counted = 0.0 if self.first is None else seconds - self.first
+        return QueuedParts(
+            parts=self.parts,
+            on_track=self.most,
+            poured=self.poured,
+            seconds=seconds,
+            counted=counted,
+            delivered=self.whole + part - self.start if counted else 0.0,
+            leaving=check.frozen(self.leaving),
+            returned=self.returned,
+            jams=self.jams,
+            climbs=self.climbs,
+            velocity=float(np.mean(self.way)) * length * self.bowl.drive.frequency,
+            gap=float(np.mean(self.free)) * length if self.free else 0.0,
+            touching=float(np.mean(self.touch)),
+            pressure=check.frozen(self.pressure * self.part.mass * self.bowl.gravity),
+            depth=self.depth * length,
+            partial=partial,
+        )

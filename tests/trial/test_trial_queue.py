@@ -1,0 +1,134 @@
+"""Parts that touch: momentum, weight and energy of a few, and what a queue does at a device."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.conveying import answer
+from feederscrew.dropping.kernel import body
+from feederscrew.resting.aspects import find
+from feederscrew.tooling.orientations import orientations
+from feederscrew.trial import crowd, queue, runs, shape
+from feederscrew.trial.kernel.crowd import BEHIND, BELOW
+
+OWN = [
+    "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",
+    "friction.static=0.4", "track.radius=50 m", "track.width=60 mm", "track.climb=2 deg", "track.bank=0 deg",
+]  # fmt: skip
+PART = shapes.part(shapes.box(20, 12, 5))
+BOWL = bowls.read(None, OWN)
+STILL = replace(BOWL, drive=replace(BOWL.drive, amplitude=0.0), track=replace(BOWL.track, climb=0.0))
+EVERY = orientations(PART, find(PART), BOWL.track)
+FLAT = next(one for one in EVERY if one.height < 6e-3 and one.length > 0.015)
+SOLID, LENGTH, PRINCIPAL = shape.solid_of(PART)
+
+
+def parts_on(bowl, *places, heights=None, friction=None):
+    """Blocks laid lengthwise with their middles at places [m] along the wall, some heights [m] over it."""
+    known = runs.setting(SOLID, LENGTH, bowl)
+    if friction is not None:
+        known = replace(known, friction=np.full(5, friction))
+    on = crowd.PartsOnTrack(known, crowd.crowded(bowl, EVERY, (), 0.5), len(places))
+    for n, place in enumerate(places):
+        state = runs.laid(FLAT, PRINCIPAL, LENGTH, bowl.track, place=place, aside=1e-3)
+        state[body.Z] += 0.0 if heights is None else heights[n] / LENGTH
+        on.lay(n, state)
+    return on
+
+
+def queued(bowl, **own):
+    shares = np.array([one is FLAT for one in EVERY], float)
+    return queue.queue_of(PART, bowl, EVERY, EVERY, shares, **own)
+
+
+def test_a_part_that_strikes_another_shares_its_momentum():
+    on = parts_on(STILL, -0.10, -0.0795, friction=0.0)
+    on.arrays.states[0, body.VX] = 0.3
+    for turn in range(20):
+        on.ride(turn)
+    first, second = on.arrays.states[:, body.VX]
+    assert first + second == pytest.approx(0.3, rel=1e-6)
+    assert first == pytest.approx(second, abs=1e-3)  # nothing rebounds between parts
+    assert on.extents(1)[0] - on.extents(0)[1] == pytest.approx(0.0, abs=1e-2)
+
+
+def test_a_part_on_another_bears_on_it_with_its_weight():
+    on = parts_on(STILL, -0.10, -0.097, heights=(0.0, 5e-3))
+    for turn in range(40):
+        depth = on.ride(turn)
+    assert on.arrays.states[1, body.Z] * LENGTH == pytest.approx(7.5e-3, abs=1e-5)
+    assert on.forces[:, BELOW] == pytest.approx([0.0, 1.0], abs=0.02)
+    assert on.forces[:, BEHIND] == pytest.approx(0.0, abs=0.02)
+    assert depth * LENGTH < 1e-5
+
+
+def test_falling_over_each_other_wins_no_energy():
+    on = parts_on(STILL, -0.10, -0.094, -0.11, heights=(0.0, 12e-3, 24e-3))
+    on.arrays.states[1, body.W : body.W + 3] = 1.0, 2.0, 0.5
+    energies = []
+    for turn in range(30):
+        states = on.arrays.states
+        moving = sum(body.moving_energy(state, SOLID.inertia) for state in states)
+        energies.append(moving + states[:, body.Z].sum())
+        on.ride(turn)
+    assert np.diff(energies).max() < 2e-4  # of m g L
+    assert (np.array([on.extents(n)[2] for n in range(3)]) * LENGTH > -2e-4).all()
+
+
+def test_a_row_on_the_bare_track_delivers_what_its_velocity_brings():
+    found = queued(BOWL, parts=4, seconds=3.0, seed=1)
+    assert found.velocity == pytest.approx(answer.answer(BOWL).velocity, rel=0.03)
+    assert 0.0 < found.rate <= found.velocity / 0.02 * 1.001
+    assert found.rate == pytest.approx(found.velocity / (0.02 + found.gap), rel=0.25)
+    assert found.jams == found.returned == found.climbs == 0 and found.depth < 5e-5
+
+
+def test_a_row_pushes_what_a_blade_holds(tmp_path):
+    path = tmp_path / "bowl.yaml"
+    path.write_text("devices:\n  - wiper: 4 mm\n")
+    found = queued(bowls.read(path, OWN), parts=3, seconds=7.0, seed=1)
+    assert found.jams >= 1 and found.returned == 0 and found.delivered == 0.0
+    assert found.touching > 0.03
+    weight = PART.mass * BOWL.gravity
+    assert 0.01 * weight < found.pressure[0] < 3.0 * weight
+
+
+def test_poured_parts_come_to_lie_and_travel():
+    found = queued(BOWL, parts=3, seconds=1.0, seed=2, poured=True)
+    assert found.poured and found.on_track == 3 and found.depth < 1e-3
+
+
+def test_an_interrupt_keeps_the_periods_until_then():
+    def stop(done, total):
+        assert total == 180
+        if done == 6:
+            raise KeyboardInterrupt
+
+    found = queued(BOWL, parts=2, seconds=3.0, seed=1, progress=stop)
+    assert found.partial and found.seconds == pytest.approx(0.1)
+
+
+def test_the_track_of_a_queue_has_every_hole_once(tmp_path):
+    path = tmp_path / "bowl.yaml"
+    path.write_text("devices:\n  - gap: 9 mm\n  - wiper: 6 mm\n  - canyon: 2 mm\n")
+    bowl = bowls.read(path, OWN)
+    made = crowd.crowded(bowl, EVERY, bowl.devices, 0.1)
+    assert len(made.windows) == 3 and made.outlet == made.windows[-1, 1]
+    assert (made.windows[1:, 0] == made.windows[:-1, 1]).all()
+    assert len(made.stage.plates) == 2  # the track in one piece, and the blade
+    first, last = made.stage.plates[0, 14:16].astype(int)
+    sides = made.stage.borders[first:last]
+    sides = sides[(np.abs(sides[:, 3] - sides[:, 1]) > 0.03) & (sides[:, 7] < 0.5)]  # across the track
+    assert np.ptp(sides[:, 0]) == pytest.approx(9e-3, abs=1e-4) and len(sides) == 2
+
+
+def test_the_track_goes_on_lower_behind_a_step(tmp_path):
+    path = tmp_path / "bowl.yaml"
+    path.write_text("devices:\n  - step: 8 mm\n  - gap: 5 mm\n")
+    bowl = bowls.read(path, OWN)
+    made = crowd.crowded(bowl, EVERY, bowl.devices, 0.1)
+    assert made.levels == pytest.approx([0.0, -8e-3, -8e-3])
+    assert made.stage.plates[:, 2] == pytest.approx([0.0, -8e-3])
