@@ -12,6 +12,7 @@ from feederscrew.bowl.devices import KINDS
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
 from feederscrew.resting.aspects import find
+from feederscrew.tooling import foot as feet
 from feederscrew.tooling.orientations import orientations
 from feederscrew.tooling.verdicts import JUDGES, share, verdict
 
@@ -158,3 +159,22 @@ def test_a_narrow_track_carries_less(block):
     narrow = replace(one, track=replace(TRACK, width=0.0065))
     assert narrow.margin == pytest.approx(0.5e-3, abs=1e-5)
     assert narrow.foot.rings[0][:, 1].max() == pytest.approx(0.5e-3, abs=1e-5)
+
+
+def test_what_travels_is_carried_over_what_it_is_unsupported_for(block, device):
+    one = replace(along(block), carry=2e-3)
+    assert verdict(device("gap: 9 mm"), one).margin == pytest.approx(1e-3, rel=1e-3)
+    assert verdict(device("gap: 11 mm"), one).margin == 0.0  # sooner over it than it has tipped
+    assert verdict(device("gap: 14 mm"), one).margin == pytest.approx(-2e-3, rel=1e-3)
+    hole = feet.gap(14e-3, TRACK.radius, 0.02)
+    assert feet.unheld(one.standing, hole) == pytest.approx(4e-3, rel=1e-3)
+    cut = device("cut_out: [[0 mm, 0 mm], [14 mm, 0 mm], [14 mm, 15 mm], [0 mm, 15 mm]]")
+    assert verdict(cut, one).margin == pytest.approx(-2e-3, rel=2e-2)
+
+
+def test_what_is_beyond_the_free_edge_meets_no_gate(block, device):
+    gate = device("profile: [[0 mm, 0 mm], [9 mm, 0 mm], [9 mm, 6 mm], [0 mm, 6 mm]]")
+    one = along(block)
+    assert verdict(gate, one).margin == pytest.approx(-3e-3, rel=1e-2)
+    narrow = replace(one, track=replace(TRACK, width=8e-3))
+    assert verdict(gate, narrow).margin == pytest.approx(1e-3, rel=1e-2)
