@@ -172,7 +172,7 @@ class PartsOnTrack:
         """Move all through one period of the drive, the ``turn``-th; how deep anything was in anything."""
         return kernel.follow(
             self.surface, self.solid, self.known.floor, self.arrays, self.work, self.on,
-            turn * self.period, runs.PERIOD,
+            turn * self.period, round(self.period / self.known.floor.step),
         )  # fmt: skip
 
     @property

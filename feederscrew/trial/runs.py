@@ -15,7 +15,7 @@ from feederscrew.geometry.compiled import on_disk
 from feederscrew.trial.kernel import contact, motion, travel
 
 PASSED, RETURNED, RUNNING = travel.PASSED, travel.RETURNED, travel.RUNNING
-PERIOD = 80  # steps of a period of the drive
+PERIOD, HOPPING = 80, 160  # steps of a period of the drive, and where parts hop
 SWEEPS, CONVERGED = 60, 1e-4  # of the contact solver: at most, and what a sweep may still change
 CONTACTS = 96  # of a part at a time
 BATCH = 5  # parts a core takes at a time
@@ -87,16 +87,16 @@ def setting(solid, length, bowl):
     floor, track, friction = drive.floor_of(bowl, length), bowl.track, bowl.friction
     if bowl.drive.amplitude == 0.0:
         floor = floor._replace(along=0.0, up=0.0)
-    back = friction.backward
     c, s = np.cos(track.climb), np.sin(track.climb)
+    steps = HOPPING if drive.throw_number(bowl) > 1.0 else PERIOD
     return BowlOfPart(
         solid=solid,
         length=length,
         unit=float(np.sqrt(length / bowl.gravity)),
-        floor=floor._replace(step=2.0 * np.pi / floor.rate / PERIOD),
+        floor=floor._replace(step=2.0 * np.pi / floor.rate / steps),
         radius=track.radius / length,
         gravity=np.array([-s, -c * np.sin(track.bank), -c * np.cos(track.bank)]),
-        friction=np.array([friction.static, friction.kinetic, *back, friction.wall]),
+        friction=np.array([friction.static, friction.kinetic, *friction.backward, friction.wall]),
         restitution=bowl.restitution,
         threshold=drive.steps_of(floor).threshold,
     )
