@@ -7,9 +7,10 @@ import tracemalloc
 
 import numpy as np
 import pytest
+import shapes
 
 from feederscrew.errors import FeederError
-from feederscrew.resting.counts import profiles, sheet
+from feederscrew.resting.counts import passed, profiles, sheet
 
 ROUND = 5e-4  # of a printed share
 
@@ -112,32 +113,42 @@ def test_floods_are_refused_early(run, request, tmp_path, counts):
     assert most < 10e6
 
 
-def test_a_feeding_test_stands_beside_the_static_rules(run, request, tmp_path):
+def test_a_feeding_test_stands_beside_the_static_rules(run, tmp_path):
     """The same file for compare and calibrate; here with shares of a launch, so that nothing is dropped."""
-    root = request.config.rootpath
-    example = (root / "docs/measured/example/feeding.csv").read_text()
-    (tmp_path / "bowl.yaml").write_text((root / "docs/measured/example/bowl.yaml").read_text())
-    part = root / "parts/lbracket_30x20x15.stl"
-    (tmp_path / "c.csv").write_text(example.replace("../../../parts", f"{part.parent}") + "track,1000,0\n")
-    call = ("compare", part, "--with", "c.csv", "--launch", "feed")
-    done = run(*call, "--format", "csv", "-o", "out")
+    shapes.box(8.0, 12.0, 20.0).export(tmp_path / "block.stl")
+    (tmp_path / "bowl.yaml").write_text(
+        "track: {width: 40 mm}\ndevices:\n  - wiper: 15 mm\n  - wiper: 10 mm\n"
+    )
+    head = "# part: block.stl\n# config: bowl.yaml\n# launch: feed\n"
+    (tmp_path / "c.csv").write_text(
+        head + "device,passed,rejected\nwiper_2,88,12\ntrack,100,0\nwiper_1,93,4\n"
+    )
+    done = run("compare", "block.stl", "--with", "c.csv", "--format", "csv", "-o", "out")
     assert done.exit_code == 0, done.output
     rows = list(csv.DictReader(io.StringIO(done.stdout)))
-    assert [row["device"] for row in rows] == ["wiper_1", "gap_2", "track"]
-    assert (tmp_path / "out" / part.stem / "devices.csv").read_text() == done.stdout
-    rate = json.loads(
-        run(
-            "rate", part, "--aspect", "A", "--config", "bowl.yaml", "--launch", "feed", "--format", "json"
-        ).stdout
-    )
-    chances = [(one["p_recommended"], one["wiper_1"]) for one in rate["orientations"]]
-    predicted = sum(p * share for p, share in chances) / sum(p for p, _ in chances)
-    assert float(rows[0]["predicted"]) == pytest.approx(predicted, abs=1e-5)
-    assert float(rows[0]["measured"]) == pytest.approx(0.941) and rows[0]["agrees"] == "True"
-    many = json.loads(run("compare", "c.csv", "--launch", "feed", "--format", "json").stdout)
+    assert [row["device"] for row in rows] == ["wiper_2", "track", "wiper_1"]
+    assert (tmp_path / "out/block/devices.csv").read_text() == done.stdout
+    aspects = json.loads(run("aspects", "block.stl", "--format", "json").stdout)["aspects"]
+    p = {round(2 * one["height_mm"]): one["p_recommended"] for one in aspects}
+    assert float(rows[2]["predicted"]) == pytest.approx(p[8] + p[12], abs=1e-5)  # 20 mm does not pass
+    assert float(rows[0]["predicted"]) == pytest.approx(p[8] / (p[8] + p[12]), abs=1e-5)
+    assert float(rows[0]["measured"]) == pytest.approx(0.88) and rows[1]["agrees"] == "True"
+    many = json.loads(run("compare", "c.csv", "--format", "json").stdout)
     assert many["sets"] == [] and many["feeding_tests"][0]["config"] == "bowl.yaml"
-    fitted = json.loads(run("calibrate", part, "--with", "c.csv", "--format", "json").stdout)["calibrations"]
-    assert fitted[0]["counts"] == "devices" and fitted[0]["exponent_low"] < fitted[0]["exponent"] < 8.0
+    fitted = json.loads(run("calibrate", "block.stl", "--with", "c.csv", "--format", "json").stdout)
+    (found,) = fitted["calibrations"]
+    assert found["counts"] == "devices" and found["exponent_low"] < found["exponent"] < 8.0
+    assert found["degrees_of_freedom"] in (None, 1)
+
+
+def test_the_example_of_a_feeding_test_is_one(request):
+    known = passed.read(request.config.rootpath / "docs/measured/example/feeding.csv")
+    assert known.names == ("wiper", "gap") and known.head.config == "bowl.yaml"
+    page = (request.config.rootpath / "docs/counts.md").read_text()
+    assert all(
+        f"{name},{on:.0f},{off:.0f}" in page
+        for name, on, off in zip(known.names, known.passed, known.rejected)
+    )
 
 
 def test_counts_by_device_name_their_bowl_and_are_no_shares(run, request, tmp_path):
