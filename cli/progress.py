@@ -32,11 +32,13 @@ class Progress:
         )
 
     def __enter__(self):
-        self.bar.__enter__()
+        if self.bar.length is not None:
+            self.bar.__enter__()
         return self
 
     def __exit__(self, *fault):
-        self.bar.__exit__(*fault)
+        if self.bar.entered:
+            self.bar.__exit__(*fault)
 
     def tell(self, kept):
         """Count one more; one that was ``kept`` took no time and leaves the bar altogether."""
@@ -45,6 +47,8 @@ class Progress:
     def reach(self, done, total, widest=None):
         """So many are done of so many, and the widest interval [1] is so wide to either side."""
         self.bar.length, self.bar.finished = total, False  # more may be found to be needed
+        if not self.bar.entered:  # nothing is shown where nothing is waited for
+            self.bar.__enter__()
         self.bar.current_item = widest
         self.bar.make_step(done - self.bar.pos)
         self.bar.render_progress()

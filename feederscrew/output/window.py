@@ -1,5 +1,7 @@
 """Tables folded to the width of a window."""
 
+import textwrap
+
 GAP, LEAST = "  ", 12  # between columns; letters that a column always has
 MOST_NAMING = 3  # columns that name a row, at most
 
@@ -17,26 +19,33 @@ def folded(columns, width):
     Returns
     -------
     list of list of list of str
-        Pieces that fit, each headed by the columns that name its rows; texts too long are cut.
+        Pieces that fit, each headed by the columns that name its rows; texts too long go on below.
     """
     names = list(columns)
     count = _naming(list(columns.values()), width)
-    head = [_cut(columns[name], max(width // (2 * count), LEAST)) for name in names[:count]]
+    room = max(width - count * len(GAP) - _widest(columns, names[count:], width // 2), width // 2)
+    head = [_broken(columns[name], max(room // count, LEAST)) for name in names[:count]]
     room = max(width - _wide(head), LEAST)
     pieces = [[*head]]
     for group in _groups(names[count:]):
-        added = [_cut(columns[name], room - len(GAP)) for name in group]
+        added = [_broken(columns[name], room - len(GAP)) for name in group]
         if _wide([*pieces[-1], *added]) > width and len(pieces[-1]) > count:
             pieces.append([*head])
         pieces[-1] += added
-    return pieces
+    return [_in_lines(piece) for piece in pieces]
+
+
+def _widest(columns, names, most):
+    """Letters of the widest of some columns, as far as they count."""
+    return min(max((len(columns[name][0]) for name in names), default=0), most)
 
 
 def _naming(columns, width):
     """How many columns, the first ones, it takes to name a row."""
     for count in range(1, min(MOST_NAMING, len(columns)) + 1):
         told = list(zip(*columns[:count]))
-        if len(set(told)) == len(told) and _wide(columns[:count]) <= width // 2:
+        wide = sum(len(column[0]) + len(GAP) for column in columns[:count])
+        if len(set(told)) == len(told) and wide <= width // 2:
             return count
     return 1
 
@@ -53,8 +62,25 @@ def _groups(names):
 
 
 def _wide(columns):
-    return sum(len(column[0]) for column in columns) + len(GAP) * (len(columns) - 1)
+    return sum(len(column[0][0]) for column in columns) + len(GAP) * (len(columns) - 1)
 
 
-def _cut(column, most):
-    return [cell if len(cell) <= most else f"{cell[: most - 1]}…" for cell in column]
+def _broken(column, most):
+    """The lines of each cell of a column, all of one width."""
+    if len(column[0]) <= most:
+        return [[cell] for cell in column]
+    told = [textwrap.wrap(cell, most, break_on_hyphens=False) or [""] for cell in column]
+    width = max(len(line) for lines in told for line in lines)
+    return [[line.ljust(width) for line in lines] for lines in told]
+
+
+def _in_lines(columns):
+    """The columns with as many lines for each row as its longest cell has."""
+    heights = [max(map(len, cells)) for cells in zip(*columns)]
+    return [
+        [line for lines, high in zip(column, heights) for line in _filled(lines, high)] for column in columns
+    ]
+
+
+def _filled(lines, high):
+    return [*lines, *[" " * len(lines[0])] * (high - len(lines))]

@@ -117,11 +117,19 @@ def test_a_table_that_fits_and_a_csv_are_left_as_they_are():
     assert tables.text(frame, "csv", 4) == tables.text(frame, "csv")
 
 
-def test_a_long_text_is_cut_where_the_window_ends():
-    frame = tables.frame({"part": ["a.stl"], "reason": ["word " * 50], "x": [1]})
+def test_a_long_text_goes_on_below_where_the_window_ends():
+    reason = " ".join(f"word{k}" for k in range(50))
+    frame = tables.frame({"part": ["a.stl", "b.stl"], "reason": [reason, "none"], "x": [1, 2]})
     lines = tables.text(frame, "table", 50).splitlines()
     assert max(map(len, lines)) <= 50
-    assert any(line.endswith("…") for line in lines)
+    assert [word for line in lines for word in line.split() if word.startswith("word")] == reason.split()
+    assert any(line.split() == ["b.stl", "none"] for line in lines)
+
+
+def test_a_quantity_and_its_value_fit_a_terminal_whole():
+    long = "velocity along the wall, with its friction and the bank [mm/s]"
+    frame = tables.frame({"quantity": ["mass", long], "value": ["1.5", "24.991"]})
+    assert tables.text(frame, "table", 80) == tables.text(frame, "table")
 
 
 def test_an_interval_stays_with_its_value_and_rows_keep_their_names():
