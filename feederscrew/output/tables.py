@@ -28,6 +28,7 @@ UNITS = {  # the end of a column's name, and how a heading writes it
     "_mm3": "mm3",
     "_mm2": "mm2",
     "_mm": "mm",
+    "_um": "um",
     "_sr": "sr",
     "_deg": "deg",
     "_rad": "rad",

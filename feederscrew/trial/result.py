@@ -17,7 +17,7 @@ HOPS = (
     "throw number {:.3g}: parts hop over the tooling - the static verdicts stand below 1, at an amplitude "
     "of {:.3g} mm"
 )
-ODD = "{}: {} of {} do what the static verdict says ({}, margin {:.2f} mm)"
+ODD = "{}: {} of {} do what the static verdict says ({})"
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,7 +156,8 @@ class TrialRun:
             yield HOPS.format(self.throw_number, 1e3 * drive.amplitude / self.throw_number)
         for k in np.flatnonzero(self.odd):
             said = "passes" if self.predicted[k] else "is returned"
-            margin = 1e3 * self.margin[k]
-            yield ODD.format(self.known.lying[k].name, self.holding[k], self.tried[k], said, margin)
+            if np.isfinite(self.margin[k]):  # the bare track gives none
+                said += f", margin {1e3 * self.margin[k]:.2f} mm"
+            yield ODD.format(self.known.lying[k].name, self.holding[k], self.tried[k], said)
         if not self.velocity > 0.0:
             yield "the part does not travel up the track: see feeder convey"

@@ -47,7 +47,7 @@ def matrix(run):
             color="white" if shown[r, c] > 0.7 else style.INK,
         )  # fmt: skip
     style.tidy(axes, title="Orientations in and out, parts", x="leaves as", y="comes as", grid="none")
-    axes.set_xticks(range(len(titles)), titles)
+    style.named_ticks(axes, range(len(titles)), titles)
     odd = [" *" if run.odd[k] else "" for k in rows]
     axes.set_yticks(range(len(rows)), [names[k] + mark for k, mark in zip(rows, odd)])
     if any(odd):
