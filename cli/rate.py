@@ -7,7 +7,7 @@ import click
 from feederscrew_cli import options, orientation
 
 
-@click.command(short_help="Well-oriented parts per minute, with each factor of the chain.")
+@click.command(short_help="Correctly oriented parts per minute, with each factor of the chain.")
 @options.part
 @orientation.chain
 @orientation.taken

@@ -13,7 +13,7 @@ from feederscrew_cli.quantity import Quantity
     type=Quantity("rate", positive=True),
     required=True,
     metavar="RATE",
-    help="Well-oriented parts: 120/min.",
+    help="Correctly oriented parts: 120/min.",
 )
 @orientation.chain
 @orientation.taken
