@@ -50,7 +50,7 @@ def gather(sources, configs=(), overrides=()):
     rows = [row for source in sources for row in _rows(source, faults)]
     paths = dict.fromkeys([*wanted, *(row.config for row in rows if row.config)])
     bowls_by_path = {path: _conditions(path, overrides, faults) for path in paths}
-    names = {path: _names(path, faults) for path in dict.fromkeys(row.names for row in rows)}
+    names = _names(rows, faults)
     raise_all(faults)
     requests = dict.fromkeys(
         _request(row, bowls_by_path[path], names[row.names])
@@ -64,13 +64,18 @@ def _request(row, conditions, names):
     return Request(row.source, conditions, row.options, line=row.line, aspect=row.aspect, names=names)
 
 
-def _names(path, faults):
-    """The names of one file; None where there is none, or where it has faults."""
-    try:
-        return None if path is None else naming.read(path)
-    except FeederError as fault:
-        faults += getattr(fault, "faults", [fault])
-        return None
+def _names(rows, faults):
+    """The names of the aspects by the file that a row asks for; None where it has faults."""
+    known = {None: None}
+    for row in rows:
+        if row.names not in known:
+            known[row.names] = None
+            try:
+                known[row.names] = naming.read(row.names)
+            except FeederError as fault:
+                one = ConfigError(f"{row.line}: {fault.where}", fault.what, fault.mend)
+                faults += getattr(fault, "faults", [one])
+    return known
 
 
 def _rows(source, faults):

@@ -152,6 +152,10 @@ def test_a_batch_and_a_file_of_counts_go_by_names(box, run):
     Path("list.csv").write_text("part,names,aspect\nbox.stl,n.yaml,edge\nbox.stl,,B\n")
     by_name, by_letter = batch.gather(["list.csv"])
     assert by_name.names.names == ("flat", "edge", "end") and by_letter.names is None
+    Path("gone.csv").write_text("part,names\nbox.stl,no.yaml\n")
+    with pytest.raises(FeederError) as caught:
+        batch.gather(["gone.csv"])
+    assert caught.value.lines == ("gone.csv:2: no.yaml: no such file - check the path",)
     tasks = [
         task.Task.of(one, batch.Choices(pictures=False), Path(box).read_bytes())
         for one in (by_name, by_letter)
