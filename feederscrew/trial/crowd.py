@@ -137,6 +137,10 @@ def arrays(solid, count):
         move=np.zeros(12),
         spots=np.zeros((size, 3)),
         near=np.zeros(len(solid.edges), np.int64),
+        far=np.zeros(len(solid.edges), np.int64),
+        corners=np.zeros(size, np.int64),
+        faces=np.zeros(len(solid.triangles), np.int64),
+        box=np.zeros(6),
         tangent=np.array([1.0, 0.0]),
     )
 

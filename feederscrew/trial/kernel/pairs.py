@@ -34,7 +34,11 @@ class Crowd(NamedTuple):
     high: np.ndarray  # (3,)
     move: np.ndarray  # (12,) rotation and place of one part in the axes of another
     spots: np.ndarray  # (C, 3) corners of one in the axes of the other
-    near: np.ndarray  # (E,) int
+    near: np.ndarray  # (E,) int, edges of the first part
+    far: np.ndarray  # (E,) int, edges of the second
+    corners: np.ndarray  # (C,) int, corners of the first part
+    faces: np.ndarray  # (T,) int, faces of the second
+    box: np.ndarray  # (6,) what of the first part is near the second: least and greatest place
     tangent: np.ndarray  # (2,)
 
 
@@ -113,11 +117,12 @@ def _over(solid, k, a, b, c):
 
 
 @compiled
-def _face(crowd, solid, k, reach):
+def _face(crowd, solid, faces, k, reach):
     """Triangle that a corner touches, the least deep of those it may, and the gap; -1 for none."""
     a, b, c = crowd.spots[k, 0], crowd.spots[k, 1], crowd.spots[k, 2]
     best, found = -DEEP, -1
-    for m in range(len(solid.triangles)):
+    for f in range(faces):
+        m = crowd.faces[f]
         n, first = solid.normals[m], solid.vertices[solid.triangles[m, 0]]
         off = (a - first[0]) * n[0] + (b - first[1]) * n[1] + (c - first[2]) * n[2]
         if best < off < reach and _over(solid, m, a, b, c) and _rests(crowd, k, n):
@@ -126,36 +131,81 @@ def _face(crowd, solid, k, reach):
 
 
 @compiled
-def corners_on(crowd, solid, i, j, reach, count):
-    """Contacts of the corners of part i with the faces of part j; leaves the corners in ``crowd.spots``."""
-    _relative(crowd, i, j)
-    _shifted(solid.corners, crowd.move, crowd.spots)
-    low, high, spots = crowd.low, crowd.high, crowd.spots
+def _emptied(box):
+    for e in range(3):
+        box[e], box[3 + e] = math.inf, -math.inf
+
+
+@compiled
+def _taken_in(box, p):
+    for e in range(3):
+        box[e], box[3 + e] = min(box[e], p[e]), max(box[3 + e], p[e])
+
+
+@compiled
+def _near_corners(crowd, solid, reach):
+    """Write which corners of the first part come into the box of the second, and their own box; how many."""
+    low, high, count = crowd.low, crowd.high, 0
+    _emptied(crowd.box)
     for k in range(len(solid.corners)):
-        a, b, c = spots[k, 0], spots[k, 1], spots[k, 2]
-        if a < low[0] - reach or b < low[1] - reach or c < low[2] - reach:
+        p = crowd.spots[k]
+        if p[0] < low[0] - reach or p[1] < low[1] - reach or p[2] < low[2] - reach:
             continue
-        if a > high[0] + reach or b > high[1] + reach or c > high[2] + reach:
+        if p[0] > high[0] + reach or p[1] > high[1] + reach or p[2] > high[2] + reach:
             continue
-        m, gap = _face(crowd, solid, k, reach)
-        if m >= 0:
-            n = solid.normals[m]
-            count = _touch(crowd, solid, i, j, a, b, c, n[0], n[1], n[2], gap, count)
+        crowd.corners[count] = k
+        count += 1
+        _taken_in(crowd.box, p)
     return count
 
 
 @compiled
-def _near_edges(crowd, solid, reach):
-    """Write which edges of the first part come into the box of the second; how many."""
-    count = 0
-    for k in range(len(solid.edges)):
-        p, q = crowd.spots[solid.edges[k, 0]], crowd.spots[solid.edges[k, 1]]
+def _near_faces(crowd, solid, reach):
+    """Write which faces of the second part come into ``crowd.box``; how many."""
+    box, count = crowd.box, 0
+    for m in range(len(solid.triangles)):
+        t = solid.triangles[m]
+        p, q, r = solid.vertices[t[0]], solid.vertices[t[1]], solid.vertices[t[2]]
         meets = True
         for e in range(3):
-            if min(p[e], q[e]) > crowd.high[e] + reach or max(p[e], q[e]) < crowd.low[e] - reach:
+            if min(p[e], q[e], r[e]) > box[3 + e] + reach or max(p[e], q[e], r[e]) < box[e] - reach:
                 meets = False
         if meets:
-            crowd.near[count] = k
+            crowd.faces[count] = m
+            count += 1
+    return count
+
+
+@compiled
+def corners_on(crowd, solid, i, j, reach, count):
+    """Contacts of the corners of part i with the faces of part j; leaves the corners in ``crowd.spots``."""
+    _relative(crowd, i, j)
+    _shifted(solid.corners, crowd.move, crowd.spots)
+    nears = _near_corners(crowd, solid, reach)
+    if nears == 0:
+        return count
+    faces = _near_faces(crowd, solid, reach + DEEP)
+    for c in range(nears):
+        k = crowd.corners[c]
+        m, gap = _face(crowd, solid, faces, k, reach)
+        if m >= 0:
+            n, p = solid.normals[m], crowd.spots[k]
+            count = _touch(crowd, solid, i, j, p[0], p[1], p[2], n[0], n[1], n[2], gap, count)
+    return count
+
+
+@compiled
+def _near_edges(solid, spots, low, high, reach, found):
+    """Write which edges between the spots come into a box; how many."""
+    count = 0
+    for k in range(len(solid.edges)):
+        p, q = spots[solid.edges[k, 0]], spots[solid.edges[k, 1]]
+        meets = True
+        for e in range(3):
+            if min(p[e], q[e]) > high[e] + reach or max(p[e], q[e]) < low[e] - reach:
+                meets = False
+        if meets:
+            found[count] = k
             count += 1
     return count
 
@@ -172,11 +222,19 @@ def _beside(p, q, r, s, reach):
 @compiled
 def edges_on(crowd, solid, i, j, reach, count):
     """Contacts of the convex edges of part i, whose corners are in ``crowd.spots``, with those of part j."""
-    nears = _near_edges(crowd, solid, reach)
+    nears = _near_edges(solid, crowd.spots, crowd.low, crowd.high, reach, crowd.near)
+    _emptied(crowd.box)
+    for m in range(nears):
+        _taken_in(crowd.box, crowd.spots[solid.edges[crowd.near[m], 0]])
+        _taken_in(crowd.box, crowd.spots[solid.edges[crowd.near[m], 1]])
+    fars = 0
+    if nears:
+        fars = _near_edges(solid, solid.corners, crowd.box[:3], crowd.box[3:], reach, crowd.far)
     for m in range(nears):
         k = crowd.near[m]
         p, q = crowd.spots[solid.edges[k, 0]], crowd.spots[solid.edges[k, 1]]
-        for n in range(len(solid.edges)):
+        for f in range(fars):
+            n = crowd.far[f]
             r, s = solid.corners[solid.edges[n, 0]], solid.corners[solid.edges[n, 1]]
             if not _beside(p, q, r, s, reach):
                 count = _cross(crowd, solid, i, j, k, n, p, q, r, s, reach, count)
