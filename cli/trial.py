@@ -65,6 +65,8 @@ def trial(
     effective = columns.conditions(solid) | bowls.texts(settings)
     known = orientation.shares(out, solid, driven[0], taken, bowl["path"])
     with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
+        if queue:
+            waiting.queue(out)
         with waiting.bar(out, "runs") as bar:
             found = study(
                 solid, driven, aspect,

@@ -8,6 +8,7 @@ import shapely.affinity
 
 from feederscrew import check
 from feederscrew.dropping.kernel import body
+from feederscrew.geometry.compiled import on_disk
 from feederscrew.trial import runs, stations
 from feederscrew.trial.kernel import contact, search
 from feederscrew.trial.kernel import crowd as kernel
@@ -187,6 +188,11 @@ class PartsOnTrack:
     def extents(self, n):
         """Return how far part n reaches along the wall, rear and front, and its lowest point."""
         return extents(self.arrays.states[n], self.solid, self.known.radius)
+
+
+def compiled():
+    """Whether the kernel of the queue is on disk already."""
+    return on_disk(kernel.follow)
 
 
 def extents(state, solid, radius):
