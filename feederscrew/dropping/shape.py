@@ -26,6 +26,7 @@ class RoundedHull(NamedTuple):
     radius: float  # largest distance of a point
     rims: np.ndarray  # (R, RIM) circles and arcs, as ``Rims.table``
     inner: np.ndarray  # (V,) bool: corners that rims replace
+    corners: int  # how many are left
     sag: float  # how far a rim bulges over its corners' edges
 
 
@@ -125,6 +126,7 @@ def _solid(hull, edges, rims, inertia, principal, length):
         radius=hull.radius / length,
         rims=check.frozen(table),
         inner=rims.inner,
+        corners=int((~rims.inner).sum()),
         sag=float(table[:, RADIUS].max() * (1.0 - np.cos(SMOOTH / 2))) if len(table) else 0.0,
     )
 

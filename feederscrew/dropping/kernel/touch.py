@@ -17,7 +17,7 @@ def touching(solid, work, height, corner, reach):
 
     Corners are found by flooding the hull's edges from the lowest one, through corners that rims replace.
     """
-    count = flooded(solid, work, height, corner, reach)
+    count = flooded(solid, work, height, corner, reach) if solid.corners else 0
     for k in range(len(solid.rims)):
         if height + rim_level(solid.rims, k, work.turn) <= reach:
             count = on_rim(solid.rims, k, work, height, reach, count)
