@@ -1,5 +1,6 @@
 """``feeder report``."""
 
+import gc
 import shlex
 
 import click
@@ -81,6 +82,7 @@ def report(part, bowl, taken, directory, format, quiet, verbose, **wanted):
     chosen = orientation.choice(taken, bowl["path"]) | orientation.telling(out)
     found = study(solid, **bowl, **wanted, **chosen, command=repeated(out.arguments))
     effective = columns.conditions(solid) | texts(found.settings)
+    gc.freeze()  # what is loaded stays: it need not be looked through after every chapter
     with out.folder(solid.name, found.inputs, effective) as folder:
         made = page(found, out.step)
         out.warn(*(line for line in made.warnings if line not in solid.warnings))

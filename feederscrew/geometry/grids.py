@@ -57,7 +57,7 @@ def axis(span):
     return GridAxis(key.column, check.frozen(np.array(span.values)), units.factor(key.unit, key.dimension))
 
 
-def evaluate(first, second, function, names=()):
+def evaluate(first, second, function, names=(), rows=None):
     """Evaluate a function of two quantities on a grid.
 
     Parameters
@@ -68,16 +68,26 @@ def evaluate(first, second, function, names=()):
         column name, and under 'regime' the places in ``names``.
     names : tuple of str
         Of the regimes; without any, every code is 0.
+    rows : int, optional
+        Values of ``first`` at a time, for a function that makes many arrays on its way; by default all.
 
     Returns
     -------
     Grid
     """
     shape = (len(first.values), len(second.values))
-    found = function(first.values[:, None], second.values[None, :])
+    found = _by_rows(first.values, second.values, function, rows or len(first.values))
     full = {name: check.frozen(np.broadcast_to(array, shape)) for name, array in found.items()}
     codes = full.pop("regime", np.zeros(shape, dtype=int))
     return Grid(first, second, full, codes, tuple(names) or ("",))
+
+
+def _by_rows(first, second, function, rows):
+    """Arrays of a function of two quantities by name, some values of the first at a time."""
+    parts = [function(first[k : k + rows, None], second[None, :]) for k in range(0, len(first), rows)]
+    if len(parts) == 1:
+        return parts[0]
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
 def span(column, low, high, count, unit=1.0):

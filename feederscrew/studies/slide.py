@@ -13,6 +13,7 @@ STEPS = (1.0, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)  # round numbers within a
 PLAIN_TOP = 3.0  # G that every sliding map reaches
 FARTHEST = 1e6  # G of a hop that no bowl within the limits of its keys reaches: it is left off the map
 MARGIN = 1.25  # how far past the hop, and past the bowl's own G, it reaches
+ROWS = 32  # of a map, computed at a time: some dozen arrays are made of each
 FINE_STEP, MOST_STEPS = 0.05, 200  # of G, in a map that is printed
 WIDEST = np.radians(89.9)  # of a surface: at 90 deg [4.27] is 0/0 on the hop line
 SHEET = 61  # points of a surface in either direction
@@ -143,7 +144,7 @@ def sliding_map(bowl, beta, *, as_published=False, shape=None):
     first, second = _headings(direction), _ratios(beta, ratio)
     if shape is not None:
         first, second = _resampled(first, shape[0]), _resampled(second, shape[1])
-    grid = evaluate(first, second, cells, limits.REGIMES)
+    grid = evaluate(first, second, cells, limits.REGIMES, rows=ROWS)
     point = {name: float(value) for name, value in cells(direction, ratio).items()}
     regime = limits.REGIMES[int(point.pop("regime"))]
     point["throw_number"] = float(limits.throw_number(ratio, beta, bowl.track.climb, bowl.track.bank))

@@ -1,5 +1,6 @@
 """The chapters of a report in their order; one that cannot be computed says why."""
 
+import gc
 from contextlib import nullcontext
 from dataclasses import replace
 
@@ -55,4 +56,5 @@ def _chapter(case, anchor, title, compute, step):
     except FeederError as fault:
         told = tuple(f"{title}: {line}" for line in fault.lines)
         found = Section((Notes(fault.lines, loud=True),), warnings=told)
+    gc.collect()  # figures hold themselves: they would pile up
     return None if found is None else replace(found, anchor=anchor, title=title)
