@@ -196,22 +196,21 @@ class _Ride:
             low, high = (middle, high) if slides else (low, middle)
         return low
 
-    def _step(self, now, span, speed, sense, depth=0):
+    def _step(self, now, span, speed, sense, whole=None, depth=0):
         """Velocity and way after a span, by one step or, where two halves differ from it, by theirs."""
-        half = 0.5 * span
-        whole, _ = self._once(now, span, speed, sense)
-        middle, way = self._once(now, half, speed, sense)
-        after, more = self._once(now + half, half, middle, sense)
-        if abs(after - whole) <= self.kink * span or depth >= HALVINGS:
-            return after, way + more
-        middle, way = self._step(now, half, speed, sense, depth + 1)
-        after, more = self._step(now + half, half, middle, sense, depth + 1)
-        return after, way + more
+        half, begun = 0.5 * span, self.gain(now, speed, sense)
+        whole = whole or self._once(now, span, speed, sense, begun)
+        first = self._once(now, half, speed, sense, begun)
+        last = self._once(now + half, half, first[0], sense)
+        if abs(last[0] - whole[0]) > self.kink * span and depth < HALVINGS:
+            first = self._step(now, half, speed, sense, first, depth + 1)
+            last = self._step(now + half, half, first[0], sense, None, depth + 1)
+        return last[0], first[1] + last[1]
 
-    def _once(self, now, span, speed, sense):
+    def _once(self, now, span, speed, sense, begun=None):
         """One step of the classical Runge-Kutta rule for the velocity and its integral."""
         half = 0.5 * span
-        a = self.gain(now, speed, sense)
+        a = self.gain(now, speed, sense) if begun is None else begun
         b = self.gain(now + half, speed + half * a, sense)
         c = self.gain(now + half, speed + half * b, sense)
         d = self.gain(now + span, speed + span * c, sense)
