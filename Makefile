@@ -64,7 +64,7 @@ results/%/inertia.csv: parts/%.stl | $(READY)
 results/%/slide.csv: configs/%.yaml | $(READY)
 	$(FEEDER) slide --config $< -o results --quiet > /dev/null
 
-BENCHES := waits conveying speed aspects tooling
+BENCHES := waits kernels conveying speed aspects tooling
 
 bench: $(READY_TO_TEST) ## what people wait for and the kernels, under ten minutes
 	for name in $(BENCHES); do $(BIN)/python benchmarks/$$name.py || exit 1; done

@@ -91,7 +91,7 @@ JOBS = {"floor": floor, "ours": ours, "peer": peer, "poses": poses}
 
 
 def measured(job, path):
-    """Seconds and peak memory [MB] of one job in a process of its own."""
+    """Processor seconds and peak memory [MB] of one job in a process of its own."""
     done = subprocess.run(
         [sys.executable, __file__, "--job", job, str(path)], capture_output=True, text=True, check=True
     )
@@ -112,9 +112,9 @@ def run(job, path):
 
         assert numba and feederscrew.resting.aspects
     JOBS[job](path)
-    start = time.perf_counter()
+    start = time.process_time()
     JOBS[job](path)
-    seconds = time.perf_counter() - start
+    seconds = time.process_time() - start
     print(json.dumps([seconds, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024]))
 
 

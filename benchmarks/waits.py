@@ -20,7 +20,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/speed.md"
-BEGIN, END = "<!-- waits -->\n", "<!-- end of waits -->"
 PART = str(ROOT / "parts/lbracket_30x20x15.stl")
 BARE = (sys.executable, "-c", "import numpy, scipy.spatial")
 CALL = (sys.executable, "-c", "from feederscrew_cli.main import feeder; feeder()")
@@ -55,10 +54,12 @@ class Row:
     unit: str
     beside: str = ""  # clock, memory
 
+    more: bool = False  # whether more is better
+
     @property
     def verdict(self):
-        """Whether the target holds; for a speed-up more is better."""
-        held = self.figure >= self.target if self.unit == "x as fast" else self.figure <= self.target
+        """Whether the target holds."""
+        held = self.figure >= self.target if self.more else self.figure <= self.target
         return "holds" if held else "missed"
 
 
@@ -118,7 +119,7 @@ def batches(folder):
     a_part = statistics.median(one.wall for one in took[1]) / len(parts)
     yield Row(f"`feeder batch` with pictures, a part of {len(parts)}", 2.0, a_part, "s", clock(took[1]))
     gain = statistics.median(one.wall / two.wall for one, two in zip(*took.values()))
-    yield Row("its two jobs beside one", 1.8, gain, "x as fast")
+    yield Row("its two jobs beside one", 1.8, gain, "x as fast", more=True)
 
 
 def first_use(folder):
@@ -137,16 +138,27 @@ def first_use(folder):
 def table(rows):
     """The rows as Markdown, the machine above them."""
     lines = [
-        f"On {os.cpu_count()} cores of {processor()}, Python {platform.python_version()}.",
+        f"On {os.cpu_count()} cores of {processor()}, Python {platform.python_version()}; {busy()}.",
         "",
         "| What | Target | Here | | Beside |",
         "| --- | ---: | ---: | --- | --- |",
     ]
     lines += [
-        f"| {r.what} | {r.target:g} {r.unit} | {r.figure:.3g} {r.unit} | {r.verdict} | {r.beside} |"
+        f"| {r.what} | {r.target:,g} {r.unit} | {shown(r.figure)} {r.unit} | {r.verdict} | {r.beside} |"
         for r in rows
     ]
     return "\n".join(lines) + "\n"
+
+
+def busy():
+    """How much else ran beside it."""
+    load = os.getloadavg()[1] if hasattr(os, "getloadavg") else 0.0
+    return f"{load:.0f} processes at work on the machine at a time, this one included"
+
+
+def shown(figure):
+    """A figure in three digits, thousands with commas."""
+    return f"{round(figure, -2):,.0f}" if figure >= 1000.0 else f"{figure:.3g}"
 
 
 def processor():
@@ -156,26 +168,43 @@ def processor():
     return names[0].partition(":")[2].strip() if names else platform.processor() or platform.machine()
 
 
-def measured():
-    """Every wait, told as it is known."""
-    with tempfile.TemporaryDirectory() as folder:
-        for kind in (printed(), reports(folder), batches(folder), first_use(folder)):
-            for row in kind:
-                told = f"{row.figure:8.3g} {row.unit:10} {row.target:6g}  {row.verdict:7} {row.beside}"
-                print(f"{row.what:60}{told}", flush=True)
-                yield row
+def waits(folder):
+    """Every wait."""
+    yield from printed()
+    yield from reports(folder)
+    yield from batches(folder)
+    yield from first_use(folder)
 
 
-def main():
-    """Print the table; write it where that is asked for."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+def told(rows):
+    """The rows, each printed as it is known."""
+    for row in rows:
+        figures = f"{row.figure:8.4g} {row.unit:12} {row.target:8g}  {row.verdict:7} {row.beside}"
+        print(f"{row.what:60}{figures}", flush=True)
+        yield row
+
+
+def main(name, description, rows):
+    """Print a table; write it between its marks of the page where that is asked for.
+
+    Parameters
+    ----------
+    name : str
+        Of the marks.
+    description : str
+    rows : function
+        Of a folder to write to; gives the Rows as they are known.
+    """
+    parser = argparse.ArgumentParser(description=description.splitlines()[0])
     parser.add_argument("--write", action="store_true", help="put the table into docs/speed.md")
     wanted = parser.parse_args()
-    text = table(list(measured()))
+    with tempfile.TemporaryDirectory() as folder:
+        text = table(list(told(rows(folder))))
     if wanted.write:
-        before, _, rest = PAGE.read_text(encoding="utf-8").partition(BEGIN)
-        PAGE.write_text(before + BEGIN + text + END + rest.partition(END)[2], encoding="utf-8")
+        begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->"
+        before, _, rest = PAGE.read_text(encoding="utf-8").partition(begin)
+        PAGE.write_text(before + begin + text + end + rest.partition(end)[2], encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    main("waits", __doc__, waits)

@@ -1,0 +1,70 @@
+"""The kernels beside their targets, by processor time of one core.
+
+Run: python benchmarks/kernels.py            (prints the table)
+     python benchmarks/kernels.py --write    (puts it into docs/speed.md as well)
+
+Each script of its own tells more: speed.py (tumbling, drops beside MuJoCo), conveying.py (beside plain Python
+and SciPy's solver), aspects.py (meshes up to a million facets) and tooling.py (beside a scan with shapely).
+"""
+
+import statistics
+from pathlib import Path
+
+import aspects
+import conveying
+import numpy as np
+import speed
+import waits
+
+from feederscrew.conveying import sweep
+from feederscrew.conveying.setting import plain
+
+DROPS = {"T shape, 12 corners": 10_000, "screw, 1,000 corners": 5_400}  # a second, at converged steps
+POINTS = 20_000
+FACETS = {1e3: 2.5, 1e4: 1.3}  # beside the bare floor
+PAIRS = 3
+
+
+def drops():
+    """Drops a second and core."""
+    for name, shape, _ in speed.bodies():
+        if name in DROPS:
+            rate, _ = speed.rates(shape, 4000)
+            yield waits.Row(f"drops of a {name}", DROPS[name], rate, "a CPU second", more=True)
+
+
+def points():
+    """Points a second and core, beside plain Python."""
+    sweep.sweep(np.array([plain(1.0, 0.5, 0.0, 0.4)]))
+    for restitution, (wanted, _) in conveying.TARGETS.items():
+        box = conveying.random_settings(POINTS, np.random.default_rng(1))
+        settings = np.array([plain(*row, restitution) for row in box])
+        took, _ = conveying.seconds(lambda: sweep.sweep(settings, workers=1))  # noqa: B023
+        few = max(20, POINTS // 500)
+        slow, _ = conveying.seconds(lambda: conveying.plain_python(settings[:few]))  # noqa: B023
+        beside = f"plain Python {few / slow:,.0f}"
+        what = f"conveying, points at e = {restitution:g}"
+        yield waits.Row(what, wanted, POINTS / took, "a CPU second", beside, more=True)
+
+
+def facets(folder):
+    """Aspects beside what any tool must pay: reading, checking, integrating, the hull; in turn."""
+    for size, target in FACETS.items():
+        for name, make in (("box", aspects.box), ("screw", aspects.screw), ("sphere", aspects.sphere)):
+            mesh, path = make(size), Path(folder) / f"{name}.stl"
+            mesh.export(path)
+            pairs = [(aspects.measured("ours", path), aspects.measured("floor", path)) for _ in range(PAIRS)]
+            ratio = statistics.median(ours[0] / bare[0] for ours, bare in pairs)
+            beside = f"{1e3 * statistics.median(ours[0] for ours, _ in pairs):.1f} ms"
+            yield waits.Row(f"aspects of a {name}, {len(mesh.faces):,} facets", target, ratio, "x", beside)
+
+
+def kernels(folder):
+    """Every kernel."""
+    yield from drops()
+    yield from points()
+    yield from facets(folder)
+
+
+if __name__ == "__main__":
+    waits.main("kernels", __doc__, kernels)
