@@ -1,13 +1,13 @@
 """The longest way over which a foot is not supported while a hole passes below it."""
 
-from feederscrew.geometry.compiled import compiled
+from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.tooling.kernel import passage
 from feederscrew.tooling.kernel.hull import inset_beside
 
 SAMPLES = 8  # parts of a piece between two events
 
 
-@compiled
+@entry
 def longest(foot, hole, scratch):
     """Return the longest turn of the hole [rad] through which the margin stays below zero.
 
