@@ -127,7 +127,7 @@ def _cut(every, wanted, device, must):
         return _gate(every, wanted, device, must)
     values, upper = limits(device.kind, every), device.kind in UPPER
     if device.kind == "gap":
-        values = values + [0.0 if k == wanted else one.carry for k, one in enumerate(every)]
+        values = values + [0.0 if k == wanted else one.carry_ahead for k, one in enumerate(every)]
     nearest = (values[must].min() if upper else values[must].max()) if must.any() else values[wanted]
     middle = float(0.5 * (values[wanted] + nearest))
     if not np.isfinite(nearest):

@@ -159,7 +159,7 @@ class _Judge:
         margin = self._least(k, one.standing, hole)
         if margin > -self.margin or not one.carry > 0.0:
             return margin
-        return carried(margin, feet.unheld(one.standing, hole), one)
+        return carried(margin, feet.unheld(one.standing, hole), one.carry)
 
     def _least(self, k, foot, hole):
         """Least margin, in arrays kept for holes of that size."""

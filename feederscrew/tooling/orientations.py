@@ -42,6 +42,7 @@ class Orientation:
     turns_over: bool = False  # the drive tips it over on the track
     may_roll_back: bool = False  # on its round side, not along a climbing track: no verdict is sure
     carry: float = 0.0  # [m] it travels on unsupported before it has tipped: 0 of one that is only placed
+    carry_ahead: float = 0.0  # [m] the same over an edge across the track
 
     @property
     def name(self):
@@ -153,18 +154,20 @@ def travelling(found, bowl):
     Notes
     -----
     A part without support leaves its place as an inverted pendulum does, by cosh(t / T) - 1 with
-    T = sqrt((k^2 + h^2) / (g h)), h the height of the centre of mass and k the greater radius of gyration
-    about a level axis. After ``FALLEN`` times T it is taken to be lost; one that finds support again sooner
-    comes back upright. A part on its round side across the track rolls down the climb, since friction of the
-    floor turns it as much as it moves it: without the wall by g sin(climb) / (1 + k^2 / r^2) in the mean,
-    whatever the drive. Friction of the wall may hold it, or even carry it on as it does what slides.
+    T = sqrt((k^2 + h^2) / (g h)), h the height of the centre of mass and k the radius of gyration about the
+    edge's direction, where that is not known the greatest about a level axis. After ``FALLEN`` times T it is
+    taken to be lost; one that finds support again sooner comes back upright. A part on its round side across
+    the track rolls down the climb, since friction of the floor turns it as much as it moves it: without the
+    wall by g sin(climb) / (1 + k^2 / r^2) in the mean, whatever the drive. Friction of the wall may hold it,
+    or even carry it on as it does what slides.
     """
     speed, track = _speed(bowl), bowl.track
     held = np.tan(track.climb) <= bowl.friction.wall * np.sin(track.bank)
     return tuple(
         replace(
             one,
-            carry=FALLEN * speed * _tipping_time(one, bowl.gravity),
+            carry=FALLEN * speed * _tipping_time(one, _greatest(one), bowl.gravity),
+            carry_ahead=FALLEN * speed * _tipping_time(one, _across(one), bowl.gravity),
             may_roll_back=bool(not held and _rolls(one)),
         )
         for one in found
@@ -191,12 +194,23 @@ def _speed(bowl):
     return max(float(found), 0.0) if np.isfinite(found) else 0.0
 
 
-def _tipping_time(one, gravity):
+def _tipping_time(one, inertia, gravity):
     """Time constant [s] of an orientation that tips over an edge below its centre of mass."""
-    inertia, height = one.posture.inertia, one.posture.height
+    height = one.posture.height
+    return float(np.sqrt((inertia / one.posture.mass + height**2) / (gravity * height)))
+
+
+def _greatest(one):
+    """Greatest moment of inertia about a level axis [kg m2]."""
+    inertia = one.posture.inertia
     mean, lean = 0.5 * (inertia[0, 0] + inertia[1, 1]), 0.5 * (inertia[0, 0] - inertia[1, 1])
-    square = (mean + np.hypot(lean, inertia[0, 1])) / one.posture.mass
-    return float(np.sqrt((square + height**2) / (gravity * height)))
+    return mean + np.hypot(lean, inertia[0, 1])
+
+
+def _across(one):
+    """Moment of inertia about the level axis across the track [kg m2]."""
+    inertia, (c, s) = one.posture.inertia, (np.cos(one.heading), np.sin(one.heading))
+    return s * s * inertia[0, 0] + c * c * inertia[1, 1] + 2.0 * s * c * inertia[0, 1]
 
 
 def named(found):

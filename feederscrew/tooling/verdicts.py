@@ -116,7 +116,7 @@ def _canyon(device, one, every):
 
 
 def _gap(device, one, every):
-    return carried(one.gap - device.limit, device.limit - one.gap, one), 0.0
+    return carried(one.gap - device.limit, device.limit - one.gap, one.carry_ahead), 0.0
 
 
 def _slot(device, one, every):
@@ -138,21 +138,22 @@ def _cut_out(device, one, every):
     hole = feet.polygon(np.array(device.corners), one.track.radius)
     margin, shift = feet.least(one.standing, hole)
     if margin < 0.0 < one.carry:
-        margin = carried(margin, feet.unheld(one.standing, hole), one)
+        margin = carried(margin, feet.unheld(one.standing, hole), one.carry)
     return margin, shift
 
 
-def carried(margin, way, one):
+def carried(margin, way, carry):
     """Return the margin [m] of an orientation that travels, from that of one that is placed.
 
     Parameters
     ----------
     margin : float [m]
     way : float [m]
-        Over which it is not supported; what it travels on before it has tipped is taken from it.
-    one : Orientation
+        Over which it is not supported.
+    carry : float [m]
+        What it travels on before it has tipped is taken from that.
     """
-    return margin if margin >= 0.0 else min(max(margin, one.carry - way), 0.0)
+    return margin if margin >= 0.0 else min(max(margin, carry - way), 0.0)
 
 
 def _profile(device, one, every):
