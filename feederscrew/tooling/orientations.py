@@ -186,10 +186,12 @@ def _rolls(one):
 
 
 def _speed(bowl):
-    """Velocity up the track [m/s]; 0 of a bowl that does not convey."""
+    """Velocity up the track [m/s]; 0 of a bowl that does not convey, where gravity is one that can be."""
     try:
         found = answer.answer(bowl).velocity
-    except ConfigError:
+    except ConfigError as fault:
+        if fault.where == "gravity":
+            raise
         return 0.0
     return max(float(found), 0.0) if np.isfinite(found) else 0.0
 
