@@ -36,7 +36,7 @@ def chain(part, folder):
         one = first.orientations[k]
         found = tooling.tooling(part, bowl, one.aspect, heading=one.heading, known=first.aspects).design
         nearest = nearest or (found.cuts and (found, f"{one.name}, not isolated"))
-        if found.isolated and found.cuts:
+        if found.isolated and found.cuts and tooling.CARRIED not in found.reasons:
             nearest = found, one.name
             break
     lines = [f"  - {cut.device.kind}: {cut.device.text}\n" for cut in nearest[0].cuts]

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from feederscrew.tooling.design import MARGIN, design, place
 from feederscrew.tooling.orientations import Orientation, named, orientations
 from feederscrew.tooling.result import Design
 
+CARRIED = (
+    "quasi-static: at the bowl's speed a part may be carried over a cut that returns it - see feeder trial"
+)
 LATE = "the search stopped at the time limit: another machine may find more - raise the limit"
 
 
@@ -124,7 +127,7 @@ def tooling(
     asked = range(len(every)) if wanted is None else [wanted]
     designs = [None] * len(every)
     for done, k in enumerate(asked):
-        designs[k] = design(every, shares, k, margin=margin, search=search, **asked_of_each)
+        designs[k] = _designed(every, shares, k, margin=margin, search=search, **asked_of_each)
         if told is not None:
             told(done + 1, len(asked))
     return ToolingStudy(
@@ -138,3 +141,13 @@ def tooling(
         designs=tuple(designs),
         wanted=wanted,
     )
+
+
+def _designed(every, shares, wanted, **asked):
+    """The design for parts that travel; where none isolates, one for parts that are placed, and said so."""
+    found = design(every, shares, wanted, **asked)
+    if found.isolated or not any(one.carry > 0.0 for one in every):
+        return found
+    placed = tuple(replace(one, carry=0.0, carry_ahead=0.0) for one in every)
+    still = design(placed, shares, wanted, **asked)
+    return replace(still, reasons=(*still.reasons, CARRIED)) if still.isolated else found

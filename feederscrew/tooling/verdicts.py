@@ -14,6 +14,7 @@ from feederscrew.tooling import turning
 from feederscrew.tooling.hanging import Hanging, hanging_margin
 
 CLOSE = 1e-9  # [m] a part this much over a limit still passes
+UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
 FAR = 10.0  # [m] an opening goes on so far below the track and behind the wall
 
 
@@ -151,9 +152,9 @@ def carried(margin, way, carry):
     way : float [m]
         Over which it is not supported.
     carry : float [m]
-        What it travels on before it has tipped is taken from that.
+        What it travels on before it has tipped is taken from that; within it the verdict has no margin.
     """
-    return margin if margin >= 0.0 else min(max(margin, carry - way), 0.0)
+    return margin if margin >= 0.0 else min(max(margin, carry - way), -UNSURE)
 
 
 def _profile(device, one, every):

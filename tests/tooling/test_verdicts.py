@@ -164,7 +164,8 @@ def test_a_narrow_track_carries_less(block):
 def test_what_travels_is_carried_over_what_it_is_unsupported_for(block, device):
     one = replace(along(block), carry=2e-3, carry_ahead=2e-3)
     assert verdict(device("gap: 9 mm"), one).margin == pytest.approx(1e-3, rel=1e-3)
-    assert verdict(device("gap: 11 mm"), one).margin == 0.0  # sooner over it than it has tipped
+    over = verdict(device("gap: 11 mm"), one)  # sooner over it than it has tipped
+    assert over.passes == 0.0 and -1e-8 < over.margin < 0.0
     assert verdict(device("gap: 14 mm"), one).margin == pytest.approx(-2e-3, rel=1e-3)
     hole = feet.gap(14e-3, TRACK.radius, 0.02)
     assert feet.unheld(one.standing, hole) == pytest.approx(4e-3, rel=1e-3)
