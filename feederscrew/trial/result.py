@@ -125,10 +125,10 @@ class TrialRun:
     def holding(self):
         """(M,) int, of the parts tried those that did what the static rule says.
 
-        A part that shall not pass may be returned, held or turned into another orientation.
+        A part that shall not pass may be returned or held; one that leaves turned has not been.
         """
-        passed = self.counts[:, course.PASSED]
-        return np.where(self.predicted, passed, self.tried - passed)
+        passed, turned = self.counts[:, course.PASSED], self.counts[:, course.TURNED]
+        return np.where(self.predicted, passed, self.tried - passed - turned)
 
     @property
     def margin(self):
@@ -139,14 +139,18 @@ class TrialRun:
     @property
     def odd(self):
         """(M,) bool, where fewer than ``HELD`` did what a verdict of a clear margin says."""
-        margin = np.abs(np.nan_to_num(self.margin, nan=np.inf))
-        clear = (margin > CLEAR) & self.known.sure
-        return (self.tried > 0) & clear & (self.holding < HELD * self.tried)
+        return self._against(self.holding)
 
     @property
     def sorts(self):
-        """Whether the tooling still does what it is made for: every clear verdict holds."""
-        return not self.odd.any()
+        """Whether what shall pass still leaves as it came, and nothing else does."""
+        passed = self.counts[:, course.PASSED]
+        return not self._against(np.where(self.predicted, passed, self.tried - passed)).any()
+
+    def _against(self, holding):
+        margin = np.abs(np.nan_to_num(self.margin, nan=np.inf))
+        clear = (margin > CLEAR) & self.known.sure
+        return (self.tried > 0) & clear & (holding < HELD * self.tried)
 
     @property
     def remarks(self):
