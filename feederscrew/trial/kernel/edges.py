@@ -152,7 +152,7 @@ def _face_at(solid, faces, lows, a, b, c, reach):
         k = faces[m]
         n, first = solid.normals[k], solid.vertices[solid.triangles[k, 0]]
         off = (a - first[0]) * n[0] + (b - first[1]) * n[1] + (c - first[2]) * n[2]
-        if -DEEP < off < reach and off < best and _within(solid, k, a, b, c):
+        if -DEEP < off < reach and off < best and within(solid, k, a, b, c, 0.0):
             best, found = off, k
     return found, best
 
@@ -165,14 +165,14 @@ def _inverse(plate, turn, vector):
 
 
 @compiled
-def _within(solid, k, a, b, c):
-    """Whether a point lies over a triangle."""
+def within(solid, k, a, b, c, beside):
+    """Whether a point lies over a triangle, or no further than ``beside`` outside it."""
     n = solid.normals[k]
     for i in range(3):
         p, q = solid.vertices[solid.triangles[k, i]], solid.vertices[solid.triangles[k, (i + 1) % 3]]
         u, v, w = q[0] - p[0], q[1] - p[1], q[2] - p[2]
         x, y, z = a - p[0], b - p[1], c - p[2]
         side = n[0] * (v * z - w * y) + n[1] * (w * x - u * z) + n[2] * (u * y - v * x)
-        if side < 0.0:
+        if side < -beside * math.sqrt(u * u + v * v + w * w):
             return False
     return True

@@ -12,6 +12,7 @@ import numpy as np
 from feederscrew.dropping.kernel.body import X
 from feederscrew.geometry.compiled import compiled
 from feederscrew.trial.kernel.contact import MASS, add
+from feederscrew.trial.kernel.edges import within
 from feederscrew.trial.kernel.search import PARALLEL, SLANT
 
 DEEP = 0.04  # how deep in each other parts are looked for, in units of their length
@@ -103,20 +104,6 @@ def _rests(crowd, k, n):
 
 
 @compiled
-def _over(solid, k, a, b, c):
-    """Whether a point lies over a triangle, or no further beside it than ``BESIDE``."""
-    n = solid.normals[k]
-    for i in range(3):
-        p, q = solid.vertices[solid.triangles[k, i]], solid.vertices[solid.triangles[k, (i + 1) % 3]]
-        u, v, w = q[0] - p[0], q[1] - p[1], q[2] - p[2]
-        x, y, z = a - p[0], b - p[1], c - p[2]
-        side = n[0] * (v * z - w * y) + n[1] * (w * x - u * z) + n[2] * (u * y - v * x)
-        if side < -BESIDE * math.sqrt(u * u + v * v + w * w):
-            return False
-    return True
-
-
-@compiled
 def _face(crowd, solid, faces, k, reach):
     """Triangle that a corner touches, the least deep of those it may, and the gap; -1 for none."""
     a, b, c = crowd.spots[k, 0], crowd.spots[k, 1], crowd.spots[k, 2]
@@ -125,7 +112,7 @@ def _face(crowd, solid, faces, k, reach):
         m = crowd.faces[f]
         n, first = solid.normals[m], solid.vertices[solid.triangles[m, 0]]
         off = (a - first[0]) * n[0] + (b - first[1]) * n[1] + (c - first[2]) * n[2]
-        if best < off < reach and _over(solid, m, a, b, c) and _rests(crowd, k, n):
+        if best < off < reach and within(solid, m, a, b, c, BESIDE) and _rests(crowd, k, n):
             best, found = off, m
     return found, best
 
