@@ -8,6 +8,41 @@ from feederscrew_cli import options, orientation, waiting
 from feederscrew_cli.interrupt import held_back
 
 
+def _queued(command):
+    """Add the options of a queue; the command receives ``queued``."""
+    return options.stacked(
+        options.packed(command, "queued", ("queue", "poured", "seconds", "measured"), _together),
+        click.option(
+            "--queue", type=click.IntRange(1, 1000), metavar="N", help="So many that push each other, too."
+        ),
+        click.option(
+            "--poured", is_flag=True, help="The queue falls onto the track, not laid down in a row."
+        ),
+        click.option(
+            "--seconds",
+            type=options.Number(0.05, 3600.0),
+            default=10.0,
+            show_default=True,
+            help="Of the queue.",
+        ),
+        click.option(
+            "--with",
+            "measured",
+            metavar="CSV",
+            type=options.Place(),
+            help="What was measured at an outlet, beside the profile of the queue.",
+        ),
+    )
+
+
+def _together(queue, **others):
+    """The options of a queue by keyword; a wrong call if there is none."""
+    for name, given in (("--poured", others["poured"]), ("--with", others["measured"])):
+        if given and not queue:
+            raise click.UsageError(f"{name} is for a queue - give --queue N as well")
+    return {"queue": queue, **others}
+
+
 @click.command(short_help="A trial run: parts of true shape on the vibrating, tooled track.")
 @options.part
 @click.option("--aspect", metavar="NAME", help="Only its orientations.  [default: every orientation]")
@@ -16,11 +51,7 @@ from feederscrew_cli.interrupt import held_back
 @click.option(
     "--parts", type=click.IntRange(1, 10**6), help="One at a time.  [default: 200; with --queue 60]"
 )
-@click.option("--queue", type=click.IntRange(1, 1000), metavar="N", help="So many that push each other, too.")
-@click.option("--poured", is_flag=True, help="The queue falls onto the track, not laid down in a row.")
-@click.option(
-    "--seconds", type=options.Number(0.05, 3600.0), default=10.0, show_default=True, help="Of the queue."
-)
+@_queued
 @click.option(
     "--amplitude",
     "amplitudes",
@@ -32,9 +63,7 @@ from feederscrew_cli.interrupt import held_back
 @options.bowl
 @options.pictures
 @options.output
-def trial(
-    part, aspect, rule, taken, parts, queue, poured, seconds, amplitudes, seed, jobs, bowl, pictures, out
-):
+def trial(part, aspect, rule, taken, parts, queued, amplitudes, seed, jobs, bowl, pictures, out):
     """Example: feeder trial parts/lbracket_30x20x15.stl --config tooling.yaml --parts 100 -o results
 
     Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed,
@@ -46,31 +75,33 @@ def trial(
 
     --amplitude gives the greatest drive at which the tooling still sorts. --queue adds parts that touch,
     push and climb each other on the same track; what leaves or falls off enters again at the end of the
-    row, and parts per minute are then those it delivers. The same seed gives the same numbers whatever the
+    row, and parts per minute are then those it delivers. --with sets what a feeding test counted by aspect
+    (docs/counts.md) beside the profile at its outlet. The same seed gives the same numbers whatever the
     number of jobs. Ctrl-C ends the trial early: what is finished is given, marked partial.
 
     With -o: trial.csv, trial_stations.csv, trial.json, trial.png (orientations in and out),
-    trial_paths.png (paths from above), trial_stills.png and run.json.
+    trial_paths.png (paths from above), trial_stills.png and run.json; trial_outlet.csv of a queue.
     """
-    if poured and not queue:
-        raise click.UsageError("--poured is for a queue - give --queue N as well")
     with held_back():
         from feederscrew import bowl as bowls
         from feederscrew.output import columns, offers
         from feederscrew.output.trial import files, tables
-        from feederscrew.studies.trial import trial as study
+        from feederscrew.studies import trial as studies
 
     solid, settings = out.part(part), bowls.settings(**bowl)
     driven = bowls.strokes(bowls.record(settings), amplitudes)
     effective = columns.conditions(solid) | bowls.texts(settings)
     known = orientation.shares(out, solid, driven[0], taken, bowl["path"])
-    with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
-        if queue:
+    measured = queued.pop("measured")
+    beside = studies.at_outlet(measured, known) if measured else None
+    inputs = solid.inputs | known.inputs | ({measured: beside.sha256} if beside else {})
+    with out.folder(solid.name, inputs, effective) as folder:
+        if queued["queue"]:
             waiting.queue(out)
         with waiting.bar(out, "runs") as bar:
-            found = study(
+            found = studies.trial(
                 solid, driven, aspect,
-                rule=rule, known=known, parts=parts, queue=queue, poured=poured, seconds=seconds, seed=seed,
+                rule=rule, known=known, measured=beside, parts=parts, **queued, seed=seed,
                 jobs=jobs or os.cpu_count(), progress=bar.reach, before=lambda: waiting.trial(out),
             )  # fmt: skip
         document = tables.document(found)

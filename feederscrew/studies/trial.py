@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from os import PathLike
 
 import numpy as np
 
@@ -15,9 +16,10 @@ from feederscrew.part.record import Part
 from feederscrew.rates import chances, stream
 from feederscrew.rates.queue import RECOMMENDED
 from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.counts import profiles
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.rate import shares as arriving
-from feederscrew.trial import course
+from feederscrew.trial import course, outlet
 from feederscrew.trial.queue import queue_of
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.shape import solid_of
@@ -36,6 +38,7 @@ class TrialStudy:
     seed: int
     runs: tuple[TrialRun, ...]  # one an amplitude; fewer after an interrupt
     stopped: bool = False  # by the user, before the next of them told anything
+    measured: profiles.Measured | None = None  # at the outlet of a bowl, to be set beside a queue's profile
 
     @property
     def answer(self):
@@ -48,6 +51,14 @@ class TrialStudy:
         """What is done to the parts: 'feed', 'drop'; None where a rule knows no launch."""
         known = self.aspects.recommended
         return known.launch if self.rule == RECOMMENDED and known is not None else None
+
+    def outlet(self, run):
+        """Return what left one run's queue by aspect, an Outlet; None without a queue."""
+        if run.queue is None:
+            return None
+        columns = () if self.measured is None else self.measured.profiles
+        ways = run.known
+        return outlet.outlet(run.queue, ways.states, ways.lying, run.shares, self.aspects.names, columns)
 
     @property
     def partial(self):
@@ -64,6 +75,7 @@ class TrialStudy:
         """What a user must not overlook, a sentence each."""
         first = self.runs[0]
         told = [*strangers(first.bowl.devices, self.aspects.names), *self.aspects.warnings]
+        told += () if self.measured is None else self.measured.warnings(self.part)
         several = len(self.runs) > 1
         for run in self.runs:
             lead = f"amplitude {1e3 * run.bowl.drive.amplitude:.4g} mm: " if several else ""
@@ -81,6 +93,7 @@ def trial(
     *,
     rule: str = "recommended",
     known: Shares | None = None,
+    measured: profiles.Measured | None = None,
     parts: int | None = None,
     queue: int | None = None,
     poured: bool = False,
@@ -104,6 +117,8 @@ def trial(
         Whose probabilities say in which shares orientations are offered.
     known : Shares, optional
         What arrives; without them what the launch 'feed' gives.
+    measured : Measured, optional
+        From ``at_outlet``: what left a bowl, to stand beside the profile of the queue.
     parts : int, optional
         One at a time, the orientations in turn; 200 without it, 60 with a queue.
     queue : int, optional
@@ -162,7 +177,29 @@ def trial(
             stopped = True
         if stopped or made[-1].partial:
             break
-    return TrialStudy(part, found, rule, seed, tuple(made), stopped)
+    return TrialStudy(part, found, rule, seed, tuple(made), stopped, measured)
+
+
+def at_outlet(counts: str | PathLike[str], known: Shares) -> profiles.Measured:
+    """Read what was measured of parts that left a bowl.
+
+    Parameters
+    ----------
+    counts : str or Path
+        File of counts or shares, by aspect or by orientation.
+    known : Shares
+        Of the part.
+
+    Returns
+    -------
+    Measured
+
+    Raises
+    ------
+    FeederError
+        Every fault of the file, each with its line.
+    """
+    return profiles.read(counts, list(known.aspects.names))
 
 
 def _after(before, progress, bowls):

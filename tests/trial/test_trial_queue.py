@@ -10,8 +10,9 @@ from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
 from feederscrew.dropping.kernel import body
 from feederscrew.resting.aspects import find
+from feederscrew.resting.counts import profiles
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import crowd, queue, runs, shape
+from feederscrew.trial import crowd, outlet, queue, runs, shape
 from feederscrew.trial.kernel.crowd import BEHIND, BELOW
 
 OWN = [
@@ -132,3 +133,19 @@ def test_the_track_goes_on_lower_behind_a_step(tmp_path):
     made = crowd.crowded(bowl, EVERY, bowl.devices, 0.1)
     assert made.levels == pytest.approx([0.0, -8e-3, -8e-3])
     assert made.stage.plates[:, 2] == pytest.approx([0.0, -8e-3])
+
+
+def test_what_left_stands_beside_what_was_measured():
+    names, left = ("A", "B", "C"), np.zeros(len(EVERY) + 1, int)
+    for k, one in enumerate(EVERY):
+        left[k] = {"A": 3, "B": 1, "C": 0}[one.aspect]
+    left[-1] = 5  # away from the wall
+    told = replace(queued(BOWL, parts=1, seconds=0.02, seed=1), leaving=left)
+    columns = profiles.parse("aspect,MDFT\nA,0.5\nB,0.3\nC,0.2\n", "counts.csv", names)
+    seen = outlet.outlet(told, EVERY, EVERY, np.full(len(EVERY), 1.0 / len(EVERY)), names, columns)
+    assert seen.shares == pytest.approx([0.75, 0.25, 0.0]) and seen.other == 5
+    low, high = seen.ends
+    assert (low <= seen.shares).all() and (seen.shares <= high).all()
+    deviation, total = seen.apart["MDFT"]
+    assert total == pytest.approx(0.25)
+    assert deviation == pytest.approx(np.sqrt((0.25**2 + 0.05**2 + 0.2**2) / 3.0))

@@ -6,9 +6,11 @@ from feederscrew.output.trial import tables
 
 def offers(study):
     """Offer the files of a TrialStudy, as a list of Offer."""
+    run = study.runs[0]
     return [
         offer.table("trial.csv", tables.frame, study),
-        offer.table("trial_stations.csv", tables.stations, study.runs[0]),
+        offer.table("trial_stations.csv", tables.stations, run),
+        *([] if run.queue is None else [offer.table("trial_outlet.csv", tables.outlet, study, run)]),
         offer.document("trial.json", tables.document, study),
         *pictures(study),
     ]

@@ -22,15 +22,15 @@ def document(study):
         "launch": study.launch,
         "seed": study.seed,
         "partial": study.partial,
-        **_run(study.runs[0]),
+        **_run(study, study.runs[0]),
     }
     if len(study.runs) > 1:
         told["highest_amplitude_mm"] = study.highest / MM
-        told["drives"] = [_run(run) for run in study.runs]
+        told["drives"] = [_run(study, run) for run in study.runs]
     return told
 
 
-def _run(run):
+def _run(study, run):
     return {
         "amplitude_mm": run.bowl.drive.amplitude / MM,
         "throw_number": run.throw_number,
@@ -48,7 +48,7 @@ def _run(run):
         "stations": [station.device.kind for station in run.course.stations],
         "orientations": orientations(run),
         "matrix": run.matrix,
-        "queue": None if run.queue is None else queue(run),
+        "queue": None if run.queue is None else queue(study, run),
     }
 
 
@@ -84,9 +84,9 @@ def orientations(run):
     ]
 
 
-def queue(run):
+def queue(study, run):
     """Return what the queue did, as a document."""
-    found = run.queue
+    found, seen = run.queue, outlet(study, run)
     whole = found.leaving.sum()
     return {
         "parts": found.parts,
@@ -108,7 +108,23 @@ def queue(run):
             for k, n in enumerate(found.leaving)
             if n
         },
+        "outlet": [dict(zip(seen, row)) for row in zip(*seen.values())],
+        "apart": {
+            name: {"deviation": deviation, "total_variation": total}
+            for name, (deviation, total) in study.outlet(run).apart.items()
+        },
     }
+
+
+def outlet(study, run):
+    """Return what left a run's queue by aspect, beside what was measured, as columns by name."""
+    found = study.outlet(run)
+    low, high = found.ends
+    known = {
+        "aspect": found.aspects, "offered": found.offered, "parts": found.counts, "share": found.shares,
+        "low": low, "high": high,
+    }  # fmt: skip
+    return known | {f"measured {one.name}": one.fractions for one in found.columns}
 
 
 def frame(study):
@@ -155,6 +171,7 @@ def summary(study):
         )
         if run.queue is not None:
             yield _queued(run.queue)
+            yield from _beside(study.outlet(run))
     if len(study.runs) > 1 and np.isfinite(study.highest):
         yield f"the tooling sorts up to an amplitude of {study.highest / MM:.4g} mm of those tried"
 
@@ -169,6 +186,18 @@ def _queued(found):
         f"{found.jams} jams, {found.climbs} climbed on others; gap {found.gap / MM:.3g} mm, "
         f"{100.0 * found.touching:.3g} % pushed, up to {force:.3g} mN on a part that stands at a device"
     )
+
+
+def _beside(found):
+    """What left by aspect beside each column that was measured, a sentence each."""
+    own = ", ".join(f"{name} {100.0 * share:.3g}" for name, share in zip(found.aspects, found.shares))
+    for one in found.columns:
+        deviation, total = found.apart.get(one.name, (np.nan, np.nan))
+        said = ", ".join(f"{100.0 * share:.3g}" for share in one.fractions)
+        yield (
+            f"at the outlet [%] {own} ({found.counts.sum()} parts, {found.other} on none); measured "
+            f"{one.name} {said}; deviation {deviation:.3g}, total variation {total:.3g}"
+        )
 
 
 def _name(run, k):

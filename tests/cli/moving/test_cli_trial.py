@@ -42,9 +42,11 @@ def block(tmp_path):
 
 def test_the_document_keeps_its_contract(run, block):
     part, bowl = block
+    counts = part.parent / "counts.csv"
+    counts.write_text("aspect,MDFT_80\nA,0.9\nB,0.1\nC,0\n")
     result = run(
         "trial", part, "--aspect", "A", "--config", bowl, "--parts", "4", "--queue", "3", "--seconds", "0.5",
-        "--launch", "place", "--format", "json",
+        "--launch", "place", "--with", counts, "--format", "json",
     )  # fmt: skip
     assert result.exit_code == 0
     found = json.loads(result.stdout)
@@ -55,6 +57,10 @@ def test_the_document_keeps_its_contract(run, block):
     ]  # fmt: skip
     assert found["queue"]["parts"] == 3 and found["queue"]["seconds"] == 0.5
     assert found["jams"] == found["queue"]["jams"]
+    seen = found["queue"]["outlet"]
+    assert [(one["aspect"], one["measured MDFT_80"]) for one in seen] == [("A", 0.9), ("B", 0.1), ("C", 0.0)]
+    assert [one["offered"] for one in seen] == pytest.approx([1.0, 0.0, 0.0])
+    assert "at the outlet [%] A" in result.stderr
     assert found["launch"] == "place" and found["answer"].endswith("launch place")
     assert 0.0 <= found["largest_penetration_mm"] < 1.0 and 0.0 <= found["energy_won_um"] < 1.0
     worst = max(one["penetration_mm"] for one in found["orientations"])
@@ -81,6 +87,7 @@ def test_files_and_amplitudes(run, block, tmp_path):
     ("given", "said"),
     [
         (["--poured"], "--poured is for a queue - give --queue N as well"),
+        (["--with", "counts.csv"], "--with is for a queue - give --queue N as well"),
         (["--aspect", "Q"], "there is no aspect 'Q' - choose one of"),
         (["--rule", "nothing"], "--rule nothing: has no probabilities of this part - "),
         (["--amplitude", "9 m"], "--amplitude: drive.amplitude: '9 m' is out of range - give 0 mm to 20 mm"),
