@@ -57,8 +57,7 @@ class TrialStudy:
         if run.queue is None:
             return None
         columns = () if self.measured is None else self.measured.profiles
-        ways = run.known
-        return outlet.outlet(run.queue, ways.states, ways.lying, run.shares, self.aspects.names, columns)
+        return outlet.outlet(run.queue, run.known.lying, run.shares, self.aspects.names, columns)
 
     @property
     def partial(self):
@@ -169,7 +168,8 @@ def trial(
             line = None
             if queue and not seen.partial:
                 crowd = {"parts": queue, "seconds": seconds, "seed": seed, "poured": poured}
-                line = queue_of(part, bowl, ways.lying, ways.states, shares, **crowd, progress=progress)
+                crowd |= {"progress": progress}
+                line = queue_of(part, bowl, found, ways.lying, ways.states, shares, **crowd)
             made.append(TrialRun(bowl, throw_number(bowl), ways, shares, seen, line))
         except KeyboardInterrupt:
             if not made:

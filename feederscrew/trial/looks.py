@@ -1,8 +1,11 @@
-"""In which orientation a part lies or hangs, seen by how far it reaches."""
+"""In which orientation a part lies or hangs, by how far it reaches; on which aspect at any heading."""
 
 import numpy as np
 
+from feederscrew.dropping.kernel.drop import UNSETTLED, face_below
+from feederscrew.dropping.shape import shape_of_part
 from feederscrew.geometry import vectors
+from feederscrew.resting.tumbling.by_class import ground
 from feederscrew.tooling.hanging import Hanging
 from feederscrew.trial import runs
 
@@ -50,6 +53,24 @@ class Looks:
             up = {k: float(vectors.dot(runs.matrix(level)[2], one)) for k, one in self.ups.items()}
             return max((k for k in up if up[k] > SWINGS), key=up.get, default=OTHER)
         return best if off[best] < self.near else OTHER
+
+
+class AspectsBelow:
+    """Tells on which aspect a part lies, or would come to lie if let go as it is, whatever its heading."""
+
+    def __init__(self, part, aspects):
+        found = ground(part, aspects)
+        self.shape, _ = shape_of_part(part, found)
+        self.rows = found.rows
+
+    def of(self, states):
+        """(N,) row of each state's aspect, OTHER where it would come to lie on none."""
+        return np.array([self._of(runs.matrix(state)) for state in states], int)
+
+    def _of(self, turn):
+        lowest = int(np.argmin(vectors.product(self.shape.vertices, turn[2])))
+        face = face_below(self.shape, turn.ravel(), lowest)
+        return OTHER if face == UNSETTLED else self.rows[face]
 
 
 def spread(count):

@@ -16,8 +16,8 @@ class Outlet:
 
     aspects: tuple[str, ...]
     offered: np.ndarray  # (A,) [1] shares in which parts come, 0 of an aspect that is not tried
-    counts: np.ndarray  # (A,) int, whole parts that left
-    other: int  # further ones, on no aspect that is known: away from the wall, or hanging
+    counts: np.ndarray  # (A,) int, whole parts that left, against the wall or away from it
+    other: int  # further ones: hanging, or on no aspect
     columns: tuple[Profile, ...]  # what was measured, over the same aspects
 
     @property
@@ -43,18 +43,17 @@ class Outlet:
         }
 
 
-def outlet(queue, states, lying, shares, aspects, columns=()):
+def outlet(queue, lying, shares, aspects, columns=()):
     """Return what left a queue by aspect.
 
     Parameters
     ----------
     queue : QueuedParts
-    states : sequence of Orientation
-        S of them, in which its parts may leave.
     lying : sequence of Orientation
-        M of them, in which they come.
+        M of them, in which its parts come.
     shares : (M,) float [1]
     aspects : sequence of str
+        Names, A of them.
     columns : sequence of Profile
         Over those aspects.
 
@@ -62,11 +61,12 @@ def outlet(queue, states, lying, shares, aspects, columns=()):
     -------
     Outlet
     """
-    counts, offered = np.zeros(len(aspects), int), np.zeros(len(aspects))
-    rows = [aspects.index(one.aspect) if one.aspect in aspects else -1 for one in states]
-    for row, count in zip(rows, queue.leaving):
-        counts[row] += count if row >= 0 else 0
-    for one, share in zip(lying, shares):
-        offered[aspects.index(one.aspect)] += share
-    other = int(queue.leaving.sum() - counts.sum())
-    return Outlet(tuple(aspects), check.frozen(offered), check.frozen(counts), other, tuple(columns))
+    offered = np.zeros(len(aspects))
+    np.add.at(offered, [aspects.index(one.aspect) for one in lying], shares)
+    return Outlet(
+        aspects=tuple(aspects),
+        offered=check.frozen(offered),
+        counts=queue.aspects[:-1],
+        other=int(queue.aspects[-1]),
+        columns=tuple(columns),
+    )

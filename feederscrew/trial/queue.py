@@ -7,9 +7,10 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.dropping.kernel import body
+from feederscrew.tooling.hanging import Hanging
 from feederscrew.trial import course, crowd, runs
 from feederscrew.trial.kernel.crowd import BEHIND, BELOW
-from feederscrew.trial.looks import Looks
+from feederscrew.trial.looks import OTHER, AspectsBelow, Looks
 from feederscrew.trial.rounding import rounded
 from feederscrew.trial.shape import solid_of
 
@@ -24,7 +25,7 @@ POURED = 1.05  # of the part's radius: apart along the track, and over it, where
 
 @dataclass(frozen=True, eq=False)
 class QueuedParts:
-    """What a queue of N parts did; D devices, S orientations in which parts may leave."""
+    """What a queue of N parts did; D devices, S orientations in which parts may leave, A aspects."""
 
     parts: int  # N
     on_track: int  # of them at a time, at most; the others wait to enter
@@ -33,6 +34,7 @@ class QueuedParts:
     counted: float  # [s] of them since the first part came to the outlet; 0 where none did
     delivered: float  # parts that left the last device then, that in the outlet as the share of its length
     leaving: np.ndarray  # (S + 1,) int, in which orientation whole ones left; the last is none of the known
+    aspects: np.ndarray  # (A + 1,) int, on which aspect those lay, whatever their heading; the last hung
     returned: int  # fell back into the bowl
     jams: int  # stood at a device and were taken out
     climbs: int  # times that a part came to lie on others
@@ -49,7 +51,7 @@ class QueuedParts:
         return self.delivered / self.counted if self.counted > 0.0 else 0.0
 
 
-def queue_of(part, bowl, every, poses, shares, *, parts, seconds, seed, poured=False, progress=None):
+def queue_of(part, bowl, aspects, every, poses, shares, *, parts, seconds, seed, poured=False, progress=None):
     """Follow a queue of parts that come without end: what leaves is offered again at the end of the row.
 
     Parameters
@@ -58,6 +60,8 @@ def queue_of(part, bowl, every, poses, shares, *, parts, seconds, seed, poured=F
         From a mesh.
     bowl : Bowl
         With its devices.
+    aspects : Aspects
+        Of the part, A of them.
     every : sequence of Orientation
         M of them.
     poses : sequence of Orientation
@@ -81,7 +85,7 @@ def queue_of(part, bowl, every, poses, shares, *, parts, seconds, seed, poured=F
     KeyboardInterrupt
         If the user stops it before the first period is done.
     """
-    queue = _Queue(part, bowl, every, poses, shares, parts, poured, seed)
+    queue = _Queue(part, bowl, aspects, every, poses, shares, parts, poured, seed)
     count = max(round(seconds * bowl.drive.frequency), 1)
     try:
         for turn in range(count):
@@ -97,7 +101,7 @@ def queue_of(part, bowl, every, poses, shares, *, parts, seconds, seed, poured=F
 class _Queue:
     """The queue while it moves; lengths in units of the part's, times in seconds."""
 
-    def __init__(self, part, bowl, every, poses, shares, parts, poured, seed):
+    def __init__(self, part, bowl, aspects, every, poses, shares, parts, poured, seed):
         self.part, self.bowl, self.every = part, bowl, every
         solid, length, self.principal = solid_of(part)
         solid = rounded(solid, course.axes(every, self.principal))
@@ -111,7 +115,9 @@ class _Queue:
         self.crowd = crowd.PartsOnTrack(known, self.track, parts)
         self.looks = Looks(poses, solid, length, self.principal, bowl.track.radius)
         self.mark, self.since, self.on_others = np.zeros(parts), np.zeros(parts), np.zeros(parts, bool)
-        self.leaving, self.returned, self.jams, self.climbs = np.zeros(len(poses) + 1, int), 0, 0, 0
+        self.below, self.hanging = AspectsBelow(part, aspects), [isinstance(one, Hanging) for one in poses]
+        self.leaving, self.aspects = np.zeros(len(poses) + 1, int), np.zeros(len(aspects.names) + 1, int)
+        self.returned = self.jams = self.climbs = 0
         self.way, self.free, self.touch, self.depth = [], [], [], 0.0
         self.pressure, self.whole, self.first, self.most = np.zeros(len(self.windows)), 0, None, 0
         self.periods, self.waiting, self.deep = 0, list(range(parts)), solid.radius * length
@@ -186,8 +192,7 @@ class _Queue:
             self.first = self.time
             self.start = self.outside(rear, front)
         if rear > self.outlet and not fell:
-            self.whole += 1
-            self.leaving[self.looks.of([self.at_outlet(n)])[0]] += 1
+            self.leave(n)
             self.again(n)
         elif fell or front < self.track.start / self.known.length:
             self.returned += 1
@@ -196,6 +201,15 @@ class _Queue:
             self.mark[n], self.since[n] = way, self.time
         else:
             self.stand(n, front, reach, order)
+
+    def leave(self, n):
+        """Count a part that has left: its orientation, and the aspect on which it lies."""
+        state = self.at_outlet(n)
+        orientation = self.looks.of([state])[0]
+        hangs = orientation != OTHER and self.hanging[orientation]
+        self.whole += 1
+        self.leaving[orientation] += 1
+        self.aspects[OTHER if hangs else self.below.of([state])[0]] += 1
 
     def stand(self, n, front, reach, order):
         """A part that stands: what pushes it, and whether it is what holds the others up."""
@@ -242,6 +256,7 @@ class _Queue:
             counted=counted,
             delivered=self.whole + part - self.start if counted else 0.0,
             leaving=check.frozen(self.leaving),
+            aspects=check.frozen(self.aspects),
             returned=self.returned,
             jams=self.jams,
             climbs=self.climbs,

@@ -12,7 +12,7 @@ from feederscrew.dropping.kernel import body
 from feederscrew.resting.aspects import find
 from feederscrew.resting.counts import profiles
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import crowd, outlet, queue, runs, shape
+from feederscrew.trial import crowd, looks, outlet, queue, runs, shape
 from feederscrew.trial.kernel.crowd import BEHIND, BELOW
 
 OWN = [
@@ -22,7 +22,8 @@ OWN = [
 PART = shapes.part(shapes.box(20, 12, 5))
 BOWL = bowls.read(None, OWN)
 STILL = replace(BOWL, drive=replace(BOWL.drive, amplitude=0.0), track=replace(BOWL.track, climb=0.0))
-EVERY = orientations(PART, find(PART), BOWL.track)
+ASPECTS = find(PART)
+EVERY = orientations(PART, ASPECTS, BOWL.track)
 FLAT = next(one for one in EVERY if one.height < 6e-3 and one.length > 0.015)
 SOLID, LENGTH, PRINCIPAL = shape.solid_of(PART)
 
@@ -42,7 +43,7 @@ def parts_on(bowl, *places, heights=None, friction=None):
 
 def queued(bowl, **own):
     shares = np.array([one is FLAT for one in EVERY], float)
-    return queue.queue_of(PART, bowl, EVERY, EVERY, shares, **own)
+    return queue.queue_of(PART, bowl, ASPECTS, EVERY, EVERY, shares, **own)
 
 
 def test_a_part_that_strikes_another_shares_its_momentum():
@@ -136,16 +137,22 @@ def test_the_track_goes_on_lower_behind_a_step(tmp_path):
 
 
 def test_what_left_stands_beside_what_was_measured():
-    names, left = ("A", "B", "C"), np.zeros(len(EVERY) + 1, int)
-    for k, one in enumerate(EVERY):
-        left[k] = {"A": 3, "B": 1, "C": 0}[one.aspect]
-    left[-1] = 5  # away from the wall
-    told = replace(queued(BOWL, parts=1, seconds=0.02, seed=1), leaving=left)
-    columns = profiles.parse("aspect,MDFT\nA,0.5\nB,0.3\nC,0.2\n", "counts.csv", names)
-    seen = outlet.outlet(told, EVERY, EVERY, np.full(len(EVERY), 1.0 / len(EVERY)), names, columns)
-    assert seen.shares == pytest.approx([0.75, 0.25, 0.0]) and seen.other == 5
+    told = replace(queued(BOWL, parts=1, seconds=0.02, seed=1), aspects=np.array([9, 3, 0, 2]))
+    columns = profiles.parse("aspect,MDFT\nA,0.5\nB,0.3\nC,0.2\n", "counts.csv", ASPECTS.names)
+    shares = np.full(len(EVERY), 1.0 / len(EVERY))
+    seen = outlet.outlet(told, EVERY, shares, ASPECTS.names, columns)
+    assert seen.shares == pytest.approx([0.75, 0.25, 0.0]) and seen.other == 2
+    assert seen.offered.sum() == pytest.approx(1.0)
     low, high = seen.ends
     assert (low <= seen.shares).all() and (seen.shares <= high).all()
     deviation, total = seen.apart["MDFT"]
     assert total == pytest.approx(0.25)
     assert deviation == pytest.approx(np.sqrt((0.25**2 + 0.05**2 + 0.2**2) / 3.0))
+
+
+def test_a_part_lies_on_its_aspect_at_any_heading():
+    below = looks.AspectsBelow(PART, ASPECTS)
+    for one in EVERY:
+        laid = [runs.laid(replace(one, heading=turn), PRINCIPAL, LENGTH, BOWL.track, place=0.0)
+                for turn in (0.0, 1.0, 4.0)]  # fmt: skip
+        assert [ASPECTS.names[row] for row in below.of(laid)] == [one.aspect] * 3
