@@ -3,6 +3,8 @@
 from concurrent.futures import ThreadPoolExecutor
 from itertools import takewhile
 
+import numpy as np
+
 
 def gather(work, jobs):
     """Results of batches, in order.
@@ -43,6 +45,46 @@ def gather(work, jobs):
     finally:
         pool.shutdown(cancel_futures=True)
     return [task.result() for task in tasks], partial
+
+
+def in_batches(batch, count, size, jobs, progress=None):
+    """Return what a function makes of many items, a batch of them at a time.
+
+    Parameters
+    ----------
+    batch : function
+        Handed a slice of the items; gives arrays, with a row for each of them.
+    count : int
+        Items, above 0.
+    size : int
+        Of them in a batch.
+    jobs : int
+        Threads.
+    progress : function, optional
+        Told after every batch how many items are done.
+
+    Returns
+    -------
+    columns : list of arrays
+        After an interrupt from the keyboard the rows up to the first batch that was not finished.
+    partial : bool
+        Whether there was one.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If no batch was finished.
+    """
+
+    def work(begin):
+        cuts = [slice(first, min(first + size, count)) for first in range(0, count, size)]
+        for cut, task in [(cut, begin(batch, cut)) for cut in cuts]:
+            task.result()
+            if progress:
+                progress(cut.stop)
+
+    results, partial = gather(work, jobs)
+    return [np.concatenate(column) for column in zip(*results)], partial
 
 
 def _finished(task):

@@ -1,6 +1,7 @@
 """Parts one at a time past one station: starts, runs on several cores, and what became of them."""
 
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +10,7 @@ from feederscrew import check
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.floor import Floor
 from feederscrew.dropping.plate import drive
-from feederscrew.dropping.pool import gather
+from feederscrew.dropping.pool import in_batches
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import on_disk
 from feederscrew.trial.kernel import contact, motion, travel
@@ -224,26 +225,17 @@ def ride(known, station, states, times, *, limits, every, places, jobs=1, progre
     """
     surface = surface_of(known, station, limits)
     stride = max(round(every / known.unit / known.floor.step), 1)
-    own = known, surface, stride, places
-    _batch(*own, states[:0], times[:0])  # compiled here, if need be
-
-    def work(begin):
-        cuts = [slice(k, k + BATCH) for k in range(0, len(states), BATCH)]
-        tasks, done = [begin(_batch, *own, states[cut], times[cut]) for cut in cuts], 0
-        for task in tasks:
-            done += len(task.result()[0])
-            if progress:
-                progress(done)
-
-    results, partial = gather(work, jobs)
-    outcomes, ends, notes, paths = (np.concatenate(column) for column in zip(*results))
+    batch = partial(_batch, known, surface, stride, places, states, times)
+    batch(slice(0, 0))  # compiled here, if need be
+    columns, stopped = in_batches(batch, len(states), BATCH, jobs, progress)
+    outcomes, ends, notes, paths = columns
     paths *= np.array([known.unit, *[known.length] * 3, 1.0, 1.0, 1.0, 1.0])
     found = {
         "outcomes": outcomes, "states": ends, "seconds": notes[:, travel.TIME] * known.unit,
         "ways": notes[:, travel.MOVED] * known.length, "depths": notes[:, travel.SUNK] * known.length,
         "gains": notes[:, travel.WON] * known.length, "paths": paths,
     }  # fmt: skip
-    return Runs(**{name: check.frozen(value) for name, value in found.items()}, partial=partial)
+    return Runs(**{name: check.frozen(value) for name, value in found.items()}, partial=stopped)
 
 
 def surface_of(known, station, limits):
@@ -288,13 +280,14 @@ def compiled():
     return on_disk(travel.travel_all)
 
 
-def _batch(known, surface, stride, places, states, times):
+def _batch(known, surface, stride, places, states, times, cut):
     """Outcomes, ends, notes and paths of some parts."""
-    ends, count = np.array(states, float), len(states)
+    ends = np.array(states[cut], float)
+    count = len(ends)
     outcomes, notes = np.zeros(count, np.int64), np.zeros((count, travel.NOTES))
     paths = np.full((count, places, 8), np.nan)
     travel.travel_all(
         surface, known.solid, known.floor, scratch(known.solid, len(surface.borders)), ends,
-        np.asarray(times) / known.unit, stride, paths, notes, outcomes,
+        np.asarray(times)[cut] / known.unit, stride, paths, notes, outcomes,
     )  # fmt: skip
     return outcomes, ends, notes, paths

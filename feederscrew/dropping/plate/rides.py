@@ -1,6 +1,7 @@
 """Many parts on one vibrating plate, on several cores."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -8,7 +9,7 @@ from feederscrew import check
 from feederscrew.dropping.kernel import motion
 from feederscrew.dropping.kernel import ride as shaken
 from feederscrew.dropping.kernel.drop import UNSETTLED
-from feederscrew.dropping.pool import gather
+from feederscrew.dropping.pool import in_batches
 from feederscrew.geometry.compiled import on_disk
 
 BATCH = 10  # parts a core takes at a time
@@ -52,19 +53,11 @@ def ride(shape, floor, starts, looks, steps, *, jobs=1, progress=None):
     KeyboardInterrupt
         If no batch was finished.
     """
-    _batch(shape, floor, starts, looks, steps, slice(0, 0))  # compiled here, if need be
-
-    def work(begin):
-        parts = [slice(first, first + BATCH) for first in range(0, len(starts.energies), BATCH)]
-        tasks, done = [begin(_batch, shape, floor, starts, looks, steps, part) for part in parts], 0
-        for task in tasks:
-            done += len(task.result()[0])
-            if progress:
-                progress(done)
-
-    results, partial = gather(work, jobs)
-    faces, places, whole = (np.concatenate(column) for column in zip(*results))
-    return Rides(check.frozen(faces[whole]), check.frozen(places[whole]), int((~whole).sum()), partial)
+    batch = partial(_batch, shape, floor, starts, looks, steps)
+    batch(slice(0, 0))  # compiled here, if need be
+    columns, stopped = in_batches(batch, len(starts.energies), BATCH, jobs, progress)
+    faces, places, whole = columns
+    return Rides(check.frozen(faces[whole]), check.frozen(places[whole]), int((~whole).sum()), stopped)
 
 
 def compiled():

@@ -1,19 +1,21 @@
 """Compiled contacts of a part with anything: rows of WIDTH numbers, and the impulses at them.
 
-A row holds three axes in the bowl's frame, two along the contact and its normal, towards the part; along
-each axis the lever in body axes and the rates that one unit of impulse gives; the effective masses; the
-speed along the normal wanted after the impulse; the impulse; the friction against sliding ahead and back;
-and the gap.
+A row begins as one of `dropping.kernel.contact`: along each of its axes the lever in body axes and the rates
+that one unit of impulse gives; the effective masses; the speed along the normal wanted after the impulse; the
+impulse. Here the axes are its own, in the bowl's frame, two along the contact and its normal, towards the
+part; then come the friction against sliding ahead and back, the gap, and whether it is with the wall.
 """
 
 import math
 
 from feederscrew.dropping.kernel.body import VX, VZ, W
+from feederscrew.dropping.kernel.contact import IMPULSE, LEVER, MASS, RATE, WANTED, masses, rates
 from feederscrew.geometry.compiled import compiled
 
-AXES, LEVER, RATE, MASS, WANTED, IMPULSE = 0, 9, 18, 27, 30, 31
-AHEAD, BACK, GAP, WALL, WIDTH = 34, 35, 36, 37, 38
+AXES = IMPULSE + 3
+AHEAD, BACK, GAP, WALL, WIDTH = (AXES + 9 + k for k in range(5))
 NORMAL = 2  # which of the axes
+TOWARDS = AXES + 3 * NORMAL  # where it is
 
 
 @compiled
@@ -28,40 +30,30 @@ def add(contacts, count, turn, inertia, tangent, x, y, z, nx, ny, nz, gap, wall)
         u, v, w, across = 0.0, 0.0, 1.0, nz
     u, v, w = u - across * nx, v - across * ny, w - across * nz
     size = 1.0 / math.sqrt(u * u + v * v + w * w)
-    row[0], row[1], row[2] = u * size, v * size, w * size
-    row[6], row[7], row[8] = nx, ny, nz
-    row[3], row[4], row[5] = ny * row[2] - nz * row[1], nz * row[0] - nx * row[2], nx * row[1] - ny * row[0]
-    for e in range(3):
-        a, b, c = row[3 * e], row[3 * e + 1], row[3 * e + 2]
-        p, q, r = y * c - z * b, z * a - x * c, x * b - y * a
-        for k in range(3):
-            lever = turn[k] * p + turn[3 + k] * q + turn[6 + k] * r
-            row[LEVER + 3 * e + k] = lever
-            row[RATE + 3 * e + k] = lever / inertia[k]
-    _masses(row)
+    u, v, w = u * size, v * size, w * size
+    p, q, r = ny * w - nz * v, nz * u - nx * w, nx * v - ny * u
+    _arm(row, 0, turn, x, y, z, u, v, w)
+    _arm(row, 1, turn, x, y, z, p, q, r)
+    _arm(row, NORMAL, turn, x, y, z, nx, ny, nz)
+    rates(inertia, row)
+    masses(row)
     row[GAP], row[WALL] = gap, wall
     return count + 1
 
 
 @compiled
-def _coupling(row, d, e):
-    i, j = LEVER + 3 * d, RATE + 3 * e
-    return row[i] * row[j] + row[i + 1] * row[j + 1] + row[i + 2] * row[j + 2]
-
-
-@compiled
-def _masses(row):
-    """Fill the effective masses: of both axes along the contact the smaller that serves both."""
-    xx, yy, zz = 1.0 + _coupling(row, 0, 0), 1.0 + _coupling(row, 1, 1), 1.0 + _coupling(row, 2, 2)
-    lean, mean, cross = 0.5 * (xx - yy), 0.5 * (xx + yy), _coupling(row, 0, 1)
-    row[MASS] = row[MASS + 1] = 1.0 / (mean + math.sqrt(lean * lean + cross * cross))
-    row[MASS + 2] = 1.0 / zz
+def _arm(row, e, turn, x, y, z, a, b, c):
+    """Write an axis and its lever, (x, y, z) x (a, b, c) in body axes."""
+    row[AXES + 3 * e], row[AXES + 3 * e + 1], row[AXES + 3 * e + 2] = a, b, c
+    p, q, r = y * c - z * b, z * a - x * c, x * b - y * a
+    for k in range(3):
+        row[LEVER + 3 * e + k] = turn[k] * p + turn[3 + k] * q + turn[6 + k] * r
 
 
 @compiled
 def speed(state, row, e):
     """Velocity of a contact along one of its axes."""
-    a, k = 3 * e, LEVER + 3 * e
+    a, k = AXES + 3 * e, LEVER + 3 * e
     found = row[a] * state[VX] + row[a + 1] * state[VX + 1] + row[a + 2] * state[VZ]
     return found + row[k] * state[W] + row[k + 1] * state[W + 1] + row[k + 2] * state[W + 2]
 
@@ -79,21 +71,26 @@ def _pushed(row, a, k, impulse, u, v, w, p, q, r):
 
 
 @compiled
+def rubbing(ahead, aside, most):
+    """Impulses along a contact, of the size that friction allows at most."""
+    size = ahead * ahead + aside * aside
+    scale = most / math.sqrt(size) if size > most * most else 1.0
+    return scale * ahead, scale * aside
+
+
+@compiled
 def _relax(row, rough, u, v, w, p, q, r):
     """One projected Gauss-Seidel step on a contact: velocities, rates and the change of its impulse."""
     x, y, z = row[IMPULSE], row[IMPULSE + 1], row[IMPULSE + 2]
-    up = max(z + row[MASS + 2] * (row[WANTED] - _speed(row, 6, LEVER + 6, u, v, w, p, q, r)), 0.0)
-    u, v, w, p, q, r = _pushed(row, 6, RATE + 6, up - z, u, v, w, p, q, r)
+    up = max(z + row[MASS + 2] * (row[WANTED] - _speed(row, TOWARDS, LEVER + 6, u, v, w, p, q, r)), 0.0)
+    u, v, w, p, q, r = _pushed(row, TOWARDS, RATE + 6, up - z, u, v, w, p, q, r)
     change = abs(up - z)
     if rough and (up > 0.0 or z > 0.0):
-        ahead = x - row[MASS] * _speed(row, 0, LEVER, u, v, w, p, q, r)
-        aside = y - row[MASS + 1] * _speed(row, 3, LEVER + 3, u, v, w, p, q, r)
-        size, most = ahead * ahead + aside * aside, up * (row[BACK] if ahead > 0.0 else row[AHEAD])
-        if size > most * most:
-            scale = most / math.sqrt(size)
-            ahead, aside = scale * ahead, scale * aside
-        u, v, w, p, q, r = _pushed(row, 0, RATE, ahead - x, u, v, w, p, q, r)
-        u, v, w, p, q, r = _pushed(row, 3, RATE + 3, aside - y, u, v, w, p, q, r)
+        ahead = x - row[MASS] * _speed(row, AXES, LEVER, u, v, w, p, q, r)
+        aside = y - row[MASS + 1] * _speed(row, AXES + 3, LEVER + 3, u, v, w, p, q, r)
+        ahead, aside = rubbing(ahead, aside, up * (row[BACK] if ahead > 0.0 else row[AHEAD]))
+        u, v, w, p, q, r = _pushed(row, AXES, RATE, ahead - x, u, v, w, p, q, r)
+        u, v, w, p, q, r = _pushed(row, AXES + 3, RATE + 3, aside - y, u, v, w, p, q, r)
         row[IMPULSE], row[IMPULSE + 1] = ahead, aside
         change += abs(ahead - x) + abs(aside - y)
     row[IMPULSE + 2] = up
@@ -114,7 +111,9 @@ def solve(state, contacts, count, rough, sweeps, converged, warm):
         if warm > 0.0:
             for e in range(3):
                 row[IMPULSE + e] *= warm
-                u, v, w, p, q, r = _pushed(row, 3 * e, RATE + 3 * e, row[IMPULSE + e], u, v, w, p, q, r)
+                u, v, w, p, q, r = _pushed(
+                    row, AXES + 3 * e, RATE + 3 * e, row[IMPULSE + e], u, v, w, p, q, r
+                )
         else:
             row[IMPULSE] = row[IMPULSE + 1] = row[IMPULSE + 2] = 0.0
     for _ in range(sweeps):

@@ -11,9 +11,10 @@ import numpy as np
 
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VZ, W
+from feederscrew.dropping.kernel.contact import IMPULSE, MASS, RATE, WANTED
 from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.trial.kernel import contact, motion
-from feederscrew.trial.kernel.contact import GAP, IMPULSE, MASS, NORMAL, RATE, WANTED
+from feederscrew.trial.kernel.contact import AXES, GAP, NORMAL, TOWARDS
 from feederscrew.trial.kernel.pairs import corners_on, edges_on
 
 UPWARD = 0.5  # [1] of the normal: a part that is held so by another is carried
@@ -99,7 +100,7 @@ def _apart(crowd, k, e):
 @compiled
 def _given(state, row, e, impulse):
     for k in range(3):
-        state[VX + k] += impulse * row[3 * e + k]
+        state[VX + k] += impulse * row[AXES + 3 * e + k]
         state[W + k] += impulse * row[RATE + 3 * e + k]
 
 
@@ -120,9 +121,7 @@ def _relax_pair(crowd, k, friction):
     if up == 0.0 and z == 0.0:
         return 0.0
     ahead, aside = x - row[MASS] * _apart(crowd, k, 0), y - row[MASS + 1] * _apart(crowd, k, 1)
-    size, most = math.sqrt(ahead * ahead + aside * aside), friction * up
-    if size > most:
-        ahead, aside = ahead * most / size, aside * most / size
+    ahead, aside = contact.rubbing(ahead, aside, friction * up)
     _both(crowd, k, 0, ahead - x)
     _both(crowd, k, 1, aside - y)
     row[IMPULSE], row[IMPULSE + 1] = ahead, aside
@@ -258,8 +257,8 @@ def _parted(crowd, pairs):
             row = crowd.pairs[worst]
             by = 0.5 * motion.LIFT * min(max(-row[GAP] - motion.SLOP, 0.0), motion.MOST)
             for e in range(3):
-                crowd.states[crowd.owners[worst], e] += by * row[6 + e]
-                crowd.states[crowd.owners[worst + 1], e] -= by * row[6 + e]
+                crowd.states[crowd.owners[worst], e] += by * row[TOWARDS + e]
+                crowd.states[crowd.owners[worst + 1], e] -= by * row[TOWARDS + e]
             worst = k + 2
 
 
@@ -270,11 +269,11 @@ def _strained(surface, crowd, pairs):
         row, impulse = crowd.pairs[k], crowd.pairs[k, IMPULSE + 2]
         i, j = crowd.owners[k], crowd.owners[k + 1]
         x, y = crowd.states[i, 0], surface.radius - crowd.states[i, 1]
-        along = (y * row[6] + x * row[7]) / math.sqrt(x * x + y * y)
+        along = (y * row[TOWARDS] + x * row[TOWARDS + 1]) / math.sqrt(x * x + y * y)
         crowd.strains[i, BEHIND] += max(along, 0.0) * impulse
         crowd.strains[j, BEHIND] += max(-along, 0.0) * impulse
-        if abs(row[8]) > UPWARD:
-            crowd.strains[i if row[8] > 0.0 else j, BELOW] += impulse
+        if abs(row[TOWARDS + 2]) > UPWARD:
+            crowd.strains[i if row[TOWARDS + 2] > 0.0 else j, BELOW] += impulse
 
 
 @entry
