@@ -29,6 +29,7 @@ class Shares:
 
     aspects: Aspects  # their ``recommended`` is that answer
     measured: profiles.Measured | None = None  # the file it was read from, if it was
+    fed: bool = False  # whether they are what lies on the bowl's moving floor, at its own drive
 
     @property
     def inputs(self) -> dict[str, str]:
@@ -89,8 +90,9 @@ def shares(
         return Shares(found)
     if before:
         before(None)
-    arrived = arrival(part, found, bowl, seed=SEED, jobs=jobs or os.cpu_count() or 1, progress=progress)
-    return Shares(chances.arrived(found, arrived, SEED))
+    floor = arrival(part, found, bowl, seed=SEED, jobs=jobs or os.cpu_count() or 1, progress=progress)
+    arrived = chances.arrived(found, floor, SEED)
+    return Shares(arrived, fed=arrived.recommended is not found.recommended)
 
 
 @dataclass(frozen=True, eq=False)

@@ -39,6 +39,7 @@ class TuneStudy:
     devices: tuple[Device, ...]
     target: float  # [1/s] well-oriented parts
     settings: tuple[Tuned, ...]
+    own_drive: bool  # whether the shares are those on the moving floor at the bowl's own drive
 
     @property
     def warnings(self):
@@ -101,6 +102,7 @@ def tune(
         devices=chain,
         target=target,
         settings=tuple(_tuned(one, bowl, ways) for one in knobs.solutions(bowl, target, density)),
+        own_drive=known.fed and rule == "recommended",
     )
 
 

@@ -5,6 +5,10 @@ from feederscrew.output import columns, tables
 
 PER_MINUTE, MM_S = units.factor("/min", "rate"), units.factor("mm/s", "velocity")
 SEVERAL = ", several"  # velocities, depending on how the part arrives
+OWN_DRIVE = (
+    "the shares of the aspects are those on the floor at the bowl's own drive: ask feeder rate again at the "
+    "setting you choose"
+)
 
 
 def document(study):
@@ -48,9 +52,10 @@ def summary(frame):
 
 
 def remarks(study):
-    """Return what a reader must not overlook: which settings turn parts over on the track."""
+    """Return what a reader must not overlook: parts that are turned over, and the drive the shares are of."""
     tipping = [_told(one) for one in study.settings if one.over]
-    return [f"{line} can tip over on the track and count as returned" for line in tipping]
+    said = [f"{line} can tip over on the track and count as returned" for line in tipping]
+    return [*said, OWN_DRIVE] if study.own_drive else said
 
 
 def _told(one):

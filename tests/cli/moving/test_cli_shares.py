@@ -40,6 +40,14 @@ def test_a_bowl_file_feeds_its_own_floor_and_names_it(run, block, config):
     assert told(run, "rate", block, "--aspect", "A")["answer"].endswith("launch feed")
 
 
+def test_tune_says_that_it_keeps_the_shares_of_the_drive_it_was_given(run, block, config):
+    drive = ("--aspect", "A", "--target", "1/min", "--set", "drive.peak_to_peak=0.2 mm")
+    said = "Warning: the shares of the aspects are those on the floor at the bowl's own drive"
+    for answer, says in (((), True), (("--launch", "feed"), False)):
+        lines = run("tune", block, *drive, "--config", config, *answer).stderr.splitlines()
+        assert any(line.startswith(said) for line in lines) == says
+
+
 def test_probabilities_take_the_place_of_an_answer(run, block, tmp_path):
     (tmp_path / "c.csv").write_text("aspect,tray\nA,10\nB,30\nC,60\n")
     made = told(run, "rate", block, "--aspect", "C", "--probabilities", "c.csv")
