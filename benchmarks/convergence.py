@@ -27,6 +27,7 @@ from feederscrew.dropping.kernel.floor import at_rest
 from feederscrew.dropping.kernel.motion import Steps
 from feederscrew.dropping.launches import PRESETS
 from feederscrew.dropping.shape import shape_of_part
+from feederscrew.geometry.compiled import entry
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 
@@ -77,6 +78,15 @@ def cases():
     return coin(64), Case("square nut", nut, "feed", second), Case("T shape", t_shape, "feed", 5.0)
 
 
+@entry
+def follow(solid, work, corner, until, steps):
+    """Follow a body that sticks to a floor at rest."""
+    floor, time, gap = at_rest(), 0.0, 0.0
+    while time < until:
+        corner, gap, dt, _, _ = motion.advance(solid, work, floor, time, corner, gap, 0.0, 5.0, steps)
+        time += dt
+
+
 def rolled(shape, step):
     """Attitude of a coin that leans and rolls on its rim for two units of time."""
     work, steps = motion.scratch(shape), Steps(contact=step, swing=1e9, rolling=0.0, tolerance=1e-5)
@@ -94,12 +104,7 @@ def rolled(shape, step):
     contact_point = _lowest(shape, work.turn.reshape(3, 3))
     rates = np.einsum("ij,j->i", work.turn.reshape(3, 3), work.state[body.W : body.W + 3])
     work.state[body.VX : body.VX + 3] = -np.cross(rates, contact_point)
-    time, gap = 0.0, 0.0
-    while time < 1.0 - 1e-9:
-        corner, gap, dt, _, _ = motion.advance(
-            shape.solid, work, at_rest(), time, corner, gap, 0.0, 5.0, steps
-        )
-        time += dt
+    follow(shape.solid, work, corner, 1.0 - 1e-9, steps)
     return work.state[body.Z], work.turn.copy()
 
 

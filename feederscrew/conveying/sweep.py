@@ -135,7 +135,7 @@ def _compiled():
     from numba.extending import register_jitable
 
     for function in KERNEL:
-        register_jitable(error_model="numpy")(function)
+        register_jitable(error_model="numpy", no_cfunc_wrapper=True)(function)
 
     _loop.__qualname__ = f"loop_{_fingerprint()}"  # names the files of the cache
     return njit(cache=True, nogil=True, no_cfunc_wrapper=True, error_model="numpy")(_loop)

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 PLAIN = []  # functions that compiled ones may call, not yet registered
+KEPT = []  # those of them that are kept on disk by themselves
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
 SOURCES = (
     "geometry/compiled.py",
@@ -29,13 +30,23 @@ def compiled(function):
     return function
 
 
+def shared(function):
+    """Mark a function that several entries call: compiled once for all of them, and kept on disk by itself.
+
+    As ``compiled``, it has no way in from Python.
+    """
+    function.__qualname__ = f"{function.__name__}_{_fingerprint()}"  # names the files of the cache
+    KEPT.append(function)
+    return compiled(function)
+
+
 def entry(function):
     """Compile a function that Python calls; it fills arrays it is handed and makes none of its own."""
     from numba import njit
 
     _register()
     function.__qualname__ = f"{function.__name__}_{_fingerprint()}"  # names the files of the cache
-    return njit(cache=True, nogil=True, no_cfunc_wrapper=True, **_options())(function)
+    return njit(cache=True, nogil=True, **_options())(function)
 
 
 def fitting(function, half_edges):
@@ -63,15 +74,20 @@ def _register():
     from numba.extending import register_jitable
 
     while PLAIN:
-        register_jitable(**_options())(PLAIN.pop())
+        function = PLAIN.pop()
+        register_jitable(**_options(), cache=function in KEPT)(function)
 
 
 @functools.cache
 def _options():
-    """No reference counting, which costs more than the arithmetic: such a function may not make arrays."""
+    """No reference counting, which costs more than the arithmetic: such a function may not make arrays.
+
+    And no way in from C, which would be compiled for each of them.
+    """
     from numba.core.options import DefaultOptions
 
-    return {"error_model": "numpy"} | ({"_nrt": False} if hasattr(DefaultOptions, "_nrt") else {})
+    counting = {"_nrt": False} if hasattr(DefaultOptions, "_nrt") else {}
+    return {"error_model": "numpy", "no_cfunc_wrapper": True, **counting}
 
 
 @functools.cache

@@ -44,7 +44,8 @@ def spin_energy(state, inertia):
 @compiled
 def rate(state):
     """How fast the body turns."""
-    return math.sqrt(state[W] ** 2 + state[W + 1] ** 2 + state[W + 2] ** 2)
+    p, q, r = state[W], state[W + 1], state[W + 2]
+    return math.sqrt(p * p + q * q + r * r)
 
 
 @compiled
@@ -140,7 +141,8 @@ def bottom(solid, turn, corner):
 @compiled
 def slow_down(state, inertia, limit):
     """Scale velocities so that the kinetic energy is at most ``limit``; those along the floor last."""
-    moving, along = moving_energy(state, inertia), 0.5 * (state[VX] ** 2 + state[VY] ** 2)
+    moving = moving_energy(state, inertia)
+    along = 0.5 * (state[VX] * state[VX] + state[VY] * state[VY])
     if moving <= limit:
         return
     if along > limit:

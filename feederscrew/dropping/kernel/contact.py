@@ -15,7 +15,7 @@ from feederscrew.geometry.compiled import compiled
 
 LEVER, RATE, MASS, WANTED, IMPULSE, LAST, CHANGE, WIDTH = 0, 9, 18, 21, 22, 25, 28, 31
 EVERY = 6  # sweeps from one leap to the next
-STRAIGHT = 0.95  # cosine between two changes that lead the same way
+STRAIGHT = 0.95**2  # squared cosine between two changes that lead the same way
 FURTHEST = 1000.0  # a leap, in changes of a sweep
 
 
@@ -117,7 +117,8 @@ def stick(state, row, friction):
     along = (a * u + (xz * zy - xy * zz) * v + (xy * yz - xz * yy) * w) / whole
     across = (b * u + (xx * zz - xz * zx) * v + (xz * yx - xx * yz) * w) / whole
     up = (c * u + (xy * zx - xx * zy) * v + (xx * yy - xy * yx) * w) / whole
-    holds = up >= 0.0 and along * along + across * across <= (friction * up) ** 2
+    most = friction * up
+    holds = up >= 0.0 and along * along + across * across <= most * most
     if holds:
         push(state, row, 0, along)
         push(state, row, 1, across)
@@ -179,12 +180,13 @@ def leap(contacts, count):
     for n in range(count):
         for e in range(3):
             change = contacts[n, IMPULSE + e] - contacts[n, LAST + e]
-            both += change * contacts[n, CHANGE + e]
-            before += contacts[n, CHANGE + e] ** 2
+            last = contacts[n, CHANGE + e]
+            both += change * last
+            before += last * last
             now += change * change
         if change < 0.0:
             most = min(most, -contacts[n, IMPULSE + 2] / change)
-    if both <= 0.0 or both * both < STRAIGHT**2 * before * now:
+    if both <= 0.0 or both * both < STRAIGHT * before * now:
         return 0.0
     return min(most, both / (before - both)) if both < before else most
 

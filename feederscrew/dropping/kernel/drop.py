@@ -37,19 +37,17 @@ def rolling_energy(shape, state, turn, face):
     flat = math.sqrt(x * x + y * y)
     about = state[W] * a[0] + state[W + 1] * a[1] + state[W + 2] * a[2]
     across = (state[VX] * y - state[VY] * x) / flat if flat > 0.5 else 0.0
-    moment = (
-        shape.solid.inertia[0] * a[0] ** 2
-        + shape.solid.inertia[1] * a[1] ** 2
-        + shape.solid.inertia[2] * a[2] ** 2
-    )
-    return 0.5 * (moment * about**2 + across**2)
+    inertia = shape.solid.inertia
+    moment = inertia[0] * a[0] * a[0] + inertia[1] * a[1] * a[1] + inertia[2] * a[2] * a[2]
+    return 0.5 * (moment * about * about + across * across)
 
 
 @compiled
 def slides_flat(shape, state, turn, face, friction):
     """True where the body lies flat on the floor and friction cannot tip it while it slides."""
     around = state[W] * turn[6] + state[W + 1] * turn[7] + state[W + 2] * turn[8]
-    rocking = state[W] ** 2 + state[W + 1] ** 2 + state[W + 2] ** 2 - around**2
+    quick = body.rate(state)
+    rocking = quick * quick - around * around
     flat = state[Z] - shape.heights[face] < 2e-3 and rocking < 1e-4 and abs(state[VZ]) < 1e-2
     return flat and friction * shape.heights[face] < 0.9 * shape.margins[face]
 

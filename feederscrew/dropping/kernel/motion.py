@@ -8,7 +8,7 @@ import numpy as np
 from feederscrew.dropping.kernel import body, contact, touch
 from feederscrew.dropping.kernel import floor as floors
 from feederscrew.dropping.kernel.body import VX, VZ, W, X, Z
-from feederscrew.geometry.compiled import compiled, entry
+from feederscrew.geometry.compiled import compiled, shared
 
 CREEP = 1e-5  # speed at which a point that touches may go on falling: errors of a step, not a landing
 
@@ -182,7 +182,7 @@ def resist(state, inertia, lever, dt):
             state[W + k] *= scale
 
 
-@entry
+@shared
 def advance(solid, work, floor, time, corner, gap, restitution, friction, steps):
     """One step of the body: through the air, or on the floor after the impact if it falls.
 

@@ -32,7 +32,8 @@ def rocking_energy(shape, state, turn):
     around = state[W] * turn[6] + state[W + 1] * turn[7] + state[W + 2] * turn[8]
     energy = 0.0
     for k in range(3):
-        energy += 0.5 * shape.solid.inertia[k] * (state[W + k] - around * turn[6 + k]) ** 2
+        rocks = state[W + k] - around * turn[6 + k]
+        energy += 0.5 * shape.solid.inertia[k] * rocks * rocks
     return energy
 
 

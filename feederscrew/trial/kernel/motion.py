@@ -13,7 +13,7 @@ import numpy as np
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel import floor as floors
 from feederscrew.dropping.kernel.body import VX, VY, VZ, W, X, Y
-from feederscrew.geometry.compiled import compiled
+from feederscrew.geometry.compiled import compiled, shared
 from feederscrew.trial.kernel import contact, edges, search
 
 REACH = 2e-3  # how far ahead contacts are looked for, beside the way of two steps
@@ -68,7 +68,7 @@ def pull(surface, floor, time, dt, work):
         state[W + k] -= spin * work.turn[6 + k]
 
 
-@compiled
+@shared
 def found(surface, solid, work, reach):
     """Every contact of the part as it is; how many."""
     state, turn, contacts = work.state, work.turn, work.contacts
