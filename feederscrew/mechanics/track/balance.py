@@ -78,14 +78,11 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
     def sliding_on(closed):
         """Along the track while a wall contact is closed; a part off the wall goes where it is pushed."""
         course = sense[..., None] * system.AHEAD if any(closed) else free
-
-        def solve(use):
-            return system.sliding(seat, axes, load, closed, kinetic, use, course)
-
-        ahead = sense * wall if any(closed) else 0.0 * sense * wall
+        use = sense * wall if any(closed) else 0.0 * sense * wall
         turns = (moving == 0.0) & (sum(closed) == 1)
-        use = system.wall_use(seat, axes, solve, closed, ahead, turns) if turns.any() else ahead
-        return vars(solve(use)) | {"wall_use": use}
+        if turns.any():
+            use = system.wall_use(seat, axes, load, closed, kinetic, use, course, turns)
+        return vars(system.sliding(seat, axes, load, closed, kinetic, use, course)) | {"wall_use": use}
 
     slipping = _chosen(sliding_on, bowl.gravity) if slides.any() else still
     found = {name: _where(slides, slipping[name], still[name]) for name in still}

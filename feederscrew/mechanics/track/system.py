@@ -1,16 +1,17 @@
 """The six wrench equations of a part on the track, for a given set of closed wall contacts.
 
-Unknowns, per unit of mass and with the height h of the centre of mass as unit of length: the acceleration
-along X, two motions or reactions that the wall contacts decide, the normal force N, its moments N d_x and
-N d_y, and the wall's R1 and R2. Friction acts where the normal force does, which keeps the system linear.
+All is per unit of mass, with the height h of the centre of mass as unit of length. Friction acts where the
+normal force N does, which keeps the equations linear in N, its moments N d_x and N d_y, and R1 and R2 of the
+wall. Without N in the forces along X and Y, and without N d_x and N d_y in the moment about Z, they are those
+of a motion in the plane of the floor: two forces and a turning moment of the load and of each wall contact.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import cross
+from feederscrew.geometry.vectors import dot
 
 SETS = ((True, True), (True, False), (False, True), (False, False))  # closed wall contacts, in order of trial
 STEPS = 14  # of the secant rule; the function is nearly straight
@@ -51,26 +52,17 @@ def sliding(seat, axes, load, closed, floor, wall, course=AHEAD):
     Returns
     -------
     TrackSolution
+        Not finite where the equations are singular.
 
     Notes
     -----
     The complete form of eqs. [4.32] to [4.37] and eqs. [4.57] to [4.62].
     """
-    blocks = _contact_columns(seat, axes, floor, wall, course)
-    shape = blocks[0].shape[:-1]
-    inertia = np.concatenate([[0.0, 0.0, 0.0], -seat.inertia / (seat.mass * seat.height**2)])
-    columns = [_unit(shape, 0, -1.0), _unit(shape, 1, -1.0), np.broadcast_to(inertia, (*shape, 6)), *blocks]
-    rates = _opening(seat, axes, shape)
-    rows = np.zeros((*shape, 2, 8))
-    for i, presses in enumerate(closed):
-        if presses:
-            rows[..., i, 1:3] = rates[..., i, :]
-        else:
-            rows[..., i, 6 + i] = 1.0
-    x = _solved(columns, rows, load / seat.mass)
-    parting = np.einsum("...ij,...j->...i", rates, x[..., 1:3])
-    friction = -(np.asarray(floor) * x[..., 3])[..., None] * course
-    return _solution(x, x[..., 1], x[..., 2], friction, np.zeros(shape), floor, parting)
+    slide = _Slide(seat, axes, load, floor, course)
+    acting, walls, across, turning = slide.motion(closed, np.asarray(wall, dtype=float))
+    parting = slide.rates[..., 0] * across[..., None] + slide.rates[..., 1] * turning[..., None]
+    friction = slide.drag * acting.normal(walls)[..., None]
+    return acting.solution(walls, across, turning, slide.inertia, friction, 0.0, floor, parting)
 
 
 def held(seat, axes, load, closed, ratio):
@@ -93,17 +85,45 @@ def held(seat, axes, load, closed, ratio):
     -----
     Forces at rest are not determined by the equations. This choice goes over into sliding without a jump.
     """
-    before, after = np.zeros(load.shape[:-1]), None
-    slip_before = _resting(seat, axes, load, closed, before, ratio).acceleration[..., 0]
-    normal = np.maximum(-load[..., 2] / seat.mass, 1e-3 * np.abs(load).max() / seat.mass + 1e-30)
-    after = slip_before / normal
+    wall, force = _Wall(seat, axes), load / seat.mass
+
+    def resting(mobilised):
+        """What acts, and the reactions that leave no motion across and no turning."""
+        acting = wall.acting(force, mobilised * ratio, -mobilised[..., None] * AHEAD)
+        return acting, acting.reactions(closed, np.zeros(2))
+
+    def slip(mobilised):
+        acting, walls = resting(mobilised)
+        return acting.left_over(walls, 0)
+
+    mobilised = _mobilised(slip, force)
+    acting, walls = resting(mobilised)
+    across = np.zeros(walls.shape[:-1]) if any(closed) else -acting.left_over(walls, 1)
+    friction = np.stack([-mobilised * acting.normal(walls), across], axis=-1)
+    couple = np.zeros(walls.shape[:-1]) if all(closed) else 0.0 - dot(acting.yaws, walls)
+    nothing = np.zeros(walls.shape[:-1])
+    parting = _released(seat, axes, closed, couple)
+    return acting.solution(walls, nothing, nothing, np.zeros(3), friction, couple, mobilised, parting)
+
+
+def _mobilised(slip, force):
+    """Friction over normal force that leaves no slip along the track."""
+    nothing = np.zeros(force.shape[:-1])
+    unheld = slip(nothing)
+    guess = unheld / np.maximum(-force[..., 2], 1e-3 * np.abs(force).max() + 1e-30)
+    return _zero(slip, nothing, unheld, guess, lambda after, step: after - np.clip(step, -10.0, 10.0))
+
+
+def _zero(slip, before, slip_before, after, stepped):
+    """Where a function is zero, by the secant rule from two guesses; ``stepped`` keeps a step in bounds."""
     for _ in range(STEPS):
-        slip = _resting(seat, axes, load, closed, after, ratio).acceleration[..., 0]
-        change = slip - slip_before
-        step = np.divide(slip * (after - before), change, out=np.zeros(slip.shape), where=change != 0.0)
-        before, slip_before, after = after, slip, after - np.clip(step, -10.0, 10.0)
-    found = _resting(seat, axes, load, closed, after, ratio)
-    return replace(found, parting=_released(seat, axes, closed, found.couple))
+        if np.array_equal(before, after, equal_nan=True):  # it would stay there
+            break
+        slip_after = slip(after)
+        change = slip_after - slip_before
+        step = np.divide(slip_after * (after - before), change, out=np.zeros(change.shape), where=change != 0)
+        before, slip_before, after = after, slip_after, stepped(after, step)
+    return after
 
 
 def _released(seat, axes, closed, couple):
@@ -111,26 +131,22 @@ def _released(seat, axes, closed, couple):
     parting = np.zeros((*np.shape(couple), 2))
     if sum(closed) == 1:
         shut, open_ = closed.index(True), closed.index(False)
-        rates = _opening(seat, axes, np.shape(couple))
+        rates = _opening(seat, axes)
         across, turning = np.moveaxis(rates, -1, 0)
         shift = turning[..., shut] / across[..., shut] * across[..., open_]  # which keeps the other closed
         parting[..., open_] = -couple * (turning[..., open_] - shift)
     return parting
 
 
-def wall_use(seat, axes, solve, closed, ahead, turns):
+def wall_use(seat, axes, load, closed, floor, ahead, course, turns):
     """Friction over normal force at the one closed wall contact of a part that starts to turn about it.
 
     Parameters
     ----------
-    seat, axes
-        As for ``sliding``.
-    solve : callable
-        From that coefficient, (...) float [1], to a TrackSolution.
-    closed : pair of bool
-        Which wall contact presses.
+    seat, axes, load, closed, floor, course
+        As for ``sliding``; one contact is closed.
     ahead : (...) float [1]
-        The coefficient, negative where the part slides back.
+        The coefficient at the wall, negative where the part slides back.
     turns : (...) bool
         Where the part starts from rest; elsewhere it goes on sliding and ``ahead`` is kept.
 
@@ -140,93 +156,112 @@ def wall_use(seat, axes, solve, closed, ahead, turns):
         ``ahead`` where the contact slides with the part, its opposite where turning drives it the other way,
         and between them what keeps it in place: the part then rolls along the wall.
     """
-    k = closed.index(True)
+    slide, k = _Slide(seat, axes, load, floor, course), closed.index(True)
+    along = axes.courses[..., k, :2]
+    lever, limit = cross(seat.walls[k, :2] / seat.height, along), np.abs(ahead)
 
     def slip(use):
         """Acceleration of the contact along the wall."""
-        found, course = solve(use), axes.courses[..., k, :2]
-        turning = cross(seat.walls[k, :2] / seat.height, course)
-        return (found.acceleration * course).sum(axis=-1) + found.turning * turning
+        acting, walls, across, turning = slide.motion(closed, use)
+        return acting.left_over(walls, 0) * along[..., 0] + across * along[..., 1] + turning * lever
 
-    before, after = -ahead, ahead
-    slip_before = slip(before)
-    for _ in range(STEPS):
-        slip_after = slip(after)
-        change = slip_after - slip_before
-        step = np.divide(slip_after * (after - before), change, out=np.zeros(change.shape), where=change != 0)
-        before, slip_before = after, slip_after
-        after = np.clip(after - step, -np.abs(ahead), np.abs(ahead))
-    return np.where(turns, after, ahead)
+    use = _zero(slip, -ahead, slip(-ahead), ahead, lambda after, step: np.clip(after - step, -limit, limit))
+    return np.where(turns, use, ahead)
 
 
-def _resting(seat, axes, load, closed, mobilised, ratio):
-    """The same for a given mobilised friction; the acceleration along X is what it leaves unbalanced."""
-    blocks = _contact_columns(seat, axes, mobilised, mobilised * ratio, AHEAD)
-    shape = blocks[0].shape[:-1]
-    across = _unit(shape, 1) + _unit(shape, 3)
-    columns = [_unit(shape, 0, -1.0), across, _unit(shape, 5), *blocks]
-    rows = np.zeros((*shape, 2, 8))
-    if all(closed):
-        rows[..., (0, 1), (1, 2)] = 1.0  # no friction across, no couple
-    elif any(closed):
-        rows[..., (0, 1), (1, 6 + closed.index(False))] = 1.0
-    else:
-        rows[..., (0, 1), (6, 7)] = 1.0
-    x = _solved(columns, rows, load / seat.mass)
-    friction = np.stack([-mobilised * x[..., 3], x[..., 1]], axis=-1)
-    ahead = np.divide(x[..., 4], x[..., 3], out=np.zeros(shape), where=x[..., 3] != 0.0)
-    nothing = np.zeros(shape)
-    couple = x[..., 2] - ahead * x[..., 1]  # so that the friction across acts where the normal force does
-    return _solution(x, nothing, nothing, friction, couple, mobilised, np.zeros((*shape, 2)))
+class _Slide:
+    """A part that slides on the floor; (..., 2) ``drag`` is the floor's friction for a normal force of 1."""
+
+    def __init__(self, seat, axes, load, floor, course):
+        self.wall, self.rates, self.force = _Wall(seat, axes), _opening(seat, axes), load / seat.mass
+        self.drag = -np.asarray(floor, dtype=float)[..., None] * course
+        self.inertia = seat.inertia / (seat.mass * seat.height**2)
+        self.resists = dot(self.drag, self.inertia[:2]) + self.inertia[2]
+        self.give = self.rates[..., 1] / (self.rates[..., 0] * self.resists[..., None])
+
+    def motion(self, closed, use):
+        """What acts, the wall's reactions and the accelerations across the track and in turning."""
+        acting = self.wall.acting(self.force, use, self.drag)
+        walls = acting.reactions(closed, self.give)
+        if all(closed):
+            return acting, walls, *np.zeros((2, *walls.shape[:-1]))
+        return acting, walls, acting.left_over(walls, 1), dot(acting.yaws, walls) / self.resists
 
 
-def _contact_columns(seat, axes, floor, wall, course):
-    """Wrenches of N, N d_x, N d_y, R1 and R2, each for a value of 1, (..., 6)."""
-    floor, wall, course = np.asarray(floor, dtype=float), np.asarray(wall, dtype=float), np.asarray(course)
-    push = axes.normals - wall[..., None, None] * axes.courses
-    moment = np.cross(seat.walls / seat.height, push)
-    walls = np.concatenate([push, moment], axis=-1)
-    shape = np.broadcast_shapes(walls.shape[:-2], floor.shape, course.shape[:-1])
-    drag = np.broadcast_to(-floor[..., None] * course, (*shape, 2))
-    normal = np.zeros((*shape, 6))
-    normal[..., :2], normal[..., 2], normal[..., 3], normal[..., 4] = drag, 1.0, drag[..., 1], -drag[..., 0]
-    first, second = _unit(shape, 4, -1.0), _unit(shape, 3)
-    first[..., 5], second[..., 5] = drag[..., 1], -drag[..., 0]
-    walls = np.broadcast_to(walls, (*shape, 2, 6))
-    return [normal, first, second, walls[..., 0, :], walls[..., 1, :]]
+class _Wall:
+    """What the wall does at its two contacts, for any friction there."""
+
+    def __init__(self, seat, axes):
+        arms = seat.walls / seat.height
+        self.normals, self.courses = (
+            np.concatenate([force, np.cross(arms, force)], axis=-1) for force in (axes.normals, axes.courses)
+        )
+
+    def acting(self, force, use, drag):
+        """What acts on the part for a friction over normal force of ``use`` at the wall."""
+        return _Acting(force, self.normals - use[..., None, None] * self.courses, drag)
 
 
-def _opening(seat, axes, shape):
+class _Acting:
+    """A load (..., 3), wrenches of the wall's contacts (..., 2, 6) and the floor's drag, N eliminated."""
+
+    def __init__(self, force, pushes, drag):
+        self.force, self.pushes = force, pushes
+        self.pull = force[..., :2] - drag * force[..., 2:]
+        self.planar = pushes[..., :2] - drag[..., None, :] * pushes[..., 2:3]
+        self.yaws = dot(pushes[..., 3:5], drag[..., None, :]) + pushes[..., 5]
+
+    def reactions(self, closed, give):
+        """R1 and R2, (..., 2), at which the closed contacts stay closed.
+
+        ``give`` (..., 2) is how fast a contact opens for a unit of turning moment over how fast for a unit of
+        force across the track: zero where the part is kept from turning.
+        """
+        across, pull = self.planar[..., 1], -self.pull[..., 1]
+        walls = np.zeros(np.broadcast_shapes(across.shape, (*pull.shape, 1)))
+        if all(closed):
+            determinant = across[..., 0] * self.yaws[..., 1] - across[..., 1] * self.yaws[..., 0]
+            walls[..., 0] = _ratio(pull * self.yaws[..., 1], determinant)
+            walls[..., 1] = _ratio(-pull * self.yaws[..., 0], determinant)
+        elif any(closed):
+            k = closed.index(True)
+            walls[..., k] = _ratio(pull, (across + give * self.yaws)[..., k])
+        return walls
+
+    def left_over(self, walls, axis):
+        """Sum of the forces along X or Y, (...)."""
+        return self.pull[..., axis] + dot(self.planar[..., axis], walls)
+
+    def normal(self, walls):
+        """The floor's normal force N, (...)."""
+        return -(self.force[..., 2] + dot(self.pushes[..., 2], walls))
+
+    def solution(self, walls, across, turning, inertia, friction, couple, mobilised, parting):
+        """The record, with the moments of N that the moments about X and Y ask for."""
+        about_x, about_y = (dot(self.pushes[..., place], walls) for place in (3, 4))
+        ahead = about_y - inertia[1] * turning - friction[..., 0]
+        beside = inertia[0] * turning - about_x - friction[..., 1]
+        shape = walls.shape[:-1]
+        return TrackSolution(
+            acceleration=np.stack([self.left_over(walls, 0), across], axis=-1),
+            turning=turning,
+            normal=self.normal(walls),
+            moments=np.stack([ahead, beside], axis=-1),
+            walls=walls,
+            friction=friction,
+            couple=np.broadcast_to(couple, shape),
+            mobilised=np.broadcast_to(mobilised, shape),
+            parting=parting,
+        )
+
+
+def _opening(seat, axes):
     """How fast each wall contact opens for an acceleration along Y and a turning, (..., 2, 2)."""
     lever = cross(seat.walls[:, :2] / seat.height, axes.normals[..., :2])
-    rates = np.stack([axes.normals[..., 1], lever], axis=-1)
-    return np.broadcast_to(rates, (*shape, 2, 2))
+    return np.stack([axes.normals[..., 1], lever], axis=-1)
 
 
-def _unit(shape, place, value=1.0):
-    column = np.zeros((*shape, 6))
-    column[..., place] = value
-    return column
-
-
-def _solved(columns, rows, load):
-    """Solve sum of columns x + load = 0 together with two homogeneous rows."""
-    shape = rows.shape[:-2]
-    matrix = np.concatenate([np.stack(columns, axis=-1), rows], axis=-2)
-    right = np.zeros((*shape, 8))
-    right[..., :3] = -load
-    return vectors.solve(matrix, right)
-
-
-def _solution(x, across, turning, friction, couple, mobilised, parting):
-    return TrackSolution(
-        acceleration=np.stack([x[..., 0], across], axis=-1),
-        turning=turning,
-        normal=x[..., 3],
-        moments=x[..., 4:6],
-        walls=x[..., 6:8],
-        friction=friction,
-        couple=couple,
-        mobilised=np.broadcast_to(mobilised, x.shape[:-1]),
-        parting=parting,
-    )
+def _ratio(above, below):
+    """Their ratio; NaN where it has none."""
+    shape = np.broadcast_shapes(np.shape(above), np.shape(below))
+    return np.divide(above, below, out=np.full(shape, np.nan), where=below != 0.0)
