@@ -68,6 +68,28 @@ def test_crossings_do_not_hang_on_place_and_turn(rng):
     assert crossings.crossings(*joined, 1e-6).depths == pytest.approx([10.0 * 4.0 / 14.0] * 4, abs=1e-6)
 
 
+def double_cone(turns, corners=7):
+    """Two cones over one ring that goes round several times; its corners and facets."""
+    angle = 2.0 * np.pi * turns * np.arange(corners) / corners
+    ring = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(corners)])
+    k, after = np.arange(corners), np.roll(np.arange(corners), -1)
+    upper = np.column_stack([k, after, np.full(corners, corners)])
+    lower = np.column_stack([after, k, np.full(corners, corners + 1)])
+    return np.concatenate([ring, [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]]), np.concatenate([upper, lower])
+
+
+def test_what_is_seen_whole_from_within_is_not_searched(rng):
+    """Facets that all face away from a point cut each other only if the surface goes round it twice."""
+    once, faces = double_cone(1)
+    for vertices in (once, once * rng.uniform(1.0, 2.0, (len(once), 1))):
+        assert crossings.star_shaped(vertices, faces, np.zeros(3))
+        assert len(crossings.crossings(vertices, faces, 1e-9).pairs) == 0
+    assert not crossings.star_shaped(once, faces, np.array([0.0, 0.0, 1.5]))
+    twice, _ = double_cone(2)
+    assert not crossings.star_shaped(twice, faces, np.zeros(3))
+    assert len(crossings.crossings(twice, faces, 1e-9).pairs) > 0
+
+
 @pytest.mark.parametrize("name", [path.name for path in sorted(PARTS.glob("*.stl"))])
 def test_parts_do_not_pass_through_themselves(name):
     assert not any("through itself" in told for told in load(PARTS / name).warnings)

@@ -4,9 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew.part.repair import weld
+
 MOST, MOST_PAIRS = 300_000, 20_000_000  # facets, and pairs of boxes that overlap: looked at within seconds
 FINE = 1e7  # steps of a unit in which planes are told apart
 CHUNK = 4_000_000  # pairs of boxes at a time, at most: what a hundred MB hold
+AWAY = 1e-12  # [1] sine beyond which rounding does not decide whether a facet faces away from a point
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,64 +40,97 @@ def crossings(vertices, faces, tolerance):
     ----------
     T. Möller, "A fast triangle-triangle intersection test", J. Graphics Tools 2(2), 25-30, 1997.
     """
-    found = [_cuts(vertices, faces, pairs, tolerance) for pairs in _candidates(vertices[faces], faces)]
-    return Crossings(*(np.concatenate(column) for column in zip(_none(), *found)))
+    corners = vertices[faces]
+    normals = _normals(corners)
+    pairs = [_through_both(corners, normals, near, tolerance) for near in _candidates(corners, normals)]
+    return _cuts(corners, normals, np.concatenate([np.empty((0, 2), dtype=int), *pairs]), tolerance)
 
 
-def _none():
-    return np.empty((0, 2), dtype=int), np.empty(0), np.empty((0, 3))
+def star_shaped(vertices, faces, centre):
+    """Whether a surface is seen whole from a point within it, so that no two of its facets cut each other.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+        Closed: every side has one that runs back along it.
+    centre : (3,) float [unit of the file]
+
+    Returns
+    -------
+    bool
+        False also where rounding might decide it.
+
+    Notes
+    -----
+    Of the facets that a ray from the point meets, those that face away from it less those that face it are as
+    many as the turns of the surface round the point, whatever the ray. If all face away and the surface goes
+    round once, every ray meets one facet. Beside a line along which two facets cut each other it meets both.
+    """
+    a, b, c = np.ascontiguousarray((vertices - centre)[faces].transpose(1, 2, 0))  # each (3, F)
+    la, lb, lc = (np.sqrt(_dot(corner, corner)) for corner in (a, b, c))
+    triple = _dot(a, [b[k - 2] * c[k - 1] - b[k - 1] * c[k - 2] for k in range(3)])
+    if not (triple > AWAY * la * lb * lc).all():
+        return False
+    rest = la * lb * lc + _dot(a, b) * lc + _dot(b, c) * la + _dot(c, a) * lb
+    return 2.0 * np.arctan2(triple, rest).sum() < 6.0 * np.pi  # a whole number of 4 pi
 
 
-def _candidates(corners, faces):
-    """(N, 2) pairs of facets whose boxes overlap and that share one corner at most, some at a time."""
+def _dot(u, v):
+    """(F,) scalar products of vectors (3, F)."""
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+
+
+def _candidates(corners, normals):
+    """(N, 2) pairs of facets whose boxes overlap, but for many of one plane, some at a time."""
     import shapely
 
     if len(corners) > MOST:
         return
-    low, high, plane = corners.min(axis=1), corners.max(axis=1), _planes(corners)
+    a, b, c = corners.transpose(1, 0, 2)
+    low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
     x, y, z = np.argsort(-np.ptp(low, axis=0), kind="stable")
     boxes = shapely.box(low[:, x], low[:, y], high[:, x], high[:, y])
-    tree = shapely.STRtree(boxes)
+    tree, plane = shapely.STRtree(boxes), _planes(corners, normals)
+    floor, top = np.ascontiguousarray(low[:, z]), np.ascontiguousarray(high[:, z])
     seen, step = 0, max(1, CHUNK // len(boxes))
     for start in range(0, len(boxes), step):
         i, j = tree.query(boxes[start : start + step])
         i, seen = i + start, seen + len(i)
         if seen > MOST_PAIRS:
             return
-        kept = (i < j) & (plane[i] != plane[j])
-        i, j = i[kept], j[kept]
-        kept = (low[i, z] <= high[j, z]) & (low[j, z] <= high[i, z])
-        i, j = i[kept], j[kept]
-        shared = (faces[i][:, :, None] == faces[j][:, None, :]).sum(axis=(1, 2))
-        yield np.column_stack([i, j])[shared < 2]
+        once = i < j
+        i, j = i[once], j[once]
+        kept = (plane[i] != plane[j]) & (floor[i] <= top[j]) & (floor[j] <= top[i])
+        yield np.column_stack([i[kept], j[kept]])
 
 
-def _planes(corners):
+def _planes(corners, normals):
     """(F,) int the plane of each facet, those of one plane mostly the same: they do not cut each other."""
-    normals = _normals(corners)
     offsets = np.einsum("fx,fx->f", normals, corners[:, 0]) / np.abs(corners).max()
-    keys = np.round(np.column_stack([normals, offsets]) * FINE)
-    return np.unique(keys, axis=0, return_inverse=True)[1].reshape(-1)
+    return weld.distinct(np.round(np.column_stack([normals, offsets]) * FINE))[1]
 
 
-def _cuts(vertices, faces, pairs, tolerance):
+def _through_both(corners, normals, pairs, tolerance):
+    """Those of the pairs of which each passes through the plane of the other: none that share a side."""
+    for one, other in ((0, 1), (1, 0)):
+        through = _through(_sides(corners, normals, pairs[:, one], pairs[:, other], tolerance))
+        pairs = pairs[through > 0.0]
+    return pairs
+
+
+def _cuts(corners, normals, pairs, tolerance):
     """Those of the pairs that cut each other along a line longer than the tolerance."""
-    for one, other in ((0, 1), (1, 0)):  # each passes through the plane of the other
-        sides = _sides(vertices, faces, pairs[:, one], pairs[:, other], tolerance)
-        pairs = pairs[_through(sides) > 0.0]
-    if not len(pairs):
-        return _none()
-    first, second = (vertices[faces[pairs[:, k]]] for k in (0, 1))
-    along = np.cross(_normals(first), _normals(second))
+    i, j = pairs.T
+    along = np.cross(normals[i], normals[j])
     length = np.linalg.norm(along, axis=1)
     along = along / np.where(length > 0.0, length, 1.0)[:, None]
-    of_first = _sides(vertices, faces, pairs[:, 0], pairs[:, 1], tolerance)
-    of_second = _sides(vertices, faces, pairs[:, 1], pairs[:, 0], tolerance)
-    (a, b), (c, d) = _interval(first, of_first, along), _interval(second, of_second, along)
+    of_first, of_second = (_sides(corners, normals, *order, tolerance) for order in ((i, j), (j, i)))
+    (a, b), (c, d) = _interval(corners[i], of_first, along), _interval(corners[j], of_second, along)
     start, end = np.maximum(a, c), np.minimum(b, d)
     depths = np.minimum(end - start, np.minimum(_through(of_first), _through(of_second)))
     cut = (end - start > tolerance) & (length > 0.0)
-    return pairs[cut], depths[cut], _points(first, of_first, along, start)[cut]
+    return Crossings(pairs[cut], depths[cut], _points(corners[i], of_first, along, start)[cut])
 
 
 def _normals(corners):
@@ -105,16 +141,17 @@ def _normals(corners):
     return normals / np.where(length > 0.0, length, 1.0)
 
 
-def _sides(vertices, faces, ones, others, tolerance):
+def _sides(corners, normals, ones, others, tolerance):
     """(N, 3) [unit of the file] how far corners of ``ones`` lie above ``others``; 0 within tolerance."""
-    planes = vertices[faces[others]]
-    above = np.einsum("nkx,nx->nk", vertices[faces[ones]] - planes[:, :1], _normals(planes))
+    above = np.einsum("nkx,nx->nk", corners[ones] - corners[others, :1], normals[others])
     return np.where(np.abs(above) <= tolerance, 0.0, above)
 
 
 def _through(sides):
     """(N,) how far facets pass through planes: the less of both sides, 0 where they do not."""
-    return np.minimum(sides.max(axis=1), -sides.min(axis=1)).clip(0.0)
+    a, b, c = sides.T
+    above, below = np.maximum(np.maximum(a, b), c), np.minimum(np.minimum(a, b), c)
+    return np.minimum(above, -below).clip(0.0)
 
 
 def _interval(corners, sides, along):

@@ -71,7 +71,7 @@ def surface(vertices, faces, where, unit, allow_open=False):
         faces, solid, said = faces[:, ::-1], solid.reversed, (*said, INVERTED)
     if solid.volume <= EMPTY * size**3:
         raise MeshError(where, "encloses no volume", SOLID)
-    if not is_open:
+    if not is_open and not crossings.star_shaped(vertices, faces, solid.centre):
         said += _crossed(vertices, faces, JOINED * size + 2.0 * step, size, where, unit, allow_open)
     return Surface(vertices, faces, solid, is_open, slivers + blurred + mended + said)
 

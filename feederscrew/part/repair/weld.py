@@ -4,7 +4,9 @@ import numpy as np
 
 from feederscrew.part.repair import edges
 
-MIX = tuple(np.uint64(odd) for odd in (0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB))
+MIX = tuple(
+    np.uint64(odd) for odd in (0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB, 0xD6E8FEB86659FD93)
+)
 MOST_PAIRS = 10_000_000  # near pairs: what a few hundred MB hold
 
 
@@ -46,8 +48,8 @@ def distinct(rows):
 
     Parameters
     ----------
-    rows : (N, 3) float
-        Finite; minus zero counts as zero.
+    rows : (N, K) float
+        K up to 4. Finite; minus zero counts as zero.
 
     Returns
     -------
