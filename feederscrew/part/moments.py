@@ -8,6 +8,10 @@ import numpy as np
 
 ORDER = 6
 HALF = [powers for powers in product(range(4), repeat=3) if sum(powers) <= ORDER // 2]  # 20 monomials
+AS_PRODUCTS = {  # powers up to the order: two of those monomials that make them
+    tuple(int(power) for power in np.add(p, q)): (i, j)
+    for (i, p), (j, q) in product(enumerate(HALF), repeat=2)
+}
 POWERS = np.array(sorted((p for p in product(range(ORDER + 1), repeat=3) if 1 <= sum(p) <= ORDER), key=sum)).T
 WAYS = np.array(
     [factorial(sum(p)) // (factorial(p[0]) * factorial(p[1]) * factorial(p[2])) for p in POWERS.T]
@@ -96,20 +100,16 @@ def _integrals(points, faces):
     """
     scale = np.linalg.norm(points, axis=1).mean()
     nodes, weights = _quadrature(points / scale, faces)
-    gram = np.zeros((len(HALF), len(HALF)))
+    table = np.zeros((ORDER + 1, ORDER + 1, ORDER + 1))
     for start in range(0, len(weights), BLOCK):
         half = _monomials(nodes[start : start + BLOCK])
-        gram += _products(half * weights[start : start + BLOCK], half)
-    table = _spread_out(gram)
+        weighted = half * weights[start : start + BLOCK]
+        for powers, (i, j) in AS_PRODUCTS.items():
+            table[powers] += np.einsum("n,n->", weighted[i], half[j])
     volume, second = table[0, 0, 0] / 3.0, (table[2, 0, 0] + table[0, 2, 0] + table[0, 0, 2]) / 5.0
     size = np.sqrt(abs(second / volume))  # facets that overlap may leave either negative
     order = np.indices(table.shape).sum(axis=0)
     return table / (order + 3.0) / size**order, volume, scale * size
-
-
-def _products(left, right):
-    """Sums (20, 20) over the points of every product of a row of one with a row of the other."""
-    return np.einsum("an,bn->ab", left, right)
 
 
 def _monomials(points):
@@ -120,14 +120,6 @@ def _monomials(points):
             for _ in range(power):
                 row *= coordinate
     return half
-
-
-def _spread_out(gram):
-    """(7, 7, 7) table by powers, from products of the 20 monomials up to half the order."""
-    out = np.zeros((ORDER + 1, ORDER + 1, ORDER + 1))
-    for (i, p), (j, q) in product(enumerate(HALF), repeat=2):
-        out[p[0] + q[0], p[1] + q[1], p[2] + q[2]] = gram[i, j]
-    return out
 
 
 def _quadrature(points, faces):

@@ -8,6 +8,7 @@ from scipy.sparse.csgraph import connected_components
 
 from feederscrew.geometry import vectors
 from feederscrew.geometry.solid_angle import solid_angles
+from feederscrew.part.repair.weld import distinct
 from feederscrew.resting import rounds
 from feederscrew.resting.basins.landscape import RIPPLE_OF_RADIUS, SMOOTH, angle, edges
 
@@ -149,8 +150,7 @@ def _rocks(hull, side, sink):
         return False
     across = vectors.eigen(vectors.covariance(normals, share))[0]
     fewest = FEWEST if across[0] < STRAIGHT * across[1] else FEWEST_OF_A_BALL
-    strips = np.unique(normals.round(2), axis=0, return_inverse=True)[1].ravel()
-    even = 1.0 / (np.bincount(strips, share) ** 2).sum()  # as many strips of one size
+    even = 1.0 / (np.bincount(distinct(normals.round(2))[1], share) ** 2).sum()  # as many strips of one size
     return even > fewest - 0.5 and _round(hull, side)
 
 

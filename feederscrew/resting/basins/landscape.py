@@ -162,9 +162,9 @@ def _joined(hull, basins, pairs, tops, limit):
 
 def _lowest_ways(count, pairs, tops):
     """Edges (indices, lowest first) that are the lowest ways between ``count`` sinks: a spanning forest."""
-    low, high = pairs.min(axis=1), pairs.max(axis=1)
-    order = np.lexsort((tops, high, low))
-    order = order[low[order] != high[order]]
+    low, high = np.minimum(*pairs.T), np.maximum(*pairs.T)
+    order = np.flatnonzero(low != high)
+    order = order[np.lexsort((tops[order], high[order], low[order]))]
     key = low[order] * count + high[order]
     first = np.diff(key, prepend=-1) != 0
     key, order = key[first], order[first]
