@@ -16,6 +16,7 @@ SMOOTH = 2e-6  # [m] corners of a border that stand out by less are left out
 CORNER = 1e-4  # [rad] a border that turns by less has no corner
 SETTLES = 2.0  # of the part's size: how far behind a turning device parts end
 SPARE = 0.1  # of the part's size: how far before a device parts begin, and behind it they end
+FAR = 10.0  # [m] beyond any opening
 THICK = 4e-3  # [m] of the track: deeper down its sides hold nothing
 BARE = Device("track", "")
 
@@ -67,7 +68,7 @@ def station(device, track, every, start=0.0):
     gate = None if device.kind == "yield" else opening(device, every, width)
     if gate is not None:
         middle = start + 0.5 * room
-        plates.append(_gate_plate(gate, track, width, every, middle))
+        plates.append(_gate_plate(gate, track, width, every, middle, BEHIND * size))
         beyond = middle + (0.5 + SPARE) * size
     return Stage(device, *_stacked(plates), begin=begin, exit=beyond, below=hangs)
 
@@ -131,15 +132,26 @@ def _drawn_end(a, b, radius, ends):
     return min(off) > radius + near or max(place) < ends[0] + near or min(place) > ends[1] - near
 
 
-def _gate_plate(gate, track, width, every, middle):
-    """A gate across the track as wide as that, seen by the part that arrives: from the wall, and upwards."""
+def _gate_plate(gate, track, width, every, middle, behind):
+    """A gate across the track as wide as that, seen by the part that arrives: from the wall, and upwards.
+
+    It goes on into wall and track: a corner that touches either does not slip past the gate's end.
+    """
     tall = 2.0 * max(max(one.height for one in every), gate.bounds[3]) + FRAME
-    solid = shapely.box(0.0, 0.0, width, tall).difference(gate)
+    solid = shapely.box(-behind, -behind, width, tall).difference(_onwards(gate, behind))
     theta = middle / track.radius
     c, s = np.cos(theta), np.sin(theta)
     origin = [track.radius * s, track.radius * (1.0 - c), 0.0]
     frame = np.array([origin, [-s, c, 0.0], [0.0, 0.0, 1.0], [-c, -s, 0.0]])
     return frame, BLADE, _rings(solid, lambda a, b: max(a[0], b[0]) <= 0.0 or max(a[1], b[1]) <= 0.0)
+
+
+def _onwards(gate, behind):
+    """An opening that goes on into the wall and into the track where it reaches them."""
+    beside = shapely.bounds(shapely.get_parts(gate.intersection(shapely.box(0.0, 0.0, SMOOTH, FAR))))
+    gate = shapely.union_all([gate, *(shapely.box(-behind, low, SMOOTH, high) for _, low, _, high in beside)])
+    under = shapely.bounds(shapely.get_parts(gate.intersection(shapely.box(-behind, 0.0, FAR, SMOOTH))))
+    return shapely.union_all([gate, *(shapely.box(near, -behind, far, SMOOTH) for near, _, far, _ in under)])
 
 
 def _rings(area, is_end):

@@ -207,3 +207,13 @@ def test_a_station_is_drawn_with_its_hole():
     assert made.plates.shape == (1, 16) and made.exit == 0.05
     real = made.borders[made.borders[:, 7] < 0.5]
     np.testing.assert_allclose(real[:, 1], 0.06, atol=1e-4)  # the free edge alone is a border
+
+
+def test_a_corner_that_slides_along_the_wall_does_not_slip_past_a_gate(bowl):
+    """The wedge comes with its sharp upright edge foremost, which touches wall and track."""
+    wedge = shapes.part(shapes.prism([(0, 0), (16, 0), (10, 8), (0, 8)], 11))
+    gate = bowl("profile: [[0 mm, 0 mm], [16 mm, 0 mm], [16 mm, 8.4 mm], [0 mm, 8.4 mm]]")
+    every = orientations(wedge, find(wedge), gate.track)
+    sharp = [k for k, one in enumerate(every) if abs(one.height - 11e-3) < 1e-5 and one.length > 15.9e-3]
+    seen = course.course(wedge, gate, every, sharp, gate.devices, parts=len(sharp), seed=1)
+    assert len(sharp) >= 2 and (seen.fates == course.STUCK).all()
