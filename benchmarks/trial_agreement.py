@@ -2,6 +2,8 @@
 
 Example: python benchmarks/trial_agreement.py 20            (trials of each orientation; all eight parts)
          python benchmarks/trial_agreement.py 20 dowel_6x20
+         python benchmarks/trial_agreement.py 6 made        (parts on which no rule was found)
+         python benchmarks/trial_agreement.py 6 some/part.stl
 
 For each part of ``parts/`` the chain that ``feeder tooling`` finds for the most frequent orientation that
 needs one, in the bowl of the defaults.
@@ -17,6 +19,9 @@ from feederscrew import bowl as bowls
 from feederscrew.part import load
 from feederscrew.studies import tooling, trial
 from feederscrew.trial import course, result
+
+sys.path.insert(0, str(Path(__file__).parent))
+import trial_parts
 
 PARTS = Path(__file__).parent.parent / "parts"
 NAMES = (
@@ -56,11 +61,18 @@ def rows(run):
         yield f"  {one.name:7s} {said:6s} {margin:8.3f} {sure:6s} {run.holding[k]:3d} hold: {fates}{mark}"
 
 
+def part_of(name):
+    """A part of ``parts/``, one that is made here, or one of a file."""
+    if name in trial_parts.NAMES:
+        return trial_parts.made(name)
+    return load(name if name.endswith(".stl") else str(PARTS / f"{name}.stl"))
+
+
 def main():
     count, names = int(sys.argv[1]) if len(sys.argv) > 1 else 6, sys.argv[2:] or NAMES
     total = held = asked = 0
-    for name in names:
-        part = load(str(PARTS / f"{name}.stl"))
+    for name in trial_parts.NAMES if list(names) == ["made"] else names:
+        part = part_of(name)
         with tempfile.TemporaryDirectory() as folder:
             bowl, wanted = chain(part, folder)
             known = trial.arriving(part, bowl)

@@ -2,11 +2,11 @@
 
 While the line of action of the normal force lies outside the contact polygon, the part turns about the
 nearest side. Over a settled cycle the moments about that side hold it down, or the bare track would not carry
-it: it rocks. It turns over where one stroke alone is enough to lift its centre of mass over the side, and
-where its rocking grows: a stroke tilts it by more than ``GROWS`` of that, and the next meets it still tilted.
+it: it rocks. It turns over where that, followed from stroke to stroke, lifts its centre of mass over a side.
 """
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -18,12 +18,13 @@ from feederscrew.mechanics.cycle import phases
 from feederscrew.mechanics.floor.balance import HOP, TIP
 from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import seat
-from feederscrew.tooling.orientations import travelling
+from feederscrew.rates.rocking import goes_over, rocker
+from feederscrew.tooling.orientations import gyration, rolls_across, travelling
 from feederscrew.units import listed
 
 INSTANTS = 12  # of one period
-GROWS = 0.125  # in trials pins that a stroke tilts by 0.12 to 0.32 of their balance fell, by 0.05 stood
-FLAT = "flat"  # a part that rolls lies on a line, and rolls where others tip
+FLAT = "flat"  # a part that rolls lies on a line: it rolls where others tip, and tips over the line's ends
+BESIDE = 10.0  # heights of the centre of mass: no force of a bowl acts so far beside it
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,12 +34,7 @@ class TrackTipping:
     tips: np.ndarray  # (M,) bool, at some instant of the cycle
     tilt: np.ndarray  # (M,) [rad] that one stroke brings at most; 0 where it does not tip
     balance: np.ndarray  # (M,) [rad] from which it goes on by itself; NaN where it does not tip
-    grows: np.ndarray  # (M,) bool, whether one stroke adds to what the one before has tilted it by
-
-    @property
-    def over(self):
-        """(M,) bool, whether one stroke is enough to turn it over, or its rocking grows until it does."""
-        return self.tips & (self.grows | (self.tilt >= np.nan_to_num(self.balance, nan=np.inf)))
+    over: np.ndarray  # (M,) bool, whether its rocking turns it over
 
 
 def marked(lying, bowl):
@@ -85,8 +81,8 @@ def tipping(lying, bowl):
     -----
     The greatest moment about a side is taken for half a period, on the moment of inertia m (r^2 + h^2) of the
     centre of mass about that side, r beside it and h above it: an upper estimate. It is over at atan(r/h).
-    After the stroke its weight brings it back, by g r / (r^2 + h^2) at most; in a trial an upright pin of
-    6 x 20 mm that is tilted by 2 deg a stroke was over after twelve of them.
+    After the stroke its weight brings it back, by g r / (r^2 + h^2) at most. Where it is then still tilted at
+    the next one, or over already, its rocking is followed: ``rocking.goes_over``.
     """
     found = [_one(one, bowl) for one in lying] if _plain(bowl) else [_NEVER] * len(lying)
     return TrackTipping(*(check.frozen(np.array(column)) for column in zip(*found)))
@@ -103,10 +99,10 @@ def _plain(bowl):
 
 
 def _one(one, bowl):
-    """Whether one orientation tips, how far a stroke tilts it, from where it goes on, whether it rocks on."""
-    if one.falls_off or one.kind != FLAT or one.touching is None:
+    """Whether one orientation tips, how far a stroke tilts it, from where it goes on, if it goes over."""
+    if one.falls_off or one.touching is None or (one.kind != FLAT and rolls_across(one)):
         return _NEVER
-    place, phase = seat(one.posture, one.heading, one.touching, bowl.track.bank), phases(INSTANTS)
+    place, phase = _seat(one, bowl.track.bank), phases(INSTANTS)
     rest = balance.motion(place, bowl, phase)
     if (rest.state == HOP).any() or not (rest.state == TIP).any():
         return _NEVER
@@ -122,7 +118,18 @@ def _one(one, bowl):
     tilt, back = 0.5 * rate * stroke, bowl.gravity * beside / arm
     late = rate + np.sqrt(rate**2 + 2.0 * back * tilt) > back * stroke
     lean = np.arctan2(beside, place.height)
-    return True, float(tilt), float(lean), bool(late and tilt > GROWS * lean)
+    over = (late or tilt >= lean) and goes_over(rocker(place, partial(gyration, one), bowl), 2.0 * stroke)
+    return True, float(tilt), float(lean), bool(over)
+
+
+def _seat(one, bank):
+    """How it lies; one that rolls tips over the ends of its line only, so its contact is wide beside that."""
+    place = seat(one.posture, one.heading, one.touching, bank)
+    if one.kind == FLAT:
+        return place
+    back, ahead = place.contact[:, 0].min(), place.contact[:, 0].max()
+    side = BESIDE * place.height
+    return replace(place, contact=np.array([[back, -side], [ahead, -side], [ahead, side], [back, side]]))
 
 
 def _to_side(contact, point):

@@ -167,15 +167,15 @@ def travelling(found, bowl):
         replace(
             one,
             carry=FALLEN * speed * _tipping_time(one, _greatest(one), bowl.gravity),
-            carry_ahead=FALLEN * speed * _tipping_time(one, _across(one), bowl.gravity),
-            may_roll_back=bool(not held and _rolls(one)),
+            carry_ahead=FALLEN * speed * _tipping_time(one, gyration(one, 0.5 * np.pi), bowl.gravity),
+            may_roll_back=bool(not held and rolls_across(one)),
         )
         for one in found
     )
 
 
-def _rolls(one):
-    """Whether it rolls about an axis across the track rather than along it, or round in a circle."""
+def rolls_across(one):
+    """Return whether it rolls about an axis across the track rather than along it, or round in a circle."""
     if one.kind != "rolling" or one.posture.axis is None:
         return False
     if np.isfinite(one.posture.rolling_circle):
@@ -196,23 +196,25 @@ def _speed(bowl):
     return max(float(found), 0.0) if np.isfinite(found) else 0.0
 
 
-def _tipping_time(one, inertia, gravity):
-    """Time constant [s] of an orientation that tips over an edge below its centre of mass."""
+def _tipping_time(one, spread, gravity):
+    """Time constant [s] of tipping over an edge below the centre of mass; ``spread`` as from ``gyration``."""
     height = one.posture.height
-    return float(np.sqrt((inertia / one.posture.mass + height**2) / (gravity * height)))
+    return float(np.sqrt((spread + height**2) / (gravity * height)))
 
 
 def _greatest(one):
-    """Greatest moment of inertia about a level axis [kg m2]."""
+    """Square of the greatest radius of gyration about a level axis [m2]."""
     inertia = one.posture.inertia
     mean, lean = 0.5 * (inertia[0, 0] + inertia[1, 1]), 0.5 * (inertia[0, 0] - inertia[1, 1])
-    return mean + np.hypot(lean, inertia[0, 1])
+    return (mean + np.hypot(lean, inertia[0, 1])) / one.posture.mass
 
 
-def _across(one):
-    """Moment of inertia about the level axis across the track [kg m2]."""
-    inertia, (c, s) = one.posture.inertia, (np.cos(one.heading), np.sin(one.heading))
-    return s * s * inertia[0, 0] + c * c * inertia[1, 1] + 2.0 * s * c * inertia[0, 1]
+def gyration(one, angle):
+    """Return the square of the radius of gyration [m2] about a level axis at an angle [rad] to the track."""
+    inertia, turn = one.posture.inertia, angle - one.heading
+    c, s = np.cos(turn), np.sin(turn)
+    moment = c * c * inertia[0, 0] + s * s * inertia[1, 1] + 2.0 * s * c * inertia[0, 1]
+    return float(moment / one.posture.mass)
 
 
 def named(found):
