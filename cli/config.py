@@ -5,12 +5,17 @@ import click
 from feederscrew_cli import options
 
 
-@click.group(short_help="Write a commented bowl file; show the values in effect.")
-def config():
+@click.group(
+    short_help="Write a commented bowl file; show the values in effect.", invoke_without_command=True
+)
+@click.pass_context
+def config(ctx):
     """Example: feeder config init bowl.yaml
 
     Bowl files: start one with all defaults, or show the values in effect and where each came from.
     """
+    if ctx.invoked_subcommand is None:
+        click.echo(ctx.get_help())
 
 
 @config.command(short_help="Write a commented bowl file of all defaults.")

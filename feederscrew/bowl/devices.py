@@ -173,7 +173,7 @@ def beyond_rails(chain):
 
 
 def strangers(chain, aspects):
-    """What is odd in a chain for one part: yields of aspects that it has not.
+    """What is odd in a chain for one part: yields of aspects that it does not have.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def strangers(chain, aspects):
     """
     known = {name.casefold() for name in aspects}
     return [
-        f"{device.where}: yield names aspect {units.shown(name)}, which this part has not"
+        f"{device.where}: yield names aspect {units.shown(name)}, which this part does not have"
         for device in chain
         for name, _ in device.shares
         if name.casefold() not in known

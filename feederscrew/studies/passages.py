@@ -129,7 +129,7 @@ def feeding(part: Part, counts: DeviceCounts, *, launch=None, progress=None, bef
     Raises
     ------
     FeederError
-        If the file names no bowl, or a device that the bowl has not.
+        If the file names no bowl, or a device that the bowl does not have.
     """
     config, bowl = bowl_of(counts)
     launch = launch or counts.head.launch or None

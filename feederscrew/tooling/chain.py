@@ -11,7 +11,7 @@ from feederscrew.tooling.verdicts import opening_margin, seen, verdict
 UPPER = ("wiper", "narrowed_track", "pressure_break")  # pass what needs no more than their value
 LOWER = ("canyon", "gap")  # pass what bears no less
 WHERE = "design"
-FINE = 1e-7  # [m] to which a value is rounded, where that leaves the margins
+FINE = 1e-7  # [m] to which a value is rounded
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,7 @@ def _cut(every, wanted, device, must):
     middle = float(0.5 * (values[wanted] + nearest))
     if not np.isfinite(nearest):
         middle = device.limit
-    rounded = round(middle / FINE) * FINE
+    rounded = fine(middle)
     chosen = replace(device, limit=rounded, text=millimetres(rounded))
     ends = [replace(device, limit=float(end), text=millimetres(end)) for end in (nearest, values[wanted])]
     return judged(every, wanted, chosen, must, *ends)
@@ -142,7 +142,7 @@ def _gate(every, wanted, device, must):
     aspect, heading, play = device.like
     outside = [-opening_margin(seen(every[wanted]), one) for one, some in zip(every, must) if some]
     widest = min(outside, default=2.0 * play)
-    play = round(0.5 * widest / FINE) * FINE if np.isfinite(widest) else play
+    play = fine(0.5 * widest) if np.isfinite(widest) else play
 
     def at(play):
         text = f"{{of: {aspect}@{np.degrees(heading):.6g}, play: {millimetres(play)}}}"
@@ -165,5 +165,10 @@ def judged(every, wanted, device, must, smallest, largest):
 
 
 def millimetres(value):
-    """Return a length as a bowl file has it: '9.25 mm'."""
-    return f"{1e3 * value:.9g} mm"
+    """Return a length as a bowl file has it, to a tenth of a micrometre: '9.25 mm'."""
+    return f"{1e3 * fine(value):.9g} mm"
+
+
+def fine(value):
+    """Return a length rounded to what a bowl file says of it."""
+    return float(np.round(value / FINE)) * FINE

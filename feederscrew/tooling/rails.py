@@ -58,9 +58,9 @@ def _ends(one, device):
 
 def _rails(one, width):
     middle = one.distance - one.shift
-    first = round((middle - 0.5 * width) / chain.FINE) * chain.FINE
+    first = chain.fine(middle - 0.5 * width)
     if first <= 0.0:
         return None
-    span = first, first + width
+    span = first, first + chain.fine(width)
     text = f"{{from: {chain.millimetres(span[0])}, to: {chain.millimetres(span[1])}}}"
     return Device("rails", chain.WHERE, span=span, text=text)

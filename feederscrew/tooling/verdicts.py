@@ -58,7 +58,7 @@ def verdict(device, one, every=(), sigma=0.0):
     Raises
     ------
     ConfigError
-        If a profile names an orientation that the part has not.
+        If a profile names an orientation that the part does not have.
     """
     if device.kind == "yield":
         shares = {name.casefold(): share for name, share in device.shares}
@@ -198,7 +198,7 @@ def _named(device, every):
     apart = [abs(math.remainder(one.heading - heading, 2.0 * math.pi)) for one in known]
     if not known or min(apart) > math.radians(1.0):
         names = ", ".join(one.name for one in every)
-        what = f"profile names orientation {aspect}@{math.degrees(heading):.4g}, which the part has not"
+        what = f"profile names orientation {aspect}@{math.degrees(heading):.4g}, which the part does not have"
         raise ConfigError(device.where, what, f"known are {names}")
     return known[apart.index(min(apart))]
 

@@ -29,7 +29,7 @@ def comparisons(study):
 
 
 def frame(studies):
-    """Return the same of several feeding tests; the answer of a rule that a test has not is empty."""
+    """Return the same of several feeding tests; the answer of a rule that a test does not have is empty."""
     rows = [row for study in studies for row in _rows(study)]
     names = dict.fromkeys(name for row in rows for name in row)
     return tables.frame({name: [row.get(name) for row in rows] for name in names})

@@ -38,7 +38,7 @@ def frame(study):
     Returns
     -------
     Frame
-        The columns of ``compare.csv``; an answer that a set has not is empty.
+        The columns of ``compare.csv``; an answer that a set does not have is empty.
     """
     apart = [one.apart for one in study.sets]
     rows = [

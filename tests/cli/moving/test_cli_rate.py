@@ -92,5 +92,6 @@ def test_a_yield_of_an_aspect_that_the_part_has_not(run, tmp_path):
     path.write_text("devices:\n  - yield:\n      Q: 0.5\n")
     result = run("rate", PART, "--aspect", "A", "--config", path)
     assert (
-        f"Warning: {path}:2:5: yield names aspect 'Q', which this part has not" in result.stderr.splitlines()
+        f"Warning: {path}:2:5: yield names aspect 'Q', which this part does not have"
+        in result.stderr.splitlines()
     )

@@ -96,3 +96,8 @@ def test_a_fault_prints_nothing_on_stdout(run):
         result.stderr
         == "Error: --set drive.frequency: '50 mm' is a length, not a frequency - give it in Hz\n"
     )
+
+
+def test_without_a_command_of_its_own_it_shows_its_help(run):
+    shown = run("config")
+    assert shown.exit_code == 0 and shown.stdout == run("config", "--help").stdout and not shown.stderr
