@@ -31,6 +31,6 @@ def headings(part, aspect, bowl, pictures, out):
     conditions = columns.conditions(solid) | texts(given)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
         found = study(solid, record(given).track, aspect)
-        out.say(*tables.remarks(found))
+        out.say(tables.answer(found), *tables.remarks(found))
         offers.write(folder, files.offers(found, texts(given)), pictures=pictures)
     out.show(tables.frame(found), tables.document(found, texts(given)), hidden=tables.HIDDEN)

@@ -1,6 +1,6 @@
 """The study of ``feeder headings``: how a part lies along the track's wall."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from feederscrew.bowl.record import Track
 from feederscrew.mechanics.wall import headings as wall
@@ -19,12 +19,13 @@ class HeadingsStudy:
     postures: tuple[Posture, ...]
     headings: tuple[wall.Headings, ...]  # one a posture
     chances: dict[str, float]  # probability of each aspect of the part by the answer that ranks them
+    answer: str  # whose they are: 'hops, launch feed'
 
     def only(self, aspect):
         """Return the study of one of its aspects."""
         kept = [k for k, one in enumerate(self.postures) if one.name == aspect]
         postures, found = (tuple(many[k] for k in kept) for many in (self.postures, self.headings))
-        return HeadingsStudy(self.part, self.track, postures, found, self.chances)
+        return replace(self, postures=postures, headings=found)
 
 
 def headings(part, track, aspect=None, aspects: Aspects | None = None):
@@ -58,4 +59,5 @@ def headings(part, track, aspect=None, aspects: Aspects | None = None):
         postures=postures,
         headings=tuple(wall.headings(one, track) for one in postures),
         chances=dict(zip(found.names, found.chances[found.ranking].tolist())),
+        answer=found.source(found.ranking),
     )

@@ -33,7 +33,17 @@ def document(study, settings):
     -------
     dict
     """
-    return {"part": study.part.name, "headings": rows(study), "bowl": settings}
+    return {
+        "part": study.part.name,
+        "answer": study.answer,
+        "headings": rows(study),
+        "bowl": settings,
+    }
+
+
+def answer(study):
+    """Say whose probabilities of the aspects a HeadingsStudy takes."""
+    return f"Aspect share: {study.answer}"
 
 
 def remarks(study):

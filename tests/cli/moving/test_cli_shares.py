@@ -79,9 +79,10 @@ def test_likeliest_is_one_aspect_everywhere(run):
     for command in ("floor", "track"):
         assert said in run(command, CAP).stderr.splitlines()
     shares = {row["aspect"]: row["p_recommended"] for row in table}
-    lines = run("headings", CAP, "--format", "csv", "--set", "track.width=40 mm").stdout
+    laid = run("headings", CAP, "--format", "csv", "--set", "track.width=40 mm")
+    assert "Aspect share: drop test, launch feed" in laid.stderr.splitlines()
     total = dict.fromkeys(shares, 0.0)
-    for row in csv.DictReader(io.StringIO(lines)):
+    for row in csv.DictReader(io.StringIO(laid.stdout)):
         total[row["aspect"]] += float(row["aspect_share"])
     assert total == pytest.approx(shares, abs=1e-4)
     known = told(run, "rate", CAP, "--aspect", first)
