@@ -76,7 +76,7 @@ def test_a_gate_of_an_orientation_passes_it_by_its_play(block, device):
 
 def test_a_gate_of_an_orientation_that_is_none(block, device):
     with pytest.raises(
-        FeederError, match=r"bowl.yaml:3:5: profile names orientation Q@10, which the part has"
+        FeederError, match=r"bowl.yaml:3:5: profile names orientation Q@10, which the part does not have"
     ):
         verdict(device("profile: {of: Q@10, play: 0.2 mm}"), block[0], block)
 
