@@ -11,6 +11,11 @@ settings.register_profile("same", derandomize=True, deadline=None)
 settings.load_profile("same")  # the same examples everywhere: new ones are for `make fuzz` to look for
 
 
+def pytest_collection_modifyitems(items):
+    """Begin with what takes longest, so that no process is left with it when the others are done."""
+    items.sort(key=lambda item: item.get_closest_marker("long") is None)
+
+
 @pytest.fixture
 def run(tmp_path, monkeypatch):
     """Run one ``feeder`` command line inside an empty folder; gives click's result."""

@@ -48,8 +48,9 @@ def cluster(folder, workers=2):
             process.wait()
 
 
+@pytest.mark.long
 def test_a_cluster_gives_the_bytes_of_the_processes_even_if_it_loses_a_worker(tmp_path, three):  # noqa: F811
-    for number in range(6):
+    for number in range(3):
         block(tmp_path / f"in/more_{number}.stl", 5.0 + number, 4.0, 3.0)
     requests = asked(tmp_path / "in")
     ran(requests, tmp_path / "here", workers=Here())
@@ -66,7 +67,7 @@ def test_a_cluster_gives_the_bytes_of_the_processes_even_if_it_loses_a_worker(tm
 
 
 def test_a_lost_scheduler_is_one_line_and_what_is_finished_is_kept(tmp_path, three):  # noqa: F811
-    with cluster(tmp_path) as (address, running), pytest.raises(FeederError) as fault:
+    with cluster(tmp_path, workers=1) as (address, running), pytest.raises(FeederError) as fault:
         ran(three, tmp_path / "out", workers=batch.Cluster(address), tell=lambda kept: running[0].kill())
     assert fault.value.lines == (
         f"{address}: the scheduler is lost - see to it, then start this command again with `resume`:"

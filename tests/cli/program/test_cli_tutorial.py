@@ -4,6 +4,7 @@ import re
 import shlex
 from pathlib import Path
 
+import pytest
 from click.testing import CliRunner
 
 from feederscrew_cli.main import feeder
@@ -13,6 +14,7 @@ BLOCK = re.compile(r"```console sampled\n\$ feeder (.*)\n((?:(?!```).*\n)*)```")
 FILES = {"tooling.dxf", "tooling.svg", "tooling.stl", "tooling.yaml", "tooling.png", "tooling.csv"}
 
 
+@pytest.mark.long
 def test_the_jobs_of_the_tutorial(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "docs").symlink_to(PAGE.parent)
