@@ -17,7 +17,8 @@ from feederscrew.tooling.orientations import Orientation, named, orientations
 from feederscrew.tooling.result import Design
 
 CARRIED = (
-    "quasi-static: at the bowl's speed a part may be carried over a cut that returns it - see feeder trial"
+    "quasi-static: at the bowl's speed a part may be carried over a cut that returns it, laid over by a "
+    "blade or wedged between rails - see feeder trial"
 )
 LATE = "the search stopped at the time limit: another machine may find more - raise the limit"
 
@@ -148,6 +149,6 @@ def _designed(every, shares, wanted, **asked):
     found = design(every, shares, wanted, **asked)
     if found.isolated or not any(one.carry > 0.0 for one in every):
         return found
-    placed = tuple(replace(one, carry=0.0, carry_ahead=0.0) for one in every)
+    placed = tuple(replace(one, carry=0.0, carry_ahead=0.0, grip=0.0, climbs=0.0) for one in every)
     still = design(placed, shares, wanted, **asked)
     return replace(still, reasons=(*still.reasons, CARRIED)) if still.isolated else found

@@ -6,11 +6,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.bowl.devices import Device
-from feederscrew.tooling.verdicts import opening_margin, seen, verdict
+from feederscrew.tooling.holding import leans
+from feederscrew.tooling.verdicts import UNSURE, gate_margin, opening_margin, seen, verdict
 
 UPPER = ("wiper", "narrowed_track", "pressure_break")  # pass what needs no more than their value
 LOWER = ("canyon", "gap")  # pass what bears no less
 WHERE = "design"
+HALVINGS = 10  # of the way from the value nearest to the wanted orientation to the middle
 FINE = 1e-7  # [m] to which a value is rounded
 
 
@@ -54,7 +56,7 @@ def candidates(every, wanted, margin):
             found[device] = np.array([verdict(device, one, every).margin for one in every])
     gate = Device("profile", WHERE, like=(every[wanted].aspect, every[wanted].heading, margin))
     opening = seen(every[wanted]).buffer(margin)
-    found[gate] = np.array([opening_margin(opening, one) for one in every])
+    found[gate] = np.array([gate_margin(opening, one) for one in every])
     return found
 
 
@@ -126,29 +128,55 @@ def _cut(every, wanted, device, must):
     if device.kind == "profile":
         return _gate(every, wanted, device, must)
     values, upper = limits(device.kind, every), device.kind in UPPER
-    if device.kind == "gap":
-        values = values + [0.0 if k == wanted else one.carry_ahead for k, one in enumerate(every)]
+    values = values + np.where(np.arange(len(every)) == wanted, 0.0, _more(device, every))
     nearest = (values[must].min() if upper else values[must].max()) if must.any() else values[wanted]
     middle = float(0.5 * (values[wanted] + nearest))
-    if not np.isfinite(nearest):
-        middle = device.limit
-    rounded = fine(middle)
-    chosen = replace(device, limit=rounded, text=millimetres(rounded))
+
+    def at(value):
+        return replace(device, limit=fine(value), text=millimetres(fine(value)))
+
+    chosen = _surest(every, must, at, middle if np.isfinite(nearest) else device.limit, device.limit)
     ends = [replace(device, limit=float(end), text=millimetres(end)) for end in (nearest, values[wanted])]
     return judged(every, wanted, chosen, must, *ends)
 
 
+def _more(device, every):
+    """By how much more [m] than placed each orientation passes a device as it travels, (M,)."""
+    if device.kind == "gap":
+        return np.array([one.carry_ahead for one in every])
+    if device.kind == "canyon":
+        return np.array([leans(one, device.limit) for one in every])
+    return np.zeros(len(every))
+
+
 def _gate(every, wanted, device, must):
-    aspect, heading, play = device.like
+    aspect, heading, least = device.like
     outside = [-opening_margin(seen(every[wanted]), one) for one, some in zip(every, must) if some]
-    widest = min(outside, default=2.0 * play)
-    play = fine(0.5 * widest) if np.isfinite(widest) else play
+    widest = min(outside, default=2.0 * least)
 
     def at(play):
         text = f"{{of: {aspect}@{np.degrees(heading):.6g}, play: {millimetres(play)}}}"
         return replace(device, like=(aspect, heading, float(play)), text=text)
 
-    return judged(every, wanted, at(play), must, at(widest), at(0.0))
+    def rounded(play):
+        return at(fine(play) if np.isfinite(widest) else play)
+
+    chosen = _surest(every, must, rounded, 0.5 * widest if np.isfinite(widest) else least, least)
+    return judged(every, wanted, chosen, must, at(widest), at(0.0))
+
+
+def _surest(every, must, at, middle, near):
+    """The device of a value midway, or as near to that as a blade still holds up what it has to return."""
+
+    def returns(device):
+        return all(verdict(device, one, every).margin < -UNSURE for one, some in zip(every, must) if some)
+
+    if returns(at(middle)):
+        return at(middle)
+    for _ in range(HALVINGS):
+        half = 0.5 * (near + middle)
+        near, middle = (half, middle) if returns(at(half)) else (near, half)
+    return at(near)
 
 
 def judged(every, wanted, device, must, smallest, largest):

@@ -101,6 +101,12 @@ def neck(one):
     return Neck(float(shank), float(head), check.frozen(down))
 
 
+def head_first(one):
+    """Return whether a part with a head that lies along the track comes with its head ahead of its shank."""
+    found = neck(one)
+    return found is not None and vectors.dot(one.axes[0], found.down) < 0.0
+
+
 def hanging_margin(one, width):
     """Return by how much [m] a slot of some width lets the shank down and holds the head; negative if not."""
     found = neck(one)

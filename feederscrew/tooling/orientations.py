@@ -16,6 +16,7 @@ from feederscrew.tooling import contact
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling.silhouette import silhouette
 
+ROUNDED = 5e-5  # [m] by which the borders of a cut are rounded: less depth does not catch
 FALLEN = 2.0  # time constants after which a part that tips is lost
 
 
@@ -43,6 +44,8 @@ class Orientation:
     may_roll_back: bool = False  # on its round side, not along a climbing track: no verdict is sure
     carry: float = 0.0  # [m] it travels on unsupported before it has tipped: 0 of one that is only placed
     carry_ahead: float = 0.0  # [m] the same over an edge across the track
+    grip: float = 0.0  # [1] friction of the track it travels on: 0 of one that is only placed
+    climbs: float = 0.0  # [m] height of an edge that the speed of the drive lifts it over
 
     @property
     def name(self):
@@ -139,7 +142,7 @@ def orientations(part, aspects, track):
 
 
 def travelling(found, bowl):
-    """Return orientations that know how far a bowl carries them over an edge, and whether they may roll back.
+    """Return orientations that know how a bowl carries them on: over an edge, by friction, and rolling back.
 
     Parameters
     ----------
@@ -168,6 +171,8 @@ def travelling(found, bowl):
             one,
             carry=FALLEN * speed * _tipping_time(one, _greatest(one), bowl.gravity),
             carry_ahead=FALLEN * speed * _tipping_time(one, gyration(one, 0.5 * np.pi), bowl.gravity),
+            grip=float(bowl.friction.static),
+            climbs=_climbs(bowl),
             may_roll_back=bool(not held and rolls_across(one)),
         )
         for one in found
@@ -194,6 +199,12 @@ def _speed(bowl):
             raise
         return 0.0
     return max(float(found), 0.0) if np.isfinite(found) else 0.0
+
+
+def _climbs(bowl):
+    """Height [m] to which the greatest speed of the drive lifts a part, above an edge's own round."""
+    drive = bowl.drive
+    return float(ROUNDED + (2.0 * np.pi * drive.frequency * drive.amplitude) ** 2 / (2.0 * bowl.gravity))
 
 
 def _tipping_time(one, spread, gravity):

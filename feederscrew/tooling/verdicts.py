@@ -11,7 +11,8 @@ from feederscrew.bowl.devices import KINDS
 from feederscrew.errors import ConfigError
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling import turning
-from feederscrew.tooling.hanging import Hanging, hanging_margin
+from feederscrew.tooling.hanging import Hanging, hanging_margin, head_first
+from feederscrew.tooling.holding import leans, may_lay_over, may_wedge
 
 CLOSE = 1e-9  # [m] a part this much over a limit still passes
 UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
@@ -100,7 +101,14 @@ def share(margin, sigma):
 
 
 def _height(device, one, every):
-    return device.limit - one.height, 0.0
+    return _unless_laid_over(device.limit - one.height, one, device.limit), 0.0
+
+
+def _unless_laid_over(margin, one, low):
+    """Margin of what a blade with its edge at a height holds up: none where it may lay the part over."""
+    if margin < 0.0 < one.grip and may_lay_over(one, low):
+        return max(margin, -UNSURE)
+    return margin
 
 
 def _width(device, one, every):
@@ -113,7 +121,8 @@ def _balcony(device, one, every):
 
 
 def _canyon(device, one, every):
-    return one.canyon - device.limit, 0.0
+    margin = one.canyon - device.limit
+    return carried(margin, -margin, leans(one, device.limit) if margin < 0.0 else 0.0), 0.0
 
 
 def _gap(device, one, every):
@@ -132,6 +141,8 @@ def _rails(device, one, every):
         return one.over(device.span), 0.0
     over, _ = _slot(device, one, every)
     held = hanging_margin(one, device.span[1] - device.span[0]) if over < 0.0 else -np.inf
+    if held > 0.0 and one.grip > 0.0 and head_first(one) and may_wedge(one, device.span):
+        return 0.0, 0.0
     return (min(held, -over) if held > 0.0 else over), 0.0
 
 
@@ -162,7 +173,15 @@ def _profile(device, one, every):
         opening = seen(_named(device, every)).buffer(device.like[2])
     else:
         opening = shapely.Polygon(device.corners)
-    return opening_margin(opening, one), 0.0
+    return gate_margin(opening, one), 0.0
+
+
+def gate_margin(opening, one):
+    """Return ``opening_margin`` [m] of an orientation that travels: none where the gate may lay it over."""
+    margin = opening_margin(opening, one)
+    if margin >= 0.0 or one.grip <= 0.0:
+        return margin
+    return _unless_laid_over(margin, one, _beside(opening, one).bounds[1])
 
 
 def opening_margin(opening, one):
@@ -176,14 +195,22 @@ def opening_margin(opening, one):
         What of it is beyond the track's free edge meets no gate.
     """
     shown = seen(one).intersection(shapely.box(-FAR, -FAR, one.track.width, FAR))
-    below, behind = shapely.box(-FAR, -FAR, FAR, 0.0), shapely.box(-FAR, -FAR, 0.0, FAR)
-    outside = shapely.box(-FAR, -FAR, FAR, FAR).difference(shapely.union_all([opening, below, behind]))
-    outside = outside.intersection(shapely.box(-FAR, -FAR, one.track.width, FAR))
-    inside = shown.distance(outside)
+    inside = shown.distance(_solid(opening, one.track.width))
     if inside > 0.0:
         return inside
     corners = shapely.get_coordinates(shown)
     return -float(shapely.distance(shapely.points(corners), opening).max())
+
+
+def _solid(opening, width):
+    """A gate as wide as the track, without its opening; track and wall themselves are none of it."""
+    gate = shapely.box(0.0, 0.0, width, FAR)
+    return gate.difference(opening)
+
+
+def _beside(opening, one):
+    """What is seen of an orientation beside an opening."""
+    return seen(one).intersection(_solid(opening, one.track.width))
 
 
 def seen(one):

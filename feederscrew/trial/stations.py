@@ -7,10 +7,10 @@ import shapely
 
 from feederscrew import check
 from feederscrew.bowl.devices import KINDS, Device
+from feederscrew.tooling.orientations import ROUNDED
 from feederscrew.tooling.strip import BLADE, FRAME, bent, hole, opening
 
 BEHIND = 0.5  # of the part's size: how far the track is drawn behind the wall
-ROUNDED = 5e-5  # [m] by which the borders of a cut are rounded: less depth does not catch
 CHORD = 5e-6  # [m] by which an arc may be seen too flat
 SMOOTH = 2e-6  # [m] corners of a border that stand out by less are left out
 CORNER = 1e-4  # [rad] a border that turns by less has no corner

@@ -1,0 +1,121 @@
+"""What holds a part at a device or lays it over, beside its foot: a blade, the sides of rails, the wall."""
+
+import math
+
+import numpy as np
+import shapely
+
+from feederscrew.geometry.polygons import outline, turned
+
+SAME = 1e-6  # of the part's height: places so near to the foremost one are met with it
+BESIDE = 1e-2  # of the part's height: places so near to the wall lean on it
+FAR = 10.0  # [m] beyond any foot
+
+
+def may_lay_over(one, low):
+    """Return whether a blade across the track may lay a part over instead of holding it up.
+
+    Parameters
+    ----------
+    one : Orientation
+        That travels: it knows the friction of its track.
+    low : float [m]
+        Height of the blade's edge, or from which on an opening is too narrow.
+
+    Returns
+    -------
+    bool
+        False where friction cannot: it is held up as it lies.
+
+    Notes
+    -----
+    In the mean over strokes the track pushes with at most mu N, N being the weight and what the blade presses
+    down by its own friction; the blade pushes back as much, at the height z of the foremost place over its
+    edge, which lies L before the rear side of the foot. The part tips backwards over that side, b behind the
+    weight, where F (z - mu L) + h sin(climb) > b cos(climb), F (1 - mu^2) = mu cos(climb) - sin(climb) in
+    weights. More than the mean no drive can push for long; a real one pushes less.
+    """
+    ahead, height = _met(one, low)
+    behind = _behind(one)
+    mu, c, s = one.grip, math.cos(one.track.climb), math.sin(one.track.climb)
+    lever = height - mu * (behind + ahead)
+    if mu >= 1.0 or mu * c <= s:  # nothing limits the push, or there is none
+        return mu * c > s and lever > 0.0
+    return (mu * c - s) / (1.0 - mu * mu) * lever + one.posture.height * s > behind * c
+
+
+def may_wedge(one, span):
+    """Return whether a head that comes first may stick between rails as a wedge.
+
+    Parameters
+    ----------
+    one : Orientation
+        That travels, its head ahead of the shank.
+    span : (float, float) [m]
+        Of the slot, from the wall.
+
+    Returns
+    -------
+    bool
+        Whether both sides on which the head rests are steep enough together: friction then holds whatever
+        presses it in, and the shank's weight need not turn it down.
+    """
+    seen = turned(one.posture.surface[:, :2], one.heading)[:, 1]
+    ring = outline(np.column_stack([seen, one.posture.surface[:, 2]]))
+    after = np.roll(ring, -1, axis=0)
+    under = after[:, 0] > ring[:, 0]  # counter-clockwise: the lower half runs to the right
+    start, end = ring[under], after[under]
+    lean = 0.0
+    for side in span:
+        edge = side - one.distance
+        met = (start[:, 0] <= edge) & (edge < end[:, 0])
+        if not met.any():
+            return False
+        (run, rise) = (end - start)[np.argmax(met)]
+        lean += math.atan2(run, abs(rise))
+    return lean <= 2.0 * math.atan(one.grip)
+
+
+def leans(one, width):
+    """Return by how much [m] a canyon may be wider than a part passes by its foot, and still let it through.
+
+    Parameters
+    ----------
+    one : Orientation
+        That travels.
+    width : float [m]
+        Of the strip removed along the wall.
+
+    Notes
+    -----
+    The weight lies x over the strip and turns the part towards the wall, on which it leans at height H while
+    its foot slides out over the edge of the strip. Its centre of mass, at height h, thereby rises by
+    (2 H - h) angle^2 / 2 - x angle: without any friction it comes to rest at the angle x / (2 H - h), and
+    with friction sooner. So it dips into the strip by ``width`` times that, and is held at the strip's end
+    unless that is less than ``one.climbs``.
+    """
+    points = one.posture.surface
+    across = turned(points[:, :2], one.heading)[:, 1]
+    high = points[across <= across.min() + BESIDE * one.height, 2].max()
+    return max(one.climbs * (2.0 * high - one.posture.height) / width, 0.0)
+
+
+def _met(one, low):
+    """How far ahead of the weight a part reaches over a height [m], and at which height it first does so."""
+    points, faces = one.posture.surface, one.posture.solid.faces
+    ahead, height = turned(points[:, :2], one.heading)[:, 0], points[:, 2]
+    a, b = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).T
+    crossed = (height[a] > low) != (height[b] > low)
+    a, b = a[crossed], b[crossed]
+    share = (low - height[a]) / (height[b] - height[a])
+    reach = np.concatenate([ahead[height >= low], ahead[a] + share * (ahead[b] - ahead[a])])
+    level = np.concatenate([height[height >= low], np.full(len(a), low)])
+    return float(reach.max()), float(level[reach >= reach.max() - SAME * one.height].min())
+
+
+def _behind(one):
+    """Way [m] from where the weight meets the track back to the border of the supported hull."""
+    hull = shapely.MultiPoint(one.foot.corners).convex_hull
+    back = hull.intersection(shapely.LineString([(0.0, -one.shift), (-FAR, -one.shift)]))
+    least = one.foot.corners[:, 0].min() if back.is_empty else back.bounds[0]
+    return max(float(-least), 0.0)

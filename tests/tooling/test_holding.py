@@ -1,0 +1,72 @@
+"""What a blade lays over, what wedges between rails and what leans on the wall, against closed forms."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew.bowl.devices import Device
+from feederscrew.bowl.record import Track
+from feederscrew.resting.aspects import find
+from feederscrew.tooling import holding
+from feederscrew.tooling.orientations import orientations
+from feederscrew.tooling.verdicts import UNSURE, verdict
+
+TRACK = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
+
+
+def lying(mesh, height):
+    """The orientation of a part that is so high [mm]."""
+    part = shapes.part(mesh)
+    every = orientations(part, find(part), TRACK)
+    return next(one for one in every if abs(one.height - 1e-3 * height) < 1e-6)
+
+
+@pytest.fixture(scope="module")
+def pin():
+    return replace(lying(shapes.box(6, 6, 20), 20), grip=0.5)
+
+
+@pytest.mark.parametrize(("low", "lays"), [(7.4e-3, False), (7.6e-3, True)])
+def test_a_blade_lays_a_pin_over_from_a_height_on(pin, low, lays):
+    """z = mu L + b (1 - mu^2) / mu = 0.5 6 mm + 3 mm 0.75 / 0.5 = 7.5 mm."""
+    assert holding.may_lay_over(pin, low) == lays
+    margin = verdict(Device("wiper", "here", limit=low), pin).margin
+    assert margin == pytest.approx(-UNSURE if lays else low - 20e-3)
+    free = Device("wiper", "here", limit=7.6e-3)
+    assert verdict(free, replace(pin, grip=0.0)).margin == pytest.approx(-12.4e-3)  # one that is only placed
+
+
+def test_a_climb_helps_the_blade_and_a_rough_track_sticks(pin):
+    steep = replace(pin, track=replace(TRACK, climb=np.radians(5.0)))
+    assert holding.may_lay_over(steep, 7.4e-3)
+    assert not holding.may_lay_over(replace(pin, grip=1.2), 7.1e-3)  # z < mu L: its own friction holds it
+    assert holding.may_lay_over(replace(pin, grip=1.2), 7.3e-3)
+
+
+def test_an_opening_above_the_part_lays_it_over_as_a_blade_does(pin):
+    corners = ((0.0, 0.0), (9e-3, 0.0), (9e-3, 7.6e-3), (0.0, 7.6e-3))
+    assert verdict(Device("profile", "here", corners=corners), pin).margin == -UNSURE
+    narrow = ((0.0, 0.0), (4e-3, 0.0), (4e-3, 30e-3), (0.0, 30e-3))  # met at the foot: it stands
+    assert verdict(Device("profile", "here", corners=narrow), pin).margin == pytest.approx(-2e-3, rel=1e-3)
+
+
+@pytest.mark.parametrize(("grip", "wedges"), [(0.57, False), (0.585, True)])
+def test_a_hexagon_wedges_where_friction_exceeds_the_slope_of_its_sides(grip, wedges):
+    """Its sides lean by 30 degrees from upright: tan 30 deg = 0.577."""
+    turn = np.radians(60.0 * np.arange(6))
+    bar = lying(shapes.prism(6.0 * np.column_stack([np.cos(turn), np.sin(turn)]), 30), 6.0 * np.sqrt(3.0))
+    along = replace(bar, grip=grip, heading=bar.heading)
+    middle = bar.distance
+    assert holding.may_wedge(along, (middle - 4e-3, middle + 4e-3)) == wedges
+    assert not holding.may_wedge(along, (middle - 2.5e-3, middle + 2.5e-3))  # it lies on its flat
+
+
+def test_a_part_that_leans_on_the_wall_dips_by_its_angle():
+    """At climbs = 0.3 mm: 0.3 (2 13 - 6.5) / 4 = 1.4625 mm."""
+    block = replace(lying(shapes.box(22, 13, 6), 13), climbs=3e-4)
+    assert holding.leans(block, 4e-3) == pytest.approx(1.4625e-3)
+    near = verdict(Device("canyon", "here", limit=block.canyon + 1.2e-3), block).margin
+    beyond = verdict(Device("canyon", "here", limit=block.canyon + 2.0e-3), block).margin
+    assert near == -UNSURE and beyond == pytest.approx(0.3 * 19.5e-3 / (block.canyon + 2e-3) * 1e-3 - 2e-3)
