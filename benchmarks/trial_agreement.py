@@ -55,7 +55,7 @@ def rows(run):
     for k, one in enumerate(run.known.lying):
         said = "passes" if run.predicted[k] else "goes"
         margin = 1e3 * run.margin[k]
-        sure = "track" if one.returned else "clear" if run.known.sure[k] and abs(margin) > 0.25 else "unsure"
+        sure = "track" if one.returned else "clear" if run.sure[k] and abs(margin) > 0.25 else "unsure"
         fates = ", ".join(f"{n} {fate}" for fate, n in zip(course.FATES, run.counts[k]) if n)
         mark = " <-" if run.odd[k] else ""
         yield f"  {one.name:7s} {said:6s} {margin:8.3f} {sure:6s} {run.holding[k]:3d} hold: {fates}{mark}"
@@ -82,7 +82,7 @@ def main():
         print(f"{name}: {devices}; wanted {wanted}")
         print("\n".join(rows(run)), flush=True)
         margin = np.abs(np.nan_to_num(run.margin, nan=0.0))
-        clear = run.known.sure & (margin > result.CLEAR)
+        clear = run.sure & (margin > result.CLEAR)
         total, asked = total + every, asked + int(clear.sum())
         held += int((clear & ~run.odd).sum())
     print(f"{total} orientations, {asked} with a margin beyond 0.25 mm, {held} of them as the rule says")

@@ -134,7 +134,17 @@ class TrialRun:
     def margin(self):
         """(M,) [m] of the static verdict; NaN where there is none: nothing met, lost before, or not sure."""
         lost = np.array([one.returned for one in self.known.lying])
-        return np.where(lost | ~self.known.sure, np.nan, self.known.margin)
+        return np.where(lost | ~self.sure, np.nan, self.known.margin)
+
+    @cached_property
+    def sure(self):
+        """(M,) bool, whether the static rule is sure of an orientation that comes alone.
+
+        What a pressure break carries and is wider than it only goes where the queue pushes it off.
+        """
+        breaks = [device.limit for device in self.bowl.devices if device.kind == "pressure_break"]
+        pushed = [any(one.balcony <= limit < one.width for limit in breaks) for one in self.known.lying]
+        return self.known.sure & ~np.array(pushed, dtype=bool)
 
     @property
     def odd(self):
@@ -149,7 +159,7 @@ class TrialRun:
 
     def _against(self, holding):
         margin = np.abs(np.nan_to_num(self.margin, nan=np.inf))
-        clear = (margin > CLEAR) & self.known.sure
+        clear = (margin > CLEAR) & self.sure
         return (self.tried > 0) & clear & (holding < HELD * self.tried)
 
     @property

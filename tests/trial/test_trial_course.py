@@ -49,6 +49,8 @@ def sent(bowl, length, parts=2):
         ("canyon: 10.8 mm", 0.012, False),  # beyond what the wall carries
         ("wiper: 5.1 mm", 0.012, True),
         ("wiper: 4.9 mm", 0.012, False),
+        ("profile: [[0 mm, 0 mm], [12.1 mm, 0 mm], [12.1 mm, 5.1 mm], [0 mm, 5.1 mm]]", 0.02, True),
+        ("profile: [[0 mm, 0 mm], [11.9 mm, 0 mm], [11.9 mm, 6 mm], [0 mm, 6 mm]]", 0.02, False),
         ("step: 3 mm", 0.02, True),  # below its barrier
     ],
 )
@@ -63,29 +65,77 @@ def test_a_part_at_the_limit_of_a_device(bowl, device, length, passes):
         assert (seen.ended == 2).all()
 
 
+def left(part, bowl, one, place, aside=0.0):
+    """Height [m] of the centre of mass of a part some time after it was laid, at rest, over a device."""
+    still = replace(bowl, drive=replace(bowl.drive, amplitude=0.0), track=replace(bowl.track, climb=0.0))
+    solid, length, principal = shape.solid_of(part)
+    known = runs.setting(solid, length, still)
+    cut = stations.station(bowl.devices[0], still.track, orientations(part, find(part), still.track))
+    state = runs.laid(one, principal, length, still.track, place=place, aside=aside)
+    ride = runs.ride(known, cut, state[None], np.zeros(1), limits=(0.6, 1.0, 0.0, 1.0), every=0.01, places=9)
+    return ride.states[0][2] * length
+
+
 @pytest.mark.parametrize("over", [-1e-4, 1e-4])
 @pytest.mark.parametrize(
-    ("device", "place", "aside"),
+    ("device", "place", "aside", "inwards"),
     [
-        ("gap: 40 mm", 0.0, 1e-3),  # half its length hangs over
-        ("narrowed_track: 8 mm", 0.013, 2e-3),  # half its width
-        ("canyon: 10 mm", 0.013, 4e-3),  # the same; off the wall, which else holds it
+        ("gap: 40 mm", 0.0, 1e-3, 0.0),  # half its length hangs over
+        ("narrowed_track: 8 mm", 0.013, 2e-3, 1.0),  # half its width
+        ("canyon: 10 mm", 0.013, 4e-3, -1.0),  # the same; off the wall, which else holds it
+        ("slot: {from: 7 mm, to: 30 mm}", 0.013, 1e-3, 1.0),  # its weight beyond the near edge
+        ("slot: {from: 4 mm, to: 13 mm}", 0.013, 1e-3, -1.0),  # or its far side on the far one
     ],
 )
-def test_a_part_laid_over_an_edge_tips_at_its_centre_of_mass(bowl, device, place, aside, over):
+def test_a_part_laid_over_an_edge_tips_at_its_centre_of_mass(bowl, device, place, aside, inwards, over):
     one, falls = bowl(device), over > 0.0
-    still = replace(one, drive=replace(one.drive, amplitude=0.0), track=replace(one.track, climb=0.0))
-    every = orientations(PART, find(PART), one.track)
-    flat = next(k for k in every if k.height < 6e-3 and k.length > 0.015)
-    solid, length, principal = shape.solid_of(PART)
-    known, cut = runs.setting(solid, length, still), stations.station(one.devices[0], still.track, every)
-    inwards = {"gap": 0.0, "narrowed_track": over, "canyon": -over}[one.devices[0].kind]
-    ahead = place if place else over
-    state = runs.laid(flat, principal, length, still.track, place=ahead, aside=aside + inwards)
-    ride = runs.ride(known, cut, state[None], np.zeros(1), limits=(0.6, 1.0, 0.0, 1.0), every=0.01, places=9)
-    height = ride.states[0][2] * length
+    flat = next(k for k in orientations(PART, find(PART), one.track) if k.height < 6e-3 and k.length > 0.015)
+    height = left(PART, one, flat, place if place else over, aside + inwards * over)
     assert (height < 2e-3) == falls
     assert falls or height == pytest.approx(2.5e-3, abs=1e-6)
+
+
+HEADED = shapes.prism([(-2.5, 0), (2.5, 0), (2.5, 14), (5, 14), (5, 17), (-5, 17), (-5, 14), (-2.5, 14)], 5)
+
+
+@pytest.mark.parametrize(
+    ("width", "height"),
+    [  # [mm] of the slot, and of the centre of mass over the rails
+        (4.9, 2.5),  # the shank, 5 mm, does not go down
+        (5.1, -4.45),  # it hangs, the centre of mass that far below the head
+        (9.9, -4.45),
+        (10.1, -10.0),  # the head, 10 mm, goes through
+    ],
+)
+def test_a_headed_part_laid_over_rails_hangs_between_shank_and_head(bowl, width, height):
+    part = shapes.part(HEADED)
+    one = bowl(f"rails: {{from: {6 - width / 2} mm, to: {6 + width / 2} mm}}")
+    lying = next(k for k in orientations(part, find(part), one.track) if k.height < 6e-3 and k.length > 0.017)
+    along = replace(lying, heading=np.pi, distance=6e-3)  # off the wall, its axis over the slot's middle
+    found = 1e3 * left(part, one, along, 0.02)
+    assert found < height + 0.5 if height < -5.0 else found == pytest.approx(height, abs=0.1)
+
+
+def test_blades_are_alike_and_a_pressure_break_is_a_ledge(bowl):
+    def drawn(line):
+        made = bowl(line)
+        return stations.station(made.devices[0], made.track, orientations(PART, find(PART), made.track))
+
+    alike = [
+        ("wiper: 6 mm", "height_bar: 6 mm", "hold_down: 6 mm"),
+        ("narrowed_track: 9 mm", "pressure_break: 9 mm"),
+    ]
+    for first, *others in alike:
+        for other in others:
+            for name in ("plates", "borders"):
+                np.testing.assert_array_equal(getattr(drawn(first), name), getattr(drawn(other), name))
+
+
+def test_what_only_a_queue_pushes_off_a_pressure_break_has_no_verdict_alone(bowl):
+    run = studies.trial(PART, [bowl("pressure_break: 8 mm")], "A", parts=2, seed=1).runs[0]
+    for k in np.flatnonzero(run.tried):  # along, its weight is on the ledge; across, it is not
+        assert np.isnan(run.margin[k]) == (run.known.lying[k].length > 0.015)
+    assert not run.odd.any()
 
 
 def test_a_part_with_many_corners_at_the_wall_stays_on_the_track():
