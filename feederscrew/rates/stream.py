@@ -63,9 +63,15 @@ class Orientations:
 
     @property
     def margin(self):
-        """(M,) [m] the least over the devices, by which it passes them all or fails; NaN without any."""
-        known = np.where(np.isnan(self.margins), np.inf, self.margins).min(axis=1)
-        return np.where(np.isinf(known), np.nan, known)
+        """(M,) [m] of the first device that returns it, or the least by which it passes all; NaN without any.
+
+        To the devices behind the first that returns it, it does not come as it lies.
+        """
+        known = np.where(np.isnan(self.margins), np.inf, self.margins)
+        returns = np.isfinite(known) & (self.passes < 0.5)
+        first = np.take_along_axis(known, returns.argmax(axis=1)[:, None], axis=1)[:, 0]
+        least = np.where(returns.any(axis=1), first, known.min(axis=1))
+        return np.where(np.isinf(least), np.nan, least)
 
     @property
     def sure(self):

@@ -14,7 +14,7 @@ from feederscrew.mechanics.wall.headings import headings
 from feederscrew.resting.posture import Posture, posture
 from feederscrew.tooling import contact
 from feederscrew.tooling import foot as feet
-from feederscrew.tooling.silhouette import silhouette
+from feederscrew.tooling.contact import silhouette
 
 ROUNDED = 5e-5  # [m] by which the borders of a cut are rounded: less depth does not catch
 FALLEN = 2.0  # time constants after which a part that tips is lost

@@ -8,6 +8,7 @@ import shapes
 
 from feederscrew.bowl.devices import Device
 from feederscrew.bowl.record import Track
+from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.tooling import holding
 from feederscrew.tooling.orientations import orientations
@@ -70,3 +71,13 @@ def test_a_part_that_leans_on_the_wall_dips_by_its_angle():
     near = verdict(Device("canyon", "here", limit=block.canyon + 1.2e-3), block).margin
     beyond = verdict(Device("canyon", "here", limit=block.canyon + 2.0e-3), block).margin
     assert near == -UNSURE and beyond == pytest.approx(0.3 * 19.5e-3 / (block.canyon + 2e-3) * 1e-3 - 2e-3)
+
+
+def test_the_margin_of_what_returns_is_that_of_the_first_device_that_does():
+    part = shapes.part(shapes.box(20, 12, 5))
+    kinds = (("wiper", 8e-3), ("gap", 10.5e-3), ("wiper", 4e-3))
+    chain = [Device(kind, "here", limit=limit) for kind, limit in kinds]
+    known = stream.orientations(part, find(part), TRACK, chain)
+    along = next(k for k, one in enumerate(known.lying) if one.height < 6e-3 and one.length > 0.015)
+    assert known.margins[along, 1:] == pytest.approx([3e-3, -0.5e-3, -1e-3], rel=1e-2)
+    assert known.margin[along] == pytest.approx(-0.5e-3, rel=1e-2)
