@@ -3,6 +3,7 @@
 import numpy as np
 
 FLAT = 1e-6  # of the outline's size: a corner that stands out by less is none
+RIPPLE = 2e-3  # of its size: a lower barrier is one of a round side cut into facets
 
 
 def outline(points):
@@ -96,3 +97,30 @@ def turned(points, angle):
 def cross(u, v):
     """Third component of u x v, over the last axis."""
     return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+
+
+def barrier(points):
+    """Return where a part that is turned in a plane first stands over a corner.
+
+    Parameters
+    ----------
+    points : (V, 2) float [m]
+        Corners about the centre of mass: towards the side it turns to, and down.
+
+    Returns
+    -------
+    angle : float [rad]
+        By which it is turned then.
+    height : float [m]
+        Of the centre of mass; ripples of a round side count for nothing.
+    """
+    ring = outline(points)
+    turn, far = np.arctan2(*ring.T), np.hypot(*ring.T)
+    turn = np.where(turn < 0.0, turn + 2.0 * np.pi, turn)
+    heights = (np.sin(turn)[:, None] * ring[:, 0] + np.cos(turn)[:, None] * ring[:, 1]).max(axis=1)
+    stands = heights <= far * (1.0 + 1e-9)  # no other corner is lower there
+    high = far >= ring[:, 1].max() + RIPPLE * far.max()
+    some = np.flatnonzero(stands & high)
+    some = some if len(some) else np.flatnonzero(stands)
+    first = some[np.argmin(turn[some])]
+    return float(turn[first]), float(far[first])

@@ -24,6 +24,7 @@ class Orientations:
     leaves_as: np.ndarray  # (M,) int, the state in which parts wanted as a row are fed
     rules: dict[str, np.ndarray]  # (M,) probability of aspect and heading by each rule
     interval: np.ndarray  # (M, 2) lowest and highest probability by the recommended rule
+    decided: np.ndarray  # (M,) bool, whether statics tells what the devices do; momentum may where they turn
     tipping: TrackTipping | None = None  # on the track of a bowl; None where no drive is known
 
     @property
@@ -75,9 +76,12 @@ class Orientations:
 
     @property
     def sure(self):
-        """(M,) bool, whether it comes along the bare track as it lies: it does not rock or roll there."""
+        """(M,) bool, whether it comes along the bare track as it lies, and no momentum decides at a device.
+
+        On the track it shall neither rock nor roll.
+        """
         rocks = False if self.tipping is None else self.tipping.tips & ~self.tipping.over
-        return ~(np.array([one.may_roll_back for one in self.lying]) | rocks)
+        return self.decided & ~(np.array([one.may_roll_back for one in self.lying]) | rocks)
 
 
 def orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None):
@@ -118,6 +122,7 @@ def along(lying, aspects, chain=(), sigma=0.0, bowl=None):
         leaves_as=check.frozen(np.array([found.leaves_as(row) for row in range(len(lying))])),
         rules={rule: check.frozen(chance) for rule, chance in rules.items()},
         interval=check.frozen(_interval(aspects, lying)),
+        decided=found.decided,
         tipping=tips,
     )
 

@@ -47,6 +47,15 @@ class DeviceFlow:
             found.append(np.array([np.nan if told[k] is None else told[k].margin for k in most]))
         return check.frozen(np.column_stack(found))
 
+    @cached_property
+    def decided(self):
+        """(M,) bool, whether statics tells what every device that it comes to does with it."""
+        found = np.ones(len(self.starts), bool)
+        for reached, told in zip(self._reached, self.verdicts):
+            moved = np.array([one is not None and not one.decided for one in told])
+            found &= ~(reached[:, moved] > 0.0).any(axis=1)
+        return check.frozen(found)
+
     def leaves_as(self, row):
         """Return the state in which an orientation is fed: its own, or how it hangs if none leaves lying."""
         becomes = int(self.leaving[row].argmax())

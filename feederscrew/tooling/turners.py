@@ -30,7 +30,7 @@ def chains(given):
         Single devices first, then pairs; their order matters.
     """
     devices = [device for device in _devices(given) if _sure(given, device)]
-    matrices = {device: _matrix(given, device) for device in devices}
+    matrices = {device: _counted(given, device) for device in devices}
     start, found = given.coming[given.wanted], []
     for count in (1, 2):
         some = [
@@ -58,7 +58,7 @@ def _changes(given, kind):
     if kind == "tip":
         return sorted({one.balcony for one in often if np.isfinite(one.balcony)})
     turns = [turning.pitched(one, given.every) for one in often]
-    return sorted({end for turn in turns for end in (turn.lift, turn.sure)})
+    return sorted({end for turn in turns for end in (turn.lift, turn.sure, turn.holds) if np.isfinite(end)})
 
 
 def _between(known):
@@ -73,19 +73,20 @@ def _device(kind, limit):
 
 
 def _sure(given, device):
-    """Whether a device does by the margin what it does: a step with the wanted orientation, a ledge with all.
-
-    The share that a step turns over of the others is known where it is not all or none.
-    """
-    asked = given.often & given.stays
-    if device.kind == "step":
-        asked &= np.arange(len(asked)) == given.wanted
-    some = [one for one, often in zip(given.every, asked) if often]
-    return all(verdict(device, one, given.every).margin >= given.margin for one in some)
+    """Whether a device does by the margin with the wanted orientation what it does."""
+    return verdict(device, given.every[given.wanted], given.every).margin >= given.margin
 
 
 def _matrix(given, device):
     return course((device,), given.every).matrices[0]
+
+
+def _counted(given, device):
+    """Matrix of a device in which what momentum may decide brings nothing into the wanted orientation."""
+    matrix = np.array(_matrix(given, device))
+    some = [verdict(device, one, given.every).margin >= given.margin for one in given.every]
+    matrix[~np.array(some), given.wanted] = 0.0
+    return matrix
 
 
 def _brought(given, matrices):

@@ -29,6 +29,11 @@ class Verdict:
     hangs: bool = False  # whether it goes on hanging by the head
     onto: tuple[tuple[int, float], ...] = ()  # orientations it goes on in, with their shares; () as it is
 
+    @property
+    def decided(self):
+        """Whether statics tells what becomes of it: where a device turns, momentum may."""
+        return not self.onto or self.margin >= 0.0
+
 
 @dataclass(frozen=True)
 class Judge:
@@ -78,14 +83,17 @@ def _turned(device, one, every, sigma):
     if here is None:
         raise ValueError(f"{one.name} is not one of the orientations")
     if device.kind == "step":
-        turned, margin = turning.share_over_step(one, every, device.limit)
-        onto = turning.pitched(one, every).onto if turned > 0.0 else here
+        turned, margin = turning.over_step(one, every, device.limit)
     else:
         margin, _ = _balcony(device, one, every)
-        turned, margin = 1.0 - share(margin, sigma), abs(margin)
-        onto = turning.rolled(one, every).onto if turned > 0.0 else here
-    shares = ((here, 1.0 - turned), (onto, turned))
-    return Verdict(1.0, float(margin), onto=tuple((place, part) for place, part in shares if part > 0.0))
+        beyond = 1.0 - share(margin, sigma)
+        turned = ()
+        if beyond > 0.0:
+            turned, certain = turning.beyond_ledge(one, every, device.limit)
+            turned = tuple((place, beyond * part) for place, part in turned)
+            margin = margin if margin >= 0.0 else min(-margin, certain)
+    stays = 1.0 - sum(part for _, part in turned)
+    return Verdict(1.0, float(margin), onto=(((here, stays),) if stays > 0.0 else ()) + turned)
 
 
 def _hangs(device, one, margin):

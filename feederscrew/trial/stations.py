@@ -7,6 +7,7 @@ import shapely
 
 from feederscrew import check
 from feederscrew.bowl.devices import KINDS, Device
+from feederscrew.tooling import turning
 from feederscrew.tooling.orientations import ROUNDED
 from feederscrew.tooling.strip import BLADE, FRAME, bent, hole, opening
 
@@ -86,7 +87,7 @@ def _turning(device, track, every, start):
         drop, aside = device.limit, 0.0
         cut = [[start, 0.0], [ends[1], 0.0], [ends[1], width], [start, width]]
     else:
-        drop, aside = 0.5 * max(max(one.length, one.height) for one in every), device.limit
+        drop, aside = turning.below_ledge(every), device.limit
         cut = [[start, aside], [ends[1], aside], [ends[1], width], [start, width]]
     upper = _track_plate(np.array(cut), track, width, size, ends, 0.0, depth=drop + THICK)
     lower = _track_plate(None, track, width, size, (start - THICK, ends[1]), 0.0, level=-drop)

@@ -45,10 +45,43 @@ def test_a_block_pitches_over_its_leading_edge(lying):
     assert turn.angle == pytest.approx(math.atan2(A, C))
     assert turn.lift == pytest.approx(edge - C / 2)
     assert turn.sure == pytest.approx(A * (A / 2) / edge)  # the slope of its foot over the step is that angle
-    assert turn.onto == pick(lying, C, A)
+    assert turn.onto == pick(lying, C, A) and turn.beyond == pick(lying, A, C)
     ledge = turning.rolled(one, lying)
     assert ledge.lift == pytest.approx(math.hypot(B / 2, C / 2) - C / 2)
     assert ledge.onto == pick(lying, A, B)
+
+
+def test_a_face_holds_what_lands_on_it_as_long_as_its_momentum_allows(lying):
+    low, tall = lying[pick(lying, B, C)], lying[pick(lying, C, B)]
+    arm, corner = (B**2 + C**2) / 12.0, (B**2 + C**2) / 4.0
+    kept = ((arm + (B**2 - C**2) / 4.0) / (arm + corner)) ** 2  # of a block that rocks over its short side
+    rise = math.sqrt(corner) - B / 2
+    assert turning.pitched(low, lying).holds == pytest.approx(rise / kept + B / 2 - C / 2)
+    assert turning.pitched(tall, lying).holds == math.inf  # a long side takes all of it: nothing turns on
+    for height in (4.5e-3, 12e-3):
+        turned, margin = turning.over_step(low, lying, height)
+        assert margin < 0.0  # between the barrier and what is sure, and then beyond what the short side holds
+        assert {place for place, _ in turned} == {pick(lying, C, B), pick(lying, B, C)}
+    (one,), margin = turning.over_step(tall, lying, 8e-3)
+    foot_on_edge = C * (C / 2) / math.sqrt(corner)
+    assert one == (pick(lying, B, C), 1.0) and margin == pytest.approx(8e-3 - foot_on_edge, rel=1e-4)
+
+
+def test_a_ledge_turns_only_what_its_drop_takes_past_the_barrier(lying):
+    assert turning.below_ledge(lying) == pytest.approx(A / 2)
+    tall = lying[pick(lying, A, B)]  # standing on its long narrow side
+    (one,), margin = turning.beyond_ledge(tall, lying, 2e-3)
+    assert one == (pick(lying, A, C), 1.0) and margin > 0.0
+    flat = lying[pick(lying, A, C)]  # the second track is too high for it
+    assert turning.beyond_ledge(flat, lying, 5e-3)[1] < 0.0
+    across = lying[pick(lying, B, C)]  # leans at 50 degrees, and its barrier is at 76
+    over, reach, height = A / 2 - 7e-3, A - 7e-3, C / 2
+    tilt = math.asin(A / 2 / reach)
+    fell = height * (1.0 - math.cos(tilt)) + over * math.sin(tilt)
+    turned, margin = turning.beyond_ledge(across, lying, 7e-3)
+    assert not turned
+    left = A / 2 - fell  # to fall, which may pitch it
+    assert margin == pytest.approx(math.hypot(B / 2, C / 2) - C / 2 - left, rel=1e-4)
 
 
 @settings(max_examples=3, deadline=None)
@@ -69,36 +102,40 @@ def test_a_step_is_a_matrix_of_shares_that_grows_with_its_height(lying):
     np.testing.assert_allclose(found.matrices[0], np.eye(len(lying)))  # lower than every barrier
     stay = np.einsum("dii->di", found.matrices)
     assert (np.diff(stay, axis=0) <= 1e-12).all()
-    assert not stay[-1].any()
-    k = pick(lying, A, C)
-    turn = turning.pitched(lying[k], lying)
-    share, margin = turning.share_over_step(lying[k], lying, 0.5 * (turn.lift + turn.sure))
-    assert share == pytest.approx(0.5)
+    tall = pick(lying, C, A)
+    assert not stay[-1][tall]
+    turn = turning.pitched(lying[tall], lying)
+    ((onto, share),), margin = turning.over_step(lying[tall], lying, 0.5 * (turn.lift + turn.sure))
+    assert onto == turn.onto and share == pytest.approx(0.5)
     assert margin == pytest.approx(-0.5 * (turn.sure - turn.lift))
+    assert not found.decided[tall]
+    assert course([Device("step", "test", limit=8e-3)], lying).decided[tall]
 
 
 def test_a_ledge_turns_what_its_weight_lies_beyond(lying):
     found = course([Device("tip", "test", limit=4e-3)], lying)
     for k, one in enumerate(lying):
         beyond = one.distance > 4e-3
-        assert (found.matrices[0][k, k] == 0.0) == beyond
-        assert found.verdicts[0][k].margin == pytest.approx(abs(one.balcony - 4e-3))
-    soft = course([Device("tip", "test", limit=6.1e-3)], lying, sigma=1e-4).matrices[0]
-    k = pick(lying, A, C)
+        assert beyond or found.matrices[0][k, k] == 1.0
+        assert beyond or found.verdicts[0][k].margin == pytest.approx(abs(one.balcony - 4e-3))
+    k = pick(lying, A, B)  # its middle is 2.5 mm from the wall
+    assert course([Device("tip", "test", limit=2e-3)], lying).matrices[0][k, k] == 0.0
+    soft = course([Device("tip", "test", limit=2.6e-3)], lying, sigma=1e-4).matrices[0]
     assert soft[k, k] == pytest.approx(0.5 * math.erfc(-1.0 / math.sqrt(2.0)), abs=2e-3)
 
 
 def test_turning_devices_do_not_commute_with_those_that_return(lying):
-    step, wiper = Device("step", "test", limit=19.5e-3), Device("wiper", "test", limit=6e-3)
-    k, up = pick(lying, A, C), pick(lying, C, A)
-    assert course([step, wiper], lying).leaving[k].sum() == 0.0
-    first = course([wiper, step], lying)
-    assert first.leaving[k, up] == pytest.approx(1.0)
-    assert first.passes[up].tolist() == [1.0, 0.0, 1.0]
+    step, wiper = Device("step", "test", limit=8e-3), Device("wiper", "test", limit=15e-3)
+    k, down = pick(lying, B, A), pick(lying, A, B)
+    assert course([wiper, step], lying).leaving[k].sum() == 0.0
+    first = course([step, wiper], lying)
+    assert first.leaving[k, down] == pytest.approx(1.0)
+    assert first.passes[k].tolist() == [1.0, 1.0, 1.0] and first.decided[k]
     assert first.leaves_as(k) == k  # turned over is not hanging: what is wanted stays what is asked for
 
 
-def test_turning_brings_more_where_returning_wastes(lying):
+def test_turning_brings_more_where_returning_wastes():
+    lying = block(20, 12, 10)  # a ledge turns what lies flat onto its side, which holds it
     shares = np.array([one.chances["recommended"] for one in lying])
     wanted = pick(lying, A, B)
     plain, turned = (design(lying, shares, wanted, holes=False, turn=turn) for turn in (False, True))
