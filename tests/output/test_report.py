@@ -112,7 +112,7 @@ def test_a_small_mesh_is_left_alone():
 
 
 def test_a_simplified_view_says_so(bracket, monkeypatch):
-    monkeypatch.setattr("feederscrew.output.report.scene.reduced", lambda v, f: (v, f[:-2]))
+    monkeypatch.setattr("feederscrew.output.solid.meshes.reduced", lambda v, f: (v, f[:-2]))
     made = page(report(bracket, None, ()), chapters=LIGHT[:1])
     count = len(bracket.faces)
     assert f"a coarser surface of {count - 2} facets; every number is of all {count}" in html(made)

@@ -4,7 +4,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from feederscrew.output.columns import MM
-from feederscrew.output.solid.meshes import encoded, reduced, short
+from feederscrew.output.solid import meshes
+from feederscrew.output.solid.meshes import short
 from feederscrew.output.solid.stance import outermost, stance
 from feederscrew.output.tooling import relief
 
@@ -25,23 +26,14 @@ def scene(part, found, rows):
     Returns
     -------
     dict
-        For JSON: ``positions`` (float32) and ``index`` (uint32), both little-endian in base64, in mm about
-        the centre of mass; ``radius``; ``facets`` shown, of ``all``; ``poses``; and the viewer's place.
+        As ``meshes.viewed``, for JSON, and ``poses``.
     """
     points = (part.vertices - part.centre_of_mass) / MM
-    vertices, faces = reduced(points, part.faces)
-    radius = float(np.linalg.norm(points, axis=1).max())
+    radius = float(np.sqrt((points**2).sum(axis=1).max()))
     near = outermost(points / radius)
     stances = [stance(near, found.normals[row], found.heights[row] / MM / radius) for row in rows]
     back = stances[0].floor_axes @ stances[0].camera.back
-    return {
-        "positions": encoded(vertices, "<f4"),
-        "index": encoded(faces, "<u4"),
-        "radius": short(radius),
-        "facets": len(faces),
-        "all": len(part.faces),
-        "azimuth": short(np.degrees(np.arctan2(back[1], back[0]))),
-        "elevation": short(np.degrees(np.arcsin(back[2]))),
+    return meshes.viewed(part, back) | {
         "poses": [_pose(found, row, standing) for row, standing in zip(rows, stances)],
     }
 
@@ -64,19 +56,10 @@ def over_cuts(part, met, every):
         As ``scene``, with ``tracks``: the sections in mm, ahead, inwards and up from the foot of the centre
         of mass; and ``reach``, how far the view goes, in radii of the part.
     """
-    points = (part.vertices - part.centre_of_mass) / MM
-    vertices, faces = reduced(points, part.faces)
-    tracks = [relief.track_below(one, every) for one in met]
-    return {
-        "positions": encoded(vertices, "<f4"),
-        "index": encoded(faces, "<u4"),
-        "radius": short(np.sqrt((points**2).sum(axis=1).max())),
-        "facets": len(faces),
-        "all": len(part.faces),
-        "azimuth": short(np.degrees(np.arctan2(relief.VIEW[1], relief.VIEW[0]))),
-        "elevation": short(np.degrees(np.arctan2(relief.VIEW[2], np.hypot(*relief.VIEW[:2])))),
+    tracks = [meshes.track(*relief.track_below(one, every)) for one in met]
+    return meshes.viewed(part, relief.VIEW) | {
         "reach": REACH,
-        "tracks": [{"positions": encoded(v / MM, "<f4"), "index": encoded(f, "<u4")} for v, f in tracks],
+        "tracks": tracks,
         "poses": [_over_cut(one, place) for place, one in enumerate(met)],
     }
 

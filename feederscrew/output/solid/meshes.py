@@ -4,6 +4,8 @@ import base64
 
 import numpy as np
 
+from feederscrew.output.columns import MM
+
 MOST_FACETS = 200_000  # that a browser is shown
 FINEST = 2.0**10  # cells across the part of the first grid tried on a larger mesh
 
@@ -45,3 +47,37 @@ def encoded(array, kind):
 def short(value):
     """Return a number with the seven digits that single precision has."""
     return float(f"{value:.7g}")
+
+
+def viewed(part, back):
+    """Return what a scene of the viewer tells of a part and of the viewer's place.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    back : (3,) float
+        Towards the viewer.
+
+    Returns
+    -------
+    dict
+        For JSON: ``positions`` (float32) and ``index`` (uint32), both little-endian in base64, in mm about
+        the centre of mass; ``radius``; ``facets`` shown, of ``all``; ``azimuth`` and ``elevation`` [deg].
+    """
+    points = (part.vertices - part.centre_of_mass) / MM
+    vertices, faces = reduced(points, part.faces)
+    return {
+        "positions": encoded(vertices, "<f4"),
+        "index": encoded(faces, "<u4"),
+        "radius": short(np.sqrt((points**2).sum(axis=1).max())),
+        "facets": len(faces),
+        "all": len(part.faces),
+        "azimuth": short(np.degrees(np.arctan2(back[1], back[0]))),
+        "elevation": short(np.degrees(np.arctan2(back[2], np.hypot(*back[:2])))),
+    }
+
+
+def track(vertices, faces):
+    """Return a section of track (V, 3) [m] for a scene of the viewer."""
+    return {"positions": encoded(vertices / MM, "<f4"), "index": encoded(faces, "<u4")}

@@ -4,7 +4,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from feederscrew.output.columns import MM
-from feederscrew.output.solid.meshes import encoded, reduced, short
+from feederscrew.output.solid import meshes
+from feederscrew.output.solid.meshes import encoded, short
 from feederscrew.output.tooling import relief
 from feederscrew.output.trial.section import section
 from feederscrew.output.trial.shown import shown
@@ -33,21 +34,12 @@ def scene(part, run):
         What each pose is, and what becomes of it.
     """
     rides, found = shown(run), run.course
-    points = (part.vertices - part.centre_of_mass) / MM
-    vertices, faces = reduced(points, part.faces)
-    radius = float(np.sqrt((points**2).sum(axis=1).max()))
-    track, sides = section(found.stations[rides[0].place], run.bowl.track, ABOVE * radius * MM)
+    seen = meshes.viewed(part, relief.VIEW)
+    cut = section(found.stations[rides[0].place], run.bowl.track, ABOVE * seen["radius"] * MM)
     paths = [_path(ride.path, found.principal) for ride in rides]
-    return {
-        "positions": encoded(vertices, "<f4"),
-        "index": encoded(faces, "<u4"),
-        "radius": short(radius),
-        "facets": len(faces),
-        "all": len(part.faces),
-        "azimuth": short(np.degrees(np.arctan2(relief.VIEW[1], relief.VIEW[0]))),
-        "elevation": short(np.degrees(np.arctan2(relief.VIEW[2], np.hypot(*relief.VIEW[:2])))),
+    return seen | {
         "reach": REACH,
-        "tracks": [{"positions": encoded(track / MM, "<f4"), "index": encoded(sides, "<u4")}],
+        "tracks": [meshes.track(*cut)],
         "paths": [encoded(path, "<f4") for path in paths],
         "poses": [_pose(ride, path, k) for k, (ride, path) in enumerate(zip(rides, paths))],
     }, [(ride.orientation, ride.title(found).partition(" ")[2]) for ride in rides]
