@@ -14,7 +14,7 @@ from feederscrew.geometry.polygons import cross
 from feederscrew.geometry.vectors import dot
 
 SETS = ((True, True), (True, False), (False, True), (False, False))  # closed wall contacts, in order of trial
-STEPS = 14  # of the secant rule; the function is nearly straight
+STEPS = 14  # of the secant rule; the functions are nearly straight
 AHEAD = np.array([1.0, 0.0])
 
 
@@ -93,8 +93,8 @@ def held(seat, axes, load, closed, ratio):
         return acting, acting.reactions(closed, np.zeros(2))
 
     def slip(mobilised):
-        acting, walls = resting(mobilised)
-        return acting.left_over(walls, 0)
+        """What is left over along the track, and the divisor of the wall's reactions that it is of."""
+        return wall.acting(force, mobilised * ratio, -mobilised[..., None] * AHEAD).undivided(closed)
 
     mobilised = _mobilised(slip, force)
     acting, walls = resting(mobilised)
@@ -107,11 +107,18 @@ def held(seat, axes, load, closed, ratio):
 
 
 def _mobilised(slip, force):
-    """Friction over normal force that leaves no slip along the track."""
+    """Friction over normal force that leaves no slip along the track.
+
+    Where friction at the wall grows without bound before the slip is held, what the floor alone would need.
+    """
     nothing = np.zeros(force.shape[:-1])
-    unheld = slip(nothing)
-    guess = unheld / np.maximum(-force[..., 2], 1e-3 * np.abs(force).max() + 1e-30)
-    return _zero(slip, nothing, unheld, guess, lambda after, step: after - np.clip(step, -10.0, 10.0))
+    unheld, divisor = slip(nothing)
+    guess = _ratio(unheld, divisor) / np.maximum(-force[..., 2], 1e-3 * np.abs(force).max() + 1e-30)
+    found = _zero(
+        lambda mobilised: slip(mobilised)[0], nothing, unheld, guess,
+        lambda after, step: after - np.clip(step, -10.0, 10.0),
+    )  # fmt: skip
+    return np.where((found * guess >= 0.0) & (slip(found)[1] * divisor > 0.0), found, guess)
 
 
 def _zero(slip, before, slip_before, after, stepped):
@@ -217,16 +224,26 @@ class _Acting:
         ``give`` (..., 2) is how fast a contact opens for a unit of turning moment over how fast for a unit of
         force across the track: zero where the part is kept from turning.
         """
+        shares, divisor = self._shares(closed, give)
+        return _ratio(shares, divisor[..., None])
+
+    def undivided(self, closed):
+        """What is left over along X of a part at rest times a divisor that the reactions have, and that."""
+        shares, divisor = self._shares(closed, np.zeros(2))
+        return self.pull[..., 0] * divisor + dot(self.planar[..., 0], shares), divisor
+
+    def _shares(self, closed, give):
+        """R1 and R2 times the divisor that they have in common, (..., 2), and that, (...)."""
         across, pull = self.planar[..., 1], -self.pull[..., 1]
-        walls = np.zeros(np.broadcast_shapes(across.shape, (*pull.shape, 1)))
+        shares = np.zeros(np.broadcast_shapes(across.shape, (*pull.shape, 1)))
         if all(closed):
-            determinant = across[..., 0] * self.yaws[..., 1] - across[..., 1] * self.yaws[..., 0]
-            walls[..., 0] = _ratio(pull * self.yaws[..., 1], determinant)
-            walls[..., 1] = _ratio(-pull * self.yaws[..., 0], determinant)
-        elif any(closed):
+            shares[..., 0], shares[..., 1] = pull * self.yaws[..., 1], -pull * self.yaws[..., 0]
+            return shares, across[..., 0] * self.yaws[..., 1] - across[..., 1] * self.yaws[..., 0]
+        if any(closed):
             k = closed.index(True)
-            walls[..., k] = _ratio(pull, (across + give * self.yaws)[..., k])
-        return walls
+            shares[..., k] = pull
+            return shares, (across + give * self.yaws)[..., k]
+        return shares, np.ones(shares.shape[:-1])
 
     def left_over(self, walls, axis):
         """Sum of the forces along X or Y, (...)."""
