@@ -43,12 +43,14 @@ class Passage:
         station : Station
             Of this device.
         """
-        one = self.orientation
-        if station.blade is not None or self.picture == "turned":
-            return (station.start + 0.5 * station.length) / one.track.radius
-        if self.device.kind not in ("gap", "cut_out"):
-            return (station.start + 0.5 * station.length) / one.track.radius
-        return station.start / one.track.radius - _shift(self.device, one, self.verdict.shift)
+        one, radius = self.orientation, self.orientation.track.radius
+        if station.blade is not None and self.verdict.passes <= 0.0:
+            ahead, from_wall = self.outline.T
+            blade = station.blade[:, 0].min() / radius
+            return blade - np.arctan2(ahead, radius - from_wall).max()  # it touches it
+        if self.device.kind in ("gap", "cut_out"):
+            return station.start / radius - _shift(self.device, one, self.verdict.shift)
+        return (station.start + 0.5 * station.length) / radius
 
 
 def passage(device, one, every, known=()):

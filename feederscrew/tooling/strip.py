@@ -67,7 +67,7 @@ class TrackSection:
         return np.column_stack([c * x + s * up, self.track.radius + s * x - c * up])
 
 
-def strip(track, devices, every):
+def strip(track, devices, every, lead=0.5):
     """Return the stretch of track that holds a chain of devices.
 
     Parameters
@@ -77,6 +77,8 @@ def strip(track, devices, every):
         In the order parts meet them; measured yields need no place.
     every : sequence of Orientation
         Of the part.
+    lead : float [1]
+        Rooms, of a device each, before the first one.
 
     Returns
     -------
@@ -86,7 +88,7 @@ def strip(track, devices, every):
     room = ROOM * max(one.length for one in every)
     width = _width(track, made, every)
     tallest = max(one.height for one in every)
-    stations, start = [], 0.5 * room
+    stations, start = [], lead * room
     for device in made:
         length = room + max((x for x, _ in device.corners), default=0.0) * (device.kind == "cut_out")
         stations.append(_station(device, start, length, width, tallest, every))

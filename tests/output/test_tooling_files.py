@@ -16,7 +16,7 @@ import trimesh
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
 from feederscrew.errors import FeederError
-from feederscrew.output.tooling import bowl_file, drawing, figures, files, step, stl
+from feederscrew.output.tooling import bowl_file, drawing, figures, files, relief, step, stl
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
@@ -159,6 +159,19 @@ def test_texts_of_the_pictures_do_not_meet(lying, isolated):
         width, height = figure.canvas.get_width_height()
         assert all(box.x0 >= 0 and box.x1 <= width and box.y0 >= 0 and box.y1 <= height for box in boxes)
         assert not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2))
+
+
+def test_a_part_that_a_gate_stops_is_drawn_in_front_of_it(lying):
+    bowl, every = lying
+    gates = [device for device in bowl.devices if device.kind in ("wiper", "profile")]
+    met = [passages.passage(device, one, every) for device in gates for one in every]
+    stopped = [one for one in met if one.verdict.passes <= 0.0]
+    assert {met.device.kind for met in stopped} == {"wiper", "profile"}
+    for met in stopped:
+        (station,) = relief.station_of(met, every).stations
+        x, y, _ = relief.placed(met, station).T
+        ahead = bowl.track.radius * np.arctan2(x, bowl.track.radius - y)
+        assert ahead.max() == pytest.approx(station.blade[:, 0].min(), abs=1e-6)
 
 
 def test_step_where_opencascade_is(lying):

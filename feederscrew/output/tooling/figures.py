@@ -26,6 +26,7 @@ KEY = (
     "outline: hull of the support, dot: weight"
 )
 LETTERS = 38  # of a line of text in the last column
+NARROW = 24  # the same in the first column
 
 
 def chain(devices, every, shares, wanted=None):
@@ -227,12 +228,14 @@ def _told(page, top, one, share, found, is_wanted):
         word = passages.fate(one, found)
         colour = PASSES if word.startswith("leaves") else FALLS
     else:
-        word, colour = f"returned by {found[-1].device.kind}", FALLS
+        word, colour = f"returned by {found[-1].device.kind.replace('_', ' ')}", FALLS
     sheet.text(page, 16, top + 30, one.name, size=12, weight="bold", colour=colour)
     sheet.text(page, 16, top + 52, f"{100.0 * share:.3g} % of the parts")
-    sheet.text(page, 16, top + 52 + LINE, word, colour=colour)
+    lines = textwrap.wrap(word, NARROW)
+    for line, text in enumerate(lines):
+        sheet.text(page, 16, top + 52 + (1 + line) * LINE, text, colour=colour)
     if is_wanted:
-        sheet.text(page, 16, top + 52 + 2 * LINE, "wanted", weight="bold")
+        sheet.text(page, 16, top + 52 + (1 + len(lines)) * LINE, "wanted", weight="bold")
 
 
 def _measured(page, top, one, share):

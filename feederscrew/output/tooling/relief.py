@@ -100,11 +100,10 @@ def _falls(devices, every, shares, wanted):
 
 def _told(met, word):
     kind = met.device.kind.replace("_", " ")
-    where = "where it bears least" if met.picture == "above" else "in front of it"
-    return (
-        f"{met.orientation.name} {word} the {kind}, margin {met.verdict.margin / MM:+.2f} mm",
-        f"{where}; outline: hull of its support, dot: its weight" if met.picture == "above" else where,
-    )
+    where = "half way through" if met.verdict.passes > 0.0 else "in front of it"
+    if met.picture == "above":
+        where = "where it bears least; outline: hull of its support, dot: its weight"
+    return f"{met.orientation.name} {word} the {kind}, margin {met.verdict.margin / MM:+.2f} mm", where
 
 
 def track_below(met, every):
@@ -147,8 +146,8 @@ def on_section(points, angle, radius):
 
 
 def station_of(met, every):
-    """Return a track section with nothing but the device of a passage."""
-    return strip(met.orientation.track, [met.device], every)
+    """Return a track section with nothing but the device of a passage, and the part before it."""
+    return strip(met.orientation.track, [met.device], every, lead=1.0)
 
 
 def _image(met, every):
