@@ -6,7 +6,7 @@ from feederscrew.errors import ArgumentError
 
 
 def shaped(name, value, shape):
-    """Finite float array of a given shape.
+    """Return a finite float array of a given shape.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def shaped(name, value, shape):
 
 
 def positive(name, value):
-    """Finite number above zero; raises ValueError otherwise."""
+    """Return a finite number above zero; raises ValueError otherwise."""
     number = float(value)
     if not (np.isfinite(number) and number > 0.0):
         raise ValueError(f"{name} is {value}, not a positive number")
@@ -46,7 +46,7 @@ def positive(name, value):
 
 
 def frozen(array):
-    """The same array, closed to writing: what a record holds must not change under it."""
+    """Return the same array, closed to writing: what a record holds must not change under it."""
     array = np.ascontiguousarray(array)
     array.setflags(write=False)
     return array

@@ -27,7 +27,7 @@ class Node:
     items: tuple["Node", ...] = ()  # of a list
 
     def find(self, key):
-        """The entry of a mapping under this key, or None."""
+        """Return the entry of a mapping under this key, or None."""
         return next((entry for entry in self.entries if entry.key == key), None)
 
 
@@ -41,7 +41,7 @@ class Entry:
 
 
 def read(path):
-    """The tree of a YAML file.
+    """Return the tree of a YAML file.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def read(path):
 
 
 def content(path, most, wanted, kind=ConfigError):
-    """The bytes of a file.
+    """Return the bytes of a file.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def _size(file):
 
 
 def load(text, name):
-    """The tree of a YAML text.
+    """Return the tree of a YAML text.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def load(text, name):
 
 
 def decoded(data, name):
-    """Bytes of a text file as text; raises ConfigError with the line that is not UTF-8."""
+    """Return the bytes of a text file as text; raises ConfigError with the line that is not UTF-8."""
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -198,7 +198,7 @@ def raise_all(faults):
 
 
 def hint(word, known):
-    """How to mend an unknown word: the nearest known one, or the list of them."""
+    """Return how to mend an unknown word: the nearest known one, or the list of them."""
     folded = {name.lower(): name for name in known}
     near = difflib.get_close_matches(word.lower(), folded, n=1, cutoff=0.6)
     return f"did you mean {folded[near[0]]}?" if near else f"known are {', '.join(known)}"
@@ -211,7 +211,7 @@ class _Builder:
         self.name, self.faults = name, []
 
     def document(self, events):
-        """The one document of the stream."""
+        """Return the one document of the stream."""
         root = None
         for event in events:
             if isinstance(event, yaml.DocumentStartEvent) and root is not None:

@@ -63,7 +63,7 @@ class QuantityError(ValueError):
 
 
 def quantity(text, dimension, *, suggest=None, bare=None):
-    """A quantity as typed, in SI units.
+    """Return a quantity as typed, in SI units.
 
     Parameters
     ----------
@@ -94,12 +94,12 @@ def quantity(text, dimension, *, suggest=None, bare=None):
 
 
 def factor(unit, dimension):
-    """How many SI units one ``unit`` is; raises KeyError for a unit of another dimension."""
+    """Return how many SI units one ``unit`` is; raises KeyError for a unit of another dimension."""
     return UNITS[dimension][unit]
 
 
 def split(text):
-    """Number and unit of '0.5 mm', as (0.5, 'mm'); raises QuantityError where no number leads."""
+    """Return the number and unit of '0.5 mm', as (0.5, 'mm'); raises QuantityError where no number leads."""
     plain = text.strip().translate(PLAIN)
     if COMMA.match(plain):
         raise QuantityError(f"{shown(text)} has a comma", _without_comma(plain))
@@ -114,30 +114,30 @@ def split(text):
 
 
 def one_line(text):
-    """A user's text fit for a message: printable, on one line and not too long."""
+    """Return a user's text fit for a message: printable, on one line and not too long."""
     line = " ".join("".join(c if c.isprintable() else " " for c in text).split())
     return line if len(line) <= 40 else f"{line[:37]}..."
 
 
 def printable(text):
-    """A text on one line, with an escape for every letter that a terminal may take for a command."""
+    """Return a text on one line, with an escape for every letter that a terminal may take for a command."""
     letters = " ".join(text.splitlines())
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in letters)
 
 
 def counted(number, noun):
-    """A number of things for people: '1 part', '2 parts'."""
+    """Return a number of things for people: '1 part', '2 parts'."""
     return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
 def listed(names):
-    """Names for people: 'A', 'A and B', 'A, B and C'."""
+    """Return names for people: 'A', 'A and B', 'A, B and C'."""
     *most, last = names
     return f"{', '.join(most)} and {last}" if most else last
 
 
 def shown(text):
-    """A user's text fit for a message, in quotes."""
+    """Return a user's text fit for a message, in quotes."""
     return f"'{one_line(text)}'"
 
 

@@ -17,7 +17,7 @@ __all__ = [
 
 
 def read(path=None, overrides=()):
-    """The Bowl of a file and of overrides.
+    """Return the Bowl of a file and of overrides.
 
     Parameters
     ----------
@@ -39,15 +39,15 @@ def read(path=None, overrides=()):
 
 
 def default():
-    """The Bowl of the documented defaults."""
+    """Return the Bowl of the documented defaults."""
     return record(effective({}))
 
 
 def name(path=None):
-    """What a bowl's results are filed under: its file's stem, or 'defaults'."""
+    """Return what a bowl's results are filed under: its file's stem, or 'defaults'."""
     return "defaults" if path is None else Path(path).stem
 
 
 def identity(path=None):
-    """The sha256 of a bowl file by its path; empty for the defaults."""
+    """Return the sha256 of a bowl file by its path; empty for the defaults."""
     return {} if path is None else {str(path): hashlib.sha256(Path(path).read_bytes()).hexdigest()}

@@ -173,7 +173,7 @@ def beyond_rails(chain):
 
 
 def strangers(chain, aspects):
-    """What is odd in a chain for one part: yields of aspects that it does not have.
+    """Return what is odd in a chain for one part: yields of aspects that it does not have.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ friction; there are no tables of friction on coatings to rely on.
 
 
 def template():
-    """A bowl file of all defaults, commented: what ``feeder config init`` writes."""
+    """Return a bowl file of all defaults, commented: what ``feeder config init`` writes."""
     lines = [
         "# A bowl feeder: its drive, its surface and its track. Write a unit after every dimensional value."
     ]
@@ -53,7 +53,7 @@ def write_template(path, *, replace=False):
 
 
 def markdown():
-    """The keys as a Markdown table, for the README."""
+    """Return the keys as a Markdown table, for the README."""
     head = "| Key | Default | From | To | Meaning |\n|---|---|---|---|---|\n"
     return head + "".join(
         f"| `{key.name}` | {_default_for_people(key)} | {key.lowest} | {key.highest} | {key.meaning} |\n"
@@ -69,7 +69,7 @@ def _opening(section):
 
 
 def devices_markdown():
-    """The kinds of devices as a Markdown table, for the README."""
+    """Return the kinds of devices as a Markdown table, for the README."""
     head = "| Device | Example | Meaning |\n|---|---|---|\n"
     return head + "".join(f"| `{name}` | `{one.example}` | {one.meaning} |\n" for name, one in KINDS.items())
 

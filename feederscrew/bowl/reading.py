@@ -12,7 +12,7 @@ TOP_LEVEL = (*SECTIONS, devices.SECTION, *(key.name for key in KEYS if not key.s
 
 
 def settings(path=None, overrides=()):
-    """Every value in effect.
+    """Return every value in effect.
 
     Parameters
     ----------

@@ -89,5 +89,5 @@ SECTIONS = tuple(dict.fromkeys(key.section for key in KEYS if key.section))
 
 
 def rival(key):
-    """The other key of the same field, or None."""
+    """Return the other key of the same field, or None."""
     return next((other for other in KEYS if other.field == key.field and other is not key), None)

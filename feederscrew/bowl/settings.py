@@ -75,7 +75,7 @@ def chain(settings):
 
 
 def record(settings):
-    """The Bowl of complete settings; a field is an array where its setting's value is one.
+    """Return the Bowl of complete settings; a field is an array where its setting's value is one.
 
     A field that may be None, 'as the other one', stays so until its key is given: a Bowl in which the other
     is replaced later must not keep the old value.
@@ -96,7 +96,7 @@ def record(settings):
 
 
 def swept(settings, values):
-    """The Bowl of settings of which some are varied.
+    """Return the Bowl of settings of which some are varied.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def has_machine(given):
 
 
 def default(key):
-    """The Setting of a key while the user gives nothing."""
+    """Return the Setting of a key while the user gives nothing."""
     return _effective(key, {})
 
 

@@ -14,7 +14,7 @@ FULL = 5.0  # of the bowl's own amplitude, at most
 
 
 def strokes(bowl, text=None):
-    """The bowl at each amplitude of its drive.
+    """Return the bowl at each amplitude of its drive.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ class KeyRange:
 
 
 def ranges(texts):
-    """The ranges of one command.
+    """Return the ranges of one command.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ def entry(function):
 
 
 def fitting(function, half_edges):
-    """A marked function as it stands or compiled, whichever is done sooner on a hull of that size."""
+    """Return a marked function as it stands or compiled, whichever is done sooner on a hull of that size."""
     return function if half_edges <= SMALL else _once(function)
 
 

@@ -7,7 +7,7 @@ RIPPLE = 2e-3  # of its size: a lower barrier is one of a round side cut into fa
 
 
 def outline(points):
-    """Convex outline of points in a plane, without corners in the middle of a straight side.
+    """Return the convex outline of points in a plane, without corners in the middle of a straight side.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def _standing_out(corners):
 
 
 def centroid(polygon):
-    """Centroid of the area of a polygon; of its corners where it has no area.
+    """Return the centroid of the area of a polygon; of its corners where it has no area.
 
     Parameters
     ----------
@@ -60,12 +60,12 @@ def centroid(polygon):
 
 
 def sides(polygon):
-    """Vectors from each corner to the next, (K, 2)."""
+    """Return vectors from each corner to the next, (K, 2)."""
     return np.roll(polygon, -1, axis=0) - polygon
 
 
 def inset(polygon, points):
-    """How far points lie inside a convex polygon.
+    """Return how far points lie inside a convex polygon.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def inset(polygon, points):
 
 
 def turned(points, angle):
-    """Points in a plane turned counter-clockwise; ``points`` (..., 2), ``angle`` [rad]."""
+    """Return points in a plane turned counter-clockwise; ``points`` (..., 2), ``angle`` [rad]."""
     c, s = np.cos(angle), np.sin(angle)
     return np.stack(
         [c * points[..., 0] - s * points[..., 1], s * points[..., 0] + c * points[..., 1]], axis=-1
@@ -95,7 +95,7 @@ def turned(points, angle):
 
 
 def cross(u, v):
-    """Third component of u x v, over the last axis."""
+    """Return the third component of u x v, over the last axis."""
     return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
 
 

@@ -6,7 +6,7 @@ from feederscrew import check
 
 
 def solid_angles(apex, triangles):
-    """Solid angle of each triangle, seen from one point.
+    """Return the solid angle of each triangle, seen from one point.
 
     Parameters
     ----------

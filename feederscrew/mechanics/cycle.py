@@ -32,7 +32,7 @@ class Cycle:
 
 
 def phases(samples=SAMPLES):
-    """Phases w t of one period, (samples,) [rad]; the upper reversal is at a quarter."""
+    """Return phases w t of one period, (samples,) [rad]; the upper reversal is at a quarter."""
     return TURN * np.arange(samples) / samples
 
 

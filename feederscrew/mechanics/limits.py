@@ -58,12 +58,12 @@ def plain(bowl):
 
 
 def acceleration_ratio(amplitude, frequency, gravity):
-    """G = A w^2 / g [1], from half stroke [m], frequency [Hz] and gravity [m/s2]."""
+    """Return G = A w^2 / g [1], from half stroke [m], frequency [Hz] and gravity [m/s2]."""
     return amplitude * (2.0 * np.pi * np.asarray(frequency)) ** 2 / gravity
 
 
 def published_limit(ratio, beta, alpha_minus_theta=0.0):
-    """Limiting friction of the thesis: the least that holds on a level floor at the upper reversal.
+    """Return limiting friction of the thesis: the least that holds on a level floor at the upper reversal.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def published_ratio(friction, beta, alpha_minus_theta=0.0):
 
 
 def throw_number(ratio, beta, climb=0.0, bank=0.0):
-    """k = G sin(beta) / (cos(climb) cos(bank)) [1]; the part hops where it is above 1."""
+    """Return k = G sin(beta) / (cos(climb) cos(bank)) [1]; the part hops where it is above 1."""
     return ratio * np.sin(beta) / (np.cos(climb) * np.cos(bank))
 
 
@@ -117,13 +117,13 @@ def hops(ratio, beta, climb=0.0, bank=0.0):
 
 
 def hop_ratio(beta, climb=0.0, bank=0.0):
-    """G [1] from which the part hops; infinite for beta = 0, where nothing lifts it."""
+    """Return G [1] from which the part hops; infinite for beta = 0, where nothing lifts it."""
     with np.errstate(divide="ignore", over="ignore"):
         return np.cos(climb) * np.cos(bank) / np.sin(beta)
 
 
 def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_drag=0.0):
-    """Least static friction at which a part never slips forward, up the track.
+    """Return the least static friction at which a part never slips forward, up the track.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_
 
 
 def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_drag=0.0):
-    """Least static friction at which a part never slips back, down the track.
+    """Return the least static friction at which a part never slips back, down the track.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall
 
 
 def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_drag=0.0):
-    """G from which a part of a given static friction slips forward.
+    """Return G from which a part of a given static friction slips forward.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wa
 
 
 def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_drag=0.0):
-    """G from which a part of a given static friction slips back.
+    """Return G from which a part of a given static friction slips back.
 
     Parameters
     ----------
@@ -208,7 +208,7 @@ def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, w
 
 
 def least_forward_angle(friction, climb, bank=0.0):
-    """Vibration angle [rad] above which growing G brings forward slip before backward slip.
+    """Return the vibration angle [rad] above which growing G brings forward slip before backward slip.
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ def least_forward_angle(friction, climb, bank=0.0):
 
 
 def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_drag=0.0):
-    """What a part does within one cycle.
+    """Return what a part does within one cycle.
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ LIKELIEST, LISTED = "the likeliest ({})", "the first of the card"
 
 
 def standing(part, aspect, block, answered=aspects.find):
-    """The part on an aspect.
+    """Return the part on an aspect.
 
     Parameters
     ----------

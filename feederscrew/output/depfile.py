@@ -35,7 +35,7 @@ def write(path, targets, inputs):
 
 
 def rule(targets, inputs):
-    """The text of the rule."""
+    """Return the text of the rule."""
     made, needed = ([_escaped(path) for path in paths] for paths in (targets, inputs))
     lines = [" ".join(made) + ": " + " \\\n  ".join(needed), *(f"{path}:" for path in needed)]
     return "".join(f"{line.rstrip()}\n" for line in lines)

@@ -160,7 +160,7 @@ class ResultFolder:
 
 
 def safe_name(name):
-    """A name that any file system takes as one folder."""
+    """Return a name that any file system takes as one folder."""
     kept = "".join("_" if c in '<>:"/\\|?*' or ord(c) < 32 or c in NO_LETTERS else c for c in name).rstrip(
         ". "
     )

@@ -57,7 +57,7 @@ class Rate:
 
 
 def wanted(part, aspects, track, name, heading=None):
-    """Aspect and heading that a part shall leave the bowl in.
+    """Return aspect and heading that a part shall leave the bowl in.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def wanted(part, aspects, track, name, heading=None):
 
 
 def velocity(bowl):
-    """Conveying velocity with what it may be.
+    """Return conveying velocity with what it may be.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def velocity(bowl):
 
 
 def rate(found, speed, target, rule, *, gap=0.0, fill=1.0):
-    """Well-oriented parts leaving a bowl.
+    """Return well-oriented parts leaving a bowl.
 
     Parameters
     ----------
@@ -212,7 +212,7 @@ def _probability(found, row, rule):
 
 
 def parts_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
-    """Well-oriented parts on a length of track, which velocity turns into a rate.
+    """Return well-oriented parts on a length of track, which velocity turns into a rate.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ CANDIDATES = 400  # rotations tried at most: more equal faces than that are a cu
 
 
 def classes(faces, part, moments):
-    """Labels of equal faces.
+    """Return labels of equal faces.
 
     Only rotations count: a feeder cannot reflect a part, so mirror images stay apart. The rotation must be
     a symmetry of the solid, not just of its hull.
@@ -45,7 +45,7 @@ def classes(faces, part, moments):
 
 
 def symmetries(faces, part, moments):
-    """Rotations that leave the solid as it is, the identity left out.
+    """Return rotations that leave the solid as it is, the identity left out.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def symmetries(faces, part, moments):
 
 
 def body_frame(part, moments):
-    """Axes fixed in the part: principal axes of inertia, pointed by the solid's third moments.
+    """Return axes fixed in the part: principal axes of inertia, pointed by the solid's third moments.
 
     Parameters
     ----------

@@ -52,7 +52,7 @@ class Posture:
 
 
 def posture(part, aspects, name):
-    """The part standing on one of its aspects.
+    """Return the part standing on one of its aspects.
 
     Parameters
     ----------

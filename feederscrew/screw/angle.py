@@ -9,7 +9,7 @@ PARALLEL_BELOW = 16.0 * np.finfo(float).eps  # [rad] the rounding of two unit ve
 
 
 def dual_angle(first, second):
-    """Angle and distance between the axes of two screws, a + eps d.
+    """Return the angle and distance between the axes of two screws, a + eps d.
 
     Parameters
     ----------

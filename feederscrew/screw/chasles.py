@@ -10,7 +10,7 @@ SERIES_BELOW = 0.1  # [rad] under this the power series, cut after four terms, a
 
 
 def displacement(twist):
-    """The displacement that a finite twist produces: the exponential map.
+    """Return the displacement that a finite twist produces: the exponential map.
 
     Parameters
     ----------

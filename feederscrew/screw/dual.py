@@ -73,20 +73,20 @@ class Dual:
         return as_dual(other) / self
 
     def sin(self):
-        """Sine of a dual angle, sin a + eps d cos a."""
+        """Return the sine of a dual angle, sin a + eps d cos a."""
         return Dual(np.sin(self.real), self.dual * np.cos(self.real))
 
     def cos(self):
-        """Cosine of a dual angle, cos a - eps d sin a."""
+        """Return the cosine of a dual angle, cos a - eps d sin a."""
         return Dual(np.cos(self.real), -self.dual * np.sin(self.real))
 
     def sqrt(self):
-        """Square root; its dual part does not exist where the real part is zero."""
+        """Return the square root; its dual part does not exist where the real part is zero."""
         root = np.sqrt(self.real)
         with np.errstate(divide="ignore", invalid="ignore"):
             return Dual(root, np.divide(self.dual, 2.0 * root))
 
 
 def as_dual(number):
-    """The same number as a ``Dual``; an ordinary one has no dual part."""
+    """Return the same number as a ``Dual``; an ordinary one has no dual part."""
     return number if isinstance(number, Dual) else Dual(number, np.zeros(np.shape(number)))

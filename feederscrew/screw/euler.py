@@ -48,14 +48,14 @@ class Body:
         object.__setattr__(self, "inertia", inertia)
 
     def inertia_about(self, point):
-        """I_A about any point A (Huygens and Steiner), (..., 3, 3) [kg m2]."""
+        """Return I_A about any point A (Huygens and Steiner), (..., 3, 3) [kg m2]."""
         lever = self.centre - point
         square = dot(lever, lever)[..., None, None] * np.eye(3)
         outer = lever[..., :, None] * lever[..., None, :]
         return self.inertia + np.asarray(self.mass)[..., None, None] * (square - outer)
 
     def momentum(self, twist):
-        """Momentum screw of the body moving with a twist, at the twist's reference point A.
+        """Return the momentum screw of the body moving with a twist, at the twist's reference point A.
 
         Parameters
         ----------
@@ -102,7 +102,7 @@ class SpatialTriangle:
 
 
 def spatial_triangle(body, twist, twist_rate):
-    """Force, momentum rate and centripetal screw of a moving body.
+    """Return the force, momentum rate and centripetal screw of a moving body.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def force_screw(body, twist, twist_rate):
 
 
 def twist_rate(body, twist, wrench):
-    """How a body under a wrench changes its twist: the dual Euler equation solved for the motion.
+    """Return how a body under a wrench changes its twist: the dual Euler equation solved for the motion.
 
     Parameters
     ----------

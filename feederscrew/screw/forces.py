@@ -7,7 +7,7 @@ from feederscrew.screw.screws import Wrench
 
 
 def poinsot(forces, points, couples=None, reference=ORIGIN):
-    """The one wrench a system of forces and couples amounts to.
+    """Return the one wrench a system of forces and couples amounts to.
 
     Its ``axis``, ``pitch`` and ``magnitude`` are the line, the couple per force and the force;
     ``reduced()`` expresses it on that line.

@@ -10,7 +10,7 @@ PRINTED_FROM = 1e-12  # of the largest number in a line: what is smaller is roun
 
 
 def pluecker(screw):
-    """Pluecker coordinates: of a twist (v; omega), of every other screw ray coordinates (s; s0).
+    """Return Pluecker coordinates: of a twist (v; omega), of every other screw ray coordinates (s; s0).
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def from_pluecker(kind, coordinates, reference=ORIGIN):
 
 
 def lie_matrix(screw):
-    """The screw as an element of se(3), [s~ s0; 0 0] with s~ u = s x u, (..., 4, 4).
+    """Return the screw as an element of se(3), [s~ s0; 0 0] with s~ u = s x u, (..., 4, 4).
 
     Of a twist it turns the homogeneous coordinates of a body point, measured from the reference point, into
     that point's velocity.
@@ -47,7 +47,7 @@ def lie_matrix(screw):
 
 
 def from_lie_matrix(kind, matrix, reference=ORIGIN):
-    """The screw of a kind from its 4 x 4 matrix; only the part that is skew is read."""
+    """Return the screw of a kind from its 4 x 4 matrix; only the part that is skew is read."""
     matrix = np.asarray(matrix, dtype=float)
     if matrix.shape[-2:] != (4, 4):
         raise ValueError(f"matrix has shape {matrix.shape}, not (..., 4, 4)")
@@ -57,7 +57,7 @@ def from_lie_matrix(kind, matrix, reference=ORIGIN):
 
 
 def text(screw):
-    """Four lines for people, one a notation, in SI units about the screw's own reference point.
+    """Return four lines for people, one a notation, in SI units about the screw's own reference point.
 
     Parameters
     ----------

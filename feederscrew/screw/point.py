@@ -8,7 +8,7 @@ from feederscrew import check
 
 
 def vectors(name, value):
-    """Finite float copy of an array of 3-vectors, closed to writing.
+    """Return a finite float copy of an array of 3-vectors, closed to writing.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def vectors(name, value):
 
 
 def dot(u, v):
-    """Scalar product over the last axis, (..., 3) and (..., 3) to (...,)."""
+    """Return the scalar product over the last axis, (..., 3) and (..., 3) to (...,)."""
     return np.einsum("...i,...i->...", u, v)
 
 
@@ -45,7 +45,7 @@ def length(u):
 
 
 def skew(u):
-    """The matrix of u x, (..., 3) to (..., 3, 3)."""
+    """Return the matrix of u x, (..., 3) to (..., 3, 3)."""
     matrix = np.zeros((*u.shape, 3))
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         matrix[..., k, j], matrix[..., j, k] = u[..., i], -u[..., i]

@@ -33,7 +33,7 @@ def reciprocity(first, second):
 
 
 def reciprocal_twists(wrenches):
-    """Every twist that a set of wrenches does no work on: the freedom which k contacts leave.
+    """Return every twist that a set of wrenches does no work on: the freedom which k contacts leave.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def tipping_twists(wrenches):
 
 
 def reactions(wrenches, external):
-    """How hard each of six contacts pushes: the solution of sum_i lambda_i w_i = -external.
+    """Return how hard each of six contacts pushes: the solution of sum_i lambda_i w_i = -external.
 
     Each equals -(external o t_i) / (w_i o t_i) with t_i of ``tipping_twists``.
 

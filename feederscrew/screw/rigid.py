@@ -58,7 +58,7 @@ class Displacement:
         raise ValueError(f"a displacement moves points, screws and displacements, not {type(other).__name__}")
 
     def inverse(self):
-        """The displacement back: x goes to R^T (x - t)."""
+        """Return the displacement back: x goes to R^T (x - t)."""
         back = np.swapaxes(self.rotation, -1, -2)
         return Displacement(back, -_turned(back, self.translation))
 

@@ -61,7 +61,7 @@ class Screw:
 
     @classmethod
     def on_axis(cls, foot, direction, magnitude=1.0, pitch=0.0, reference=ORIGIN):
-        """The screw of a given line, magnitude and pitch; infinite pitch makes it a free vector.
+        """Return the screw of a given line, magnitude and pitch; infinite pitch makes it a free vector.
 
         Parameters
         ----------
@@ -104,7 +104,7 @@ class Screw:
         return type(self)(self.resultant[index], self.moment[index], point)
 
     def at(self, point):
-        """The same screw with its moment about another point: s0(P) = s0(O) + s x OP."""
+        """Return the same screw with its moment about another point: s0(P) = s0(O) + s x OP."""
         moment = self.moment + np.cross(self.resultant, point - self.reference)
         return type(self)(self.resultant, moment, point)
 
@@ -148,17 +148,17 @@ class Screw:
             return type(self)(self.resultant / divisor, self.moment / divisor, self.reference)
 
     def dot(self, other):
-        """Scalar product s1.s2 + eps (s1.s02 + s01.s2), a ``Dual``; any two kinds."""
+        """Return the scalar product s1.s2 + eps (s1.s02 + s01.s2), a ``Dual``; any two kinds."""
         other = other.at(self.reference)
         dual = dot(self.resultant, other.moment) + dot(self.moment, other.resultant)
         return Dual(dot(self.resultant, other.resultant), dual)
 
     def reciprocal(self, other):
-        """Reciprocal product s1.s02 + s01.s2, (...,); of a twist and a wrench the power [W]."""
+        """Return the reciprocal product s1.s02 + s01.s2, (...,); of a twist and a wrench the power [W]."""
         return self.dot(other).dual
 
     def cross(self, other):
-        """Dual cross product (s1 x s2) + eps (s1 x s02 + s01 x s2), at the first screw's point.
+        """Return the dual cross product (s1 x s2) + eps (s1 x s02 + s01 x s2), at the first screw's point.
 
         A twist crossed with a momentum screw is a ``Wrench``: the rate at which a momentum carried along by
         that twist changes. Other pairs have no name in mechanics and give a plain ``Screw``.
@@ -208,7 +208,7 @@ class Screw:
         return self / np.where(size > 0.0, size, 1.0)
 
     def reduced(self):
-        """The same screw at the foot of its axis, where the moment is parallel to the resultant.
+        """Return the same screw at the foot of its axis, where the moment is parallel to the resultant.
 
         A couple or a translation is the same about every point and stays where it is.
         """

@@ -76,7 +76,7 @@ class MachineSheet:
         return checks.remarks(self)
 
     def rates(self, velocities):
-        """Counted parts [1/s] at velocities; of a sheet with an order."""
+        """Return counted parts [1/s] at velocities; of a sheet with an order."""
         return np.maximum(velocities, 0.0) * self.order.flow.parts
 
 

@@ -52,5 +52,5 @@ class Cell:
 
 
 def given(row, column, published):
-    """A cell that is data: nothing else in the thesis leads to it."""
+    """Return a cell that is data: nothing else in the thesis leads to it."""
     return Cell(row, column, published, math.nan)

@@ -19,13 +19,13 @@ PLAIN = ("drive.amplitude=0.05 mm", "drive.frequency=60 Hz", "drive.vibration_an
 
 
 def plain_bowl():
-    """The bowl on which omitted terms are weighed: the part slips forward and never back."""
+    """Return the bowl on which omitted terms are weighed: the part slips forward and never back."""
     return bowl.read(None, PLAIN)
 
 
 @functools.cache
 def on_track():
-    """The Arc Chute on its fifth aspect on a banked track, driven a little across it."""
+    """Return the Arc Chute on its fifth aspect on a banked track, driven a little across it."""
     default = plain_bowl()
     drive, at_bank = replace(default.drive, direction=BANK), replace(default.track, bank=BANK)
     banked = replace(default, drive=drive, track=at_bank)
@@ -43,27 +43,27 @@ def _sizes(*names):
 
 
 def gravity():
-    """The radial component of the weight."""
+    """Return the radial component of the weight."""
     return _sizes("radial gravity, -m g cos(phi) sin(delta)")
 
 
 def centripetal():
-    """The force of the curved track."""
+    """Return the force of the curved track."""
     return _sizes("centripetal force at mid-stroke")
 
 
 def wall_friction():
-    """The friction of the wall along its own tangent."""
+    """Return the friction of the wall along its own tangent."""
     return _sizes("wall friction turned by sigma, along X", "wall friction turned by sigma, along Y")
 
 
 def moments():
-    """Moments the track equations leave out."""
+    """Return moments the track equations leave out."""
     return _sizes("moment of the drive about X", "moment of wall friction about Y")
 
 
 def pulling():
-    """The wall's reactions by the printed equations, and by the complete ones."""
+    """Return the wall's reactions by the printed equations, and by the complete ones."""
     found = on_track()
     return {"printed": found.printed.walls.sum() / MILLI, "complete": found.now.walls.sum() / MILLI}
 
@@ -78,7 +78,7 @@ def projection():
 
 
 def angles():
-    """cos(alpha - theta) and what is printed for it at alpha = theta."""
+    """Return cos(alpha - theta) and what is printed for it at alpha = theta."""
     return {"printed": np.cos(2.0 * TURN), "turn": np.degrees(TURN)}
 
 

@@ -42,13 +42,13 @@ class FigureGrid:
 
 
 def figure_5_1():
-    """Limiting friction over G for alpha = theta, eq. [4.28]."""
+    """Return limiting friction over G for alpha = theta, eq. [4.28]."""
     betas = {beta: limits.published_limit(RATIOS, np.radians(beta)) for beta in BETAS_OF_5_1}
     return Curves(RATIOS, betas)
 
 
 def limit_surface(number):
-    """Limiting friction over (alpha - theta, G), eq. [4.27].
+    """Return limiting friction over (alpha - theta, G), eq. [4.27].
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def limit_surface(number):
 
 
 def sliding_acceleration(acceleration, beta, friction, gravity=GRAVITY):
-    """V'_z of a sliding part at the upper reversal, as the thesis draws it.
+    """Return V'_z of a sliding part at the upper reversal, as the thesis draws it.
 
     Parameters
     ----------
@@ -91,12 +91,12 @@ def sliding_acceleration(acceleration, beta, friction, gravity=GRAVITY):
 
 
 def ratio_of_5_6():
-    """G of Figure 5-6."""
+    """Return G of Figure 5-6."""
     return limits.acceleration_ratio(AMPLITUDE, FREQUENCY, GRAVITY)
 
 
 def figure_5_6():
-    """V'_z over (beta, mu): x is beta [rad], y is mu."""
+    """Return V'_z over (beta, mu): x is beta [rad], y is mu."""
     betas, frictions = np.radians(np.linspace(0.0, 90.0, 91)), np.linspace(0.0, 1.0, 51)
     ratio = ratio_of_5_6()
     values = sliding_acceleration(ratio * GRAVITY, betas, frictions[:, None])
@@ -105,7 +105,7 @@ def figure_5_6():
 
 
 def figure_5_7():
-    """V'_z over (f, A): x is the frequency [Hz], y is the amplitude [m]."""
+    """Return V'_z over (f, A): x is the frequency [Hz], y is the amplitude [m]."""
     frequencies, amplitudes = np.linspace(0.0, 100.0, 101), np.linspace(0.0, 1e-3, 51)
     ratio = limits.acceleration_ratio(amplitudes[:, None], frequencies, GRAVITY)
     values, throw = sliding_acceleration(ratio * GRAVITY, BETA, FRICTION), limits.throw_number(ratio, BETA)

@@ -31,7 +31,7 @@ class Claim:
 
 
 def claims(number):
-    """The statements on one figure.
+    """Return the statements on one figure.
 
     Parameters
     ----------

@@ -6,7 +6,7 @@ SLACK = 1e-9  # of the last digit: a half of it is not exact in binary
 
 
 def last_digit(text):
-    """Weight of the last printed digit: '0.805' gives 0.001."""
+    """Return the weight of the last printed digit: '0.805' gives 0.001."""
     return 10.0 ** -len(text.partition(".")[2])
 
 

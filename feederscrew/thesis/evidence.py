@@ -15,14 +15,14 @@ def printed(part):
 
 
 def t_geometry():
-    """Largest gap between Table 3-8's I and h and the solid's."""
+    """Return the largest gap between Table 3-8's I and h and the solid's."""
     ours, theirs = parts.t_aspects(0.6), table("3-8")
     moments = np.abs(ours.moments / parts.G_MM2 - theirs.numbers("I"))
     return {"moments": moments.max(), "heights": np.abs(ours.heights / parts.MM - theirs.numbers("h")).max()}
 
 
 def t_density():
-    """Largest gap from Table 3-8's moments with the density used and with the text's [g mm2]."""
+    """Return the largest gap from Table 3-8's moments with the density used and with the text's [g mm2]."""
     ours, theirs = parts.t_aspects(0.6).moments / parts.G_MM2, table("3-8").numbers("I")
     return {
         "right": np.abs(ours - theirs).max(),
@@ -31,7 +31,7 @@ def t_density():
 
 
 def t_rounding():
-    """Largest gap from Table 3-9 in percentage points, without and with the thesis's roundings."""
+    """Return the largest gap from Table 3-9 in percentage points, without and with the thesis's roundings."""
     theirs = np.array([table("3-9").numbers(ratio) for ratio in RATIOS])
     plain = 100.0 * np.array([parts.t_aspects(float(ratio)).pmi for ratio in RATIOS])
     rounded = 100.0 * np.array([rounded_shares(float(ratio))[2] for ratio in RATIOS])
@@ -39,7 +39,7 @@ def t_rounding():
 
 
 def t_classes():
-    """PMI of aspect E with each class counted once, and with all its faces."""
+    """Return PMI of aspect E with each class counted once, and with all its faces."""
     ours = parts.t_aspects(0.6)
     every = ours.faces * ours.moments / ours.heights
     return {
@@ -59,7 +59,7 @@ def t_csa():
 
 
 def t_experiment():
-    """Sum of Table 3-1's experiment column in percent."""
+    """Return the sum of Table 3-1's experiment column in percent."""
     return {
         "sum": table("3-1").numbers("experiment").sum(),
         "printed": table("3-1").text(TOTAL, "experiment"),
@@ -67,14 +67,14 @@ def t_experiment():
 
 
 def t_equation():
-    """Probability of aspect D with h4 under I4, and with h5 as the equation prints."""
+    """Return the probability of aspect D with h4 under I4, and with h5 as the equation prints."""
     moments, heights = table("3-8").numbers("I"), table("3-8").numbers("h")
     right, wrong = moments / heights, moments / heights[[0, 1, 2, 4, 4]]
     return {"right": (right / right.sum())[3], "wrong": (wrong / wrong.sum())[3]}
 
 
 def q_unit():
-    """Sums of Q beside the whole sphere, 4 pi."""
+    """Return sums of Q beside the whole sphere, 4 pi."""
     return {
         "arc_chute": table("3-2").numbers("Q").sum(),
         "magnet": table("3-5").numbers("Q").sum(),
@@ -83,13 +83,13 @@ def q_unit():
 
 
 def q_total():
-    """Sum of Q with and without aspect 1."""
+    """Return the sum of Q with and without aspect 1."""
     values = table("3-2").numbers("Q")
     return {"all": values.sum(), "rest": values[1:].sum(), "printed": table("3-2").text(TOTAL, "Q")}
 
 
 def arc_chute_heights():
-    """Ratios of Table 3-2's heights to Table 3-10's, and how often one height is printed."""
+    """Return ratios of Table 3-2's heights to Table 3-10's, and how often one height is printed."""
     theirs, ours = table("3-2").numbers("h"), table("3-10").numbers("h")
     return {
         "lowest": (theirs / ours).min(),
@@ -100,13 +100,13 @@ def arc_chute_heights():
 
 
 def h_total():
-    """The height that the ratio column of Table 3-2 implies, row by row [mm]."""
+    """Return the height that the ratio column of Table 3-2 implies, row by row [mm]."""
     implied = table("3-2").numbers("h") * table("3-2").numbers("h_total_over_h")
     return {"mean": implied.mean(), "spread": np.ptp(implied)}
 
 
 def rounded_inputs():
-    """A/h of the Magnet's aspect 1, and how far the rounding of A and h can move it [mm]."""
+    """Return A/h of the Magnet's aspect 1, and how far the rounding of A and h can move it [mm]."""
     cell = next(cell for cell in cells("3-6") if (cell.row, cell.column) == ("1", "A_over_h"))
     return {"value": cell.recomputed, "spread": cell.within, "printed": cell.published}
 
@@ -118,19 +118,19 @@ def cut_ratios():
 
 
 def rounded_totals():
-    """Sums of the printed probabilities of the three PMI tables."""
+    """Return sums of the printed probabilities of the three PMI tables."""
     sums = {number: table(number).numbers("probability").sum() for number in ("3-8", "3-10", "3-11")}
     return {"t_shape": sums["3-8"], "arc_chute": sums["3-10"], "magnet": sums["3-11"]}
 
 
 def magnet_total():
-    """Sum of the Magnet's I/h."""
+    """Return the sum of the Magnet's I/h."""
     values = table("3-11").numbers("I") / table("3-11").numbers("h")
     return {"sum": values.sum(), "printed": table("3-11").text(TOTAL, "I_over_h")}
 
 
 def deviations():
-    """The Arc Chute's MDBT_80 against PMI: divided by the number of aspects, and by one less."""
+    """Return the Arc Chute's MDBT_80 against PMI: divided by the number of aspects, and by one less."""
     profiles = parts.profiles("arc_chute")
     value = deviation(profiles["MDBT_80"], profiles["PMI"])
     count = len(profiles["PMI"])
@@ -139,7 +139,7 @@ def deviations():
 
 
 def mixed_heights():
-    """The Magnet's CSA profile with mixed heights, and its deviation from PMI with either."""
+    """Return the Magnet's CSA profile with mixed heights, and its deviation from PMI with either."""
     mixed, profiles = parts.mixed_heights(), parts.profiles("magnet")
     return {
         "profile": ", ".join(f"{p:.4f}" for p in mixed),
@@ -150,7 +150,7 @@ def mixed_heights():
 
 
 def magnet_heights():
-    """Ratios of Table 3-5's heights to Table 3-11's, as a text."""
+    """Return ratios of Table 3-5's heights to Table 3-11's, as a text."""
     ratios = table("3-5").numbers("h") / table("3-11").numbers("h")
     return {"ratios": ", ".join(f"{ratio:.2f}" for ratio in ratios)}
 
@@ -168,13 +168,13 @@ def parallel_axes():
 
 
 def magnet_matrix():
-    """Off-diagonal pair of the Magnet's matrix, as printed [g mm2]."""
+    """Return the off-diagonal pair of the Magnet's matrix, as printed [g mm2]."""
     value = printed("magnet")
     return {"upper": value["I_xy"], "lower": value["I_yx"]}
 
 
 def alignment():
-    """The coefficient of [4.17] with the printed I_xx, and with Table 3-10's moment [1/(g mm)]."""
+    """Return the coefficient of [4.17] with the printed I_xx, and with Table 3-10's moment [1/(g mm)]."""
     value, moment = printed("arc_chute"), float(table("3-10").text("5", "I"))
     return {
         "printed": value["drive_offset"] / value["I_xx"],
@@ -185,19 +185,19 @@ def alignment():
 
 
 def magnet_pose():
-    """The Magnet's lowest aspect in Table 3-11 beside chapter 4's pose [mm, g mm2]."""
+    """Return the Magnet's lowest aspect in Table 3-11 beside chapter 4's pose [mm, g mm2]."""
     value, row = printed("magnet"), table("3-11").rows["3"]
     return {"x": value["x"], "h": float(row["h"]), "I_xx": value["I_xx"], "I": float(row["I"])}
 
 
 def bank_angle():
-    """The remark's angle beside the equation's, in degrees."""
+    """Return the remark's angle beside the equation's, in degrees."""
     value = printed("arc_chute")
     return {"remark": value["bank_without_radial_friction"], "equation": value["wall_lever_angle"]}
 
 
 def wall_lever():
-    """The two values of one lever [mm]."""
+    """Return the two values of one lever [mm]."""
     value = printed("arc_chute")
     return {"first": value["wall_y"], "second": value["wall_friction_y"]}
 
@@ -213,7 +213,7 @@ def principal_axes():
 
 
 def dominant():
-    """The Arc Chute's most frequent aspect at 78 percent, and the PMI rule's."""
+    """Return the Arc Chute's most frequent aspect at 78 percent, and the PMI rule's."""
     profiles, names = parts.profiles("arc_chute"), table("3-4").names
     return {"measured": names[profiles["MDBT_78"].argmax()], "pmi": names[profiles["PMI"].argmax()]}
 

@@ -75,7 +75,7 @@ def csa_by_ratio():
 
 
 def against(part, *names, mixed=False):
-    """A part's PMI profile beside others of its profiles.
+    """Return a part's PMI profile beside others of its profiles.
 
     Parameters
     ----------

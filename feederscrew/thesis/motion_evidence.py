@@ -7,7 +7,7 @@ from feederscrew.thesis import chapter_5
 
 
 def hop():
-    """Where Figures 5-6 and 5-7 lie past the hop, and where friction holds the part."""
+    """Return where Figures 5-6 and 5-7 lie past the hop, and where friction holds the part."""
     ratio = chapter_5.ratio_of_5_6()
     drawn = chapter_5.figure_5_7()
     return {
@@ -19,7 +19,7 @@ def hop():
 
 
 def sliding():
-    """Limiting friction of [4.28] at two vibrations and two angles."""
+    """Return limiting friction of [4.28] at two vibrations and two angles."""
     low, high = chapter_5.RATIOS[5], chapter_5.RATIOS[-1]
     at = {
         f"{name}_{beta}": float(limits.published_limit(ratio, np.radians(beta)))

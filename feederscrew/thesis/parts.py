@@ -37,7 +37,7 @@ class TShape:
 
 @functools.cache
 def t_aspects(ratio):
-    """Aspects of the T shape, found from its surface.
+    """Return aspects of the T shape, found from its surface.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def t_aspects(ratio):
 
 
 def t_part(ratio):
-    """The T shape as a part of the density that gives Table 3-8."""
+    """Return the T shape as a part of the density that gives Table 3-8."""
     vertices, faces = t_shape.solid(ratio)
     solid = mass.solid(vertices[faces])
     return Part(
@@ -84,7 +84,7 @@ def t_part(ratio):
 
 @functools.cache
 def card(name):
-    """The Arc Chute or the Magnet, from its tables.
+    """Return the Arc Chute or the Magnet, from its tables.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def card(name):
 
 
 def rule(name, key):
-    """Probabilities of one rule for the Arc Chute or the Magnet, by aspect.
+    """Return probabilities of one rule for the Arc Chute or the Magnet, by aspect.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def rule(name, key):
 
 
 def profiles(name):
-    """Every profile that Tables 3-12 and 3-13 compare, by the name they have there.
+    """Return every profile that Tables 3-12 and 3-13 compare, by the name they have there.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def profiles(name):
 
 
 def mixed_heights():
-    """The Magnet's CSA profile with Table 3-5's Q over Table 3-11's heights, (3,) [1]."""
+    """Return the Magnet's CSA profile with Table 3-5's Q over Table 3-11's heights, (3,) [1]."""
     weights = table("3-5").numbers("Q") / table("3-11").numbers("h")
     return weights / weights.sum()
 

@@ -18,7 +18,7 @@ POINT = 1.0  # [percentage points] how closely Table 3-1's CSA column follows, a
 
 
 def cells(number):
-    """Printed and recomputed value of each cell of a table.
+    """Return printed and recomputed value of each cell of a table.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def cells(number):
 
 
 def rounded_shares(ratio):
-    """Moments, heights and PMI probabilities of the T shape with the thesis's roundings.
+    """Return moments, heights and PMI probabilities of the T shape with the thesis's roundings.
 
     Parameters
     ----------

@@ -53,7 +53,7 @@ class Item:
 
 
 def items():
-    """Every table, then every figure.
+    """Return every table, then every figure.
 
     Returns
     -------
@@ -65,14 +65,14 @@ def items():
 
 
 def summary(item):
-    """Numbers of one item: cells that can be checked, by verdict, and those that are data."""
+    """Return numbers of one item: cells that can be checked, by verdict, and those that are data."""
     counts = item.counts
     checked = {"exact": counts[EXACT], "explained": counts[EXPLAINED], "differs": counts[DIFFERS]}
     return {"cells": sum(checked.values()), **checked, "given": counts[GIVEN]}
 
 
 def unexplained(items):
-    """The items with a cell that differs and no finding that says why."""
+    """Return the items with a cell that differs and no finding that says why."""
     return [item for item in items if item.counts[DIFFERS]]
 
 

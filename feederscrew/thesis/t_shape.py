@@ -27,7 +27,7 @@ ASPECTS = {  # outward normal of the side it lies on; of two equal sides, one
 
 
 def solid(ratio):
-    """Surface of the T shape.
+    """Return the surface of the T shape.
 
     Parameters
     ----------

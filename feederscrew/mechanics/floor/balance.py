@@ -39,7 +39,7 @@ class FloorMotion:
 
 
 def drive_force(posture, bowl, heading, phase=UPPER_REVERSAL):
-    """Inertial force of the vibration on a part, as (..., 3) [N] along x', y', z.
+    """Return the inertial force of the vibration on a part, as (..., 3) [N] along x', y', z.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def drive_force(posture, bowl, heading, phase=UPPER_REVERSAL):
 
 
 def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0):
-    """What a part on the level bowl floor does at one phase of the vibration.
+    """Return what a part on the level bowl floor does at one phase of the vibration.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0):
 
 
 def over_cycle(posture, bowl, heading, samples=cycle.SAMPLES):
-    """The same over one settled period.
+    """Return the same over one settled period.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def rolls(posture):
 
 
 def regime(states):
-    """The state that names a whole cycle: contact lost, else tipping, else sliding, else sticking."""
+    """Return the state that names a whole cycle: contact lost, else tipping, else sliding, else sticking."""
     present = set(np.ravel(states).tolist())
     return next(STATES[code] for code in (HOP, TIP, SLIDE, STICK) if code in present)
 
@@ -184,7 +184,7 @@ def stable_heading(posture, bowl):
 
 
 def with_friction(bowl, friction):
-    """The bowl with one coefficient for sticking and sliding; the wall keeps its own."""
+    """Return the bowl with one coefficient for sticking and sliding; the wall keeps its own."""
     return replace(bowl, friction=replace(bowl.friction, static=friction, kinetic=friction))
 
 

@@ -13,7 +13,7 @@ REGIMES = STATES  # a regime code is a place in this list
 
 
 def over_angle_and_friction(posture, bowl, heading, vibration_angle, friction):
-    """Upper reversal over (beta, mu), as Figure 5-6.
+    """Return the upper reversal over (beta, mu), as Figure 5-6.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def over_angle_and_friction(posture, bowl, heading, vibration_angle, friction):
 
 
 def over_frequency_and_amplitude(posture, bowl, heading, frequency, amplitude):
-    """Upper reversal over (f, A), as Figure 5-7.
+    """Return the upper reversal over (f, A), as Figure 5-7.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def over_frequency_and_amplitude(posture, bowl, heading, frequency, amplitude):
 
 
 def cells(posture, bowl, heading):
-    """The upper reversal for arrays of bowl settings.
+    """Return the upper reversal for arrays of bowl settings.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ class Rolling:
 
 
 def rolling(posture, coefficients, push, normal):
-    """A part on a rolling aspect, from rest.
+    """Return a part on a rolling aspect, from rest.
 
     Parameters
     ----------

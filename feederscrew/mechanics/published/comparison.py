@@ -37,7 +37,7 @@ class Term:
 
 
 def omitted_terms(seat, bowl, found, offset):
-    """Size of every omitted term on the track, at the upper reversal.
+    """Return the size of every omitted term on the track, at the upper reversal.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ class PrintedTrack:
 
 
 def levers(seat, offset, axes="tilted"):
-    """The printed equations' levers of any part against the wall.
+    """Return the printed equations' levers of any part against the wall.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def levers(seat, offset, axes="tilted"):
 
 
 def printed_levers(found, track):
-    """The same with the sides that a card prints in place of its polar lever's.
+    """Return the same with the sides that a card prints in place of its polar lever's.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def motion(part, bowl, heading, phase=0.5 * np.pi):
 
 
 def half_angle(part, radius):
-    """sigma [rad] of two contacts on a wall of that radius; the thesis leaves it open."""
+    """Return sigma [rad] of two contacts on a wall of that radius; the thesis leaves it open."""
     return np.arcsin(0.5 * (part.behind + part.ahead) / np.asarray(radius))
 
 

@@ -48,7 +48,7 @@ class Headings:
 
 
 def headings(posture, track):
-    """The stable headings of a part against the wall.
+    """Return the stable headings of a part against the wall.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def headings(posture, track):
 
 
 def on_track(found, posture, track, reaches=None):
-    """The same headings on a track of other width, climb or bank, but of the same radius.
+    """Return the same headings on a track of other width, climb or bank, but of the same radius.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ class Rests:
 
 
 def rests(outline, radius, merge=ROUND):
-    """How an outline can lie against a wall.
+    """Return how an outline can lie against a wall.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def rests(outline, radius, merge=ROUND):
 
 
 def axis_of_bowl(touching, radius):
-    """Where the bowl's axis passes when two corners touch a wall of finite radius.
+    """Return where the bowl's axis passes when two corners touch a wall of finite radius.
 
     Parameters
     ----------

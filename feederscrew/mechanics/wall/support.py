@@ -10,7 +10,7 @@ SAME = 1e-6  # of the outline's size: nearer than this to the edge is on it
 
 
 def reaches(found, posture, track):
-    """How far from the wall a track of some radius and width supports a part in each of its headings.
+    """Return how far from the wall a track of some radius and width supports a part in each of its headings.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ WAY = "[mm]"
 
 
 def cycle(trace, amplitude, found):
-    """Plate and part over one steady cycle, along the track and along its normal.
+    """Draw plate and part over one steady cycle, along the track and along its normal.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def cycle(trace, amplitude, found):
 
 
 def cycle_title(trace, found):
-    """What of a motion a trace shows, and how fast it is."""
+    """Return what of a motion a trace shows, and how fast it is."""
     shown, velocity = round(trace.time[-1]), f"{found.velocity * 1e3:.4g} mm/s"
     if found.status == "no steady state":
         return f"No steady state: {shown} periods of a slide that does not stop"
@@ -73,7 +73,7 @@ def cycle_title(trace, found):
 
 
 def velocity_map(grid, curve=None):
-    """Velocity and regimes over two keys of the bowl.
+    """Draw velocity and regimes over two keys of the bowl.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def velocity_map(grid, curve=None):
 
 
 def curve(frame, title):
-    """Velocity over the first column, with its range where several coexist.
+    """Draw velocity over the first column, with its range where several coexist.
 
     Parameters
     ----------

@@ -70,7 +70,7 @@ def summary(document):
 
 
 def remarks(document):
-    """What a reader of one operating point must not overlook.
+    """Return what a reader of one operating point must not overlook.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ LONGEST = 0.62  # of the part's size: the longest arrow
 
 
 def plan(posture, heading, found):
-    """The part from above at the upper reversal, with what acts on it along the floor.
+    """Draw the part from above at the upper reversal, with what acts on it along the floor.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def plan(posture, heading, found):
 
 
 def cycle(found, course, title):
-    """Forces, acceleration and velocity over one settled period.
+    """Draw forces, acceleration and velocity over one settled period.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def cycle(found, course, title):
 
 
 def alignment(grid, direction, title):
-    """Alignment acceleration over the heading, complete and as published, with the stable heading.
+    """Draw the alignment acceleration over the heading, complete and as published, with the stable heading.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def arrow(axes, start, step, text, color, *, pushing=False, beside=0):
 
 
 def newtons(force):
-    """A force for people."""
+    """Return a force for people."""
     return f"{force:.3g} N" if force >= 0.1 else f"{1e3 * force:.3g} mN"
 
 

@@ -26,7 +26,7 @@ LETTERS = 100  # of a line under a title
 
 
 def regime_map(grid, column, *, title, labels, value, own=None, note=()):
-    """Values in colour with contour lines, and every region where they mean something else.
+    """Draw values in colour with contour lines, and every region where they mean something else.
 
     Parameters
     ----------

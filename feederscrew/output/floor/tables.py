@@ -31,7 +31,7 @@ LABELS = {  # what people read
 
 
 def instant(found, posture, bowl):
-    """The upper reversal under the names of the JSON contract.
+    """Return the upper reversal under the names of the JSON contract.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def shown(document, format):
 
 
 def summary(document):
-    """The upper reversal, a row a quantity, for people."""
+    """Return the upper reversal, a row a quantity, for people."""
     now = document["instant"]
     rows = {label(name, text): now[name] for name, text in LABELS.items() if name in now}
     rows |= {"state at the upper reversal": now["state"], "regime over the cycle": document["regime"]}
@@ -144,7 +144,7 @@ def summary(document):
 
 
 def difference(printed, complete, terms=FLOOR_TERMS):
-    """Printed against complete values, with the omitted term named.
+    """Return printed against complete values, with the omitted term named.
 
     Parameters
     ----------
@@ -228,17 +228,17 @@ def mean_velocity(found):
 
 
 def chosen(found):
-    """Which aspect was taken, in one line, where none was asked for."""
+    """Return which aspect was taken, in one line, where none was asked for."""
     return [f"Aspect {found.posture.name}, {found.why}"] if found.why else []
 
 
 def label(name, text):
-    """A quantity for people, its unit behind it."""
+    """Return a quantity for people, its unit behind it."""
     return text + next((f" [{unit}]" for end, unit in tables.UNITS.items() if name.endswith(end)), "")
 
 
 def shown_value(value):
-    """A number, text or verdict for people."""
+    """Return a number, text or verdict for people."""
     if value is None or value != value:
         return "-"
     if isinstance(value, bool):

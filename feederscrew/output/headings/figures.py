@@ -18,7 +18,7 @@ TICKS = 4  # steps of an axis, at most: their numbers stand apart in it
 
 
 def headings(posture, found, track, title):
-    """The part in each stable heading, the wall below, the track's free edge dashed.
+    """Draw the part in each stable heading, the wall below, the track's free edge dashed.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ LICENCE = "three.LICENSE.txt"
 
 
 def html(page):
-    """The page as HTML.
+    """Return the page as HTML.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ NOTHING = "–"
 
 
 def cells(frame):
-    """A frame as texts for people.
+    """Return a frame as texts for people.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def cells(frame):
 
 
 def number(value, digits=DIGITS):
-    """A number for people with so many significant digits, NaN as a dash."""
+    """Return a number for people with so many significant digits, NaN as a dash."""
     if value == 0.0 or np.isnan(value):
         return "0" if value == 0.0 else NOTHING
     if not PLAIN[0] <= abs(value) < PLAIN[1]:
@@ -43,7 +43,7 @@ def number(value, digits=DIGITS):
 
 
 def percent(share):
-    """A share as a percentage without its sign."""
+    """Return a share as a percentage without its sign."""
     return number(100.0 * share, SHORT)
 
 

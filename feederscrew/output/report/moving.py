@@ -116,8 +116,8 @@ def rate(case):
     document = rate_tables.document(found)
     lead = Text(
         "The chain from velocity to rate; the range in brackets is over all starts, friction a fifth "
-        "off and every rule. The second table has what the track and each device do with each "
-        "orientation."
+        "off and the interval of the shares. The second table has what the track and each device do "
+        "with each orientation."
     )
     return Section(
         (lead, Table(rate_tables.summary(document)), Table(document["orientations"])),

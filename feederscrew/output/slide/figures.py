@@ -31,7 +31,7 @@ LABEL = {"fontsize": 8.5, "color": style.INK, "path_effects": HALO, "zorder": 4}
 
 
 def surface(slide):
-    """Limiting friction [4.27] over (alpha - theta, G), as Figures 5-2 to 5-4, up to friction 2.
+    """Draw limiting friction [4.27] over (alpha - theta, G), as Figures 5-2 to 5-4, up to friction 2.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def surface(slide):
 
 
 def contours(slide):
-    """Lines of equal limiting friction [4.27], as Figure 5-5, with the hop and the bowl's own point.
+    """Draw lines of equal limiting friction [4.27], as Figure 5-5, with the hop and the bowl's own point.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def contours(slide):
 
 
 def regimes(slide):
-    """What the bowl's own friction allows in each cell, with the bowl's own point.
+    """Draw what the bowl's own friction allows in each cell, with the bowl's own point.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def regimes(slide):
 
 
 def curves(slides):
-    """Limiting friction of a part aligned with the drive over G, as Figure 5-1; [4.28].
+    """Draw limiting friction of a part aligned with the drive over G, as Figure 5-1; [4.28].
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ FINEST = 2.0**10  # cells across the part of the first grid tried on a larger me
 
 
 def reduced(vertices, faces, most=MOST_FACETS):
-    """A mesh of at most so many facets: corners of one grid cell become one, facets that vanish go.
+    """Return a mesh of at most so many facets: corners of one grid cell become one, facets that vanish go.
 
     Parameters
     ----------

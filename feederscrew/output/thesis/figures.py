@@ -26,7 +26,7 @@ ACCELERATION = "acceleration V'z [m/s²]"
 
 
 def drawn(figure):
-    """A figure of the thesis.
+    """Return a figure of the thesis.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def drawn(figure):
 
 
 def numbers(figure):
-    """The numbers a figure draws.
+    """Return the numbers a figure draws.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ def overview(items):
 
 
 def document(items, files):
-    """The items as one JSON document.
+    """Return the items as one JSON document.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def document(items, files):
 
 
 def write(folder, items):
-    """Tables, pictures and the page.
+    """Return tables, pictures and the page.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def write(folder, items):
 
 
 def cells(item):
-    """Cells of a table: print, ours, deviation, verdict and finding.
+    """Return cells of a table: print, ours, deviation, verdict and finding.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def cells(item):
 
 
 def statements(item):
-    """What print states on a figure, checked.
+    """Return what print states on a figure, checked.
 
     Parameters
     ----------

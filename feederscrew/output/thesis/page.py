@@ -84,7 +84,7 @@ def shown(entry):
 
 
 def digits(entry, value):
-    """A number with one digit more than the cell has in print; '' for NaN."""
+    """Return a number with one digit more than the cell has in print; '' for NaN."""
     decimals = len(entry.published.rpartition(".")[2]) if "." in entry.published else 0
     return "" if math.isnan(value) else f"{value:.{decimals + EXTRA}f}"
 

@@ -51,7 +51,7 @@ def part(found, title):
 
 
 def cycle(found, course, title):
-    """Reactions and velocity over one settled period.
+    """Draw reactions and velocity over one settled period.
 
     Parameters
     ----------

@@ -67,7 +67,7 @@ def instant(found):
 
 
 def printed(found):
-    """The same of the printed equations; ``found`` is a PrintedTrack of one instant."""
+    """Return the same of the printed equations; ``found`` is a PrintedTrack of one instant."""
     return {
         "normal_force_N": float(found.normal_force),
         "wall_1_N": float(found.walls[0]),
@@ -182,7 +182,7 @@ def shown(document, format):
 
 
 def summary(document):
-    """What people want to know first, a row a quantity."""
+    """Return what people want to know first, a row a quantity."""
     now, needed = document["instant"], document["friction_needed"]
     rows = {label(name, text): now[name] for name, text in LABELS.items() if name in now}
     rows |= {
@@ -229,7 +229,7 @@ def remarks(found):
 
 
 def opened(closed):
-    """Names of the wall contacts that have opened."""
+    """Return names of the wall contacts that have opened."""
     return [name for name, shut in zip(CONTACTS[1:], closed) if not shut]
 
 

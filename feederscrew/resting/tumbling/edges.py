@@ -39,7 +39,7 @@ class Edges(NamedTuple):
 
 
 def half_edges(hull):
-    """Half-edges of a hull with coplanar triangles merged into facets.
+    """Return half-edges of a hull with coplanar triangles merged into facets.
 
     Parameters
     ----------

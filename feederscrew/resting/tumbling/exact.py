@@ -40,7 +40,7 @@ class Tumbling:
 
 
 def tumble(hull):
-    """Basins, saddles and maxima of the quasi-static flow on a convex hull.
+    """Return basins, saddles and maxima of the quasi-static flow on a convex hull.
 
     Parameters
     ----------

@@ -14,19 +14,19 @@ LOST = -1  # a walk that ends nowhere: the hull is not closed and convex
 
 @compiled
 def row(array, k):
-    """Row of an (N, 3) array as a tuple."""
+    """Return a row of an (N, 3) array as a tuple."""
     return array[k, 0], array[k, 1], array[k, 2]
 
 
 @compiled
 def dot(a, b):
-    """Scalar product of two triples."""
+    """Return the scalar product of two triples."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @compiled
 def triple(a, b, c):
-    """a . (b x c)."""
+    """Return a . (b x c)."""
     return (
         a[0] * (b[1] * c[2] - b[2] * c[1])
         + a[1] * (b[2] * c[0] - b[0] * c[2])
@@ -36,7 +36,7 @@ def triple(a, b, c):
 
 @compiled
 def toward(a, b, step):
-    """Unit vector along a + step b."""
+    """Return the unit vector along a + step b."""
     x, y, z = a[0] + step * b[0], a[1] + step * b[1], a[2] + step * b[2]
     n = 1.0 / math.sqrt(x * x + y * y + z * z)
     return n * x, n * y, n * z
@@ -81,7 +81,7 @@ def exit_of(edges, facet):
 
 @compiled
 def next_corner(edges, x, corner, sign):
-    """Where the great circle through direction x and a corner leaves the corner's region.
+    """Return where the great circle through direction x and a corner leaves the corner's region.
 
     ``sign`` is -1 down the flow, away from the corner, and +1 up it, towards the corner. Returns the
     half-edge to the corner that takes over, or LOST, and the direction there.
@@ -104,7 +104,7 @@ def next_corner(edges, x, corner, sign):
 
 @compiled
 def side_of(edges, h, x):
-    """Facet to which the part rolls from direction x on the arc of a half-edge."""
+    """Return the facet to which the part rolls from direction x on the arc of a half-edge."""
     u, w = row(edges.vertices, edges.origins[h]), row(edges.vertices, edges.targets[h])
     ahead = h if triple(x, u, w) >= 0.0 else edges.twins[h]
     return edges.facets[ahead // 3]
@@ -112,7 +112,7 @@ def side_of(edges, h, x):
 
 @compiled
 def support(edges, x, corner):
-    """Corner furthest along direction x, climbing from ``corner``."""
+    """Return the corner furthest along direction x, climbing from ``corner``."""
     while True:
         height = dot(x, row(edges.vertices, corner))
         start = h = edges.vertex_edges[corner]
@@ -131,7 +131,7 @@ def support(edges, x, corner):
 
 @compiled
 def roll_from_corner(edges, x, corner):
-    """Facet first reached by a part that rolls over a corner from direction x; LOST if none.
+    """Return the facet first reached by a part that rolls over a corner from direction x; LOST if none.
 
     A corner in the middle of a facet or an edge gives way to the lowest corner of the facet.
     """
@@ -150,7 +150,7 @@ def roll_from_corner(edges, x, corner):
 
 @compiled
 def roll_from_facet(edges, facet):
-    """Facet on which a part comes to rest that is set down on ``facet``; LOST if none."""
+    """Return the facet on which a part comes to rest that is set down on ``facet``; LOST if none."""
     for _ in range(len(edges.normals) + 1):
         if facet == LOST:
             return LOST
