@@ -48,8 +48,11 @@ def gather(sources, configs=(), overrides=()):
     faults = []
     wanted = [path for config in configs for path in _expanded(config, CARDS, "bowl")] or [None]
     rows = [row for source in sources for row in _rows(source, faults)]
-    paths = dict.fromkeys([*wanted, *(row.config for row in rows if row.config)])
-    bowls_by_path = {path: _conditions(path, overrides, faults) for path in paths}
+    lines = dict.fromkeys(wanted, "")
+    for row in rows:
+        if row.config:
+            lines.setdefault(row.config, row.line)
+    bowls_by_path = {path: _conditions(path, overrides, faults, line) for path, line in lines.items()}
     names = _names(rows, faults)
     raise_all(faults)
     requests = dict.fromkeys(
@@ -126,22 +129,23 @@ def _some(found, typed, what, mend):
     return found
 
 
-def _conditions(path, overrides, faults):
+def _conditions(path, overrides, faults, line):
+    """The bowl of a file, asked for in a line of a list or in none; None where it has faults."""
     try:
         settings = bowls.settings(path, overrides)
         bowl = answer.conveying(bowls.record(settings))
         texts = tuple(bowls.texts(settings).items())
         return Conditions(bowls.name(path), bowl, texts, given=path is not None)
     except FeederError as fault:
-        faults += getattr(fault, "faults", [_placed(fault, path)])
+        faults += getattr(fault, "faults", [_placed(fault, path, line)])
         return None
 
 
-def _placed(fault, path):
-    """A fault of a bowl that says of which, once there are several."""
-    if path is None or str(fault.where).startswith(str(path)):
-        return fault
-    return ConfigError(path, f"{fault.where} {fault.what}", fault.mend)
+def _placed(fault, path, line):
+    """A fault of a bowl that says of which, once there are several, and the line that asks for it."""
+    if path is not None and not str(fault.where).startswith(str(path)):
+        fault = ConfigError(path, f"{fault.where} {fault.what}", fault.mend)
+    return ConfigError(f"{line}: {fault.where}", fault.what, fault.mend) if line else fault
 
 
 def _named(requests):

@@ -51,7 +51,7 @@ def read(path, faults):
     filled = [(n, [cell.strip() for cell in cells]) for n, cells in lines if "".join(cells).strip()]
     (first, header), *rows = [line for line in filled if not line[1][0].startswith("#")] or [(1, [])]
     wrong = _header_faults(path, first, header)
-    faults += wrong
+    faults += wrong if wrong or rows else [ConfigError(path, "lists no part", "write a line a part")]
     return [] if wrong else [row for n, cells in rows for row in _row(path, n, header, cells, faults)]
 
 

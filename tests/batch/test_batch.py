@@ -151,6 +151,8 @@ def test_a_list_gives_each_part_its_own_options(tmp_path):
         ("part,units\n,mm\n", "list.csv:2: names no part - fill its first column, or remove the line"),
         ("part\n\xe9", "list.csv:2: byte 0xe9 is not UTF-8 - save the file as UTF-8 text"),
         ('part\n"a', "list.csv: is not CSV (unexpected end of data) - check its quotes and commas"),
+        ("part,config\nnut.stl,gone.yaml\n", "list.csv:2: gone.yaml: no such file - check the path"),
+        ("part\n# none\n", "list.csv: lists no part - write a line a part"),
     ],
 )
 def test_a_fault_of_a_list_names_its_line(tmp_path, monkeypatch, text, line):
