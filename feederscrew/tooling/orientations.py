@@ -185,9 +185,8 @@ def rolls_across(one):
         return False
     if np.isfinite(one.posture.rolling_circle):
         return True
-    along, across = one.posture.axis
-    c, s = np.cos(one.heading), np.sin(one.heading)
-    return bool(abs(s * along + c * across) > abs(c * along - s * across))
+    along, across = np.abs(turned(one.posture.axis, one.heading))
+    return bool(across > along)
 
 
 def _speed(bowl):

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from feederscrew.geometry.polygons import turned
 from feederscrew.output import style
 from feederscrew.output.solid import pair
 from feederscrew.output.solid.render import Camera
@@ -134,9 +135,8 @@ def placed(met, station):
     """Return the corners (V, 3) [m] of the part of a passage on a track section that holds its station."""
     one = met.orientation
     points = np.array(one.posture.surface)
-    c, s = np.cos(one.heading), np.sin(one.heading)
-    x, y = c * points[:, 0] - s * points[:, 1], s * points[:, 0] + c * points[:, 1] + one.distance
-    return on_section(np.column_stack([x, y, points[:, 2]]), met.angle(station), one.track.radius)
+    flat = turned(points[:, :2], one.heading) + [0.0, one.distance]
+    return on_section(np.column_stack([flat, points[:, 2]]), met.angle(station), one.track.radius)
 
 
 def on_section(points, angle, radius):

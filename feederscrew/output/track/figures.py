@@ -134,7 +134,7 @@ def _behind(axes, found):
     scale = _Scale(now, size)
 
     def place(point):
-        return _levelled(np.asarray(point)[1:], bank) * [-1.0, 1.0] / MM
+        return turned(np.asarray(point)[1:], bank) * [-1.0, 1.0] / MM
 
     side = frame(found.bowl, seat.walls)
     for k, color in enumerate(SHADES):
@@ -210,27 +210,19 @@ def _section(axes, found, bank, size):
     if posture.corners is not None:
         points = posture.corners - [0.0, 0.0, seat.height]
         across = np.column_stack([turned(points[:, :2], seat.heading)[:, 1], points[:, 2]])
-        _body(axes, outline(_levelled(across, bank)) * [-1.0, 1.0] / MM)
+        _body(axes, outline(turned(across, bank)) * [-1.0, 1.0] / MM)
         on_floor = np.column_stack([seat.contact[:, 1], np.full(len(seat.contact), -seat.height)])
         low, high = on_floor[on_floor[:, 0].argmin()], on_floor[on_floor[:, 0].argmax()]
-        span = _levelled(np.array([low, high]), bank) * [-1.0, 1.0] / MM
+        span = turned(np.array([low, high]), bank) * [-1.0, 1.0] / MM
         axes.plot(*span.T, color=CONTACT, linewidth=3.5, solid_capstyle="butt", zorder=3)
-    surface = _levelled(ends, bank) * [-1.0, 1.0] / MM
-    touch = -float(_levelled(seat.walls[:, 1:], bank)[:, 0].min()) / MM
+    surface = turned(ends, bank) * [-1.0, 1.0] / MM
+    touch = -float(turned(seat.walls[:, 1:], bank)[:, 0].min()) / MM
     surface[0] = surface[0] + (touch - surface[0, 0]) * (surface[0] - surface[1]) / (
         surface[0, 0] - surface[1, 0]
     )
     axes.plot(*surface.T, color=WALL, linewidth=2.4, zorder=1)
     axes.plot(
         [touch, touch], [surface[0, 1], surface[0, 1] + 0.9 * size / MM], color=WALL, linewidth=2.4, zorder=1
-    )
-
-
-def _levelled(points, bank):
-    """(Y, Z) of the track as level and upright coordinates."""
-    c, s = np.cos(bank), np.sin(bank)
-    return np.stack(
-        [c * points[..., 0] - s * points[..., 1], s * points[..., 0] + c * points[..., 1]], axis=-1
     )
 
 
