@@ -70,12 +70,16 @@ _once = functools.cache(entry)
 
 
 def _register():
-    """Tell numba of the functions marked since, whichever room was imported first."""
+    """Tell numba of the functions marked since, whichever room was imported first.
+
+    Each becomes a part of its callers, whatever its length: a call hands on every number behind a record.
+    """
     from numba.extending import register_jitable
 
     while PLAIN:
         function = PLAIN.pop()
-        register_jitable(**_options(), cache=function in KEPT)(function)
+        kept = function in KEPT
+        register_jitable(**_options(), cache=kept, forceinline=not kept)(function)
 
 
 @functools.cache
