@@ -13,56 +13,24 @@ from feederscrew.conveying import events, harmonic, law, motion, settling, stead
 from feederscrew.conveying.setting import OperatingPoint, checked
 from feederscrew.conveying.steady import COLUMNS, survey
 
-KERNEL = (
-    *(
-        waves.height,
-        waves.slope,
-        waves._knots,
-        waves.bends,
-        waves.crest,
-        waves.crossings,
-        waves._insert,
-        waves._zero,
-    ),
-    *(harmonic.harmonic, harmonic.value, harmonic.peak, harmonic.after, harmonic.above),
-    *(harmonic.onward, harmonic.reached),
-    *(harmonic.gain, harmonic.travel, harmonic._beyond_sine, harmonic._beyond_cosine),
-    *(law.law, law.lift_wave, law.pull_wave, law._pull, law.throw_number, law.contact),
-    *(events.later, events.slip_end, events._stop, events.landing),
+IN_A_PERIOD = (  # what follows a part through a period of the drive: compiled into one piece
+    *(harmonic.value, harmonic.after, harmonic.above, harmonic.onward, harmonic.reached),
+    *(harmonic.gain, harmonic._beyond_sine, harmonic._beyond_cosine),
+    *(law.contact, events.later, events.slip_end, events._stop, events.landing),
     *(events._descent, events._beyond_bounce, events._dip),
-    *(motion.at_rest, motion.turn, motion.step, motion._ride, motion._slide, motion._fly, motion.land),
-    *(
-        settling.settle,
-        settling.follow,
-        settling.noted,
-        settling.evenly,
-        settling._joins,
-        settling._leap,
-        settling._slid,
-        settling._repeats,
-        settling._normal_apart,
-        settling._grows,
-    ),
-    *(
-        settling._period_of_normal,
-        settling._hasten,
-        settling._closed_in,
-        settling._at_speed,
-        settling._on,
-        settling._runs,
-    ),
+    *(motion.step, motion._ride, motion._slide, motion._fly, motion.land),
+)
+KERNEL = (
+    *(waves.height, waves.slope, waves._knots, waves.bends, waves.crest),
+    *(waves.crossings, waves._insert, waves._zero, harmonic.harmonic, harmonic.peak, harmonic.travel),
+    *(law.law, law.lift_wave, law.pull_wave, law._pull, law.throw_number, motion.at_rest, motion.turn),
+    *(settling.settle, settling.follow, settling.noted, settling.evenly, settling._joins, settling._leap),
+    *(settling._slid, settling._repeats, settling._normal_apart, settling._grows),
+    *(settling._period_of_normal, settling._hasten, settling._closed_in, settling._at_speed),
+    *(settling._on, settling._runs),
     *(steady.steady, steady._steady, steady._cycle, steady._long_run, steady._noted_turn, steady._slid),
-    *(
-        steady.escape,
-        steady._apart,
-        steady._averages,
-        steady.survey,
-        steady.regime,
-        steady._nothing,
-        steady._widen,
-        steady.thrown,
-        steady.plate_speed,
-    ),
+    *(steady.escape, steady._apart, steady._averages, steady.survey, steady.regime, steady._nothing),
+    *(steady._widen, steady.thrown, steady.plate_speed),
 )
 LOT = 256  # settings handed to a core at a time: their costs differ a hundredfold
 
@@ -134,8 +102,9 @@ def _compiled():
     from numba import njit
     from numba.extending import register_jitable
 
-    for function in KERNEL:
-        register_jitable(error_model="numpy", no_cfunc_wrapper=True)(function)
+    for functions, inlined in ((IN_A_PERIOD, True), (KERNEL, False)):
+        for function in functions:
+            register_jitable(error_model="numpy", no_cfunc_wrapper=True, forceinline=inlined)(function)
 
     _loop.__qualname__ = f"loop_{_fingerprint()}"  # names the files of the cache
     return njit(cache=True, nogil=True, no_cfunc_wrapper=True, error_model="numpy")(_loop)
