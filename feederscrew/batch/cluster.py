@@ -9,7 +9,7 @@ from itertools import islice
 
 from feederscrew import __version__
 from feederscrew.batch.task import Outcome, libraries
-from feederscrew.batch.work import work
+from feederscrew.batch.workers import work
 from feederscrew.errors import ArgumentError, FeederError
 
 PATIENCE = 20  # [s] for a scheduler to answer and for a first worker

@@ -4,8 +4,7 @@ from urllib.parse import quote
 
 from feederscrew.batch import summary
 from feederscrew.batch.store import PARTS
-from feederscrew.batch.task import DONE
-from feederscrew.batch.work import THUMBNAIL
+from feederscrew.batch.task import DONE, THUMBNAIL
 from feederscrew.output.page.blocks import MarkedCell, Matrix, Page, Picture, Section
 from feederscrew.units import counted
 

@@ -11,10 +11,8 @@ from feederscrew.batch.workers import Processes, processors
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.output import tables
-from feederscrew.output.batch import contact_sheet
-from feederscrew.output.page.as_html import html
+from feederscrew.output.batch import SHEET
 from feederscrew.part.reading import source
-from feederscrew.resting.rules.registry import CHOICES
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,11 +70,13 @@ def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda
     FeederError
         If the folder cannot be used or the scheduler is lost; what is finished is kept.
     """
+    from feederscrew.resting.rules.registry import CHOICES  # while the processes import their libraries
+
     choices = choices or Choices()
     if choices.rule not in CHOICES:
         raise ArgumentError("rule", f"unknown rule {choices.rule!r}", hint(choices.rule, CHOICES))
     with Store(directory) as store:
-        store.remove(summary.NAME, index_page.NAME, contact_sheet.PATTERN)
+        store.remove(summary.NAME, index_page.NAME, SHEET.format("*"))
         under_way = _UnderWay(store, choices, resume, tell)
         for outcome in workers.outcomes(under_way.tasks(requests)):
             under_way.finish(outcome)
@@ -114,6 +114,9 @@ class _UnderWay:
 
 def _finished(store, requests, kept):
     """The summary, the contact sheets and the index page, from what lies on the disk."""
+    from feederscrew.output.batch import contact_sheet  # they import matplotlib
+    from feederscrew.output.page.as_html import html
+
     rows = summary.rows(store, requests)
     for name, page in contact_sheet.pages(summary.tiles(store, rows)):
         store.write(name, page)

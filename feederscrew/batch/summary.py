@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from feederscrew.batch.task import DONE
-from feederscrew.batch.work import THUMBNAIL
+from feederscrew.batch.task import DONE, THUMBNAIL
 from feederscrew.output import tables
 
 NAME = "summary.csv"

@@ -10,9 +10,9 @@ from feederscrew import __version__
 from feederscrew.bowl import Bowl
 from feederscrew.output.folder import LIBRARIES
 from feederscrew.part.naming import AspectNames
-from feederscrew.resting.rules.recommended import LAUNCH
 
 DONE, FAILED = "done", "failed"
+THUMBNAIL = "thumbnail.png"  # among the files of a part
 
 
 @dataclass(frozen=True)
@@ -38,6 +38,8 @@ class Choices:
     @property
     def launched(self):
         """The launch where parts are not fed onto a moving floor."""
+        from feederscrew.resting.rules.recommended import LAUNCH
+
         return self.launch or LAUNCH
 
 

@@ -5,7 +5,7 @@ import io
 
 import numpy as np
 
-from feederscrew.batch.task import DONE, Outcome
+from feederscrew.batch.task import DONE, THUMBNAIL, Outcome
 from feederscrew.errors import FeederError
 from feederscrew.output import columns, offers, tables
 from feederscrew.output.aspects import files as aspects_files
@@ -21,7 +21,6 @@ from feederscrew.studies.aspects import AspectsStudy, with_drops
 from feederscrew.studies.convey import convey
 from feederscrew.studies.rate import Shares, rate, shares
 
-THUMBNAIL = "thumbnail.png"
 SEED_DIGITS = 8  # hexadecimal, of the file's sha256
 
 
@@ -85,7 +84,7 @@ def _results(task):
         | {"rule": choices.rule, "drops": choices.drops, "launch": choices.launched, "fed": _fed(task)}
         | ({"names": request.names.source} if request.names else {}),
         warnings=(*part.warnings, *found.warnings),
-        files=files,
+        files=dict(files),  # who takes it need not import this module
     )
 
 

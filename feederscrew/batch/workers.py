@@ -1,6 +1,7 @@
 """Parts on several processes of this machine: one that dies costs a retry, never the batch."""
 
 import contextlib
+import importlib
 import multiprocessing
 import os
 import signal
@@ -8,11 +9,16 @@ from multiprocessing import forkserver, resource_tracker
 from multiprocessing.connection import wait
 
 from feederscrew.batch.task import Outcome
-from feederscrew.batch.work import work
 
 ATTEMPTS = 3  # of a part whose worker dies under it
 LIFETIME = 200  # parts of one process: what libraries leak goes with it
+WORK = "feederscrew.batch.work"  # its libraries take a second to import, which only the processes need
 LOST = "the process that computed it died each of {} times, for lack of memory perhaps - try it alone"
+
+
+def work(task):
+    """Everything that is asked of one part, an Outcome: as ``feederscrew.batch.work`` has it."""
+    return importlib.import_module(WORK).work(task)
 
 
 class Processes:
@@ -32,7 +38,8 @@ class Processes:
         self.jobs, self.job, self.lifetime = jobs, job, lifetime
         methods = multiprocessing.get_all_start_methods()
         self.context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
-        self.context.set_forkserver_preload([work.__module__])
+        self.context.set_forkserver_preload([WORK, job.__module__])
+        _start_server(self.context)
 
     def outcomes(self, tasks):
         """The outcome of each task, as they come; a task is taken only when a process is free for it.
@@ -45,7 +52,6 @@ class Processes:
         ------
         Outcome
         """
-        _start_server(self.context)
         tasks, again, failures, crew = iter(tasks), [], {}, []
         try:
             while self._busy(crew, tasks, again):
@@ -81,7 +87,7 @@ class Processes:
 
 
 def _start_server(context):
-    """Start what forks the processes, deaf to Ctrl-C: the batch itself decides when to stop."""
+    """Start what forks the processes and imports for them; deaf to Ctrl-C: the batch decides when to stop."""
     if context.get_start_method() != "forkserver":
         return
     resource_tracker.ensure_running()  # it would let the signal through again

@@ -1,1 +1,3 @@
 """Tables and figures of ``batch``."""
+
+SHEET = "contact_sheet{}.png"  # as many as the parts need: nothing, then _2, _3 ...

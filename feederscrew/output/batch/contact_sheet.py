@@ -7,11 +7,11 @@ import numpy as np
 from matplotlib import image
 
 from feederscrew.output import style
+from feederscrew.output.batch import SHEET
 from feederscrew.output.solid import render, shading
 from feederscrew.output.solid.shading import Shot
 from feederscrew.output.solid.stance import outermost, stance
 
-PATTERN = "contact_sheet*.png"
 WIDTH, HEIGHT = 240, 180  # [px] of a thumbnail
 ROOM = 1.08  # of a thumbnail over the part in it
 ACROSS, DOWN = 5, 8  # thumbnails on a sheet
@@ -62,7 +62,7 @@ def pages(tiles):
     while batch := list(islice(tiles, ACROSS * DOWN)):
         if any(tile[0] for tile in batch):
             number += 1
-            yield f"contact_sheet{f'_{number}' if number > 1 else ''}.png", style.png(_sheet(batch))
+            yield SHEET.format(f"_{number}" if number > 1 else ""), style.png(_sheet(batch))
 
 
 def _sheet(tiles):
