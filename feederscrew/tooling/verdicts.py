@@ -16,6 +16,7 @@ from feederscrew.tooling.holding import leans, may_lay_over, may_wedge
 
 CLOSE = 1e-9  # [m] a part this much over a limit still passes
 UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
+WORN = 2.5e-4  # [m] what an opening holds by less does not hold a part up
 FAR = 10.0  # [m] an opening goes on so far below the track and behind the wall
 
 
@@ -189,7 +190,8 @@ def gate_margin(opening, one):
     margin = opening_margin(opening, one)
     if margin >= 0.0 or one.grip <= 0.0:
         return margin
-    return _unless_laid_over(margin, one, _beside(opening, one).bounds[1])
+    worn = opening.buffer(min(WORN, -0.5 * margin))
+    return _unless_laid_over(margin, one, _beside(worn, one).bounds[1])
 
 
 def opening_margin(opening, one):
