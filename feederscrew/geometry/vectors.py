@@ -206,3 +206,23 @@ def misfit(columns, right):
     for axis in basis * 2:
         left = left - dot(left, axis) * axis
     return left
+
+
+def carried(axis, start, end):
+    """Return a unit vector (3,) turned as the shortest turn takes one direction to another.
+
+    Parameters
+    ----------
+    axis : (3,) float [1]
+    start, end : (3,) float [1]
+        Not opposite.
+
+    Returns
+    -------
+    (3,) float [1]
+        Square to ``end``: what is left of it along that is taken away.
+    """
+    middle = unit(start + end)
+    turned = axis - 2.0 * dot(axis, middle) * middle
+    turned = turned - 2.0 * dot(turned, end) * end  # two mirrors make the turn
+    return unit(turned - end * dot(turned, end))

@@ -16,7 +16,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import fitting
-from feederscrew.geometry.polygons import barrier, outline
+from feederscrew.geometry.polygons import barrier, cross, outline
 from feederscrew.mechanics.wall import headings as wall
 from feederscrew.mechanics.wall import sameness
 from feederscrew.part.hull import convex_hull
@@ -25,6 +25,7 @@ from feederscrew.resting.tumbling import walk
 
 BEYOND = 1e-7  # [rad] past the barrier a part rolls down by itself
 TOUCHES = 1e-5  # of the part's size: hull corners that low rest on the track
+SKEW = 0.2  # sine of the angle from which a side of the foot is neither along the track nor across it
 LOWER = 0.5  # of the part's greatest length: how far below a ledge the second track lies
 
 
@@ -84,8 +85,8 @@ def over_step(one, every, height):
     turn = pitched(one, every)
     room = turn.sure - turn.lift
     share = (height - turn.lift) / room if room > 0.0 else float(height >= turn.lift)
-    stays = min(turn.lift - height, turn.back - _rear(one, height))
-    margin = max(stays, min(height - turn.sure, turn.holds - height))
+    stays = min(turn.lift - height, turn.back - _rear(one, height), _skew_lift(one) - height)
+    margin = max(stays, _certain(one, every, turn, height))
     return _turned(turn, min(max(share, 0.0), 1.0), height), margin
 
 
@@ -122,16 +123,40 @@ def beyond_ledge(one, every, width):
     """
     turn, drop = rolled(one, every), below_ledge(every)
     if drop >= turn.sure:
-        return _turned(turn, 1.0, drop), min(drop - turn.sure, turn.holds - drop)
+        return _turned(turn, 1.0, drop), _certain(one, every, turn, drop)
     missed, left = _leaning(one, turn, width, drop)
     if missed > 0.0:
-        return (), min(missed, pitched(one, every).lift - left)
+        return (), min(missed, pitched(one, every).lift - left, _skew_lift(one) - drop)
     return _turned(turn, 0.5, drop), drop - turn.sure
 
 
 def below_ledge(every):
     """Return how far below a ledge the second track lies [m]: half the part's greatest length."""
     return LOWER * max(max(one.length, one.height) for one in every)
+
+
+def _certain(one, every, turn, drop):
+    """Margin [m] by which a part turns over at a drop and stays on the face below."""
+    landed = every[turn.onto]
+    fall = drop + one.posture.height - landed.posture.height
+    skew = min(_skew_lift(one) - drop, _skew_lift(landed) - fall)
+    return min(drop - turn.sure, turn.holds - drop, skew)
+
+
+def _skew_lift(one):
+    """Least rise [m] of the centre of mass over a side of the foot that is askew; infinite without one.
+
+    A part that can leave its plane of motion over such a side is sure only where its whole fall is less.
+    """
+    if len(one.foot.corners) < 3:
+        return math.inf
+    ring = outline(one.foot.corners)
+    along = np.roll(ring, -1, axis=0) - ring
+    size = np.hypot(*along.T)
+    askew = np.abs(along).min(axis=1) > SKEW * size
+    beside = np.abs(cross(along, ring)) / size
+    lifts = np.hypot(beside, one.posture.height) - one.posture.height
+    return float(lifts[askew].min(initial=math.inf))
 
 
 def _turned(turn, share, drop):
@@ -213,7 +238,7 @@ def _tipped(hull, frame, inwards):
     angle, height = barrier(vectors.product(hull.vertices, np.column_stack([side, down])))
     past = math.cos(angle + BEYOND) * down + math.sin(angle + BEYOND) * side
     rests = _end(hull, past)
-    kept = _carried(kept, past, rests)
+    kept = vectors.carried(kept, past, rests)
     return angle, height, (np.cross(kept, rests) if inwards else np.cross(rests, kept), kept, rests)
 
 
@@ -240,14 +265,6 @@ def _end(hull, down):
     ends = np.empty(1, dtype=np.int64)
     fitting(walk.rolls, len(found.origins))(found, np.array([down]), ends)
     return found.normals[ends[0]] if ends[0] >= 0 else down
-
-
-def _carried(axis, start, end):
-    """A unit vector (3,) turned as the shortest turn takes one direction to another, made level."""
-    middle = vectors.unit(start + end)
-    turned = axis - 2.0 * vectors.dot(axis, middle) * middle
-    turned = turned - 2.0 * vectors.dot(turned, end) * end  # two mirrors make the turn
-    return vectors.unit(turned - end * vectors.dot(turned, end))
 
 
 def _landed(one, hull, axes, every):
