@@ -51,6 +51,9 @@ def _together(queue, **others):
 @click.option(
     "--parts", type=click.IntRange(1, 10**6), help="One at a time.  [default: 200; with --queue 60]"
 )
+@click.option(
+    "--landing", type=click.IntRange(1, 10**6), metavar="N", help="So many fall onto the track, too."
+)
 @_queued
 @click.option(
     "--amplitude",
@@ -63,7 +66,7 @@ def _together(queue, **others):
 @options.bowl
 @options.pictures
 @options.output
-def trial(part, aspect, rule, taken, parts, queued, amplitudes, seed, jobs, bowl, pictures, out):
+def trial(part, aspect, rule, taken, parts, landing, queued, amplitudes, seed, jobs, bowl, pictures, out):
     """Example: feeder trial parts/lbracket_30x20x15.stl --config tooling.yaml --parts 100 -o results
 
     Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed,
@@ -73,6 +76,8 @@ def trial(part, aspect, rule, taken, parts, queued, amplitudes, seed, jobs, bowl
     stands what the static rule of feeder tooling says, and its margin; those that do something else come
     first.
 
+    --landing adds parts that fall onto the moving track as --launch says, anywhere over its width, and go
+    through the devices as they then lie, against the wall or not: by aspect, what became of them.
     --amplitude gives the greatest drive at which the tooling still sorts. --queue adds parts that touch,
     push and climb each other on the same track; what leaves or falls off enters again at the end of the
     row, and parts per minute are then those it delivers. --with sets what a feeding test counted by aspect
@@ -80,7 +85,8 @@ def trial(part, aspect, rule, taken, parts, queued, amplitudes, seed, jobs, bowl
     number of jobs. Ctrl-C ends the trial early: what is finished is given, marked partial.
 
     With -o: trial.csv, trial_stations.csv, trial.json, trial.png (orientations in and out),
-    trial_paths.png (paths from above), trial_stills.png and run.json; trial_outlet.csv of a queue.
+    trial_paths.png (paths from above), trial_stills.png and run.json; trial_landing.csv, and trial_outlet.csv
+    of a queue.
     """
     with held_back():
         from feederscrew import bowl as bowls
@@ -101,7 +107,7 @@ def trial(part, aspect, rule, taken, parts, queued, amplitudes, seed, jobs, bowl
         with waiting.bar(out, "runs") as bar:
             found = studies.trial(
                 solid, driven, aspect,
-                rule=rule, known=known, measured=beside, parts=parts, **queued, seed=seed,
+                rule=rule, known=known, measured=beside, parts=parts, landing=landing, **queued, seed=seed,
                 jobs=jobs or os.cpu_count(), progress=bar.reach, before=lambda: waiting.trial(out),
             )  # fmt: skip
         document = tables.document(found)

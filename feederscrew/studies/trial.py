@@ -17,9 +17,11 @@ from feederscrew.rates import chances, stream
 from feederscrew.rates.queue import RECOMMENDED
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
+from feederscrew.resting.rules.recommended import LAUNCH
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.rate import shares as arriving
 from feederscrew.trial import course, outlet
+from feederscrew.trial import landing as landings
 from feederscrew.trial.queue import queue_of
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.shape import solid_of
@@ -94,6 +96,7 @@ def trial(
     known: Shares | None = None,
     measured: profiles.Measured | None = None,
     parts: int | None = None,
+    landing: int | None = None,
     queue: int | None = None,
     poured: bool = False,
     seconds: float = 10.0,
@@ -120,6 +123,8 @@ def trial(
         From ``at_outlet``: what left a bowl, to stand beside the profile of the queue.
     parts : int, optional
         One at a time, the orientations in turn; 200 without it, 60 with a queue.
+    landing : int, optional
+        So many parts fall onto the moving track, as their launch says, as well.
     queue : int, optional
         So many parts that push each other, as well.
     poured : bool
@@ -153,6 +158,9 @@ def trial(
             f"rule {rule}", "has no probabilities of this part", hint(rule, list(found.chances))
         )
     count = parts or (FEW if queue else PARTS)
+    launch = LAUNCH if found.recommended is None else found.recommended.launch
+    fall = None if landing is None else {"launch": launch, "parts": landing, "jobs": jobs}
+    crowd = None if queue is None else {"parts": queue, "seconds": seconds, "poured": poured}
     made, stopped = [], False
     for bowl in bowls:
         answer.answer(bowl)  # refuses a drive that cannot convey
@@ -165,12 +173,10 @@ def trial(
         own["progress"] = _after(len(made), progress, len(bowls))
         try:
             seen = course.course(part, bowl, ways.lying, tried, bowl.devices, **own)
-            line = None
-            if queue and not seen.partial:
-                crowd = {"parts": queue, "seconds": seconds, "seed": seed, "poured": poured}
-                crowd |= {"progress": progress}
-                line = queue_of(part, bowl, found, ways.lying, ways.states, shares, **crowd)
-            made.append(TrialRun(bowl, throw_number(bowl), ways, shares, seen, line))
+            more = {}
+            if not seen.partial:
+                more, stopped = _further(part, bowl, found, ways, shares, fall, crowd, seed, progress)
+            made.append(TrialRun(bowl, throw_number(bowl), ways, shares, seen, **more))
         except KeyboardInterrupt:
             if not made:
                 raise
@@ -178,6 +184,19 @@ def trial(
         if stopped or made[-1].partial:
             break
     return TrialStudy(part, found, rule, seed, tuple(made), stopped, measured)
+
+
+def _further(part, bowl, found, ways, shares, fall, crowd, seed, progress):
+    """Parts that fall onto the track and a queue, as far as asked for; and whether the user stopped them."""
+    made, own = {}, {"seed": seed, "progress": progress}
+    try:
+        if fall:
+            made["landing"] = landings.landing(part, bowl, found, ways.lying, ways.states, **fall, **own)
+        if crowd and not any(one.partial for one in made.values()):
+            made["queue"] = queue_of(part, bowl, found, ways.lying, ways.states, shares, **crowd, **own)
+    except KeyboardInterrupt:
+        return made, True
+    return made, False
 
 
 def at_outlet(counts: str | PathLike[str], known: Shares) -> profiles.Measured:

@@ -6,17 +6,14 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.conveying import answer
-from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
-from feederscrew.trial import groups, runs, stations
+from feederscrew.trial import groups, runs, starts, stations
 from feederscrew.trial.looks import Looks
 from feederscrew.trial.rounding import rounded
 from feederscrew.trial.shape import solid_of
 
 PASSED, TURNED, RETURNED, HANGING, STUCK = range(5)
 FATES = ("passed", "turned", "returned", "hanging", "stuck")
-PLAY = 5e-5  # [m] from the wall, at most, where a part is laid down
-TURN = np.radians(0.1)  # [rad] of its heading, at most
 RUN_UP = 1.0  # of the part's size: how far it travels before the first device
 LOOKS = 300  # places noted of a part at a station
 SPARE = 3.0  # times what it should take is given to a part
@@ -48,7 +45,7 @@ class Course:
 
 def course(
     part, bowl, every, tried, devices, *,
-    parts, poses=None, leaves=None, seed=1, jobs=1, progress=None, before=None,
+    parts, poses=None, leaves=None, begun=None, seed=1, jobs=1, progress=None, before=None,
 ):  # fmt: skip
     """Send parts through a chain of devices.
 
@@ -68,6 +65,9 @@ def course(
         S of them, those of ``every`` first, in which parts may be found; those of ``every`` without it.
     leaves : (M, S) bool, optional
         In which of them an orientation may leave and still be said to pass; as it came without it.
+    begun : (states, times, entered), optional
+        Parts that are on the track already, as `runs.ride` takes them, and how each counts among the M;
+        none is laid down then.
     seed : int
         Of play, heading and phase of the drive; each part draws its own.
     jobs : int
@@ -91,17 +91,18 @@ def course(
     known, chain = runs.setting(solid, length, bowl), _chain(bowl, every, devices)
     if before:
         before()
-    entered = np.resize(np.asarray(tried, int), parts)
-    states, times = _starts(bowl, every, entered, principal, length, seed)
-    states[:, 2] -= np.array([_lowest(solid.corners, state) for state in states])
+    if begun is None:
+        entered = np.resize(np.asarray(tried, int), parts)
+        begun = (*starts.laid_down(bowl, every, entered, solid, principal, length, seed), entered)
+    states, times, entered = begun
     looks = Looks(every if poses is None else poses, solid, length, principal, bowl.track.radius)
     leaves = np.eye(len(every), len(looks.known), dtype=bool) if leaves is None else leaves
     found = _Found([station.drop for station in chain], parts, looks, entered)
     for first in range(0, parts, groups.SIZE):
-        begun = slice(first, min(first + groups.SIZE, parts))
-        told = groups.Told(progress, first, parts, len(chain), begun.stop - first)
+        group = slice(first, min(first + groups.SIZE, parts))
+        told = groups.Told(progress, first, parts, len(chain), group.stop - first)
         try:
-            _through(known, bowl, every, chain, states[begun], times[begun], first, found, told, jobs)
+            _through(known, bowl, every, chain, states[group], times[group], first, found, told, jobs)
         except KeyboardInterrupt:
             if not first:
                 raise
@@ -176,21 +177,6 @@ def _chain(bowl, every, devices):
     return [stations.plain(bowl.track, every, RUN_UP * size), *made]
 
 
-def _starts(bowl, every, entered, principal, length, seed):
-    """States (N, 13) of parts laid on the track, and the times [s] at which they are."""
-    states, times = np.zeros((len(entered), body.STATE)), np.zeros(len(entered))
-    for n, k in enumerate(entered):
-        rng = np.random.default_rng((seed, n))
-        play, turn, phase = rng.random(3)
-        lean = TURN * (2.0 * turn - 1.0)
-        states[n] = runs.laid(
-            every[k], principal, length, bowl.track, place=0.0,
-            aside=PLAY * play + 0.5 * every[k].length * abs(lean), turn=lean,
-        )  # fmt: skip
-        times[n] = phase / bowl.drive.frequency
-    return states, times
-
-
 def _limits(bowl, station, every):
     """How long a part has, and how often it is looked at, by the velocity of the point mass."""
     found = answer.answer(bowl).velocity
@@ -238,7 +224,7 @@ class _Found:
         self.fell[riders] = runs.ways(ride.states, self.looks.radius) * bowl.track.radius / self.looks.radius
         fates = np.where(ride.outcomes == runs.RETURNED, RETURNED, STUCK)
         low = (
-            np.array([_lowest(self.looks.corners, state) for state in ride.states])
+            np.array([starts.lowest(self.looks.corners, state) for state in ride.states])
             * bowl.track.radius
             / self.looks.radius
         )
@@ -278,11 +264,6 @@ class _Found:
             tuple(check.frozen(np.concatenate(self.riders[k])) for k in met),
             tuple(groups.joined(self.rides[k]) for k in met),
         )
-
-
-def _lowest(corners, state):
-    """Height of the lowest corner of a part."""
-    return state[2] + vectors.product(corners, runs.matrix(state)[2]).min()
 
 
 def velocities(ride, radius):

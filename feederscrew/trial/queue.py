@@ -8,7 +8,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.dropping.kernel import body
 from feederscrew.tooling.hanging import Hanging
-from feederscrew.trial import course, crowd, runs
+from feederscrew.trial import course, crowd, runs, starts
 from feederscrew.trial.kernel.crowd import BEHIND, BELOW
 from feederscrew.trial.looks import OTHER, AspectsBelow, Looks
 from feederscrew.trial.rounding import rounded
@@ -151,7 +151,7 @@ class _Queue:
         k = min(int(np.searchsorted(self.chances, self.rng.random() * self.chances[-1])), len(self.every) - 1)
         one, track = self.every[k], self.bowl.track
         if not self.poured:
-            aside = course.PLAY * self.rng.random()
+            aside = starts.PLAY * self.rng.random()
             state = runs.laid(one, self.principal, self.known.length, track, place=0.0, aside=aside)
             return state, one.length / self.known.length
         radius, state = self.known.solid.radius, np.zeros(body.STATE)

@@ -9,6 +9,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.rates import stream
 from feederscrew.trial import course
+from feederscrew.trial.landing import Landing
 from feederscrew.trial.queue import QueuedParts
 
 CLEAR = 2.5e-4  # [m] margin from which a static verdict should hold
@@ -29,12 +30,13 @@ class TrialRun:
     known: stream.Orientations  # and what the static rule says of each
     shares: np.ndarray  # (M,) [1] in which they are offered: of those tried, sums to 1
     course: course.Course
-    queue: QueuedParts | None  # None where it was not asked for
+    queue: QueuedParts | None = None  # None where it was not asked for
+    landing: Landing | None = None  # the same
 
     @property
     def partial(self):
         """Whether the user stopped it before all was done."""
-        return self.course.partial or (self.queue is not None and self.queue.partial)
+        return any(one.partial for one in (self.course, self.landing, self.queue) if one is not None)
 
     @cached_property
     def counts(self):

@@ -7,12 +7,13 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
+from feederscrew.dropping.launches import named
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies import rate
 from feederscrew.studies import trial as studies
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import course, groups, rounding, runs, shape, stations
+from feederscrew.trial import course, groups, landing, looks, rounding, runs, shape, starts, stations
 
 OWN = [
     "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",
@@ -267,3 +268,28 @@ def test_a_corner_that_slides_along_the_wall_does_not_slip_past_a_gate(bowl):
     sharp = [k for k, one in enumerate(every) if abs(one.height - 11e-3) < 1e-5 and one.length > 15.9e-3]
     seen = course.course(wedge, gate, every, sharp, gate.devices, parts=len(sharp), seed=1)
     assert len(sharp) >= 2 and (seen.fates == course.STUCK).all()
+
+
+def test_parts_that_fall_onto_the_track_go_on_as_they_come_to_lie(bowl):
+    one, aspects = bowl("narrowed_track: 9 mm"), find(PART)
+    every = orientations(PART, aspects, one.track)
+    own = {"launch": "drop", "parts": 24, "seed": 2}
+    both = [landing.landing(PART, one, aspects, every, every, jobs=jobs, **own) for jobs in (1, 2)]
+    fell = both[0]
+    np.testing.assert_array_equal(fell.fates, both[1].fates)
+    assert fell.lost + fell.landed.sum() == 24 and 0 < fell.lost < 24
+    assert fell.landed[0] > fell.landed[1:].sum()  # most lie flat
+    assert fell.left == fell.fates[:, [course.PASSED, course.TURNED]].sum()
+    assert fell.fates[:, course.RETURNED].sum() > 0  # their middle lies beyond the track that is left
+    assert fell.depth < 1e-4
+
+
+def test_parts_that_fall_anywhere_over_the_track_clear_the_wall():
+    bowl, aspects = bowls.read(None, OWN), find(PART)
+    below = looks.AspectsBelow(PART, aspects)
+    states, times = starts.falling(bowl, named("feed"), below.shape, 40, shape.solid_of(PART)[1], 3)
+    for state in states:
+        corners = state[:3] + np.einsum("ij,cj->ci", runs.matrix(state), below.shape.vertices)
+        assert corners[:, 1].min() > 0.0 and corners[:, 2].min() > 1.99
+    assert (states[:, 1] < bowl.track.width / shape.solid_of(PART)[1]).all()
+    assert ((times >= 0.0) & (times < 1.0 / bowl.drive.frequency)).all()

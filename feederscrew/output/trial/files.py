@@ -10,6 +10,7 @@ def offers(study):
     return [
         offer.table("trial.csv", tables.frame, study),
         offer.table("trial_stations.csv", tables.stations, run),
+        *([] if run.landing is None else [offer.table("trial_landing.csv", tables.landed, study, run)]),
         *([] if run.queue is None else [offer.table("trial_outlet.csv", tables.outlet, study, run)]),
         offer.document("trial.json", tables.document, study),
         *pictures(study),

@@ -3,6 +3,7 @@
 import numpy as np
 
 from feederscrew import units
+from feederscrew.dropping.ensemble import wilson
 from feederscrew.output import columns, tables
 from feederscrew.studies.trial import ENGINE
 from feederscrew.trial import course
@@ -48,6 +49,7 @@ def _run(study, run):
         "stations": [station.device.kind for station in run.course.stations],
         "orientations": orientations(run),
         "matrix": run.matrix,
+        "landing": None if run.landing is None else landing(study, run),
         "queue": None if run.queue is None else queue(study, run),
     }
 
@@ -116,6 +118,35 @@ def queue(study, run):
     }
 
 
+def landing(study, run):
+    """Return what became of the parts that fell onto the track, as a document."""
+    found, seen = run.landing, landed(study, run)
+    return {
+        "launch": found.launch,
+        "parts": found.parts,
+        "lost": found.lost,
+        "left": found.left,
+        "efficiency": found.efficiency,
+        "purity": found.purity,
+        "velocity_mm_s": found.velocity / MM_S,
+        "largest_penetration_mm": found.depth / MM,
+        "aspects": [dict(zip(seen, row)) for row in zip(*seen.values())],
+        "leaves": {
+            _name(run, k if k < len(found.leaving) - 1 else -1): int(n)
+            for k, n in enumerate(found.leaving)
+            if n
+        },
+    }
+
+
+def landed(study, run):
+    """Return what became of the parts that fell onto a run's track, by aspect, as columns by name."""
+    found = run.landing
+    low, high = wilson(found.landed, found.landed.sum())
+    known = {"aspect": study.aspects.names, "landed": found.landed, "low": low, "high": high}
+    return known | dict(zip(course.FATES, found.fates.T))
+
+
 def outlet(study, run):
     """Return what left a run's queue by aspect, beside what was measured, as columns by name."""
     found = study.outlet(run)
@@ -169,11 +200,24 @@ def summary(study):
             f"{_most(run.course.depths) / MM:.2g} mm, and no part won more energy than lifts it by "
             f"{_most(run.course.gains) / UM:.2g} um"
         )
+        if run.landing is not None:
+            yield _fallen(run)
         if run.queue is not None:
             yield _queued(run.queue)
             yield from _beside(study.outlet(run))
     if len(study.runs) > 1 and np.isfinite(study.highest):
         yield f"the tooling sorts up to an amplitude of {study.highest / MM:.4g} mm of those tried"
+
+
+def _fallen(run):
+    """What became of parts that fell onto the track, in a sentence."""
+    found = run.landing
+    most = _name(run, int(np.argmax(found.leaving[:-1]))) if found.leaving[:-1].any() else None
+    return (
+        f"of {found.parts} parts that fell onto the track (launch {found.launch}) {found.lost} went over its "
+        f"edge, {found.left} left, {found.leaving[:-1].sum()} of them along the wall"
+        + (f", {found.leaving[:-1].max()} as {most}" if most else "")
+    )
 
 
 def _queued(found):

@@ -46,7 +46,7 @@ def test_the_document_keeps_its_contract(run, block):
     counts.write_text("aspect,MDFT_80\nA,0.9\nB,0.1\nC,0\n")
     result = run(
         "trial", part, "--aspect", "A", "--config", bowl, "--parts", "4", "--queue", "3", "--seconds", "0.5",
-        "--launch", "place", "--with", counts, "--format", "json",
+        "--launch", "place", "--landing", "6", "--with", counts, "--format", "json",
     )  # fmt: skip
     assert result.exit_code == 0
     found = json.loads(result.stdout)
@@ -61,6 +61,9 @@ def test_the_document_keeps_its_contract(run, block):
     assert [(one["aspect"], one["measured MDFT_80"]) for one in seen] == [("A", 0.9), ("B", 0.1), ("C", 0.0)]
     assert [one["offered"] for one in seen] == pytest.approx([1.0, 0.0, 0.0])
     assert "at the outlet [%] A" in result.stderr
+    fell = found["landing"]
+    assert fell["parts"] == 6 == fell["lost"] + sum(one["landed"] for one in fell["aspects"])
+    assert fell["launch"] == "place" and f"{fell['lost']} went over its edge" in result.stderr
     assert found["launch"] == "place" and found["answer"].endswith("launch place")
     assert 0.0 <= found["largest_penetration_mm"] < 1.0 and 0.0 <= found["energy_won_um"] < 1.0
     worst = max(one["penetration_mm"] for one in found["orientations"])

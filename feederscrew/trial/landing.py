@@ -1,0 +1,140 @@
+"""Parts that fall onto the moving track, come to lie as they do, and go through the devices so."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.dropping.launches import named
+from feederscrew.dropping.plate.runs import EXACT
+from feederscrew.trial import course, runs, starts, stations
+from feederscrew.trial.looks import OTHER, AspectsBelow
+from feederscrew.trial.rounding import rounded
+from feederscrew.trial.shape import solid_of
+
+MOST = 0.2  # of the bowl's circumference, to either side: further no part is thrown along the track
+
+
+@dataclass(frozen=True, eq=False)
+class Landing:
+    """What became of N parts that fell onto the track; A aspects, S orientations in which parts leave."""
+
+    launch: str
+    parts: int  # N
+    lost: int  # of them off the track before they had come to lie
+    fates: np.ndarray  # (A, 5) int, by the aspect on which they came to lie, at any heading; columns as
+    # ``course.FATES``: passed on the same aspect, turned onto another
+    leaving: np.ndarray  # (S + 1,) int, orientation in which they left; the last is none of the known
+    velocity: float  # [m/s] mean on the bare track; NaN where none travelled
+    depth: float  # [m] the deepest that anything was in anything, after the landing
+    partial: bool  # stopped by the user: of the parts until then
+
+    @property
+    def landed(self):
+        """(A,) int, how many came to lie on each aspect."""
+        return self.fates.sum(axis=1)
+
+    @property
+    def left(self):
+        """How many left behind the last device."""
+        return int(self.leaving.sum())
+
+    @property
+    def efficiency(self):
+        """Share of the parts let fall that leaves in the orientation in which most do [1]."""
+        return float(self.leaving[:-1].max(initial=0) / self.parts)
+
+    @property
+    def purity(self):
+        """Share of that orientation in what leaves [1]; NaN where nothing does."""
+        return float(self.leaving[:-1].max(initial=0) / self.left) if self.left else np.nan
+
+
+def landing(part, bowl, aspects, every, poses, *, launch, parts, seed=1, jobs=1, progress=None):
+    """Let parts fall onto the bare, moving track and send those that lie on it through the devices.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    bowl : Bowl
+        With its devices.
+    aspects : Aspects
+        Of the part.
+    every, poses : sequence of Orientation
+        Of the part, and those in which it may leave.
+    launch : str
+        A key of ``dropping.launches.PRESETS``: height, spin and speed.
+    parts : int
+    seed, jobs : int
+    progress : function, optional
+        Told how many parts are done, of how many, first with the landing.
+
+    Returns
+    -------
+    Landing
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user stops it before all have come to lie and the first of them are through.
+    """
+    below = AspectsBelow(part, aspects)
+    ride, times = _fallen(part, bowl, every, below.shape, named(launch), parts, seed, jobs, progress)
+    if ride.partial:
+        raise KeyboardInterrupt
+    entered = below.of(ride.states)
+    on = (ride.outcomes == runs.RUNNING) & (entered != OTHER)
+    if not on.any():
+        return _told(launch, parts, aspects, poses, None, below)
+    radius = bowl.track.radius / solid_of(part)[1]
+    states = runs.moved(ride.states[on], -runs.ways(ride.states[on], radius), radius)
+    leaves = np.ones((len(aspects.names), len(poses)), bool)
+    own = {"begun": (states, (times + ride.seconds)[on], entered[on]), "jobs": jobs, "progress": progress}
+    count = int(on.sum())
+    seen = course.course(part, bowl, every, (), bowl.devices, parts=count, poses=poses, leaves=leaves, **own)
+    return _told(launch, parts - count, aspects, poses, seen, below)
+
+
+def _fallen(part, bowl, every, shape, launch, parts, seed, jobs, progress):
+    """Runs of parts from their launch to where they lie, and the times [s] at which they began."""
+    solid, length, principal = solid_of(part)
+    solid = rounded(solid, course.axes(every, principal))
+    known = runs.setting(solid, length, bowl)
+    states, times = starts.falling(bowl, launch, shape, parts, length, seed)
+    flight, fastest = np.sqrt(2.0 * launch.fall[1]), launch.speed[1]
+    room = fastest * flight + fastest**2 / (2.0 * max(bowl.friction.kinetic, 0.05)) + solid.radius
+    room = min(length * room, MOST * 2.0 * np.pi * bowl.track.radius)
+    stage = replace(stations.plain(bowl.track, every, 2.0 * room), exit=np.inf)
+    seconds = known.unit * (flight + EXACT.settling)
+    ride = runs.ride(
+        known, stage, runs.moved(states, room / length, known.radius), times,
+        limits=(seconds, 2.0 * seconds, 0.0, np.inf), every=seconds, places=1, jobs=jobs,
+        progress=progress and (lambda done: progress(done, parts)),
+    )  # fmt: skip
+    return ride, times
+
+
+def _told(launch, lost, aspects, poses, seen, below):
+    """The record of what became of those that lay; ``seen`` is None where none did."""
+    fates = np.zeros((len(aspects.names), len(course.FATES)), int)
+    leaving, velocity = np.zeros(len(poses) + 1, int), np.nan
+    if seen is not None:
+        left = np.isin(seen.fates, (course.PASSED, course.TURNED))
+        out = np.full(len(left), OTHER)
+        out[seen.riders[-1]] = below.of(seen.rides[-1].states)
+        becomes = np.where(left & (out != seen.entered), course.TURNED, seen.fates)
+        np.add.at(fates, (seen.entered, np.where(left & (out == seen.entered), course.PASSED, becomes)), 1)
+        np.add.at(leaving, seen.orientations[-1][left], 1)
+        travels = np.isfinite(seen.velocities)
+        velocity = float(seen.velocities[travels].mean()) if travels.any() else np.nan
+    return Landing(
+        launch=launch,
+        parts=lost + int(fates.sum()),
+        lost=lost,
+        fates=check.frozen(fates),
+        leaving=check.frozen(leaving),
+        velocity=velocity,
+        depth=0.0 if seen is None else float(seen.depths.max()),
+        partial=seen is not None and seen.partial,
+    )

@@ -1,0 +1,82 @@
+"""How parts begin: laid on the track as they lie, or falling onto it."""
+
+import numpy as np
+
+from feederscrew.dropping.kernel import body
+from feederscrew.dropping.launches import sample
+from feederscrew.geometry import vectors
+from feederscrew.trial import runs
+
+PLAY = 5e-5  # [m] from the wall, at most, where a part is laid down
+TURN = np.radians(0.1)  # [rad] of its heading, at most
+CLEAR = 1.02  # of the part's radius: as near to the wall as its centre of mass may come down
+
+
+def laid_down(bowl, every, entered, solid, principal, length, seed):
+    """Return parts laid on the track, up to PLAY from the wall and TURN askew, at any phase of the drive.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    every : sequence of Orientation
+        Of the part.
+    entered : (N,) int
+        In which of them each is laid.
+    solid : TrueSolid
+    principal : (3, 3) float [1]
+    length : float [m]
+        Both from ``solid_of``.
+    seed : int
+        Each part draws its own numbers.
+
+    Returns
+    -------
+    states : (N, 13) float
+        At the place 0, the lowest corner on the track.
+    times : (N,) float [s]
+    """
+    states, times = np.zeros((len(entered), body.STATE)), np.zeros(len(entered))
+    for n, k in enumerate(entered):
+        rng = np.random.default_rng((seed, n))
+        play, turn, phase = rng.random(3)
+        lean = TURN * (2.0 * turn - 1.0)
+        states[n] = runs.laid(
+            every[k], principal, length, bowl.track, place=0.0,
+            aside=PLAY * play + 0.5 * every[k].length * abs(lean), turn=lean,
+        )  # fmt: skip
+        states[n, body.Z] -= lowest(solid.corners, states[n])
+        times[n] = phase / bowl.drive.frequency
+    return states, times
+
+
+def falling(bowl, launch, shape, count, length, seed):
+    """Return parts that fall onto the track as a launch says, anywhere over its width.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    launch : Launch
+        Its height, spin and speed; friction and restitution are those of the bowl.
+    shape : Shape
+        Of the part, its axes those of ``solid_of``.
+    count : int
+    length : float [m]
+    seed : int
+
+    Returns
+    -------
+    states : (N, 13) float
+        At the place 0.
+    times : (N,) float [s]
+    """
+    rng = np.random.default_rng((seed, count))
+    states = np.array(sample(launch, shape, count, rng).states)
+    place, phase = np.random.default_rng((seed, count, 1)).random((2, count))
+    near = CLEAR * shape.solid.radius
+    states[:, body.Y] = near + place * max(bowl.track.width / length - near, 0.0)
+    return states, phase / bowl.drive.frequency
+
+
+def lowest(corners, state):
+    """Return the height of the lowest corner (C, 3) of a part."""
+    return state[body.Z] + vectors.product(corners, runs.matrix(state)[2]).min()
