@@ -2,7 +2,7 @@
 
 Example: python benchmarks/trial_point.py
 
-A flat block that slides, and that hops without rebound; and a block and a key that are laid down at random
+A flat block that slides, and that hops without rebound at throw numbers of 1.1 to 2; and a block and a key that are laid down at random
 headings off the wall of a banked track, and travel until they lie against it.
 """
 
@@ -27,16 +27,18 @@ OWN = ("drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "friction.static
        "track.climb=2 deg", "restitution=0", "track.radius=2 m")  # fmt: skip
 BLOCK = shapes.part(shapes.box(20, 12, 5))
 KEY = load(str(Path(__file__).parent.parent / "parts" / "key_a_d12x20.stl"))
+AMPLITUDES = (0.15, 0.22, 0.26, 0.32, 0.35, 0.40)  # [mm] throw numbers of 0.74 to 1.98
 TRIED, WAY, OFF = 60, 0.15, 0.012  # parts, [m] that they travel, [m] off the wall
 
 
 def velocity(amplitude):
-    """Mean velocity of four blocks lying flat, and that of the point mass [mm/s]."""
+    """Throw number, mean velocity of four blocks lying flat, and that of the point mass [mm/s]."""
     bowl = bowls.read(None, (*OWN, f"drive.amplitude={amplitude} mm", "track.bank=0 deg"))
     every = orientations(BLOCK, find(BLOCK), bowl.track)
     flat = [k for k, one in enumerate(every) if one.height < 6e-3]
     seen = course.course(BLOCK, bowl, every, flat[:1] * 4, (), parts=4)
-    return 1e3 * float(np.nanmean(seen.velocities)), 1e3 * answer.answer(bowl).velocity
+    found = float(np.nanmean(seen.velocities))
+    return answer.throw_number(bowl), 1e3 * found, 1e3 * answer.answer(bowl).velocity
 
 
 def headings(part):
@@ -62,9 +64,14 @@ def headings(part):
 
 
 def main():
-    for amplitude, how in ((0.15, "sliding"), (0.35, "hopping")):
-        found, exact = velocity(amplitude)
-        print(f"{how}: {found:.3f} mm/s, exact {exact:.3f}, {100.0 * (found / exact - 1.0):+.2f} %")
+    for amplitude in AMPLITUDES:
+        throw, found, exact = velocity(amplitude)
+        off, within = 100.0 * (found / exact - 1.0), 5.0 if throw > 1.0 else 2.0
+        told = "hops" if throw > 1.0 else "slides"
+        print(
+            f"{told} at a throw number of {throw:.2f}: {found:.3f} mm/s, exact {exact:.3f}, {off:+.2f} % "
+            f"(asked {within:g} %): {'met' if abs(off) <= within else 'MISSED'}"
+        )
     for part in (BLOCK, KEY):
         print(part.name)
         headings(part)
