@@ -2,8 +2,8 @@
 
 Example: python benchmarks/trial_point.py
 
-A flat block that slides, and that hops without rebound at throw numbers of 1.1 to 2; and a block and a key that are laid down at random
-headings off the wall of a banked track, and travel until they lie against it.
+A flat block that slides, and that hops without rebound at throw numbers of 1.1 to 2; and a block and a key
+that are laid down at random headings off the wall of a banked track, and travel until they lie against it.
 """
 
 import sys

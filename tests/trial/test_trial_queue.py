@@ -46,15 +46,16 @@ def queued(bowl, **own):
     return queue.queue_of(PART, bowl, ASPECTS, EVERY, EVERY, shares, **own)
 
 
-def test_a_part_that_strikes_another_shares_its_momentum():
-    on = parts_on(STILL, -0.10, -0.0795, friction=0.0)
+@pytest.mark.parametrize("restitution", [0.0, 0.4])
+def test_a_part_that_strikes_another_shares_its_momentum(restitution):
+    on = parts_on(replace(STILL, restitution=restitution), -0.10, -0.0795, friction=0.0)
     on.arrays.states[0, body.VX] = 0.3
     for turn in range(20):
         on.ride(turn)
     first, second = on.arrays.states[:, body.VX]
     assert first + second == pytest.approx(0.3, rel=1e-6)
-    assert first == pytest.approx(second, abs=1e-3)  # nothing rebounds between parts
-    assert on.extents(1)[0] - on.extents(0)[1] == pytest.approx(0.0, abs=1e-2)
+    assert second - first == pytest.approx(0.3 * restitution, abs=1e-3)
+    assert (on.extents(1)[0] - on.extents(0)[1] > 1e-2) == (restitution > 0.0)
 
 
 def test_a_part_on_another_bears_on_it_with_its_weight():

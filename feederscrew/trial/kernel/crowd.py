@@ -11,10 +11,10 @@ import numpy as np
 
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VZ, W
-from feederscrew.dropping.kernel.contact import IMPULSE, MASS, RATE, WANTED
+from feederscrew.dropping.kernel.contact import IMPULSE
 from feederscrew.geometry.compiled import compiled, entry
-from feederscrew.trial.kernel import contact, motion
-from feederscrew.trial.kernel.contact import AXES, GAP, NORMAL, TOWARDS
+from feederscrew.trial.kernel import between, contact, motion
+from feederscrew.trial.kernel.contact import GAP, TOWARDS
 from feederscrew.trial.kernel.pairs import corners_on, edges_on
 
 UPWARD = 0.5  # [1] of the normal: a part that is held so by another is carried
@@ -91,44 +91,6 @@ def _each_other(surface, solid, crowd, active, reach):
 
 
 @compiled
-def _apart(crowd, k, e):
-    """Velocity of the first part of a contact against the second, along one of its axes."""
-    first, second = crowd.states[crowd.owners[k]], crowd.states[crowd.owners[k + 1]]
-    return contact.speed(first, crowd.pairs[k], e) - contact.speed(second, crowd.pairs[k + 1], e)
-
-
-@compiled
-def _given(state, row, e, impulse):
-    for k in range(3):
-        state[VX + k] += impulse * row[AXES + 3 * e + k]
-        state[W + k] += impulse * row[RATE + 3 * e + k]
-
-
-@compiled
-def _both(crowd, k, e, impulse):
-    _given(crowd.states[crowd.owners[k]], crowd.pairs[k], e, impulse)
-    _given(crowd.states[crowd.owners[k + 1]], crowd.pairs[k + 1], e, -impulse)
-
-
-@compiled
-def _relax_pair(crowd, k, friction):
-    """One projected Gauss-Seidel step on a contact of two parts; the change of its impulse."""
-    row = crowd.pairs[k]
-    x, y, z = row[IMPULSE], row[IMPULSE + 1], row[IMPULSE + 2]
-    up = max(z + row[MASS + 2] * (row[WANTED] - _apart(crowd, k, NORMAL)), 0.0)
-    _both(crowd, k, NORMAL, up - z)
-    row[IMPULSE + 2] = up
-    if up == 0.0 and z == 0.0:
-        return 0.0
-    ahead, aside = x - row[MASS] * _apart(crowd, k, 0), y - row[MASS + 1] * _apart(crowd, k, 1)
-    ahead, aside = contact.rubbing(ahead, aside, friction * up)
-    _both(crowd, k, 0, ahead - x)
-    _both(crowd, k, 1, aside - y)
-    row[IMPULSE], row[IMPULSE + 1] = ahead, aside
-    return abs(up - z) + abs(ahead - x) + abs(aside - y)
-
-
-@compiled
 def _relax_part(crowd, n):
     """One step on all contacts of one part with the track; change and sum of their impulses."""
     state, change, size = crowd.states[n], 0.0, 0.0
@@ -155,7 +117,7 @@ def solve(surface, crowd, pairs):
             more, part = _relax_part(crowd, n)
             change, size = change + more, size + part
         for k in range(0, pairs, 2):
-            change += _relax_pair(crowd, k, surface.friction[1])
+            change += between.relax(crowd, k)
             size += crowd.pairs[k, IMPULSE + 2]
         if change <= surface.converged * size:
             break
@@ -183,10 +145,7 @@ def pushed(surface, solid, floor, crowd, work, active, time, dt, pairs):
         if crowd.counts[n]:
             depth, _, _ = motion.wanted(surface, one, crowd.counts[n], dt)
             deepest = min(deepest, depth)
-    for k in range(0, pairs, 2):
-        gap = crowd.pairs[k, GAP]
-        deepest = min(deepest, gap)
-        crowd.pairs[k, WANTED] = -max(gap, 0.0) / dt
+    deepest = min(deepest, between.wanted(surface, crowd, pairs, dt))
     limit = _moving(crowd, solid, active)
     solve(surface, crowd, pairs)
     for n in range(len(crowd.states)):
