@@ -30,3 +30,11 @@ def test_a_generated_page_is_as_the_program_is(name):
     call = [sys.executable, f"docs/{name}.py", "--check"]
     done = subprocess.run(call, capture_output=True, text=True, cwd=ROOT)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", ""), f"run: python docs/{name}.py"
+
+
+def test_the_modules_that_the_pages_name_are_there():
+    pages = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
+    named = {path for page in pages for path in re.findall(r"`([\w/]+/\w+\.py)`", page.read_text())}
+    assert len(named) > 10
+    rooms = (ROOT, ROOT / "feederscrew")
+    assert not [path for path in named if not any((room / path).exists() for room in rooms)]
