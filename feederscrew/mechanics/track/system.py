@@ -15,6 +15,7 @@ from feederscrew.geometry.vectors import dot
 
 SETS = ((True, True), (True, False), (False, True), (False, False))  # closed wall contacts, in order of trial
 STEPS = 14  # of the secant rule; the functions are nearly straight
+HELD = 1e-6  # [1] of the slip of a part that nothing holds: less than this is none
 AHEAD = np.array([1.0, 0.0])
 
 
@@ -118,7 +119,9 @@ def _mobilised(slip, force):
         lambda mobilised: slip(mobilised)[0], nothing, unheld, guess,
         lambda after, step: after - np.clip(step, -10.0, 10.0),
     )  # fmt: skip
-    return np.where((found * guess >= 0.0) & (slip(found)[1] * divisor > 0.0), found, guess)
+    left, at_found = slip(found)
+    holds = (np.abs(left) <= HELD * np.abs(unheld)) & (found * guess >= 0.0) & (at_found * divisor > 0.0)
+    return np.where(holds, found, guess)
 
 
 def _zero(slip, before, slip_before, after, stepped):
