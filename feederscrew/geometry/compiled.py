@@ -78,8 +78,7 @@ def _register():
 
     while PLAIN:
         function = PLAIN.pop()
-        kept = function in KEPT
-        register_jitable(**_options(), cache=kept, forceinline=not kept)(function)
+        register_jitable(**_options(), cache=function in KEPT, forceinline=True)(function)
 
 
 @functools.cache

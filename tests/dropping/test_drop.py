@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from feederscrew.dropping.kernel import body, contact, drop, touch
+from feederscrew.dropping.kernel import body, contact, drop, impulses, touch
 from feederscrew.dropping.kernel.drop import Steps, scratch, settle
 from feederscrew.dropping.launches import PRESETS, sample
 
@@ -83,7 +83,7 @@ def struck(shape, state, restitution, friction):
     corner, _ = body.lowest(shape.vertices, shape.solid.links, work.turn, 0)
     count = touch.touching(shape.solid, work, state[body.Z], corner, 1e-3)
     contact.levers(shape.inertia, work, count)
-    contact.strike(
+    impulses.strike(
         shape.inertia,
         work.state,
         work.saved,

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from feederscrew.dropping.kernel import body, contact, touch
+from feederscrew.dropping.kernel import body, contact, impulses, touch
 from feederscrew.dropping.kernel import floor as floors
 from feederscrew.dropping.kernel.body import VX, VZ, W, X, Z
 from feederscrew.geometry.compiled import compiled, shared
@@ -26,6 +26,7 @@ class Scratch(NamedTuple):
     spots: np.ndarray  # (V + QUARTERS R, 3) points that touch the floor, in body axes
     owners: np.ndarray  # (V + QUARTERS R,) int: rim of each of them, CORNER for none
     contacts: np.ndarray  # (MOST, WIDTH)
+    pressed: np.ndarray  # (2,) points of the last step if it was on the floor, else 0; how long it was
     trace: np.ndarray  # (N, 14) time and state at the start of each step, until it is full
     rows: np.ndarray  # (1,) int: how many rows of it are filled
 
@@ -45,6 +46,7 @@ def scratch(shape, rows=0):
         spots=np.zeros((room, 3)),
         owners=np.zeros(room, int),
         contacts=np.zeros((touch.MOST, contact.WIDTH)),
+        pressed=np.zeros(2),
         trace=np.zeros((rows, 1 + body.STATE)),
         rows=np.zeros(1, int),
     )
@@ -91,7 +93,8 @@ def approach(solid, work, floor, time, corner, gap, steps):
     state = work.state
     rate = body.rate(state)
     quickest = abs(state[VZ]) + rate * solid.radius + 1e-9
-    dt = min(max(gap / quickest, steps.flight), steps.turn / (rate + 1e-9), 0.5, floor.step)
+    dt = min(max(gap / quickest, steps.flight), steps.turn / (rate + 1e-9))
+    dt = min(min(dt, 0.5), floor.step)
     early, late, above, below, trial = 0.0, dt, max(gap, 0.0), 0.0, 0
     body.keep(state, work.saved)
     while True:
@@ -130,7 +133,7 @@ def press_on(solid, work, floor, time, corner, count, friction, steps):
     follow the mean velocity.
     """
     state = work.state
-    whole = min(steps.contact, floor.step, steps.swing / (body.rate(state) + 1e-9))
+    whole = min(min(steps.contact, floor.step), steps.swing / (body.rate(state) + 1e-9))
     ahead, rise = floors.quickening(floor, time, whole)
     before = body.moving_energy(state, solid.inertia)
     body.keep(state, work.saved)
@@ -138,7 +141,9 @@ def press_on(solid, work, floor, time, corner, count, friction, steps):
     body.spin(state, solid.inertia, whole)
     state[VX] -= ahead
     state[VZ] -= whole + rise
-    contact.hold(state, work.contacts, count, friction, steps)
+    share = whole / work.pressed[1] if count == work.pressed[0] else 0.0
+    impulses.hold(state, work.contacts, count, friction, steps, share)
+    work.pressed[0], work.pressed[1] = count, whole
     lever = steps.pivot
     for n in range(count):
         if work.owners[n] != touch.CORNER:
@@ -194,15 +199,17 @@ def advance(solid, work, floor, time, corner, gap, restitution, friction, steps)
     if gap <= steps.tolerance:
         count = touch.touching(solid, work, state[Z], corner, steps.tolerance)
         contact.levers(solid.inertia, work, count)
-        rise = contact.steepest(state, contacts, count)
+        rise = impulses.steepest(state, contacts, count)
         struck = rise < -steps.threshold
         if struck:
-            contact.strike(solid.inertia, state, work.saved, contacts, count, restitution, friction, steps)
-            rise = contact.steepest(state, contacts, count)
+            impulses.strike(solid.inertia, state, work.saved, contacts, count, restitution, friction, steps)
+            rise = impulses.steepest(state, contacts, count)
+            work.pressed[0] = 0.0
         elif rise < -CREEP:
-            contact.hold(state, contacts, count, friction, steps)
-            rise = 0.0
+            impulses.hold(state, contacts, count, friction, steps, 0.0)
+            rise = work.pressed[0] = 0.0
     if rise > steps.threshold:
+        work.pressed[0] = 0.0
         corner, gap, dt = approach(solid, work, floor, time, corner, gap, steps)
     else:
         corner, gap, dt = press_on(solid, work, floor, time, corner, count, friction, steps)
@@ -212,6 +219,7 @@ def advance(solid, work, floor, time, corner, gap, restitution, friction, steps)
 @compiled
 def start(solid, work):
     """Corner from which to look for the lowest point of the body as it stands, and height over the floor."""
+    work.pressed[0] = 0.0
     body.rotation(work.state, work.turn)
     corner, level = body.bottom(solid, work.turn, 0)
     return corner, work.state[Z] + level
