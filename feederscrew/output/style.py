@@ -25,19 +25,34 @@ SPARE = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
 class _Writer(RendererAgg):
     """Measures and draws every text as it stands: no formula, no letter without a glyph, not off the page."""
 
+    def __init__(self, *size):
+        super().__init__(*size)
+        self._known = {}  # texts and fonts: as they can be drawn, and width, height, descent
+
     def draw_text(self, gc, x, y, s, prop, angle, ismath=False, mtext=None):
-        super().draw_text(gc, x, y, self._drawable(s, prop), prop, angle, ismath=False, mtext=mtext)
+        super().draw_text(gc, x, y, self._drawable(s, prop)[0], prop, angle, ismath=False, mtext=mtext)
 
     def get_text_width_height_descent(self, s, prop, ismath):
-        return super().get_text_width_height_descent(self._drawable(s, prop), prop, False)
+        return self._drawable(s, prop)[1]
 
     def _drawable(self, text, prop):
-        font = get_font(findfont(prop))
+        key = text, hash(prop)
+        if key not in self._known:
+            self._known[key] = self._fitted(text, prop)
+        return self._known[key]
+
+    def _fitted(self, text, prop):
+        font, measured = get_font(findfont(prop)), super().get_text_width_height_descent
         told = "".join(letter if font.get_char_index(ord(letter)) else _escape(letter) for letter in text)
         told = LONG_WORD.sub(r"\1…\2", told)
-        width, _, _ = super().get_text_width_height_descent(told, prop, False)
-        page = PAGE * max(self.width, self.height)  # text may stand upright
-        return told if width <= page else told[: int(len(told) * page / width) - 1] + "…"
+        size, page = (
+            measured(told, prop, False),
+            PAGE * max(self.width, self.height),
+        )  # text may stand upright
+        if size[0] <= page:
+            return told, size
+        told = told[: int(len(told) * page / size[0]) - 1] + "…"
+        return told, measured(told, prop, False)
 
 
 def _escape(letter):
