@@ -1,6 +1,7 @@
 """The whole pipeline for one part, from the bytes of its file to the bytes of its results."""
 
 import functools
+import gc
 import io
 
 import numpy as np
@@ -50,6 +51,8 @@ def work(task):
         return Outcome.failed(task, "; ".join(fault.lines))
     except Exception as bug:  # noqa: BLE001 - our bug on one part must not stop the others
         return Outcome.failed(task, f"unexpected {type(bug).__name__}: {bug} - please report it")
+    finally:
+        gc.collect()  # figures hold themselves: a process would grow with every part
 
 
 def _results(task):
