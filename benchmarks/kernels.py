@@ -19,7 +19,6 @@ import waits
 from feederscrew.conveying import sweep
 from feederscrew.conveying.setting import plain
 
-DROPS = {"T shape, 12 corners": 10_000, "screw, 1,000 corners": 5_400}  # a second, at converged steps
 POINTS = 20_000
 FACETS = {1e3: 2.5, 1e4: 1.3}  # beside the bare floor
 PAIRS = 3
@@ -28,9 +27,9 @@ PAIRS = 3
 def drops():
     """Drops a second and core."""
     for name, shape, _ in speed.bodies():
-        if name in DROPS:
+        if name in speed.TARGETS:
             rate, _ = speed.rates(shape, 4000)
-            yield waits.Row(f"drops of a {name}", DROPS[name], rate, "a CPU second", more=True)
+            yield waits.Row(f"drops of a {name}", speed.TARGETS[name], rate, "a CPU second", more=True)
 
 
 def points():

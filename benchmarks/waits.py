@@ -64,8 +64,12 @@ class Row:
     @property
     def verdict(self):
         """Whether the target holds."""
-        held = self.figure >= self.target if self.more else self.figure <= self.target
-        return "holds" if held else "missed"
+        return verdict(self.figure >= self.target if self.more else self.figure <= self.target)
+
+
+def verdict(held):
+    """Of a target, in a word."""
+    return "holds" if held else "missed"
 
 
 def spent(*command, **environment):
