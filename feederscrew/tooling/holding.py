@@ -1,4 +1,4 @@
-"""What holds a part at a device or lays it over, beside its foot: a blade, the sides of rails, the wall."""
+"""What holds a part at a device or lays it over, beside its foot: a blade, sides of a slot, the wall."""
 
 import math
 
@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 
 from feederscrew.geometry.polygons import outline, turned
+from feederscrew.tooling.orientations import rolls_across
 
 SAME = 1e-6  # of the part's height: places so near to the foremost one are met with it
 BESIDE = 1e-2  # of the part's height: places so near to the wall lean on it
@@ -98,6 +99,25 @@ def leans(one, width):
     across = turned(points[:, :2], one.heading)[:, 1]
     high = points[across <= across.min() + BESIDE * one.height, 2].max()
     return max(one.climbs * (2.0 * high - one.posture.height) / width, 0.0)
+
+
+def rides(one, width):
+    """Return whether a part on its round side, along the track, rides over a hole of a width [m] on its sides.
+
+    It sinks between them by width^2 / (8 radius), and comes out at the end of the hole where that is less
+    than ``one.climbs``.
+    """
+    if one.kind != "rolling" or rolls_across(one):
+        return False
+    radius = one.posture.height
+    return width < 2.0 * radius and width**2 < 8.0 * radius * one.climbs
+
+
+def widest(corners):
+    """Return the greatest width [m] across the track of a hole with some corners (K, 2) [m]."""
+    area = shapely.Polygon(corners)
+    lines = [shapely.LineString([(x, -FAR), (x, FAR)]) for x, _ in corners]
+    return max(area.intersection(line).length for line in lines)
 
 
 def _met(one, low):

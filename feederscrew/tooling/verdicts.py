@@ -12,7 +12,7 @@ from feederscrew.errors import ConfigError
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling import turning
 from feederscrew.tooling.hanging import Hanging, hanging_margin, head_first
-from feederscrew.tooling.holding import leans, may_lay_over, may_wedge
+from feederscrew.tooling.holding import leans, may_lay_over, may_wedge, rides, widest
 
 CLOSE = 1e-9  # [m] a part this much over a limit still passes
 UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
@@ -142,7 +142,8 @@ def _slot(device, one, every):
     first, last = device.span
     radius = one.track.radius
     high = radius - first if first > 0.0 else 2.0 * radius
-    return feet.over_ring(one.standing, max(radius - last, 0.0), high), 0.0
+    margin = feet.over_ring(one.standing, max(radius - last, 0.0), high)
+    return (max(margin, -UNSURE) if rides(one, last - first) else margin), 0.0
 
 
 def _rails(device, one, every):
@@ -160,6 +161,7 @@ def _cut_out(device, one, every):
     margin, shift = feet.least(one.standing, hole)
     if margin < 0.0 < one.carry:
         margin = carried(margin, feet.unheld(one.standing, hole), one.carry)
+        margin = max(margin, -UNSURE) if rides(one, widest(device.corners)) else margin
     return margin, shift
 
 
