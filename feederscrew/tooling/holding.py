@@ -102,7 +102,7 @@ def leans(one, width):
 
 
 def rides(one, width):
-    """Return whether a part on its round side, along the track, rides over a hole of a width [m] on its sides.
+    """Return whether a part on its round side along the track rides over a hole of a width [m] by its sides.
 
     It sinks between them by width^2 / (8 radius), and comes out at the end of the hole where that is less
     than ``one.climbs``.
