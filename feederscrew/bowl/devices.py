@@ -91,8 +91,9 @@ KINDS = {
     ),
     "tip": DeviceKind(
         values.length, "length", "6 mm",
-        "ledge of that width above a second track: orientations whose foot of the centre of mass lies beyond "
-        "it turn over it; quasi-static, until a trial confirms it",
+        "ledge of that width above a second track, half the part's greatest length lower: orientations whose "
+        "weight lies beyond it turn over it if that drop takes them past their barrier; quasi-static, until "
+        "a trial confirms it",
         hanging=False, turns=True,
     ),
     "rails": DeviceKind(

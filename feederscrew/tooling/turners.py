@@ -82,10 +82,10 @@ def _matrix(given, device):
 
 
 def _counted(given, device):
-    """Matrix of a device in which what momentum may decide brings nothing into the wanted orientation."""
+    """Matrix of a device in which what momentum may decide counts as lost."""
     matrix = np.array(_matrix(given, device))
     some = [verdict(device, one, given.every).margin >= given.margin for one in given.every]
-    matrix[~np.array(some), given.wanted] = 0.0
+    matrix[~np.array(some)] = 0.0
     return matrix
 
 
