@@ -234,9 +234,12 @@ def _queued(found):
 
 def _beside(found):
     """What left by aspect beside each column that was measured, a sentence each."""
+    if found.columns and not found.counts.any():
+        yield "no part has left the queue yet: there is nothing to set beside what was measured"
+        return
     own = ", ".join(f"{name} {100.0 * share:.3g}" for name, share in zip(found.aspects, found.shares))
     for one in found.columns:
-        deviation, total = found.apart.get(one.name, (np.nan, np.nan))
+        deviation, total = found.apart[one.name]
         said = ", ".join(f"{100.0 * share:.3g}" for share in one.fractions)
         yield (
             f"at the outlet [%] {own} ({found.counts.sum()} parts, {found.other} on none); measured "

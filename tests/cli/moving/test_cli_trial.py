@@ -60,7 +60,7 @@ def test_the_document_keeps_its_contract(run, block):
     seen = found["queue"]["outlet"]
     assert [(one["aspect"], one["measured MDFT_80"]) for one in seen] == [("A", 0.9), ("B", 0.1), ("C", 0.0)]
     assert [one["offered"] for one in seen] == pytest.approx([1.0, 0.0, 0.0])
-    assert "at the outlet [%] A" in result.stderr
+    assert "no part has left the queue yet: there is nothing to set beside" in result.stderr
     fell = found["landing"]
     assert fell["parts"] == 6 == fell["lost"] + sum(one["landed"] for one in fell["aspects"])
     assert fell["launch"] == "place" and f"{fell['lost']} went over its edge" in result.stderr
