@@ -176,6 +176,14 @@ def test_a_ball_with_a_flat_rests_on_a_point_and_on_the_flat():
         assert found.forms[row] == "ball with a flat"
 
 
+@pytest.mark.parametrize(("height", "radius"), [(1.3756, 2.0), (0.75, 2.0), (0.3, 3.0)])
+def test_a_flat_in_a_shallow_cone_stays_a_flat(height, radius):
+    """A cone and a plane across it touch one ball, but nothing is curved along the cone."""
+    _, found = aspects_of([(0, 0), (0, 5), (3, 5), (3 + height, radius), (3 + height, 0)], 48)
+    assert sorted(found.forms) == ["cylinder", "flat", "flat"] and not found.warnings
+    assert np.nanmin(found.contact_areas) == pytest.approx(1e-6 * np.pi * radius**2, rel=5e-3)
+
+
 def test_a_ball_says_where_its_middle_is():
     for shift, form in ((0.0, "ball"), (-1.0, "off-centre ball")):
         part, _ = aspects_of(ball())
