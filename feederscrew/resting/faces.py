@@ -23,6 +23,7 @@ STRAIGHT = (
 DOUBLE = 2e-3  # of the same: normals off their plane or cone by more belong to a side curved both ways
 FEWEST_OF_A_BALL = 24  # facets that show a side curved both ways: a ball, or a cap of one
 ALIKE = np.radians(1.0)  # strips that lean by less apart are of one cone
+SLIVERS = 1e-2  # of their area: what a file's noise leaves between them
 FEWEST = 6  # strips that show a curve whose middle is not the centre of mass
 ON_A_LINE = 1e-6  # of the contact's size: a corner off the line between its neighbours by less is none
 ARC = np.radians(60.0)  # coarse strips that turn less may be meant as flats
@@ -148,7 +149,7 @@ def _rocks(hull, side, sink):
     normals, share = hull.normals[side], hull.areas[side] / hull.areas[side].sum()
     leans = angle(normals, hull.normals[sink])
     flat = share[leans < 0.5 * SMOOTH].sum()
-    if len(side) < FEWEST or flat > 0.5 or not _curved(hull, side) or _ring(leans):
+    if len(side) < FEWEST or flat > 0.5 or not _curved(hull, side) or _ring(leans, share):
         return False
     across = vectors.eigen(vectors.covariance(normals, share))[0]
     fewest = FEWEST if across[0] < STRAIGHT * across[1] else FEWEST_OF_A_BALL
@@ -156,9 +157,11 @@ def _rocks(hull, side, sink):
     return even > fewest - 0.5 and _round(hull, side)
 
 
-def _ring(leans):
+def _ring(leans, share):
     """Whether the strips of a curved side that lean do so alike: a cone about a flat touches a ball, too."""
-    return bool(np.ptp(leans[leans > ALIKE]) < ALIKE)
+    leaning = leans > ALIKE
+    lean = np.average(leans[leaning], weights=share[leaning])
+    return bool(share[np.abs(leans - lean) < ALIKE].sum() > (1.0 - SLIVERS) * share[leaning].sum())
 
 
 def _round(hull, triangles):

@@ -7,6 +7,7 @@ import numpy as np
 import part_files
 import pytest
 import round_bodies
+import trimesh
 from fuzz import rounds
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -179,7 +180,10 @@ def test_a_ball_with_a_flat_rests_on_a_point_and_on_the_flat():
 @pytest.mark.parametrize(("height", "radius"), [(1.3756, 2.0), (0.75, 2.0), (0.3, 3.0)])
 def test_a_flat_in_a_shallow_cone_stays_a_flat(height, radius):
     """A cone and a plane across it touch one ball, but nothing is curved along the cone."""
-    _, found = aspects_of([(0, 0), (0, 5), (3, 5), (3 + height, radius), (3 + height, 0)], 48)
+    triangles = round_bodies.revolved([(0, 0), (0, 5), (3, 5), (3 + height, radius), (3 + height, 0)], 48)
+    turn = trimesh.transformations.rotation_matrix(1.1, (0.3, -0.5, 0.8))[:3, :3]
+    noisy = part_files.binary_stl(round_bodies.split(triangles) @ turn.T + [7.0, -3.0, 11.0])
+    found = aspects.find(load("-", stdin=io.BytesIO(noisy)))
     assert sorted(found.forms) == ["cylinder", "flat", "flat"] and not found.warnings
     assert np.nanmin(found.contact_areas) == pytest.approx(1e-6 * np.pi * radius**2, rel=5e-3)
 
