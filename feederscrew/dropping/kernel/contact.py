@@ -17,10 +17,17 @@ LEVER, RATE, MASS, WANTED, IMPULSE, LAST, CHANGE, WIDTH = 0, 9, 18, 21, 22, 25, 
 
 
 @compiled
-def levers(inertia, work, count):
-    """Fill the rows of ``work.contacts`` for the points found, where they are."""
+def arms(work, count):
+    """Fill the levers of ``work.contacts`` for the points found, where they are: their speeds follow."""
     for n in range(count):
         arm(work.turn, work.spots[n], work.contacts[n])
+
+
+@compiled
+def levers(inertia, work, count):
+    """Fill the rows of ``work.contacts`` for the points found, where they are."""
+    arms(work, count)
+    for n in range(count):
         rates(inertia, work.contacts[n])
         masses(work.contacts[n])
 

@@ -198,9 +198,11 @@ def advance(solid, work, floor, time, corner, gap, restitution, friction, steps)
     state, contacts, count, struck, rise = work.state, work.contacts, 0, False, math.inf
     if gap <= steps.tolerance:
         count = touch.touching(solid, work, state[Z], corner, steps.tolerance)
-        contact.levers(solid.inertia, work, count)
+        contact.arms(work, count)
         rise = impulses.steepest(state, contacts, count)
         struck = rise < -steps.threshold
+        if struck or rise < -CREEP:
+            contact.levers(solid.inertia, work, count)
         if struck:
             impulses.strike(solid.inertia, state, work.saved, contacts, count, restitution, friction, steps)
             rise = impulses.steepest(state, contacts, count)
