@@ -25,6 +25,7 @@ ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/speed.md"
 PART = str(ROOT / "parts/lbracket_30x20x15.stl")
 BARE = (sys.executable, "-c", "import numpy, scipy.spatial")
+QUIET = {"OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}  # as the program asks for it
 CALL = (sys.executable, "-c", "from feederscrew_cli.main import feeder; feeder()")
 PRINTED = {
     "floor": ("floor", PART),
@@ -122,7 +123,7 @@ def median(runs, name):
 def printed():
     """The smallest answer beside its bare imports, and the other printed ones."""
     spent(*CALL, "aspects", PART, "-q")
-    pairs = [(spent(*CALL, "aspects", PART, "-q"), spent(*BARE)) for _ in range(2 * REPEATS)]
+    pairs = [(spent(*CALL, "aspects", PART, "-q"), spent(*BARE, **QUIET)) for _ in range(2 * REPEATS)]
     ratio = statistics.median(ours.cpu / bare.cpu for ours, bare in pairs)
     ours = [one for one, _ in pairs]
     beside = f"{median(ours, 'cpu'):.2f} s CPU, {median(ours, 'memory'):.0f} MiB"
