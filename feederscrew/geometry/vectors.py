@@ -39,6 +39,21 @@ def dot(u, v):
     return np.einsum("...k,...k->...", u, v)
 
 
+def cross(u, v):
+    """Return the vector products (..., 3) of vectors (..., 3).
+
+    The digits are those of ``numpy.cross``, whose own checks take four times as long as a few products.
+    """
+    u, v = np.asarray(u, float), np.asarray(v, float)
+    a, b, c = u[..., 0], u[..., 1], u[..., 2]
+    x, y, z = v[..., 0], v[..., 1], v[..., 2]
+    products = np.empty(u.shape if u.shape == v.shape else np.broadcast_shapes(u.shape, v.shape))
+    products[..., 0] = b * z - c * y
+    products[..., 1] = c * x - a * z
+    products[..., 2] = a * y - b * x
+    return products
+
+
 def length(vectors):
     """Return the lengths (...,) of vectors (..., K), in their unit."""
     vectors = np.asarray(vectors, float)
@@ -53,7 +68,7 @@ def unit(vectors):
 def determinant(matrix):
     """Return the determinant of a (3, 3) matrix, or of a stack (..., 3, 3) of them."""
     a, b, c = np.moveaxis(np.asarray(matrix, float), -2, 0)
-    return dot(a, np.cross(b, c))
+    return dot(a, cross(b, c))
 
 
 def covariance(vectors, weights):

@@ -6,6 +6,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.errors import MeshError
+from feederscrew.geometry import vectors
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +90,7 @@ def _outward(points, qhull):
     """Triangles turned counter-clockwise seen from outside, their neighbours with them; and their areas."""
     triangles, neighbours = qhull.simplices.copy(), qhull.neighbors.copy()
     a, b, c = (points[triangles[:, k]] for k in range(3))
-    cross = np.cross(b - a, c - a)
+    cross = vectors.cross(b - a, c - a)
     inward = np.einsum("ti,ti->t", cross, qhull.equations[:, :3]) < 0.0
     triangles[inward, 1:] = triangles[inward, :0:-1]
     neighbours[inward, 1:] = neighbours[inward, :0:-1]

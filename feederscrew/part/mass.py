@@ -87,7 +87,7 @@ def _spanned(corners):
     """A point in the midst of triangles, their corners from there, six times the volumes between."""
     near = np.array([0.5 * (corners[..., k].min() + corners[..., k].max()) for k in range(3)])
     a, b, c = (corners[:, k] - near for k in range(3))
-    return near, (a, b, c), np.einsum("fi,fi->f", a, np.cross(b, c))
+    return near, (a, b, c), np.einsum("fi,fi->f", a, vectors.cross(b, c))
 
 
 def shifted(inertia, mass, offset):
@@ -138,14 +138,14 @@ def principal(inertia):
     elif same[1]:
         axes = np.array([axes[0], *_across(axes[0])])
     first, second = (_pointing(axis) for axis in axes[:2])
-    return moments, np.array([first, second, np.cross(first, second)])
+    return moments, np.array([first, second, vectors.cross(first, second)])
 
 
 def _across(axis):
     """Two unit vectors across an axis, the first as near to a file axis as can be."""
     nearest = np.eye(3)[np.argmin(np.abs(axis).round(9))]
     first = vectors.unit(nearest - vectors.dot(nearest, axis) * axis)
-    return first, np.cross(axis, first)
+    return first, vectors.cross(axis, first)
 
 
 def _pointing(axis):

@@ -1,10 +1,13 @@
 """Moments of a solid up to order six, and whether a rotation leaves them alone."""
 
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import product
 from math import factorial
 
 import numpy as np
+
+from feederscrew import check
+from feederscrew.geometry import vectors
 
 ORDER = 6
 HALF = [powers for powers in product(range(4), repeat=3) if sum(powers) <= ORDER // 2]  # 20 monomials
@@ -126,7 +129,7 @@ def _quadrature(points, faces):
     """Nodes (N, 3) and weights (N,) of the surface, each weight times the distance of its facet's plane."""
     corners = points[faces]
     a, b, c = np.moveaxis(corners, 1, 0)
-    flux = 0.5 * np.einsum("fi,fi->f", a, np.cross(b - a, c - a))
+    flux = 0.5 * np.einsum("fi,fi->f", a, vectors.cross(b - a, c - a))
     small = np.abs(corners - np.roll(corners, 1, axis=1)).max(axis=(1, 2)) < SMALL
     large_nodes, large_weights = _gauss(corners[~small], flux[~small])
     small_nodes, small_weights = _second_order(points, faces[small], corners[small], flux[small])
@@ -135,12 +138,18 @@ def _quadrature(points, faces):
 
 def _gauss(corners, flux):
     """Exact to order six: Gauss's rule on the square, folded to triangles."""
-    x, w = np.polynomial.legendre.leggauss(4)
-    x, w = 0.5 * (x + 1.0), 0.5 * w
+    x, w = _gauss_legendre()
     u, v = (g.ravel() for g in np.meshgrid(x, x, indexing="ij"))
     share = 2.0 * np.outer(w, w).ravel() * (1.0 - u)
     barycentric = np.column_stack([u, v * (1.0 - u), (1.0 - u) * (1.0 - v)])
     return np.einsum("qk,fki->fqi", barycentric, corners).reshape(-1, 3), np.outer(flux, share).ravel()
+
+
+@cache
+def _gauss_legendre():
+    """Nodes and weights of Gauss's rule of four nodes from 0 to 1."""
+    x, w = np.polynomial.legendre.leggauss(4)
+    return check.frozen(0.5 * (x + 1.0)), check.frozen(0.5 * w)
 
 
 def _second_order(points, faces, corners, flux):

@@ -112,7 +112,7 @@ def _by_landmarks(faces):
     rarest = np.lexsort((-heights, like.sum(axis=1), ~flat))
     rarest = rarest[flat[rarest]]
     for a, b in ((a, b) for a in rarest[:1] for b in rarest[1:]):
-        if vectors.length(np.cross(normals[a], normals[b])) > np.sin(SAME_WAY):
+        if vectors.length(vectors.cross(normals[a], normals[b])) > np.sin(SAME_WAY):
             return _carrying(normals, a, b, np.flatnonzero(like[a] & flat), np.flatnonzero(like[b] & flat))
     return None
 
@@ -130,8 +130,8 @@ def _carrying(normals, a, b, a_images, b_images):
 
 def _half_turns(axis, moments):
     """Half turns about axes across ``axis``: the likeliest, where the solid changes least."""
-    u = vectors.unit(np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))]))
-    v = np.cross(axis, u)
+    u = vectors.unit(vectors.cross(axis, np.eye(3)[np.argmin(np.abs(axis))]))
+    v = vectors.cross(axis, u)
 
     def turns(phases):
         across = np.cos(phases)[:, None] * u + np.sin(phases)[:, None] * v
@@ -155,5 +155,5 @@ def _principal(part):
 def _frame(first, second):
     """(3, 3) right-handed axes as columns: along first, and in the plane of both."""
     z = first
-    y = vectors.unit(np.cross(first, second))
-    return np.column_stack([np.cross(y, z), y, z])
+    y = vectors.unit(vectors.cross(first, second))
+    return np.column_stack([vectors.cross(y, z), y, z])

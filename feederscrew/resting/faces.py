@@ -254,8 +254,8 @@ def _outline(points, normal):
     from scipy.spatial import ConvexHull, QhullError
 
     first = np.eye(3)[np.argmin(np.abs(normal))]
-    u = vectors.unit(np.cross(normal, first))
-    plane = vectors.product(points, np.column_stack([u, np.cross(normal, u)]))
+    u = vectors.unit(vectors.cross(normal, first))
+    plane = vectors.product(points, np.column_stack([u, vectors.cross(normal, u)]))
     try:
         corners = points[ConvexHull(plane).vertices]
     except QhullError:  # a contact line: a sliver of the hull
@@ -272,7 +272,7 @@ def _without_straight_corners(corners):
     size = vectors.length(np.ptp(corners, axis=0))
     while len(corners) > 3:
         before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
-        twice = vectors.length(np.cross(corners - before, after - corners))
+        twice = vectors.length(vectors.cross(corners - before, after - corners))
         off = twice / np.maximum(vectors.length(after - before), np.finfo(float).tiny)
         straight = int(np.argmin(off))
         if off[straight] > ON_A_LINE * size:

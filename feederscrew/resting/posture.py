@@ -120,8 +120,8 @@ def _of_mesh(part, aspects, row):
 def _upright(up):
     """Rows x, y, z of some axes with z along ``up``."""
     beside = np.eye(3)[np.argmin(np.abs(up))]
-    x = vectors.unit(np.cross(beside, up))
-    return np.array([x, np.cross(up, x), up])
+    x = vectors.unit(vectors.cross(beside, up))
+    return np.array([x, vectors.cross(up, x), up])
 
 
 def _forward(contact, shape, corners, size):

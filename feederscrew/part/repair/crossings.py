@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew.geometry import vectors
 from feederscrew.part.repair import weld
 
 MOST, MOST_PAIRS = 300_000, 20_000_000  # facets, and pairs of boxes that overlap: looked at within seconds
@@ -122,7 +123,7 @@ def _through_both(corners, normals, pairs, tolerance):
 def _cuts(corners, normals, pairs, tolerance):
     """Those of the pairs that cut each other along a line longer than the tolerance."""
     i, j = pairs.T
-    along = np.cross(normals[i], normals[j])
+    along = vectors.cross(normals[i], normals[j])
     length = np.linalg.norm(along, axis=1)
     along = along / np.where(length > 0.0, length, 1.0)[:, None]
     of_first, of_second = (_sides(corners, normals, *order, tolerance) for order in ((i, j), (j, i)))
@@ -136,7 +137,7 @@ def _cuts(corners, normals, pairs, tolerance):
 def _normals(corners):
     """(N, 3) unit normals; zero for a facet without area."""
     a, b, c = np.moveaxis(corners, 1, 0)
-    normals = np.cross(b - a, c - a)
+    normals = vectors.cross(b - a, c - a)
     length = np.linalg.norm(normals, axis=1)[:, None]
     return normals / np.where(length > 0.0, length, 1.0)
 

@@ -218,10 +218,10 @@ def _stationary(rates):
 def _edge_levers(polygon):
     """(3,) outward normal of a polygon and (K,) [m] distance of the foot inside each edge."""
     ahead = np.roll(polygon, -1, axis=0)
-    normal = np.cross(polygon, ahead).sum(axis=0)
+    normal = vectors.cross(polygon, ahead).sum(axis=0)
     normal = vectors.unit(normal)
     edges = ahead - polygon
-    outward = np.cross(edges, normal)
+    outward = vectors.cross(edges, normal)
     return normal, np.einsum("ki,ki->k", polygon, outward) / np.linalg.norm(edges, axis=1)
 
 

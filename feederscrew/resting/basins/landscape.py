@@ -11,6 +11,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import minimum_spanning_tree
 
+from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import fitting
 from feederscrew.resting.basins import forest
 
@@ -63,8 +64,9 @@ def passes(hull, pairs, ends):
     length2 = np.maximum(_dot(along, along), np.finfo(float).tiny)
     foot = p - along * (_dot(p, along) / length2)[:, None]  # of the centre of mass on the edge's line
     n1, n2 = hull.normals[pairs[:, 0]], hull.normals[pairs[:, 1]]
-    turn = _dot(np.cross(n1, n2), along)
-    between = (_dot(np.cross(n1, foot), along) * turn > 0.0) & (_dot(np.cross(foot, n2), along) * turn > 0.0)
+    turn = _dot(vectors.cross(n1, n2), along)
+    before, after = (_dot(vectors.cross(*both), along) for both in ((n1, foot), (foot, n2)))
+    between = (before * turn > 0.0) & (after * turn > 0.0)
     higher = hull.heights[pairs].max(axis=1)
     return np.where(between, np.maximum(np.linalg.norm(foot, axis=1), higher), higher)
 
@@ -109,7 +111,7 @@ def landscape(hull):
 
 def angle(u, v):
     """Angles between vectors (..., 3) [rad], true down to the smallest."""
-    return np.arctan2(np.linalg.norm(np.cross(u, v), axis=-1), np.sum(u * v, axis=-1))
+    return np.arctan2(np.linalg.norm(vectors.cross(u, v), axis=-1), np.sum(u * v, axis=-1))
 
 
 def _downhill(hull, pairs, tops):

@@ -62,14 +62,15 @@ def _cascade(shares, heights, pairs, tops):
     below = np.maximum(levels[:, None] - heights, 0.0) ** KEPT  # of what is kept, up to each level
     room = np.maximum(below[0], np.finfo(float).tiny)
     density, ended = over.hop(shares, 1.0) / room, np.zeros(len(shares))
-    for k in range(LEVELS):
-        energy = 0.5 * (levels[k] + levels[k + 1])
-        mass = density * (below[k] - below[k + 1])
-        ended += np.where(energy <= lowest, mass, 0.0)
-        moving = over.hop(np.where(energy <= lowest, 0.0, mass), energy)
-        sinking = below[k + 1] > 0.0
-        density += np.where(sinking, moving / np.where(sinking, below[k + 1], 1.0), 0.0)
-        ended += np.where(sinking, 0.0, moving)
+    energies, kept = 0.5 * (levels[:-1] + levels[1:]), below[:-1] - below[1:]
+    held, sinking = energies[:, None] <= lowest, below[1:] > 0.0
+    reach = np.where(sinking, below[1:], 1.0)
+    for k, energy in enumerate(energies):
+        mass = density * kept[k]
+        ended += np.where(held[k], mass, 0.0)
+        moving = over.hop(np.where(held[k], 0.0, mass), energy)
+        density += np.where(sinking[k], moving / reach[k], 0.0)
+        ended += np.where(sinking[k], 0.0, moving)
     return ended + density * below[-1]
 
 

@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from feederscrew.geometry import vectors
+
 FEWEST = 3  # facets at a corner
 STRAIGHT = 1e-9  # [1] of the radius: what a corner may lie behind the line between its neighbours
 
@@ -85,7 +87,8 @@ def _convex(hull, origins, twins, facets):
         edges = np.flatnonzero(found.part & merged)
         corner = hull.vertices[targets[edges]]
         before, after = hull.vertices[origins[edges]], hull.vertices[targets[found.ahead[edges]]]
-        turn = (np.cross(corner - before, after - corner) * _normals(hull, facets)[facets[edges]]).sum(axis=1)
+        across = vectors.cross(corner - before, after - corner)
+        turn = (across * _normals(hull, facets)[facets[edges]]).sum(axis=1)
         reflex = turn < -STRAIGHT * hull.radius * np.sqrt(((after - before) ** 2).sum(axis=1))
         if not reflex.any():
             return facets
