@@ -49,9 +49,12 @@ def entry(function):
     return njit(cache=True, nogil=True, **_options())(function)
 
 
-def fitting(function, half_edges):
-    """Return a marked function as it stands or compiled, whichever is done sooner on a hull of that size."""
-    return function if half_edges <= SMALL else _once(function)
+def fitting(function, half_edges, plain=None):
+    """Return a marked function as it stands or compiled, whichever is done sooner on a hull of that size.
+
+    ``plain`` does the same sooner than the function as it stands.
+    """
+    return (plain or function) if half_edges <= SMALL else _once(function)
 
 
 def on_disk(function):

@@ -255,3 +255,17 @@ def test_the_walks_give_the_same_plain_and_compiled(monkeypatch):
     fast = tumble(hull)
     np.testing.assert_allclose(fast.areas, plain.areas, rtol=1e-12)
     np.testing.assert_array_equal(fast.pairs, plain.pairs)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_walks_abreast_give_the_digits_of_walks_one_by_one(seed, monkeypatch):
+    from feederscrew.resting.tumbling import abreast, walk
+
+    points, centre = random_body(seed)
+    hull = convex_hull(points, centre)
+    together = tumble(hull)
+    monkeypatch.setattr(abreast, "trace_saddles", walk.trace_saddles)
+    singly = tumble(hull)
+    np.testing.assert_array_equal(together.areas, singly.areas)
+    np.testing.assert_array_equal(together.pairs, singly.pairs)
+    assert together.doubts == singly.doubts == ()

@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from feederscrew import check
-from feederscrew.geometry.compiled import fitting
 from feederscrew.resting.tumbling import borders, walk
 
 COPLANAR = 1e-10  # [1] of the radius: depth below a neighbour's plane that is still the same facet
 SLIVER = 1e-9  # [1] of the radius: a triangle narrower than this has no plane of its own
+BLOCK = 1 << 15  # half-edges at a time
 PLANE = 1e-14  # [1] error of a triangle's plane at the far end of the part, times its width over the radius
 
 
@@ -56,9 +56,7 @@ def half_edges(hull):
     found = borders.borders(hull, origins, targets, twins, np.repeat(_facets(hull, twins), 3))
     facets, edges = found.facets[::3], np.flatnonzero(found.part)
     normals = _facet_normals(hull, facets)
-    slopes, sides = np.empty((2, len(origins)))
-    signs = fitting(walk.signs, len(origins))
-    signs(hull.vertices, normals, origins, found.targets, found.facets, slopes, sides)
+    slopes, sides = _signs(hull.vertices, normals, origins, found)
     slopes = _one_way_out(slopes, sides, found)
     by_facet, by_vertex = np.zeros(len(normals), int), np.zeros(len(hull.vertices), int)
     by_facet[found.facets[edges]] = edges
@@ -80,6 +78,21 @@ def half_edges(hull):
         "vertex_edges": by_vertex,
     }
     return Edges(**{name: check.frozen(array) for name, array in arrays.items()})
+
+
+def _signs(vertices, normals, origins, found):
+    """(H,) and (H,) [m2] slopes and sides, as ``Edges`` has them, from each half-edge's corners and facet."""
+    slopes, sides = np.empty((2, len(origins)))
+    for some in _blocks(len(origins)):
+        u, w, n = vertices[origins[some]].T, vertices[found.targets[some]].T, normals[found.facets[some]].T
+        slopes[some] = walk.dot(u, w - u)
+        sides[some] = walk.triple(n, u, w)
+    return slopes, sides
+
+
+def _blocks(count):
+    """Slices of half-edges, as many at a time as a processor's cache holds."""
+    return [slice(start, start + BLOCK) for start in range(0, count, BLOCK)]
 
 
 def _one_way_out(slopes, sides, found):
@@ -162,9 +175,7 @@ def _facets(hull, twins):
     from scipy.sparse.csgraph import connected_components
 
     owners = np.repeat(np.arange(len(hull.triangles)), 3)
-    depths = np.empty(len(owners))
-    fill = fitting(walk.depths, len(owners))
-    fill(hull.vertices, hull.normals, hull.heights, hull.triangles.ravel(), twins, depths)
+    depths = _depths(hull, twins)
     near = np.flatnonzero(np.minimum(depths, depths[twins]) <= COPLANAR * hull.radius)
     if not len(near):
         return np.arange(len(hull.triangles))
@@ -172,6 +183,16 @@ def _facets(hull, twins):
     pairs = owners[flat], owners[twins[flat]]
     joins = coo_array((np.ones(len(flat)), pairs), shape=2 * [len(hull.triangles)])
     return connected_components(joins, directed=False)[1].astype(int)
+
+
+def _depths(hull, twins):
+    """(H,) [m] how far the corner off each edge, of the neighbour, lies below the triangle's plane."""
+    corners, depths = hull.triangles.ravel(), np.empty(len(twins))
+    for some in _blocks(len(twins)):
+        triangles = np.arange(some.start, min(some.stop, len(twins))) // 3
+        above = walk.dot(hull.normals[triangles].T, hull.vertices[corners[twins[some]]].T)
+        depths[some] = hull.heights[triangles] - above
+    return depths
 
 
 def _flat(hull, near, twins, depths):

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew import check
-from feederscrew.geometry.compiled import fitting
+from feederscrew.geometry import compiled
+from feederscrew.resting.tumbling import abreast, walk
 from feederscrew.resting.tumbling import edges as tumbling_edges
-from feederscrew.resting.tumbling import walk
 
 SPHERE = 4.0 * np.pi  # [sr]
 ROUNDING = 1e-6  # [1] what the shares may miss 1 by before the result is called doubtful
@@ -91,7 +91,7 @@ def _basins(edges, sinks, saddles, maxima, directions):
     tops[maxima] = True
     pairs, peaks = np.empty((2, len(saddles), 2), int)
     raw = np.zeros(len(edges.normals))
-    trace = fitting(walk.trace_saddles, len(edges.origins))
+    trace = compiled.fitting(walk.trace_saddles, len(edges.origins), abreast.trace_saddles)
     trace(edges, tops, saddles, directions, _gauges(edges.normals), pairs, peaks, raw)
     rank = np.full(len(edges.normals) + 1, -1)  # the last entry stands for a lost walk
     rank[sinks] = np.arange(len(sinks))

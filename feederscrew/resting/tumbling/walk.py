@@ -43,23 +43,6 @@ def toward(a, b, step):
 
 
 @compiled
-def signs(vertices, normals, origins, targets, owners, slopes, sides):
-    """Fill (H,) slopes and sides, as ``Edges`` has them, from each half-edge's corners and facet."""
-    for h in range(len(origins)):
-        u, w = row(vertices, origins[h]), row(vertices, targets[h])
-        slopes[h] = u[0] * (w[0] - u[0]) + u[1] * (w[1] - u[1]) + u[2] * (w[2] - u[2])
-        sides[h] = triple(row(normals, owners[h]), u, w)
-
-
-@compiled
-def depths(vertices, normals, heights, corners, twins, below):
-    """Fill (H,) [m]: how far the corner off each edge, of the neighbour, lies below the triangle's plane."""
-    for h in range(len(twins)):
-        t = h // 3
-        below[h] = heights[t] - dot(row(normals, t), row(vertices, corners[twins[h]]))
-
-
-@compiled
 def exit_of(edges, facet):
     """How the part leaves a facet: (half-edge, -1) over an edge, (-1, corner) over a corner, (-1, -1) not."""
     start = h = edges.facet_edges[facet]
@@ -149,18 +132,24 @@ def roll_from_corner(edges, x, corner):
 
 
 @compiled
+def next_facet(edges, facet):
+    """Return the facet to which a part first rolls from ``facet``: itself if it rests there, LOST if none."""
+    h, corner = exit_of(edges, facet)
+    if h >= 0:
+        return edges.facets[edges.twins[h] // 3]
+    return roll_from_corner(edges, row(edges.normals, facet), corner) if corner >= 0 else facet
+
+
+@compiled
 def roll_from_facet(edges, facet):
     """Return the facet on which a part comes to rest that is set down on ``facet``; LOST if none."""
     for _ in range(len(edges.normals) + 1):
         if facet == LOST:
             return LOST
-        h, corner = exit_of(edges, facet)
-        if h >= 0:
-            facet = edges.facets[edges.twins[h] // 3]
-        elif corner >= 0:
-            facet = roll_from_corner(edges, row(edges.normals, facet), corner)
-        else:
+        onward = next_facet(edges, facet)
+        if onward == facet:
             return facet
+        facet = onward
     return LOST
 
 
