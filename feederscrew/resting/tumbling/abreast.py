@@ -16,9 +16,7 @@ def trace_saddles(edges, tops, saddles, directions, gauges, pairs, peaks, areas)
     ways = edges.facets[np.stack([saddles, edges.twins[saddles]], axis=1) // 3]
     pairs[:], peaks[:] = _ends(edges, ways)[ways], walk.LOST
     sound = np.flatnonzero((pairs != walk.LOST).all(axis=1))
-    fans = np.empty(
-        (2, len(sound), 2)
-    )  # of the walk from the origin and from the target; from left and right
+    fans = np.empty((2, len(sound), 2))  # of the walks from origin and target; from left and right
     for k, corners in enumerate((edges.origins[saddles], edges.targets[saddles])):
         peaks[sound, k], fans[k] = _climbs(
             edges, tops, directions[sound], corners[sound], gauges[pairs[sound]]
