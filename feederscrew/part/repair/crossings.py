@@ -43,7 +43,11 @@ def crossings(vertices, faces, tolerance):
     """
     corners = vertices[faces]
     normals = _normals(corners)
-    pairs = [_through_both(corners, normals, near, tolerance) for near in _candidates(corners, normals)]
+    columns = _columns(corners, normals)
+    pairs = [
+        _through_both(corners, normals, _piercing(*columns, near, tolerance), tolerance)
+        for near in _candidates(corners, normals)
+    ]
     return _cuts(corners, normals, np.concatenate([np.empty((0, 2), dtype=int), *pairs]), tolerance)
 
 
@@ -91,7 +95,7 @@ def _candidates(corners, normals):
     a, b, c = corners.transpose(1, 0, 2)
     low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
     x, y, z = np.argsort(-np.ptp(low, axis=0), kind="stable")
-    boxes = shapely.box(low[:, x], low[:, y], high[:, x], high[:, y])
+    boxes = shapely.linestrings(np.stack([low[:, [x, y]], high[:, [x, y]]], axis=1))  # made sooner than boxes
     tree, plane = shapely.STRtree(boxes), _planes(corners, normals)
     floor, top = np.ascontiguousarray(low[:, z]), np.ascontiguousarray(high[:, z])
     seen, step = 0, max(1, CHUNK // len(boxes))
@@ -110,6 +114,24 @@ def _planes(corners, normals):
     """(F,) int the plane of each facet, those of one plane mostly the same: they do not cut each other."""
     offsets = np.einsum("fx,fx->f", normals, corners[:, 0]) / np.abs(corners).max()
     return weld.distinct(np.round(np.column_stack([normals, offsets]) * FINE))[1]
+
+
+def _columns(corners, normals):
+    """(3, 3, F) coordinates of the corners from one of them, (3, F) normals, (F,) offsets of the planes."""
+    places = np.ascontiguousarray((corners - corners[0, 0]).transpose(1, 2, 0))
+    normals = np.ascontiguousarray(normals.T)
+    return places, normals, _dot(normals, places[0])
+
+
+def _piercing(places, normals, offsets, pairs, tolerance):
+    """Those of the pairs of which each has corners on both sides of the other, by half the tolerance."""
+    for one, other in ((0, 1), (1, 0)):
+        ones, others = pairs[:, one], pairs[:, other]
+        normal, offset = normals[:, others], offsets[others]
+        a, b, c = (_dot(normal, corner[:, ones]) - offset for corner in places)
+        above, below = np.maximum(np.maximum(a, b), c), np.minimum(np.minimum(a, b), c)
+        pairs = pairs[(above > 0.5 * tolerance) & (below < -0.5 * tolerance)]
+    return pairs
 
 
 def _through_both(corners, normals, pairs, tolerance):
