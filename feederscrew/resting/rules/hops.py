@@ -1,10 +1,13 @@
 """A cascade of hops: a bouncing part wanders over the saddles until its energy lets it over none."""
 
+from functools import partial
+
 import numpy as np
 
 from feederscrew import check
 
 KEPT = 0.25  # [1] a hop keeps at most the share u of its energy with probability u^KEPT: a fifth on average
+BLOCK = 1 << 16  # ways times levels at a time
 LEVELS = 200  # of energy, between the part's highest way to stand and the lowest saddle
 
 
@@ -61,16 +64,17 @@ def _cascade(shares, heights, pairs, tops):
     over = _Ways(shares, heights, start, end, np.concatenate([tops, tops]))
     below = np.maximum(levels[:, None] - heights, 0.0) ** KEPT  # of what is kept, up to each level
     room = np.maximum(below[0], np.finfo(float).tiny)
-    density, ended = over.hop(shares, 1.0) / room, np.zeros(len(shares))
+    density, ended = next(over.hops(np.ones(1)))(shares) / room, np.zeros(len(shares))
     energies, kept = 0.5 * (levels[:-1] + levels[1:]), below[:-1] - below[1:]
-    held, sinking = energies[:, None] <= lowest, below[1:] > 0.0
-    reach = np.where(sinking, below[1:], 1.0)
-    for k, energy in enumerate(energies):
+    stays, sinking = energies[:, None] <= lowest, below[1:] > 0.0
+    reach = np.where(sinking, below[1:], np.inf)
+    stays, moves, sunk = 1.0 * stays, 1.0 * ~stays, 1.0 * ~sinking
+    for k, hop in enumerate(over.hops(energies)):
         mass = density * kept[k]
-        ended += np.where(held[k], mass, 0.0)
-        moving = over.hop(np.where(held[k], 0.0, mass), energy)
-        density += np.where(sinking[k], moving / reach[k], 0.0)
-        ended += np.where(sinking[k], 0.0, moving)
+        moving = hop(mass * moves[k])
+        density += moving / reach[k]
+        ended += mass * stays[k]
+        ended += moving * sunk[k]
     return ended + density * below[-1]
 
 
@@ -80,10 +84,22 @@ class _Ways:
     def __init__(self, shares, heights, start, end, tops):
         self.shares, self.heights, self.start, self.end, self.tops = shares, heights, start, end, tops
 
-    def hop(self, mass, energy):
-        """Return (F,) mass on each face after one hop of that energy."""
-        depth = np.maximum(energy - self.heights, np.finfo(float).eps)
-        room, count = self.shares * depth, len(mass)
-        rate = room[self.end] * np.maximum(energy - self.tops, 0.0) / depth[self.start]
-        each = mass / (room + np.bincount(self.start, rate, minlength=count))
-        return each * room + np.bincount(self.end, each[self.start] * rate, minlength=count)
+    def hops(self, energies):
+        """Yield for each energy a function from the mass (F,) on the faces to that after one hop."""
+        step = max(1, BLOCK // len(self.start))
+        for some in (energies[k : k + step, None] for k in range(0, len(energies), step)):
+            for room, rate, total in zip(*self._rates(some)):
+                yield partial(self._hop, room=room, rate=rate, total=total)
+
+    def _rates(self, energies):
+        """Room of each face, rate of each way, and their sums at each start; energies (K, 1)."""
+        depth = np.maximum(energies - self.heights, np.finfo(float).eps)
+        room = self.shares * depth
+        rate = room[:, self.end] * np.maximum(energies - self.tops, 0.0) / depth[:, self.start]
+        starts = self.start + len(self.shares) * np.arange(len(energies))[:, None]
+        led = np.bincount(starts.ravel(), rate.ravel(), minlength=room.size)
+        return room, rate, room + led.reshape(room.shape)
+
+    def _hop(self, mass, room, rate, total):
+        each = mass / total
+        return each * room + np.bincount(self.end, each[self.start] * rate, minlength=len(mass))
