@@ -11,6 +11,11 @@ from feederscrew.geometry import vectors
 
 ORDER = 6
 HALF = [powers for powers in product(range(4), repeat=3) if sum(powers) <= ORDER // 2]  # 20 monomials
+ONE_LESS = [  # of each but the first: the monomial, listed before, that makes it with one more factor; which
+    (HALF.index(tuple(power - (k == axis) for k, power in enumerate(powers))), axis)
+    for powers in HALF[1:]
+    for axis in [max(k for k in range(3) if powers[k])]
+]
 AS_PRODUCTS = {  # powers up to the order: two of those monomials that make them
     tuple(int(power) for power in np.add(p, q)): (i, j)
     for (i, p), (j, q) in product(enumerate(HALF), repeat=2)
@@ -117,11 +122,9 @@ def _integrals(points, faces):
 
 def _monomials(points):
     """(20, N) products of coordinates up to half the order."""
-    half = np.ones((len(HALF), len(points)))
-    for row, powers in zip(half, HALF):
-        for coordinate, power in zip(points.T, powers):
-            for _ in range(power):
-                row *= coordinate
+    half, coordinates = np.ones((len(HALF), len(points))), np.ascontiguousarray(points.T)
+    for row, (before, axis) in zip(half[1:], ONE_LESS):
+        np.multiply(half[before], coordinates[axis], out=row)
     return half
 
 

@@ -293,5 +293,7 @@ def _spread(normals):
 
 
 def _components(count, pairs):
+    if not len(pairs):
+        return np.arange(count)
     graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
     return connected_components(graph, directed=False)[1]
