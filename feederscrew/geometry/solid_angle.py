@@ -36,7 +36,7 @@ def solid_angles(apex, triangles):
     triangles = check.shaped("triangles", triangles, (-1, 3, 3))
 
     a, b, c = np.moveaxis(triangles - apex, 1, 0)  # corners from the apex, each (T, 3)
-    la, lb, lc = (np.linalg.norm(corner, axis=1) for corner in (a, b, c))
+    la, lb, lc = (vectors.norm(corner) for corner in (a, b, c))
     triple = _dot(a, vectors.cross(b, c))
     rest = la * lb * lc + _dot(a, b) * lc + _dot(b, c) * la + _dot(c, a) * lb
     return 2.0 * np.arctan2(triple, rest)  # arctan would fold past half a sphere

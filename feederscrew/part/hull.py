@@ -66,7 +66,7 @@ def convex_hull(points, centre, where="part"):
     used = np.zeros(len(points), dtype=bool)  # Qhull lists points in the middle of a facet among its vertices
     used[triangles] = True
     vertices = points[used]
-    radius = float(np.linalg.norm(vertices, axis=1).max())
+    radius = float(vectors.norm(vertices).max())
     heights = -qhull.equations[:, 3]
     if heights.min() <= 1e-9 * radius:
         raise MeshError(
@@ -94,4 +94,4 @@ def _outward(points, qhull):
     inward = np.einsum("ti,ti->t", cross, qhull.equations[:, :3]) < 0.0
     triangles[inward, 1:] = triangles[inward, :0:-1]
     neighbours[inward, 1:] = neighbours[inward, :0:-1]
-    return triangles, neighbours, 0.5 * np.linalg.norm(cross, axis=1)
+    return triangles, neighbours, 0.5 * vectors.norm(cross)

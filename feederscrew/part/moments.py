@@ -106,7 +106,7 @@ def _integrals(points, faces):
     From surface integrals of x^a y^b z^c (x . n): by Euler's theorem they are (a + b + c + 3) times the
     solid's.
     """
-    scale = np.linalg.norm(points, axis=1).mean()
+    scale = vectors.norm(points).mean()
     nodes, weights = _quadrature(points / scale, faces)
     table = np.zeros((ORDER + 1, ORDER + 1, ORDER + 1))
     for start in range(0, len(weights), BLOCK):

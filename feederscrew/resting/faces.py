@@ -202,8 +202,9 @@ def _fan(hull, members):
 
 def _depth(hull, plane, members):
     """How far the corners of each member lie off the plane of one triangle [m]."""
-    depth = vectors.product(hull.corners[members], hull.normals[plane])
-    return np.abs(depth - hull.heights[plane]).max(axis=1)
+    depth = np.abs(vectors.product(hull.vertices, hull.normals[plane]) - hull.heights[plane])
+    a, b, c = depth[hull.triangles[members].T]
+    return np.maximum(np.maximum(a, b), c)
 
 
 def _off_plane(hull, members, normal):

@@ -146,7 +146,7 @@ def _cuts(corners, normals, pairs, tolerance):
     """Those of the pairs that cut each other along a line longer than the tolerance."""
     i, j = pairs.T
     along = vectors.cross(normals[i], normals[j])
-    length = np.linalg.norm(along, axis=1)
+    length = vectors.norm(along)
     along = along / np.where(length > 0.0, length, 1.0)[:, None]
     of_first, of_second = (_sides(corners, normals, *order, tolerance) for order in ((i, j), (j, i)))
     (a, b), (c, d) = _interval(corners[i], of_first, along), _interval(corners[j], of_second, along)
@@ -160,7 +160,7 @@ def _normals(corners):
     """(N, 3) unit normals; zero for a facet without area."""
     a, b, c = np.moveaxis(corners, 1, 0)
     normals = vectors.cross(b - a, c - a)
-    length = np.linalg.norm(normals, axis=1)[:, None]
+    length = vectors.norm(normals)[:, None]
     return normals / np.where(length > 0.0, length, 1.0)
 
 

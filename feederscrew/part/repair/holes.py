@@ -97,7 +97,7 @@ def _patch(rim):
     for step in range(2, count):
         for i in range(count - step):
             j, k = i + step, np.arange(i + 1, i + step)
-            areas = 0.5 * np.linalg.norm(vectors.cross(rim[k] - rim[i], rim[j] - rim[i]), axis=1)
+            areas = 0.5 * vectors.norm(vectors.cross(rim[k] - rim[i], rim[j] - rim[i]))
             total = least[i, k] + least[k, j] + areas
             apex[i, j] = k[np.argmin(total)]
             least[i, j] = total.min()

@@ -145,7 +145,7 @@ def _fan(vertices, rim, tail, head, tolerance):
     along = vertices[head] - vertices[tail]
     offset = vertices[rim] - vertices[tail]
     t = vectors.product(offset, along) / vectors.dot(along, along)
-    off_line = np.linalg.norm(offset - t[:, None] * along, axis=1)
+    off_line = vectors.norm(offset - t[:, None] * along)
     on = np.flatnonzero((off_line <= tolerance) & (t > 0.0) & (t < 1.0) & (rim != tail) & (rim != head))
     chain = [tail, *rim[on[np.argsort(t[on])]].tolist(), head]
     return np.array([(head, a, b) for a, b in pairwise(chain[:-1])], dtype=int).reshape(-1, 3)

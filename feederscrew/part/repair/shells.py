@@ -98,7 +98,7 @@ def _turns_around(vertices, faces, shell, one):
 def _winding(point, corners):
     """How often closed triangles go round a point: their solid angles (van Oosterom, Strackee 1983)."""
     a, b, c = np.moveaxis(corners - point, 1, 0)
-    la, lb, lc = (np.linalg.norm(corner, axis=1) for corner in (a, b, c))
+    la, lb, lc = (vectors.norm(corner) for corner in (a, b, c))
     triple = np.einsum("fi,fi->f", a, vectors.cross(b, c))
     ab, bc, ca = (np.einsum("fi,fi->f", u, v) for u, v in ((a, b), (b, c), (c, a)))
     return np.arctan2(triple, la * lb * lc + ab * lc + bc * la + ca * lb).sum() / (2.0 * np.pi)

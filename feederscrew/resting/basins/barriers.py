@@ -222,7 +222,7 @@ def _edge_levers(polygon):
     normal = vectors.unit(normal)
     edges = ahead - polygon
     outward = vectors.cross(edges, normal)
-    return normal, np.einsum("ki,ki->k", polygon, outward) / np.linalg.norm(edges, axis=1)
+    return normal, np.einsum("ki,ki->k", polygon, outward) / vectors.norm(edges)
 
 
 def named(tumbling, labels):

@@ -67,8 +67,8 @@ def passes(hull, pairs, ends):
     turn = _dot(vectors.cross(n1, n2), along)
     before, after = (_dot(vectors.cross(*both), along) for both in ((n1, foot), (foot, n2)))
     between = (before * turn > 0.0) & (after * turn > 0.0)
-    higher = hull.heights[pairs].max(axis=1)
-    return np.where(between, np.maximum(np.linalg.norm(foot, axis=1), higher), higher)
+    higher = np.maximum(*hull.heights[pairs.T])
+    return np.where(between, np.maximum(vectors.norm(foot), higher), higher)
 
 
 def landscape(hull):
@@ -111,7 +111,8 @@ def landscape(hull):
 
 def angle(u, v):
     """Angles between vectors (..., 3) [rad], true down to the smallest."""
-    return np.arctan2(np.linalg.norm(vectors.cross(u, v), axis=-1), np.sum(u * v, axis=-1))
+    along = u[..., 0] * v[..., 0] + u[..., 1] * v[..., 1] + u[..., 2] * v[..., 2]
+    return np.arctan2(vectors.norm(vectors.cross(u, v)), along)
 
 
 def _downhill(hull, pairs, tops):
@@ -136,7 +137,7 @@ def _broad_normals(hull, below):
     A corner moved by noise, or a chamfer too small to see, leads round a sharp edge by gentle bends.
     """
     corners = hull.corners
-    sides = np.linalg.norm(np.roll(corners, -1, axis=1) - np.roll(corners, -2, axis=1), axis=2)
+    sides = vectors.norm(np.roll(corners, -1, axis=1) - np.roll(corners, -2, axis=1))
     thin = 2.0 * hull.areas < SLIVER * hull.radius * sides.max(axis=1)
     end = forest.roots(np.where(thin, below, np.arange(len(thin))))
     still = np.flatnonzero(thin & (end == np.arange(len(thin))))  # no way down, or half of a flat strip

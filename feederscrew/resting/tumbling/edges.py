@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from feederscrew import check
+from feederscrew.geometry import vectors
 from feederscrew.resting.tumbling import borders, walk
 
 COPLANAR = 1e-10  # [1] of the radius: depth below a neighbour's plane that is still the same facet
@@ -207,9 +208,7 @@ def _flat(hull, near, twins, depths):
     across = np.zeros(len(near), bool)
     for triangle, edge, depth in zip(pairs, edges, (depths[near], depths[twins[near]])):
         corners = hull.vertices[hull.triangles[triangle]]
-        lengths = np.linalg.norm(
-            corners[:, [2, 0, 1]] - corners[:, [1, 2, 0]], axis=2
-        )  # opposite each corner
+        lengths = vectors.norm(corners[:, [2, 0, 1]] - corners[:, [1, 2, 0]])  # opposite each corner
         width = 2.0 * hull.areas[triangle] / lengths.max(axis=1) / hull.radius
         narrow = width < SLIVER
         inside &= depth <= hull.radius * (COPLANAR + PLANE / np.maximum(width, SLIVER))
@@ -224,4 +223,4 @@ def _facet_normals(hull, facets):
         return hull.normals[np.argsort(facets)]
     weighted = hull.areas[:, None] * hull.normals
     sums = np.stack([np.bincount(facets, column) for column in weighted.T], axis=1)
-    return sums / np.linalg.norm(sums, axis=1, keepdims=True)
+    return sums / vectors.norm(sums)[:, None]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew import check
-from feederscrew.geometry import compiled
+from feederscrew.geometry import compiled, vectors
 from feederscrew.resting.tumbling import abreast, walk
 from feederscrew.resting.tumbling import edges as tumbling_edges
 
@@ -64,7 +64,7 @@ def tumble(hull):
     sinks, saddles = tumbling_edges.sinks(edges), tumbling_edges.saddles(edges)
     maxima = tumbling_edges.maxima(edges)
     feet = _feet(edges, saddles)
-    heights, saddle_heights = _facet_heights(edges, sinks), np.linalg.norm(feet, axis=1)
+    heights, saddle_heights = _facet_heights(edges, sinks), vectors.norm(feet)
     directions = feet / saddle_heights[:, None]
     pairs, raw, arrived = _basins(edges, sinks, saddles, maxima, directions)
     areas = _areas(raw)
@@ -79,7 +79,7 @@ def tumble(hull):
         pairs=check.frozen(pairs),
         saddle_heights=check.frozen(saddle_heights),
         saddle_directions=check.frozen(directions),
-        saddle_axes=check.frozen(axes / np.linalg.norm(axes, axis=1, keepdims=True)),
+        saddle_axes=check.frozen(axes / vectors.norm(axes)[:, None]),
         maxima=check.frozen(maxima),
         doubts=doubts,
     )
@@ -101,7 +101,7 @@ def _basins(edges, sinks, saddles, maxima, directions):
 def _gauges(normals):
     """(M, 3) unit vectors near the normals, off every symmetry plane a part may have."""
     near = normals + 1e-3 * np.array([0.5377, -0.8339, 0.1246])
-    return near / np.linalg.norm(near, axis=1, keepdims=True)
+    return near / vectors.norm(near)[:, None]
 
 
 def _feet(edges, saddles):
