@@ -126,17 +126,20 @@ def _to_rest(shape, start, restitution, friction, face):
 
 
 def _filled(shape, states):
-    """Rows with further ones in long steps of free flight, at most EVERY apart."""
+    """Rows with further ones in long steps of free flight, at most EVERY apart.
+
+    They are followed back from the end of the step: an impact may come before its flight.
+    """
     steps = np.diff(states[:, 0])
     if not (steps > EVERY).any():
         return states
     rows = [states[:1]]
-    for before, after, step in zip(states, states[1:], steps):
+    for after, step in zip(states[1:], steps):
         count = int(np.ceil(step / EVERY))
-        between = np.repeat(before[None], count - 1, axis=0)
-        for row, dt in zip(between, step / count * np.arange(1, count)):
-            row[0] += dt
-            body.fly(row[1:], shape.inertia, dt)
+        between = np.repeat(after[None], count - 1, axis=0)
+        for row, dt in zip(between, step / count * np.arange(count - 1, 0, -1)):
+            row[0] -= dt
+            body.fly(row[1:], shape.inertia, -dt)
         rows += [between, after[None]]
     return np.vstack(rows)
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 PLAIN = []  # functions that compiled ones may call, not yet registered
 KEPT = []  # those of them that are kept on disk by themselves
+CALLED = []  # those of them that are called, not made a part of their callers
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
 SOURCES = (
     "geometry/compiled.py",
@@ -28,6 +29,12 @@ def compiled(function):
     if "numba" in sys.modules:  # an entry may stand above what it calls
         _register()
     return function
+
+
+def apart(function):
+    """Mark a large function of few arguments that is called in several places: compiled once for all."""
+    CALLED.append(function)
+    return compiled(function)
 
 
 def shared(function):
@@ -81,7 +88,8 @@ def _register():
 
     while PLAIN:
         function = PLAIN.pop()
-        register_jitable(**_options(), cache=function in KEPT, forceinline=True)(function)
+        inlined = function not in CALLED
+        register_jitable(**_options(), cache=function in KEPT, forceinline=inlined)(function)
 
 
 @functools.cache

@@ -55,24 +55,24 @@ def test_free_rotation_keeps_energy_and_angular_momentum(rng):
 
     before, start = body.spin_energy(state, BOX.inertia), momentum()
     for _ in range(2000):
-        body.spin(state, BOX.inertia, 2e-3)
+        body.tumble(state, BOX.inertia, 2e-3)
     assert body.spin_energy(state, BOX.inertia) == pytest.approx(before, rel=1e-12)
     assert momentum() == pytest.approx(start, abs=1e-4 * np.linalg.norm(start))
 
 
-def test_the_error_of_free_rotation_falls_with_the_square_of_the_step(rng):
+def test_the_error_of_free_rotation_falls_with_the_fourth_power_of_the_step(rng):
     rates = rng.normal(size=3) * 3.0
 
     def attitude(steps):
         state = upright(BOX, 5.0)
         state[body.W : body.W + 3] = rates
         for _ in range(steps):
-            body.spin(state, BOX.inertia, 2.0 / steps)
+            body.tumble(state, BOX.inertia, 2.0 / steps)
         return state[body.Q : body.Q + 4].copy()
 
-    exact = attitude(20000)
+    exact = attitude(2000)
     errors = [np.linalg.norm(attitude(steps) - exact) for steps in (100, 200)]
-    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.05)
+    assert errors[0] / errors[1] == pytest.approx(16.0, rel=0.1)
 
 
 def struck(shape, state, restitution, friction):
@@ -173,7 +173,7 @@ def test_stopping_early_changes_nothing():
 
 
 def test_halving_every_step_moves_no_share_beyond_its_interval():
-    fine = Steps(flight=5e-3, turn=0.03, contact=3e-3, swing=0.02, tolerance=1.5e-4)
+    fine = Steps(flight=5e-3, turn=0.15, contact=3e-3, swing=0.02, tolerance=1.5e-4)
     shares = [np.bincount(run(BOX, 3000, steps) // 2, minlength=3) / 3000 for steps in (Steps(), fine)]
     spread = np.sqrt(2.0 * shares[0] * (1.0 - shares[0]) / 3000)
     assert (np.abs(shares[0] - shares[1]) < 3.5 * spread).all()
@@ -209,8 +209,8 @@ def test_measured_tosses_of_square_cuboids():
     errors = []
     for x, measured, _ in drop_bodies.cuboids():
         shape, _ = drop_bodies.box((x, 1.0, 1.0))
-        errors.append((run(shape, 1500, Steps(), seed=1) < 2).mean() - measured)
-    assert np.sqrt(np.mean(np.square(errors))) < 0.045  # 0.030 with enough drops
+        errors.append((run(shape, 1500, Steps(), seed=1, preset="roll") < 2).mean() - measured)
+    assert np.sqrt(np.mean(np.square(errors))) < 0.045  # 0.034 in 8,000 drops
 
 
 def test_a_drop_ends_where_it_lies_and_not_where_it_turns_round():

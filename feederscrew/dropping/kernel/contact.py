@@ -2,8 +2,9 @@
 
 A contact is a row of WIDTH numbers. Along floor axis e (x, y, z in turn) it holds the lever p x e in body
 axes, from point p; the rates one unit of impulse along e gives, lever / inertia; its effective mass, of
-both axes in the plane the smaller that serves both; then the upward speed wanted after the impulse; then
-the impulse itself, (x, y, z), what it was a sweep ago, and what the sweep before that changed of it.
+both axes in the plane the smaller that serves both, where impulses are swept for; then the upward speed
+wanted after the impulse; then the impulse itself, (x, y, z), what it was a sweep ago, and what the sweep
+before that changed of it.
 """
 
 import math
@@ -29,7 +30,6 @@ def levers(inertia, work, count):
     arms(work, count)
     for n in range(count):
         rates(inertia, work.contacts[n])
-        masses(work.contacts[n])
 
 
 @compiled
@@ -54,8 +54,6 @@ def levers_ahead(solid, work, count, dt):
             arm(work.later, spot, work.contacts[n])
             if half == 0:
                 rates(solid.inertia, work.contacts[n])
-            else:
-                masses(work.contacts[n])
 
 
 @compiled

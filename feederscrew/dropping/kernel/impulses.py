@@ -13,11 +13,12 @@ from feederscrew.dropping.kernel.contact import (
     WANTED,
     WIDTH,
     coupling,
+    masses,
     push,
     speed,
 )
 from feederscrew.dropping.kernel.slide import slide
-from feederscrew.geometry.compiled import compiled
+from feederscrew.geometry.compiled import apart, compiled
 
 EVERY = 6  # sweeps from one leap to the next
 STRAIGHT = 0.95**2  # squared cosine between two changes that lead the same way
@@ -59,7 +60,7 @@ def spun(c, n, k, impulse, p, q, r):
 
 @compiled
 def relax(c, n, friction, u, v, w, p, q, r):
-    """One projected Gauss-Seidel step on contact n: velocities, rates and the change of its impulse."""
+    """One projected Gauss-Seidel step on contact n: velocities and rates after it."""
     x, y, z = c[n, IMPULSE], c[n, IMPULSE + 1], c[n, IMPULSE + 2]
     up = max(z + c[n, MASS + 2] * (c[n, WANTED] - along(c, n, LEVER + 6, w, p, q, r)), 0.0)
     w += up - z
@@ -75,7 +76,7 @@ def relax(c, n, friction, u, v, w, p, q, r):
     v += aside - y
     p, q, r = spun(c, n, RATE + 3, aside - y, p, q, r)
     c[n, IMPULSE], c[n, IMPULSE + 1], c[n, IMPULSE + 2] = ahead, aside, up
-    return u, v, w, p, q, r, abs(up - z) + abs(ahead - x) + abs(aside - y)
+    return u, v, w, p, q, r
 
 
 @compiled
@@ -110,35 +111,43 @@ def leap(contacts, count):
     return min(most, both / (before - both)) if both < before else most
 
 
-@compiled
-def solve(state, contacts, count, friction, steps):
+@apart
+def solve(state, contacts, count, friction, sweeps, converged):
     """Contact impulses with Coulomb friction: each contact leaves at its wanted speed or faster.
 
-    Swept from the impulses that the contacts hold, until a whole sweep changes them by no more than
-    ``steps.converged`` of their sum.
+    One or two contacts directly where that goes; else swept from the impulses that the contacts hold, until
+    a whole sweep changes the body's velocities by no more than ``converged`` of what presses it: between many
+    contacts impulses may creep on for long.
     """
     if count == 1 and stick(state, contacts[0], friction):
         return
-    if count <= 2 and slide(state, contacts, count, friction, steps.converged):
-        return
+    if count > 2 or not slide(state, contacts, count, friction, converged):
+        sweep(state, contacts, count, friction, sweeps, converged)
+
+
+@compiled
+def sweep(state, contacts, count, friction, sweeps, converged):
+    """Contact impulses by projected Gauss-Seidel sweeps, from those that the contacts hold."""
     for n in range(count):
+        masses(contacts[n])
         for e in range(3):
             push(state, contacts[n], e, contacts[n, IMPULSE + e])
     u, v, w = state[VX], state[VX + 1], state[VZ]
     p, q, r = state[W], state[W + 1], state[W + 2]
-    for sweep in range(steps.sweeps):
-        if sweep % EVERY >= EVERY - 2:
+    for turn in range(sweeps):
+        if turn % EVERY >= EVERY - 2:
             noted(contacts, count)
         state[VX], state[VX + 1], state[VZ] = u, v, w
         state[W], state[W + 1], state[W + 2] = p, q, r
-        change = size = 0.0
+        size = 0.0
         for n in range(count):
-            u, v, w, p, q, r, more = relax(contacts, n, friction, u, v, w, p, q, r)
-            change += more
+            u, v, w, p, q, r = relax(contacts, n, friction, u, v, w, p, q, r)
             size += contacts[n, IMPULSE + 2]
-        if change <= steps.converged * size:
+        change = abs(u - state[VX]) + abs(v - state[VX + 1]) + abs(w - state[VZ])
+        change += abs(p - state[W]) + abs(q - state[W + 1]) + abs(r - state[W + 2])
+        if change <= converged * size:
             break
-        if sweep % EVERY == EVERY - 1:
+        if turn % EVERY == EVERY - 1:
             on = leap(contacts, count)
             for n in range(count):
                 for k in range(IMPULSE, LAST):
@@ -162,7 +171,7 @@ def strike(inertia, state, saved, contacts, count, restitution, friction, steps)
             fall = speed(state, row, 2)
             row[WANTED] = -bounce * fall if fall < -steps.threshold else 0.0
             row[IMPULSE] = row[IMPULSE + 1] = row[IMPULSE + 2] = 0.0
-        solve(state, contacts, count, friction, steps)
+        solve(state, contacts, count, friction, steps.sweeps, steps.converged)
         if energy(state, inertia) <= before + 1e-12:
             return
         keep(saved, state)
@@ -186,4 +195,4 @@ def hold(state, contacts, count, friction, steps, share):
             contacts[n, k] *= share
         for k in range(LAST, WIDTH):
             contacts[n, k] = 0.0
-    solve(state, contacts, count, friction, steps)
+    solve(state, contacts, count, friction, steps.sweeps, steps.converged)

@@ -140,7 +140,7 @@ def pushed(surface, solid, floor, crowd, work, active, time, dt, pairs):
         if not active[n]:
             continue
         one = _one(crowd, n)
-        motion._freely(one.state, solid.inertia, dt)
+        body.turn_freely(one.state, solid.inertia, dt)
         motion.pull(surface, floor, time, dt, one)
         if crowd.counts[n]:
             depth, _, _ = motion.wanted(surface, one, crowd.counts[n], dt)

@@ -189,7 +189,7 @@ def pushed(surface, solid, floor, work, time, dt, count):
     depth of the deepest contact, whether one strikes, share of the step after which its course changes
     """
     state, inertia = work.state, solid.inertia
-    _freely(state, inertia, dt)
+    body.turn_freely(state, inertia, dt)
     pull(surface, floor, time, dt, work)
     if count == 0:
         return 0.0, False, 1.0
@@ -233,14 +233,6 @@ def step(surface, solid, floor, work, time, dt):
     if deepest < -SLOP:
         lift(surface, solid, floor, work, time, dt, count)
     return deepest, dt
-
-
-@compiled
-def _freely(state, inertia, dt):
-    """Change the rates of a body that turns freely over dt, its energy kept; its attitude stays."""
-    a, b, c, d = state[body.Q], state[body.Q + 1], state[body.Q + 2], state[body.Q + 3]
-    body.spin(state, inertia, dt)
-    state[body.Q], state[body.Q + 1], state[body.Q + 2], state[body.Q + 3] = a, b, c, d
 
 
 @compiled
