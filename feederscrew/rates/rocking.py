@@ -43,7 +43,7 @@ def rocker(place, gyration, bowl):
     Rocker
         With the force of the track as it is while the part lies and slides as it then does.
     """
-    force, offset = _over_period(place, bowl)
+    force, offset = over_period(place, bowl)
     along = sides(place.contact)
     along = along / np.hypot(*along.T)[:, None]
     inside = cross(along, offset[:, None, :] - place.contact)
@@ -103,19 +103,31 @@ def goes_over(rocker, period):
     return False
 
 
-def _ends(rocker):
-    """Angles [rad] at which the centre of mass stands over the near and over the far side."""
-    return math.atan2(rocker.near, rocker.height), math.atan2(rocker.far, rocker.height)
+def over_period(place, bowl):
+    """Return what the track does to a part over a settled period.
 
+    Parameters
+    ----------
+    place : Seat
+    bowl : Bowl
+        Single values.
 
-def _over_period(place, bowl):
-    """Force of the track over the mass (INSTANTS,) [m/s2] and its offset (INSTANTS, 2) [m] over a period."""
+    Returns
+    -------
+    tuple of (INSTANTS,) float [m/s2], (INSTANTS, 2) float [m]
+        Force of the track over the mass, and where it acts from the foot of the centre of mass.
+    """
     phase = phases(INSTANTS)
     motions = [balance.motion(place, bowl, phase, np.full(INSTANTS, sense)) for sense in SENSES]
     senses = _senses(motions, 1.0 / bowl.drive.frequency / INSTANTS)
     rows = np.arange(INSTANTS)
     force = np.array([motion.normal_force for motion in motions])[senses, rows] / place.mass
     return force, np.nan_to_num(np.array([motion.offset for motion in motions])[senses, rows])
+
+
+def _ends(rocker):
+    """Angles [rad] at which the centre of mass stands over the near and over the far side."""
+    return math.atan2(rocker.near, rocker.height), math.atan2(rocker.far, rocker.height)
 
 
 def _senses(motions, step):

@@ -84,14 +84,15 @@ def tipping(lying, bowl):
     After the stroke its weight brings it back, by g r / (r^2 + h^2) at most. Where it is then still tilted at
     the next one, or over already, its rocking is followed: ``rocking.goes_over``.
     """
-    found = [_one(one, bowl) for one in lying] if _plain(bowl) else [_NEVER] * len(lying)
+    found = [_one(one, bowl) for one in lying] if plain(bowl) else [_NEVER] * len(lying)
     return TrackTipping(*(check.frozen(np.array(column)) for column in zip(*found)))
 
 
 _NEVER = (False, 0.0, np.nan, False)
 
 
-def _plain(bowl):
+def plain(bowl):
+    """Return whether a bowl's drive and conveyor are of the plain kind, for which tipping is followed."""
     try:
         return limits.plain(bowl) is bowl
     except ConfigError:

@@ -8,6 +8,7 @@ import numpy as np
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.rates import stream
+from feederscrew.rates.steadiness import steady
 from feederscrew.trial import course
 from feederscrew.trial.landing import Landing
 from feederscrew.trial.queue import QueuedParts
@@ -142,11 +143,15 @@ class TrialRun:
     def sure(self):
         """(M,) bool, whether the static rule is sure of an orientation that comes alone.
 
-        What a pressure break carries and is wider than it only goes where the queue pushes it off.
+        What a pressure break carries and is wider than it only goes where the queue pushes it off; what
+        passes may rock where a device leaves little of its foot.
         """
+        lying, found = self.known.lying, self.known.sure.copy()
         breaks = [device.limit for device in self.bowl.devices if device.kind == "pressure_break"]
-        pushed = [any(one.balcony <= limit < one.width for limit in breaks) for one in self.known.lying]
-        return self.known.sure & ~np.array(pushed, dtype=bool)
+        found &= ~np.array([any(one.balcony <= limit < one.width for limit in breaks) for one in lying], bool)
+        rows = np.flatnonzero(found & self.predicted)
+        found[rows] = steady(self.bowl.devices, [lying[k] for k in rows], self.bowl, CLEAR)
+        return found
 
     @property
     def odd(self):

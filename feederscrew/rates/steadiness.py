@@ -1,0 +1,108 @@
+"""Whether the drive lets a part lie on what a device leaves of its foot."""
+
+import numpy as np
+
+from feederscrew.bowl.devices import KINDS
+from feederscrew.geometry.polygons import inset
+from feederscrew.mechanics.cycle import phases
+from feederscrew.mechanics.floor.balance import HOP
+from feederscrew.mechanics.track import balance
+from feederscrew.mechanics.track.frame import seat
+from feederscrew.rates.rocking import Rocker, goes_over, over_period
+from feederscrew.rates.tipping import FLAT, plain
+from feederscrew.tooling import contact
+from feederscrew.tooling import foot as feet
+from feederscrew.tooling.orientations import gyration
+
+INSTANTS = 12  # of one period
+SAME = 1e-9  # [m] a device that leaves this much less of the support takes nothing from it
+
+
+def steady(devices, lying, bowl, margin):
+    """Return which orientations the drive leaves lying on what a chain of devices leaves of their feet.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+        Those up to the first that lets parts hang or turns them over are looked at.
+    lying : sequence of Orientation
+        M of them, that the devices let pass.
+    bowl : Bowl
+        Single values.
+    margin : float [m]
+        By which they shall not rock beside an edge along the track.
+
+    Returns
+    -------
+    (M,) bool
+        True also where that is not known: a part that rolls or hops, a drive that is not straight.
+
+    Notes
+    -----
+    A ledge, a canyon or a slot goes on: there the force of the track has to stay within what is left of the
+    foot all through the cycle, as on the bare track, or the part rocks. Over an edge across the track every
+    part rocks in the end, since its weight comes near that edge: it is steady if rocking, followed from
+    stroke to stroke where least carries it, does not take it over the edge, however long it stands there.
+    """
+    known = plain(bowl)
+    return np.array([not known or _steady(devices, one, bowl, margin) for one in lying], dtype=bool)
+
+
+def _steady(devices, one, bowl, margin):
+    """Whether one orientation is steady at every device."""
+    if one.returned or one.touching is None or one.kind != FLAT:
+        return True
+    place = seat(one.posture, one.heading, one.touching, bowl.track.bank)
+    if (balance.motion(place, bowl, phases(INSTANTS)).state == HOP).any():
+        return True
+    force, offset = over_period(place, bowl)
+    for device in devices:
+        if KINDS[device.kind].turns or device.kind == "rails":  # behind it, it does not come as it lies
+            break
+        span, hole = _span(device, one), _hole(device, one)
+        if span is not None and not _keeps_down(one, span, offset, margin):
+            return False
+        if hole is not None and not _stays_back(one, hole, place, force, offset, bowl):
+            return False
+    return True
+
+
+def _span(device, one):
+    """What is missing along the track, from the wall (2,) [m]; None of other devices."""
+    spans = {"narrowed_track": (device.limit, one.track.radius), "canyon": (0.0, device.limit)}
+    return device.span if device.kind == "slot" else spans.get(device.kind)
+
+
+def _hole(device, one):
+    """What passes below it with an edge across the track, a Hole; None of other devices."""
+    radius = one.track.radius
+    if device.kind == "gap":
+        return feet.gap(device.limit, radius, one.track.width)
+    return feet.polygon(np.array(device.corners), radius) if device.kind == "cut_out" else None
+
+
+def _keeps_down(one, span, offset, margin):
+    """Whether the force of the track stays within what is left of a foot beside a hole along the track."""
+    (first, last), radius = span, one.track.radius
+    high = radius - first if first > 0.0 else 2.0 * radius
+    if feet.over_ring(one.standing, max(radius - last, 0.0), high) > one.margin - SAME:
+        return True
+    left = contact.beside(one.foot, span, one.distance, radius).corners
+    hull = left[feet.convex(left)]
+    return len(hull) > 2 and bool(inset(hull, offset).min() >= margin)
+
+
+def _stays_back(one, hole, place, force, offset, bowl):
+    """Whether rocking over the edge of a hole across the track leaves a part on the side it comes from."""
+    support, _ = feet.least(one.standing, hole)
+    if support > one.margin - SAME:
+        return True
+    rocks = Rocker(
+        near=max(support, 0.0),
+        far=float(-one.foot.corners[:, 0].min()),
+        height=place.height,
+        spread=gyration(one, 0.5 * np.pi),
+        force=force,
+        offset=offset[:, 0],
+    )
+    return not goes_over(rocks, 1.0 / bowl.drive.frequency)
