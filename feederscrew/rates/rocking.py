@@ -25,6 +25,7 @@ class Rocker:
     spread: float  # [m2] square of its radius of gyration about the direction of the sides
     force: np.ndarray  # (INSTANTS,) [m/s2] of the track, over the mass
     offset: np.ndarray  # (INSTANTS,) [m] of that force towards the near side, with the part lying
+    growth: float = 0.0  # [m/s] of the distance to the near side, from where it is at the start
 
 
 def rocker(place, gyration, bowl):
@@ -59,7 +60,7 @@ def rocker(place, gyration, bowl):
     )
 
 
-def goes_over(rocker, period):
+def goes_over(rocker, period, start=0):
     """Return whether rocking brings the centre of mass of a part over one of its sides.
 
     Parameters
@@ -67,6 +68,8 @@ def goes_over(rocker, period):
     rocker : Rocker
     period : float [s]
         Of the drive.
+    start : int
+        Instant of the period from which it is followed.
 
     Returns
     -------
@@ -83,11 +86,12 @@ def goes_over(rocker, period):
     G. W. Housner, "The behavior of inverted pendulum structures during earthquakes", Bulletin of the
     Seismological Society of America 53(2), 403-417, 1963.
     """
-    step, angle, rate, ends = period / INSTANTS, 0.0, 0.0, _ends(rocker)
-    for k in range(FOLLOWED * INSTANTS):
+    step, angle, rate = period / INSTANTS, 0.0, 0.0
+    for k in range(start, start + FOLLOWED * INSTANTS):
+        near = rocker.near + rocker.growth * step * (k - start)
         force, offset = rocker.force[k % INSTANTS], rocker.offset[k % INSTANTS]
         side = math.copysign(1.0, angle or rate or offset)
-        beside, other = (rocker.near, rocker.far) if side > 0.0 else (rocker.far, rocker.near)
+        beside, other = (near, rocker.far) if side > 0.0 else (rocker.far, near)
         still = rocker.spread + rocker.height**2
         turning = force * (offset - side * beside + rocker.height * angle) / (still + beside**2)
         if angle == rate == 0.0 and turning * side <= 0.0:
@@ -98,7 +102,7 @@ def goes_over(rocker, period):
             rate *= max((still - beside * other) / (still + other**2), 0.0)
             rate, after = (rate if abs(rate) > QUIET else 0.0), 0.0
         angle = after
-        if not -ends[1] < angle < ends[0]:
+        if abs(angle) >= math.atan2(near if angle > 0.0 else rocker.far, rocker.height):
             return True
     return False
 
@@ -123,11 +127,6 @@ def over_period(place, bowl):
     rows = np.arange(INSTANTS)
     force = np.array([motion.normal_force for motion in motions])[senses, rows] / place.mass
     return force, np.nan_to_num(np.array([motion.offset for motion in motions])[senses, rows])
-
-
-def _ends(rocker):
-    """Angles [rad] at which the centre of mass stands over the near and over the far side."""
-    return math.atan2(rocker.near, rocker.height), math.atan2(rocker.far, rocker.height)
 
 
 def _senses(motions, step):

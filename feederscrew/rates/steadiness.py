@@ -1,5 +1,7 @@
 """Whether the drive lets a part lie on what a device leaves of its foot."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from feederscrew.bowl.devices import KINDS
@@ -12,9 +14,10 @@ from feederscrew.rates.rocking import Rocker, goes_over, over_period
 from feederscrew.rates.tipping import FLAT, plain
 from feederscrew.tooling import contact
 from feederscrew.tooling import foot as feet
-from feederscrew.tooling.orientations import gyration
+from feederscrew.tooling.orientations import gyration, speed
 
 INSTANTS = 12  # of one period
+LANDINGS = 8  # instants of the period at which it comes to lie on the far edge
 SAME = 1e-9  # [m] a device that leaves this much less of the support takes nothing from it
 
 
@@ -41,8 +44,9 @@ def steady(devices, lying, bowl, margin):
     -----
     A ledge, a canyon or a slot goes on: there the force of the track has to stay within what is left of the
     foot all through the cycle, as on the bare track, or the part rocks. Over an edge across the track every
-    part rocks in the end, since its weight comes near that edge: it is steady if rocking, followed from
-    stroke to stroke where least carries it, does not take it over the edge, however long it stands there.
+    part rocks in the end, since its weight comes near that edge. It is steady if rocking, followed from
+    stroke to stroke, does not take it over: ahead where least carries it, however long it stands there, and
+    back over the far edge, from which it travels on at the velocity of the point mass.
     """
     known = plain(bowl)
     return np.array([not known or _steady(devices, one, bowl, margin) for one in lying], dtype=bool)
@@ -62,7 +66,7 @@ def _steady(devices, one, bowl, margin):
         span, hole = _span(device, one), _hole(device, one)
         if span is not None and not _keeps_down(one, span, offset, margin):
             return False
-        if hole is not None and not _stays_back(one, hole, place, force, offset, bowl):
+        if hole is not None and not _keeps_upright(one, hole, place, force, offset, bowl):
             return False
     return True
 
@@ -92,17 +96,20 @@ def _keeps_down(one, span, offset, margin):
     return len(hull) > 2 and bool(inset(hull, offset).min() >= margin)
 
 
-def _stays_back(one, hole, place, force, offset, bowl):
-    """Whether rocking over the edge of a hole across the track leaves a part on the side it comes from."""
+def _keeps_upright(one, hole, place, force, offset, bowl):
+    """Whether a part neither rocks over the edge that it leaves nor back over the one that it comes to."""
     support, _ = feet.least(one.standing, hole)
     if support > one.margin - SAME:
         return True
-    rocks = Rocker(
+    reach, period = one.foot.corners[:, 0], 1.0 / bowl.drive.frequency
+    leaving = Rocker(
         near=max(support, 0.0),
-        far=float(-one.foot.corners[:, 0].min()),
+        far=float(-reach.min()),
         height=place.height,
         spread=gyration(one, 0.5 * np.pi),
         force=force,
         offset=offset[:, 0],
     )
-    return not goes_over(rocks, 1.0 / bowl.drive.frequency)
+    coming = replace(leaving, far=float(reach.max()), offset=-offset[:, 0], growth=speed(bowl))
+    starts = range(0, len(force), len(force) // LANDINGS)
+    return not (goes_over(leaving, period) or any(goes_over(coming, period, start) for start in starts))

@@ -164,13 +164,13 @@ def travelling(found, bowl):
     wall by g sin(climb) / (1 + k^2 / r^2) in the mean, whatever the drive. Friction of the wall may hold it,
     or even carry it on as it does what slides.
     """
-    speed, track = _speed(bowl), bowl.track
+    along, track = speed(bowl), bowl.track
     held = np.tan(track.climb) <= bowl.friction.wall * np.sin(track.bank)
     return tuple(
         replace(
             one,
-            carry=FALLEN * speed * _tipping_time(one, _greatest(one), bowl.gravity),
-            carry_ahead=FALLEN * speed * _tipping_time(one, gyration(one, 0.5 * np.pi), bowl.gravity),
+            carry=FALLEN * along * _tipping_time(one, _greatest(one), bowl.gravity),
+            carry_ahead=FALLEN * along * _tipping_time(one, gyration(one, 0.5 * np.pi), bowl.gravity),
             grip=float(bowl.friction.static),
             climbs=_climbs(bowl),
             may_roll_back=bool(not held and rolls_across(one)),
@@ -189,8 +189,8 @@ def rolls_across(one):
     return bool(across > along)
 
 
-def _speed(bowl):
-    """Velocity up the track [m/s]; 0 of a bowl that does not convey, where gravity is one that can be."""
+def speed(bowl):
+    """Return the velocity up the track [m/s]; 0 of a bowl that does not convey, if its gravity can be."""
     try:
         found = answer.answer(bowl).velocity
     except ConfigError as fault:

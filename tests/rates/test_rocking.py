@@ -66,3 +66,10 @@ def test_a_pin_on_the_track_rocks_with_its_own_inertia():
     assert (found.near, found.far) == pytest.approx((5e-3, 5e-3), rel=1e-9)
     assert found.spread == pytest.approx((0.01**2 + 0.04**2) / 12.0, rel=1e-9)
     assert np.all(found.force >= 0.0) and found.force.mean() == pytest.approx(9.81, rel=0.02)
+
+
+def test_a_part_that_gains_support_in_time_comes_back():
+    """A force 0.1 mm beyond the near side turns it over, but not where that side moves on past the force."""
+    pushed = replace(STEADY, offset=np.full(INSTANTS, 2.1e-3))
+    assert goes_over(pushed, PERIOD) and not goes_over(replace(pushed, growth=0.1), PERIOD)
+    assert goes_over(replace(pushed, growth=1e-5), PERIOD, start=INSTANTS // 2)
