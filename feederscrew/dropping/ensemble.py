@@ -14,7 +14,7 @@ BATCH = 250  # drops a core takes at a time
 ROUND = 8 * BATCH  # drops between two looks at the intervals, whatever the number of jobs
 MOST = 1_000_000  # drops at which ``until`` gives up
 NORMAL = 1.959963984540054  # two-sided 95 % point
-NUMERICAL = 0.01  # [1] what steps and tolerances may move a share of a half: 0.007 seen, docs/resting.md
+NUMERICAL = 0.01  # [1] what steps and tolerances may move a share of a half: 0.009 seen, docs/resting.md
 
 
 @dataclass(frozen=True, eq=False)
