@@ -44,11 +44,9 @@ def crossings(vertices, faces, tolerance):
     corners = vertices[faces]
     normals = _normals(corners)
     columns = _columns(corners, normals)
-    pairs = [
-        _through_both(corners, normals, _piercing(*columns, near, tolerance), tolerance)
-        for near in _candidates(corners, normals)
-    ]
-    return _cuts(corners, normals, np.concatenate([np.empty((0, 2), dtype=int), *pairs]), tolerance)
+    near = [_piercing(*columns, pairs, tolerance) for pairs in _candidates(corners, normals)]
+    pairs = np.concatenate([np.empty((0, 2), dtype=int), *near])
+    return _cuts(corners, normals, _through_both(corners, normals, pairs, tolerance), tolerance)
 
 
 def star_shaped(vertices, faces, centre):
