@@ -249,7 +249,7 @@ def _axes(frame, inwards):
 
 
 def _holds(hull, one, frame):
-    """Drop of the track [m] up to which a part that rolls onto a face stays on it; infinite where it always does."""
+    """Drop of the track [m] up to which a part that rolls onto a face stays on it; infinite for any drop."""
     side, kept, down = frame
     points = vectors.product(hull.vertices, np.column_stack([side, down]))
     height = points[:, 1].max()
