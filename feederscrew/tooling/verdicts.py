@@ -35,6 +35,11 @@ class Verdict:
         """Whether statics tells what becomes of it: where a device turns, momentum may."""
         return not self.onto or self.margin >= 0.0
 
+    @property
+    def sure(self):
+        """Whether its margin is one: not where momentum, friction or the wall may decide otherwise."""
+        return not -UNSURE <= self.margin <= 0.0
+
 
 @dataclass(frozen=True)
 class Judge:

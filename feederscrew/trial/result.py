@@ -19,6 +19,10 @@ HOPS = (
     "throw number {:.3g}: parts hop over the tooling - the static verdicts stand below 1, at an amplitude "
     "of {:.3g} mm"
 )
+DEEP = (
+    "{}: up to {:.2g} mm deep in the track or a device, where corners and edges slipped past each other's "
+    "contacts: do not go by this row"
+)
 ODD = "{}: {} of {} do what the static verdict says ({})"
 
 
@@ -170,6 +174,13 @@ class TrialRun:
         return (self.tried > 0) & clear & (holding < HELD * self.tried)
 
     @property
+    def depths(self):
+        """(M,) [m] the deepest that a part of each orientation was in anything."""
+        found = np.zeros(len(self.shares))
+        np.maximum.at(found, self.course.entered, self.course.depths)
+        return found
+
+    @property
     def remarks(self):
         """What a user must not overlook, a sentence each."""
         drive = self.bowl.drive
@@ -180,5 +191,7 @@ class TrialRun:
             if np.isfinite(self.margin[k]):  # the bare track gives none
                 said += f", margin {1e3 * self.margin[k]:.2f} mm"
             yield ODD.format(self.known.lying[k].name, self.holding[k], self.tried[k], said)
+        for k in np.flatnonzero(self.depths > CLEAR):
+            yield DEEP.format(self.known.lying[k].name, 1e3 * self.depths[k])
         if not self.velocity > 0.0:
             yield "the part does not travel up the track: see feeder convey"

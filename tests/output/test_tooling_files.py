@@ -16,14 +16,14 @@ import trimesh
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
 from feederscrew.errors import FeederError
-from feederscrew.output.tooling import bowl_file, drawing, figures, files, relief, step, stl
+from feederscrew.output.tooling import bowl_file, drawing, figures, files, relief, sheet, step, stl
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling import passages, solid
 from feederscrew.tooling.orientations import orientations
 from feederscrew.tooling.strip import bent, strip
-from feederscrew.tooling.verdicts import JUDGES, verdict
+from feederscrew.tooling.verdicts import JUDGES, UNSURE, Verdict, verdict
 
 PART = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
 BOWL = """\
@@ -187,3 +187,9 @@ def test_step_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "OCP.STEPControl", None)
     with pytest.raises(FeederError, match=r"^step: needs OpenCASCADE, which is not installed - pip"):
         step.check()
+
+
+def test_a_margin_that_is_none_is_not_printed_as_a_number():
+    assert sheet.margin(Verdict(1.0, 1.234e-3)) == "margin +1.23 mm"
+    assert sheet.margin(Verdict(0.0, -2e-3)) == "margin -2.00 mm"
+    assert sheet.margin(Verdict(0.0, -UNSURE)) == "not sure"

@@ -227,7 +227,10 @@ def test_a_study_tells_what_the_static_rule_says_beside(bowl):
     assert run.parts <= run.velocity / run.known.lengths[run.wanted]
     low, high = run.ends[tried].T
     assert ((low <= 1.0) & (high >= 0.0) & (low < high)).all()
-    assert not any("hop" in told for told in found.warnings)
+    assert not any("hop" in told or "deep" in told for told in found.warnings)
+    sunk = replace(run.course, depths=np.where(run.course.entered == tried[0], 7e-4, 2e-4))
+    (said,) = replace(run, course=sunk).remarks
+    assert said.startswith(f"{run.known.lying[tried[0]].name}: up to 0.7 mm deep in the track or a device")
 
 
 def test_orientations_arrive_as_the_launch_gives_them(bowl):

@@ -113,7 +113,6 @@ def _cell(page, box, found, size):
         _above(axes, found.orientation, found.hole, found, colour)
     else:
         _ahead(axes, found.orientation, found.opening, colour)
-    margin = found.verdict.margin / MM
     word = (
         "hangs"
         if found.verdict.hangs
@@ -123,7 +122,7 @@ def _cell(page, box, found, size):
         if found.picture == "above"
         else "is stopped"
     )
-    sheet.text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, margin {margin:+.2f} mm", colour=colour)
+    sheet.text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, {sheet.margin(found.verdict)}", colour=colour)
 
 
 def _turned(page, axes, found, box, colour):

@@ -8,12 +8,11 @@ from feederscrew.geometry.polygons import turned
 from feederscrew.output import style
 from feederscrew.output.solid import pair
 from feederscrew.output.solid.render import Camera
+from feederscrew.output.tooling import sheet
 from feederscrew.tooling import passages, solid
 from feederscrew.tooling.result import LEAST_SHARE  # what comes less often is not the nearest that falls
 from feederscrew.tooling.strip import strip
-from feederscrew.units import factor
 
-MM = factor("mm", "length")
 WIDE, HIGH, HEAD = 620, 520, 96  # pixels of one view and of the lines over it
 PASSES, FALLS = "#0072b2", "#d55e00"
 VIEW = np.array([0.55, 0.80, 0.85])  # to the viewer: ahead, inwards, up
@@ -63,10 +62,10 @@ def poses(devices, every, shares, wanted):
 
 
 def _short(met):
-    """'gap +0.64 mm': device and margin."""
+    """'gap, margin +0.64 mm': device and margin."""
     if met.orientation.kind == "hanging":
         return "in the rails"
-    return f"{met.device.kind.replace('_', ' ')} {met.verdict.margin / MM:+.2f} mm"
+    return f"{met.device.kind.replace('_', ' ')}, {sheet.margin(met.verdict)}"
 
 
 def _drawable(met):
@@ -104,7 +103,7 @@ def _told(met, word):
     where = "half way through" if met.verdict.passes > 0.0 else "in front of it"
     if met.picture == "above":
         where = "where it bears least; outline: hull of its support, dot: its weight"
-    return f"{met.orientation.name} {word} the {kind}, margin {met.verdict.margin / MM:+.2f} mm", where
+    return f"{met.orientation.name} {word} the {kind}, {sheet.margin(met.verdict)}", where
 
 
 def track_below(met, every):

@@ -31,6 +31,11 @@ def mm(area):
     return shapely.transform(area, lambda points: points / MM)
 
 
+def margin(verdict):
+    """Return the margin of a verdict in words."""
+    return f"margin {verdict.margin / MM:+.2f} mm" if verdict.sure else "not sure"
+
+
 def rule(page, top):
     """Draw a line across a page, ``top`` pixels from its upper edge."""
     wide, high = page.get_size_inches() * style.DPI

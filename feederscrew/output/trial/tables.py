@@ -73,7 +73,7 @@ def orientations(run):
             "predicted": "passes" if run.predicted[k] else "returned",
             "margin_mm": None if np.isnan(margin[k]) else float(margin[k]) / MM,
             "disagrees": bool(run.odd[k]),
-            "penetration_mm": _most(run.course.depths[run.course.entered == k]) / MM,
+            "penetration_mm": float(run.depths[k]) / MM,
             "energy_won_um": _most(run.course.gains[run.course.entered == k]) / UM,
             "velocity_mm_s": _mean(run.course.velocities[run.course.entered == k]) / MM_S,
             "seconds": _mean(run.course.seconds[run.course.entered == k]),
