@@ -16,6 +16,7 @@ COLOURS = {
 }
 TRACK = "#e3e8ec"
 MOST = 24  # orientations that come most often have a row
+STAYS = {course.HANGING: "stays\nhanging"}  # of the matrix, beside what leaves hanging
 
 
 def matrix(run):
@@ -35,7 +36,7 @@ def matrix(run):
     lost = [fate for fate in range(course.RETURNED, len(course.FATES)) if run.counts[rows, fate].any()]
     counts = np.column_stack([run.matrix[rows][:, out], run.counts[rows][:, lost]])
     shown = counts / run.tried[rows][:, None]
-    titles = [names[m] for m in out] + [course.FATES[fate] for fate in lost]
+    titles = [names[m] for m in out] + [STAYS.get(fate, course.FATES[fate]) for fate in lost]
     figure = style.figure(max(4.2, 1.8 + 0.62 * len(titles)), 1.5 + 0.3 * len(rows))
     axes = figure.add_subplot()
     axes.imshow(shown, cmap="Blues", vmin=0.0, vmax=1.25, aspect="auto")
