@@ -7,8 +7,8 @@ import numpy as np
 import part_files as files
 import pytest
 
-from feederscrew.part import load
-from feederscrew.part.repair import crossings, weld
+from feederscrew.part import load, mass
+from feederscrew.part.repair import crossings, sight, weld
 
 PARTS = Path(__file__).parents[2] / "parts"
 
@@ -78,16 +78,53 @@ def double_cone(turns, corners=7):
     return np.concatenate([ring, [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]]), np.concatenate([upper, lower])
 
 
-def test_what_is_seen_whole_from_within_is_not_searched(rng):
-    """Facets that all face away from a point cut each other only if the surface goes round it twice."""
+def unseen(vertices, faces):
+    """Facets that the axis of what they enclose does not see alone."""
+    return sight.unseen(vertices, faces, mass.solid(vertices[faces]))
+
+
+def test_what_is_seen_whole_from_its_axis_is_not_searched(rng):
+    """Facets that all face away from their feet cut each other only if the surface goes round them twice."""
     once, faces = double_cone(1)
-    for vertices in (once, once * rng.uniform(1.0, 2.0, (len(once), 1))):
-        assert crossings.star_shaped(vertices, faces, np.zeros(3))
+    for vertices in (once, once * rng.uniform(1.0, 1.3, (len(once), 1))):
+        assert len(unseen(vertices, faces)) == 0
         assert len(crossings.crossings(vertices, faces, 1e-9).pairs) == 0
-    assert not crossings.star_shaped(once, faces, np.array([0.0, 0.0, 1.5]))
     twice, _ = double_cone(2)
-    assert not crossings.star_shaped(twice, faces, np.zeros(3))
-    assert len(crossings.crossings(twice, faces, 1e-9).pairs) > 0
+    assert len(crossings.crossings(twice, faces[unseen(twice, faces)], 1e-9).pairs) > 0
+
+
+def lathed(radii, around=9):
+    """Rings of corners about an axis with a point at either end; corners and facets."""
+    turn = 2.0 * np.pi * np.arange(around) / around
+    rings = np.multiply.outer(radii, np.column_stack([np.cos(turn), np.sin(turn), np.zeros(around)]))
+    rings[..., 2] = 2.0 + np.arange(len(radii))[:, None]
+    k, j = np.divmod(np.arange((len(radii) - 1) * around), around)
+    here, beside = k * around + j, k * around + (j + 1) % around
+    sides = np.concatenate([np.column_stack([here, beside, beside + around]),
+                            np.column_stack([here, beside + around, here + around])])  # fmt: skip
+    first, after, last = np.arange(around), (np.arange(around) + 1) % around, (len(radii) - 1) * around
+    low, top = len(radii) * around, len(radii) * around + 1
+    ends = [np.column_stack([after, first, np.full(around, low)]),
+            np.column_stack([last + first, last + after, np.full(around, top)])]  # fmt: skip
+    points = [[0.0, 0.0, 1.5], [0.0, 0.0, 1.5 + len(radii)]]
+    return np.concatenate([rings.reshape(-1, 3), points]), np.concatenate([sides, *ends])
+
+
+@pytest.mark.parametrize("turns", [0, 1])
+def test_what_is_left_out_of_the_search_cuts_nothing(rng, turns):
+    """Corners drawn through the other side of a shaft; and a shaft that goes round its axis twice."""
+    vertices, faces = lathed(rng.uniform(1.0, 1.2, 30))
+    if turns:
+        vertices[:90, :2] = lathed(np.full(10, 1.0), 9)[0][np.arange(90) // 9 * 9 + np.arange(90) * 2 % 9, :2]
+    assert 0 < len(unseen(vertices, faces)) < len(faces) if turns else len(unseen(vertices, faces)) == 0
+    for corner in rng.integers(90, 250, 6):
+        drawn = vertices.copy()
+        drawn[corner, :2] *= rng.uniform(-2.0, -1.0)
+        cut = np.unique(crossings.crossings(drawn, faces, 1e-9).pairs)
+        left = unseen(drawn, faces)
+        assert len(cut)
+        assert set(cut) <= set(left)
+        assert len(left) < 0.8 * len(faces)
 
 
 @pytest.mark.parametrize("name", [path.name for path in sorted(PARTS.glob("*.stl"))])

@@ -10,7 +10,6 @@ from feederscrew.part.repair import weld
 MOST, MOST_PAIRS = 300_000, 20_000_000  # facets, and pairs of boxes that overlap: looked at within seconds
 FINE = 1e7  # steps of a unit in which planes are told apart
 CHUNK = 4_000_000  # pairs of boxes at a time, at most: what a hundred MB hold
-AWAY = 1e-12  # [1] sine beyond which rounding does not decide whether a facet faces away from a point
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,36 +46,6 @@ def crossings(vertices, faces, tolerance):
     near = [_piercing(*columns, pairs, tolerance) for pairs in _candidates(corners, normals)]
     pairs = np.concatenate([np.empty((0, 2), dtype=int), *near])
     return _cuts(corners, normals, _through_both(corners, normals, pairs, tolerance), tolerance)
-
-
-def star_shaped(vertices, faces, centre):
-    """Whether a surface is seen whole from a point within it, so that no two of its facets cut each other.
-
-    Parameters
-    ----------
-    vertices : (V, 3) float [unit of the file]
-    faces : (F, 3) int
-        Closed: every side has one that runs back along it.
-    centre : (3,) float [unit of the file]
-
-    Returns
-    -------
-    bool
-        False also where rounding might decide it.
-
-    Notes
-    -----
-    Of the facets that a ray from the point meets, those that face away from it less those that face it are as
-    many as the turns of the surface round the point, whatever the ray. If all face away and the surface goes
-    round once, every ray meets one facet. Beside a line along which two facets cut each other it meets both.
-    """
-    a, b, c = np.ascontiguousarray((vertices - centre)[faces].transpose(1, 2, 0))  # each (3, F)
-    la, lb, lc = (np.sqrt(_dot(corner, corner)) for corner in (a, b, c))
-    triple = _dot(a, [b[k - 2] * c[k - 1] - b[k - 1] * c[k - 2] for k in range(3)])
-    if not (triple > AWAY * la * lb * lc).all():
-        return False
-    rest = la * lb * lc + _dot(a, b) * lc + _dot(b, c) * la + _dot(c, a) * lb
-    return 2.0 * np.arctan2(triple, rest).sum() < 6.0 * np.pi  # a whole number of 4 pi
 
 
 def _dot(u, v):

@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew.errors import MeshError
 from feederscrew.geometry import vectors
 from feederscrew.part import mass
-from feederscrew.part.repair import crossings, mend, shells, weld
+from feederscrew.part.repair import crossings, mend, shells, sight, weld
 from feederscrew.part.repair.holes import caps, holes
 from feederscrew.part.repair.mend import SOLID
 
@@ -71,8 +71,8 @@ def surface(vertices, faces, where, unit, allow_open=False):
         faces, solid, said = faces[:, ::-1], solid.reversed, (*said, INVERTED)
     if solid.volume <= EMPTY * size**3:
         raise MeshError(where, "encloses no volume", SOLID)
-    if not is_open and not crossings.star_shaped(vertices, faces, solid.centre):
-        said += _crossed(vertices, faces, JOINED * size + 2.0 * step, size, where, unit, allow_open)
+    if not is_open and len(unseen := sight.unseen(vertices, faces, solid)):
+        said += _crossed(vertices, faces[unseen], JOINED * size + 2.0 * step, size, where, unit, allow_open)
     return Surface(vertices, faces, solid, is_open, slivers + blurred + mended + said)
 
 
