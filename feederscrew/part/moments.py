@@ -24,8 +24,8 @@ POWERS = np.array(sorted((p for p in product(range(ORDER + 1), repeat=3) if 1 <=
 WAYS = np.array(
     [factorial(sum(p)) // (factorial(p[0]) * factorial(p[1]) * factorial(p[2])) for p in POWERS.T]
 )
-SMALL = 0.08  # of the part: on facets with shorter edges a rule of second order will do
-BLOCK = 1 << 15  # points at a time: what a processor's cache holds
+MIDDLE, SMALL = 0.5, 0.12  # of the part: on facets with shorter edges a rule of order four, or two, will do
+BLOCK = 1 << 13  # points at a time: what a processor's cache holds
 
 
 class Moments:
@@ -107,10 +107,10 @@ def _integrals(points, faces):
     solid's.
     """
     scale = vectors.norm(points).mean()
-    nodes, weights = _quadrature(points / scale, faces)
+    places, weights = _quadrature(np.ascontiguousarray(points.T) / scale, faces.T)
     table = np.zeros((ORDER + 1, ORDER + 1, ORDER + 1))
     for start in range(0, len(weights), BLOCK):
-        half = _monomials(nodes[start : start + BLOCK])
+        half = _monomials(places[:, start : start + BLOCK])
         weighted = half * weights[start : start + BLOCK]
         for powers, (i, j) in AS_PRODUCTS.items():
             table[powers] += np.einsum("n,n->", weighted[i], half[j])
@@ -120,45 +120,72 @@ def _integrals(points, faces):
     return table / (order + 3.0) / size**order, volume, scale * size
 
 
-def _monomials(points):
-    """(20, N) products of coordinates up to half the order."""
-    half, coordinates = np.ones((len(HALF), len(points))), np.ascontiguousarray(points.T)
+def _monomials(places):
+    """(20, N) products of coordinates (3, N) up to half the order."""
+    half = np.ones((len(HALF), places.shape[1]))
     for row, (before, axis) in zip(half[1:], ONE_LESS):
-        np.multiply(half[before], coordinates[axis], out=row)
+        np.multiply(half[before], places[axis], out=row)
     return half
 
 
-def _quadrature(points, faces):
-    """Nodes (N, 3) and weights (N,) of the surface, each weight times the distance of its facet's plane."""
-    corners = points[faces]
-    a, b, c = np.moveaxis(corners, 1, 0)
-    flux = 0.5 * np.einsum("fi,fi->f", a, vectors.cross(b - a, c - a))
-    small = np.abs(corners - np.roll(corners, 1, axis=1)).max(axis=(1, 2)) < SMALL
-    large_nodes, large_weights = _gauss(corners[~small], flux[~small])
-    small_nodes, small_weights = _second_order(points, faces[small], corners[small], flux[small])
-    return np.concatenate([large_nodes, small_nodes]), np.concatenate([large_weights, small_weights])
+def _quadrature(points, facets):
+    """Nodes (3, N) and weights (N,) of the surface, each weight times the distance of its facet's plane.
+
+    Of points (3, V) and facets (3, F).
+    """
+    a, b, c = (points[:, corner] for corner in facets)
+    ab, bc, ca = b - a, c - b, a - c
+    normals = [ab[k - 1] * ca[k - 2] - ab[k - 2] * ca[k - 1] for k in range(3)]
+    flux = 0.5 * (a[0] * normals[0] + a[1] * normals[1] + a[2] * normals[2])
+    extent = np.abs([ab, bc, ca]).max(axis=(0, 1))
+    large, small = extent >= MIDDLE, extent < SMALL
+    by_nodes = ((large, _sixth_order), (~(large | small), _fourth_order))
+    rules = [
+        _inside([p[:, some] for p in (a, b, c)], flux[some], *rule()) for some, rule in by_nodes if some.any()
+    ]
+    if small.any():
+        rules.append(_second_order(points, facets[:, small], flux[small]))
+    nodes, weights = zip(*rules)
+    return np.concatenate(nodes, axis=1), np.concatenate(weights)
 
 
-def _gauss(corners, flux):
-    """Exact to order six: Gauss's rule on the square, folded to triangles."""
-    x, w = _gauss_legendre()
-    u, v = (g.ravel() for g in np.meshgrid(x, x, indexing="ij"))
-    share = 2.0 * np.outer(w, w).ravel() * (1.0 - u)
-    barycentric = np.column_stack([u, v * (1.0 - u), (1.0 - u) * (1.0 - v)])
-    return np.einsum("qk,fki->fqi", barycentric, corners).reshape(-1, 3), np.outer(flux, share).ravel()
+def _inside(corners, flux, barycentric, shares):
+    """Nodes and weights of a rule whose nodes are inside each facet."""
+    i, j, k = barycentric.T[:, :, None]
+    a, b, c = (corner[:, None] for corner in corners)
+    return (i * a + j * b + k * c).reshape(3, -1), (shares[:, None] * flux).ravel()
 
 
 @cache
-def _gauss_legendre():
-    """Nodes and weights of Gauss's rule of four nodes from 0 to 1."""
+def _sixth_order():
+    """(16, 3) and (16,) Gauss's rule on the square, folded to triangles."""
     x, w = np.polynomial.legendre.leggauss(4)
-    return check.frozen(0.5 * (x + 1.0)), check.frozen(0.5 * w)
+    u, v = (g.ravel() for g in np.meshgrid(0.5 * (x + 1.0), 0.5 * (x + 1.0), indexing="ij"))
+    shares = 0.5 * np.outer(w, w).ravel() * (1.0 - u)
+    barycentric = np.column_stack([u, v * (1.0 - u), (1.0 - u) * (1.0 - v)])
+    return check.frozen(barycentric), check.frozen(shares)
 
 
-def _second_order(points, faces, corners, flux):
+@cache
+def _fourth_order():
+    """(6, 3) and (6,) rule of six nodes.
+
+    G. R. Cowper, "Gaussian quadrature formulas for triangles", Int. J. Numer. Methods Eng. 7(3), 1973.
+    """
+    root, sign = np.sqrt(10.0), np.array([1.0, -1.0])
+    near = (8.0 - root + sign * np.sqrt(38.0 - 44.0 * np.sqrt(0.4))) / 18.0
+    shares = (620.0 + sign * np.sqrt(213125.0 - 53320.0 * root)) / 3720.0
+    barycentric = near[:, None, None] + (1.0 - 3.0 * near[:, None, None]) * np.eye(3)
+    return check.frozen(barycentric.reshape(-1, 3)), check.frozen(np.repeat(shares, 3))
+
+
+def _second_order(points, facets, flux):
     """Exact to order two: three quarters at the centroid, the rest at the corners."""
-    shared = np.bincount(faces.ravel(), np.repeat(flux / 12.0, 3), minlength=len(points))
-    return np.concatenate([corners.mean(axis=1), points]), np.concatenate([0.75 * flux, shared])
+    a, b, c = (points[:, corner] for corner in facets)
+    shared = np.bincount(facets.ravel(), np.tile(flux / 12.0, 3))
+    used = np.flatnonzero(shared)
+    nodes = np.concatenate([(a + b + c) / 3.0, points[:, used]], axis=1)
+    return nodes, np.concatenate([0.75 * flux, shared[used]])
 
 
 def _sphere(count):
