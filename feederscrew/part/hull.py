@@ -1,12 +1,14 @@
 """Convex hull of a part, seen from its centre of mass."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from feederscrew import check
 from feederscrew.errors import MeshError
 from feederscrew.geometry import vectors
+from feederscrew.geometry.solid_angle import solid_angles
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +28,11 @@ class Hull:
     def corners(self):
         """(T, 3, 3) [m] corners by triangle."""
         return self.vertices[self.triangles]
+
+    @cached_property
+    def solid_angles(self):
+        """(T,) [sr] of each triangle, seen from the centre of mass."""
+        return check.frozen(solid_angles(np.zeros(3), self.corners))
 
 
 def convex_hull(points, centre, where="part"):

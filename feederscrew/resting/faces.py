@@ -7,7 +7,6 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from feederscrew.geometry import vectors
-from feederscrew.geometry.solid_angle import solid_angles
 from feederscrew.part.repair.weld import distinct
 from feederscrew.resting import rounds
 from feederscrew.resting.basins.landscape import RIPPLE_OF_RADIUS, SMOOTH, angle, edges
@@ -26,6 +25,7 @@ ALIKE = np.radians(1.0)  # strips that lean by less apart are of one cone
 SLIVERS = 1e-2  # of their area: what a file's noise leaves between them
 FEWEST = 6  # strips that show a curve whose middle is not the centre of mass
 ON_A_LINE = 1e-6  # of the contact's size: a corner off the line between its neighbours by less is none
+TINY = np.finfo(float).tiny
 ARC = np.radians(60.0)  # coarse strips that turn less may be meant as flats
 
 
@@ -146,10 +146,11 @@ def _smooth_sides(hull, basins, group):
 
 def _rocks(hull, side, sink):
     """Whether these triangles are strips of a curved side whose axis may lie off the centre of mass."""
+    if len(side) < FEWEST or not _curved(hull, side):
+        return False
     normals, share = hull.normals[side], hull.areas[side] / hull.areas[side].sum()
     leans = angle(normals, hull.normals[sink])
-    flat = share[leans < 0.5 * SMOOTH].sum()
-    if len(side) < FEWEST or flat > 0.5 or not _curved(hull, side) or _ring(leans, share):
+    if share[leans < 0.5 * SMOOTH].sum() > 0.5 or _ring(leans, share):
         return False
     across = vectors.eigen(vectors.covariance(normals, share))[0]
     fewest = FEWEST if across[0] < STRAIGHT * across[1] else FEWEST_OF_A_BALL
@@ -179,10 +180,13 @@ def _plane(hull, sink, members, of_a_curve=False):
     in a clean file the face itself without the shallow bevels beside it, in a noisy one all of it. Of a
     curve one strip is wanted, though the halves of the strips beside it may lie as shallow.
     """
-    shallow = _depth(hull, sink, members) < FLATNESS * hull.radius
-    shallow &= angle(hull.normals[members], hull.normals[sink]) < SMOOTH
-    near = np.union1d(members[shallow], [sink])
-    own = near[_depth(hull, sink, near) < TIGHTEST_FIRST[0] * hull.radius] if of_a_curve else near
+    members = np.union1d(members, [sink])
+    depth = _depth(hull, sink, members)
+    shallow = (depth < FLATNESS * hull.radius) & (angle(hull.normals[members], hull.normals[sink]) < SMOOTH)
+    near, tight = members[shallow], depth[shallow] < TIGHTEST_FIRST[0] * hull.radius
+    if tight.all():
+        return near
+    own = near[tight] if of_a_curve else near
     largest = own[np.argmax(hull.areas[own])]
     depth, areas = _depth(hull, largest, near), hull.areas[near]
     inside = depth <= hull.radius * np.array(TIGHTEST_FIRST)[:, None]
@@ -192,7 +196,7 @@ def _plane(hull, sink, members, of_a_curve=False):
     enough = (shared >= 0.5) | (of_a_curve & (inside.sum(axis=1) >= fewest))
     good = enough[:-1] & (held[1:] <= 1.02 * held[:-1])
     inside = inside[np.argmax(good)] if good.any() else np.ones(len(near), dtype=bool)
-    return near[inside | (_depth(hull, sink, near) < TIGHTEST_FIRST[0] * hull.radius)]
+    return near[inside | tight]
 
 
 def _fan(hull, members):
@@ -202,13 +206,12 @@ def _fan(hull, members):
 
 def _depth(hull, plane, members):
     """How far the corners of each member lie off the plane of one triangle [m]."""
-    depth = np.abs(vectors.product(hull.vertices, hull.normals[plane]) - hull.heights[plane])
-    a, b, c = depth[hull.triangles[members].T]
-    return np.maximum(np.maximum(a, b), c)
+    corners = hull.vertices[hull.triangles[members]]
+    return np.abs(vectors.product(corners, hull.normals[plane]) - hull.heights[plane]).max(axis=1)
 
 
 def _off_plane(hull, members, normal):
-    depth = vectors.product(hull.corners[members], normal)
+    depth = vectors.product(hull.vertices[hull.triangles[members]], normal)
     return np.abs(depth - depth.mean()).max(axis=1)
 
 
@@ -217,8 +220,12 @@ def _describe(hull, triangles, lowest, stable):
     normals, areas = hull.normals[triangles], hull.areas[triangles]
     curved = _curved(hull, triangles)
     foot = _plane(hull, lowest, triangles, of_a_curve=True) if curved else triangles
-    weights = np.maximum(hull.areas[foot], np.finfo(float).tiny)
+    weights = np.maximum(hull.areas[foot], TINY)
     normal = vectors.unit(vectors.product(weights, hull.normals[foot]))
+    height, roughness = (
+        float((depths * weights).sum() / weights.sum())
+        for depths in (hull.heights[foot], _off_plane(hull, foot, normal))
+    )
     axis = _axis(normals, areas, normal) if curved else np.full(3, np.nan)
     polygon = _outline(hull.vertices[np.unique(hull.triangles[foot])], normal)
     return Face(
@@ -226,12 +233,12 @@ def _describe(hull, triangles, lowest, stable):
         stable=stable,
         normal=normal,
         axis=axis,
-        height=rounds.height(polygon, axis, float(np.average(hull.heights[foot], weights=weights))),
+        height=rounds.height(polygon, axis, height),
         area=float(areas.sum()),
-        solid_angle=float(solid_angles(np.zeros(3), hull.corners[triangles]).sum()),
+        solid_angle=float(hull.solid_angles[triangles].sum()),
         polygon=polygon,
         triangles=triangles,
-        roughness=float(np.average(_off_plane(hull, foot, normal), weights=weights)),
+        roughness=roughness,
     )
 
 
@@ -257,11 +264,23 @@ def _outline(points, normal):
     first = np.eye(3)[np.argmin(np.abs(normal))]
     u = vectors.unit(vectors.cross(normal, first))
     plane = vectors.product(points, np.column_stack([u, vectors.cross(normal, u)]))
+    around = np.argsort(np.arctan2(*(plane - plane.mean(axis=0)).T[::-1]))
+    if _turns_at_every_corner(*plane[around].T):
+        return points[around]
     try:
         corners = points[ConvexHull(plane).vertices]
     except QhullError:  # a contact line: a sliver of the hull
         return points
     return _without_straight_corners(corners)
+
+
+def _turns_at_every_corner(x, y):
+    """Whether a polygon of corners (K,) and (K,) turns left at every one, none of them on a line."""
+    before = np.arange(len(x)) - 1
+    u, v = x - x[before], y - y[before]
+    p, q = u[before], v[before]
+    off = (p * v - q * u) / np.maximum(np.hypot(p + u, q + v), TINY)
+    return bool((off > ON_A_LINE * np.hypot(np.ptp(x), np.ptp(y))).all())
 
 
 def _without_straight_corners(corners):
@@ -274,7 +293,7 @@ def _without_straight_corners(corners):
     while len(corners) > 3:
         before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
         twice = vectors.length(vectors.cross(corners - before, after - corners))
-        off = twice / np.maximum(vectors.length(after - before), np.finfo(float).tiny)
+        off = twice / np.maximum(vectors.length(after - before), TINY)
         straight = int(np.argmin(off))
         if off[straight] > ON_A_LINE * size:
             break

@@ -8,10 +8,10 @@ from feederscrew.resting.basins.barriers import (
     UNNAMED,
     balance,
     barriers,
-    critical_solid_angle,
+    critical_solid_angles,
     rises,
     tilt_over,
-    tip_angle,
+    tip_angles,
     tipping,
 )
 from feederscrew.resting.tumbling.exact import tumble
@@ -64,23 +64,25 @@ def test_no_face_is_higher_than_a_saddle_beside_it():
 
 
 def test_the_floor_tilts_by_half_the_width_over_the_height():
-    assert tip_angle(rectangle(6.0, 4.0, 5.0), 5.0) == pytest.approx(np.arctan(2.0 / 5.0))
-    assert tip_angle(rectangle(6.0, 4.0, 5.0) + np.array([0, 1.5, 0]), 5.0) == pytest.approx(
+    assert tip_angles([rectangle(6.0, 4.0, 5.0)], [5.0])[0] == pytest.approx(np.arctan(2.0 / 5.0))
+    assert tip_angles([rectangle(6.0, 4.0, 5.0) + np.array([0, 1.5, 0])], [5.0])[0] == pytest.approx(
         np.arctan(0.5 / 5.0)
     )
-    assert tip_angle(rectangle(6.0, 4.0, 5.0) + np.array([0, 2.5, 0]), 5.0) < 0.0
+    assert tip_angles([rectangle(6.0, 4.0, 5.0) + np.array([0, 2.5, 0])], [5.0])[0] < 0.0
 
 
 def test_both_tilts_agree_on_a_box():
     tips = box_tipping((6.0, 4.0, 10.0))
-    assert tilt_over(5.0, 5.0 + barriers(tips)[4]) == pytest.approx(tip_angle(rectangle(6.0, 4.0, 5.0), 5.0))
+    assert tilt_over(5.0, 5.0 + barriers(tips)[4]) == pytest.approx(
+        tip_angles([rectangle(6.0, 4.0, 5.0)], [5.0])[0]
+    )
 
 
 def test_the_critical_solid_angle_of_a_box():
     a, b, h = 3.0, 2.0, 1.2
     want = np.mean([rectangle_angle(a, b, np.hypot(h, side / 2)) for side in (a, a, b, b)])
     q = rectangle_angle(a, b, h)
-    assert critical_solid_angle(rectangle(a, b, h), h) == pytest.approx((q - want) / q)
+    assert critical_solid_angles([rectangle(a, b, h)], [h])[0] == pytest.approx((q - want) / q)
 
 
 def test_in_balance_as_much_tips_into_each_face_as_out_of_it():

@@ -86,23 +86,23 @@ def barriers(tips):
     return lowest
 
 
-def tip_angle(polygon, height):
+def tip_angles(polygons, heights):
     """Tilt of the floor at which a part that does not slide tips over an edge of its contact polygon.
 
     Parameters
     ----------
-    polygon : (K, 3) float [m]
-        Corners about the centre of mass, counter-clockwise seen from outside.
-    height : float [m]
+    polygons : sequence of (K, 3) float [m]
+        Corners about the centre of mass, counter-clockwise seen from outside; F polygons.
+    heights : (F,) float [m]
         Of the centre of mass over them.
 
     Returns
     -------
-    float [rad]
+    (F,) float [rad]
         Negative where the part does not even stand on a level floor.
     """
-    _, across = _edge_levers(polygon)
-    return float(np.arctan2(across, height).min())
+    _, across, first, counts = _edge_levers(polygons)
+    return np.minimum.reduceat(np.arctan2(across, np.repeat(heights, counts)), first)
 
 
 def line_tip_angle(polygon, normal, axis, height):
@@ -133,19 +133,19 @@ def tilt_over(height, top):
     return np.arctan2(np.sqrt(np.maximum(top**2 - height**2, 0.0)), height)
 
 
-def critical_solid_angle(polygon, height):
-    """Share of a face's solid angle left when the mean critical one is taken off.
+def critical_solid_angles(polygons, heights):
+    """Share of each face's solid angle left when the mean critical one is taken off.
 
     Parameters
     ----------
-    polygon : (K, 3) float [m]
-        Contact corners about the centre of mass, counter-clockwise seen from outside.
-    height : float [m]
+    polygons : sequence of (K, 3) float [m]
+        Contact corners about the centre of mass, counter-clockwise seen from outside; F polygons.
+    heights : (F,) float [m]
         Of the centre of mass.
 
     Returns
     -------
-    float [1]
+    (F,) float [1]
         (Q - mean over the edges of Q_crit) / Q. Q_crit of an edge is the solid angle of the polygon seen
         from the centre of mass lifted, upright, to its distance from that edge: where it passes when the
         part tips. The rule's weight is this times Q / h.
@@ -156,12 +156,21 @@ def critical_solid_angle(polygon, height):
     assembly", Int. J. Adv. Manuf. Technol. 11, 406-412, 1996, doi 10.1007/BF01178966: read in a
     restatement only, the paper itself was not at hand.
     """
-    normal, across = _edge_levers(polygon)
-    lifts = np.hypot(across, height) - height
-    fan = np.stack([np.broadcast_to(polygon[0], polygon[1:-1].shape), polygon[1:-1], polygon[2:]], axis=1)
-    lifted = fan + np.append(0.0, lifts)[:, None, None, None] * normal
-    seen = solid_angles(np.zeros(3), lifted.reshape(-1, 3, 3)).reshape(len(lifted), -1).sum(axis=1)
-    return float(1.0 - seen[1:].mean() / seen[0])
+    normals, across, first, counts = _edge_levers(polygons)
+    heights = np.repeat(heights, counts)
+    lifts = np.split(np.hypot(across, heights) - heights, first[1:])
+    fans = [_lifted(*face) for face in zip(polygons, normals, lifts)]
+    seen = solid_angles(np.zeros(3), np.concatenate([fan.reshape(-1, 3, 3) for fan in fans]))
+    ends = np.cumsum([fan.shape[0] * fan.shape[1] for fan in fans])
+    totals = [part.reshape(fan.shape[:2]).sum(axis=1) for part, fan in zip(np.split(seen, ends[:-1]), fans)]
+    return np.array([1.0 - total[1:].mean() / total[0] for total in totals])
+
+
+def _lifted(polygon, normal, lifts):
+    """(K + 1, K - 2, 3, 3) triangles of a polygon as it is, and seen from each lift of the centre of mass."""
+    fan = np.empty((len(polygon) - 2, 3, 3))
+    fan[:, 0], fan[:, 1], fan[:, 2] = polygon[0], polygon[1:-1], polygon[2:]
+    return fan + np.append(0.0, lifts)[:, None, None, None] * normal
 
 
 def balance(tips):
@@ -215,14 +224,17 @@ def _stationary(rates):
     return shares / shares.sum()
 
 
-def _edge_levers(polygon):
-    """(3,) outward normal of a polygon and (K,) [m] distance of the foot inside each edge."""
-    ahead = np.roll(polygon, -1, axis=0)
-    normal = vectors.cross(polygon, ahead).sum(axis=0)
-    normal = vectors.unit(normal)
-    edges = ahead - polygon
-    outward = vectors.cross(edges, normal)
-    return normal, np.einsum("ki,ki->k", polygon, outward) / vectors.norm(edges)
+def _edge_levers(polygons):
+    """(F, 3) normals of polygons, (N,) [m] how far inside each edge the foot is; (F,) first edges, counts."""
+    counts = np.array([len(polygon) for polygon in polygons])
+    first = np.cumsum(counts) - counts
+    corners, after = np.concatenate(polygons), np.arange(1, counts.sum() + 1)
+    after[first + counts - 1] = first
+    ahead = corners[after]
+    normals = vectors.unit(np.add.reduceat(vectors.cross(corners, ahead), first))
+    edges = ahead - corners
+    outward = vectors.cross(edges, np.repeat(normals, counts, axis=0))
+    return normals, np.einsum("ki,ki->k", corners, outward) / vectors.norm(edges), first, counts
 
 
 def named(tumbling, labels):

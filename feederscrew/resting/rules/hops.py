@@ -1,7 +1,5 @@
 """A cascade of hops: a bouncing part wanders over the saddles until its energy lets it over none."""
 
-from functools import partial
-
 import numpy as np
 
 from feederscrew import check
@@ -60,46 +58,41 @@ def _cascade(shares, heights, pairs, tops):
     levels = np.linspace(1.0, tops.min(), LEVELS + 1)
     lowest = np.full(len(shares), np.inf)
     np.minimum.at(lowest, pairs.ravel(), np.repeat(tops, 2))
-    start, end = np.concatenate([pairs, pairs[:, ::-1]]).T
-    over = _Ways(shares, heights, start, end, np.concatenate([tops, tops]))
+    ways = _Ways(shares, heights, pairs, tops)
     below = np.maximum(levels[:, None] - heights, 0.0) ** KEPT  # of what is kept, up to each level
-    room = np.maximum(below[0], np.finfo(float).tiny)
-    density, ended = next(over.hops(np.ones(1)))(shares) / room, np.zeros(len(shares))
-    energies, kept = 0.5 * (levels[:-1] + levels[1:]), below[:-1] - below[1:]
-    stays, sinking = energies[:, None] <= lowest, below[1:] > 0.0
-    reach = np.where(sinking, below[1:], np.inf)
-    stays, moves, sunk = 1.0 * stays, 1.0 * ~stays, 1.0 * ~sinking
-    for k, hop in enumerate(over.hops(energies)):
-        mass = density * kept[k]
-        moving = hop(mass * moves[k])
-        density += moving / reach[k]
-        ended += mass * stays[k]
-        ended += moving * sunk[k]
-    return ended + density * below[-1]
+    energies, kept, sinking = 0.5 * (levels[:-1] + levels[1:]), below[:-1] - below[1:], below[1:] > 0.0
+    reach, moves = np.where(sinking, below[1:], np.inf), energies[:, None] > lowest
+    density = ways.moved(shares, ways.parts(np.ones(1))[0]) / np.maximum(below[0], np.finfo(float).tiny)
+    before, moving = np.empty((2, *kept.shape))
+    step = max(1, BLOCK // len(ways.start))
+    for some in (slice(k, k + step) for k in range(0, LEVELS, step)):
+        parts = ways.parts(energies[some]) * (kept * moves)[some, ways.start]
+        for k, part in enumerate(parts, some.start):
+            before[k] = density
+            moving[k] = ways.moved(density, part)
+            density = density + moving[k] / reach[k]
+    return (before * kept * ~moves + moving * ~sinking).sum(axis=0) + density * below[-1]
 
 
 class _Ways:
-    """Which faces a hop can reach; W directed ways."""
+    """Which faces a hop can end on; W directed ways, those of each face to itself among them."""
 
-    def __init__(self, shares, heights, start, end, tops):
-        self.shares, self.heights, self.start, self.end, self.tops = shares, heights, start, end, tops
+    def __init__(self, shares, heights, pairs, tops):
+        own = np.arange(len(shares))
+        self.shares, self.heights, self.tops = shares, heights, np.concatenate([tops, tops])
+        self.start = np.concatenate([pairs[:, 0], pairs[:, 1], own])
+        self.end = np.concatenate([pairs[:, 1], pairs[:, 0], own])
 
-    def hops(self, energies):
-        """Yield for each energy a function from the mass (F,) on the faces to that after one hop."""
-        step = max(1, BLOCK // len(self.start))
-        for some in (energies[k : k + step, None] for k in range(0, len(energies), step)):
-            for room, rate, total in zip(*self._rates(some)):
-                yield partial(self._hop, room=room, rate=rate, total=total)
-
-    def _rates(self, energies):
-        """Room of each face, rate of each way, and their sums at each start; energies (K, 1)."""
-        depth = np.maximum(energies - self.heights, np.finfo(float).eps)
-        room = self.shares * depth
-        rate = room[:, self.end] * np.maximum(energies - self.tops, 0.0) / depth[:, self.start]
+    def parts(self, energies):
+        """(K, W) part of the mass at its start that goes each way in a hop of each energy (K,)."""
+        depth = np.maximum(energies[:, None] - self.heights, np.finfo(float).eps)
+        rates, between = (self.shares * depth)[:, self.end], slice(0, len(self.tops))
+        high = np.maximum(energies[:, None] - self.tops, 0.0)  # of the hops, those high enough
+        rates[:, between] *= high / depth[:, self.start[between]]
         starts = self.start + len(self.shares) * np.arange(len(energies))[:, None]
-        led = np.bincount(starts.ravel(), rate.ravel(), minlength=room.size)
-        return room, rate, room + led.reshape(room.shape)
+        total = np.bincount(starts.ravel(), rates.ravel(), minlength=depth.size)
+        return rates / total[starts]
 
-    def _hop(self, mass, room, rate, total):
-        each = mass / total
-        return each * room + np.bincount(self.end, each[self.start] * rate, minlength=len(mass))
+    def moved(self, mass, parts):
+        """(F,) mass after one hop."""
+        return np.bincount(self.end, mass[self.start] * parts, minlength=len(mass))

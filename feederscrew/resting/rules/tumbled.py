@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.resting.basins.barriers import critical_solid_angle
+from feederscrew.resting.basins.barriers import critical_solid_angles
 
 
 def quasistatic(tips):
@@ -33,8 +33,10 @@ def critical(faces):
 
     References
     ----------
-    As in `critical_solid_angle`.
+    As in `critical_solid_angles`.
     """
-    return np.array(
-        [critical_solid_angle(face.polygon, face.height) * face.solid_angle / face.height for face in faces]
+    heights, solid_angles = (
+        np.array([getattr(face, name) for face in faces]) for name in ("height", "solid_angle")
     )
+    shares = critical_solid_angles([face.polygon for face in faces], heights)
+    return shares * solid_angles / heights

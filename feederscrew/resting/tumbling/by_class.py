@@ -111,12 +111,12 @@ def exact(found, part, aspects, exponent=surface.EXPONENTS["hard"]):
     tips, count = found.tips, len(aspects.names)
     lifts = barriers.barriers(tips)
     lowest = _lowest(found.rows, np.where(np.isfinite(lifts), lifts, np.nan), count)
-    angles = [_tip_angle(face, lift) for face, lift in zip(found.faces, lifts)]
+    angles = _tip_angles(found.faces, lifts)
     return Exact(
         probabilities=_probabilities(found, aspects.stable, exponent),
         barriers=check.frozen(lowest),
         barrier_energies=check.frozen(part.mass * GRAVITY * lowest),
-        tip_angles=check.frozen(_lowest(found.rows, np.array(angles), count)),
+        tip_angles=check.frozen(_lowest(found.rows, angles, count)),
         doubts=tips.doubts,
     )
 
@@ -164,10 +164,18 @@ def transitions(found):
     return [ways[pair] for pair in sorted(ways)]
 
 
-def _tip_angle(face, lift):
-    if face.kind == "flat":
-        return barriers.tip_angle(face.polygon, face.height)
-    if not np.isfinite(lift):
+def _tip_angles(faces, lifts):
+    """(F,) [rad] tilt of the floor that tips the part off each face; NaN where nothing does."""
+    angles = np.array([_rolling_tip_angle(*face) for face in zip(faces, lifts)])
+    flat = np.array([face.kind == "flat" for face in faces])
+    if flat.any():
+        flats = [face for face in faces if face.kind == "flat"]
+        angles[flat] = barriers.tip_angles([face.polygon for face in flats], [face.height for face in flats])
+    return angles
+
+
+def _rolling_tip_angle(face, lift):
+    if face.kind == "flat" or not np.isfinite(lift):
         return np.nan
     if np.isnan(face.axis).any():  # a ball with a flat leaves it over the saddle
         return barriers.tilt_over(face.height, face.height + lift)
