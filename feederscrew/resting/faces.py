@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import connected_components
 from feederscrew.geometry import vectors
 from feederscrew.part.repair.weld import distinct
 from feederscrew.resting import rounds
-from feederscrew.resting.basins.landscape import RIPPLE_OF_RADIUS, SMOOTH, angle, edges
+from feederscrew.resting.basins.landscape import RIPPLE_OF_RADIUS, SMOOTH, angle, edges, gentle
 
 COARSE = 1.0 / np.cos(0.5 * SMOOTH) - 1.0  # the ripple a smooth edge leaves at most, as a share of the height
 CURVED = np.sinc(np.radians(15.0) / np.pi)  # mean resultant of normals over an arc of 30 deg; below: no plane
@@ -138,10 +138,8 @@ def _face(hull, sinks, members, sides):
 def _smooth_sides(hull, basins, group):
     """(T,) label of each triangle; gentle bends within its group lead to all others of the same."""
     owner = group[np.searchsorted(basins.sinks, basins.basins)]
-    pairs, _ = edges(hull)
-    pairs = pairs[owner[pairs[:, 0]] == owner[pairs[:, 1]]]
-    gentle = angle(hull.normals[pairs[:, 0]], hull.normals[pairs[:, 1]]) < SMOOTH
-    return _components(len(owner), pairs[gentle])
+    pairs = basins.pairs[owner[basins.pairs[:, 0]] == owner[basins.pairs[:, 1]]]
+    return _components(len(owner), pairs[gentle(hull.normals, pairs)])
 
 
 def _rocks(hull, side, sink):
@@ -180,7 +178,7 @@ def _plane(hull, sink, members, of_a_curve=False):
     in a clean file the face itself without the shallow bevels beside it, in a noisy one all of it. Of a
     curve one strip is wanted, though the halves of the strips beside it may lie as shallow.
     """
-    members = np.union1d(members, [sink])
+    members = np.sort(members)
     depth = _depth(hull, sink, members)
     shallow = (depth < FLATNESS * hull.radius) & (angle(hull.normals[members], hull.normals[sink]) < SMOOTH)
     near, tight = members[shallow], depth[shallow] < TIGHTEST_FIRST[0] * hull.radius
@@ -206,8 +204,10 @@ def _fan(hull, members):
 
 def _depth(hull, plane, members):
     """How far the corners of each member lie off the plane of one triangle [m]."""
-    corners = hull.vertices[hull.triangles[members]]
-    return np.abs(vectors.product(corners, hull.normals[plane]) - hull.heights[plane]).max(axis=1)
+    corners = hull.vertices[hull.triangles[members].T.ravel()]
+    depth = np.abs(vectors.product(corners, hull.normals[plane]) - hull.heights[plane])
+    a, b, c = depth.reshape(3, -1)
+    return np.maximum(np.maximum(a, b), c)
 
 
 def _off_plane(hull, members, normal):

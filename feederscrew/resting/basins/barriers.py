@@ -50,8 +50,8 @@ def tipping(tumbling, labels):
     sinks = np.repeat(np.arange(basins.shape[0]), np.diff(basins.indptr))
     np.minimum.at(heights, basins.indices, tumbling.heights[sinks])
     saddles, faces = _between(basins, tumbling.pairs)
-    order = np.lexsort((tumbling.saddle_heights[saddles], faces[:, 1], faces[:, 0]))
-    order = order[faces[order, 0] != faces[order, 1]]
+    order = np.flatnonzero(faces[:, 0] != faces[:, 1])
+    order = order[np.lexsort((tumbling.saddle_heights[saddles[order]], *faces[order, ::-1].T))]
     pairs, first = np.unique(faces[order], axis=0, return_index=True)
     lowest = saddles[order][first]
     return Tipping(
@@ -67,11 +67,12 @@ def tipping(tumbling, labels):
 def _between(basins, pairs):
     """(N,) saddles and (N, 2) faces on both sides, smaller first: each way from a face to a face."""
     many = np.diff(basins.indptr)[pairs]
-    ways = many.prod(axis=1)
+    ways = many[:, 0] * many[:, 1]
     saddles = np.repeat(np.arange(len(pairs)), ways)
     step = np.arange(len(saddles)) - np.repeat(np.cumsum(ways) - ways, ways)
     turn = np.column_stack(np.divmod(step, many[saddles, 1]))
-    return saddles, np.sort(basins.indices[basins.indptr[pairs[saddles]] + turn], axis=1)
+    one, other = basins.indices[basins.indptr[pairs[saddles]] + turn].T
+    return saddles, np.column_stack([np.minimum(one, other), np.maximum(one, other)])
 
 
 def rises(tips):

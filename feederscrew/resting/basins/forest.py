@@ -29,17 +29,21 @@ def root(forest, k):
 def join(heights, limits, pairs, tops, region, basin, standing):
     """Join sinks along ways sorted by height where the shallower side rises no more than its limit.
 
+    A way between sinks that lower ways have led to each other is passed over.
+
     Parameters
     ----------
     heights, limits : (B,) float [m], of the sinks
     pairs : (W, 2) sinks on either side of each way
     tops : (W,) float [m], ascending
     region, basin : (B,) int, each sink its own; two forests, their roots the lowest of each tree
-    standing : (W,) bool, filled with the ways that join no basins
+    standing : (W,) bool, filled with the ways that join regions but no basins
     """
     for k in range(len(tops)):
         i, j = pairs[k, 0], pairs[k, 1]
         low, high = root(region, i), root(region, j)
+        if low == high:
+            continue
         if heights[low] > heights[high]:
             low, high = high, low
         region[high] = low

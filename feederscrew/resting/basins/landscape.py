@@ -8,8 +8,6 @@ cutting it at saddles that rise too little above the shallower side leaves one b
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import minimum_spanning_tree
 
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import fitting
@@ -25,8 +23,9 @@ SLIVER = 1e-3  # of the radius: a narrower triangle has no direction of its own
 
 @dataclass(frozen=True, eq=False)
 class Landscape:
-    """Basins of a hull; T triangles, B basins, R ripples."""
+    """Basins of a hull; T triangles, E edges, B basins, R ripples."""
 
+    pairs: np.ndarray  # (E, 2) triangles on either side of each edge of the hull
     basins: np.ndarray  # (T,) the triangle at the bottom of each triangle's basin
     sinks: np.ndarray  # (B,) those bottom triangles
     ripples: np.ndarray  # (R, 2) sinks on either side of a smooth edge that were too deep to merge
@@ -36,11 +35,10 @@ class Landscape:
 
 def edges(hull):
     """Every edge of the hull once: (E, 2) triangles, (E, 2) corners."""
-    first = np.repeat(np.arange(len(hull.triangles)), 3)
-    second = hull.neighbours.ravel()
-    ends = np.stack([np.roll(hull.triangles, -1, axis=1), np.roll(hull.triangles, -2, axis=1)], axis=-1)
-    once = first < second
-    return np.column_stack([first, second])[once], ends.reshape(-1, 2)[once]
+    first, second = np.repeat(np.arange(len(hull.triangles)), 3), hull.neighbours.ravel()
+    once = np.flatnonzero(first < second)
+    starts, ends = (hull.triangles[:, corners].ravel()[once] for corners in ([1, 2, 0], [2, 0, 1]))
+    return np.column_stack([first[once], second[once]]), np.column_stack([starts, ends])
 
 
 def passes(hull, pairs, ends):
@@ -59,16 +57,16 @@ def passes(hull, pairs, ends):
     -------
     (E,) float [m]
     """
-    p, q = hull.vertices[ends[:, 0]], hull.vertices[ends[:, 1]]
+    p, q = _columns(hull.vertices, ends)
+    n1, n2 = _columns(hull.normals, pairs)
     along = q - p
-    length2 = np.maximum(_dot(along, along), np.finfo(float).tiny)
-    foot = p - along * (_dot(p, along) / length2)[:, None]  # of the centre of mass on the edge's line
-    n1, n2 = hull.normals[pairs[:, 0]], hull.normals[pairs[:, 1]]
-    turn = _dot(vectors.cross(n1, n2), along)
-    before, after = (_dot(vectors.cross(*both), along) for both in ((n1, foot), (foot, n2)))
+    foot = p - along * (
+        _dot(p, along) / np.maximum(_dot(along, along), np.finfo(float).tiny)
+    )  # of the centre
+    turn, before, after = (_dot(_cross(*both), along) for both in ((n1, n2), (n1, foot), (foot, n2)))
     between = (before * turn > 0.0) & (after * turn > 0.0)
     higher = np.maximum(*hull.heights[pairs.T])
-    return np.where(between, np.maximum(vectors.norm(foot), higher), higher)
+    return np.where(between, np.maximum(np.sqrt(_dot(foot, foot)), higher), higher)
 
 
 def landscape(hull):
@@ -95,12 +93,13 @@ def landscape(hull):
     ripple = np.minimum(RIPPLE_OF_RADIUS * hull.radius, RIPPLE_OF_HEIGHT * hull.heights)
     nothing = np.full(len(hull.heights), BARE * hull.radius)
     below = _downhill(hull, pairs, tops)
-    smooth = angle(*np.moveaxis(_broad_normals(hull, below)[pairs], 1, 0)) < SMOOTH
+    smooth = gentle(_broad_normals(hull, below), pairs)
     local = forest.roots(below)
     basins, deep = _joined(hull, local, pairs[smooth], tops[smooth], ripple)
     strips, way = local[pairs[smooth][deep]], tops[smooth][deep]
     basins, _ = _joined(hull, basins, pairs, tops, nothing)
     return Landscape(
+        pairs=pairs,
         basins=basins,
         sinks=np.unique(basins),
         ripples=basins[strips],
@@ -113,6 +112,22 @@ def angle(u, v):
     """Angles between vectors (..., 3) [rad], true down to the smallest."""
     along = u[..., 0] * v[..., 0] + u[..., 1] * v[..., 1] + u[..., 2] * v[..., 2]
     return np.arctan2(vectors.norm(vectors.cross(u, v)), along)
+
+
+def gentle(normals, pairs):
+    """Whether two planes meet in a bend so gentle that it may be part of a curve.
+
+    Parameters
+    ----------
+    normals : (N, 3) float [1]
+        Unit vectors.
+    pairs : (E, 2) int
+
+    Returns
+    -------
+    (E,) bool
+    """
+    return _dot(*_columns(normals, pairs)) > np.cos(SMOOTH)
 
 
 def _downhill(hull, pairs, tops):
@@ -136,14 +151,16 @@ def _broad_normals(hull, below):
 
     A corner moved by noise, or a chamfer too small to see, leads round a sharp edge by gentle bends.
     """
-    corners = hull.corners
-    sides = vectors.norm(np.roll(corners, -1, axis=1) - np.roll(corners, -2, axis=1))
-    thin = 2.0 * hull.areas < SLIVER * hull.radius * sides.max(axis=1)
+    a, b, c = _columns(hull.vertices, hull.triangles)
+    sides = [np.sqrt(_dot(side, side)) for side in (b - c, c - a, a - b)]  # opposite each corner
+    thin = 2.0 * hull.areas < SLIVER * hull.radius * np.maximum(np.maximum(*sides[:2]), sides[2])
     end = forest.roots(np.where(thin, below, np.arange(len(thin))))
     still = np.flatnonzero(thin & (end == np.arange(len(thin))))  # no way down, or half of a flat strip
     beside = hull.neighbours[still]
     level = angle(hull.normals[still, None], hull.normals[beside]) < FLAT
-    best = np.where(thin[end[beside]], 0.0, np.where(level, np.inf, sides[still])).argmax(axis=1)
+    best = np.where(thin[end[beside]], 0.0, np.where(level, np.inf, np.column_stack(sides)[still])).argmax(
+        axis=1
+    )
     out = np.arange(len(thin))
     out[still] = end[hull.neighbours[still, best]]
     return hull.normals[out[end]]
@@ -155,27 +172,26 @@ def _joined(hull, basins, pairs, tops, limit):
     Returns the new basins, and the edges (indices) of the lowest ways that rise by more.
     """
     sinks, place = np.unique(basins, return_inverse=True)
-    way = _lowest_ways(len(sinks), place[pairs], tops)
+    between = place[pairs]
+    ways = np.flatnonzero(between[:, 0] != between[:, 1])
+    ways = ways[np.argsort(tops[ways], kind="stable")]
     region, basin = np.arange(len(sinks)), np.arange(len(sinks))
-    standing = np.zeros(len(way), dtype=bool)
+    standing = np.zeros(len(ways), dtype=bool)
     join = fitting(forest.join, 3 * len(basins))
-    join(hull.heights[sinks], limit[sinks], place[pairs[way]], tops[way], region, basin, standing)
-    return sinks[forest.roots(basin)][place], way[standing]
+    join(hull.heights[sinks], limit[sinks], between[ways], tops[ways], region, basin, standing)
+    return sinks[forest.roots(basin)][place], ways[standing]
 
 
-def _lowest_ways(count, pairs, tops):
-    """Edges (indices, lowest first) that are the lowest ways between ``count`` sinks: a spanning forest."""
-    low, high = np.minimum(*pairs.T), np.maximum(*pairs.T)
-    order = np.flatnonzero(low != high)
-    order = order[np.lexsort((tops[order], high[order], low[order]))]
-    key = low[order] * count + high[order]
-    first = np.diff(key, prepend=-1) != 0
-    key, order = key[first], order[first]
-    graph = coo_matrix((tops[order], (low[order], high[order])), shape=(count, count)).tocsr()
-    tree = minimum_spanning_tree(graph).tocoo()
-    way = order[np.searchsorted(key, tree.row.astype(np.int64) * count + tree.col)]
-    return way[np.argsort(tops[way], kind="stable")]
+def _columns(rows, places):
+    """(K, 3, N) rows (M, 3) at places (N, K), a column each."""
+    return np.ascontiguousarray(rows.T)[:, places.T].swapaxes(0, 1)
 
 
 def _dot(u, v):
-    return np.einsum("ei,ei->e", u, v)
+    """(N,) scalar products of columns (3, N)."""
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+
+
+def _cross(u, v):
+    """(3, N) vector products of columns (3, N)."""
+    return np.stack([u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2] for k in range(3)])

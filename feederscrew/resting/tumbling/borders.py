@@ -58,7 +58,7 @@ def borders(hull, origins, targets, twins, facets):
         found = _straightened(origins, _bordered(targets, twins, facets))
         needles = _of_two_edges(found)
         if not len(needles):
-            return found._replace(facets=np.unique(facets, return_inverse=True)[1].ravel())
+            return found if np.bincount(facets).all() else found._replace(facets=_numbered(facets))
         facets = _joined(facets, facets[needles], facets[found.twins[needles]])
 
 
@@ -93,7 +93,12 @@ def _convex(hull, origins, twins, facets):
         if not reflex.any():
             return facets
         apart = np.isin(facets, facets[edges[reflex]])
-        facets = np.unique(np.where(apart, facets.max() + 1 + single, facets), return_inverse=True)[1].ravel()
+        facets = _numbered(np.where(apart, facets.max() + 1 + single, facets))
+
+
+def _numbered(facets):
+    """(H,) facets numbered without gaps."""
+    return np.unique(facets, return_inverse=True)[1].ravel()
 
 
 def _normals(hull, facets):

@@ -84,8 +84,9 @@ def half_edges(hull):
 def _signs(vertices, normals, origins, found):
     """(H,) and (H,) [m2] slopes and sides, as ``Edges`` has them, from each half-edge's corners and facet."""
     slopes, sides = np.empty((2, len(origins)))
+    corners, facets = np.ascontiguousarray(vertices.T), np.ascontiguousarray(normals.T)
     for some in _blocks(len(origins)):
-        u, w, n = vertices[origins[some]].T, vertices[found.targets[some]].T, normals[found.facets[some]].T
+        u, w, n = corners[:, origins[some]], corners[:, found.targets[some]], facets[:, found.facets[some]]
         slopes[some] = walk.dot(u, w - u)
         sides[some] = walk.triple(n, u, w)
     return slopes, sides
@@ -166,8 +167,9 @@ def maxima(edges):
 
 
 def _twins(neighbours):
-    back = neighbours[neighbours] == np.arange(len(neighbours))[:, None, None]
-    return (3 * neighbours.astype(int) + back.argmax(axis=2)).ravel()
+    owners, beyond = np.repeat(np.arange(len(neighbours)), 3), neighbours.ravel().astype(int)
+    first, second, _ = (neighbours[beyond] == owners[:, None]).T
+    return 3 * beyond + np.where(first, 0, np.where(second, 1, 2))
 
 
 def _facets(hull, twins):
@@ -189,9 +191,10 @@ def _facets(hull, twins):
 def _depths(hull, twins):
     """(H,) [m] how far the corner off each edge, of the neighbour, lies below the triangle's plane."""
     corners, depths = hull.triangles.ravel(), np.empty(len(twins))
+    places, normals = np.ascontiguousarray(hull.vertices.T), np.ascontiguousarray(hull.normals.T)
     for some in _blocks(len(twins)):
         triangles = np.arange(some.start, min(some.stop, len(twins))) // 3
-        above = walk.dot(hull.normals[triangles].T, hull.vertices[corners[twins[some]]].T)
+        above = walk.dot(normals[:, triangles], places[:, corners[twins[some]]])
         depths[some] = hull.heights[triangles] - above
     return depths
 
