@@ -3,7 +3,7 @@
 import numpy as np
 
 from feederscrew.output.solid.render import AWAY, Rays
-from feederscrew.output.solid.shading import EDGE, STEEL, Shot, edges, lit
+from feederscrew.output.solid.shading import EDGE, STEEL, Shot, averaged, edges, lit
 
 METAL = np.array([0.90, 0.91, 0.92])  # the track
 SAMPLES = 2  # rays a pixel, each way
@@ -43,8 +43,7 @@ def picture(track, part, centre, camera, half, columns, rows):
     for mask, colour in ((met & ~is_part, METAL), (met & is_part, STEEL)):
         image[mask] = lit(normals[mask], camera, colour)
     image[edges(depths, normals, camera, up[0] - up[1])] = EDGE
-    image = image.reshape(rows, SAMPLES, columns, SAMPLES, 3).mean(axis=(1, 3)).clip(0.0, 1.0)
-    return image, frame, whole.size
+    return averaged(image, SAMPLES), frame, whole.size
 
 
 def _part_in_front(part, centre, camera, size, across, up, depths):

@@ -8,6 +8,8 @@ from scipy.ndimage import binary_dilation, gaussian_filter, map_coordinates
 from feederscrew.output.solid.render import AWAY, SINGLE, Camera
 
 SAMPLES = 3  # rays a pixel, each way
+BAND = 16  # rows of pixels drawn at a time: all their rays in the caches of a processor
+RIM = 2  # rows of samples beyond a band that have a say in its edges
 PAPER = np.array([1.0, 1.0, 1.0])
 STEEL = np.array([0.72, 0.79, 0.86])
 PALE = np.array([0.86, 0.86, 0.86])  # of an aspect the part does not stay on
@@ -72,15 +74,38 @@ def picture(solid, stance, frame, colour=STEEL):
     """
     across, up = frame.positions(SAMPLES)
     floor = _floor(solid, stance, *frame.positions()).astype(SINGLE)
-    image = floor.repeat(SAMPLES, axis=0).repeat(SAMPLES, axis=1)
-    box = _covered(stance.bounds, across, up)
-    depths, normals = stance.camera.cast(solid, across[box[1]], up[box[0]])
-    part = image[box]
-    met = np.isfinite(depths)
-    part[met] = lit(normals[met], stance.camera, colour)
-    part[edges(depths, normals, stance.camera, up[0] - up[1])] = EDGE
-    rows, columns = frame.rows, frame.columns
-    return image.reshape(rows, SAMPLES, columns, SAMPLES, 3).mean(axis=(1, 3)).clip(0.0, 1.0)
+    covered, columns = _covered(stance.bounds, across, up)
+    image = np.empty_like(floor)
+    for first in range(0, frame.rows, BAND):
+        samples = floor[first : first + BAND].repeat(SAMPLES, axis=0).repeat(SAMPLES, axis=1)
+        start = SAMPLES * first
+        rows = _within(covered, start, start + len(samples))
+        if rows.start < rows.stop:
+            cast = _within(covered, rows.start - RIM, rows.stop + RIM)
+            kept = slice(rows.start - cast.start, rows.stop - cast.start)
+            part = samples[rows.start - start : rows.stop - start, columns]
+            _draw(part, kept, solid, stance.camera, across[columns], up[cast], colour, up[0] - up[1])
+        image[first : first + BAND] = averaged(samples)
+    return image
+
+
+def averaged(samples, each=SAMPLES):
+    """Average the samples of each pixel, ``each`` a side; (rows, columns, 3) from 0 to 1."""
+    rows, columns = (length // each for length in samples.shape[:2])
+    return samples.reshape(rows, each, columns, each, 3).mean(axis=(1, 3)).clip(0.0, 1.0)
+
+
+def _draw(image, kept, solid, camera, across, up, colour, step):
+    """Draw on an image what the rays of its rows meet; they are the rows ``kept`` of those that are cast."""
+    depths, normals = camera.cast(solid, across, up)
+    met = np.isfinite(depths[kept])
+    image[met] = lit(normals[kept][met], camera, colour)
+    image[edges(depths, normals, camera, step)[kept]] = EDGE
+
+
+def _within(rows, start, stop):
+    """Return those of a slice of rows that lie from one row to before another."""
+    return slice(max(rows.start, start), min(rows.stop, stop))
 
 
 def _covered(bounds, across, up):
