@@ -49,8 +49,8 @@ class Orientation:
 
     @property
     def name(self):
-        """'D@179': aspect and heading in whole degrees."""
-        return f"{self.aspect}@{np.degrees(self.heading):.0f}"
+        """Return 'D@179': aspect and heading in whole degrees, from 0 to 359."""
+        return f"{self.aspect}@{round(np.degrees(self.heading)) % 360}"
 
     @property
     def returned(self):

@@ -89,6 +89,11 @@ def test_mirror_images_stay_apart_and_name_each_other():
     assert pair[0].distance == pytest.approx(pair[1].distance, rel=1e-6)
 
 
+def test_a_heading_just_below_a_full_turn_is_named_0():
+    one = lying(shapes.box(20, 12, 5))[0]
+    assert [replace(one, heading=np.radians(turn)).name for turn in (359.4, 359.9983)] == ["A@359", "A@0"]
+
+
 def test_a_dowel_rolls_on_a_strip_as_long_as_itself():
     track = replace(CURVED, radius=0.15)
     found = lying(shapes.cylinder(3.0, 18.4, 64), track)
