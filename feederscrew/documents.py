@@ -59,10 +59,18 @@ def read(path):
     ConfigError
         If the file cannot be read, is a stream, is not UTF-8 or not YAML.
     """
-    if str(path) == "-" or Path(path).is_fifo():
+    if str(path) == "-" or found_as(Path.is_fifo, path):
         what = "is a stream, and a bowl file is read more than once"
         raise ConfigError(path, what, "save it and name the file")
     return load(content(path, LARGEST, "a YAML file"), str(path))
+
+
+def found_as(kind, path):
+    """Return whether a path (str or Path) is of a kind, such as Path.is_dir; not if the system refuses it."""
+    try:
+        return kind(Path(path))
+    except OSError:
+        return False
 
 
 def content(path, most, wanted, kind=ConfigError):

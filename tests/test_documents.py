@@ -80,6 +80,7 @@ def test_files_that_cannot_be_read(tmp_path):
     missing = tmp_path / "no.yaml"
     for path, told in (
         (missing, "no such file - check the path"),
+        ("a" * 300, "cannot be read (File name too long) - check the path and its permissions"),
         (tmp_path, "is a folder - name a YAML file in it"),
     ):
         with pytest.raises(ConfigError) as caught:

@@ -24,6 +24,11 @@ def test_a_corner_beyond_any_bowl_is_one_line():
     assert harness.run([harness.Case(harness.TOGETHER, 1856)]) == []
 
 
+def test_a_bowl_file_with_a_name_that_no_disk_can_hold_is_one_line():
+    """Found in the config column of a list: asking whether it is a folder or a stream was refused."""
+    assert harness.run([harness.Case("list", 1795355655052)]) == []
+
+
 def test_a_case_is_made_again_from_its_seed():
     for kind in harness.KINDS:
         assert harness.Case(kind, 7).build() == harness.Case(kind, 7).build()

@@ -11,7 +11,7 @@ from feederscrew import bowl as bowls
 from feederscrew.batch import listing
 from feederscrew.batch.task import Conditions, Request
 from feederscrew.conveying import answer
-from feederscrew.documents import raise_all
+from feederscrew.documents import found_as, raise_all
 from feederscrew.errors import ConfigError, FeederError
 from feederscrew.output.folder import safe_name
 from feederscrew.part import naming
@@ -83,7 +83,7 @@ def _names(rows, faults):
 
 def _rows(source, faults):
     """The parts that one argument stands for."""
-    if Path(source).suffix.lower() == ".csv" and not Path(source).is_dir():
+    if Path(source).suffix.lower() == ".csv" and not found_as(Path.is_dir, source):
         return listing.read(source, faults)
     return [listing.Row(path) for path in _expanded(source, MESHES | CARDS, "part")]
 
@@ -91,10 +91,10 @@ def _rows(source, faults):
 def _expanded(typed, suffixes, kind):
     """The files of a folder or of a pattern by name; a file itself, there or not."""
     path = Path(typed)
-    if path.is_dir():
+    if found_as(Path.is_dir, path):
         found = [str(p) for p in sorted(path.iterdir()) if _fits(p, suffixes, kind)]
         return _some(found, typed, f"holds no {kind} file", f"name a folder of {kind} files, or a pattern")
-    if glob.has_magic(typed) and not path.exists():
+    if glob.has_magic(typed) and not found_as(Path.exists, path):
         found = _once(p for p in sorted(glob.glob(typed, recursive=True)) if _there(Path(p)))  # noqa: PTH207 - takes any path
         return _some(found, typed, "fits no file", "check the pattern")
     return [typed]

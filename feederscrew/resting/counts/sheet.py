@@ -64,7 +64,7 @@ def content(path):
     FeederError
         If it cannot be read, is too large or not UTF-8.
     """
-    if Path(path).is_dir():
+    if documents.found_as(Path.is_dir, path):
         raise FeederError(path, "cannot be read (Is a directory)", "name a CSV file of counts in it")
     data = documents.content(path, LARGEST, "a CSV file of counts", FeederError)
     if len(data) > LARGEST:
