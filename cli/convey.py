@@ -62,7 +62,7 @@ def _fitting(spans, curve, best_phase):
             f"--vary is given {len(spans)} times - give it once for a curve, twice for a map"
         )
     if curve and len(spans) == 1:
-        raise click.UsageError("--bowl goes with no --vary or with two - leave one of them out")
+        raise click.UsageError("--bowl cannot be combined with exactly one --vary - leave one of them out")
 
 
 def _point(settings, pictures, folder, out):

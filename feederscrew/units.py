@@ -159,7 +159,8 @@ def _wrong_unit(text, unit, dimension, suggest):
         return QuantityError(f"{shown(text)} has no unit", f"write {text} {suggest}")
     if known:
         what = f"{shown(text)} is {_with_article(known)}, not {_with_article(dimension)}"
-        return QuantityError(what, f"give it in {suggest}")
+        longer = [text + one[len(unit) :] for one in UNITS[dimension] if one.startswith(f"{unit} ")]
+        return QuantityError(what, f"write {' or '.join(longer)}" if longer else f"give it in {suggest}")
     return QuantityError(
         f"{shown(text)}: {shown(unit)} is not a unit of {dimension}", _units_of(unit, dimension)
     )

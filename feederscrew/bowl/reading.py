@@ -167,11 +167,36 @@ def _from_override(override):
     where = f"{OVERRIDES} {units.one_line(name)}"
     if not equals:
         raise ArgumentError(where, "has no '='", 'write KEY=VALUE, as in "drive.frequency=50 Hz"')
-    if name not in BY_NAME:
-        raise ArgumentError(where, f"unknown key {units.shown(name)}", documents.hint(name, list(BY_NAME)))
+    key = named(name, where)
     if not text.strip():
-        raise ArgumentError(where, "has no value", f"write {default(BY_NAME[name]).text}")
-    return checked(BY_NAME[name], text, where, kind=ArgumentError)
+        raise ArgumentError(where, "has no value", f"write {default(key).text}")
+    return checked(key, text, where, kind=ArgumentError)
+
+
+def named(name, where):
+    """Return the key that an argument names.
+
+    Parameters
+    ----------
+    name, where : str
+
+    Returns
+    -------
+    Key
+
+    Raises
+    ------
+    ArgumentError
+        If there is no such key, or if a section or the devices are named.
+    """
+    if name in BY_NAME:
+        return BY_NAME[name]
+    if name in SECTIONS:
+        first = next(key.name for key in KEYS if key.section == name)
+        raise ArgumentError(where, f"'{name}' is a section, not a key", f"write one of its keys, as {first}")
+    if name == devices.SECTION:
+        raise ArgumentError(where, "devices are a list", "write them in a bowl file")
+    raise ArgumentError(where, f"unknown key {units.shown(name)}", documents.hint(name, list(BY_NAME)))
 
 
 def _both(key, where, kind=ConfigError):

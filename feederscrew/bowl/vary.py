@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from feederscrew import documents, units
-from feederscrew.bowl.reading import checked
-from feederscrew.bowl.schema import BY_NAME, Key
+from feederscrew.bowl.key import Key
+from feederscrew.bowl.reading import checked, named
 from feederscrew.errors import ArgumentError, ConfigError
 
 MOST = 2000  # values of one key
@@ -52,17 +52,16 @@ def ranges(texts):
 def _range(text):
     name, _, span = (part.strip() for part in text.partition("="))
     where = f"vary {units.one_line(name)}"
-    if name not in BY_NAME:
-        raise ArgumentError(where, f"unknown key {units.shown(name)}", documents.hint(name, list(BY_NAME)))
+    key = named(name, where)
     ends = span.split(":")
     if len(ends) != 3:
         what = f"{units.shown(span)} is not a range"
-        raise ArgumentError(where, what, f"write FROM:TO:COUNT, as in {name}={_example(BY_NAME[name])}")
-    low, high = (checked(BY_NAME[name], end, where, bare=True, kind=ArgumentError).value for end in ends[:2])
+        raise ArgumentError(where, what, f"write FROM:TO:COUNT, as in {name}={_example(key)}")
+    low, high = (checked(key, end, where, bare=True, kind=ArgumentError).value for end in ends[:2])
     if low == high:
         raise ArgumentError(where, "begins where it ends", "give two different values, or set the one")
     steps = _count(ends[2], where) - 1
-    return KeyRange(BY_NAME[name], tuple((low * (steps - i) + high * i) / steps for i in range(steps + 1)))
+    return KeyRange(key, tuple((low * (steps - i) + high * i) / steps for i in range(steps + 1)))
 
 
 def _count(text, where):

@@ -173,6 +173,8 @@ def test_an_empty_section_is_all_defaults(file):
     [
         ("drive.frequency=50 mm", "drive.frequency: '50 mm' is a length, not a frequency - give it in Hz"),
         ("frequency=50 Hz", "frequency: unknown key 'frequency' - did you mean drive.frequency?"),
+        ("drive=1", "drive: 'drive' is a section, not a key - write one of its keys, as drive.amplitude"),
+        ("devices=gap", "devices: devices are a list - write them in a bowl file"),
         ("gravity", "gravity: has no '=' - write KEY=VALUE, as in \"drive.frequency=50 Hz\""),
         ("gravity=", "gravity: has no value - write 9.81 m/s2"),
         (

@@ -149,7 +149,8 @@ def test_faults_are_one_line(run):
         "machine.yaml:12:11: machine.leaves: '9.5' is not a whole number - give 9 or 10"
     )
     assert told(run, *machine(supply="50 Hz")) == (
-        "machine.yaml:14:11: machine.supply: '50 Hz' is a frequency, not a supply - give it in Hz half wave"
+        "machine.yaml:14:11: machine.supply: '50 Hz' is a frequency, not a supply"
+        " - write 50 Hz full wave or 50 Hz half wave"
     )
     assert told(run, PART, "--target", "60/min", "--units", "cm") == (
         f"{PART}: needs a bowl of 3010 mm, and none is larger than 1200 mm"

@@ -152,7 +152,7 @@ def test_radius_table(run):
         (
             ("--vary", "drive.amplitude=0:1:3", "--bowl"),
             2,
-            "Error: --bowl goes with no --vary or with two - leave one of them out "
+            "Error: --bowl cannot be combined with exactly one --vary - leave one of them out "
             "(see feeder convey --help)",
         ),
         (
