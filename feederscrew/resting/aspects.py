@@ -18,6 +18,7 @@ from feederscrew.resting.rules.quantities import ClassQuantities
 from feederscrew.resting.rules.recommended import Recommended
 from feederscrew.resting.tumbling import by_class, walk
 
+CONVEX = 1e-6  # [1] of the hull's volume: dents of less do not tell a symmetry
 TIE = 1e-4  # probabilities that differ by less of themselves are equal but for rounding
 
 
@@ -110,7 +111,7 @@ def find(part, *, as_published=False, unstable=False, exponent=None, launch=reco
     hull = part.hull or convex_hull(part.vertices, part.centre_of_mass, part.source)
     stable = stable_faces(hull, landscape(hull))
     faces = stable + (unstable_faces(hull, stable) if unstable else [])
-    moments = Moments(part.vertices, part.faces, part.centre_of_mass)
+    moments = _moments(part, hull)
     label = classes(faces, part, moments)
     groups = [[face for face, at in zip(faces, label) if at == k] for k in range(label.max() + 1)]
     table = _geometry(groups, part) | {"forms": forms(groups, hull)}
@@ -150,6 +151,13 @@ def _answered(known, launch, exponent):
     own = None if exponent is None else surface.named(exponent)
     answer = recommended.closed_form(known.probabilities, known.stable, known.kinds, launch, own)
     return replace(known, recommended=answer)
+
+
+def _moments(part, hull):
+    """Moments of the part; from its hull, of fewer triangles, where it is as good as convex."""
+    if hull.volume - part.volume < CONVEX * hull.volume:
+        return Moments(hull.vertices, hull.triangles, np.zeros(3))
+    return Moments(part.vertices, part.faces, part.centre_of_mass)
 
 
 def _about(axis, inertia):

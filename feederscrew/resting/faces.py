@@ -3,12 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from feederscrew.geometry import vectors
+from feederscrew.geometry.graphs import components
 from feederscrew.part.repair.weld import distinct
-from feederscrew.resting import rounds
+from feederscrew.resting import contacts, rounds
 from feederscrew.resting.basins.landscape import RIPPLE_OF_RADIUS, SMOOTH, angle, edges, gentle
 
 COARSE = 1.0 / np.cos(0.5 * SMOOTH) - 1.0  # the ripple a smooth edge leaves at most, as a share of the height
@@ -24,7 +23,6 @@ FEWEST_OF_A_BALL = 24  # facets that show a side curved both ways: a ball, or a 
 ALIKE = np.radians(1.0)  # strips that lean by less apart are of one cone
 SLIVERS = 1e-2  # of their area: what a file's noise leaves between them
 FEWEST = 6  # strips that show a curve whose middle is not the centre of mass
-ON_A_LINE = 1e-6  # of the contact's size: a corner off the line between its neighbours by less is none
 TINY = np.finfo(float).tiny
 ARC = np.radians(60.0)  # coarse strips that turn less may be meant as flats
 
@@ -87,7 +85,7 @@ def unstable_faces(hull, taken):
     bend = angle(*(hull.normals[pairs[:, k]] for k in (0, 1)))
     step = np.abs(np.diff(hull.heights[pairs], axis=1))[:, 0]
     joined = (bend < np.radians(0.2)) | ((bend < SMOOTH) & (step < RIPPLE_OF_RADIUS * hull.radius))
-    labels = _components(len(free), pairs[joined])
+    labels = components(*pairs[joined].T, len(free))[1]
     order = np.flatnonzero(free)[np.argsort(labels[free], kind="stable")]
     parts = np.split(order, np.flatnonzero(np.diff(labels[order])) + 1) if len(order) else []
     return [_describe(hull, part, part[np.argmax(hull.areas[part])], stable=False) for part in parts]
@@ -99,12 +97,12 @@ def _coarse_curves(hull, basins, members):
     step = np.abs(np.diff(hull.heights[sinks], axis=1))[:, 0] / hull.heights[sinks[:, 0]]
     strips = (basins.rises < COARSE) & (basins.bends < SMOOTH) & (step < EQUAL + basins.bends**2)
     level = step < EQUAL
-    labels = _components(len(basins.sinks), place[level & strips])
+    labels = components(*place[level & strips].T, len(basins.sinks))[1]
     for label in np.flatnonzero(np.bincount(labels) > 1):
         group = np.flatnonzero(labels == label)
         if _spread(hull.normals[basins.sinks[group]]) < ARC:
             labels[group] = labels.max() + 1 + np.arange(len(group))
-    around = _components(len(basins.sinks), place[strips])
+    around = components(*place[strips].T, len(basins.sinks))[1]
     several = np.flatnonzero(np.bincount(around) > 1)
     sides = _smooth_sides(hull, basins, around) if len(several) else None
     for label in several:
@@ -139,7 +137,7 @@ def _smooth_sides(hull, basins, group):
     """(T,) label of each triangle; gentle bends within its group lead to all others of the same."""
     owner = group[np.searchsorted(basins.sinks, basins.basins)]
     pairs = basins.pairs[owner[basins.pairs[:, 0]] == owner[basins.pairs[:, 1]]]
-    return _components(len(owner), pairs[gentle(hull.normals, pairs)])
+    return components(*pairs[gentle(hull.normals, pairs)].T, len(owner))[1]
 
 
 def _rocks(hull, side, sink):
@@ -227,7 +225,7 @@ def _describe(hull, triangles, lowest, stable):
         for depths in (hull.heights[foot], _off_plane(hull, foot, normal))
     )
     axis = _axis(normals, areas, normal) if curved else np.full(3, np.nan)
-    polygon = _outline(hull.vertices[np.unique(hull.triangles[foot])], normal)
+    polygon = contacts.outline(hull.vertices[np.unique(hull.triangles[foot])], normal)
     return Face(
         kind="rolling" if curved else "flat",
         stable=stable,
@@ -257,50 +255,6 @@ def _axis(normals, weights, lowest):
     return axis * np.sign(axis[np.argmax(np.abs(axis))])
 
 
-def _outline(points, normal):
-    """(K, 3) convex outline of points about a plane, counter-clockwise seen against ``normal``."""
-    from scipy.spatial import ConvexHull, QhullError
-
-    first = np.eye(3)[np.argmin(np.abs(normal))]
-    u = vectors.unit(vectors.cross(normal, first))
-    plane = vectors.product(points, np.column_stack([u, vectors.cross(normal, u)]))
-    around = np.argsort(np.arctan2(*(plane - plane.mean(axis=0)).T[::-1]))
-    if _turns_at_every_corner(*plane[around].T):
-        return points[around]
-    try:
-        corners = points[ConvexHull(plane).vertices]
-    except QhullError:  # a contact line: a sliver of the hull
-        return points
-    return _without_straight_corners(corners)
-
-
-def _turns_at_every_corner(x, y):
-    """Whether a polygon of corners (K,) and (K,) turns left at every one, none of them on a line."""
-    before = np.arange(len(x)) - 1
-    u, v = x - x[before], y - y[before]
-    p, q = u[before], v[before]
-    off = (p * v - q * u) / np.maximum(np.hypot(p + u, q + v), TINY)
-    return bool((off > ON_A_LINE * np.hypot(np.ptp(x), np.ptp(y))).all())
-
-
-def _without_straight_corners(corners):
-    """Corners (K, 3) of a polygon without those on a line between their neighbours.
-
-    A finer triangulation of the same face brings such corners, and rules that average over the edges of a
-    contact would count its edges twice.
-    """
-    size = vectors.length(np.ptp(corners, axis=0))
-    while len(corners) > 3:
-        before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
-        twice = vectors.length(vectors.cross(corners - before, after - corners))
-        off = twice / np.maximum(vectors.length(after - before), TINY)
-        straight = int(np.argmin(off))
-        if off[straight] > ON_A_LINE * size:
-            break
-        corners = np.delete(corners, straight, axis=0)
-    return corners
-
-
 def _curved(hull, triangles):
     areas = hull.areas[triangles]
     return vectors.length(vectors.product(areas, hull.normals[triangles])) < CURVED * areas.sum()
@@ -310,10 +264,3 @@ def _spread(normals):
     """Angle across a set of directions [rad], from its end to the end furthest from it."""
     end = normals[np.argmax(angle(normals, normals[0]))]
     return angle(normals, end).max()
-
-
-def _components(count, pairs):
-    if not len(pairs):
-        return np.arange(count)
-    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
-    return connected_components(graph, directed=False)[1]

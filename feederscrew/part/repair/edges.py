@@ -74,26 +74,3 @@ def table(faces, corners):
     count = np.diff(start, append=len(keys))
     net = count - 2 * np.add.reduceat(back, start)
     return MeshEdges(corners, keys[start], order, start, count, net)
-
-
-def components(i, j, count):
-    """Which nodes of a graph hang together.
-
-    Parameters
-    ----------
-    i, j : (N,) int
-        The two ends of each link.
-    count : int
-        Nodes.
-
-    Returns
-    -------
-    number : int
-        Of components.
-    component : (count,) int
-    """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    links = coo_array((np.ones(len(i), dtype=np.int8), (i, j)), shape=(count, count))
-    return connected_components(links, directed=False)

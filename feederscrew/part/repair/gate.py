@@ -66,12 +66,12 @@ def surface(vertices, faces, where, unit, allow_open=False):
     step, blurred = _precision(vertices, size, where, unit)
     vertices, faces, edges, mended = mend.mended(vertices, faces, JOINED * size + 2.0 * step, where)
     arranged = _closed if edges.closed else _opened
-    solid, is_open, said = arranged(vertices, faces, edges, where, unit, allow_open)
+    solid, is_open, unseen, said = arranged(vertices, faces, edges, where, unit, allow_open)
     if solid.volume < 0.0:
         faces, solid, said = faces[:, ::-1], solid.reversed, (*said, INVERTED)
     if solid.volume <= EMPTY * size**3:
         raise MeshError(where, "encloses no volume", SOLID)
-    if not is_open and len(unseen := sight.unseen(vertices, faces, solid)):
+    if not is_open and len(unseen):
         said += _crossed(vertices, faces[unseen], JOINED * size + 2.0 * step, size, where, unit, allow_open)
     return Surface(vertices, faces, solid, is_open, slivers + blurred + mended + said)
 
@@ -99,12 +99,12 @@ def _without_area(count):
 
 def _finite(vertices, faces, where, unit):
     """Triangles whose corners are numbers, and not so large that their cubes are none."""
-    bad = ~np.isfinite(vertices).all(axis=1)
-    if not bad.any():
-        reach = np.abs(vertices).max(initial=0.0)
+    reach = np.abs(vertices).max(initial=0.0)
+    if np.isfinite(reach):
         if reach > FARTHEST:
             raise MeshError(where, f"reaches {reach:.3g} {unit} from the origin", "check its scale")
         return vertices, faces
+    bad = ~np.isfinite(vertices).all(axis=1)
     hit = bad[faces].any(axis=1)
     if hit.any():
         what = f"facet {np.argmax(hit) + 1} of {len(faces)} has a corner that is not a finite number"
@@ -150,23 +150,32 @@ def _opened(vertices, faces, edges, where, unit, allow_open):
         )
         raise MeshError(where, what, CLOSE)
     told = f"the surface is open: {_many(len(hole.rims), 'hole')} filled in for these numbers (`allow_open`)"
-    return mass.solid(np.concatenate([vertices[faces], caps(vertices, hole.rims)])), True, (told,)
+    solid = mass.solid(np.concatenate([vertices[faces], caps(vertices, hole.rims)]))
+    return solid, True, (), (told,)
 
 
 def _closed(vertices, faces, edges, where, unit, allow_open):
-    """What a closed surface encloses, cavities taken off."""
-    number, shell = shells.shells(edges, faces)
+    """What a closed surface encloses, cavities taken off; and which of its facets may cut others.
+
+    A surface that an axis sees whole is one shell.
+    """
     solid = mass.solid(vertices[faces])
+    unseen = sight.unseen(
+        vertices, *((faces[:, ::-1], solid.reversed) if solid.volume < 0.0 else (faces, solid))
+    )
+    if not len(unseen):
+        return solid, False, unseen, ()
+    number, shell = shells.shells(edges, faces)
     if number == 1:
-        return solid, False, ()
+        return solid, False, unseen, ()
     volume = np.bincount(shell, mass.tetrahedra(vertices[faces]))
     outwards = np.sign(volume[np.argmax(np.abs(volume))])
     fault = shells.fault(vertices, faces[:, :: int(outwards) or 1], shell, outwards * volume, unit)
     if fault is None:
-        return solid, False, ()
+        return solid, False, unseen, ()
     if not allow_open:
         raise MeshError(where, *fault)
-    return solid, True, (f"{fault[0]}: taken together as one part (`allow_open`)",)
+    return solid, True, unseen, (f"{fault[0]}: taken together as one part (`allow_open`)",)
 
 
 def _many(count, noun):

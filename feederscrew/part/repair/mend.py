@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 
 from feederscrew.errors import MeshError
-from feederscrew.geometry import vectors
+from feederscrew.geometry import graphs, vectors
 from feederscrew.part.repair import edges as gate_edges
 from feederscrew.part.repair import weld
 
@@ -113,7 +113,7 @@ def _parity(mates, askew, count, where):
     f, g = mates.T
     g = g + count * askew
     i, j = np.concatenate([f, f + count]), np.concatenate([g, (g + count) % (2 * count)])
-    _, node = gate_edges.components(i, j, 2 * count)
+    _, node = graphs.components(i, j, 2 * count)
     as_is, reverse = node[:count], node[count:]
     if (as_is == reverse).any():
         raise MeshError(where, "has one side only, like a Moebius strip", SOLID)

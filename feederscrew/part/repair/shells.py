@@ -3,7 +3,7 @@
 import numpy as np
 
 from feederscrew.geometry import vectors
-from feederscrew.part.repair.edges import components
+from feederscrew.geometry.graphs import components
 
 PROBES = 64  # corners of a shell that are tried
 BUDGET, MOST_TURNS = 4_000_000, 400_000_000  # solid angles for one shell and for all: half a second, a minute

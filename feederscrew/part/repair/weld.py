@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.part.repair import edges
+from feederscrew.geometry import graphs
 
 MIX = tuple(
     np.uint64(odd) for odd in (0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB, 0xD6E8FEB86659FD93)
@@ -85,7 +85,7 @@ def near(vertices, candidates, tolerance):
     if tree.count_neighbors(tree, tolerance) > MOST_PAIRS:
         return target
     i, j = tree.query_pairs(tolerance, output_type="ndarray").T
-    _, cluster = edges.components(i, j, len(candidates))
+    _, cluster = graphs.components(i, j, len(candidates))
     _, first = np.unique(cluster, return_index=True)
     target[candidates] = candidates[first[cluster]]
     return target

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from feederscrew.geometry import vectors
+from feederscrew.geometry.graphs import components
 
 FEWEST = 3  # facets at a corner
 STRAIGHT = 1e-9  # [1] of the radius: what a corner may lie behind the line between its neighbours
@@ -134,9 +135,4 @@ def _of_two_edges(found):
 
 def _joined(facets, first, second):
     """(H,) facets, each of ``first`` joined with that of ``second``."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    count = facets.max() + 1
-    links = coo_array((np.ones(len(first)), (first, second)), shape=(count, count))
-    return connected_components(links, directed=False)[1].astype(int)[facets]
+    return components(first, second, facets.max() + 1)[1][facets]

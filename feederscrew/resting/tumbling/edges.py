@@ -9,6 +9,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.geometry import vectors
+from feederscrew.geometry.graphs import components
 from feederscrew.resting.tumbling import borders, walk
 
 COPLANAR = 1e-10  # [1] of the radius: depth below a neighbour's plane that is still the same facet
@@ -174,18 +175,13 @@ def _twins(neighbours):
 
 def _facets(hull, twins):
     """Facet of each triangle: triangles joined across flat edges."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     owners = np.repeat(np.arange(len(hull.triangles)), 3)
     depths = _depths(hull, twins)
     near = np.flatnonzero(np.minimum(depths, depths[twins]) <= COPLANAR * hull.radius)
     if not len(near):
         return np.arange(len(hull.triangles))
     flat = near[_flat(hull, near, twins, depths)]
-    pairs = owners[flat], owners[twins[flat]]
-    joins = coo_array((np.ones(len(flat)), pairs), shape=2 * [len(hull.triangles)])
-    return connected_components(joins, directed=False)[1].astype(int)
+    return components(owners[flat], owners[twins[flat]], len(hull.triangles))[1]
 
 
 def _depths(hull, twins):
