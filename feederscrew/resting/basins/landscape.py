@@ -172,13 +172,13 @@ def _joined(hull, basins, pairs, tops, limit):
     Returns the new basins, and the edges (indices) of the lowest ways that rise by more.
     """
     sinks, place = np.unique(basins, return_inverse=True)
-    between = place[pairs]
-    ways = np.flatnonzero(between[:, 0] != between[:, 1])
+    ones, others = place[pairs].T
+    ways = np.flatnonzero(ones != others)
     ways = ways[np.argsort(tops[ways], kind="stable")]
     region, basin = np.arange(len(sinks)), np.arange(len(sinks))
     standing = np.zeros(len(ways), dtype=bool)
-    join = fitting(forest.join, 3 * len(basins))
-    join(hull.heights[sinks], limit[sinks], between[ways], tops[ways], region, basin, standing)
+    join = fitting(forest.join, 3 * len(basins), forest.on_lists(forest.join))
+    join(hull.heights[sinks], limit[sinks], ones[ways], others[ways], tops[ways], region, basin, standing)
     return sinks[forest.roots(basin)][place], ways[standing]
 
 
