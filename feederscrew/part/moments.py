@@ -24,7 +24,7 @@ POWERS = np.array(sorted((p for p in product(range(ORDER + 1), repeat=3) if 1 <=
 WAYS = np.array(
     [factorial(sum(p)) // (factorial(p[0]) * factorial(p[1]) * factorial(p[2])) for p in POWERS.T]
 )
-MIDDLE, SMALL = 0.5, 0.12  # of the part: on facets with shorter edges a rule of order four, or two, will do
+MIDDLE, SMALL = 0.5, 0.16  # of the part: on facets with shorter edges a rule of order four, or two, will do
 BLOCK = 1 << 13  # points at a time: what a processor's cache holds
 
 

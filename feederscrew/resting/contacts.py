@@ -23,14 +23,21 @@ def outline(points, normal):
         Counter-clockwise seen against the normal, no corner on a line between its neighbours; the points as
         they are where they lie on one line.
     """
+    k = int(np.argmax(np.abs(normal)))
+    x, y = points.T[[k - 2, k - 1] if normal[k] > 0.0 else [k - 1, k - 2]]  # seen along an axis of the file
+    around = np.argsort(np.arctan2(y - y.mean(), x - x.mean()))
+    if _turns_at_every_corner(x[around], y[around]):
+        return points[around]
+    return _of_extreme_points(points, normal)
+
+
+def _of_extreme_points(points, normal):
+    """The same where some of the points lie within the outline or straight between others."""
     from scipy.spatial import ConvexHull, QhullError
 
     first = np.eye(3)[np.argmin(np.abs(normal))]
     u = vectors.unit(vectors.cross(normal, first))
     plane = vectors.product(points, np.column_stack([u, vectors.cross(normal, u)]))
-    around = np.argsort(np.arctan2(*(plane - plane.mean(axis=0)).T[::-1]))
-    if _turns_at_every_corner(*plane[around].T):
-        return points[around]
     try:
         corners = points[ConvexHull(plane).vertices]
     except QhullError:  # a contact line: a sliver of the hull

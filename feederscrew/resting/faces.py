@@ -8,7 +8,7 @@ from feederscrew.geometry import vectors
 from feederscrew.geometry.graphs import components
 from feederscrew.part.repair.weld import distinct
 from feederscrew.resting import contacts, rounds
-from feederscrew.resting.basins.landscape import RIPPLE_OF_RADIUS, SMOOTH, angle, edges, gentle
+from feederscrew.resting.basins.landscape import GENTLE, RIPPLE_OF_RADIUS, SMOOTH, angle, edges, gentle
 
 COARSE = 1.0 / np.cos(0.5 * SMOOTH) - 1.0  # the ripple a smooth edge leaves at most, as a share of the height
 CURVED = np.sinc(np.radians(15.0) / np.pi)  # mean resultant of normals over an arc of 30 deg; below: no plane
@@ -178,7 +178,9 @@ def _plane(hull, sink, members, of_a_curve=False):
     """
     members = np.sort(members)
     depth = _depth(hull, sink, members)
-    shallow = (depth < FLATNESS * hull.radius) & (angle(hull.normals[members], hull.normals[sink]) < SMOOTH)
+    shallow = (depth < FLATNESS * hull.radius) & (
+        vectors.product(hull.normals[members], hull.normals[sink]) > GENTLE
+    )
     near, tight = members[shallow], depth[shallow] < TIGHTEST_FIRST[0] * hull.radius
     if tight.all():
         return near
@@ -188,8 +190,9 @@ def _plane(hull, sink, members, of_a_curve=False):
     inside = depth <= hull.radius * np.array(TIGHTEST_FIRST)[:, None]
     held = vectors.product(inside, areas)
     shared = held / areas.sum() - 0.1 * (inside.sum(axis=1) < 2)  # one triangle is a plane by itself
-    fewest = 1 if _fan(hull, members) else 2  # triangles of a strip
-    enough = (shared >= 0.5) | (of_a_curve & (inside.sum(axis=1) >= fewest))
+    enough = shared >= 0.5
+    if of_a_curve:
+        enough |= inside.sum(axis=1) >= (1 if _fan(hull, members) else 2)  # triangles of a strip
     good = enough[:-1] & (held[1:] <= 1.02 * held[:-1])
     inside = inside[np.argmax(good)] if good.any() else np.ones(len(near), dtype=bool)
     return near[inside | tight]

@@ -45,6 +45,8 @@ def crossings(vertices, faces, tolerance):
     columns = _columns(corners, normals)
     near = [_piercing(*columns, pairs, tolerance) for pairs in _candidates(corners, normals)]
     pairs = np.concatenate([np.empty((0, 2), dtype=int), *near])
+    if not len(pairs):
+        return Crossings(pairs, np.empty(0), np.empty((0, 3)))
     return _cuts(corners, normals, _through_both(corners, normals, pairs, tolerance), tolerance)
 
 

@@ -14,6 +14,7 @@ from feederscrew.geometry.compiled import fitting
 from feederscrew.resting.basins import forest
 
 SMOOTH = np.radians(25.0)  # a sharper edge is meant: a bar of 12 sides (30 deg) has flats, one of 16 rolls
+GENTLE = np.cos(SMOOTH)  # of two normals, their product
 RIPPLE_OF_RADIUS = 2e-3  # noise and tessellation leave barriers below this share of the part's radius ...
 RIPPLE_OF_HEIGHT = 2e-2  # ... and below this share of the height, or slender parts would lose their sides
 BARE = 1e-4  # of the radius, 1 um on a small part: a lower barrier holds nothing, however sharp its edge
@@ -127,7 +128,7 @@ def gentle(normals, pairs):
     -------
     (E,) bool
     """
-    return _dot(*_columns(normals, pairs)) > np.cos(SMOOTH)
+    return _dot(*_columns(normals, pairs)) > GENTLE
 
 
 def _downhill(hull, pairs, tops):
