@@ -80,7 +80,7 @@ def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda
         under_way = _UnderWay(store, choices, resume, tell)
         for outcome in workers.outcomes(under_way.tasks(requests)):
             under_way.finish(outcome)
-        return _finished(store, requests, under_way.kept)
+        return _finished(store, requests, under_way.kept, workers)
 
 
 class _UnderWay:
@@ -112,14 +112,21 @@ class _UnderWay:
         self.tell(kept=False)
 
 
-def _finished(store, requests, kept):
-    """The summary, the contact sheets and the index page, from what lies on the disk."""
-    from feederscrew.output.batch import contact_sheet  # they import matplotlib
+def _contact_sheet(tiles):
+    """Draw one contact sheet: a process of the crew has matplotlib, this one need not."""
+    from feederscrew.output.batch import contact_sheet
+
+    return contact_sheet.sheet(tiles)
+
+
+def _finished(store, requests, kept, workers):
+    """Write the summary, the contact sheets and the index page, from what lies on the disk."""
     from feederscrew.output.page.as_html import html
 
     rows = summary.rows(store, requests)
-    for name, page in contact_sheet.pages(summary.tiles(store, rows)):
-        store.write(name, page)
+    sheets = workers.each(_contact_sheet, summary.sheets(store, rows))
+    for number, sheet in enumerate(sheets, 1):
+        store.write(SHEET.format(f"_{number}" if number > 1 else ""), sheet)
     store.write(index_page.NAME, html(index_page.page(store, rows)))
     store.write(summary.NAME, tables.text(summary.frame(rows), "csv"))  # last: it says that all is there
     return Batch(

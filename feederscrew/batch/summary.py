@@ -4,6 +4,7 @@ from pathlib import Path
 
 from feederscrew.batch.task import DONE, THUMBNAIL
 from feederscrew.output import tables
+from feederscrew.output.batch import ACROSS, DOWN
 
 NAME = "summary.csv"
 COLUMNS = (
@@ -13,6 +14,7 @@ COLUMNS = (
     "drops", "drop_aspect", "p_drop", "note", "warnings",
 )  # fmt: skip
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
+TILES = ACROSS * DOWN
 HIDDEN = (  # from a table for people
     "folder", "aspects", "material", "aspect", "heading_deg", "rule", "answer", "regime", "passes_devices",
     "parts_per_minute_low", "parts_per_minute_high", "drops", "drop_aspect", "p_drop", "note", "warnings",
@@ -64,13 +66,20 @@ def rate(row):
     return "no rate" if number is None else f"{number:.3g} / min"
 
 
-def tiles(store, rows):
-    """What a contact sheet shows of each part: its picture, or None, and two lines of text.
+def sheets(store, rows):
+    """Yield what each contact sheet shows, up to ``TILES`` parts; a sheet without a picture is left out.
 
     Yields
     ------
-    (bytes or None, str, str)
+    list of (bytes or None, str, str)
+        A part's picture, or None, and two lines of text.
     """
-    for row in rows:
-        said = f"{row['orientation'] or '-'}: {rate(row)}" if row["status"] == DONE else "failed"
-        yield store.file(row["folder"], THUMBNAIL), row["folder"], said
+    for first in range(0, len(rows), TILES):
+        tiles = [_tile(store, row) for row in rows[first : first + TILES]]
+        if any(picture for picture, *_ in tiles):
+            yield tiles
+
+
+def _tile(store, row):
+    said = f"{row['orientation'] or '-'}: {rate(row)}" if row["status"] == DONE else "failed"
+    return store.file(row["folder"], THUMBNAIL), row["folder"], said

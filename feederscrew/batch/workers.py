@@ -1,6 +1,7 @@
 """Parts on several processes of this machine: one that dies costs a retry, never the batch."""
 
 import contextlib
+import gc
 import importlib
 import multiprocessing
 import os
@@ -52,22 +53,45 @@ class Processes:
         ------
         Outcome
         """
-        tasks, again, failures, crew = iter(tasks), [], {}, []
+        tasks, again, failures, crew = iter(tasks), [], [], []
         try:
             while self._busy(crew, tasks, again):
                 for worker in _ready(crew):
                     task, outcome = worker.take()
-                    name = task.request.name
                     if outcome is None:
-                        failures[name] = failures.get(name, 0) + 1
-                        if failures[name] < ATTEMPTS:
+                        failures.append(name := task.request.name)
+                        if failures.count(name) < ATTEMPTS:
                             again.append(task)
                             continue
                         outcome = Outcome.failed(task, LOST.format(ATTEMPTS), final=False)
+                    self._busy(crew, tasks, again)  # at work while the outcome is put in place
                     yield outcome
         finally:
             for worker in crew:
                 worker.stop()
+
+    def each(self, function, items):
+        """Yield what a function gives for each of some items, from a process that has its libraries already.
+
+        Parameters
+        ----------
+        function : function
+            Of one item; importable by name.
+        items : iterable
+
+        Yields
+        ------
+        object
+            In the order of the items; where the process dies they are computed in this one.
+        """
+        worker = _Worker(self.context, function)
+        try:
+            for item in items:
+                worker.give(item)
+                _, found = worker.take()
+                yield function(item) if worker.dead else found
+        finally:
+            worker.stop()
 
     def _busy(self, crew, tasks, again):
         """Give every process work, as long as there is any; those at work."""
@@ -135,6 +159,7 @@ def _ready(crew):
 
 def _serve(connection, job):
     """Answer tasks until the other end of the line is gone."""
+    gc.freeze()  # what was there before the fork stays shared, and is not searched after every part
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the batch itself decides when to stop
     with contextlib.suppress(EOFError, OSError):
         while True:

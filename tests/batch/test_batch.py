@@ -70,6 +70,9 @@ class Here:
             self.done.append(each.request.name)
             yield works.work(each)
 
+    def each(self, function, items):
+        return map(function, items)
+
 
 def dies_over_the_second(each):
     """A worker that is killed by one part, whoever computes it."""
@@ -280,8 +283,28 @@ def test_tasks_are_read_only_when_a_process_is_free(three):
 
     outcomes = batch.Processes(1, job=says_where).outcomes(reading())
     next(outcomes)
-    assert len(taken) == 1
+    assert len(taken) == 2  # the process works at the second while the first is put in place
     outcomes.close()
+
+
+def test_sheets_are_drawn_here_where_the_process_for_them_dies():
+    crew = batch.Processes(1, job=says_where)
+    assert list(crew.each(dies_elsewhere, [os.getpid()] * 2)) == [os.getpid()] * 2
+    here, *_ = places = list(crew.each(where, "ab"))
+    assert here != os.getpid()
+    assert places == [here, here]
+
+
+def where(_item):
+    """The process that is asked."""
+    return os.getpid()
+
+
+def dies_elsewhere(home):
+    """A process that is killed unless it is the first one."""
+    if os.getpid() != home:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return home
 
 
 def test_a_folder_of_other_things_is_refused(tmp_path, three):

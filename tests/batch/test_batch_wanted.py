@@ -49,11 +49,14 @@ def test_the_launch_and_the_drops_are_the_answer(block):
         assert dropped.row["p_orientation"] <= dropped.row["p_drop"]
 
 
-def test_a_tile_names_the_orientation():
+@pytest.mark.parametrize("count", [1, summary.TILES + 1])
+def test_tiles_name_the_orientation_and_fill_sheets(count):
     made = {"folder": "block", "status": task.DONE, "orientation": "C@90", "parts_per_minute": 12.0}
 
     class Store:
         def file(self, folder, name):
-            return None
+            return b"PNG"
 
-    assert list(summary.tiles(Store(), [made])) == [(None, "block", "C@90: 12 / min")]
+    sheets = list(summary.sheets(Store(), [made] * count))
+    assert sheets[0][0] == (b"PNG", "block", "C@90: 12 / min")
+    assert sum(map(len, sheets)) == count and len(sheets) == -(-count // summary.TILES)

@@ -1,20 +1,18 @@
 """Many parts on one sheet, each on the aspect that leaves the bowl."""
 
 import io
-from itertools import islice
 
 import numpy as np
 from matplotlib import image
 
 from feederscrew.output import style
-from feederscrew.output.batch import SHEET
+from feederscrew.output.batch import ACROSS
 from feederscrew.output.solid import render, shading
 from feederscrew.output.solid.shading import Shot
 from feederscrew.output.solid.stance import outermost, stance
 
 WIDTH, HEIGHT = 240, 180  # [px] of a thumbnail
 ROOM = 1.08  # of a thumbnail over the part in it
-ACROSS, DOWN = 5, 8  # thumbnails on a sheet
 TEXT, EDGE = 52, 20  # [px] under each thumbnail, round the sheet
 LETTERS = 26  # of a line of text
 
@@ -45,24 +43,20 @@ def thumbnail(part, found, aspect=None):
     return _png(np.clip(drawn, 0.0, 1.0))
 
 
-def pages(tiles):
-    """Yield contact sheets of any number of parts.
+def sheet(tiles):
+    """Draw a contact sheet of parts, ``ACROSS`` in a row.
 
     Parameters
     ----------
-    tiles : iterable of (bytes or None, str, str)
+    tiles : sequence of (bytes or None, str, str)
         A thumbnail, or None, and two lines of text.
 
-    Yields
-    ------
-    (str, bytes)
-        Name and PNG of one sheet; none where no tile has a picture.
+    Returns
+    -------
+    bytes
+        A PNG.
     """
-    tiles, number = iter(tiles), 0
-    while batch := list(islice(tiles, ACROSS * DOWN)):
-        if any(tile[0] for tile in batch):
-            number += 1
-            yield SHEET.format(f"_{number}" if number > 1 else ""), style.png(_sheet(batch))
+    return style.png(_sheet(tiles))
 
 
 def _sheet(tiles):
