@@ -13,6 +13,7 @@ from feederscrew.batch.task import Outcome
 
 ATTEMPTS = 3  # of a part whose worker dies under it
 LIFETIME = 200  # parts of one process: what libraries leak goes with it
+PRELOAD = "feederscrew.batch.preload"  # WORK, imported sooner
 WORK = "feederscrew.batch.work"  # its libraries take a second to import, which only the processes need
 LOST = "the process that computed it died each of {} times, for lack of memory perhaps - try it alone"
 
@@ -39,7 +40,7 @@ class Processes:
         self.jobs, self.job, self.lifetime = jobs, job, lifetime
         methods = multiprocessing.get_all_start_methods()
         self.context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
-        self.context.set_forkserver_preload([WORK, job.__module__])
+        self.context.set_forkserver_preload([PRELOAD, job.__module__])
         _start_server(self.context)
 
     def outcomes(self, tasks):
@@ -160,6 +161,7 @@ def _ready(crew):
 def _serve(connection, job):
     """Answer tasks until the other end of the line is gone."""
     gc.freeze()  # what was there before the fork stays shared, and is not searched after every part
+    gc.enable()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the batch itself decides when to stop
     with contextlib.suppress(EOFError, OSError):
         while True:

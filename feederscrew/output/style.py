@@ -8,9 +8,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
 from matplotlib.figure import Figure
 from matplotlib.font_manager import findfont, get_font
 
+from feederscrew.output import DPI
 from feederscrew.resting.rules import registry
 
-DPI = 160
 MARGIN = 0.08  # [in] round the axes
 INK = "#22303c"  # text and axes
 FAINT = "#d5dbe1"  # grids and frames

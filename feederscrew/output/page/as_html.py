@@ -9,10 +9,9 @@ from html import escape
 from importlib import resources
 from itertools import groupby
 
-from feederscrew.output import tables
+from feederscrew.output import DPI, tables
 from feederscrew.output.page import blocks as kinds
 from feederscrew.output.page.numbers import cells
-from feederscrew.output.style import DPI
 
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
 CSS_DPI = 96  # pixels of a page to the inch

@@ -1,0 +1,7 @@
+"""What is imported once, by the process that those of a batch are forked from."""
+
+import gc
+
+gc.disable()  # libraries make no garbage while they are imported; each process of the batch collects again
+
+from feederscrew.batch import work  # noqa: E402, F401
