@@ -10,6 +10,12 @@ import math
 
 import numpy as np
 
+PRODUCTS = {  # by whether each factor is a matrix
+    (False, False): "k,k->",
+    (False, True): "k,...km->...m",
+    (True, False): "...nk,k->...n",
+    (True, True): "...nk,...km->...nm",
+}
 NOTHING = 1e-15  # [1] of the largest entry: an entry off the diagonal that is rounding
 SWEEPS = 50  # of Jacobi rotations: six suffice for any 3 x 3 matrix
 DEPENDENT = 1e-6  # [1] of its length: what is left of a column that depends on those before it
@@ -28,10 +34,7 @@ def product(a, b):
     float, or float array
         Of the shape ``a @ b`` has.
     """
-    left = "k" if np.ndim(a) == 1 else "...nk"
-    right = "k" if np.ndim(b) == 1 else "...km"
-    both = ("..." if max(np.ndim(a), np.ndim(b)) > 1 else "") + left[3:-1] + right[4:]
-    return np.einsum(f"{left},{right}->{both}", a, b)
+    return np.einsum(PRODUCTS[np.ndim(a) > 1, np.ndim(b) > 1], a, b)
 
 
 def dot(u, v):

@@ -160,29 +160,36 @@ def _moments(part, hull):
     return Moments(part.vertices, part.faces, part.centre_of_mass)
 
 
-def _about(axis, inertia):
-    """Moment of inertia about a unit axis."""
-    return vectors.dot(vectors.product(axis, inertia), axis)
+def _about(axes, inertia):
+    """(N,) moments of inertia about unit axes (N, 3)."""
+    return vectors.dot(vectors.product(axes, inertia), axes)
+
+
+def _direction(face):
+    """What orders the faces of a class: their direction in the file."""
+    return tuple(np.round(face.normal, 6))
 
 
 def _geometry(groups, part):
     """Columns of the table in the order of the groups; a class's numbers are its faces' means."""
 
-    def mean(quantity):
-        return np.array([np.mean([getattr(face, quantity) for face in group]) for group in groups])
+    counts = np.array([len(group) for group in groups])
+    every = [face for group in groups for face in group]
 
-    shown = [max(group, key=lambda face: tuple(np.round(face.normal, 6))) for group in groups]
-    polar = [np.mean([_about(face.normal, part.inertia) for face in group]) for group in groups]
+    def mean(values):
+        return np.add.reduceat(values, np.cumsum(counts) - counts) / counts
+
+    shown = [max(group, key=_direction) if len(group) > 1 else group[0] for group in groups]
     return {
         "kinds": [group[0].kind for group in groups],
-        "faces": np.array([len(group) for group in groups]),
+        "faces": counts,
         "stable": np.array([group[0].stable for group in groups]),
         "normals": _clean(np.array([face.normal for face in shown])),
         "axes": _clean(np.array([face.axis for face in shown])),
-        "heights": mean("height"),
-        "contact_areas": mean("area"),
-        "solid_angles": mean("solid_angle"),
-        "polar_inertias": np.array(polar),
+        "heights": mean([face.height for face in every]),
+        "contact_areas": mean([face.area for face in every]),
+        "solid_angles": mean([face.solid_angle for face in every]),
+        "polar_inertias": mean(_about(np.array([face.normal for face in every]), part.inertia)),
         "polygons": [face.polygon for face in shown],
     }
 

@@ -260,7 +260,10 @@ def _axis(normals, weights, lowest):
 
 def _curved(hull, triangles):
     areas = hull.areas[triangles]
-    return vectors.length(vectors.product(areas, hull.normals[triangles])) < CURVED * areas.sum()
+    return (
+        len(areas) > 1
+        and vectors.length(vectors.product(areas, hull.normals[triangles])) < CURVED * areas.sum()
+    )
 
 
 def _spread(normals):

@@ -39,9 +39,14 @@ def adopted(tumbling, labels, count):
     if len(own) == len(labels):
         return _links(own, labels, (len(labels), count))
     members, claims = _claims(tumbling, labels)
+    claimed, by = claims.T
+    if (np.diff(claimed) > 0).all():  # each by one
+        taken = np.arange(len(labels))
+        taken[claimed] = by
+        return _links(np.arange(len(labels)), labels[forest.roots(taken)[members]], (len(labels), count))
     square = (len(labels), len(labels))
-    goes = _links(np.append(own, claims[:, 0]), np.append(own, claims[:, 1]), square)
-    while goes[:, np.unique(claims[:, 0])].nnz:
+    goes = _links(np.append(own, claimed), np.append(own, by), square)
+    while goes[:, np.unique(claimed)].nnz:
         goes = goes @ goes  # twice as far along the chain of claims
     faces = _links(own, labels[own], (len(labels), count))
     return _links(np.arange(len(labels)), members, square) @ goes @ faces
