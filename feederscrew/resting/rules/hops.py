@@ -63,15 +63,16 @@ def _cascade(shares, heights, pairs, tops):
     energies, kept, sinking = 0.5 * (levels[:-1] + levels[1:]), below[:-1] - below[1:], below[1:] > 0.0
     reach, moves = np.where(sinking, below[1:], np.inf), energies[:, None] > lowest
     density = ways.moved(shares, ways.parts(np.ones(1))[0]) / np.maximum(below[0], np.finfo(float).tiny)
-    before, moving = np.empty((2, *kept.shape))
+    before, sunk = np.empty(kept.shape), np.zeros(len(shares))
     step = max(1, BLOCK // len(ways.start))
     for some in (slice(k, k + step) for k in range(0, LEVELS, step)):
         parts = ways.parts(energies[some]) * (kept * moves)[some, ways.start]
-        for k, part in enumerate(parts, some.start):
+        for k, part in enumerate(parts / reach[some, ways.end], some.start):
             before[k] = density
-            moving[k] = ways.moved(density, part)
-            density = density + moving[k] / reach[k]
-    return (before * kept * ~moves + moving * ~sinking).sum(axis=0) + density * below[-1]
+            density = density + ways.moved(density, part)
+        lost = before[some, ways.start] * parts * ~sinking[some, ways.end]
+        sunk += np.bincount(ways.end, lost.sum(axis=0), minlength=len(shares))
+    return (before * kept * ~moves).sum(axis=0) + sunk + density * below[-1]
 
 
 class _Ways:
