@@ -1,10 +1,9 @@
 """Faces that a rotation symmetry of the part carries into each other, joined into classes."""
 
-from itertools import product
-
 import numpy as np
 
 from feederscrew.geometry import vectors
+from feederscrew.geometry.graphs import components
 from feederscrew.resting.basins.landscape import angle
 
 SAME_WAY = np.radians(3.0)  # a turned face lies on another when their normals agree this well
@@ -32,16 +31,12 @@ def classes(faces, part, moments):
         Class of each face, numbered in order of first appearance.
     """
     normals, alike = np.array([face.normal for face in faces]), _alike(faces)
-    label = np.arange(len(faces))
     if alike.sum() == len(faces):
-        return label
+        return np.arange(len(faces))
+    carried = np.zeros_like(alike)
     for rotation in symmetries(faces, part, moments):
-        turned = vectors.product(normals, rotation.T)
-        near = angle(turned[:, None], normals[None]) < SAME_WAY
-        near &= alike
-        for i, j in np.argwhere(near):
-            label[label == max(label[i], label[j])] = min(label[i], label[j])
-    return np.unique(label, return_inverse=True)[1]
+        carried |= vectors.product(vectors.product(normals, rotation.T), normals.T) > np.cos(SAME_WAY)
+    return components(*np.nonzero(carried & alike), len(faces))[1]
 
 
 def symmetries(faces, part, moments):
@@ -119,13 +114,12 @@ def _by_landmarks(faces):
 
 def _carrying(normals, a, b, a_images, b_images):
     """(N, 3, 3) rotations taking normals a, b to every pair of images that keeps their angle."""
-    start, between = _frame(normals[a], normals[b]), angle(normals[a], normals[b])
-    turns = [
-        vectors.product(_frame(normals[c], normals[d]), start.T)
-        for c, d in product(a_images, b_images)
-        if abs(angle(normals[c], normals[d]) - between) < SAME_WAY and (c, d) != (a, b)
-    ]
-    return np.array(turns[:CANDIDATES]).reshape(-1, 3, 3)
+    c, d = (images.ravel() for images in np.meshgrid(a_images, b_images, indexing="ij"))
+    between = angle(normals[a], normals[b])
+    kept = np.abs(angle(normals[c], normals[d]) - between) < SAME_WAY
+    kept = np.flatnonzero(kept & ((c != a) | (d != b)))[:CANDIDATES]
+    ends = _frames(normals[c[kept]], normals[d[kept]])
+    return vectors.product(ends, _frames(normals[a], normals[b]).T)
 
 
 def _half_turns(axis, moments):
@@ -152,8 +146,8 @@ def _principal(part):
     return 2.0 * axes[:, :, None] * axes[:, None, :] - np.eye(3)
 
 
-def _frame(first, second):
-    """(3, 3) right-handed axes as columns: along first, and in the plane of both."""
+def _frames(first, second):
+    """(..., 3, 3) right-handed axes as columns: along first (..., 3), and in the plane of both."""
     z = first
     y = vectors.unit(vectors.cross(first, second))
-    return np.column_stack([vectors.cross(y, z), y, z])
+    return np.stack([vectors.cross(y, z), y, z], axis=-1)
