@@ -99,7 +99,8 @@ def covariance(vectors, weights):
     total = weights.sum()
     off = vectors - np.einsum("n,nk->k", weights, vectors) / total
     share = total - (weights**2).sum() / total
-    return np.einsum("n,ni,nj->ij", weights, off, off) / share
+    off = np.ascontiguousarray(off.T)
+    return np.einsum("in,jn->ij", weights * off, off) / share
 
 
 def eigen(matrix):

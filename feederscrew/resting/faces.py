@@ -136,8 +136,9 @@ def _face(hull, sinks, members, sides):
 def _smooth_sides(hull, basins, group):
     """(T,) label of each triangle; gentle bends within its group lead to all others of the same."""
     owner = group[np.searchsorted(basins.sinks, basins.basins)]
-    pairs = basins.pairs[owner[basins.pairs[:, 0]] == owner[basins.pairs[:, 1]]]
-    return components(*pairs[gentle(hull.normals, pairs)].T, len(owner))[1]
+    first, second = basins.pairs.T
+    joined = (owner[first] == owner[second]) & gentle(hull.normals, basins.pairs)
+    return np.zeros_like(owner) if joined.all() else components(first[joined], second[joined], len(owner))[1]
 
 
 def _rocks(hull, side, sink):

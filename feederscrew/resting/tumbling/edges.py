@@ -14,7 +14,7 @@ from feederscrew.resting.tumbling import borders, walk
 
 COPLANAR = 1e-10  # [1] of the radius: depth below a neighbour's plane that is still the same facet
 SLIVER = 1e-9  # [1] of the radius: a triangle narrower than this has no plane of its own
-BLOCK = 1 << 15  # half-edges at a time
+BLOCK = 1 << 12  # half-edges at a time
 PLANE = 1e-14  # [1] error of a triangle's plane at the far end of the part, times its width over the radius
 
 
@@ -169,7 +169,7 @@ def maxima(edges):
 
 def _twins(neighbours):
     owners, beyond = np.repeat(np.arange(len(neighbours)), 3), neighbours.ravel().astype(int)
-    first, second, _ = (neighbours[beyond] == owners[:, None]).T
+    first, second = (np.ascontiguousarray(column)[beyond] == owners for column in neighbours.T[:2])
     return 3 * beyond + np.where(first, 0, np.where(second, 1, 2))
 
 
