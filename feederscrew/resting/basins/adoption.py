@@ -1,7 +1,6 @@
 """Sinks that belong to no face of their own, and the faces that take them in."""
 
 import numpy as np
-from scipy.sparse import csr_array
 
 from feederscrew.geometry.compiled import fitting
 from feederscrew.resting.basins import forest
@@ -64,4 +63,6 @@ def _claims(tumbling, labels):
 
 def _links(start, end, shape):
     """Sparse matrix of equal parts, rows summing to 1, from each start to its ends."""
+    from scipy.sparse import csr_array  # the names of rules, of which this room is a part, need no SciPy
+
     return csr_array((1.0 / np.bincount(start)[start], (start, end)), shape=shape)
