@@ -107,7 +107,7 @@ def _between(area, radius, first, last):
 
 
 def _area(borders):
-    """What is solid within borders (B, 8)."""
+    """What is solid within borders (B, 10)."""
     area, ring = shapely.Polygon(), []
     for k, border in enumerate(borders):
         ring.append(border[:2])

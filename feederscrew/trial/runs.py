@@ -13,6 +13,7 @@ from feederscrew.dropping.plate import drive
 from feederscrew.dropping.pool import in_batches
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import on_disk
+from feederscrew.trial import stations
 from feederscrew.trial.kernel import contact, motion, travel
 
 PASSED, RETURNED, RUNNING = travel.PASSED, travel.RETURNED, travel.RUNNING
@@ -240,7 +241,7 @@ def ride(known, station, states, times, *, limits, every, places, jobs=1, progre
 
 def surface_of(known, station, limits):
     """Return a station as the kernel takes it, with the limits of ``ride``."""
-    plates, borders = np.array(station.plates), np.array(station.borders)
+    plates, borders = stations.with_backs(station.plates), np.array(station.borders)
     plates[:, [0, 1, 2, 12, 13]] /= known.length
     borders[:, :4] /= known.length
     return motion.StageSurface(

@@ -10,6 +10,7 @@ from feederscrew.bowl.devices import KINDS, Device
 from feederscrew.tooling import turning
 from feederscrew.tooling.orientations import ROUNDED
 from feederscrew.tooling.strip import BLADE, FRAME, bent, hole, opening
+from feederscrew.trial.kernel import search
 
 BEHIND = 0.5  # of the part's size: how far the track is drawn behind the wall
 CHORD = 5e-6  # [m] by which an arc may be seen too flat
@@ -28,7 +29,7 @@ class Stage:
 
     device: Device
     plates: np.ndarray  # (P, 16) [m], [1] as `trial.kernel.search` names the columns
-    borders: np.ndarray  # (B, 8) [m], [1]
+    borders: np.ndarray  # (B, 10) [m], [1]
     begin: float  # [m] along the wall, where the part's centre of mass starts
     exit: float  # [m] where it has passed
     drop: float = 0.0  # [m] by which the track lies lower there
@@ -156,7 +157,7 @@ def _onwards(gate, behind):
 
 
 def _rings(area, is_end):
-    """Borders (B, 8) of a solid area: start, end, normal away, corner at the start, end of drawing."""
+    """Borders (B, 10) of a solid area: start, end, normal away, corner, end of drawing, normal before it."""
     found = []
     for one in shapely.get_parts(shapely.simplify(area, SMOOTH)):
         if one.geom_type != "Polygon" or one.area <= 0.0:
@@ -165,7 +166,7 @@ def _rings(area, is_end):
         for ring in (one.exterior, *one.interiors):
             points = np.asarray(ring.coords)[:-1, :2]
             found += _ring(points, is_end)
-    return np.array(found).reshape(-1, 8)
+    return np.array(found).reshape(-1, 10)
 
 
 def _ring(points, is_end):
@@ -176,7 +177,18 @@ def _ring(points, is_end):
         bend = np.arctan2(came[0] * along[1] - came[1] * along[0], came[0] * along[0] + came[1] * along[1])
         end = is_end(p, q)
         corner = bend > CORNER and not end and not is_end(o, p)
-        yield [*p, *q, along[1] / size, -along[0] / size, float(corner), float(end)]
+        before = np.array([came[1], -came[0]]) / np.hypot(*came)
+        yield [*p, *q, along[1] / size, -along[0] / size, float(corner), float(end), *before]
+
+
+def with_backs(plates):
+    """Return rows (2 P, 17) of plates (P, 16), each with that of its back, seen from behind, after it."""
+    backs = np.array(plates)
+    front = backs[:, search.FRONT : search.DEPTH]
+    backs[:, search.ORIGIN : search.ACROSS] -= backs[:, [search.DEPTH]] * front
+    front *= -1.0
+    both = np.stack([plates, backs], axis=1).reshape(-1, plates.shape[1])
+    return np.column_stack([both, np.resize([0.0, 1.0], len(both))])
 
 
 def _stacked(plates):

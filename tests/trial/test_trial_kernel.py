@@ -7,10 +7,12 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl.devices import Device
 from feederscrew.conveying import answer
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.launches import named, sample
 from feederscrew.dropping.plate import drive, rides
+from feederscrew.geometry import vectors
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import looks, runs, shape, stations
@@ -178,3 +180,38 @@ def test_a_part_that_is_not_convex_lands_as_on_the_plate_of_a_drop_test():
     launched = sample(replace(named("feed"), **surface), shape_of_it, 30, np.random.default_rng(5))
     both = [lies(part, bowl, launched, 40.0) for lies in (lies_on_the_track, lies_on_the_plate)]
     assert np.mean(both[0] == both[1]) > 0.8  # 0.97 of very many: a close call goes the other way
+
+
+STEEP, TURNED = [[0.34, 0.0, -0.94], [0.0, 1.0, 0.0]], [[0.71, 0.71, 0.0], [-0.5, 0.5, 0.71]]
+BELOW, BESIDE = [[9.0, 0.0, -4.0], [9.0, 60.0, -4.0]], [[9.0, 60.0, 0.0], [9.0, 60.0, -4.0]]
+
+
+@pytest.mark.parametrize(
+    ("axes", "place", "speed", "line"),
+    [  # the lower edge of a gap, met by a face; its outer end, met by an edge; both by no corner of the part
+        (STEEP, [3.0, 30.0, -4.0], [0.2, 0.0], BELOW),
+        (TURNED, [3.5, 65.5, -2.0], [0.2, -0.2], BESIDE),
+    ],
+)
+def test_nothing_passes_the_edges_below_the_surface(block, axes, place, speed, line):
+    track = replace(BOWL.track, climb=0.0)
+    bowl = replace(BOWL, track=track, drive=replace(BOWL.drive, amplitude=0.0))
+    solid, length, principal = shape.solid_of(block[0])
+    known = runs.setting(solid, length, bowl)
+    stage = stations.station(Device("gap", "9 mm", limit=9e-3), track, block[1])
+    u, v = (vectors.unit(np.array(axis)) for axis in axes)
+    state = np.zeros(body.STATE)
+    state[body.Q : body.Q + 4] = runs.quaternion(np.column_stack([u, v, np.cross(u, v)]) @ principal)
+    state[:3] = 1e-3 * np.array(place) / length
+    state[body.VX : body.VX + 2] = np.array(speed) / length * known.unit
+    points = 1e-3 * np.linspace(*np.array(line), 61)
+    inside, half = 0.0, 0.5e-3 * np.array([20.0, 12.0, 5.0])
+    for _ in range(12):
+        ride = runs.ride(
+            known, stage, state[None], np.zeros(1), limits=(2e-3, 1.0, 0.0, 1.0), every=1.0, places=1
+        )
+        state = np.array(ride.states[0])
+        own = (points - length * state[:3]) @ runs.matrix(state) @ principal.T
+        inside = max(inside, float((half - np.abs(own)).min(axis=1).max()))
+    assert ride.ways[0] < 3e-4  # [m] of the last 2 ms, of 4e-4 without the edge
+    assert inside < 5e-5

@@ -4,9 +4,23 @@ import math
 
 from feederscrew.geometry.compiled import compiled
 from feederscrew.trial.kernel.contact import add
-from feederscrew.trial.kernel.search import ACROSS, ALONG, DEEP, FIRST, FRONT, LAST, ROUNDED, _crossing, front
+from feederscrew.trial.kernel.search import (
+    ACROSS,
+    ALONG,
+    DEEP,
+    DEPTH,
+    FIRST,
+    FRONT,
+    LAST,
+    PARALLEL,
+    ROUNDED,
+    SLANT,
+    _crossing,
+    front,
+)
 
 BEND, END = 6, 7  # columns of a border: a convex corner at its start; no border but the end of the drawing
+NORMAL, BEFORE = 4, 8  # ... where its normal begins, and that of the border before it
 STEEP = 0.02  # [1] slope against a plate's front from which a face may lie on a corner
 
 
@@ -90,6 +104,76 @@ def _apart(p, q, border, reach):
     if min(p[1], q[1]) > max(border[1], border[3]) + reach:
         return True
     return max(p[1], q[1]) < min(border[1], border[3]) - reach
+
+
+@compiled
+def edges_on_posts(plate, borders, nears, solid, turn, reach, work, contacts, count):
+    """Contacts of the part's edges with the edges that run down a plate's side from convex corners."""
+    shown, spots = work.shown, work.spots
+    for m in range(nears):
+        border = borders[work.near[m]]
+        if border[BEND] < 0.5:
+            continue
+        for k in range(len(solid.edges)):
+            i, j = solid.edges[k, 0], solid.edges[k, 1]
+            p, q = shown[i], shown[j]
+            if not _past(p, q, border, plate, reach):
+                continue
+            s = solid.sides[k]
+            _vector(plate, turn, s[0], s[1], s[2], work.vectors[0])
+            _vector(plate, turn, s[3], s[4], s[5], work.vectors[1])
+            share, u, v, gap = _post(p, q, border, work.vectors, reach)
+            height = p[2] + share * (q[2] - p[2])
+            if gap < math.inf and -plate[DEPTH] < height < -plate[ROUNDED]:
+                x = spots[i, 0] + share * (spots[j, 0] - spots[i, 0])
+                y = spots[i, 1] + share * (spots[j, 1] - spots[i, 1])
+                z = spots[i, 2] + share * (spots[j, 2] - spots[i, 2])
+                count = front(
+                    plate, solid.inertia, turn, work.tangent, x, y, z, u, v, 0.0, gap, contacts, count
+                )
+    return count
+
+
+@compiled
+def _past(p, q, border, plate, reach):
+    """Whether an edge comes past the corner at the start of a border, between a plate's front and back."""
+    if min(p[2], q[2]) > -plate[ROUNDED] or max(p[2], q[2]) < -plate[DEPTH]:
+        return False
+    off = DEEP + reach
+    if min(p[0], q[0]) > border[0] + off or max(p[0], q[0]) < border[0] - off:
+        return False
+    return min(p[1], q[1]) <= border[1] + off and max(p[1], q[1]) >= border[1] - off
+
+
+@compiled
+def _post(p, q, border, wedge, reach):
+    """Where an edge from p to q touches the line straight back from the start of a border.
+
+    Returns
+    -------
+    share of the edge, normal (2) along the plate, gap; the gap is infinite where they do not touch
+    """
+    a, b, c = q[0] - p[0], q[1] - p[1], q[2] - p[2]
+    square = a * a + b * b
+    if square <= PARALLEL * PARALLEL * (square + c * c):
+        return 0.0, 0.0, 0.0, math.inf
+    x, y = border[0] - p[0], border[1] - p[1]
+    share, size = (x * a + y * b) / square, math.sqrt(square)
+    u, v = b / size, -a / size
+    if u * (border[NORMAL] + border[BEFORE]) + v * (border[NORMAL + 1] + border[BEFORE + 1]) < 0.0:
+        u, v = -u, -v
+    gap = -(u * x + v * y)
+    if share < 0.0 or share > 1.0 or gap > reach or gap < -DEEP:
+        return 0.0, 0.0, 0.0, math.inf
+    # the solid goes on along this border, and back along the one before it
+    along = -u * border[NORMAL + 1] + v * border[NORMAL]
+    back = u * border[BEFORE + 1] - v * border[BEFORE]
+    if along > SLANT or back > SLANT:
+        return 0.0, 0.0, 0.0, math.inf
+    for k in range(2):
+        if u * wedge[k, 0] + v * wedge[k, 1] < -SLANT:
+            return 0.0, 0.0, 0.0, math.inf
+    return share, u, v, gap
 
 
 @compiled

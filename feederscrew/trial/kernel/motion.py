@@ -28,8 +28,8 @@ class StageSurface(NamedTuple):
 
     radius: float  # of the wall
     gravity: np.ndarray  # (3,) ahead, from the wall inwards, up
-    plates: np.ndarray  # (P, 16) rows as ``search`` names their columns
-    borders: np.ndarray  # (B, 8) start, end, normal away from the solid, corner at the start, end of drawing
+    plates: np.ndarray  # (P, 17) rows as ``search`` names their columns
+    borders: np.ndarray  # (B, 10) start, end, normal away, corner at the start, end of drawing, normal before
     friction: np.ndarray  # (5,) static and kinetic ahead, static and kinetic back, wall
     restitution: float
     threshold: float  # approach speed from which a contact rebounds
@@ -83,16 +83,26 @@ def found(surface, solid, work, reach):
             work.shown, work.spots, state, turn, solid.inertia, surface.radius, tangent, reach, work.low,
             contacts, count,
         )  # fmt: skip
+    least = 0.0
     for k in range(len(surface.plates)):
         plate = surface.plates[k]
-        if search.seen(plate, state, work.spots, work.shown) > reach:
+        back = plate[search.BACK] > 0.5
+        if back and least > reach - plate[search.DEPTH]:
+            continue
+        least = search.seen(plate, state, work.spots, work.shown)
+        if least > reach:
             continue
         lows = edges.low_edges(solid, work.shown, reach, work.edges, work.box)
         nears = edges.near_borders(plate, surface.borders, work.box, reach, work.near)
-        count = search.corners_on(
-            plate, surface.borders, work.shown, work.spots, turn, solid, tangent, reach, nears,
-            work.low, contacts, count,
-        )  # fmt: skip
+        if not back:
+            count = search.corners_on(
+                plate, surface.borders, work.shown, work.spots, turn, solid, tangent, reach, nears,
+                work.low, contacts, count,
+            )  # fmt: skip
+            if nears:
+                count = edges.edges_on_posts(
+                    plate, surface.borders, nears, solid, turn, reach, work, contacts, count
+                )
         if nears:
             count = edges.edges_on(
                 plate, surface.borders, nears, lows, solid, turn, reach, work, contacts, count

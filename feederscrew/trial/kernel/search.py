@@ -3,7 +3,8 @@
 A plate is a flat surface with borders: the track, seen from above with its free edge and its holes, or a
 gate, seen by the part that arrives. Its solid lies behind the surface, its sides go straight back from the
 borders. What can touch: a corner of the part the surface or a side, an edge of the part a border, a convex
-corner of the border a face of the part.
+corner of the border a face of the part. The solid ends at a depth with the same borders once more: its back
+is a row of its own behind the plate's, seen from the other side, of which only the borders are touched.
 """
 
 import math
@@ -14,11 +15,12 @@ from feederscrew.trial.kernel.contact import add
 
 SLANT = 0.02  # [1] by which a contact's normal may lie beyond the faces it is between
 PARALLEL = 0.03  # [1] sine of the angle below which two edges do not cross: their ends touch instead
+SUNK = 0.2  # [1] of a border's round: a corner that deep, of a part that reaches deeper, meets the side
 LEVEL = 0.7  # [1] of a normal against a plate's front: one that lies flatter stops a part
 DEEP = 0.03  # how far behind a surface an edge may be found, in units of the part's length
 WAYS, FALL = 6, 20.0  # corners are sought in so many directions, a lower one rather than one further out
 ORIGIN, ACROSS, ALONG, FRONT, DEPTH, ROUNDED, FIRST, LAST = 0, 3, 6, 9, 12, 13, 14, 15  # of a plate's row
-BOX = 16  # where its borders are: least and greatest of both coordinates
+BACK = 16  # of a row: the back of the plate before it
 
 
 @compiled
@@ -108,23 +110,25 @@ def sides_on(plate, borders, shown, spots, turn, solid, tangent, reach, low, con
         if height > reach or height < -plate[DEPTH]:
             continue
         covered = inside(borders, first, last, shown[k, 0], shown[k, 1])
-        if height < -plate[ROUNDED]:
+        lowest = covered and points_to(solid, shown, k, 0.0, 0.0, 1.0)
+        if height < -(plate[ROUNDED] if lowest or not covered else SUNK * plate[ROUNDED]):
             n, off = _beside(borders, first, last, shown[k, 0], shown[k, 1])
             behind = plate[DEPTH] + height
-            if off < (min(-height, behind) if covered else reach):
+            deepest = min(-height, behind) if lowest else behind
+            if off < (deepest if covered else reach):
                 u, v, w, gap = borders[n, 4], borders[n, 5], 0.0, (-off if covered else off)
             elif covered and behind < -height:  # it came in from behind
                 u, v, w, gap = 0.0, 0.0, -1.0, -behind
             else:
                 u, v, w, gap = 0.0, 0.0, 0.0, 0.0
             if u != 0.0 or v != 0.0 or w != 0.0:
-                covered = False
+                lowest = False
                 if points_to(solid, shown, k, u, v, w):
                     count = front(
                         plate, solid.inertia, turn, tangent, spots[k, 0], spots[k, 1], spots[k, 2],
                         u, v, w, gap, contacts, count,
                     )  # fmt: skip
-        if covered and points_to(solid, shown, k, 0.0, 0.0, 1.0):
+        if lowest:
             low[lows] = k
             lows += 1
     return count, lows
@@ -226,13 +230,13 @@ def _crossing(p, q, border, wedge, rounded, reach):
     if nz + nx * border[4] + ny * border[5] < 0.0:
         size = -size
     nx, ny, nz = nx / size, ny / size, nz / size
-    if nz < LEVEL and min(p[2], q[2]) > -rounded:  # not deep enough to catch on a rounded border
-        return 0.0, 0.0, 0.0, 0.0, math.inf
     if nz < -SLANT or nx * border[4] + ny * border[5] < -SLANT:
         return 0.0, 0.0, 0.0, 0.0, math.inf
     x, y, z = p[0] - border[0], p[1] - border[1], p[2]
     gap = nx * x + ny * y + nz * z
     if gap > reach or gap < -DEEP:
+        return 0.0, 0.0, 0.0, 0.0, math.inf
+    if nz < LEVEL and min(p[2], q[2]) > min(-rounded, gap):  # nearer to the surface than to the border's side
         return 0.0, 0.0, 0.0, 0.0, math.inf
     x, y, z = x - gap * nx, y - gap * ny, z - gap * nz
     # in the plane of both: share of the edge where it meets the border's line, then of the border
