@@ -86,6 +86,14 @@ def inset(polygon, points):
     return cross(along, np.asarray(points)[..., None, :] - polygon).min(axis=-1)
 
 
+def surrounds(points):
+    """Return whether the origin lies inside the convex hull of points (V, 2); not on its border."""
+    if len(points) == 0:
+        return False
+    angles = np.sort(np.arctan2(points[:, 1], points[:, 0]))
+    return bool(np.diff(angles, append=angles[0] + 2.0 * np.pi).max() < np.pi)
+
+
 def turned(points, angle):
     """Return points in a plane turned counter-clockwise; ``points`` (..., 2), ``angle`` [rad]."""
     c, s = np.cos(angle), np.sin(angle)

@@ -1,17 +1,19 @@
 """A part standing on one of its aspects, in axes of the floor."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from feederscrew import check
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
-from feederscrew.geometry.polygons import centroid, outline, sides
+from feederscrew.geometry.polygons import centroid, outline, sides, surrounds
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.record import Part
 
 COINCIDE = 1e-5  # of the part's size: a contact centroid nearer to the foot gives no direction
+TOUCHING = 2e-4  # of the part's size: what is lower than that over the floor touches it
 ALIKE = 1e-6  # of the part's size: sides whose lengths differ by less are equally long
 
 
@@ -45,10 +47,38 @@ class Posture:
         body = self.solid.vertices - self.solid.centre_of_mass
         return np.einsum("ij,vj->vi", self.axes, body) + np.array([0.0, 0.0, self.height])
 
+    @cached_property
+    def feet(self):
+        """Edges (E, 2, 2) of the mesh that lie on the floor [m]; single corners are edges of no length.
+
+        Of a part that rolls and of a card the sides of the contact polygon; also where noise of the file
+        leaves too little of the mesh low enough to stand on.
+        """
+        polygon = np.stack([self.contact, np.roll(self.contact, -1, axis=0)], axis=1)
+        if self.solid is None or self.kind == "rolling":
+            return polygon
+        points = self.surface
+        low = points[:, 2] < TOUCHING * np.ptp(self.outline, axis=0).max()
+        feet = points[_borders(self.solid.faces, low), :2]
+        return feet if surrounds(feet.reshape(-1, 2)) else polygon
+
     @property
     def turning_inertia(self):
         """Moment of inertia about the vertical through the centre of mass [kg m2]."""
         return float(self.inertia[2, 2])
+
+
+def _borders(faces, low):
+    """Ends (E, 2) of the edges between low corners but for those within low facets; lone corners twice."""
+    ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    lying = np.tile(low[faces].all(axis=1), 3)
+    kept = low[ends].all(axis=1)
+    ends, lying = np.sort(ends[kept], axis=1), lying[kept]
+    _, first, place = np.unique(ends[:, 0] * len(low) + ends[:, 1], return_index=True, return_inverse=True)
+    edges = ends[first[np.bincount(place, lying) < 2.0]]
+    alone = low.copy()
+    alone[ends] = False
+    return np.concatenate([edges, np.repeat(np.flatnonzero(alone)[:, None], 2, axis=1)])
 
 
 def posture(part, aspects, name):

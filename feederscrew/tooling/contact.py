@@ -5,9 +5,9 @@ import shapely
 
 from feederscrew import check
 from feederscrew.geometry.polygons import turned
+from feederscrew.resting.posture import TOUCHING
 from feederscrew.tooling.foot import BEHIND, Footprint
 
-TOUCHING = 2e-4  # of the part's size: what is lower than that over the track touches it
 SUNK = 0.03  # of the centre of mass's height: how much of a rolling part's underside counts as its foot
 SLIVER = 1e-6  # of the part's size squared: smaller areas and holes of them are leftovers of rounding
 CHORD = 2e-7  # [m] by which the edge of a slot may be seen too flat

@@ -180,10 +180,10 @@ def travelling(found, bowl):
 
 
 def rolls_across(one):
-    """Return whether it rolls about an axis across the track rather than along it, or round in a circle."""
-    if one.kind != "rolling" or one.posture.axis is None:
+    """Return whether it rolls along the track: about an axis across it, round in a circle, or as a ball."""
+    if one.kind != "rolling":
         return False
-    if np.isfinite(one.posture.rolling_circle):
+    if one.posture.axis is None or np.isfinite(one.posture.rolling_circle):
         return True
     along, across = np.abs(turned(one.posture.axis, one.heading))
     return bool(across > along)

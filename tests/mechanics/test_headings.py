@@ -181,6 +181,18 @@ def test_a_part_falls_once_its_foot_has_no_track_below(share, falls):
     assert bool(narrow.falls_off[0]) is falls
 
 
+@pytest.mark.parametrize(("width", "falls"), [(0.0169, True), (0.0171, False)])
+def test_a_bridge_falls_where_its_outer_leg_has_no_track_below(width, falls):
+    """Across the track: legs of 3 mm, 20 mm from outside to outside; the hull of its foot hides the span."""
+    bridge = [(-10, 0), (-7, 0), (-7, 6), (7, 6), (7, 0), (10, 0), (10, 10), (-10, 10)]
+    part = shapes.part(shapes.subdivided(shapes.prism(bridge, 8), 1))
+    found = find(part)
+    legs = posture(part, found, found.names[int(np.argmin(np.abs(found.heights - 748e-3 / 116)))])
+    known = headings(legs, Track(climb=0.0, bank=0.0, radius=100.0, width=width))
+    across = np.isclose(known.lengths, 0.008, rtol=1e-3)
+    assert across.any() and (known.falls_off[across] == falls).all() and not known.falls_off[~across].any()
+
+
 def test_bank_moves_the_weight_onto_the_track():
     level, banked = (headings(box_posture(), Track(0.0, bank, 0.15, 0.0045)) for bank in (0.0, 15 * DEG))
     assert level.falls_off[0]

@@ -90,6 +90,12 @@ def test_nothing_is_said_where_flights_or_another_drive_are_not_followed():
 SAID = "B@0 can tip over on the track at this drive and count as returned"
 
 
+def test_a_ball_rolls_back_and_does_not_tip():
+    ball = shapes.part(shapes.ball(5.0, 3))
+    (one,) = orientations(ball, find(ball), BOWL.track, bowl=BOWL).lying
+    assert one.may_roll_back and not one.turns_over
+
+
 def test_tune_gives_the_rate_that_rate_gives_at_each_setting():
     part, found = pin(1)
     study = tune(part, BOWL, "A", 400.0 / 60.0, rule="csa", known=Shares(found))

@@ -3,7 +3,7 @@
 import numpy as np
 
 from feederscrew.geometry import vectors
-from feederscrew.geometry.polygons import cross, sides, turned
+from feederscrew.geometry.polygons import cross, turned
 
 NOISE = 1e-12  # [m] places along the track nearer than this are one
 SAME = 1e-6  # of the outline's size: nearer than this to the edge is on it
@@ -25,7 +25,7 @@ def reaches(found, posture, track):
         supports nothing.
     """
     where = zip(found.headings, found.distances)
-    return [_reach(_on_track(turned(posture.contact, angle), wall, track)) for angle, wall in where]
+    return [_reach(_on_track(turned(posture.feet, angle), wall, track)) for angle, wall in where]
 
 
 def falls(posture, reach, track):
@@ -69,23 +69,22 @@ def _reach(points):
     return np.array(chain).reshape(-1, 2)
 
 
-def _on_track(contact, to_wall, track):
-    """Corners of the part of a contact polygon that lies over the track."""
-    edge = track.radius - track.width
+def _on_track(edges, to_wall, track):
+    """Ends (K, 2) of what lies over the track of edges (E, 2, 2) that touch it."""
+    corners, edge = edges.reshape(-1, 2), track.radius - track.width
     if edge <= 0.0:
-        return contact
+        return corners
     centre = np.array([0.0, track.radius - to_wall])
-    kept = [contact[np.hypot(*(contact - centre).T) >= edge]]
-    for start, along in zip(contact, sides(contact)):
-        kept.append(start + _crossings(start - centre, along, edge)[:, None] * along)
-    return np.concatenate(kept)
+    on = corners[np.hypot(*(corners - centre).T) >= edge]
+    return np.concatenate([on, centre + _crossings(edges[:, 0] - centre, edges[:, 1] - centre, edge)])
 
 
-def _crossings(start, along, radius):
-    """Where a side crosses a circle about the origin, as shares of the side."""
+def _crossings(start, end, radius):
+    """Points (K, 2) where edges cross a circle about the origin."""
+    along = end - start
     a, b, c = vectors.dot(along, along), vectors.dot(start, along), vectors.dot(start, start) - radius**2
-    root = b * b - a * c
-    if root <= 0.0:
-        return np.empty(0)
-    shares = (-b + np.sqrt(root) * np.array([-1.0, 1.0])) / a
-    return shares[(shares >= 0.0) & (shares <= 1.0)]
+    meets = (b * b - a * c > 0.0) & (a > 0.0)
+    start, along, a, b, c = start[meets], along[meets], a[meets], b[meets], c[meets]
+    shares = (-b + np.sqrt(b * b - a * c) * np.array([[-1.0], [1.0]])) / a
+    side, edge = np.nonzero((shares >= 0.0) & (shares <= 1.0))
+    return start[edge] + shares[side, edge][:, None] * along[edge]
