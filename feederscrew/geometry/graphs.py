@@ -19,27 +19,13 @@ def components(i, j, count):
         Of components.
     component : (count,) int
         Of each node, numbered in the order of their first nodes.
-
-    Notes
-    -----
-    Every component is hung on the lowest of those beside it until no link joins two: as fast as SciPy's
-    search on a hundred thousand nodes, and four times as fast on a hundred, which need no sparse matrix.
     """
-    label = np.arange(count)
-    while len(i):
-        one, other = label[i], label[j]
-        apart = one != other
-        i, j, one, other = (array[apart] for array in (i, j, one, other))
-        np.minimum.at(label, np.maximum(one, other), np.minimum(one, other))
-        label = _roots(label)
-    first = label == np.arange(count)
-    return int(first.sum()), (np.cumsum(first) - 1)[label]
+    if not len(i):
+        return count, np.arange(count)
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
 
-
-def _roots(label):
-    """(N,) where chains of labels end."""
-    while True:
-        further = label[label]
-        if np.array_equal(further, label):
-            return label
-        label = further
+    starts = np.concatenate([[0], np.cumsum(np.bincount(i, minlength=count))])
+    links = csr_array((np.ones(len(i)), j[np.argsort(i)], starts), shape=(count, count))
+    number, component = connected_components(links, directed=False)
+    return number, component.astype(int)
