@@ -134,8 +134,13 @@ def _face(hull, sinks, members, sides):
 
 
 def _smooth_sides(hull, basins, group):
-    """(T,) label of each triangle; gentle bends within its group lead to all others of the same."""
+    """(T,) label of each triangle; gentle bends within its group lead to all others of the same.
+
+    Where no group has the triangles of a curved side, each has a label of its own.
+    """
     owner = group[np.searchsorted(basins.sinks, basins.basins)]
+    if np.bincount(owner).max() < FEWEST:
+        return np.arange(len(owner))
     first, second = basins.pairs.T
     joined = (owner[first] == owner[second]) & gentle(hull.normals, basins.pairs)
     return np.zeros_like(owner) if joined.all() else components(first[joined], second[joined], len(owner))[1]
