@@ -95,10 +95,11 @@ def convex_hull(points, centre, where="part"):
 
 def _outward(points, qhull):
     """Triangles turned counter-clockwise seen from outside, their neighbours with them; and their areas."""
-    triangles, neighbours = qhull.simplices.copy(), qhull.neighbors.copy()
-    a, b, c = (points[triangles[:, k]] for k in range(3))
+    a, b, c = (points[corner] for corner in qhull.simplices.T)
     cross = vectors.cross(b - a, c - a)
     inward = np.einsum("ti,ti->t", cross, qhull.equations[:, :3]) < 0.0
-    triangles[inward, 1:] = triangles[inward, :0:-1]
-    neighbours[inward, 1:] = neighbours[inward, :0:-1]
+    triangles, neighbours = (
+        np.column_stack([k, np.where(inward, m, j), np.where(inward, j, m)])
+        for k, j, m in (qhull.simplices.T, qhull.neighbors.T)
+    )
     return triangles, neighbours, 0.5 * vectors.norm(cross)

@@ -102,7 +102,7 @@ def landscape(hull):
     return Landscape(
         pairs=pairs,
         basins=basins,
-        sinks=np.unique(basins),
+        sinks=_sinks(basins),
         ripples=basins[strips],
         rises=way / hull.heights[basins[strips]].max(axis=1, initial=0.0) - 1.0,
         bends=_bend(hull, strips),
@@ -172,7 +172,10 @@ def _joined(hull, basins, pairs, tops, limit):
 
     Returns the new basins, and the edges (indices) of the lowest ways that rise by more.
     """
-    sinks, place = np.unique(basins, return_inverse=True)
+    sinks = _sinks(basins)
+    place = np.empty(len(basins), dtype=int)
+    place[sinks] = np.arange(len(sinks))
+    place = place[basins]
     ones, others = place[pairs].T
     ways = np.flatnonzero(ones != others)
     ways = ways[np.argsort(tops[ways], kind="stable")]
@@ -181,6 +184,11 @@ def _joined(hull, basins, pairs, tops, limit):
     join = fitting(forest.join, 3 * len(basins), forest.on_lists(forest.join))
     join(hull.heights[sinks], limit[sinks], ones[ways], others[ways], tops[ways], region, basin, standing)
     return sinks[forest.roots(basin)][place], ways[standing]
+
+
+def _sinks(basins):
+    """(B,) triangles at the bottom of their own basins."""
+    return np.flatnonzero(basins == np.arange(len(basins)))
 
 
 def _columns(rows, places):
