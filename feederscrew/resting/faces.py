@@ -6,7 +6,6 @@ import numpy as np
 
 from feederscrew.geometry import vectors
 from feederscrew.geometry.graphs import components
-from feederscrew.part.repair.weld import distinct
 from feederscrew.resting import contacts, rounds
 from feederscrew.resting.basins.landscape import GENTLE, RIPPLE_OF_RADIUS, SMOOTH, angle, edges, gentle
 
@@ -156,8 +155,15 @@ def _rocks(hull, side, sink):
         return False
     across = vectors.eigen(vectors.covariance(normals, share))[0]
     fewest = FEWEST if across[0] < STRAIGHT * across[1] else FEWEST_OF_A_BALL
-    even = 1.0 / (np.bincount(distinct(normals.round(2))[1], share) ** 2).sum()  # as many strips of one size
-    return even > fewest - 0.5 and _round(hull, side)
+    return _even(normals, share) > fewest - 0.5 and _round(hull, side)
+
+
+def _even(normals, share):
+    """How many strips of one size would be as unlike as these, by their (N, 3) normals and (N,) shares."""
+    places = vectors.product(np.round(100.0 * normals), np.array([1.0, 1e3, 1e6]))  # one number a direction
+    order = np.argsort(places, kind="stable")
+    strips = np.flatnonzero(np.diff(places[order], prepend=np.nan))
+    return 1.0 / (np.add.reduceat(share[order], strips) ** 2).sum()
 
 
 def _ring(leans, share):

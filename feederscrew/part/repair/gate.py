@@ -116,7 +116,7 @@ def _size(vertices, faces, where):
     """Largest extent; refuses what is all in one plane, line or point."""
     if not len(faces):
         raise MeshError(where, "is a line or a point: no facet has an area", SOLID)
-    size = float(np.ptp(vertices, axis=0).max())
+    size = float(np.ptp(np.ascontiguousarray(vertices.T), axis=1).max())
     offsets = (vertices - vertices.mean(axis=0)) / size
     _, axes = vectors.eigen(vectors.product(offsets.T, offsets))
     if np.ptp(vectors.product(offsets, axes[:, 0])) <= FLAT:

@@ -79,7 +79,8 @@ def _stretches(first, last, low, high):
 def _goes_round_once(places, faces, foot):
     """Whether the section of the surface across the axis at a foot goes round it once."""
     above = places[0] > foot
-    through = faces[above[faces].sum(axis=1) % 3 > 0]
+    a, b, c = above[faces.T]
+    through = faces[(a != b) | (b != c)]
     up = above[through]
     rises = (~up & np.roll(up, -1, axis=1)).argmax(axis=1)
     falls = (up & ~np.roll(up, -1, axis=1)).argmax(axis=1)
