@@ -13,13 +13,14 @@ from feederscrew.conveying.scaling import Numbers, numbers, with_numbers
 
 DEG = math.pi / 180.0
 FRICTIONS = st.floats(0.02, 3.0)
+LONGEST = 8  # periods
 
 
 def velocity(found, friction):
-    """Over A w cos(angle), with the status."""
+    """Over A w cos(angle), with the status and the period."""
     setting, out = with_numbers(found, friction), np.empty(steady.COLUMNS)
     steady.survey(setting, out)
-    return out[steady.VELOCITY] / math.cos(setting.angle), out[steady.STATUS]
+    return out[steady.VELOCITY] / math.cos(setting.angle), out[steady.STATUS], out[steady.PERIOD]
 
 
 @settings(max_examples=60, deadline=None, derandomize=True)
@@ -36,6 +37,7 @@ def test_velocity_depends_on_five_numbers_only(coupling, steepness, throw, resti
     one, other = (velocity(found, friction) for friction in frictions)
     assert one[1] == other[1]
     assume(one[1] == steady.PERIODIC)  # an average of a chaotic motion is another one after rounding
+    assume(one[2] <= LONGEST)  # as is the one that it settles on of many long ones, close to each other
     assert one[0] == pytest.approx(other[0], rel=0, abs=1e-9)
 
 
@@ -58,12 +60,12 @@ def test_elliptical_drive_at_small_friction(throw, steepness, want):
     assert level == pytest.approx(math.cos(a), rel=1e-12)
     errors = []
     for coupling in (0.01, 0.001, 0.0001):
-        there, status = velocity(Numbers(coupling, steepness, throw * (1 - 1e-9), 0.0, -90 * DEG), 0.3)
+        there, status, _ = velocity(Numbers(coupling, steepness, throw * (1 - 1e-9), 0.0, -90 * DEG), 0.3)
         assert status == steady.PERIODIC
         errors.append(abs(there - level))
     assert errors[2] < 1e-3 * level
     assert errors[2] < errors[1] < errors[0]
-    back, _ = velocity(Numbers(0.0001, -steepness, throw * (1 - 1e-9), 0.0, 90 * DEG), 0.3)
+    back, *_ = velocity(Numbers(0.0001, -steepness, throw * (1 - 1e-9), 0.0, 90 * DEG), 0.3)
     assert back == pytest.approx(-level, abs=1e-3)
 
 
