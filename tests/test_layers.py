@@ -21,7 +21,7 @@ DOORS = {
     "manifold3d": {"feederscrew/tooling/solid.py"},
     "OCP": {"feederscrew/output/tooling/step.py"},
     "click": {"cli"},
-    "numba": {"feederscrew/geometry", "feederscrew/conveying"},
+    "numba": {"feederscrew/geometry"},
 }
 FILES = sorted([*ROOT.glob("feederscrew/**/*.py"), *ROOT.glob("cli/*.py")])
 

@@ -1,10 +1,8 @@
 """The plain functions of this folder, compiled: many settings at a time, on every core."""
 
 import functools
-import hashlib
 import os
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import numpy as np
 
@@ -12,6 +10,8 @@ from feederscrew import check
 from feederscrew.conveying import events, harmonic, law, motion, settling, steady, waves
 from feederscrew.conveying.setting import OperatingPoint, checked
 from feederscrew.conveying.steady import COLUMNS, survey
+from feederscrew.geometry.compiled import apart, entry, on_disk
+from feederscrew.geometry.compiled import compiled as inlined
 
 IN_A_PERIOD = (  # what follows a part through a period of the drive: compiled into one piece
     *(harmonic.value, harmonic.after, harmonic.above, harmonic.onward, harmonic.reached),
@@ -74,9 +74,7 @@ def sweep(settings, workers=None):
 
 def compiled():
     """Whether the compiled functions are already on disk, or numba is told not to compile."""
-    return not hasattr(_compiled(), "stats") or any(
-        Path(_compiled().stats.cache_path).glob(f"*{_fingerprint()}*.nbi")
-    )
+    return on_disk(_compiled())
 
 
 def _suspects(settings):
@@ -89,25 +87,13 @@ def _suspects(settings):
     return np.flatnonzero(bad)
 
 
-def _fingerprint():
-    """Digest of the compiled sources: a changed source must not find what an older one left on disk."""
-    folder = Path(__file__).parent
-    sources = b"".join(path.read_bytes() for path in sorted(folder.glob("*.py")))
-    return hashlib.sha256(sources).hexdigest()[:12]
-
-
 @functools.cache
 def _compiled():
     """The loop over settings, compiled with every function it reaches."""
-    from numba import njit
-    from numba.extending import register_jitable
-
-    for functions, inlined in ((IN_A_PERIOD, True), (KERNEL, False)):
+    for functions, mark in ((IN_A_PERIOD, inlined), (KERNEL, apart)):
         for function in functions:
-            register_jitable(error_model="numpy", no_cfunc_wrapper=True, forceinline=inlined)(function)
-
-    _loop.__qualname__ = f"loop_{_fingerprint()}"  # names the files of the cache
-    return njit(cache=True, nogil=True, no_cfunc_wrapper=True, error_model="numpy")(_loop)
+            mark(function, arrays=True)
+    return entry(_loop, arrays=True)
 
 
 def _loop(settings, out):

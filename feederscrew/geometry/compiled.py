@@ -5,12 +5,11 @@ import hashlib
 import sys
 from pathlib import Path
 
-PLAIN = []  # functions that compiled ones may call, not yet registered
-KEPT = []  # those of them that are kept on disk by themselves
-CALLED = []  # those of them that are called, not made a part of their callers
+PENDING = []  # functions that compiled ones may call, not yet registered, and how each is compiled
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
 SOURCES = (
-    "geometry/compiled.py",
+    "geometry/compile*.py",
+    "conveying/*.py",
     "resting/basins/forest.py",
     "resting/tumbling/*.py",
     "dropping/kernel/*.py",
@@ -19,22 +18,19 @@ SOURCES = (
 )
 
 
-def compiled(function):
+def compiled(function, arrays=False):
     """Mark a function that is compiled into those that call it; called from Python it runs as it stands.
 
     Such a function has no way in from Python, which would take a third of the compiling, and is compiled
-    once for all numbers it is handed, not once for each constant.
+    once for all numbers it is handed, not once for each constant. It becomes a part of its callers, whatever
+    its length: a call hands on every number behind a record. Only with ``arrays`` may it make arrays.
     """
-    PLAIN.append(function)
-    if "numba" in sys.modules:  # an entry may stand above what it calls
-        _register()
-    return function
+    return _marked(function, arrays=arrays)
 
 
-def apart(function):
+def apart(function, arrays=False):
     """Mark a large function of few arguments that is called in several places: compiled once for all."""
-    CALLED.append(function)
-    return compiled(function)
+    return _marked(function, arrays=arrays, forceinline=False)
 
 
 def shared(function):
@@ -42,18 +38,15 @@ def shared(function):
 
     As ``compiled``, it has no way in from Python.
     """
-    function.__qualname__ = f"{function.__name__}_{_fingerprint()}"  # names the files of the cache
-    KEPT.append(function)
-    return compiled(function)
+    return _marked(_named(function), cache=True)
 
 
-def entry(function):
-    """Compile a function that Python calls; it fills arrays it is handed and makes none of its own."""
+def entry(function, arrays=False):
+    """Compile a function that Python calls; it fills arrays it is handed."""
     from numba import njit
 
     _register()
-    function.__qualname__ = f"{function.__name__}_{_fingerprint()}"  # names the files of the cache
-    return njit(cache=True, nogil=True, **_options())(function)
+    return njit(cache=True, nogil=True, **_options(arrays))(_named(function))
 
 
 def fitting(function, half_edges, plain=None):
@@ -79,29 +72,35 @@ def due(function, half_edges):
 _once = functools.cache(entry)
 
 
-def _register():
-    """Tell numba of the functions marked since, whichever room was imported first.
+def _marked(function, **how):
+    """Note how a function is compiled, until numba is told of it."""
+    PENDING.append((function, how))
+    if "numba" in sys.modules:  # an entry may stand above what it calls
+        _register()
+    return function
 
-    Each becomes a part of its callers, whatever its length: a call hands on every number behind a record.
-    """
+
+def _named(function):
+    """Name the files that a function has in the cache."""
+    function.__qualname__ = f"{function.__name__}_{_fingerprint()}"
+    return function
+
+
+def _register():
+    """Tell numba of the functions marked since, whichever room was imported first."""
     from numba.extending import register_jitable
 
-    while PLAIN:
-        function = PLAIN.pop()
-        inlined = function not in CALLED
-        register_jitable(**_options(), cache=function in KEPT, forceinline=inlined)(function)
+    while PENDING:
+        function, how = PENDING.pop()
+        register_jitable(**{"forceinline": True} | _options(**how))(function)
 
 
-@functools.cache
-def _options():
-    """No reference counting, which costs more than the arithmetic: such a function may not make arrays.
-
-    And no way in from C, which would be compiled for each of them.
-    """
+def _options(arrays=False, **others):
+    """Without arrays no reference counting, which costs more than the arithmetic; and no way in from C."""
     from numba.core.options import DefaultOptions
 
-    counting = {"_nrt": False} if hasattr(DefaultOptions, "_nrt") else {}
-    return {"error_model": "numpy", "no_cfunc_wrapper": True, **counting}
+    counting = {} if arrays or not hasattr(DefaultOptions, "_nrt") else {"_nrt": False}
+    return {"error_model": "numpy", "no_cfunc_wrapper": True, **counting, **others}
 
 
 @functools.cache
