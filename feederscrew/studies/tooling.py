@@ -8,6 +8,7 @@ import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.part.record import Part
+from feederscrew.rates.steadiness import steady
 from feederscrew.rates.tipping import marked, remark
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.aspects import answered
@@ -19,6 +20,10 @@ from feederscrew.tooling.result import Design
 CARRIED = (
     "quasi-static: at the bowl's speed a part may be carried over a cut that returns it, laid over by a "
     "blade or wedged between rails - see feeder trial"
+)
+ROCKS = (
+    "{} may rock on what these cuts leave of its foot, and nothing surer lies between the limits - try it "
+    "with feeder trial"
 )
 LATE = "the search stopped at the time limit: another machine may find more - raise the limit"
 
@@ -128,7 +133,7 @@ def tooling(
     asked = range(len(every)) if wanted is None else [wanted]
     designs = [None] * len(every)
     for done, k in enumerate(asked):
-        designs[k] = _designed(every, shares, k, margin=margin, search=search, **asked_of_each)
+        designs[k] = _designed(every, shares, k, bowl, margin=margin, search=search, **asked_of_each)
         if told is not None:
             told(done + 1, len(asked))
     return ToolingStudy(
@@ -144,7 +149,28 @@ def tooling(
     )
 
 
-def _designed(every, shares, wanted, **asked):
+def _designed(every, shares, wanted, bowl, **asked):
+    """The design of an orientation that the drive leaves lying on what is cut; if there is none, said so."""
+    found = _isolating(every, shares, wanted, **asked)
+    if _steady(found, every, bowl, asked["margin"]):
+        return found
+    holes = any(cut.device.kind == "cut_out" for cut in found.cuts)
+    gentle = found if holes else _isolating(every, shares, wanted, gentle=True, **asked)
+    same = (gentle.isolated, gentle.efficiency, gentle.purity) == (
+        found.isolated, found.efficiency, found.purity,
+    )  # fmt: skip
+    if same and _steady(gentle, every, bowl, asked["margin"]):
+        return gentle
+    said = ROCKS.format(every[wanted].name)
+    return replace(found, steady=False, reasons=(*found.reasons, said))
+
+
+def _steady(found, every, bowl, margin):
+    """Whether the drive leaves the wanted orientation lying at every cut of a design."""
+    return not found.cuts or bool(steady(found.devices, [every[found.wanted]], bowl, margin)[0])
+
+
+def _isolating(every, shares, wanted, **asked):
     """The design for parts that travel; where none isolates, one for parts that are placed, and said so."""
     found = design(every, shares, wanted, **asked)
     if found.isolated or not any(one.carry > 0.0 for one in every):

@@ -11,6 +11,7 @@ from feederscrew.tooling.verdicts import UNSURE, gate_margin, opening_margin, se
 
 UPPER = ("wiper", "narrowed_track", "pressure_break")  # pass what needs no more than their value
 LOWER = ("canyon", "gap")  # pass what bears no less
+CARRYING = ("narrowed_track", "canyon", "gap")  # leave less of a foot
 WHERE = "design"
 HALVINGS = 10  # of the way from the value nearest to the wanted orientation to the middle
 FINE = 1e-7  # [m] to which a value is rounded
@@ -97,7 +98,7 @@ def fewest(found, others, margin, enough=0.0):
     return best
 
 
-def placed(every, wanted, devices, must):
+def placed(every, wanted, devices, must, least=np.inf):
     """Return the cuts of a chain, each value in the middle of what it may be.
 
     Parameters
@@ -107,12 +108,14 @@ def placed(every, wanted, devices, must):
     devices : sequence of Device
     must : sequence of (M,) bool
         Which orientations each device has to return.
+    least : float [m]
+        What leaves less of a foot returns them by no more than this: the wanted orientation has the rest.
 
     Returns
     -------
     tuple of Cut
     """
-    return tuple(_cut(every, wanted, device, some) for device, some in zip(devices, must))
+    return tuple(_cut(every, wanted, device, some, least) for device, some in zip(devices, must))
 
 
 def shared_out(found, devices, margin):
@@ -124,7 +127,7 @@ def shared_out(found, devices, margin):
     return out
 
 
-def _cut(every, wanted, device, must):
+def _cut(every, wanted, device, must, least):
     if device.kind == "profile":
         return _gate(every, wanted, device, must)
     values, upper = limits(device.kind, every), device.kind in UPPER
@@ -136,6 +139,9 @@ def _cut(every, wanted, device, must):
         return replace(device, limit=fine(value), text=millimetres(fine(value)))
 
     chosen = _surest(every, must, at, middle if np.isfinite(nearest) else device.limit, device.limit)
+    if device.kind in CARRYING and least < np.inf:
+        eased = max(chosen.limit, nearest - least) if upper else min(chosen.limit, nearest + least)
+        chosen = _surest(every, must, at, float(eased), chosen.limit, least - 2.0 * FINE)
     ends = [replace(device, limit=float(end), text=millimetres(end)) for end in (nearest, values[wanted])]
     return judged(every, wanted, chosen, must, *ends)
 
@@ -165,11 +171,11 @@ def _gate(every, wanted, device, must):
     return judged(every, wanted, chosen, must, at(widest), at(0.0))
 
 
-def _surest(every, must, at, middle, near):
-    """The device of a value midway, or as near to that as a blade still holds up what it has to return."""
+def _surest(every, must, at, middle, near, by=UNSURE):
+    """The device of a value midway, or as near to that as it still returns what it has to, by a margin."""
 
     def returns(device):
-        return all(verdict(device, one, every).margin < -UNSURE for one, some in zip(every, must) if some)
+        return all(verdict(device, one, every).margin < -by for one, some in zip(every, must) if some)
 
     if returns(at(middle)):
         return at(middle)

@@ -16,7 +16,7 @@ GAIN = 1.25  # turning devices are taken where they bring so many times the part
 
 def design(
     every, shares, wanted, *, margin=MARGIN, search=None, holes=True, purity=1.0, efficiency=0.0,
-    turn=False, before=(),
+    turn=False, before=(), gentle=False,
 ):  # fmt: skip
     """Return the chain of fewest devices that isolates an orientation.
 
@@ -42,13 +42,15 @@ def design(
         Whether devices that turn parts over may be used, where returning them wastes too much.
     before : sequence of Device
         Of the bowl itself: the design is found behind them.
+    gentle : bool
+        Whether cuts leave as much of the wanted orientation's foot as returning the others allows.
 
     Returns
     -------
     Design
     """
     search = search or cutting.Search()
-    given = asked_for(every, shares, wanted, margin, purity, before)
+    given = asked_for(every, shares, wanted, margin, purity, before, gentle=gentle)
     found = _returning(given, search.started(), holes)
     if turn and not (found.isolated and found.efficiency >= efficiency > 0.0):
         found = _with_turning(given, found, search, holes, efficiency)
@@ -72,7 +74,14 @@ def _with_turning(given, found, search, holes, efficiency):
     enough = GAIN if efficiency <= 0.0 else 1.0
     for cuts in turners.chains(given):
         behind = asked_for(
-            given.every, given.shares, given.wanted, given.margin, given.purity, given.before, cuts
+            given.every,
+            given.shares,
+            given.wanted,
+            given.margin,
+            given.purity,
+            given.before,
+            cuts,
+            given.gentle,
         )
         other = _returning(behind, search.started(), holes)
         more = other.efficiency > enough * found.efficiency + 1e-12
@@ -120,7 +129,7 @@ def _plain(given, search, holes):
     devices = chain.fewest(found, counted, given.margin, given.allowed)
     gone = ~given.stays | ((given.coming <= 0.0) & (given.shares > 0.0))
     must = [some & ~gone for some in chain.shared_out(found, devices, given.margin)]
-    cuts = chain.placed(every, wanted, devices, must)
+    cuts = chain.placed(every, wanted, devices, must, given.margin if given.gentle else np.inf)
     returned = np.any([gone, *must], axis=0)
     if holes:
         cuts, returned = _with_holes(given, cuts, returned, search)

@@ -26,6 +26,9 @@ class Design:
     left_over: tuple[str, ...]  # what leaves as well
     reasons: tuple[str, ...]  # why, a sentence each
     late: bool = False  # the time limit stopped the search: another machine may find more
+    steady: bool = (
+        True  # whether the drive leaves the wanted orientation lying on what the cuts leave of its foot
+    )
 
     @property
     def devices(self):
@@ -45,6 +48,7 @@ class DesignTask:
     before: tuple[Device, ...]  # of the bowl
     coming: np.ndarray  # (M,) [1] share that comes to the design lying so
     turners: tuple[Cut, ...] = ()  # turning devices of the design, before all that return
+    gentle: bool = False  # cuts take no more of the wanted orientation's foot than they must
 
     @property
     def stays(self):
@@ -62,12 +66,12 @@ class DesignTask:
         return float(self.coming[self.wanted] * (1.0 / self.purity - 1.0))
 
 
-def task(every, shares, wanted, margin, purity, before, turners=()):
+def task(every, shares, wanted, margin, purity, before, turners=(), gentle=False):
     """Return what a design has to do behind the devices of the bowl and its own turning devices."""
     every = tuple(every)
     flow = course((*before, *(cut.device for cut in turners)), every)
     coming = (shares[:, None] * flow.leaving).sum(axis=0)[: len(every)]
-    return DesignTask(every, shares, wanted, margin, purity, tuple(before), coming, tuple(turners))
+    return DesignTask(every, shares, wanted, margin, purity, tuple(before), coming, tuple(turners), gentle)
 
 
 def weights(given):

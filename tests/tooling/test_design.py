@@ -10,6 +10,7 @@ from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
 from feederscrew.output.tooling import bowl_file
 from feederscrew.rates import queue
+from feederscrew.rates.steadiness import steady
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
@@ -44,6 +45,21 @@ def test_a_block_is_isolated_by_devices_of_one_number(monkeypatch):
         assert {cut.device.kind for cut in one.cuts} <= {
             "wiper", "narrowed_track", "pressure_break", "canyon", "gap", "profile",
         }  # fmt: skip
+
+
+@pytest.mark.parametrize(("heading", "is_steady"), [(0.0, True), (0.5 * np.pi, False)])
+def test_a_cut_leaves_as_much_of_a_foot_as_keeps_it_from_rocking(heading, is_steady):
+    bowl = bowls.read(None, [])
+    study = tooling(shapes.part(shapes.box(22, 13, 6)), bowl, "C", heading=heading, verdicts=1)
+    found, one = study.design, study.orientations[study.wanted]
+    asked = {"margin": study.margin, "search": cutting.Search(verdicts=1)}
+    midway = design(study.orientations, study.shares, study.wanted, **asked)
+    assert not steady(midway.devices, [one], bowl, study.margin)[0]
+    assert found.steady == is_steady == steady(found.devices, [one], bowl, study.margin)[0]
+    assert ("may rock" in found.reasons[-1]) != is_steady
+    if is_steady:
+        assert found.cuts[0].margin_pass > midway.cuts[0].margin_pass
+        assert found.cuts[0].margin_reject == pytest.approx(study.margin, abs=1e-6)
 
 
 def test_every_cut_holds_what_it_says(bracket):

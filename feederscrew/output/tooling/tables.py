@@ -28,6 +28,7 @@ def document(study):
         "aspect": one.aspect,
         "heading_deg": one.heading / DEG,
         "isolated": study.design.isolated,
+        "steady": study.design.steady,
         "efficiency": study.design.efficiency,
         "purity": study.design.purity,
         "before": [f"{device.kind}: {device.text}" for device in study.design.before],
@@ -72,13 +73,13 @@ def summary(study):
             "value": cut.device.text,
             "margin_pass_mm": cut.margin_pass / MM,
             "margin_reject_mm": cut.margin_reject / MM,
-            "smallest": cut.smallest.text,
-            "largest": cut.largest.text,
+            "smallest_cut": cut.smallest.text,
+            "largest_cut": cut.largest.text,
             "returns": " ".join(cut.returns) or _turns(cut),
         }
         for cut in study.design.cuts
     ]
-    columns_of = ("device", "value", "margin_pass_mm", "margin_reject_mm", "smallest", "largest", "returns")
+    columns_of = "device value margin_pass_mm margin_reject_mm smallest_cut largest_cut returns".split()
     return tables.frame({name: [row[name] for row in rows] for name in columns_of})
 
 
@@ -152,12 +153,13 @@ def _row(one, share, found):
 
 def _designed(found):
     if found is None:
-        names = ("isolated", "devices", "margin_mm", "efficiency", "purity", "left_over", "reasons")
+        names = ("isolated", "devices", "margin_mm", "steady", "efficiency", "purity", "left_over", "reasons")
         return dict.fromkeys(names)
     return {
         "isolated": found.isolated,
         "devices": [cut.device.kind for cut in found.cuts],
         "margin_mm": found.margin / MM,
+        "steady": found.steady if found.cuts else None,
         "efficiency": found.efficiency,
         "purity": found.purity,
         "left_over": list(found.left_over),
