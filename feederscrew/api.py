@@ -155,7 +155,7 @@ def drop(
     Raises
     ------
     FeederError
-        If the part has no shape, or a condition is no such quantity or out of range.
+        If the part has no shape, or a condition is of the wrong kind or out of range.
     """
     from feederscrew.studies.drop import drop as study
 

@@ -266,7 +266,7 @@ class _Builder:
         return ConfigError(key.where, f"key {shown(key.text)} is already in line {line}", "keep one of them")
 
     def note_extras(self, event):
-        """Settings files stay plain: what stands in a line is all that counts."""
+        """Note what a plain settings file has no use for: aliases, anchors and tags."""
         if isinstance(event, yaml.AliasEvent):
             self.note(event, f"alias {shown('*' + event.anchor)} is not allowed", "write the value itself")
         elif event.anchor is not None:

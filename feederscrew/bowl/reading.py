@@ -45,7 +45,7 @@ def _width(found):
 
 
 def checked(key, text, where, *, bare=False, kind=ConfigError):
-    """One value as a Setting.
+    """Return one value as a Setting.
 
     Parameters
     ----------

@@ -46,7 +46,7 @@ class Setting:
 
 
 def effective(given):
-    """Complete settings.
+    """Return complete settings.
 
     Parameters
     ----------
@@ -116,14 +116,14 @@ def swept(settings, values):
 
 
 def texts(settings):
-    """The settings by key name, as text: what run.json records; without an optional section not given."""
+    """Return the settings by key name as text, for run.json; without an optional section not given."""
     told = {s.key.section for s in settings if s.given}
     silent = [name for name in OPTIONAL if name not in told]
     return {s.key.name: s.text for s in settings if s.key.section not in silent}
 
 
 def has_machine(given):
-    """Whether a key of ``machine`` is among those given.
+    """Return whether a key of ``machine`` is among those given.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ def default(key):
 
 
 def replaced(key, given):
-    """Whether another key of the same field is given."""
+    """Return whether another key of the same field is given."""
     other = rival(key)
     return other is not None and other.name in given
 

@@ -41,7 +41,7 @@ def strokes(bowl, text=None):
 
 
 def named(paths):
-    """What bowl files are called side by side: by their stems, by their paths where two stems are the same.
+    """Return what bowl files are called side by side: their stems, their paths where two stems are the same.
 
     Parameters
     ----------

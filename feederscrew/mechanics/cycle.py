@@ -73,7 +73,7 @@ def settle(acceleration, windows, period, samples=SAMPLES):
 
 
 def swing(acceleration, period):
-    """Velocity of a part that nothing brings to rest, as one that rolls: its swing about no net motion.
+    """Return the velocity of a part that nothing brings to rest, as one that rolls: a swing about zero.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ class _Ride:
         self.kink = KINK * pace * max(abs(acceleration(0.25 * TURN * k, 0.0, 1.0)) for k in range(4))
 
     def over(self, speed):
-        """Velocities at the samples and at the end of a period that begins with one, and their mean."""
+        """Return velocities at the samples and at the end of a period that begins with one, and the mean."""
         grid = [TURN * k / self.samples for k in range(self.samples + 1)]
         found, way = [speed], 0.0
         for start, end in itertools.pairwise(grid):

@@ -28,7 +28,7 @@ STRAIGHT = ("phase", "second_harmonic")  # of the drive: zero where it is straig
 
 
 def plain(bowl):
-    """The bowl itself, once it shakes along a straight line, harmonically, with friction the same both ways.
+    """Return the bowl itself once its drive is straight and harmonic, with friction the same both ways.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def throw_number(ratio, beta, climb=0.0, bank=0.0):
 
 
 def hops(ratio, beta, climb=0.0, bank=0.0):
-    """Whether contact is lost within the cycle; at k = 1 within rounding it counts as lost."""
+    """Return whether contact is lost within the cycle; at k = 1 within rounding it counts as lost."""
     return throw_number(ratio, beta, climb, bank) >= 1.0 - ROUNDING
 
 

@@ -16,7 +16,7 @@ SMALLEST, LARGEST = 1e-18, 1e9  # in SI units: between lies every length, area, 
 
 
 def part(file):
-    """A part from a part card.
+    """Read a part from a part card.
 
     Parameters
     ----------

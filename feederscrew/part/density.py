@@ -69,7 +69,7 @@ MATERIALS = (
 
 
 def density(text=None):
-    """Density and what to call it.
+    """Return a density and what to call it.
 
     Parameters
     ----------

@@ -36,7 +36,7 @@ class Hull:
 
 
 def convex_hull(points, centre, where="part"):
-    """Convex hull of a point set about a centre of mass inside it.
+    """Return the convex hull of a point set about a centre of mass inside it.
 
     Parameters
     ----------

@@ -24,12 +24,12 @@ class Solid:
         return Solid(-self.volume, self.centre, -self.inertia)
 
     def scaled(self, factor):
-        """The same solid measured in a unit of ``factor`` metres."""
+        """Return the same solid measured in a unit of ``factor`` metres."""
         return Solid(self.volume * factor**3, self.centre * factor, self.inertia * factor**5)
 
 
 def solid(corners):
-    """Volume, centroid and inertia enclosed by triangles.
+    """Return volume, centroid and inertia enclosed by triangles.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def solid(corners):
 
 
 def tetrahedra(corners):
-    """Signed volume between each triangle and the middle of them all.
+    """Return the signed volume between each triangle and the middle of them all.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def _spanned(corners):
 
 
 def shifted(inertia, mass, offset):
-    """Inertia about a point other than the centre of mass.
+    """Return the inertia about a point other than the centre of mass.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def shifted(inertia, mass, offset):
 
 
 def principal(inertia):
-    """Principal moments and axes.
+    """Return principal moments and axes.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ class Balance:
 
 
 def balance(part):
-    """Mass properties of a part.
+    """Return the mass properties of a part.
 
     Parameters
     ----------

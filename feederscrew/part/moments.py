@@ -61,7 +61,7 @@ class Moments:
         return self._integrated[1]
 
     def directional(self, directions):
-        """Directional moments of every order from 1 to 6.
+        """Return directional moments of every order from 1 to 6.
 
         Parameters
         ----------
@@ -82,7 +82,7 @@ class Moments:
         return np.add.reduceat(terms, np.searchsorted(POWERS.sum(axis=0), np.arange(1, ORDER + 1)), axis=-1)
 
     def mismatch(self, rotations):
-        """How far rotations are from being symmetries of the solid.
+        """Return how far rotations are from being symmetries of the solid.
 
         Parameters
         ----------

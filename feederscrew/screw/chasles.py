@@ -36,7 +36,7 @@ def displacement(twist):
 
 
 def finite_twist(moved, reference=ORIGIN):
-    """The twist, of at most a half turn, that produces a displacement: Chasles's theorem, the logarithm.
+    """Return the twist, of at most a half turn, that produces a displacement (Chasles's theorem).
 
     Its axis is the line the body turns about and slides along; ``norm`` is the angle plus eps times the
     slide. A pure translation is a twist of infinite pitch, the identity the zero twist.

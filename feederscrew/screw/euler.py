@@ -130,7 +130,7 @@ def spatial_triangle(body, twist, twist_rate):
 
 
 def force_screw(body, twist, twist_rate):
-    """The wrench that makes a body move so: twist (x) momentum + d/dt momentum, the dual Euler equation.
+    """Return the wrench twist (x) momentum + d/dt momentum of a moving body: the dual Euler equation.
 
     Parameters as for ``spatial_triangle``; the wrench is at the twist's point.
 

@@ -27,7 +27,7 @@ def pluecker(screw):
 
 
 def from_pluecker(kind, coordinates, reference=ORIGIN):
-    """The screw of a kind (``Twist``, ``Wrench``, ``Momentum``, ``Screw``) from its six coordinates."""
+    """Return the ``Twist``, ``Wrench``, ``Momentum`` or ``Screw`` of six coordinates."""
     coordinates = np.asarray(coordinates, dtype=float)
     if coordinates.ndim == 0 or coordinates.shape[-1] != 6:
         raise ValueError(f"coordinates has shape {coordinates.shape}, not (..., 6)")

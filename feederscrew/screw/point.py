@@ -40,7 +40,7 @@ def dot(u, v):
 
 
 def length(u):
-    """Euclidean length over the last axis, (..., 3) to (...,); squares neither overflow nor vanish."""
+    """Return the Euclidean length over the last axis; squares neither overflow nor vanish."""
     return np.hypot(np.hypot(u[..., 0], u[..., 1]), u[..., 2])
 
 

@@ -10,7 +10,7 @@ ROUNDING = 1e-12  # of the largest singular value: below it a contact adds nothi
 
 
 def reciprocity(first, second):
-    """(h1 + h2) cos a - d sin a, zero where two screws are reciprocal.
+    """Return (h1 + h2) cos a - d sin a, zero where two screws are reciprocal.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def reciprocal_twists(wrenches):
 
 
 def tipping_twists(wrenches):
-    """For each of six contacts, the unit twist reciprocal to the other five.
+    """Return for each of six contacts the unit twist reciprocal to the other five.
 
     A body about to leave contact i, all others kept, moves with twist i: ``axis`` is the line it tips about.
     The sense is the one that opens the contact: the reciprocal product with its own wrench is positive.

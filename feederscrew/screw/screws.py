@@ -203,7 +203,7 @@ class Screw:
         return Dual(length(self.resultant), along)
 
     def unit(self):
-        """Of magnitude 1 with the same axis and pitch; the zero screw is returned as it is."""
+        """Return the screw of magnitude 1 with the same axis and pitch; the zero screw as it is."""
         size = self.magnitude
         return self / np.where(size > 0.0, size, 1.0)
 

@@ -166,7 +166,7 @@ def _reversal(bowl):
 
 
 def rolls(posture):
-    """Whether the part stands on a rolling aspect: about an axis, or as a ball about any."""
+    """Return whether the part stands on a rolling aspect: about an axis, or as a ball about any."""
     return posture.kind == "rolling" and (posture.axis is not None or posture.corners is not None)
 
 
@@ -177,7 +177,7 @@ def regime(states):
 
 
 def stable_heading(posture, bowl):
-    """Heading [rad] to which the drive turns the part at the upper reversal; NaN where none is preferred."""
+    """Return the heading [rad] to which the drive turns the part at the upper reversal; NaN for none."""
     if not np.isfinite(posture.offset) or posture.offset == 0.0:
         return np.full(np.shape(bowl.drive.direction), np.nan)[()]
     return bowl.drive.direction + (0.0 if posture.offset > 0.0 else np.pi)

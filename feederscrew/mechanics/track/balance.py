@@ -43,7 +43,7 @@ class TrackMotion:
 
 
 def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=False):
-    """What a part on the track does at one phase of the vibration.
+    """Return what a part on the track does at one phase of the vibration.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
 
 
 def needed_at_rest(seat, bowl, phase):
-    """Friction over normal force that holds a part at rest, (..., 3) [1]: floor and walls.
+    """Return friction over normal force that holds a part at rest, (..., 3) [1]: floor and walls.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def needed_at_rest(seat, bowl, phase):
 
 
 def over_cycle(seat, bowl, samples=cycle.SAMPLES):
-    """The same over one settled period.
+    """Return the same over one settled period.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ ROUNDED = 12  # decimals that tell two radii, widths or banks apart
 
 
 def seated(posture, bowl, heading=None):
-    """How a part lies against the wall of a bowl.
+    """Return how a part lies against the wall of a bowl.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def seated(posture, bowl, heading=None):
 
 
 def cells(posture, bowl, heading=None):
-    """The upper reversal at every cell of a map.
+    """Return the upper reversal at every cell of a map.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ MARGIN = 1e-6  # of every coefficient, so that an equilibrium on the very limit 
 
 
 def exists(seat, bowl, phase=0.5 * np.pi):
-    """Whether forces within the friction cones balance the load on a part at rest.
+    """Return whether forces within the friction cones balance the load on a part at rest.
 
     Parameters
     ----------

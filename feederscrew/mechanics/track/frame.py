@@ -29,7 +29,7 @@ class Seat:
     contact: np.ndarray  # (K, 2) [m] contact polygon in track axes; (0, 2) of a card
 
     def twist(self, bank):
-        """How far a bank turns the part, its higher wall contact leaning out beyond the lower [rad]."""
+        """Return how far [rad] a bank turns the part, its higher wall contact leaning beyond the lower."""
         (x_1, _, z_1), (x_2, _, z_2) = self.walls
         return float(np.arctan2((z_1 - z_2) * np.tan(bank), x_2 - x_1))
 
@@ -46,7 +46,7 @@ class TrackAxes:
 
 
 def seat(posture, heading, touching, lean):
-    """A mesh part in a heading against the wall.
+    """Return a mesh part in a heading against the wall.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def seat(posture, heading, touching, lean):
 
 
 def card_seat(posture):
-    """The one seat that a part card prints, at heading 0.
+    """Return the one seat that a part card prints, at heading 0.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def card_seat(posture):
 
 
 def frame(bowl, walls):
-    """Directions on the track of a bowl.
+    """Return the directions on the track of a bowl.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def frame(bowl, walls):
 
 
 def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False):
-    """Weight, drive and centrifugal force on the part, all at its centre of mass.
+    """Return weight, drive and centrifugal force on the part, all at its centre of mass.
 
     Parameters
     ----------
@@ -176,7 +176,7 @@ def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False):
 
 
 def bank_without_radial_friction(seat):
-    """Bank [rad] at which the wall's reaction passes through the centre of mass and asks for no R3."""
+    """Return the bank [rad] at which the wall's reaction passes through the centre of mass: R3 is zero."""
     return float(np.mean(np.arctan2(seat.walls[:, 2], -seat.walls[:, 1])))
 
 

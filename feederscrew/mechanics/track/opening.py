@@ -29,7 +29,7 @@ class Opening:
 
 
 def contact_wrenches(seat, axes, points, *, floor=0.0, wall=(0.0, 0.0), traction=(0.0, 0.0, 0.0)):
-    """Unit wrenches of six contacts, about the centre of mass: three floor points, two walls, traction.
+    """Return unit wrenches of six contacts about the centre of mass: three floor points, two walls, traction.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def contact_wrenches(seat, axes, points, *, floor=0.0, wall=(0.0, 0.0), traction
 
 
 def first_to_open(seat, bowl):
-    """The contact that a growing drive opens first, at either reversal.
+    """Return the contact that a growing drive opens first, at either reversal.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ BEYOND = 1e9  # [1] friction in place of one that is not finite
 
 
 def acceleration(seat, bowl, axes, least):
-    """Acceleration of a sliding part as a function of phase, speed and sense.
+    """Return the acceleration of a sliding part as a function of phase, speed and sense.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def acceleration(seat, bowl, axes, least):
 
 
 def windows(rest, needed, static, samples=cycle.SAMPLES):
-    """Phases at which a part at rest breaks loose.
+    """Return the phases at which a part at rest breaks loose.
 
     Parameters
     ----------

@@ -67,7 +67,7 @@ def sliding(seat, axes, load, closed, floor, wall, course=AHEAD):
 
 
 def held(seat, axes, load, closed, ratio):
-    """Reactions of a part at rest: the least friction, every contact using one share of its limit.
+    """Return the reactions of a part at rest: least friction, one share of its limit at every contact.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ def _released(seat, axes, closed, couple):
 
 
 def wall_use(seat, axes, load, closed, floor, ahead, course, turns):
-    """Friction over normal force at the one closed wall contact of a part that starts to turn about it.
+    """Return friction over normal force at the only closed wall contact of a part that starts to turn.
 
     Parameters
     ----------
@@ -190,7 +190,7 @@ class _Slide:
         self.give = self.rates[..., 1] / (self.rates[..., 0] * self.resists[..., None])
 
     def motion(self, closed, use):
-        """What acts, the wall's reactions and the accelerations across the track and in turning."""
+        """Return what acts, the wall's reactions and the accelerations across the track and in turning."""
         acting = self.wall.acting(self.force, use, self.drag)
         walls = acting.reactions(closed, self.give)
         if all(closed):
@@ -208,7 +208,7 @@ class _Wall:
         )
 
     def acting(self, force, use, drag):
-        """What acts on the part for a friction over normal force of ``use`` at the wall."""
+        """Return what acts on the part for a friction over normal force of ``use`` at the wall."""
         return _Acting(force, self.normals - use[..., None, None] * self.courses, drag)
 
 
@@ -222,7 +222,7 @@ class _Acting:
         self.yaws = dot(pushes[..., 3:5], drag[..., None, :]) + pushes[..., 5]
 
     def reactions(self, closed, give):
-        """R1 and R2, (..., 2), at which the closed contacts stay closed.
+        """Return R1 and R2, (..., 2), at which the closed contacts stay closed.
 
         ``give`` (..., 2) is how fast a contact opens for a unit of turning moment over how fast for a unit of
         force across the track: zero where the part is kept from turning.
@@ -231,7 +231,7 @@ class _Acting:
         return _ratio(shares, divisor[..., None])
 
     def undivided(self, closed):
-        """What is left over along X of a part at rest times a divisor that the reactions have, and that."""
+        """Return what is left over along X of a part at rest, times the reactions' divisor, and that."""
         shares, divisor = self._shares(closed, np.zeros(2))
         return self.pull[..., 0] * divisor + dot(self.planar[..., 0], shares), divisor
 
@@ -253,11 +253,11 @@ class _Acting:
         return self.pull[..., axis] + dot(self.planar[..., axis], walls)
 
     def normal(self, walls):
-        """The floor's normal force N, (...)."""
+        """Return the floor's normal force N, (...)."""
         return -(self.force[..., 2] + dot(self.pushes[..., 2], walls))
 
     def solution(self, walls, across, turning, inertia, friction, couple, mobilised, parting):
-        """The record, with the moments of N that the moments about X and Y ask for."""
+        """Return the record, with the moments of N that the moments about X and Y ask for."""
         about_x, about_y = (dot(self.pushes[..., place], walls) for place in (3, 4))
         ahead = about_y - inertia[1] * turning - friction[..., 0]
         beside = inertia[0] * turning - about_x - friction[..., 1]

@@ -120,7 +120,7 @@ def on_track(found, posture, track, reaches=None):
 
 
 def laid(found, heading=None):
-    """The row of the heading a part ends in, laid on the track in any direction and pushed to the wall.
+    """Return the row of the heading that a part ends in, laid on the track and pushed to the wall.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ def reaches(found, posture, track):
 
 
 def falls(posture, reach, track):
-    """Whether the weight's line meets the surface beyond what the track supports, on the free edge's side.
+    """Return whether the weight's line meets the surface beyond what the track supports, at its free edge.
 
     Parameters
     ----------

@@ -56,7 +56,7 @@ CARD_LINE = re.compile(rb"(?m)^(?:mass|centre_of_mass|inertia|aspects|floor|trac
 
 
 def detect(data, suffix=""):
-    """Format of a part file.
+    """Return the format of a part file.
 
     Parameters
     ----------
@@ -85,17 +85,17 @@ def detect(data, suffix=""):
 
 
 def fits_binary_stl(data):
-    """Whether the facet count of a binary STL agrees with the file's size."""
+    """Return whether the facet count of a binary STL agrees with the file's size."""
     return len(data) > HEADER and len(data) == HEADER + FACET * claimed_facets(data)
 
 
 def plain(text):
-    """The text with '?' for every letter beyond ASCII: numbers have none, names and comments do."""
+    """Return the text with '?' for every letter beyond ASCII: numbers have none, names and comments do."""
     return text.translate(ASCII_ONLY)
 
 
 def claimed_facets(data):
-    """The facet count in the header of a binary STL."""
+    """Return the facet count in the header of a binary STL."""
     return int.from_bytes(data[HEADER - 4 : HEADER], "little")
 
 

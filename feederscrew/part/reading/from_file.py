@@ -26,7 +26,7 @@ OVERLAP = 1e-6  # [1] of the hull's volume
 
 
 def load(source, *, units=None, density=None, centre_of_mass=None, names=None, allow_open=False, stdin=None):
-    """A part from a mesh file or a part card.
+    """Read a part from a mesh file or a part card.
 
     Parameters
     ----------

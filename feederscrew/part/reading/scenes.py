@@ -51,7 +51,7 @@ logging.getLogger("trimesh").addHandler(logging.NullHandler())  # it would log t
 
 
 def soup(data, kind, where):
-    """Triangles of a mesh file that trimesh reads as a scene.
+    """Return the triangles of a mesh file that trimesh reads as a scene.
 
     Parameters
     ----------

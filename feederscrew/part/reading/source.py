@@ -40,7 +40,7 @@ class Soup:
 
 
 def file(source, stdin=None):
-    """The bytes of a part file.
+    """Read the bytes of a part file.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def file(source, stdin=None):
 
 
 def soup(file):
-    """The triangles of a mesh file.
+    """Read the triangles of a mesh file.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def soup(file):
 
 
 def is_card(file):
-    """Whether the file is a part card: by its name, or by its content on standard input."""
+    """Return whether the file is a part card: by its name, or by its content on standard input."""
     if file.suffix in FORMATS[CARD].suffixes:
         return True
     return formats.detect(file.data, file.suffix)[0] == CARD

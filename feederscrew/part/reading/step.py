@@ -23,7 +23,7 @@ METRE = rb"SI_UNIT\s*\(\s*\$\s*,\s*\.METRE\."
 
 
 def glb(data):
-    """A STEP file as GLB, in metres.
+    """Convert a STEP file to GLB, in metres.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def glb(data):
 
 
 def unit(data):
-    """The length unit a STEP file is drawn in; millimetres where it does not tell."""
+    """Return the length unit a STEP file is drawn in; millimetres where it does not tell."""
     for pattern, name in UNITS:
         if re.search(pattern, data):
             return name

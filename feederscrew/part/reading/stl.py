@@ -17,7 +17,7 @@ AGAIN = "export the part again, or copy the whole file"
 
 
 def soup(data, kind, where):
-    """Triangles of an STL file.
+    """Read the triangles of an STL file.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ class Tipping:
 
 
 def tipping(tumbling, labels):
-    """Basins and saddles of exact tumbling, gathered by face.
+    """Return basins and saddles of exact tumbling, gathered by face.
 
     Parameters
     ----------
@@ -76,19 +76,19 @@ def _between(basins, pairs):
 
 
 def rises(tips):
-    """(B, 2) [m] lift of the centre of mass on the way from the first face and from the second."""
+    """Return the lift (B, 2) [m] of the centre of mass on the way from the first face and from the second."""
     return np.maximum(tips.tops[:, None] - tips.heights[tips.pairs], 0.0)
 
 
 def barriers(tips):
-    """(F,) [m] lowest lift that tips each face into another; infinite where nothing does."""
+    """Return the lowest lift (F,) [m] that tips each face into another; infinite where nothing does."""
     lowest = np.full(len(tips.shares), np.inf)
     np.minimum.at(lowest, tips.pairs.ravel(), rises(tips).ravel())
     return lowest
 
 
 def tip_angles(polygons, heights):
-    """Tilt of the floor at which a part that does not slide tips over an edge of its contact polygon.
+    """Return the tilt of the floor at which a part that does not slide tips over an edge of its contact.
 
     Parameters
     ----------
@@ -130,12 +130,12 @@ def line_tip_angle(polygon, normal, axis, height):
 
 
 def tilt_over(height, top):
-    """Tilt [rad] that brings a centre of mass at ``height`` [m] over a saddle at ``top`` [m]."""
+    """Return the tilt [rad] that brings a centre of mass at ``height`` [m] over a saddle at ``top`` [m]."""
     return np.arctan2(np.sqrt(np.maximum(top**2 - height**2, 0.0)), height)
 
 
 def critical_solid_angles(polygons, heights):
-    """Share of each face's solid angle left when the mean critical one is taken off.
+    """Return the share of each face's solid angle left when the mean critical one is taken off.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ def _lifted(polygon, normal, lifts):
 
 
 def balance(tips):
-    """Energy-barrier method: shares that stay the same when every face keeps tipping into its neighbours.
+    """Return the shares that stay the same when every face keeps tipping into its neighbours.
 
     Parameters
     ----------
@@ -239,7 +239,7 @@ def _edge_levers(polygons):
 
 
 def named(tumbling, labels):
-    """(S,) label of each sink from its own (S,) label; an unnamed one takes that of the face it joins.
+    """Return the label (S,) of each sink from its own; an unnamed one takes that of the face it joins.
 
     The first of the faces that share it, where they do.
     """

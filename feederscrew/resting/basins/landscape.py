@@ -35,7 +35,7 @@ class Landscape:
 
 
 def edges(hull):
-    """Every edge of the hull once: (E, 2) triangles, (E, 2) corners."""
+    """Return every edge of the hull once: (E, 2) triangles, (E, 2) corners."""
     first, second = np.repeat(np.arange(len(hull.triangles)), 3), hull.neighbours.ravel()
     once = np.flatnonzero(first < second)
     starts, ends = (hull.triangles[:, corners].ravel()[once] for corners in ([1, 2, 0], [2, 0, 1]))
@@ -43,7 +43,7 @@ def edges(hull):
 
 
 def passes(hull, pairs, ends):
-    """Height of the centre of mass at the highest point of the way over each edge.
+    """Return the height of the centre of mass at the highest point of the way over each edge.
 
     Tipping over an edge turns the part about it: the centre of mass climbs until it stands over the edge,
     if that happens on the way, else the way is downhill and its top is the higher side.
@@ -71,7 +71,7 @@ def passes(hull, pairs, ends):
 
 
 def landscape(hull):
-    """Basins of the hull with ripples merged by persistence.
+    """Return the basins of the hull with ripples merged by persistence.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def landscape(hull):
 
 
 def angle(u, v):
-    """Angles between vectors (..., 3) [rad], true down to the smallest."""
+    """Return angles between vectors (..., 3) [rad], true down to the smallest."""
     along = u[..., 0] * v[..., 0] + u[..., 1] * v[..., 1] + u[..., 2] * v[..., 2]
     return np.arctan2(vectors.norm(vectors.cross(u, v)), along)
 
