@@ -28,8 +28,8 @@ SURFACES = click.Choice(["soft", "medium", "hard"])
 @click.option(
     "--columns",
     metavar="NAMES",
-    help="Columns of the printed table, with commas between, or all.  [default: height, recommended "
-    "answer, rules of the thesis]",
+    help="Columns to print, with commas between, or all.  [default: all of them as CSV; in the table "
+    "height, recommended answer, rules of the thesis]",
 )
 @options.pictures
 @options.output
@@ -59,7 +59,7 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     with out.folder(solid.name, solid.inputs, effective) as folder:
         study = _study(solid, chosen, out)
         frame = tables.aspects(study)
-        shown = tables.printed(frame, columns) if out.format == "table" else frame
+        shown = tables.printed(frame, columns) if columns or out.format == "table" else frame
         offers.write(folder, files.offers(study, tipping=graph), pictures=pictures)
         out.say(*tables.remarks(study) if folder and pictures else ())
     out.show(shown, tables.document(study))

@@ -288,6 +288,8 @@ def test_the_printed_table_fits_a_terminal_and_leads_with_the_answer(run, stl):
 def test_other_columns_are_printed_on_demand(run, stl):
     some = run("aspects", stl, "--columns", "aspect, barrier_mm").stdout.splitlines()[0].split()
     assert some == ["aspect", "barrier"]
+    csv = run("aspects", stl, "--columns", "aspect,height_mm", "--format", "csv").stdout.splitlines()
+    assert csv[0] == "aspect,height_mm" and csv[1].startswith("A,")
     everything = run("aspects", stl, "--columns", "all").stdout
     assert all(word in everything for word in ("hops", "normal", "quasistatic"))
     wrong = run("aspects", stl, "--columns", "aspect,barier_mm")
