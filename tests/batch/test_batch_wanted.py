@@ -45,8 +45,8 @@ def test_the_launch_and_the_drops_are_the_answer(block):
     assert placed.key != fed.key and placed.effective["launch"] == "place"
     dropped = row(asked, drops=200, pictures=False)
     assert dropped.row["answer"] == "drop test, launch feed"
-    if dropped.row["aspect"] == dropped.row["drop_aspect"]:
-        assert dropped.row["p_orientation"] <= dropped.row["p_drop"]
+    assert dropped.row["aspect"] == dropped.row["drop_aspect"]
+    assert dropped.row["p_orientation"] <= dropped.row["p_drop"]
 
 
 @pytest.mark.parametrize("count", [1, summary.TILES + 1])

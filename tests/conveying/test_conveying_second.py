@@ -46,11 +46,11 @@ def test_zeros_and_bends_are_all_there():
 
 
 def test_rises_and_falls_alternate():
-    for wave in random_waves(60):
-        a = harmonic(wave)
+    crossing = [a for a in map(harmonic, random_waves(60)) if a.rises[0] < math.inf]
+    assert len(crossing) > 30
+    for a in crossing:
         for angle in np.linspace(0.0, 6.2, 32):
-            if a.rises[0] < math.inf:
-                assert above(a, angle) == (value(a, angle) > 0.0)
+            assert above(a, angle) == (value(a, angle) > 0.0)
 
 
 def test_a_touched_zero_is_no_crossing():
@@ -66,20 +66,23 @@ def test_no_second_harmonic_is_the_plain_drive():
 
 
 def test_a_vanishing_second_harmonic_vanishes():
-    for row in random_settings(30, np.random.default_rng(6)):
-        one = plain(*row)
-        other = travel_of(one._replace(second=1e-13, second_phase=1.0))
-        if other[steady.STATUS] == steady.PERIODIC:
-            assert other[steady.VELOCITY] == pytest.approx(travel_of(one)[steady.VELOCITY], abs=1e-9)
+    plains = [plain(*row) for row in random_settings(30, np.random.default_rng(6))]
+    pairs = [(one, travel_of(one._replace(second=1e-13, second_phase=1.0))) for one in plains]
+    periodic = [(one, other) for one, other in pairs if other[steady.STATUS] == steady.PERIODIC]
+    assert len(periodic) > 15
+    for one, other in periodic:
+        assert other[steady.VELOCITY] == pytest.approx(travel_of(one)[steady.VELOCITY], abs=1e-9)
 
 
 def test_a_vanishing_first_harmonic_leaves_a_plain_drive_of_twice_the_frequency():
-    share = 1e9
+    share, compared = 1e9, 0
     for row in random_settings(30, np.random.default_rng(7)):
         alone = travel_of(plain(*row))
         both = travel_of(plain(row[0] / (4.0 * share), *row[1:])._replace(second=share, second_phase=0.0))
         if alone[steady.PERIOD] == both[steady.PERIOD] == 1:
+            compared += 1
             assert both[steady.VELOCITY] / (2.0 * share) == pytest.approx(alone[steady.VELOCITY], abs=1e-8)
+    assert compared > 10
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.3])

@@ -42,12 +42,17 @@ def test_a_part_that_tips_has_no_equilibrium():
     assert equilibrium.exists(seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 0.0), settings)
 
 
-@pytest.mark.parametrize("seed", range(12))
-def test_what_the_least_friction_holds_is_an_equilibrium(seed):
-    rng = np.random.default_rng(seed)
-    part, settings = random_seat(rng), random_bowl(rng)
-    if balance.motion(part, settings).state == floor.STICK:
-        assert equilibrium.exists(part, settings)
+def test_what_the_least_friction_holds_is_an_equilibrium():
+    """Random parts are taken until five of them stick."""
+    held = []
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        part, settings = random_seat(rng), random_bowl(rng)
+        if balance.motion(part, settings).state == floor.STICK:
+            held.append(equilibrium.exists(part, settings))
+        if len(held) == 5:
+            break
+    assert held == [True] * 5
 
 
 def test_of_a_card_without_contact_polygon_it_cannot_be_told():
