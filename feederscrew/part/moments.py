@@ -188,9 +188,10 @@ def _second_order(points, facets, flux):
     return nodes, np.concatenate([0.75 * flux, shared[used]])
 
 
+@cache
 def _sphere(count):
     """(count, 3) directions spread over half the sphere."""
     k = np.arange(count) + 0.5
     z, turn = k / count, np.pi * (1.0 + np.sqrt(5.0)) * k
     r = np.sqrt(1.0 - z * z)
-    return np.column_stack([r * np.cos(turn), r * np.sin(turn), z])
+    return check.frozen(np.column_stack([r * np.cos(turn), r * np.sin(turn), z]))

@@ -217,9 +217,11 @@ def _fan(hull, members):
 
 def _depth(hull, plane, members):
     """How far the corners of each member lie off the plane of one triangle [m]."""
-    corners = hull.vertices[hull.triangles[members].T.ravel()]
-    depth = np.abs(vectors.product(corners, hull.normals[plane]) - hull.heights[plane])
-    a, b, c = depth.reshape(3, -1)
+    corners = hull.triangles[members].T
+    each = corners.size > len(hull.vertices)  # sooner of every corner of the hull once
+    places = hull.vertices if each else hull.vertices[corners.ravel()]
+    depth = np.abs(vectors.product(places, hull.normals[plane]) - hull.heights[plane])
+    a, b, c = depth[corners] if each else depth.reshape(3, -1)
     return np.maximum(np.maximum(a, b), c)
 
 

@@ -120,9 +120,10 @@ def _areas(raw):
     """Basin areas from boundary integrals: those that hold the point opposite their gauge lack 4 pi."""
     if len(raw) == 1:
         return np.array([SPHERE])
-    missing = round(1.0 - raw.sum() / SPHERE)
+    missing = max(round(1.0 - raw.sum() / SPHERE), 0)
     areas = raw.copy()
-    areas[np.argsort(raw, kind="stable")[: max(missing, 0)]] += SPHERE
+    if missing:
+        areas[np.argsort(raw, kind="stable")[:missing]] += SPHERE
     return np.where((areas < 0.0) & (areas > -ROUNDING), 0.0, areas)
 
 
