@@ -9,17 +9,17 @@ time by the clock: where they are far apart, the machine was busy. Ratios are of
 """
 
 import argparse
-import contextlib
-import ctypes
 import os
 import platform
 import shutil
 import statistics
 import sys
 import tempfile
-import time
 from dataclasses import dataclass
 from pathlib import Path
+
+from batch import finished
+from processes import adopt, at_once, spent, together
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/speed.md"
@@ -34,20 +34,25 @@ PRINTED = {
     "rate": ("rate", PART, "--aspect", "A"),
     "tune": ("tune", PART, "--aspect", "A", "--target", "5/min"),
 }
-MIB = 1024.0  # KiB
+STARTS = {  # what needs no part to be read
+    "feeder --help": ("--help",),
+    "feeder --version": ("--version",),
+    "feeder batch --help": ("batch", "--help"),
+    "feeder trial --help": ("trial", "--help"),
+    "feeder aspcts": ("aspcts",),
+}
+START = 0.15  # [s]
+ASKED = {  # calls without a target
+    "drop": ("drop", PART),
+    "slide": ("slide",),
+    "convey": ("convey",),
+    "bowl": ("bowl", PART, "--target", "20/min"),
+    "trial": ("trial", PART),
+}
 REPEATS = 3
 PAIRS = 2  # of batches
 BATCH = 16  # parts: those of parts/, twice
-ADOPTS = 36  # prctl(2): what a process started and left behind becomes this one's, which waits for it
-
-
-@dataclass(frozen=True)
-class Spent:
-    """What one process took."""
-
-    cpu: float  # [s] with its children
-    wall: float  # [s]
-    memory: float  # [MiB] most at a time, of the largest process, those it waited for among them
+BEFORE = {1: 599, 2: 801}  # [MiB] that such a batch took, by its jobs, when its target was set
 
 
 @dataclass(frozen=True)
@@ -55,7 +60,7 @@ class Row:
     """One wait of the table."""
 
     what: str
-    target: float
+    target: float | None  # None: it is only told
     figure: float
     unit: str
     beside: str = ""  # clock, memory
@@ -63,56 +68,21 @@ class Row:
     more: bool = False  # whether more is better
 
     @property
+    def wanted(self):
+        """The target as text."""
+        return "" if self.target is None else f"{self.target:,g} {self.unit}"
+
+    @property
     def verdict(self):
         """Whether the target holds."""
+        if self.target is None:
+            return "told"
         return verdict(self.figure >= self.target if self.more else self.figure <= self.target)
 
 
 def verdict(held):
     """Of a target, in a word."""
     return "holds" if held else "missed"
-
-
-def spent(*command, **environment):
-    """Run one process to its end; what it took."""
-    return at_once([command], **environment)
-
-
-def at_once(commands, **environment):
-    """Run processes side by side to their ends; what they took together."""
-    start, used = time.perf_counter(), []
-    running = {_started(command, environment): command for command in commands}
-    while running:
-        child, status, took = os.wait4(-1, 0)
-        command = running.pop(child, ())
-        if status and command:
-            raise SystemExit(f"failed: {' '.join(command)}")
-        used.append(took)
-    wall = time.perf_counter() - start
-    used += _left_behind()
-    cpu = sum(one.ru_utime + one.ru_stime for one in used)
-    return Spent(cpu, wall, max(one.ru_maxrss for one in used) / MIB)
-
-
-def _started(command, environment):
-    """Its number; it prints nothing, and keeps the bytecode of what it imports."""
-    given = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
-    with Path(os.devnull).open("wb") as nothing:
-        actions = [(os.POSIX_SPAWN_DUP2, nothing.fileno(), 1), (os.POSIX_SPAWN_DUP2, nothing.fileno(), 2)]
-        return os.posix_spawn(command[0], command, given | environment, file_actions=actions)
-
-
-def _left_behind():
-    """What processes used that outlived who started them, as the server of a batch does."""
-    with contextlib.suppress(ChildProcessError):
-        while True:
-            yield os.wait4(-1, 0)[2]
-
-
-def _adopt():
-    """Let what outlives its parent be waited for here; Linux only, elsewhere it is not counted."""
-    with contextlib.suppress(AttributeError, OSError, TypeError):
-        ctypes.CDLL(None).prctl(ADOPTS, 1, 0, 0, 0)
 
 
 def median(runs, name):
@@ -132,6 +102,20 @@ def printed():
         spent(*CALL, *arguments, "-q")
         runs = [spent(*CALL, *arguments, "-q") for _ in range(REPEATS)]
         yield Row(f"`feeder {name}`, printed", 1.5, median(runs, "cpu"), "s CPU", clock(runs))
+
+
+def starts():
+    """What the shortest calls take: help, a version, a command that is not there."""
+    for name, arguments in STARTS.items():
+        runs = [spent(*CALL, *arguments, fails=True) for _ in range(2 * REPEATS)][1:]
+        yield Row(f"`{name}`", START, median(runs, "cpu"), "s CPU", clock(runs))
+
+
+def asked():
+    """Other commands of one part, as they come, once everything is compiled."""
+    for name, arguments in ASKED.items():
+        runs = [spent(*CALL, *arguments, "-q") for _ in range(3)][1:]
+        yield Row(f"`feeder {name}`, printed", None, median(runs, "cpu"), "s CPU", clock(runs))
 
 
 def clock(runs):
@@ -167,6 +151,22 @@ def batches(folder):
     )
     told = f"{most:.2f} x by two batches of half the parts side by side"
     yield Row("its two jobs beside one", 1.8, gain, "x as fast", told, more=True)
+
+
+def memory(folder):
+    """Memory of all processes of a batch, pages that they share counted once, by its halves."""
+    parts = _parts(folder)
+    for jobs, before in BEFORE.items():
+        place = f"{folder}/memory{jobs}"
+        halves = together(_batch(place, jobs, parts), lambda: finished(Path(place)) > BATCH // 2)  # noqa: B023
+        told = f"{halves[0]:.0f} in its first half, {halves[1]:.0f} in the second; {before} as first measured"
+        yield Row(
+            f"memory of a batch, all processes of {jobs} job{'s'[: jobs - 1]}",
+            before / 2,
+            max(halves),
+            "MiB",
+            told,
+        )
 
 
 def _parts(folder):
@@ -205,8 +205,7 @@ def table(rows):
         "| --- | ---: | ---: | --- | --- |",
     ]
     lines += [
-        f"| {r.what} | {r.target:,g} {r.unit} | {shown(r.figure)} {r.unit} | {r.verdict} | {r.beside} |"
-        for r in rows
+        f"| {r.what} | {r.wanted} | {shown(r.figure)} {r.unit} | {r.verdict} | {r.beside} |" for r in rows
     ]
     return "\n".join(lines) + "\n"
 
@@ -231,17 +230,20 @@ def processor():
 
 def waits(folder):
     """Every wait."""
+    yield from starts()
     yield from printed()
+    yield from asked()
     yield from reports(folder)
     yield from batches(folder)
+    yield from memory(folder)
     yield from first_use(folder)
 
 
 def told(rows):
     """The rows, each printed as it is known."""
     for row in rows:
-        figures = f"{row.figure:8.4g} {row.unit:12} {row.target:8g}  {row.verdict:7} {row.beside}"
-        print(f"{row.what:60}{figures}", flush=True)
+        figures = f"{row.figure:8.4g} {row.unit:12} {row.wanted:>20}  {row.verdict:7} {row.beside}"
+        print(f"{row.what:68}{figures}", flush=True)
         yield row
 
 
@@ -259,7 +261,7 @@ def main(name, description, rows):
     parser = argparse.ArgumentParser(description=description.splitlines()[0])
     parser.add_argument("--write", action="store_true", help="put the table into docs/speed.md")
     wanted = parser.parse_args()
-    _adopt()
+    adopt()
     with tempfile.TemporaryDirectory() as folder:
         text = table(list(told(rows(folder))))
     if wanted.write:
