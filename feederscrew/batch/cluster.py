@@ -34,7 +34,7 @@ class Cluster:
         self.address, self.job = address, job
 
     def outcomes(self, tasks):
-        """The outcome of each task, as they come; few tasks are on the way at a time.
+        """Yield the outcome of each task, as they come; few tasks are on the way at a time.
 
         Parameters
         ----------
@@ -71,7 +71,7 @@ class Cluster:
             raise self._fault(f"no scheduler answers ({_first_line(error)})") from None
 
     def _check_workers(self, client):
-        """Every worker has this very program and libraries, or its bytes would not be ours."""
+        """Check that every worker has this very program and libraries, or its bytes would not be ours."""
         try:
             client.wait_for_workers(1, timeout=PATIENCE)
             found = client.run(_versions)
@@ -98,7 +98,7 @@ class Cluster:
                 yield self._outcome(future, running.pop(future))
 
     def _finished(self, client, running):
-        """Those that have come, at least one."""
+        """Wait for those that have come, at least one."""
         while True:
             if client.status != "running" or any(future.cancelled() for future in running):
                 raise self._fault("the scheduler is lost")
@@ -108,7 +108,7 @@ class Cluster:
             time.sleep(POLL)
 
     def _outcome(self, future, task):
-        """What came of a task; the cluster itself has tried again where a worker died."""
+        """Return what came of a task; the cluster itself has tried again where a worker died."""
         if future.status == "finished":
             with self._attended():
                 return future.result()
@@ -118,7 +118,7 @@ class Cluster:
 
     @contextlib.contextmanager
     def _attended(self):
-        """What a client raises when its scheduler goes, as our fault."""
+        """Raise what a client raises when its scheduler goes as our fault."""
         try:
             yield
         except (OSError, CancelledError, _distributed().client.ClosedClientError):

@@ -24,7 +24,7 @@ LONGEST, MOST_BYTES = 80, 160  # letters and bytes of a folder's name
 
 
 def gather(sources, configs=(), overrides=()):
-    """Every part in every bowl, each with a folder name of its own.
+    """Gather every part in every bowl, each with a folder name of its own.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def _request(row, conditions, names):
 
 
 def _names(rows, faults):
-    """The names of the aspects by the file that a row asks for; None where it has faults."""
+    """Read the names of the aspects by the file that a row asks for; None where it has faults."""
     known = {None: None}
     for row in rows:
         if row.names not in known:
@@ -82,14 +82,14 @@ def _names(rows, faults):
 
 
 def _rows(source, faults):
-    """The parts that one argument stands for."""
+    """Return the parts that one argument stands for."""
     if Path(source).suffix.lower() == ".csv" and not found_as(Path.is_dir, source):
         return listing.read(source, faults)
     return [listing.Row(path) for path in _expanded(source, MESHES | CARDS, "part")]
 
 
 def _expanded(typed, suffixes, kind):
-    """The files of a folder or of a pattern by name; a file itself, there or not."""
+    """Return the files of a folder or of a pattern by name; a file itself, there or not."""
     path = Path(typed)
     if found_as(Path.is_dir, path):
         found = [str(p) for p in sorted(path.iterdir()) if _fits(p, suffixes, kind)]
@@ -101,7 +101,7 @@ def _expanded(typed, suffixes, kind):
 
 
 def _fits(path, suffixes, kind):
-    """Whether a file of a folder is meant: parts and bowls may lie side by side."""
+    """Return whether a file of a folder is meant: parts and bowls may lie side by side."""
     suffix = path.suffix.lower().removeprefix(".")
     if suffix not in suffixes or not _there(path) or path.name.startswith("."):
         return False
@@ -111,12 +111,12 @@ def _fits(path, suffixes, kind):
 
 
 def _there(path):
-    """Whether a file is meant: one that is there, or a link that leads nowhere, to be told of."""
+    """Return whether a file is meant: one that is there, or a link that leads nowhere, to be told of."""
     return path.is_file() or (path.is_symlink() and not path.exists())
 
 
 def _once(paths):
-    """Each file by its shortest way: links between folders may lead round in a circle."""
+    """Keep each file by its shortest way: links between folders may lead round in a circle."""
     shortest = {}
     for path in sorted(paths, key=lambda path: (len(Path(path).parts), path)):
         shortest.setdefault((Path(path).parent.resolve(), Path(path).name), path)
@@ -130,7 +130,7 @@ def _some(found, typed, what, mend):
 
 
 def _conditions(path, overrides, faults, line):
-    """The bowl of a file, asked for in a line of a list or in none; None where it has faults."""
+    """Read the bowl of a file, asked for in a line of a list or in none; None where it has faults."""
     try:
         settings = bowls.settings(path, overrides)
         bowl = answer.conveying(bowls.record(settings))
@@ -142,14 +142,14 @@ def _conditions(path, overrides, faults, line):
 
 
 def _placed(fault, path, line):
-    """A fault of a bowl that says of which, once there are several, and the line that asks for it."""
+    """Make a fault of a bowl say of which, once there are several, and the line that asks for it."""
     if path is not None and not str(fault.where).startswith(str(path)):
         fault = ConfigError(path, f"{fault.where} {fault.what}", fault.mend)
     return ConfigError(f"{line}: {fault.where}", fault.what, fault.mend) if line else fault
 
 
 def _named(requests):
-    """The requests with folder names that differ on every file system."""
+    """Give the requests folder names that differ on every file system."""
     several = len({request.conditions for request in requests}) > 1
     labels = [_label(request, several) for request in requests]
     taken, named = set(map(_folded, labels)), set()
@@ -168,7 +168,7 @@ def _label(request, several):
 
 
 def _unlike(label, named, taken):
-    """The label, or the label with the first number that no other part has or wants."""
+    """Return the label, or the label with the first number that no other part has or wants."""
     if _folded(label) not in named:
         return label
     number = 2
@@ -178,5 +178,5 @@ def _unlike(label, named, taken):
 
 
 def _folded(name):
-    """As a file system sees it that takes upper and lower case for the same."""
+    """Return a name as a file system sees it that takes upper and lower case for the same."""
     return unicodedata.normalize("NFC", name).casefold()

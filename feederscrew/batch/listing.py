@@ -27,7 +27,7 @@ class Row:
 
 
 def read(path, faults):
-    """The parts of a list; their paths count from its folder.
+    """Read the parts of a list; their paths count from its folder.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def _header_faults(path, line, header):
 
 
 def _row(path, line, header, cells, faults):
-    """The part of a line, or none."""
+    """Return the part of a line, or none."""
     where, given = f"{path}:{line}", dict(zip(header, cells))
     if len(cells) > len(header):
         faults.append(ConfigError(where, "has more cells than the first line", "quote cells with commas"))

@@ -27,12 +27,12 @@ class Batch:
 
     @property
     def faults(self):
-        """One line a failed part."""
+        """Return one line a failed part."""
         return tuple(str(row["reason"]) for row in self.rows if row["status"] == FAILED)
 
 
 def crew(jobs=None, scheduler=None):
-    """Who does the work.
+    """Choose who does the work.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ class _UnderWay:
         self.kept = 0
 
     def tasks(self, requests):
-        """A task for each request that needs one, its file read only when the task is asked for."""
+        """Yield a task for each request that needs one, its file read only when the task is asked for."""
         for request in requests:
             try:
                 data = source.file(request.source).data

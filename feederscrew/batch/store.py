@@ -65,7 +65,7 @@ class Store:
             )
 
     def holds(self, name, key):
-        """Whether the results of one part are there, whole and of this very input."""
+        """Return whether the results of one part are there, whole and of this very input."""
         record = self.record(name)
         if record.get("key") != key or not key:
             return False
@@ -89,7 +89,7 @@ class Store:
             fresh.rename(place)
 
     def file(self, name, file):
-        """The bytes of one result of a part, or None."""
+        """Read the bytes of one result of a part; None where it is not there."""
         path = self.parts / name / file
         return path.read_bytes() if path.exists() else None
 
@@ -102,7 +102,7 @@ class Store:
 
     @contextlib.contextmanager
     def _writing(self):
-        """What the disk refuses, as our fault; what is finished stays."""
+        """Raise what the disk refuses as our fault; what is finished stays."""
         try:
             yield
         except OSError as error:
@@ -116,11 +116,11 @@ class Store:
                 path.unlink()
 
     def strangers(self, names):
-        """Folders of parts that are not in this batch, by name."""
+        """Return the folders of parts that are not in this batch, by name."""
         return sorted({p.name for p in self.parts.iterdir()} - set(names))
 
     def record(self, name):
-        """What is recorded of one part: key, status, reason, row, files; empty if there is not a record."""
+        """Read what is recorded of one part: key, status, reason, row, files; empty if there is none."""
         try:
             record = json.loads((self.parts / name / RECORD).read_text())["batch"]
         except (OSError, ValueError, LookupError, TypeError):
@@ -144,7 +144,7 @@ def _told(outcome):
 
 
 def _locked(folder):
-    """A lock on the folder that goes with this process, however it ends; None where there is none."""
+    """Take a lock on the folder that goes with this process, however it ends; None where there is none."""
     try:
         import fcntl
     except ImportError:  # Windows

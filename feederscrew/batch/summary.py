@@ -22,7 +22,7 @@ HIDDEN = (  # from a table for people
 
 
 def rows(store, requests):
-    """What the disk says of each part.
+    """Read what the disk says of each part.
 
     Parameters
     ----------
@@ -51,17 +51,17 @@ def _row(record, request):
 
 
 def frame(rows):
-    """The rows as a table."""
+    """Return the rows as a table."""
     return tables.frame({name: [_harmless(row[name]) for row in rows] for name in COLUMNS})
 
 
 def _harmless(value):
-    """A text that a spreadsheet would take for a formula, marked as text; numbers as they are."""
+    """Mark a text that a spreadsheet would take for a formula as text; numbers stay as they are."""
     return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value
 
 
 def rate(row):
-    """A row's rate for people."""
+    """Return a row's rate for people."""
     number = row["parts_per_minute"]
     return "no rate" if number is None else f"{number:.3g} / min"
 

@@ -37,7 +37,7 @@ class Choices:
 
     @property
     def launched(self):
-        """The launch where parts are not fed onto a moving floor."""
+        """Return the launch where parts are not fed onto a moving floor."""
         from feederscrew.resting.rules.recommended import LAUNCH
 
         return self.launch or LAUNCH
@@ -68,7 +68,7 @@ class Task:
 
     @classmethod
     def of(cls, request, choices, data):
-        """The task of a request, once its file is read."""
+        """Make the task of a request, once its file is read."""
         sha256 = hashlib.sha256(data).hexdigest()
         return cls(request, choices, data, sha256, fingerprint(request, choices, sha256))
 
@@ -90,7 +90,7 @@ class Outcome:
 
     @classmethod
     def failed(cls, task, reason, *, final=True):
-        """Of a part that gave nothing; ``final`` if it would fail again."""
+        """Make the outcome of a part that gave nothing; ``final`` if it would fail again."""
         request, reason = task.request, " ".join(reason.split())
         if request.source not in reason:
             reason = f"{request.source}: {reason}"
@@ -100,7 +100,7 @@ class Outcome:
 
 
 def fingerprint(request, choices, sha256):
-    """A digest of everything that one part's results hang on.
+    """Digest everything that one part's results hang on.
 
     Parameters
     ----------
@@ -125,5 +125,5 @@ def fingerprint(request, choices, sha256):
 
 
 def libraries():
-    """Version of each library that has a say in the numbers or pictures, by name."""
+    """Return the version of each library that has a say in the numbers or pictures, by name."""
     return {name: metadata.version(name) for name in LIBRARIES}

@@ -34,7 +34,7 @@ class Files(dict):
 
 
 def work(task):
-    """Everything that is asked of one part.
+    """Compute everything that is asked of one part.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def travel(conditions):
 
 
 def _rate(part, found, task, files):
-    """The rate of the aspect wanted, else of the orientation that leaves most often, for the summary."""
+    """Rate the aspect wanted, else the orientation that leaves most often, for the summary."""
     if part.vertices is None:
         return {"note": "a part card has no outline: no rate"}
     conditions, rule = task.request.conditions, task.choices.rule
@@ -114,7 +114,7 @@ def _rate(part, found, task, files):
 
 
 def _answered(part, task, files):
-    """The study of a part's aspects and, for the summary, the drop test where one is asked for.
+    """Return the study of a part's aspects and, for the summary, the drop test where one is asked for.
 
     Its random numbers hang on the part's file alone; its answer is then the recommended one. Without one the
     answer is that of ``feeder rate`` for the same part and bowl.
@@ -137,6 +137,6 @@ def _answered(part, task, files):
 
 
 def _fed(task):
-    """Whether parts are fed onto the moving floor of the bowl that was named."""
+    """Return whether parts are fed onto the moving floor of the bowl that was named."""
     choices = task.choices
     return choices.fed and task.request.conditions.given and not (choices.drops or choices.launch)

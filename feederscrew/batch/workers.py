@@ -19,7 +19,7 @@ LOST = "the process that computed it died each of {} times, for lack of memory p
 
 
 def work(task):
-    """Everything that is asked of one part, an Outcome: as ``feederscrew.batch.work`` has it."""
+    """Compute everything that is asked of one part, an Outcome: as ``feederscrew.batch.work`` has it."""
     return importlib.import_module(WORK).work(task)
 
 
@@ -44,7 +44,7 @@ class Processes:
         _start_server(self.context)
 
     def outcomes(self, tasks):
-        """The outcome of each task, as they come; a task is taken only when a process is free for it.
+        """Yield the outcome of each task, as they come; a task is taken only when a process is free for it.
 
         Parameters
         ----------
@@ -95,7 +95,7 @@ class Processes:
             worker.stop()
 
     def _busy(self, crew, tasks, again):
-        """Give every process work, as long as there is any; those at work."""
+        """Give every process work, as long as there is any; return those at work."""
         for worker in [w for w in crew if w.task is None and (w.dead or w.served >= self.lifetime)]:
             worker.stop()
             crew.remove(worker)
@@ -139,7 +139,7 @@ class _Worker:
             self.connection.send(task)
 
     def take(self):
-        """The task and its outcome; None for a worker that died over it."""
+        """Return the task and its outcome; None for a worker that died over it."""
         task, self.task = self.task, None
         try:
             return task, self.connection.recv()
@@ -169,7 +169,7 @@ def _serve(connection, job):
 
 
 def processors():
-    """How many this process may use."""
+    """Return how many this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
