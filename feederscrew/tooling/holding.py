@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from feederscrew.geometry.polygons import outline, turned
-from feederscrew.tooling.orientations import rolls_across
+from feederscrew.tooling.orientations import ROUNDED, rolls_across
 
 SAME = 1e-6  # of the part's height: places so near to the foremost one are met with it
 BESIDE = 1e-2  # of the part's height: places so near to the wall lean on it
@@ -101,16 +101,30 @@ def leans(one, width):
     return max(one.climbs * (2.0 * high - one.posture.height) / width, 0.0)
 
 
-def rides(one, width):
-    """Return whether a part on its round side along the track rides over a hole of a width [m] by its sides.
+def rides(one, width, length):
+    """Return whether a part on its round side along the track rides over a hole by its sides.
 
-    It sinks between them by width^2 / (8 radius), and comes out at the end of the hole where that is less
-    than ``one.climbs``.
+    Parameters
+    ----------
+    one : Orientation
+        That travels.
+    width, length : float [m]
+        Of the hole across and along the track; infinite length of one that goes on.
+
+    Notes
+    -----
+    It sinks between the sides by radius - sqrt(radius^2 - width^2 / 4), and comes out at the end of the hole
+    where the speed of the drive lifts its weight far enough. Over a hole that is shorter than the part it
+    dips, tilted over the edge that it leaves; its weight then rises by (length - ahead) / length of that, a
+    part that reaches ahead of its weight by so much.
     """
-    if one.kind != "rolling" or rolls_across(one):
-        return False
     radius = one.posture.height
-    return width < 2.0 * radius and width**2 < 8.0 * radius * one.climbs
+    if one.kind != "rolling" or rolls_across(one) or width >= 2.0 * radius:
+        return False
+    places = one.foot.corners[:, 0]
+    share = 1.0 - float(places.max()) / length if length < np.ptp(places) else 1.0
+    sunk = radius - math.sqrt(radius**2 - 0.25 * width**2)
+    return share * (sunk - ROUNDED) < one.climbs - ROUNDED
 
 
 def widest(corners):

@@ -148,7 +148,7 @@ def _slot(device, one, every):
     radius = one.track.radius
     high = radius - first if first > 0.0 else 2.0 * radius
     margin = feet.over_ring(one.standing, max(radius - last, 0.0), high)
-    return (max(margin, -UNSURE) if rides(one, last - first) else margin), 0.0
+    return (max(margin, -UNSURE) if rides(one, last - first, np.inf) else margin), 0.0
 
 
 def _rails(device, one, every):
@@ -166,7 +166,8 @@ def _cut_out(device, one, every):
     margin, shift = feet.least(one.standing, hole)
     if margin < 0.0 < one.carry:
         margin = carried(margin, feet.unheld(one.standing, hole), one.carry)
-        margin = max(margin, -UNSURE) if rides(one, widest(device.corners)) else margin
+        length = float(np.ptp(np.array(device.corners)[:, 0]))
+        margin = max(margin, -UNSURE) if rides(one, widest(device.corners), length) else margin
     return margin, shift
 
 

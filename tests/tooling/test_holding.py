@@ -84,13 +84,19 @@ def test_the_margin_of_what_returns_is_that_of_the_first_device_that_does():
 
 
 def test_a_round_part_rides_over_a_hole_that_it_sinks_into_by_less_than_it_climbs():
-    """A radius of 3 mm at climbs = 0.3 mm: up to sqrt(8 3 0.3) = 2.683 mm wide."""
+    """A radius of 3 mm at climbs = 0.3 mm: up to 2 sqrt(3^2 - 2.7^2) = 2.615 mm wide.
+
+    Over a hole of 15 mm its weight, 10 mm behind the front, rises by a third: 0.05 + 3 0.25 = 0.8 mm deep.
+    """
     turn = np.radians(10.0 * np.arange(36))
     rod = shapes.part(shapes.prism(3.0 * np.column_stack([np.cos(turn), np.sin(turn)]), 20))
     every = [
         replace(one, climbs=3e-4) for one in orientations(rod, find(rod), TRACK) if one.kind == "rolling"
     ]
     along = next(one for one in every if one.length > 0.019)
-    assert holding.rides(along, 2.65e-3) and not holding.rides(along, 2.72e-3)
-    assert not any(holding.rides(one, 1e-3) for one in every if one.length < 0.019)
+    assert holding.rides(along, 2.59e-3, np.inf) and not holding.rides(along, 2.64e-3, np.inf)
+    short = 2.0 * np.sqrt(3.0**2 - 2.2**2)  # 4.079
+    assert holding.rides(along, 1e-3 * (short - 0.03), 15e-3)
+    assert not holding.rides(along, 1e-3 * (short + 0.03), 15e-3)
+    assert not any(holding.rides(one, 1e-3, np.inf) for one in every if one.length < 0.019)
     assert holding.widest([(0.0, 0.0), (4e-3, 1e-3), (0.0, 3e-3)]) == pytest.approx(3e-3)
