@@ -182,7 +182,7 @@ class PartsOnTrack:
 
     @property
     def forces(self):
-        """(N, 2) mean forces of others in the last period, from behind and from below, over the weight."""
+        """Return (N, 2) mean forces of others in the last period, from behind and below, over the weight."""
         return self.arrays.strains / self.period
 
     def extents(self, n):
@@ -191,7 +191,7 @@ class PartsOnTrack:
 
 
 def compiled():
-    """Whether the kernel of the queue is on disk already."""
+    """Say whether the kernel of the queue is on disk already."""
     return on_disk(kernel.follow)
 
 

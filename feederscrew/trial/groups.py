@@ -18,7 +18,7 @@ class Told:
         self.total = parts * stations
 
     def of(self, place):
-        """What one station tells."""
+        """Return what one station tells."""
         before = self.before + place * self.group
         return self.progress and (lambda done: self.progress(before + done, self.total))
 

@@ -31,22 +31,22 @@ class Landing:
 
     @property
     def landed(self):
-        """(A,) int, how many came to lie on each aspect."""
+        """Return (A,) int, how many came to lie on each aspect."""
         return self.fates.sum(axis=1)
 
     @property
     def left(self):
-        """How many left behind the last device."""
+        """Return how many left behind the last device."""
         return int(self.leaving.sum())
 
     @property
     def efficiency(self):
-        """Share of the parts let fall that leaves in the orientation in which most do [1]."""
+        """Return the share of the parts let fall that leaves in the orientation in which most do [1]."""
         return float(self.leaving[:-1].max(initial=0) / self.parts)
 
     @property
     def purity(self):
-        """Share of that orientation in what leaves [1]; NaN where nothing does."""
+        """Return the share of that orientation in what leaves [1]; NaN where nothing does."""
         return float(self.leaving[:-1].max(initial=0) / self.left) if self.left else np.nan
 
 

@@ -39,7 +39,7 @@ class Looks:
         return vectors.product(vectors.product(corners, turn.T) / length, self.directions.T).max(axis=0)
 
     def of(self, states):
-        """(N,) orientation of each state, OTHER where it is none of the known."""
+        """Return (N,) orientation of each state, OTHER where it is none of the known."""
         return np.array([self._of(state) for state in states], int)
 
     def _of(self, state):
@@ -64,7 +64,7 @@ class AspectsBelow:
         self.rows = found.rows
 
     def of(self, states):
-        """(N,) row of each state's aspect, OTHER where it would come to lie on none."""
+        """Return (N,) row of each state's aspect, OTHER where it would come to lie on none."""
         return np.array([self._of(runs.matrix(state)) for state in states], int)
 
     def _of(self, turn):

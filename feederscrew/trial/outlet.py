@@ -22,18 +22,18 @@ class Outlet:
 
     @property
     def shares(self):
-        """(A,) [1] of the parts that left on an aspect; NaN where none did."""
+        """Return (A,) [1] of the parts that left on an aspect; NaN where none did."""
         total = self.counts.sum()
         return self.counts / total if total else np.full(len(self.counts), np.nan)
 
     @property
     def ends(self):
-        """(2, A) [1] Wilson interval of each share."""
+        """Return (2, A) [1] Wilson interval of each share."""
         return np.array(wilson(self.counts, self.counts.sum()))
 
     @property
     def apart(self):
-        """Root mean square difference and total variation [1] from each column, by its name."""
+        """Return the root mean square difference and total variation [1] from each column, by its name."""
         own = self.shares
         return {
             one.name: (deviation.deviation(own, mine), deviation.total_variation(own, mine))

@@ -47,7 +47,7 @@ class QueuedParts:
 
     @property
     def rate(self):
-        """Delivered parts [1/s]; 0 where none came to the outlet."""
+        """Return delivered parts [1/s]; 0 where none came to the outlet."""
         return self.delivered / self.counted if self.counted > 0.0 else 0.0
 
 

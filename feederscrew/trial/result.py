@@ -40,30 +40,30 @@ class TrialRun:
 
     @property
     def partial(self):
-        """Whether the user stopped it before all was done."""
+        """Say whether the user stopped it before all was done."""
         return any(one.partial for one in (self.course, self.landing, self.queue) if one is not None)
 
     @cached_property
     def counts(self):
-        """(M, 5) int, parts by the orientation laid down and by fate, columns as ``course.FATES``."""
+        """Return (M, 5) int, parts by the orientation laid down and by fate, columns as ``course.FATES``."""
         found = np.zeros((len(self.shares), len(course.FATES)), int)
         np.add.at(found, (self.course.entered, self.course.fates), 1)
         return found
 
     @property
     def tried(self):
-        """(M,) int."""
+        """Return how many of each orientation were tried, (M,) int."""
         return self.counts.sum(axis=1)
 
     @property
     def ends(self):
-        """(M, 2) [1] Wilson intervals of the share that passes; 0 to 1 where none was tried."""
+        """Return (M, 2) [1] Wilson intervals of the share that passes; 0 to 1 where none was tried."""
         rows = zip(self.counts[:, course.PASSED], self.tried)
         return np.array([[float(end[0]) for end in wilson([one], total)] for one, total in rows])
 
     @cached_property
     def matrix(self):
-        """(M, S + 1) int, from orientation in to orientation out; the last column is none of the known."""
+        """Return (M, S + 1) int, from orientation in to orientation out; the last column is unknown ones."""
         found = np.zeros((len(self.shares), len(self.known.states) + 1), int)
         out = self.course.orientations[-1]
         whole = np.isin(self.course.fates, (course.PASSED, course.TURNED))
@@ -72,30 +72,30 @@ class TrialRun:
 
     @property
     def leaving(self):
-        """(S + 1,) [1] share of the parts offered that leaves in each orientation."""
+        """Return (S + 1,) [1] share of the parts offered that leaves in each orientation."""
         tried = np.maximum(self.tried, 1)[:, None]
         return (self.shares[:, None] * self.matrix / tried).sum(axis=0)
 
     @property
     def wanted(self):
-        """The orientation in which most leave; None where none does."""
+        """Return the orientation in which most leave; None where none does."""
         leaving = self.leaving
         return int(np.argmax(leaving)) if leaving.any() else None
 
     @property
     def efficiency(self):
-        """Share of the parts offered that leaves in the orientation in which most do [1]."""
+        """Return the share of the parts offered that leaves in the orientation in which most do [1]."""
         return float(self.leaving.max())
 
     @property
     def purity(self):
-        """Share of that orientation in what leaves [1]; NaN where nothing does."""
+        """Return the share of that orientation in what leaves [1]; NaN where nothing does."""
         total = self.leaving.sum()
         return float(self.leaving.max() / total) if total > 0.0 else np.nan
 
     @property
     def velocity(self):
-        """Mean velocity on the bare track [m/s], each orientation by its share; NaN where none travels."""
+        """Return the mean velocity on the bare track [m/s], by the shares; NaN where none travels."""
         found, weights = (
             self.course.velocities,
             (self.shares / np.maximum(self.tried, 1))[self.course.entered],
@@ -106,7 +106,7 @@ class TrialRun:
 
     @property
     def parts(self):
-        """Delivered parts [1/s]: counted in the queue, else what the velocity offers times the efficiency."""
+        """Return delivered parts [1/s]: counted in the queue, else what is offered times the efficiency."""
         if self.queue is not None:
             return self.queue.rate
         if self.wanted is None or not self.velocity > 0.0:
@@ -118,19 +118,19 @@ class TrialRun:
 
     @property
     def jams(self):
-        """Parts that neither passed nor were returned; in a queue, those that had to be taken out."""
+        """Count parts that neither passed nor were returned; in a queue, those that had to be taken out."""
         if self.queue is not None:
             return self.queue.jams
         return int(self.counts[:, [course.HANGING, course.STUCK]].sum())
 
     @property
     def predicted(self):
-        """(M,) bool, whether the static rule lets an orientation pass."""
+        """Return (M,) bool, whether the static rule lets an orientation pass."""
         return self.known.through > 0.5
 
     @cached_property
     def holding(self):
-        """(M,) int, of the parts tried those that did what the static rule says.
+        """Return (M,) int, of the parts tried those that did what the static rule says.
 
         A part that shall not pass may be returned or held; one that leaves turned has not been.
         """
@@ -139,13 +139,13 @@ class TrialRun:
 
     @property
     def margin(self):
-        """(M,) [m] of the static verdict; NaN where there is none: nothing met, lost before, or not sure."""
+        """Return (M,) [m] of the static verdict; NaN of none: nothing met, lost before, or not sure."""
         lost = np.array([one.returned for one in self.known.lying])
         return np.where(lost | ~self.sure, np.nan, self.known.margin)
 
     @cached_property
     def sure(self):
-        """(M,) bool, whether the static rule is sure of an orientation that comes alone.
+        """Return (M,) bool, whether the static rule is sure of an orientation that comes alone.
 
         What a pressure break carries and is wider than it only goes where the queue pushes it off; what
         passes may rock where a device leaves little of its foot.
@@ -159,12 +159,12 @@ class TrialRun:
 
     @property
     def odd(self):
-        """(M,) bool, where fewer than ``HELD`` did what a verdict of a clear margin says."""
+        """Return (M,) bool, where fewer than ``HELD`` did what a verdict of a clear margin says."""
         return self._against(self.holding)
 
     @property
     def sorts(self):
-        """Whether what shall pass still leaves as it came, and nothing else does."""
+        """Say whether what shall pass still leaves as it came, and nothing else does."""
         passed = self.counts[:, course.PASSED]
         return not self._against(np.where(self.predicted, passed, self.tried - passed)).any()
 
@@ -175,14 +175,14 @@ class TrialRun:
 
     @property
     def depths(self):
-        """(M,) [m] the deepest that a part of each orientation was in anything."""
+        """Return the deepest that a part of each orientation was in anything, (M,) [m]."""
         found = np.zeros(len(self.shares))
         np.maximum.at(found, self.course.entered, self.course.depths)
         return found
 
     @property
     def remarks(self):
-        """What a user must not overlook, a sentence each."""
+        """Say what a user must not overlook, a sentence each."""
         drive = self.bowl.drive
         if self.throw_number > 1.0:
             yield HOPS.format(self.throw_number, 1e3 * drive.amplitude / self.throw_number)

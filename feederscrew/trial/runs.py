@@ -277,7 +277,7 @@ def scratch(solid, borders):
 
 
 def compiled():
-    """Whether the kernel of the trial is on disk already."""
+    """Say whether the kernel of the trial is on disk already."""
     return on_disk(travel.travel_all)
 
 

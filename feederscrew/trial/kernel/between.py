@@ -53,7 +53,7 @@ def _both(crowd, k, e, impulse):
 
 @compiled
 def relax(crowd, k):
-    """One projected Gauss-Seidel step on a contact of two parts; the change of its impulse."""
+    """Take one projected Gauss-Seidel step on a contact of two parts; the change of its impulse."""
     row = crowd.pairs[k]
     x, y, z = row[IMPULSE], row[IMPULSE + 1], row[IMPULSE + 2]
     up = max(z + row[MASS + 2] * (row[WANTED] - _apart(crowd, k, NORMAL)), 0.0)

@@ -52,7 +52,7 @@ def _arm(row, e, turn, x, y, z, a, b, c):
 
 @compiled
 def speed(state, row, e):
-    """Velocity of a contact along one of its axes."""
+    """Return the velocity of a contact along one of its axes."""
     a, k = AXES + 3 * e, LEVER + 3 * e
     found = row[a] * state[VX] + row[a + 1] * state[VX + 1] + row[a + 2] * state[VZ]
     return found + row[k] * state[W] + row[k + 1] * state[W + 1] + row[k + 2] * state[W + 2]
@@ -72,7 +72,7 @@ def _pushed(row, a, k, impulse, u, v, w, p, q, r):
 
 @compiled
 def rubbing(ahead, aside, most):
-    """Impulses along a contact, of the size that friction allows at most."""
+    """Return impulses along a contact, of the size that friction allows at most."""
     size = ahead * ahead + aside * aside
     scale = most / math.sqrt(size) if size > most * most else 1.0
     return scale * ahead, scale * aside
@@ -99,7 +99,7 @@ def _relax(row, rough, u, v, w, p, q, r):
 
 @compiled
 def solve(state, contacts, count, rough, sweeps, converged, warm):
-    """Contact impulses that let each contact leave at its wanted speed or faster; with friction if rough.
+    """Find impulses that let each contact leave at its wanted speed or faster; with friction if rough.
 
     Begun with ``warm`` times the impulses in the rows.
     Swept until a whole sweep changes the impulses by no more than ``converged`` of their sum.

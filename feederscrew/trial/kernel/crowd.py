@@ -107,7 +107,7 @@ def _relax_part(crowd, n):
 
 @compiled
 def solve(surface, crowd, pairs):
-    """Contact impulses of all parts together."""
+    """Find contact impulses of all parts together."""
     for n in range(len(crowd.states)):
         _forgotten(crowd.rows[n], crowd.counts[n])
     _forgotten(crowd.pairs, pairs)
@@ -134,7 +134,7 @@ def _moving(crowd, solid, active):
 
 @compiled
 def pushed(surface, solid, floor, crowd, work, active, time, dt, pairs):
-    """Velocities after a step; deepest contact, share of the step after which a part turns round."""
+    """Compute velocities after a step; deepest contact, share of the step after which a part turns round."""
     deepest, share = 0.0, 1.0
     for n in range(len(crowd.states)):
         if not active[n]:
@@ -162,7 +162,7 @@ def pushed(surface, solid, floor, crowd, work, active, time, dt, pairs):
 
 @compiled
 def step(surface, solid, floor, crowd, work, active, time, dt):
-    """One step of all parts, or the share of it after which the sliding of one turns round.
+    """Take one step of all parts, or the share of it after which the sliding of one turns round.
 
     Returns
     -------

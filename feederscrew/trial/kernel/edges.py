@@ -69,7 +69,7 @@ def near_borders(plate, borders, box, reach, found):
 
 @compiled
 def edges_on(plate, borders, nears, lows, solid, turn, reach, work, contacts, count):
-    """Contacts of the part's low edges with near borders."""
+    """Add contacts of the part's low edges with near borders."""
     shown, spots = work.shown, work.spots
     for n in range(lows):
         k = work.edges[n]
@@ -108,7 +108,7 @@ def _apart(p, q, border, reach):
 
 @compiled
 def edges_on_posts(plate, borders, nears, solid, turn, reach, work, contacts, count):
-    """Contacts of the part's edges with the edges that run down a plate's side from convex corners."""
+    """Add contacts of the part's edges with the edges that run down a plate's side from convex corners."""
     shown, spots = work.shown, work.spots
     for m in range(nears):
         border = borders[work.near[m]]
@@ -198,7 +198,7 @@ def low_faces(solid, plate, turn, shown, reach, found, vector):
 
 @compiled
 def faces_on(plate, borders, nears, solid, state, turn, reach, work, contacts, count):
-    """Contacts of the part's faces with the convex corners of near borders."""
+    """Add contacts of the part's faces with the convex corners of near borders."""
     lows, vector = -1, work.vectors[2]
     for m in range(nears):
         border = borders[work.near[m]]
@@ -250,7 +250,7 @@ def _inverse(plate, turn, vector):
 
 @compiled
 def within(solid, k, a, b, c, beside):
-    """Whether a point lies over a triangle, or no further than ``beside`` outside it."""
+    """Say whether a point lies over a triangle, or no further than ``beside`` outside it."""
     n = solid.normals[k]
     for i in range(3):
         p, q = solid.vertices[solid.triangles[k, i]], solid.vertices[solid.triangles[k, (i + 1) % 3]]

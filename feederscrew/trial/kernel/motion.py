@@ -46,7 +46,7 @@ class StageSurface(NamedTuple):
 
 @compiled
 def forces(surface, floor, time, dt, state):
-    """Changes of a part's velocity by gravity and by the drive over dt, and of the bowl's spin."""
+    """Return the changes of a part's velocity by gravity and by the drive over dt, and of the bowl's spin."""
     x, y = state[X], surface.radius - state[Y]
     off = math.sqrt(x * x + y * y)
     c, s = y / off, x / off
@@ -70,7 +70,7 @@ def pull(surface, floor, time, dt, work):
 
 @shared
 def found(surface, solid, work, reach):
-    """Every contact of the part as it is; how many."""
+    """Find every contact of the part as it is; how many."""
     state, turn, contacts = work.state, work.turn, work.contacts
     x, y = state[X], surface.radius - state[Y]
     off = math.sqrt(x * x + y * y)
@@ -142,7 +142,7 @@ def wanted(surface, work, count, dt):
 
 @compiled
 def reversal(work, count):
-    """Share of a step after which sliding comes to a stand, if it does; else 1.
+    """Return the share of a step after which sliding comes to a stand, if it does; else 1.
 
     Of the contact that slides fastest. What friction did less than its most against the sliding is what it
     did after the stand: without that the contact would have gone on to slide back so much faster.
@@ -192,7 +192,7 @@ def lift(surface, solid, floor, work, time, dt, count):
 
 @compiled
 def pushed(surface, solid, floor, work, time, dt, count):
-    """Velocities after a step: gravity, drive and contacts.
+    """Compute velocities after a step: gravity, drive and contacts.
 
     Returns
     -------
@@ -217,7 +217,7 @@ def pushed(surface, solid, floor, work, time, dt, count):
 
 @compiled
 def step(surface, solid, floor, work, time, dt):
-    """One step of the part, or the share of it up to where it strikes or its sliding turns round.
+    """Take one step of the part, or the share of it up to where it strikes or its sliding turns round.
 
     Returns
     -------

@@ -165,7 +165,7 @@ def _near_faces(crowd, solid, reach):
 
 @compiled
 def corners_on(crowd, solid, i, j, reach, count):
-    """Contacts of the corners of part i with the faces of part j; leaves the corners in ``crowd.spots``."""
+    """Add contacts of the corners of part i with faces of part j; leaves the corners in ``crowd.spots``."""
     _relative(crowd, i, j)
     _shifted(solid.corners, crowd.move, crowd.spots)
     nears = _near_corners(crowd, solid, reach)
@@ -208,7 +208,7 @@ def _beside(p, q, r, s, reach):
 
 @compiled
 def edges_on(crowd, solid, i, j, reach, count):
-    """Contacts of the convex edges of part i, whose corners are in ``crowd.spots``, with those of part j."""
+    """Add contacts of the convex edges of part i, its corners in ``crowd.spots``, with those of part j."""
     nears = _near_edges(solid, crowd.spots, crowd.low, crowd.high, reach, crowd.near)
     _emptied(crowd.box)
     for m in range(nears):

@@ -44,7 +44,7 @@ def placed(vertices, turn, spots):
 
 @compiled
 def inside(borders, first, last, a, b):
-    """Whether a point of a plate's surface is solid: it is within its borders, holes left out."""
+    """Say whether a point of a plate's surface is solid: it is within its borders, holes left out."""
     odd = False
     for k in range(first, last):
         p, q, r, s = borders[k, 0], borders[k, 1], borders[k, 2], borders[k, 3]
@@ -86,7 +86,7 @@ def seen(plate, state, spots, shown):
 
 @compiled
 def points_to(solid, shown, k, u, v, w):
-    """Whether a corner of the part is its foremost one against a direction, as far as its neighbours tell."""
+    """Say whether a corner of the part is its foremost against a direction, as far as its neighbours tell."""
     for n in range(solid.firsts[k], solid.firsts[k + 1]):
         m = solid.beside[n]
         x, y, z = shown[m, 0] - shown[k, 0], shown[m, 1] - shown[k, 1], shown[m, 2] - shown[k, 2]
@@ -98,7 +98,7 @@ def points_to(solid, shown, k, u, v, w):
 
 @compiled
 def sides_on(plate, borders, shown, spots, turn, solid, tangent, reach, low, contacts, count):
-    """Contacts of the part's corners with a plate's sides; writes which corners lie on its surface.
+    """Add contacts of the part's corners with a plate's sides; writes which corners lie on its surface.
 
     Returns
     -------
@@ -169,7 +169,7 @@ def _outermost(shown, low, count):
 
 @compiled
 def on_wall(shown, spots, state, turn, inertia, radius, tangent, reach, low, contacts, count):
-    """Contacts with the wall, a cylinder about the bowl's axis that a part is inside of."""
+    """Add contacts with the wall, a cylinder about the bowl's axis that a part is inside of."""
     limit, lows = (radius - reach) * (radius - reach), 0
     for k in range(len(spots)):
         x, y = state[X] + spots[k, 0], state[Y] + spots[k, 1] - radius
@@ -195,7 +195,7 @@ def on_wall(shown, spots, state, turn, inertia, radius, tangent, reach, low, con
 
 @compiled
 def corners_on(plate, borders, shown, spots, turn, solid, tangent, reach, nears, low, contacts, count):
-    """Contacts of the part's corners with a plate: its surface, and its sides behind rounded borders."""
+    """Add contacts of the part's corners with a plate: its surface, and its sides behind rounded borders."""
     if nears:
         count, lows = sides_on(
             plate, borders, shown, spots, turn, solid, tangent, reach, low, contacts, count

@@ -15,7 +15,7 @@ LEFT = 1e-6  # of a step: less is nothing
 
 @compiled
 def way(surface, state):
-    """How far along the wall the centre of mass is."""
+    """Return how far along the wall the centre of mass is."""
     return surface.radius * math.atan2(state[X], surface.radius - state[Y])
 
 
