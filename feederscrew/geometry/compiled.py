@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 PENDING = []  # functions that compiled ones may call, not yet registered, and how each is compiled
+TRIED = (0, 60), (0, 68)  # versions of numba, from and to, that `compiler` was tried with
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
 SOURCES = (
     "geometry/compile*.py",
@@ -38,7 +39,7 @@ def shared(function):
 
     As ``compiled``, it has no way in from Python.
     """
-    return _marked(_named(function), cache=True)
+    return _marked(_named(function), whole=True, cache=True)
 
 
 def entry(function, arrays=False):
@@ -46,7 +47,7 @@ def entry(function, arrays=False):
     from numba import njit
 
     _register()
-    return njit(cache=True, nogil=True, **_options(arrays))(_named(function))
+    return njit(cache=True, nogil=True, **_options(arrays, whole=True))(_named(function))
 
 
 def fitting(function, half_edges, plain=None):
@@ -95,12 +96,23 @@ def _register():
         register_jitable(**{"forceinline": True} | _options(**how))(function)
 
 
-def _options(arrays=False, **others):
+def _options(arrays=False, whole=False, **others):
     """Without arrays no reference counting, which costs more than the arithmetic; and no way in from C."""
     from numba.core.options import DefaultOptions
 
     counting = {} if arrays or not hasattr(DefaultOptions, "_nrt") else {"_nrt": False}
-    return {"error_model": "numpy", "no_cfunc_wrapper": True, **counting, **others}
+    return {"error_model": "numpy", "no_cfunc_wrapper": True, **counting, **_compiler(whole), **others}
+
+
+def _compiler(whole):
+    """Ours, of an entry or of a part of one; numba's own, which takes longer, where ours is untried."""
+    from numba import version_info
+
+    if not TRIED[0] <= version_info.short <= TRIED[1]:
+        return {}
+    from feederscrew.geometry import compiler
+
+    return {"pipeline_class": compiler.Whole if whole else compiler.Part}
 
 
 @functools.cache
