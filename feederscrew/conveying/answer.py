@@ -43,7 +43,7 @@ class Answer:
 
     @property
     def margins(self):
-        """Static friction above each limit of slip, and the throw number below the hop [1]."""
+        """Return the static friction above each limit of slip, and the throw number below the hop [1]."""
         return {
             "forward": self.setting.static - self.mu_forward,
             "backward": self.setting.static_back - self.mu_backward,
@@ -52,7 +52,7 @@ class Answer:
 
 
 def settings(bowl):
-    """What the kernel needs of a bowl.
+    """Return what the kernel needs of a bowl.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def settings(bowl):
 
 
 def answer(bowl):
-    """How a part travels in a bowl, computed without compiling anything.
+    """Compute how a part travels in a bowl, without compiling anything.
 
     Parameters
     ----------
@@ -97,12 +97,12 @@ def answer(bowl):
 
 
 def throw_number(bowl):
-    """Greatest downward acceleration of the plate over gravity, along the normal [1]; of single values."""
+    """Return the plate's greatest downward acceleration over gravity, along the normal [1]; one setting."""
     return law.throw_number(law.law(OperatingPoint(*settings(bowl).tolist())))
 
 
 def conveying(bowl):
-    """The bowl itself, once it can convey; raises ConfigError otherwise."""
+    """Return the bowl itself, once it can convey; raise ConfigError otherwise."""
     if not np.all(bowl.gravity > 0.0):
         raise ConfigError("gravity", "is not above 0", "give m/s2, 9.81 on earth")
     if np.any(bowl.drive.direction != 0.0):
@@ -119,7 +119,7 @@ def conveying(bowl):
 
 
 def cells(bowl):
-    """How a part travels over a map.
+    """Compute how a part travels over a map.
 
     Parameters
     ----------
@@ -157,12 +157,12 @@ def cells(bowl):
 
 
 def greatest_speed(bowl):
-    """A w [m/s], of the first harmonic."""
+    """Return A w [m/s], of the first harmonic."""
     return bowl.drive.amplitude * 2.0 * np.pi * bowl.drive.frequency
 
 
 def validity(found, bowl):
-    """What an answer leaves out, in one sentence."""
+    """Say what an answer leaves out, in one sentence."""
     said = (
         f"{POINT_MASS} ({SOURCE})"
         if found.throw_number > 1.0
@@ -174,7 +174,7 @@ def validity(found, bowl):
 
 
 def scaled(bowl, *, amplitude=1.0, friction=1.0, angle=1.0):
-    """The bowl with its stroke, every coefficient of friction or its vibration angle multiplied."""
+    """Return the bowl with its stroke, every coefficient of friction or its vibration angle multiplied."""
     drive = replace(
         bowl.drive,
         amplitude=bowl.drive.amplitude * amplitude,

@@ -9,7 +9,7 @@ PRECISION = 1e-15
 
 
 def two_burst_velocity(ratio, angle, climb, friction):
-    """Mean velocity of a part that slips forward once, back once, and sticks in between.
+    """Return the mean velocity of a part that slips forward once, back once, and sticks in between.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def two_burst_velocity(ratio, angle, climb, friction):
 
 
 def throw_of_flight(periods):
-    """Throw number at which a part that does not rebound flies for a given time.
+    """Return the throw number at which a part that does not rebound flies for a given time.
 
     Parameters
     ----------
@@ -58,12 +58,12 @@ def throw_of_flight(periods):
 
 
 def grazing_flight(throw):
-    """Length [periods] of the flight for a throw number just above 1; the error is of higher order."""
+    """Return the length [periods] of the flight just above throw number 1; the error is of higher order."""
     return 4.0 * math.sqrt(2.0 * (throw - 1.0)) / (2.0 * math.pi)
 
 
 def ideal_throw_velocity(periods, angle, climb, frequency, gravity):
-    """Velocity of a part that grips at once on landing, does not rebound and is thrown once a period.
+    """Return the velocity of a part that grips on landing, does not rebound and is thrown once a period.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def ideal_throw_velocity(periods, angle, climb, frequency, gravity):
 
 
 def bounce_window(periods, restitution):
-    """Throw numbers between which a part can go on bouncing with the same flight each time.
+    """Return the throw numbers between which a part can go on bouncing with the same flight each time.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def elliptical_velocity(throw, steepness=0.0):
 
 
 def velocity_bound(angle):
-    """The plate's greatest speed along the track [A w]: no steady motion up a climb is faster."""
+    """Return the plate's greatest speed along the track [A w]: no steady motion up a climb is faster."""
     return math.cos(angle)
 
 

@@ -12,14 +12,14 @@ LATE = 10  # steps
 
 
 def later(zeros, now):
-    """The first of two angles, ascending, that is still to come in this period; inf otherwise."""
+    """Return the first of two angles, ascending, that is still to come in this period; inf otherwise."""
     if zeros[0] >= now - TIE:
         return max(zeros[0], now)
     return max(zeros[1], now) if zeros[1] >= now - TIE else math.inf
 
 
 def slip_end(a, angle, speed):
-    """First angle of this period at which a slip ends.
+    """Return the first angle of this period at which a slip ends.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def _stop(arc, speed, low, high, steepest):
 
 
 def landing(lift, angle, height, speed):
-    """First angle of this period at which a flight ends.
+    """Return the first angle of this period at which a flight ends.
 
     Parameters
     ----------

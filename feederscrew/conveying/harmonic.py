@@ -24,7 +24,7 @@ class Harmonic(NamedTuple):
 
 
 def harmonic(wave):
-    """A wave by its amplitudes and phases, with its zeros."""
+    """Return a wave by its amplitudes and phases, with its zeros."""
     level = wave.level
     swing, phase = math.hypot(wave.sine, wave.cosine), math.atan2(wave.cosine, wave.sine)
     second, twice = math.hypot(wave.sine_2, wave.cosine_2), math.atan2(wave.cosine_2, wave.sine_2)
@@ -40,7 +40,7 @@ def harmonic(wave):
 
 
 def peak(a):
-    """Its greatest value."""
+    """Return its greatest value."""
     if a.second == 0.0:
         return a.level + a.swing
     once, twice = a.phase, a.second_phase
@@ -50,20 +50,20 @@ def peak(a):
 
 
 def value(a, angle):
-    """The harmonic at an angle."""
+    """Return the harmonic at an angle."""
     once = a.level + a.swing * math.sin(angle + a.phase)
     return once if a.second == 0.0 else once + a.second * math.sin(2.0 * angle + a.second_phase)
 
 
 def after(zeros, angle):
-    """The first of two angles, ascending, beyond another; inf where neither is."""
+    """Return the first of two angles, ascending, beyond another; inf where neither is."""
     if zeros[0] > angle:
         return zeros[0]
     return zeros[1] if zeros[1] > angle else INF
 
 
 def above(a, angle):
-    """Whether it is positive from an angle on, told by its zeros: at one, its value is only rounding."""
+    """Tell by its zeros whether it is positive from an angle on: at one, its value is only rounding."""
     rise, fall = after(a.rises, angle), after(a.falls, angle)
     if rise == fall:  # neither is to come in this period
         rise, fall = a.rises[0], a.falls[0]
@@ -82,7 +82,7 @@ class Arc(NamedTuple):
 
 
 def onward(a, start):
-    """The harmonic from ``start`` on."""
+    """Return the harmonic from ``start`` on."""
     sine, cosine = a.swing * math.sin(start + a.phase), a.swing * math.cos(start + a.phase)
     if a.second == 0.0:
         return Arc(a.level, sine, cosine, 0.0, 0.0, 0.0)
@@ -91,7 +91,7 @@ def onward(a, start):
 
 
 def reached(arc, span):
-    """The harmonic after a span."""
+    """Return the harmonic after a span."""
     s, c = math.sin(0.5 * span), math.cos(0.5 * span)
     once = arc.level + arc.sine + 2.0 * s * (arc.cosine * c - arc.sine * s)
     if arc.second == 0.0:
@@ -101,7 +101,7 @@ def reached(arc, span):
 
 
 def gain(arc, span):
-    """Integral over a span: the velocity gained; as a product, so that short spans keep their digits."""
+    """Integrate over a span: the velocity gained; as a product, so that short spans keep their digits."""
     s, c = math.sin(0.5 * span), math.cos(0.5 * span)
     once = arc.level * span + 2.0 * s * (arc.sine * c + arc.cosine * s)
     if arc.second == 0.0:
@@ -111,7 +111,7 @@ def gain(arc, span):
 
 
 def travel(arc, span):
-    """Twofold integral over a span: the way made from rest."""
+    """Integrate twice over a span: the way made from rest."""
     curved = arc.cosine * _beyond_sine(span) - arc.sine * _beyond_cosine(span)
     once = 0.5 * (arc.level + arc.sine) * span * span + curved
     if arc.second == 0.0:

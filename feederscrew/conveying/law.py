@@ -26,7 +26,7 @@ class Law(NamedTuple):
 
 
 def law(setting):
-    """Equations of motion of a setting.
+    """Return the equations of motion of a setting.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def law(setting):
 
 
 def lift_wave(setting):
-    """Acceleration along the normal of a part in flight; pressed on, what is missing to it."""
+    """Return the acceleration along the normal of a part in flight; pressed on, what is missing to it."""
     weight = math.cos(setting.climb) * math.cos(setting.bank) / setting.ratio
     normal = math.sin(setting.angle)
     second, phase = normal * OVERTONE * setting.second, setting.second_phase
@@ -64,7 +64,7 @@ def lift_wave(setting):
 
 
 def pull_wave(setting, direction, friction, wall):
-    """Acceleration left after friction of a part about to slip.
+    """Return the acceleration left after friction of a part about to slip.
 
     Parameters
     ----------
@@ -98,12 +98,12 @@ def _pull(setting, direction, friction, wall):
 
 
 def throw_number(rules):
-    """Greatest downward acceleration of the plate over what gravity gives a part [1]; it hops above 1."""
+    """Return the plate's greatest downward acceleration over a part's own [1]; it hops above 1."""
     return 1.0 - peak(rules.lift) / rules.lift.level
 
 
 def contact(rules, angle, speed):
-    """Phase of a part that touches the plate at ``angle`` with a relative ``speed`` along it."""
+    """Return the phase of a part that touches the plate at ``angle`` with a relative ``speed`` along it."""
     if above(rules.lift, angle):
         return FLIGHT
     if speed > 0.0 or (speed == 0.0 and value(rules.onset, angle) > 0.0):

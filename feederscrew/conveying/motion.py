@@ -27,7 +27,7 @@ class State(NamedTuple):
 
 
 def at_rest(rules):
-    """Part lying on the plate at mid stroke."""
+    """Return a part lying on the plate at mid stroke."""
     return State(0.0, contact(rules, 0.0, 0.0), 0.0, 0.0, 0.0, 0.0)
 
 
@@ -122,7 +122,7 @@ def _fly(rules, state, tally):
 
 
 def land(rules, angle, speed, impact):
-    """State after an impact: Newton's restitution along the normal, Coulomb's bound along the track.
+    """Return the state after an impact: restitution (Newton) across the track, Coulomb's bound along it.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ SAME = 1e-15  # relative
 
 
 def limits_of_slip(setting):
-    """Least static friction against slip up and down the track.
+    """Return the least static friction against slip up and down the track.
 
     Parameters
     ----------

@@ -11,12 +11,12 @@ STEPS = 26
 
 
 def inwards(bowl):
-    """The bowl at radii from half the track's to the track's own, evenly spaced."""
+    """Return the bowl at radii from half the track's to the track's own, evenly spaced."""
     return at_radius(bowl, bowl.track.radius * np.linspace(INNER, 1.0, STEPS))
 
 
 def at_radius(bowl, radius):
-    """The bowl as a part feels it nearer to its axis.
+    """Return the bowl as a part feels it nearer to its axis.
 
     Parameters
     ----------

@@ -18,12 +18,12 @@ class Neighbours:
     more: float  # [m/s]
 
     def elasticity(self, velocity, change=CHANGE):
-        """Per cent of velocity for one per cent of the quantity; NaN where the part does not travel."""
+        """Return per cent of velocity for one per cent of the quantity; NaN where the part stands."""
         return (self.more - self.less) / (2.0 * change * velocity) if velocity else math.nan
 
 
 def sensitivity(bowl):
-    """Velocities with each quantity a tenth lower and higher.
+    """Return velocities with each quantity a tenth lower and higher.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def sensitivity(bowl):
 
 
 def friction_doubt(bowl):
-    """Neighbours for friction a fifth lower and higher."""
+    """Return neighbours for friction a fifth lower and higher."""
     return _neighbours(bowl, "friction", FRICTION_DOUBT)
 
 

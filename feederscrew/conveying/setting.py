@@ -31,7 +31,7 @@ class OperatingPoint(NamedTuple):
 
 
 def plain(ratio, angle, climb, friction, restitution=0.0):
-    """OperatingPoint on an unbanked track with one coefficient of friction, as most closed forms assume.
+    """Return an unbanked track with one coefficient of friction, as most closed forms assume.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def plain(ratio, angle, climb, friction, restitution=0.0):
 
 
 def checked(setting):
-    """The setting itself, once it describes a track; raises ValueError with a plain reason otherwise."""
+    """Return the setting itself, once it describes a track; raise ValueError with a reason otherwise."""
     if not all(math.isfinite(value) for value in setting):
         raise ValueError("an entry of the setting is not finite")
     if setting.ratio <= 0.0:

@@ -83,12 +83,12 @@ def follow(rules, state, known, patience):
 
 
 def noted(state):
-    """What tells a state at the start of a period from others: height, velocity along the normal, speed."""
+    """Return what tells a state at the start of a period: height, velocity along the normal, speed."""
     return (state.height if state.phase == FLIGHT else RESTING), state.rising, state.speed
 
 
 def evenly(rules):
-    """Whether friction is the same at the onset of a slip as during it, both ways, and there is some.
+    """Tell whether friction is the same at the onset of a slip as during it, both ways, and not zero.
 
     Then two parts whose motions along the normal are the same never get farther apart in speed along the
     track, and one motion along the normal has one velocity.

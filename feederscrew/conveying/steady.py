@@ -41,7 +41,7 @@ OFF = 1.001  # such starts are this much too fast: exactly on it, even an unstab
 
 
 def steady(rules, state, out):
-    """Steady motion reached from one start.
+    """Return the steady motion reached from one start.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def _slid(tally):
 
 
 def escape(rules, aloft):
-    """Greatest growth of the speed of a part that slides all the time, up or down the track.
+    """Return the greatest growth of the speed of a part that slides all the time, up or down the track.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def _averages(out, tally, periods):
 
 
 def survey(setting, out):
-    """Steady motion from rest and, where impacts rebound, from several throws; the range of their velocities.
+    """Fill a row: steady motion from rest and, where impacts rebound, from throws; their range of velocity.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def _nothing(out):
 
 
 def regime(rules):
-    """What a part that is held by static friction does within a cycle, a place in ``limits.REGIMES``."""
+    """Return what a part held by static friction does within a cycle, a place in ``limits.REGIMES``."""
     if throw_number(rules) >= 1.0 - limits.ROUNDING:
         return limits.HOP
     forward = limits.FORWARD if peak(rules.onset) > 0.0 else limits.RIDE
@@ -201,7 +201,7 @@ def _widen(rules, out, known, count):
 
 
 def thrown(rules, start):
-    """Start number ``start``: near a regular bounce, or dropped onto the plate at mid stroke.
+    """Return start number ``start``: near a regular bounce, or dropped onto the plate at mid stroke.
 
     Parameters
     ----------
@@ -230,7 +230,7 @@ def thrown(rules, start):
 
 
 def plate_speed(lift, less):
-    """Velocity of the plate along its normal, less a constant [A w], as a harmonic."""
+    """Return the velocity of the plate along its normal, less a constant [A w], as a harmonic."""
     once, twice, half = lift.phase, lift.second_phase, 0.5 * lift.second
     sine, cosine = -lift.swing * math.sin(once), lift.swing * math.cos(once)
     return harmonic(Wave(-less, sine, cosine, -half * math.sin(twice), half * math.cos(twice)))

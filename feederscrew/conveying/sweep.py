@@ -36,7 +36,7 @@ LOT = 256  # settings handed to a core at a time: their costs differ a hundredfo
 
 
 def sweep(settings, workers=None):
-    """Steady motion of many settings, as ``steady.survey`` finds it for one.
+    """Compute the steady motion of many settings, as ``steady.survey`` does for one.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def sweep(settings, workers=None):
 
 
 def compiled():
-    """Whether the compiled functions are already on disk, or numba is told not to compile."""
+    """Tell whether the compiled functions are already on disk, or numba is told not to compile."""
     return on_disk(_compiled())
 
 

@@ -28,7 +28,7 @@ class CycleTrace:
 
 
 def trace(setting):
-    """The steady cycle a part falls into from rest.
+    """Return the steady cycle a part falls into from rest.
 
     Parameters
     ----------

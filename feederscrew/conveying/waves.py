@@ -29,19 +29,19 @@ class Wave(NamedTuple):
 
 
 def height(wave, angle):
-    """The wave at an angle."""
+    """Return the wave at an angle."""
     s, c = math.sin(angle), math.cos(angle)
     once = wave.sine * s + wave.cosine * c
     return wave.level + once + 2.0 * wave.sine_2 * s * c + wave.cosine_2 * (c - s) * (c + s)
 
 
 def slope(wave):
-    """Its derivative, a wave again."""
+    """Return its derivative, a wave again."""
     return Wave(0.0, -wave.cosine, wave.sine, -2.0 * wave.cosine_2, 2.0 * wave.sine_2)
 
 
 def bends(wave):
-    """Where a wave turns.
+    """Find where a wave turns.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def _knots(first, apart, count):
 
 
 def crest(wave):
-    """Angle [rad] of its greatest value; the wave has a harmonic."""
+    """Return the angle [rad] of its greatest value; the wave has a harmonic."""
     best, found = -math.inf, 0.0
     angles = bends(wave)
     for k in range(MOST):
@@ -88,7 +88,7 @@ def crest(wave):
 
 
 def crossings(wave, knots, sense):
-    """Zeros of a wave that has at most one between neighbouring knots.
+    """Find the zeros of a wave that has at most one between neighbouring knots.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ SHOWN = {"length": "mm", "velocity": "mm/s", "angular velocity": "rad/s", "numbe
 
 
 def launch_of(preset, length, texts, gravity=GRAVITY):
-    """A preset with the user's own ranges in it.
+    """Return a preset with the user's own ranges in it.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def launch_of(preset, length, texts, gravity=GRAVITY):
 
 
 def described(launch, length, gravity=GRAVITY):
-    """Name and ranges of a launch in the units of the shop, for documents.
+    """Return the name and ranges of a launch in the units of the shop, for documents.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def described(launch, length, gravity=GRAVITY):
 
 
 def share(text, where):
-    """A share above 0 and below 1 as typed, '1%' or '0.01'."""
+    """Read a share above 0 and below 1 as typed, '1%' or '0.01'."""
     value = _read(where, text, "number")
     if not NARROWEST <= value <= WIDEST:
         limits = f"give {NARROWEST:.2%} to {WIDEST:.0%}"

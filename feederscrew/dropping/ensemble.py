@@ -51,12 +51,12 @@ class Aim:
     count: int  # classes
 
     def widest(self, faces):
-        """Half the longest interval after drops on (N,) ``faces``."""
+        """Return half the longest interval after drops on (N,) ``faces``."""
         counts = counted(faces, self.rows, self.count)
         return half_width(*wilson(counts, counts.sum()))
 
     def needed(self, done, widest):
-        """How many drops it takes: ``done``, or an estimate, as intervals narrow with 1 / sqrt(N)."""
+        """Return how many drops it takes: ``done``, or an estimate; intervals narrow with 1 / sqrt(N)."""
         excess = (widest / self.width) ** 2
         return done if excess <= 1.0 else ROUND * int(np.ceil(excess * done / ROUND))
 
@@ -138,12 +138,12 @@ def tally(drops, rows, count):
 
 
 def counted(faces, rows, count):
-    """(A,) drops by class, from the (N,) faces they rest on."""
+    """Count (A,) drops by class, from the (N,) faces they rest on."""
     return np.bincount(rows[faces[faces != kernel.UNSETTLED]], minlength=count)
 
 
 def shares(counts):
-    """(A,) shares of (A,) counts; NaN where all are zero."""
+    """Return the (A,) shares of (A,) counts; NaN where all are zero."""
     total = counts.sum()
     return counts / total if total else np.full(len(counts), np.nan)
 
@@ -158,7 +158,7 @@ def _wider(counts, end, way):
 
 
 def wilson(counts, total):
-    """Ends of the 95 % interval of a share, from counts.
+    """Return the ends of the 95 % interval of a share, from counts.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def wilson(counts, total):
 
 
 def half_width(low, high):
-    """Half the longest of some intervals."""
+    """Return half the longest of some intervals."""
     return float(0.5 * (high - low).max())
 
 

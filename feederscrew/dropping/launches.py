@@ -29,7 +29,7 @@ class Launch:
     axis: str = ANY  # it spins about: ANY, LEVEL, or FLIP
 
     def but(self, **ranges):
-        """The same launch with some ranges replaced; named 'own' once one is."""
+        """Return the launch with some ranges replaced; named 'own' once one is."""
         given = {name: given for name, given in ranges.items() if given is not None}
         return replace(self, name="own", **given) if given else self
 

@@ -7,7 +7,7 @@ import numpy as np
 
 
 def gather(work, jobs):
-    """Results of batches, in order.
+    """Return the results of batches, in order.
 
     Parameters
     ----------

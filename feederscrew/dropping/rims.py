@@ -177,7 +177,7 @@ def _circle(a, b, c):
 
 
 def true_heights(rims, edges, sinks, heights, radius):
-    """Heights of the centre of mass on sinks, the strips between two rims as the round side they stand for.
+    """Return heights of the centre of mass on sinks, strips between rims as the round side they stand for.
 
     Parameters
     ----------
@@ -244,7 +244,7 @@ def _tangent_height(ends, offset, radius):
 
 
 def true_tops(rims, edges, saddles, tops, radius):
-    """Heights of the centre of mass over saddles, chords of a rim as the circle they stand for.
+    """Return heights of the centre of mass over saddles, chords of a rim as the circle they stand for.
 
     Parameters
     ----------

@@ -114,5 +114,5 @@ def _heights(shape, length, rows, heights):
 
 
 def compiled():
-    """Whether the drop kernel is on disk already; else the first drop on a machine compiles it."""
+    """Tell whether the drop kernel is on disk already; else the first drop on a machine compiles it."""
     return on_disk(drop.settle_all)

@@ -46,17 +46,17 @@ class Shape(NamedTuple):
 
     @property
     def vertices(self):
-        """(V, 3) corners."""
+        """Return the (V, 3) corners."""
         return self.solid.vertices
 
     @property
     def inertia(self):
-        """(3,) principal moments at mass 1."""
+        """Return the (3,) principal moments at mass 1."""
         return self.solid.inertia
 
 
 def shape_of(hull, labels, mass, inertia, axes=None):
-    """Shape of a hull, and the length that makes it dimensionless.
+    """Return the shape of a hull, and the length that makes it dimensionless.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def _greatest(edges, areas):
 
 
 def shape_of_part(part, found):
-    """Shape of a part and its length [m], from its faces.
+    """Return the shape of a part and its length [m], from its faces.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def shape_of_part(part, found):
 
 
 def principal_axes(inertia):
-    """Principal moments (3,), ascending, and a rotation (3, 3) whose columns are their axes."""
+    """Return the principal moments (3,), ascending, and a rotation (3, 3) whose columns are their axes."""
     moments, principal = vectors.eigen(inertia)
     return moments, principal * np.sign(vectors.determinant(principal))
 

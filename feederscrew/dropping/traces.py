@@ -42,11 +42,11 @@ class DropTrace:
 
     @property
     def turns(self):
-        """Rotations from the file's axes to the plane's."""
+        """Return rotations from the file's axes to the plane's."""
         return Rotation.from_quat(np.roll(self.attitudes, -1, axis=1))
 
     def tumbled(self):
-        """Whether the underside of the first impact is later turned by more than a quarter of a circle."""
+        """Tell whether the underside of the first impact later turns by more than a quarter of a circle."""
         down = self.turns.inv().apply([0.0, 0.0, -1.0])[np.argmax(self.impacts) :]
         across = np.linalg.norm(np.cross(down, down[0]), axis=1)
         return bool((np.arctan2(across, vectors.product(down, down[0])) > TURNED).any())
@@ -112,7 +112,7 @@ def follow(shape, length, principal, starts, drops, rows):
 
 
 def telling(traces):
-    """The drop to show: the first that tumbled and lies still, else that tumbled, else the first."""
+    """Choose the drop to show: the first that tumbled and lies still, else that tumbled, else the first."""
     return min(traces, key=lambda trace: (not trace.tumbled(), not trace.still, trace.number))
 
 

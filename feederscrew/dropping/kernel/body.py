@@ -36,14 +36,14 @@ def rotation(state, turn):
 
 @compiled
 def spin_energy(state, inertia):
-    """Rotational energy."""
+    """Return the rotational energy."""
     p, q, r = state[W], state[W + 1], state[W + 2]
     return 0.5 * (inertia[0] * p * p + inertia[1] * q * q + inertia[2] * r * r)
 
 
 @compiled
 def rate(state):
-    """How fast the body turns."""
+    """Return how fast the body turns."""
     p, q, r = state[W], state[W + 1], state[W + 2]
     return math.sqrt(p * p + q * q + r * r)
 
@@ -56,14 +56,14 @@ def quickest(state, inertia):
 
 @compiled
 def moving_energy(state, inertia):
-    """Kinetic energy at mass 1."""
+    """Return the kinetic energy at mass 1."""
     u, v, w = state[VX], state[VY], state[VZ]
     return spin_energy(state, inertia) + 0.5 * (u * u + v * v + w * w)
 
 
 @compiled
 def energy(state, inertia):
-    """Kinetic energy and height: the total energy at mass 1 and gravity 1."""
+    """Return the kinetic energy and height: the total energy at mass 1 and gravity 1."""
     return moving_energy(state, inertia) + state[Z]
 
 
@@ -82,7 +82,7 @@ def rotate(state, p, q, r, dt):
 
 @compiled
 def turn_freely(state, inertia, dt):
-    """Rates after free rotation over a step on the floor: midpoint rule, then no energy won or lost."""
+    """Rotate freely over a step on the floor: rates by the midpoint rule, then no energy won or lost."""
     i, j, k = inertia[0], inertia[1], inertia[2]
     a, b, c = (j - k) / i, (k - i) / j, (i - j) / k  # Euler's equations
     p, q, r = state[W], state[W + 1], state[W + 2]
@@ -96,7 +96,7 @@ def turn_freely(state, inertia, dt):
 
 @compiled
 def coast(inertia, p, q, r, dt):
-    """Rates after free rotation over dt, of fourth order, and what the turn over it is.
+    """Return the rates after free rotation over dt, of fourth order, and what the turn over it is.
 
     The rates follow Euler's equations by the rule of Runge and Kutta, then no energy is won or lost. The turn
     is the first terms of Magnus' series, h / 2 (w + w') + h^2 / 12 (dw - dw' + w x w'): the rates are a cubic
@@ -130,7 +130,7 @@ def coast(inertia, p, q, r, dt):
 
 @compiled
 def tumble(state, inertia, dt):
-    """Free rotation over dt, of fourth order."""
+    """Rotate freely over dt, to fourth order."""
     p, q, r, x, y, z = coast(inertia, state[W], state[W + 1], state[W + 2], dt)
     state[W], state[W + 1], state[W + 2] = p, q, r
     half = 0.25 * (x * x + y * y + z * z)
@@ -140,7 +140,7 @@ def tumble(state, inertia, dt):
 
 @compiled
 def fly(state, inertia, dt):
-    """Ballistic flight over dt."""
+    """Fly over dt."""
     state[X] += dt * state[VX]
     state[Y] += dt * state[VY]
     state[Z] += dt * (state[VZ] - 0.5 * dt)
@@ -150,7 +150,7 @@ def fly(state, inertia, dt):
 
 @compiled
 def lowest(points, links, turn, corner):
-    """Lowest corner, going down the hull's edges from ``corner``; and its height over the body's centre."""
+    """Find the lowest corner, down the hull's edges from ``corner``; and its height over the centre."""
     a, b, c = turn[6], turn[7], turn[8]
     best = a * points[corner, 0] + b * points[corner, 1] + c * points[corner, 2]
     while True:
@@ -166,7 +166,7 @@ def lowest(points, links, turn, corner):
 
 @compiled
 def rim_level(rims, k, turn):
-    """Height of the lowest point of a rim over the body's centre; infinite where an arc does not reach it."""
+    """Return the height of a rim's lowest point over the body's centre; infinite where an arc has no such."""
     a, b, c = turn[6], turn[7], turn[8]
     along = a * rims[k, 3] + b * rims[k, 4] + c * rims[k, 5]
     x, y, z = a - along * rims[k, 3], b - along * rims[k, 4], c - along * rims[k, 5]
@@ -178,7 +178,7 @@ def rim_level(rims, k, turn):
 
 @compiled
 def bottom(solid, turn, corner):
-    """Corner from which to look on, and the height of the body's lowest point over its centre."""
+    """Return the corner from which to look on, and the height of the body's lowest point over its centre."""
     corner, level = lowest(solid.vertices, solid.links, turn, corner)
     if solid.inner[corner]:  # its rim is lower, but for rounding
         level = math.inf

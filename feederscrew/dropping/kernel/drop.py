@@ -22,7 +22,7 @@ STEADY = 0.3  # of the barrier: what a steadily rolling part may have beside its
 
 @compiled
 def face_below(shape, turn, corner):
-    """Face the body would roll to if set down as it is."""
+    """Return the face the body would roll to if set down as it is."""
     down = -turn[6], -turn[7], -turn[8]
     facet = roll_from_facet(shape.edges, roll_from_corner(shape.edges, down, corner))
     return shape.faces[facet] if facet != LOST else UNSETTLED
@@ -30,7 +30,7 @@ def face_below(shape, turn, corner):
 
 @compiled
 def rolling_energy(shape, state, turn, face):
-    """Energy of rolling about the axis of a rolling face, which no impact turns into height."""
+    """Return the energy of rolling about the axis of a rolling face, which no impact turns into height."""
     a = shape.axes[face]
     x = turn[0] * a[0] + turn[1] * a[1] + turn[2] * a[2]
     y = turn[3] * a[0] + turn[4] * a[1] + turn[5] * a[2]
@@ -44,7 +44,7 @@ def rolling_energy(shape, state, turn, face):
 
 @compiled
 def slides_flat(shape, state, turn, face, friction):
-    """True where the body lies flat on the floor and friction cannot tip it while it slides."""
+    """Tell whether the body lies flat on the floor and friction cannot tip it while it slides."""
     around = state[W] * turn[6] + state[W + 1] * turn[7] + state[W + 2] * turn[8]
     quick = body.rate(state)
     rocking = quick * quick - around * around
@@ -56,7 +56,7 @@ def slides_flat(shape, state, turn, face, friction):
 
 @compiled
 def decided(shape, state, turn, corner, count, friction, quiet, steps):
-    """Face on which the body is bound to rest, ``quiet`` steps without motion; UNSETTLED if it can leave."""
+    """Return the face on which the body is bound to rest after ``quiet`` steps; UNSETTLED if it can leave."""
     total = body.energy(state, shape.solid.inertia)
     if total >= shape.ceiling and count < 2:
         return UNSETTLED

@@ -28,26 +28,26 @@ class Floor(NamedTuple):
 
 @compiled
 def at_rest():
-    """The floor of a drop test."""
+    """Return the floor of a drop test."""
     return Floor(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, math.inf)
 
 
 @compiled
 def place(floor, amplitude, angle):
-    """Where the floor is along one axis, at a phase of its motion."""
+    """Return where the floor is along one axis, at a phase of its motion."""
     return amplitude * (math.sin(angle) + floor.second * math.sin(2.0 * angle + floor.second_phase))
 
 
 @compiled
 def speed(floor, amplitude, angle):
-    """How fast the floor moves along one axis."""
+    """Return how fast the floor moves along one axis."""
     turned = math.cos(angle) + 2.0 * floor.second * math.cos(2.0 * angle + floor.second_phase)
     return amplitude * floor.rate * turned
 
 
 @compiled
 def quickening(floor, time, dt):
-    """Change of the floor's velocity over a step, along x and z."""
+    """Return the change of the floor's velocity over a step, along x and z."""
     if floor.rate == 0.0:
         return 0.0, 0.0
     now, then = floor.rate * time, floor.rate * (time + dt)
@@ -57,7 +57,7 @@ def quickening(floor, time, dt):
 
 @compiled
 def gained(floor, time, dt):
-    """What the floor's way over a step has beyond its present velocity times ``dt``, along x and z."""
+    """Return the floor's way over a step beyond its present velocity times ``dt``, along x and z."""
     if floor.rate == 0.0:
         return 0.0, 0.0
     now, then = floor.rate * time, floor.rate * (time + dt)

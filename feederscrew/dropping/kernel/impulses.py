@@ -27,7 +27,7 @@ FURTHEST = 1000.0  # a leap, in changes of a sweep
 
 @compiled
 def stick(state, row, friction):
-    """Impulse that holds a single contact still, if friction can; returns whether it was given."""
+    """Hold a single contact still by an impulse, if friction can; returns whether it was given."""
     u, v, w = -speed(state, row, 0), -speed(state, row, 1), row[WANTED] - speed(state, row, 2)
     xx, yy, zz = 1.0 + coupling(row, 0, 0), 1.0 + coupling(row, 1, 1), 1.0 + coupling(row, 2, 2)
     xy, xz, yz = coupling(row, 0, 1), coupling(row, 0, 2), coupling(row, 1, 2)
@@ -48,19 +48,19 @@ def stick(state, row, friction):
 
 @compiled
 def along(c, n, k, v, p, q, r):
-    """Velocity of contact n along one axis: of the centre there, and of the rates on the lever at k."""
+    """Return the velocity of contact n along one axis: of the centre, and of the rates on the lever at k."""
     return v + c[n, k] * p + c[n, k + 1] * q + c[n, k + 2] * r
 
 
 @compiled
 def spun(c, n, k, impulse, p, q, r):
-    """Rates after an impulse along the axis whose RATE column is k."""
+    """Return the rates after an impulse along the axis whose RATE column is k."""
     return p + c[n, k] * impulse, q + c[n, k + 1] * impulse, r + c[n, k + 2] * impulse
 
 
 @compiled
 def relax(c, n, friction, u, v, w, p, q, r):
-    """One projected Gauss-Seidel step on contact n: velocities and rates after it."""
+    """Do one projected Gauss-Seidel step on contact n: velocities and rates after it."""
     x, y, z = c[n, IMPULSE], c[n, IMPULSE + 1], c[n, IMPULSE + 2]
     up = max(z + c[n, MASS + 2] * (c[n, WANTED] - along(c, n, LEVER + 6, w, p, q, r)), 0.0)
     w += up - z
@@ -90,7 +90,7 @@ def noted(contacts, count):
 
 @compiled
 def leap(contacts, count):
-    """How often the last sweep's change may be repeated at once, as no contact comes to pull; 0 for never.
+    """Return how often the last sweep's change may be repeated before a contact pulls; 0 for never.
 
     Two sweeps that change the impulses the same way tell the rest of the geometric series (Aitken). Of two
     corners side by side the impulse creeps from one to the other, by as much in every sweep.
@@ -113,7 +113,7 @@ def leap(contacts, count):
 
 @apart
 def solve(state, contacts, count, friction, sweeps, converged):
-    """Contact impulses with Coulomb friction: each contact leaves at its wanted speed or faster.
+    """Give contact impulses with Coulomb friction: each contact leaves at its wanted speed or faster.
 
     One or two contacts directly where that goes; else swept from the impulses that the contacts hold, until
     a whole sweep changes the body's velocities by no more than ``converged`` of what presses it: between many
@@ -127,7 +127,7 @@ def solve(state, contacts, count, friction, sweeps, converged):
 
 @compiled
 def sweep(state, contacts, count, friction, sweeps, converged):
-    """Contact impulses by projected Gauss-Seidel sweeps, from those that the contacts hold."""
+    """Give contact impulses by projected Gauss-Seidel sweeps, from those that the contacts hold."""
     for n in range(count):
         masses(contacts[n])
         for e in range(3):
@@ -161,7 +161,7 @@ def sweep(state, contacts, count, friction, sweeps, converged):
 
 @compiled
 def strike(inertia, state, saved, contacts, count, restitution, friction, steps):
-    """Impact: corners that approach faster than the threshold rebound; energy is never won."""
+    """Do an impact: corners that approach faster than the threshold rebound; energy is never won."""
     before = energy(state, inertia)
     keep(state, saved)
     for trial in range(4):
@@ -179,7 +179,7 @@ def strike(inertia, state, saved, contacts, count, restitution, friction, steps)
 
 @compiled
 def steepest(state, contacts, count):
-    """Upward speed of the contact that falls fastest."""
+    """Return the upward speed of the contact that falls fastest."""
     fall = math.inf
     for n in range(count):
         fall = min(fall, speed(state, contacts[n], 2))
@@ -188,7 +188,7 @@ def steepest(state, contacts, count):
 
 @compiled
 def hold(state, contacts, count, friction, steps, share):
-    """Contact impulses that let nothing fall further, without rebound; sought from a share of the last."""
+    """Give impulses that let nothing fall further, without rebound; sought from a share of the last."""
     for n in range(count):
         contacts[n, WANTED] = 0.0
         for k in range(IMPULSE, LAST):

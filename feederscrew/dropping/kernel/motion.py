@@ -32,7 +32,7 @@ class Scratch(NamedTuple):
 
 
 def scratch(shape, rows=0):
-    """Fresh working arrays for a shape, with a trace of so many rows."""
+    """Make working arrays for a shape, with a trace of so many rows."""
     size = len(shape.vertices)
     room = size + touch.QUARTERS * len(shape.solid.rims)
     return Scratch(
@@ -89,7 +89,7 @@ def gap_after(solid, work, floor, time, corner, dt):
 
 @compiled
 def approach(solid, work, floor, time, corner, gap, steps):
-    """One step through the air, ended on the floor if it would go below; corner, gap and time taken.
+    """Take one step through the air, ended on the floor if it would go below; corner, gap and time taken.
 
     No point comes down faster than ``down``, and what gravity adds, whatever way the body turns.
     """
@@ -130,7 +130,7 @@ def move(solid, work, corner, dt):
 
 @compiled
 def press_on(solid, work, floor, time, corner, count, friction, steps):
-    """One step on the floor, ended where another point lands; corner, gap and time taken.
+    """Take one step on the floor, ended where another point lands; corner, gap and time taken.
 
     Of first order in the step, as measured (benchmarks/convergence.py): positions follow the mean velocity
     and forces act half of the step ahead, but speeds are wanted at its end.
@@ -192,7 +192,7 @@ def resist(state, inertia, lever, dt):
 
 @shared
 def advance(solid, work, floor, time, corner, gap, restitution, friction, steps):
-    """One step of the body: through the air, or on the floor after the impact if it falls.
+    """Take one step of the body: through the air, or on the floor after the impact if it falls.
 
     Returns
     -------
@@ -223,7 +223,7 @@ def advance(solid, work, floor, time, corner, gap, restitution, friction, steps)
 
 @compiled
 def start(solid, work):
-    """Corner from which to look for the lowest point of the body as it stands, and height over the floor."""
+    """Return the corner from which to look for the body's lowest point as it stands, and its height."""
     work.pressed[0] = 0.0
     body.rotation(work.state, work.turn)
     corner, level = body.bottom(solid, work.turn, 0)

@@ -15,7 +15,7 @@ PATIENCE = 50  # steps for each that a floor without events would take
 
 @compiled
 def lying(shape, state, turn, corner):
-    """Face on which the body lies, however it travels, hops or spins; UNSETTLED while it may be tipping."""
+    """Return the face on which the body lies, travelling or spinning; UNSETTLED while it may be tipping."""
     face = face_below(shape, turn, corner)
     if face == UNSETTLED:
         return UNSETTLED
@@ -28,7 +28,7 @@ def lying(shape, state, turn, corner):
 
 @compiled
 def rocking_energy(shape, state, turn):
-    """Rotational energy without the spin about the vertical."""
+    """Return the rotational energy without the spin about the vertical."""
     around = state[W] * turn[6] + state[W + 1] * turn[7] + state[W + 2] * turn[8]
     energy = 0.0
     for k in range(3):

@@ -16,7 +16,7 @@ TURNS = 6  # changes of the directions after which the sweeps take over
 
 @compiled
 def slide(state, contacts, count, friction, converged):
-    """Impulses of one or two contacts that press and slip; returns whether they were found and given."""
+    """Give impulses to one or two contacts that press and slip; returns whether they were found."""
     first, last = contacts[0], contacts[count - 1]
     for n in range(count):
         aim(contacts[n], friction, speed(state, contacts[n], 0), speed(state, contacts[n], 1))
@@ -52,14 +52,14 @@ def aim(row, friction, ahead, aside):
 
 @compiled
 def given(row, e, by):
-    """Velocity of a contact along floor axis e for a unit of what presses another."""
+    """Return the velocity of a contact along floor axis e for a unit of what presses another."""
     k = LEVER + 3 * e
     return by[LAST + e] + row[k] * by[CHANGE] + row[k + 1] * by[CHANGE + 1] + row[k + 2] * by[CHANGE + 2]
 
 
 @compiled
 def pressed(state, first, last, count):
-    """What presses each contact so that it leaves at its wanted speed; 0 where there is no second."""
+    """Return what presses each contact so that it leaves at its wanted speed; 0 where there is no second."""
     a, here = given(first, 2, first), first[WANTED] - speed(state, first, 2)
     if count == 1:
         return here / a, 0.0

@@ -13,7 +13,7 @@ LEVEL = 1e-9  # [1] sine of the tilt below which a rim has no lowest point
 
 @compiled
 def touching(solid, work, height, corner, reach):
-    """Points within ``reach`` of the floor: fills ``work.spots`` and returns how many.
+    """Find the points within ``reach`` of the floor: fills ``work.spots`` and returns how many.
 
     Corners are found by flooding the hull's edges from the lowest one, through corners that rims replace.
     """
@@ -26,7 +26,7 @@ def touching(solid, work, height, corner, reach):
 
 @compiled
 def flooded(solid, work, height, corner, reach):
-    """Touching corners, written to ``work.spots``; ``work.seen`` (V,) is all False before and after."""
+    """Write touching corners to ``work.spots``; ``work.seen`` (V,) is all False before and after."""
     points, links, seen, found = solid.vertices, solid.links, work.seen, work.found
     a, b, c = work.turn[6], work.turn[7], work.turn[8]
     found[0], seen[corner] = corner, True
@@ -53,7 +53,7 @@ def flooded(solid, work, height, corner, reach):
 
 @compiled
 def lowest_on(rims, k, turn):
-    """Unit vector from the centre of a rim to its lowest point, in body axes, and how steep the rim is."""
+    """Return the unit vector from a rim's centre to its lowest point, in body axes, and how steep it is."""
     r = rims[k]
     along = turn[6] * r[3] + turn[7] * r[4] + turn[8] * r[5]
     x, y, z = along * r[3] - turn[6], along * r[4] - turn[7], along * r[5] - turn[8]
@@ -105,7 +105,7 @@ def thin_out(spots, owners, turn, count):
 
 @compiled
 def furthest(spots, turn, count, cos, sin):
-    """Index of the point furthest along a direction of the floor."""
+    """Return the index of the point furthest along a direction of the floor."""
     best, first = -math.inf, 0
     for k in range(count):
         p = spots[k]

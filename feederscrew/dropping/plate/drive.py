@@ -13,7 +13,7 @@ SLOW = 0.1  # of the plate's greatest speed upwards: slower contacts do not rebo
 
 
 def floor_of(bowl, length, coarse=1.0):
-    """The plate that moves as the bowl's floor does; level, its x axis along the drive.
+    """Return the plate that moves as the bowl's floor does; level, its x axis along the drive.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def floor_of(bowl, length, coarse=1.0):
 
 
 def steps_of(floor, coarse=1.0):
-    """Step sizes for a plate: finer than a drop's unless ``coarse``, and rebounds as slow as its own."""
+    """Return steps for a plate: finer than a drop's unless ``coarse``, and rebounds as slow as its own."""
     usual, once = Steps(), min(coarse, FINER)
     return usual._replace(
         flight=coarse * usual.flight / FINER,
@@ -53,7 +53,7 @@ def steps_of(floor, coarse=1.0):
 
 
 def throw_number(bowl):
-    """Greatest downward acceleration of the level floor over gravity [1], as of the track that conveys."""
+    """Return the level floor's greatest downward acceleration over gravity [1], as of a track."""
     if bowl.drive.amplitude == 0.0:
         return 0.0
     return float(answer.throw_number(replace(bowl, track=replace(bowl.track, climb=0.0, bank=0.0))))

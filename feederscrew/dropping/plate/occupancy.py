@@ -41,7 +41,7 @@ class Occupancy:
 
 
 def occupancy(faces, places, rows, count, period, rng):
-    """Shares, rates and velocities.
+    """Return shares, rates and velocities.
 
     Parameters
     ----------
@@ -88,13 +88,13 @@ def occupancy(faces, places, rows, count, period, rng):
 
 
 def lasting(faces):
-    """(N, K) face each part lies on or lay on last; UNSETTLED before the first."""
+    """Return the (N, K) face each part lies on or lay on last; UNSETTLED before the first."""
     at = np.where(faces == UNSETTLED, 0, np.arange(faces.shape[1]))
     return np.take_along_axis(faces, np.maximum.accumulate(at, axis=1), axis=1)
 
 
 def limit_of(rates, start):
-    """Shares to which transitions lead in the end.
+    """Return the shares to which transitions lead in the end.
 
     Parameters
     ----------

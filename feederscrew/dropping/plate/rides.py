@@ -61,7 +61,7 @@ def ride(shape, floor, starts, looks, steps, *, jobs=1, progress=None):
 
 
 def compiled():
-    """Whether the kernel of the plate is on disk already."""
+    """Tell whether the kernel of the plate is on disk already."""
     return on_disk(shaken.ride_all)
 
 

@@ -44,13 +44,13 @@ class Shaken:
 
     @property
     def transitions(self):
-        """How many were seen between classes."""
+        """Return how many were seen between classes."""
         counts = self.occupancy.counts
         return int(counts.sum() - np.trace(counts))
 
     @property
     def unsettled(self):
-        """How many parts have not lain on any face yet."""
+        """Return how many parts have not lain on any face yet."""
         return round(self.parts * (1.0 - float(self.occupancy.course[-1].sum())))
 
 
@@ -165,5 +165,5 @@ def _plate(found, aspects, shape, length, seconds, pace, bowl, launch, count, se
 
 
 def looks_apart(frequency, seconds):
-    """Time between two looks [s]: whole periods of the drive, so that the plate always stands alike."""
+    """Return the time between looks [s]: whole periods of the drive, so that the plate stands alike."""
     return max(int(np.ceil(seconds * frequency / MOST)), 1) / frequency
