@@ -64,9 +64,11 @@ results/%/inertia.csv: parts/%.stl | $(READY)
 results/%/slide.csv: configs/%.yaml | $(READY)
 	$(FEEDER) slide --config $< -o results --quiet > /dev/null
 
-BENCHES := waits kernels conveying speed tooling
+TABLES := waits kernels
+BENCHES := conveying speed tooling
 
-bench: $(READY_TO_TEST) ## what people wait for and the kernels, under ten minutes
+bench: $(READY_TO_TEST) ## what people wait for and the kernels, under ten minutes: the tables of docs/speed.md
+	for name in $(TABLES); do $(BIN)/python benchmarks/$$name.py --write || exit 1; done
 	for name in $(BENCHES); do $(BIN)/python benchmarks/$$name.py || exit 1; done
 	$(BIN)/python benchmarks/aspects.py --repeats 1
 

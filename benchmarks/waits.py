@@ -15,6 +15,7 @@ import shutil
 import statistics
 import sys
 import tempfile
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,6 +25,7 @@ from processes import adopt, at_once, spent, together
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/speed.md"
 PART = str(ROOT / "parts/lbracket_30x20x15.stl")
+STARTED = time.perf_counter()
 BARE = (sys.executable, "-c", "import numpy, scipy.spatial")
 QUIET = {"OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}  # as the program asks for it
 CALL = (sys.executable, "-c", "from feederscrew_cli.main import feeder; feeder()")
@@ -211,9 +213,10 @@ def table(rows):
 
 
 def busy():
-    """How much else ran beside it."""
+    """How much else ran beside it, and what the script took so far."""
     load = os.getloadavg()[1] if hasattr(os, "getloadavg") else 0.0
-    return f"{load:.0f} processes at work on the machine at a time, this one included"
+    took = f"{sum(os.times()[:4]):.0f} s CPU in {time.perf_counter() - STARTED:.0f} s by the clock"
+    return f"{load:.0f} processes at work on the machine at a time, this one included; {took}"
 
 
 def shown(figure):
