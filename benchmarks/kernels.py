@@ -20,7 +20,6 @@ from feederscrew.conveying import sweep
 from feederscrew.conveying.setting import plain
 
 POINTS = 20_000
-FACETS = {1e3: 2.5, 1e4: 1.3}  # beside the bare floor
 PAIRS = 3
 
 
@@ -48,7 +47,7 @@ def points():
 
 def facets(folder):
     """Aspects beside what any tool must pay: reading, checking, integrating, the hull; in turn."""
-    for size, target in FACETS.items():
+    for size, target in aspects.SMALL.items():
         for name, make in (("box", aspects.box), ("screw", aspects.screw), ("sphere", aspects.sphere)):
             mesh, path = make(size), Path(folder) / f"{name}.stl"
             mesh.export(path)
