@@ -3,6 +3,7 @@
 import dataclasses
 import hashlib
 import json
+import re
 from dataclasses import dataclass, field
 from importlib import metadata
 
@@ -13,6 +14,7 @@ from feederscrew.part.naming import AspectNames
 
 DONE, FAILED = "done", "failed"
 THUMBNAIL = "thumbnail.png"  # among the files of a part
+ELSEWHERE = re.compile(r"[,;] or pass `allow_open`[^;]*")  # advice that only a command of one part can take
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,7 @@ class Outcome:
     @classmethod
     def failed(cls, task, reason, *, final=True):
         """Make the outcome of a part that gave nothing; ``final`` if it would fail again."""
-        request, reason = task.request, " ".join(reason.split())
+        request, reason = task.request, ELSEWHERE.sub("", " ".join(reason.split()))
         if request.source not in reason:
             reason = f"{request.source}: {reason}"
         reason = f"{request.line}: {reason}" if request.line else reason

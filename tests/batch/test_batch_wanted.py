@@ -1,5 +1,6 @@
 """The aspect that a list asks for, the launch, and what the summary and the pictures call them."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ from feederscrew import batch
 from feederscrew.batch import summary, task, work
 from feederscrew.output.batch import contact_sheet
 from feederscrew.part import load
+from feederscrew.part.repair import gate, shells
 from feederscrew.resting.aspects import find
 
 
@@ -60,3 +62,11 @@ def test_tiles_name_the_orientation_and_fill_sheets(count):
     sheets = list(summary.sheets(Store(), [made] * count))
     assert sheets[0][0] == (b"PNG", "block", "C@90: 12 / min")
     assert sum(map(len, sheets)) == count and len(sheets) == -(-count // summary.TILES)
+
+
+@pytest.mark.parametrize("advice", [shells.SPLIT, gate.CLOSE, gate.UNITE])
+def test_a_failed_part_is_not_advised_what_a_batch_has_no_option_for(block, advice):
+    (asked,) = batch.gather([str(block)])
+    failed = task.Outcome.failed(task.Task.of(asked, batch.Choices(), b""), f"is not closed - {advice}")
+    assert "allow_open" not in failed.reason
+    assert failed.reason.endswith(re.split(r"[,;] or pass", advice)[0])
