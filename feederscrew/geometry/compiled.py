@@ -112,7 +112,7 @@ def _compiler(whole):
         return {}
     from feederscrew.geometry import compiler
 
-    return {"pipeline_class": compiler.Whole if whole else compiler.Part}
+    return {"pipeline_class": compiler.WholeKernel if whole else compiler.KernelPart}
 
 
 @functools.cache

@@ -33,7 +33,7 @@ PASSES = (  # those for closures, generators, array expressions and parallel loo
 )
 
 
-class Whole(CompilerBase):
+class WholeKernel(CompilerBase):
     """Compiler of an entry, or of what several entries share."""
 
     def define_pipelines(self):
@@ -50,17 +50,17 @@ class Whole(CompilerBase):
             return super().compile_extra(func)
 
 
-class Part(Whole):
+class KernelPart(WholeKernel):
     """Compiler of a function that only compiled ones call."""
 
     def define_pipelines(self):
         """Return the passes; their code goes to a library that is not made machine code of."""
         state = self.state
-        state.library = _PartLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library = _LinkedLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
         return super().define_pipelines()
 
 
-class _PartLibrary(JITCodeLibrary):
+class _LinkedLibrary(JITCodeLibrary):
     """Code of a function and of all that it calls, to be linked into those that call it."""
 
     @property
