@@ -178,6 +178,7 @@ def within(foot, distance, radius, width):
     Returns
     -------
     Footprint
+        Where none of it does, its corner nearest to the wall, which supports nothing.
     """
     middle = radius - distance
     edge = radius - width
@@ -190,7 +191,11 @@ def within(foot, distance, radius, width):
     turn = np.linspace(-1.0, 1.0, 2001) * min(3.0 * reach / edge, 0.999 * np.pi)
     inner = np.array([[0.0, middle]])
     off = np.concatenate([np.column_stack([edge * np.sin(turn), middle - edge * np.cos(turn)]), inner])
-    return _without(foot, shapely.Polygon(off))
+    left = _without(foot, shapely.Polygon(off))
+    if len(left.corners):
+        return left
+    nearest = foot.corners[[np.argmax(away)]]
+    return Footprint(rings=(), edges=np.empty((0, 2, 2)), points=check.frozen(nearest))
 
 
 def _without(foot, off):

@@ -61,6 +61,18 @@ def test_a_bridge_touches_with_its_legs_and_not_its_hull():
     assert standing.gap == pytest.approx(0.003, rel=1e-3)
 
 
+@pytest.mark.parametrize(("width", "carried"), [(7, False), (9, False), (11, True)])
+def test_a_foot_beyond_the_track_supports_nothing(width, carried):
+    """A T on its stem of 4 mm, across the track: its foot begins 8 mm from the wall, its weight is at 10."""
+    stem = [(-2, 0), (2, 0), (2, 3), (10, 3), (10, 8), (-10, 8), (-10, 3), (-2, 3)]
+    found = lying(shapes.prism(stem, 8), replace(STRAIGHT, width=1e-3 * width))
+    across = [one for one in found if one.height == pytest.approx(0.008) and one.length < 0.009]
+    across = [one for one in across if len(one.posture.feet) == 4 and one.posture.height > 0.0045]
+    assert across and all((one.margin > 0.0, not one.falls_off) == (carried, carried) for one in across)
+    if not carried:
+        assert all((one.balcony, one.canyon, one.gap) == (np.inf, 0.0, 0.0) for one in across)
+
+
 def test_limits_scale_with_the_part():
     small, large = lying(shapes.box(20, 12, 5)), lying(shapes.box(50, 30, 12.5))
     for one, other in zip(small, large):
