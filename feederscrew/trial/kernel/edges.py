@@ -230,13 +230,13 @@ def _corner(plate, border, state, vector):
 
 @compiled
 def _face_at(solid, faces, lows, a, b, c, reach):
-    """Triangle of the part that a corner touches, and the gap; -1 for none."""
+    """Triangle of the part that a corner touches, of the nearest plane, and the gap; -1 for none."""
     best, found = math.inf, -1
     for m in range(lows):
         k = faces[m]
         n, first = solid.normals[k], solid.vertices[solid.triangles[k, 0]]
         off = (a - first[0]) * n[0] + (b - first[1]) * n[1] + (c - first[2]) * n[2]
-        if -DEEP < off < reach and off < best and within(solid, k, a, b, c, 0.0):
+        if -DEEP < off < reach and abs(off) < abs(best) and within(solid, k, a, b, c, 0.0):
             best, found = off, k
     return found, best
 
