@@ -155,7 +155,7 @@ def _answered(known, launch, exponent):
 
 def _moments(part, hull):
     """Moments of the part; from its hull, of fewer triangles, where it is as good as convex."""
-    if hull.volume - part.volume < CONVEX * hull.volume:
+    if abs(hull.volume - part.volume) < CONVEX * hull.volume:
         return Moments(hull.vertices, hull.triangles, np.zeros(3))
     return Moments(part.vertices, part.faces, part.centre_of_mass)
 

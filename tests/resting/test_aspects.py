@@ -220,6 +220,12 @@ def test_the_half_turns_of_an_ellipsoid_do_not_depend_on_the_file():
         assert find(shapes.part(mesh)).faces.tolist() == [2]
 
 
+def test_what_is_enclosed_twice_counts_in_the_symmetries_of_a_cube():
+    """Of two bodies taken together, one within the other: more volume than the hull has."""
+    both = trimesh.util.concatenate([shapes.box(20, 20, 20), shapes.box(18, 4, 4)])
+    assert aspects(both).faces.tolist() == [4, 2]
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_slivers_at_sharp_edges_leave_every_aspect(seed):
     rng = np.random.default_rng(seed)
