@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from feederscrew.geometry import vectors
+from feederscrew.geometry import columns, vectors
 
 SEEDS = st.integers(0, 2**31)
 FEW = {"max_examples": 60, "deadline": None, "derandomize": True}
@@ -23,6 +23,14 @@ def test_products_have_the_shape_and_value_of_the_matrix_product(shapes):
     a, b = (drawn(k, *map(int, shape.split("x"))) for k, shape in enumerate(shapes.split(",")))
     got = vectors.product(a, b)
     assert np.shape(got) == np.shape(a @ b) and np.allclose(got, a @ b, rtol=1e-13, atol=1e-14)
+
+
+def test_columns_have_the_digits_of_rows():
+    u, v = drawn(1, 50, 3), drawn(2, 50, 3)
+    assert np.array_equal(columns.cross(u.T, v.T).T, vectors.cross(u, v))
+    assert columns.dot(u.T, v.T) == pytest.approx(vectors.dot(u, v), rel=1e-14, abs=1e-15)
+    places = np.array([[0, 7], [7, 3], [49, 0]])
+    assert np.array_equal(columns.at(u, places).transpose(2, 0, 1), u[places])
 
 
 def test_lengths_units_and_determinants():

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.geometry import vectors
+from feederscrew.geometry import columns, vectors
 from feederscrew.part.repair import weld
 
 MOST, MOST_PAIRS = 300_000, 20_000_000  # facets, and pairs of boxes that overlap: looked at within seconds
@@ -42,17 +42,12 @@ def crossings(vertices, faces, tolerance):
     """
     corners = vertices[faces]
     normals = _normals(corners)
-    columns = _columns(corners, normals)
-    near = [_piercing(*columns, pairs, tolerance) for pairs in _candidates(corners, normals)]
+    planes = _in_columns(corners, normals)
+    near = [_piercing(*planes, pairs, tolerance) for pairs in _candidates(corners, normals)]
     pairs = np.concatenate([np.empty((0, 2), dtype=int), *near])
     if not len(pairs):
         return Crossings(pairs, np.empty(0), np.empty((0, 3)))
     return _cuts(corners, normals, _through_both(corners, normals, pairs, tolerance), tolerance)
-
-
-def _dot(u, v):
-    """(F,) scalar products of vectors (3, F)."""
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 
 
 def _candidates(corners, normals):
@@ -85,11 +80,11 @@ def _planes(corners, normals):
     return weld.distinct(np.round(np.column_stack([normals, offsets]) * FINE))[1]
 
 
-def _columns(corners, normals):
+def _in_columns(corners, normals):
     """(3, 3, F) coordinates of the corners from one of them, (3, F) normals, (F,) offsets of the planes."""
     places = np.ascontiguousarray((corners - corners[0, 0]).transpose(1, 2, 0))
     normals = np.ascontiguousarray(normals.T)
-    return places, normals, _dot(normals, places[0])
+    return places, normals, columns.dot(normals, places[0])
 
 
 def _piercing(places, normals, offsets, pairs, tolerance):
@@ -97,7 +92,7 @@ def _piercing(places, normals, offsets, pairs, tolerance):
     for one, other in ((0, 1), (1, 0)):
         ones, others = pairs[:, one], pairs[:, other]
         normal, offset = normals[:, others], offsets[others]
-        a, b, c = (_dot(normal, corner[:, ones]) - offset for corner in places)
+        a, b, c = (columns.dot(normal, corner[:, ones]) - offset for corner in places)
         above, below = np.maximum(np.maximum(a, b), c), np.minimum(np.minimum(a, b), c)
         pairs = pairs[(above > 0.5 * tolerance) & (below < -0.5 * tolerance)]
     return pairs

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.geometry import vectors
+from feederscrew.geometry import columns, vectors
 
 SHORT = 0.25  # [1] of the part's reach across its axis: how far the axis ends before the part does
 AWAY = 1e-12  # [1] sine beyond which rounding does not decide whether a facet faces away from a point
@@ -52,19 +52,14 @@ def _feet(places, faces, low, high):
     """(F,) and (F,) first and last foot of each facet, (F,) whether it faces away from all of its feet."""
     a, b, c = places[:, faces.T].swapaxes(0, 1)
     u, v = b - a, c - a
-    normal = [u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2] for k in range(3)]
+    normal = columns.cross(u, v)
     feet = np.clip(places[0], low, high)
     i, j, k = feet[faces.T]
     first, last = np.minimum(np.minimum(i, j), k), np.maximum(np.maximum(i, j), k)
-    offset = _dot(normal, a)
-    sure = AWAY * np.abs(places).max() * np.sqrt(_dot(u, u) * _dot(v, v))
+    offset = columns.dot(normal, a)
+    sure = AWAY * np.abs(places).max() * np.sqrt(columns.dot(u, u) * columns.dot(v, v))
     away = np.minimum(offset - normal[0] * first, offset - normal[0] * last) > sure
     return first, last, away
-
-
-def _dot(u, v):
-    """(F,) scalar products of vectors (3, F)."""
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 
 
 def _stretches(first, last, low, high):

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.geometry import vectors
+from feederscrew.geometry import columns, vectors
 from feederscrew.geometry.compiled import fitting
 from feederscrew.resting.basins import forest
 
@@ -58,16 +58,16 @@ def passes(hull, pairs, ends):
     -------
     (E,) float [m]
     """
-    p, q = _columns(hull.vertices, ends)
-    n1, n2 = _columns(hull.normals, pairs)
+    p, q = columns.at(hull.vertices, ends)
+    n1, n2 = columns.at(hull.normals, pairs)
     along = q - p
-    foot = p - along * (
-        _dot(p, along) / np.maximum(_dot(along, along), np.finfo(float).tiny)
-    )  # of the centre
-    turn, before, after = (_dot(_cross(*both), along) for both in ((n1, n2), (n1, foot), (foot, n2)))
+    square = np.maximum(columns.dot(along, along), np.finfo(float).tiny)
+    foot = p - along * (columns.dot(p, along) / square)  # of the centre
+    ways = ((n1, n2), (n1, foot), (foot, n2))
+    turn, before, after = (columns.dot(columns.cross(*way), along) for way in ways)
     between = (before * turn > 0.0) & (after * turn > 0.0)
     higher = np.maximum(*hull.heights[pairs.T])
-    return np.where(between, np.maximum(np.sqrt(_dot(foot, foot)), higher), higher)
+    return np.where(between, np.maximum(np.sqrt(columns.dot(foot, foot)), higher), higher)
 
 
 def landscape(hull):
@@ -128,7 +128,7 @@ def gentle(normals, pairs):
     -------
     (E,) bool
     """
-    return _dot(*_columns(normals, pairs)) > GENTLE
+    return columns.dot(*columns.at(normals, pairs)) > GENTLE
 
 
 def _downhill(hull, pairs, tops):
@@ -152,8 +152,8 @@ def _broad_normals(hull, below):
 
     A corner moved by noise, or a chamfer too small to see, leads round a sharp edge by gentle bends.
     """
-    a, b, c = _columns(hull.vertices, hull.triangles)
-    sides = [np.sqrt(_dot(side, side)) for side in (b - c, c - a, a - b)]  # opposite each corner
+    a, b, c = columns.at(hull.vertices, hull.triangles)
+    sides = [np.sqrt(columns.dot(side, side)) for side in (b - c, c - a, a - b)]  # opposite each corner
     thin = 2.0 * hull.areas < SLIVER * hull.radius * np.maximum(np.maximum(*sides[:2]), sides[2])
     end = forest.roots(np.where(thin, below, np.arange(len(thin))))
     still = np.flatnonzero(thin & (end == np.arange(len(thin))))  # no way down, or half of a flat strip
@@ -189,18 +189,3 @@ def _joined(hull, basins, pairs, tops, limit):
 def _sinks(basins):
     """(B,) triangles at the bottom of their own basins."""
     return np.flatnonzero(basins == np.arange(len(basins)))
-
-
-def _columns(rows, places):
-    """(K, 3, N) rows (M, 3) at places (N, K), a column each."""
-    return np.ascontiguousarray(rows.T)[:, places.T].swapaxes(0, 1)
-
-
-def _dot(u, v):
-    """(N,) scalar products of columns (3, N)."""
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
-
-
-def _cross(u, v):
-    """(3, N) vector products of columns (3, N)."""
-    return np.stack([u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2] for k in range(3)])
