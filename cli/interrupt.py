@@ -1,4 +1,4 @@
-"""Ctrl-C where the program must not be cut short."""
+"""Ctrl-C where the program must not be cut short, and signals that are taken for it."""
 
 import contextlib
 import os
@@ -37,6 +37,9 @@ def held_back():
 def ended_within(seconds):
     """Let Ctrl-C end the program within so many seconds [s], from any moment of the block.
 
+    SIGTERM and the end of the terminal do the same; by themselves they would leave processes at work and
+    temporary folders.
+
     Libraries drop an interrupt that reaches them while they load or tidy up, and a process that is still
     loading may not be waited for. What the block has written must be whole at any moment.
     """
@@ -53,12 +56,19 @@ def ended_within(seconds):
             timer.start()
         raise KeyboardInterrupt
 
-    before = signal.signal(signal.SIGINT, catch)
+    before = {ending: signal.signal(ending, catch) for ending in _endings()}
     try:
         yield
         timer.cancel()
     finally:
-        signal.signal(signal.SIGINT, before)
+        for ending, handler in before.items():
+            signal.signal(ending, handler)
+
+
+def _endings():
+    """Signals that end the program, but for those that it was started to ignore, as by nohup."""
+    others = (getattr(signal, name, None) for name in ("SIGTERM", "SIGHUP"))  # Windows has the first only
+    return [signal.SIGINT, *(one for one in others if one and signal.getsignal(one) is signal.SIG_DFL)]
 
 
 def _leave(children):

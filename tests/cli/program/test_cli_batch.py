@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from feederscrew_cli import progress
+from feederscrew_cli import interrupt, progress
 
 ROOT = Path(__file__).parents[3]
 NUT = ROOT / "parts/squarenut_m5.stl"
@@ -116,14 +116,26 @@ def test_progress_of_parts_that_are_all_there(capsys, monkeypatch):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
-def test_an_interrupt_that_a_library_drops_still_ends_the_program():
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_an_interrupt_that_a_library_drops_still_ends_the_program(name):
     code = (
-        "import time\nfrom feederscrew_cli.interrupt import ended_within\nwith ended_within(0.5):\n"
+        "import time\nfrom feederscrew_cli.interrupt import ended_within\nwith ended_within(0.2):\n"
         "    while True:\n        try:\n            print('ready', flush=True)\n            time.sleep(60)\n"
         "        except KeyboardInterrupt:\n            pass\n"
     )
     child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert child.stdout.readline() == b"ready\n"
-    child.send_signal(signal.SIGINT)
+    child.send_signal(getattr(signal, name))
     assert child.communicate(timeout=8.0)[1] == b"Stopped.\n"
     assert child.returncode == 130
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+def test_a_closed_terminal_does_not_end_what_ignores_it():
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with interrupt.ended_within(60.0):
+            signal.raise_signal(signal.SIGHUP)
+        assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+    finally:
+        signal.signal(signal.SIGHUP, before)
