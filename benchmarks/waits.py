@@ -62,7 +62,7 @@ class Row:
     """One wait of the table."""
 
     what: str
-    target: float | None  # None: it is only told
+    target: float | None  # None: for information
     figure: float
     unit: str
     beside: str = ""  # clock, memory

@@ -118,7 +118,7 @@ class Cluster:
 
     @contextlib.contextmanager
     def _attended(self):
-        """Raise what a client raises when its scheduler goes as our fault."""
+        """Turn what a client raises when its scheduler is lost into a FeederError."""
         try:
             yield
         except (OSError, CancelledError, _distributed().client.ClosedClientError):

@@ -102,7 +102,7 @@ class Store:
 
     @contextlib.contextmanager
     def _writing(self):
-        """Raise what the disk refuses as our fault; what is finished stays."""
+        """Turn what the disk refuses into a FeederError; what is finished stays."""
         try:
             yield
         except OSError as error:

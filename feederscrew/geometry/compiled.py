@@ -105,7 +105,7 @@ def _options(arrays=False, whole=False, **others):
 
 
 def _compiler(whole):
-    """Ours, of an entry or of a part of one; numba's own, which takes longer, where ours is untried."""
+    """Option that names our compiler, of an entry or a part of one; none where this numba is untried."""
     from numba import version_info
 
     if not TRIED[0] <= version_info.short <= TRIED[1]:

@@ -65,23 +65,23 @@ class _LinkedLibrary(JITCodeLibrary):
 
     @property
     def codegen(self):
-        """Return what is told of the function's Python objects: it has none."""
+        """Return this library, which takes the environments of Python objects too: there are none."""
         return self
 
     def set_env(self, name, env):
-        """Have nothing to keep."""
+        """Ignore an environment: the function has no Python objects."""
 
     def _optimize_final_module(self):
-        """Leave this to the entry."""
+        """Optimise nothing here: the entry is optimised with all that it calls."""
 
     def _finalize_final_module(self):
-        """Make no machine code."""
+        """Mark the library as finished without making machine code."""
         self._finalized = True
 
 
 @contextlib.contextmanager
 def _uncollected():
-    """Leave garbage alone: searching what the compiler makes for some takes a fifteenth of its time."""
+    """Switch garbage collection off: in the compiler's many objects it takes a fifteenth of the time."""
     collects = gc.isenabled()
     gc.disable()
     try:

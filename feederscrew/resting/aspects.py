@@ -18,7 +18,7 @@ from feederscrew.resting.rules.quantities import ClassQuantities
 from feederscrew.resting.rules.recommended import Recommended
 from feederscrew.resting.tumbling import by_class, walk
 
-CONVEX = 1e-6  # [1] of the hull's volume: dents of less do not tell a symmetry
+CONVEX = 1e-6  # [1] of the hull's volume: a smaller difference breaks no symmetry
 TIE = 1e-4  # probabilities that differ by less of themselves are equal but for rounding
 
 
@@ -154,7 +154,7 @@ def _answered(known, launch, exponent):
 
 
 def _moments(part, hull):
-    """Moments of the part; from its hull, of fewer triangles, where it is as good as convex."""
+    """Moments of the part; from its hull, of fewer triangles, where the volumes are the same."""
     if abs(hull.volume - part.volume) < CONVEX * hull.volume:
         return Moments(hull.vertices, hull.triangles, np.zeros(3))
     return Moments(part.vertices, part.faces, part.centre_of_mass)

@@ -159,7 +159,7 @@ def _rocks(hull, side, sink):
 
 
 def _even(normals, share):
-    """How many strips of one size would be as unlike as these, by their (N, 3) normals and (N,) shares."""
+    """Effective number of strips, of (N, 3) normals and (N,) shares: 1 over the sum of squared shares."""
     places = vectors.product(np.round(100.0 * normals), np.array([1.0, 1e3, 1e6]))  # one number a direction
     order = np.argsort(places, kind="stable")
     strips = np.flatnonzero(np.diff(places[order], prepend=np.nan))

@@ -26,9 +26,7 @@ class Design:
     left_over: tuple[str, ...]  # what leaves as well
     reasons: tuple[str, ...]  # why, a sentence each
     late: bool = False  # the time limit stopped the search: another machine may find more
-    steady: bool = (
-        True  # whether the drive leaves the wanted orientation lying on what the cuts leave of its foot
-    )
+    steady: bool = True  # the drive leaves the wanted orientation lying on what the cuts leave of its foot
 
     @property
     def devices(self):

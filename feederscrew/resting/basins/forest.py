@@ -17,7 +17,7 @@ def roots(forest):
 
 
 def on_lists(function):
-    """Return a function of arrays as one that plain Python runs on lists, three times as fast, and fills."""
+    """Return a function that runs another on lists, in plain Python the faster, and fills its arrays."""
 
     def run(*arrays):
         lists = [array.tolist() for array in arrays]

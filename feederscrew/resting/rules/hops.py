@@ -1,4 +1,4 @@
-"""A cascade of hops: a bouncing part wanders over the saddles until its energy lets it over none."""
+"""A cascade of hops: a bouncing part loses energy until it can cross no saddle."""
 
 import numpy as np
 
