@@ -127,6 +127,40 @@ def test_what_is_left_out_of_the_search_cuts_nothing(rng, turns):
         assert len(left) < 0.8 * len(faces)
 
 
+def tube(turns, rises, thick, along=24, around=5):
+    """A tube about a curve that winds about two axes; its corners and facets."""
+    s = 2.0 * np.pi * np.arange(along) / along
+    out, turn = 2.0 + np.cos(rises * s), 2.0 * np.pi * np.arange(around) / around
+    curve = np.column_stack([out * np.cos(turns * s), out * np.sin(turns * s), np.sin(rises * s)])
+    ahead = np.roll(curve, -1, axis=0) - np.roll(curve, 1, axis=0)
+    u = np.cross(ahead, [0.1, 0.2, 1.0])
+    v = np.cross(ahead, u)
+    u, v = (side / np.linalg.norm(side, axis=1)[:, None] for side in (u, v))
+    rings = curve[:, None] + thick * (np.cos(turn)[:, None] * u[:, None] + np.sin(turn)[:, None] * v[:, None])
+    i, j = np.divmod(np.arange(along * around), around)
+    a, b, c, d = ((i + m) % along * around + (j + n) % around for m, n in ((0, 0), (1, 0), (1, 1), (0, 1)))
+    return rings.reshape(-1, 3), np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+
+
+def test_nothing_that_cuts_is_left_out_of_random_tubes_with_a_shaft(rng):
+    """Knotted, thick and flattened tubes, their axis through a hole; half of them about a shaft."""
+    shaft, of_shaft = lathed(np.full(4, 1.0))
+    searched, of = [], []
+    for one in range(40):
+        vertices, faces = tube(*rng.integers(1, 4, 2), rng.uniform(0.1, 1.5))
+        if one % 2:
+            vertices = np.concatenate([vertices, (shaft - [0, 0, 3.5]) * rng.uniform(0.2, 3.0)])
+            faces = np.concatenate([faces, of_shaft + faces.max() + 1])
+        vertices[:, 2] *= rng.choice([0.3, 1.0, 5.0])
+        volume = mass.solid(vertices[faces]).volume
+        faces = faces if volume > 0.0 else faces[:, ::-1]
+        left = unseen(vertices, faces)
+        assert np.isin(crossings.crossings(vertices, faces, 1e-6).pairs, left).all()
+        searched.append(len(left))
+        of.append(len(faces))
+    assert (np.array(searched) < of).sum() > 10
+
+
 @pytest.mark.parametrize("name", [path.name for path in sorted(PARTS.glob("*.stl"))])
 def test_parts_do_not_pass_through_themselves(name):
     assert not any("through itself" in told for told in load(PARTS / name).warnings)
