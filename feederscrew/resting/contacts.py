@@ -2,33 +2,42 @@
 
 import numpy as np
 
-from feederscrew.geometry import vectors
+from feederscrew.geometry import groups, vectors
 
 TINY = np.finfo(float).tiny
 ON_A_LINE = 1e-6  # of the contact's size: a corner off the line between its neighbours by less is none
 
 
-def outline(points, normal):
-    """Return the convex outline of points about a plane.
+def outlines(vertices, corners, owners, normals):
+    """Return the convex outlines of points about planes.
 
     Parameters
     ----------
-    points : (N, 3) float [m]
-    normal : (3,) float [1]
-        Of the plane, outward.
+    vertices : (V, 3) float [m]
+    corners, owners : (N,) int
+        The points of the outlines, and to which of them each belongs, ascending.
+    normals : (F, 3) float [1]
+        Of the planes, outward.
 
     Returns
     -------
-    (K, 3) float [m]
+    list of (K, 3) float [m]
         Counter-clockwise seen against the normal, no corner on a line between its neighbours; the points as
         they are where they lie on one line.
     """
-    k = int(np.argmax(np.abs(normal)))
-    x, y = points.T[[k - 2, k - 1] if normal[k] > 0.0 else [k - 1, k - 2]]  # seen along an axis of the file
-    around = np.argsort(np.arctan2(y - y.mean(), x - x.mean()))
-    if _turns_at_every_corner(x[around], y[around]):
-        return points[around]
-    return _of_extreme_points(points, normal)
+    points, count = vertices[corners], len(normals)
+    k = np.abs(normals).argmax(axis=1)
+    upward = normals[np.arange(count), k] > 0.0  # seen along an axis of the file
+    first, second = np.where(upward, [k - 2, k - 1], [k - 1, k - 2])[:, owners]
+    x, y = points[np.arange(len(points)), first], points[np.arange(len(points)), second]
+    u, v = (seen - (groups.sums(seen, owners, count) / np.bincount(owners))[owners] for seen in (x, y))
+    around = np.lexsort((np.arctan2(v, u), owners))
+    convex = _turn_at_every_corner(x[around], y[around], owners, count)
+    turned, as_given = (groups.split(of, owners, count) for of in (points[around], points))
+    return [
+        polygon if sound else _of_extreme_points(own, normal)
+        for polygon, sound, own, normal in zip(turned, convex, as_given, normals)
+    ]
 
 
 def _of_extreme_points(points, normal):
@@ -45,13 +54,16 @@ def _of_extreme_points(points, normal):
     return _without_straight_corners(corners)
 
 
-def _turns_at_every_corner(x, y):
-    """Whether a polygon of corners (K,) and (K,) turns left at every one, none of them on a line."""
+def _turn_at_every_corner(x, y, owners, count):
+    """(F,) whether polygons of corners (N,) and (N,) turn left at every one, none of them on a line."""
+    first = groups.starts(owners, count)
     before = np.arange(len(x)) - 1
+    before[first] = np.append(first[1:], len(x)) - 1
     u, v = x - x[before], y - y[before]
     p, q = u[before], v[before]
     off = (p * v - q * u) / np.maximum(np.hypot(p + u, q + v), TINY)
-    return bool((off > ON_A_LINE * np.hypot(np.ptp(x), np.ptp(y))).all())
+    width, depth = (np.maximum.reduceat(at, first) - np.minimum.reduceat(at, first) for at in (x, y))
+    return np.logical_and.reduceat(off > ON_A_LINE * np.hypot(width, depth)[owners], first)
 
 
 def _without_straight_corners(corners):

@@ -4,15 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.geometry import vectors
+from feederscrew.geometry import groups, vectors
 from feederscrew.geometry.graphs import components
 from feederscrew.resting import contacts, rounds
-from feederscrew.resting.basins.landscape import GENTLE, RIPPLE_OF_RADIUS, SMOOTH, angle, edges, gentle
+from feederscrew.resting.basins.landscape import RIPPLE_OF_RADIUS, SMOOTH, angle, edges, gentle
+from feederscrew.resting.planes import FLATNESS, planes
 
 COARSE = 1.0 / np.cos(0.5 * SMOOTH) - 1.0  # the ripple a smooth edge leaves at most, as a share of the height
 CURVED = np.sinc(np.radians(15.0) / np.pi)  # mean resultant of normals over an arc of 30 deg; below: no plane
-FLATNESS = 1e-2  # of the radius: how deep a corner may lie under the plane of its face
-TIGHTEST_FIRST = (1e-6, 1e-5, 1e-4, 1e-3, FLATNESS)
 EQUAL = 5e-3  # of the height: strips of one curve about the centre of mass are as high as each other
 STRAIGHT = (
     1e-2  # of their variance along the curve: how far normals of a rocker may leave their plane or cone
@@ -60,8 +59,8 @@ def stable_faces(hull, basins):
     members = np.split(order, starts[1:])
     group = _coarse_curves(hull, basins, members)
     sides = _smooth_sides(hull, basins, group)
-    together = [np.flatnonzero(group == label) for label in np.unique(group)]
-    return [_face(hull, basins.sinks[some], [members[k] for k in some], sides) for some in together]
+    lowest, strips = _strips(hull, basins, np.unique(group, return_inverse=True)[1], sides)
+    return _described(hull, strips, lowest, stable=True)
 
 
 def unstable_faces(hull, taken):
@@ -87,7 +86,8 @@ def unstable_faces(hull, taken):
     labels = components(*pairs[joined].T, len(free))[1]
     order = np.flatnonzero(free)[np.argsort(labels[free], kind="stable")]
     parts = np.split(order, np.flatnonzero(np.diff(labels[order])) + 1) if len(order) else []
-    return [_describe(hull, part, part[np.argmax(hull.areas[part])], stable=False) for part in parts]
+    largest = np.array([part[np.argmax(hull.areas[part])] for part in parts], dtype=int)
+    return _described(hull, parts, largest, stable=False)
 
 
 def _coarse_curves(hull, basins, members):
@@ -119,17 +119,25 @@ def _one_round(hull, sinks, members, sides):
     return _rocks(hull, every[sides[every] == sides[lowest]], lowest)
 
 
-def _face(hull, sinks, members, sides):
-    """One face from the basins of its sinks (one, or the strips of a curve)."""
-    lowest, every = sinks[np.argmin(hull.heights[sinks])], np.concatenate(members)
-    level = [part[hull.heights[part] <= hull.heights[sink] * (1.0 + 1e-9) + FLATNESS * hull.radius / 2]
-             for sink, part in zip(sinks, members)]  # fmt: skip
-    strip, side = np.concatenate(level), every[sides[every] == sides[lowest]]
-    if _rocks(hull, side, lowest):
-        strip = side
-    elif not _curved(hull, strip):
-        strip = _plane(hull, lowest, every)
-    return _describe(hull, strip, lowest, stable=True)
+def _strips(hull, basins, group, sides):
+    """(F,) lowest sink and the triangles of each face, from the (B,) face of every sink."""
+    count, sinks = group.max() + 1, basins.sinks
+    at = np.searchsorted(sinks, basins.basins)
+    every = np.lexsort((at, group[at]))
+    owners, heights = group[at][every], hull.heights
+    lowest = sinks[np.lexsort((heights[sinks], group))[groups.starts(np.sort(group), count)]]
+    level = heights[every] <= heights[basins.basins[every]] * (1.0 + 1e-9) + FLATNESS * hull.radius / 2
+    beside = sides[every] == sides[lowest][owners]
+    strips = groups.split(every[level], owners[level], count)
+    aside = groups.split(every[beside], owners[beside], count)
+    rocking, own = _curved(hull, aside), groups.split(every, owners, count)
+    for k in np.flatnonzero(rocking):
+        rocking[k] = _rocks(hull, aside[k], lowest[k])
+        strips[k] = aside[k] if rocking[k] else strips[k]
+    flat = np.flatnonzero(~rocking & ~_curved(hull, strips))
+    for k, plane in zip(flat, planes(hull, lowest[flat], [own[k] for k in flat])):
+        strips[k] = plane
+    return lowest, strips
 
 
 def _smooth_sides(hull, basins, group):
@@ -147,7 +155,7 @@ def _smooth_sides(hull, basins, group):
 
 def _rocks(hull, side, sink):
     """Whether these triangles are strips of a curved side whose axis may lie off the centre of mass."""
-    if len(side) < FEWEST or not _curved(hull, side):
+    if len(side) < FEWEST or not _curved(hull, [side])[0]:
         return False
     normals, share = hull.normals[side], hull.areas[side] / hull.areas[side].sum()
     leans = angle(normals, hull.normals[sink])
@@ -181,80 +189,60 @@ def _round(hull, triangles):
     return bool(vectors.length(off) < EQUAL * height.mean() * vectors.length(weights))
 
 
-def _plane(hull, sink, members, of_a_curve=False):
-    """Members in the plane about the sink, and with them what lies in the sink's own.
+def _described(hull, triangles, lowest, stable):
+    """Records of the faces made of triangles, a list of F arrays, from the (F,) lowest of each."""
+    if not len(triangles):
+        return []
+    curved, feet, count = _curved(hull, triangles), list(triangles), len(triangles)
+    some = np.flatnonzero(curved)
+    for k, foot in zip(some, planes(hull, lowest[some], [triangles[k] for k in some], of_curves=True)):
+        feet[k] = foot
+    standing = groups.joined(feet)
+    normals, heights, roughness = _seats(hull, *standing, count)
+    polygons = contacts.outlines(hull.vertices, *_corners(hull, *standing), normals)
+    every, owners = groups.joined(triangles)
+    areas, angles = (groups.sums(of[every], owners, count) for of in (hull.areas, hull.solid_angles))
+    axes = np.full((count, 3), np.nan)
+    for k in some:
+        axes[k] = _axis(hull.normals[triangles[k]], hull.areas[triangles[k]], normals[k])
+        heights[k] = rounds.height(polygons[k], axes[k], heights[k])
+    return [
+        Face(
+            kind="rolling" if curved[k] else "flat",
+            stable=stable,
+            normal=normals[k],
+            axis=axes[k],
+            height=float(heights[k]),
+            area=float(areas[k]),
+            solid_angle=float(angles[k]),
+            polygon=polygons[k],
+            triangles=triangles[k],
+            roughness=float(roughness[k]),
+        )
+        for k in range(count)
+    ]
 
-    The tightest plane that holds most of what noise allows, and that a looser one would hardly add to:
-    in a clean file the face itself without the shallow bevels beside it, in a noisy one all of it. Of a
-    curve one strip is wanted, though the halves of the strips beside it may lie as shallow.
-    """
-    members = np.sort(members)
-    depth = _depth(hull, sink, members)
-    shallow = (depth < FLATNESS * hull.radius) & (
-        vectors.product(hull.normals[members], hull.normals[sink]) > GENTLE
+
+def _seats(hull, triangles, owners, count):
+    """(F, 3) normals, (F,) [m] heights and roughness of the triangles that F faces stand on."""
+    weights = np.maximum(hull.areas[triangles], TINY)
+    whole = groups.sums(weights, owners, count)
+    normals = vectors.unit(groups.sums(weights[:, None] * hull.normals[triangles], owners, count))
+    above = vectors.dot(hull.vertices[hull.triangles[triangles]], normals[owners][:, None])
+    middle = groups.sums(above.sum(axis=1), owners, count) / (3 * np.bincount(owners, minlength=count))
+    off = np.abs(above - middle[owners][:, None]).max(axis=1)
+    heights, roughness = (
+        groups.sums(depths * weights, owners, count) / whole for depths in (hull.heights[triangles], off)
     )
-    near, tight = members[shallow], depth[shallow] < TIGHTEST_FIRST[0] * hull.radius
-    if tight.all():
-        return near
-    own = near[tight] if of_a_curve else near
-    largest = own[np.argmax(hull.areas[own])]
-    depth, areas = _depth(hull, largest, near), hull.areas[near]
-    inside = depth <= hull.radius * np.array(TIGHTEST_FIRST)[:, None]
-    held = vectors.product(inside, areas)
-    shared = held / areas.sum() - 0.1 * (inside.sum(axis=1) < 2)  # one triangle is a plane by itself
-    enough = shared >= 0.5
-    if of_a_curve:
-        enough |= inside.sum(axis=1) >= (1 if _fan(hull, members) else 2)  # triangles of a strip
-    good = enough[:-1] & (held[1:] <= 1.02 * held[:-1])
-    inside = inside[np.argmax(good)] if good.any() else np.ones(len(near), dtype=bool)
-    return near[inside | tight]
+    return normals, heights, roughness
 
 
-def _fan(hull, members):
-    """Whether most triangles meet at one corner, as the strips of a cone do at its tip."""
-    return np.bincount(hull.triangles[members].ravel()).max() > 0.5 * len(members)
-
-
-def _depth(hull, plane, members):
-    """How far the corners of each member lie off the plane of one triangle [m]."""
-    corners = hull.triangles[members].T
-    each = corners.size > len(hull.vertices)  # sooner of every corner of the hull once
-    places = hull.vertices if each else hull.vertices[corners.ravel()]
-    depth = np.abs(vectors.product(places, hull.normals[plane]) - hull.heights[plane])
-    a, b, c = depth[corners] if each else depth.reshape(3, -1)
-    return np.maximum(np.maximum(a, b), c)
-
-
-def _off_plane(hull, members, normal):
-    depth = vectors.product(hull.vertices[hull.triangles[members]], normal)
-    return np.abs(depth - depth.mean()).max(axis=1)
-
-
-def _describe(hull, triangles, lowest, stable):
-    """The record of a face made of these triangles."""
-    normals, areas = hull.normals[triangles], hull.areas[triangles]
-    curved = _curved(hull, triangles)
-    foot = _plane(hull, lowest, triangles, of_a_curve=True) if curved else triangles
-    weights = np.maximum(hull.areas[foot], TINY)
-    normal = vectors.unit(vectors.product(weights, hull.normals[foot]))
-    height, roughness = (
-        float((depths * weights).sum() / weights.sum())
-        for depths in (hull.heights[foot], _off_plane(hull, foot, normal))
+def _corners(hull, triangles, owners):
+    """(N,) corners of the triangles of each face, each once, and their owners."""
+    owners, corners = np.divmod(
+        np.unique(owners[:, None] * len(hull.vertices) + hull.triangles[triangles]), len(hull.vertices)
     )
-    axis = _axis(normals, areas, normal) if curved else np.full(3, np.nan)
-    polygon = contacts.outline(hull.vertices[np.unique(hull.triangles[foot])], normal)
-    return Face(
-        kind="rolling" if curved else "flat",
-        stable=stable,
-        normal=normal,
-        axis=axis,
-        height=rounds.height(polygon, axis, height),
-        area=float(areas.sum()),
-        solid_angle=float(hull.solid_angles[triangles].sum()),
-        polygon=polygon,
-        triangles=triangles,
-        roughness=roughness,
-    )
+    return corners, owners
 
 
 def _axis(normals, weights, lowest):
@@ -273,11 +261,12 @@ def _axis(normals, weights, lowest):
 
 
 def _curved(hull, triangles):
-    areas = hull.areas[triangles]
-    return (
-        len(areas) > 1
-        and vectors.length(vectors.product(areas, hull.normals[triangles])) < CURVED * areas.sum()
-    )
+    """(F,) whether the triangles of each face, a list of F arrays, are strips of a curve and not a plane."""
+    (every, owners), count = groups.joined(triangles), len(triangles)
+    areas = hull.areas[every]
+    mean = groups.sums(areas[:, None] * hull.normals[every], owners, count)
+    several = np.bincount(owners, minlength=count) > 1
+    return several & (vectors.norm(mean) < CURVED * groups.sums(areas, owners, count))
 
 
 def _spread(normals):

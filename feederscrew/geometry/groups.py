@@ -1,0 +1,49 @@
+"""Groups of unlike lengths in one array, the members of each behind those of the one before."""
+
+import numpy as np
+
+
+def joined(groups):
+    """Return the members of groups in one array, and to which of them each belongs.
+
+    Parameters
+    ----------
+    groups : sequence of G int arrays
+        At least one.
+
+    Returns
+    -------
+    members, owners : (N,) int
+        The owners ascend.
+    """
+    counts = np.fromiter(map(len, groups), int, len(groups))
+    return np.concatenate(groups), np.repeat(np.arange(len(groups)), counts)
+
+
+def starts(owners, count):
+    """Return the place (G,) of the first member of each of ``count`` groups, by ascending owners (N,)."""
+    return np.searchsorted(owners, np.arange(count))
+
+
+def split(members, owners, count):
+    """Return the members (N, ...) of each of ``count`` groups, by ascending owners (N,): a list of arrays."""
+    return np.split(members, starts(owners, count)[1:])
+
+
+def sums(values, owners, count):
+    """Return the sums over the members of each of ``count`` groups.
+
+    Parameters
+    ----------
+    values : (N,) or (N, K) float
+    owners : (N,) int
+    count : int
+
+    Returns
+    -------
+    (G,) or (G, K) float
+        Added in the order of the members.
+    """
+    if values.ndim == 1:
+        return np.bincount(owners, values, minlength=count)
+    return np.stack([np.bincount(owners, column, minlength=count) for column in values.T], axis=1)
