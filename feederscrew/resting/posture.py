@@ -48,19 +48,25 @@ class Posture:
         return np.einsum("ij,vj->vi", self.axes, body) + np.array([0.0, 0.0, self.height])
 
     @cached_property
+    def on_floor(self):
+        """Which corners (V,) of its mesh touch the floor; none where those that are low do not carry it.
+
+        So it is where the contact polygon is of facets not quite in one plane, or the file has noise: the
+        part stands on the whole polygon then.
+        """
+        points = self.surface
+        low = points[:, 2] < TOUCHING * np.ptp(self.outline, axis=0).max()
+        return low & surrounds(points[low, :2])
+
+    @cached_property
     def feet(self):
         """Edges (E, 2, 2) of the mesh that lie on the floor [m]; single corners are edges of no length.
 
-        Of a part that rolls and of a card the sides of the contact polygon; also where noise of the file
-        leaves too little of the mesh low enough to stand on.
+        Of a part that rolls, of a card and where no corners carry it the sides of the contact polygon.
         """
-        polygon = np.stack([self.contact, np.roll(self.contact, -1, axis=0)], axis=1)
-        if self.solid is None or self.kind == "rolling":
-            return polygon
-        points = self.surface
-        low = points[:, 2] < TOUCHING * np.ptp(self.outline, axis=0).max()
-        feet = points[_borders(self.solid.faces, low), :2]
-        return feet if surrounds(feet.reshape(-1, 2)) else polygon
+        if self.solid is None or self.kind == "rolling" or not self.on_floor.any():
+            return np.stack([self.contact, np.roll(self.contact, -1, axis=0)], axis=1)
+        return self.surface[_borders(self.solid.faces, self.on_floor), :2]
 
     @property
     def turning_inertia(self):

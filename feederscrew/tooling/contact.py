@@ -30,19 +30,27 @@ def footprint(posture, heading):
     Footprint
         In track axes from the foot of the centre of mass. A part that rolls touches with the strip of its
         underside that a hole's edge would carry, up to ``SUNK`` of its height, however finely its round
-        side is cut into facets.
+        side is cut into facets. Where none of the mesh is low enough to carry it, the contact polygon does.
     """
+    rolls = posture.kind == "rolling"
+    if not rolls and not posture.on_floor.any():
+        return _of_polygon(turned(posture.contact, heading))
     points, faces = posture.surface, posture.solid.faces
     size = np.ptp(posture.outline, axis=0).max()
-    depth = SUNK * posture.height if posture.kind == "rolling" else TOUCHING * size
+    depth = SUNK * posture.height if rolls else TOUCHING * size
     plan = turned(points[:, :2], heading)
-    area = area_below(plan, points[:, 2], faces, depth, posture.kind == "rolling")
+    area = area_below(plan, points[:, 2], faces, depth, rolls)
     area = area.simplify(PLAIN * size) if not area.is_empty else area
     edges, single = _bare(plan, points[:, 2] < depth, faces, area, TOUCHING * size)
     if area.is_empty and len(edges) + len(single) < 1:
-        area = shapely.Polygon(turned(posture.contact, heading))
+        return _of_polygon(turned(posture.contact, heading))
     borders = rings(area, SLIVER * size**2)
     return Footprint(rings=borders, edges=check.frozen(edges), points=check.frozen(single))
+
+
+def _of_polygon(corners):
+    """The foot of a part that stands on the whole of a polygon (K, 2) [m]."""
+    return Footprint(rings=(check.frozen(corners),), edges=np.empty((0, 2, 2)), points=np.empty((0, 2)))
 
 
 def area_below(plan, height, faces, depth, cut):

@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapes
+import trimesh
 
 from feederscrew.bowl.record import Track
+from feederscrew.geometry.polygons import turned
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.contact import silhouette
 from feederscrew.tooling.hanging import neck
@@ -14,6 +16,11 @@ from feederscrew.tooling.orientations import named, orientations
 
 STRAIGHT = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
 CURVED = replace(STRAIGHT, radius=0.15)
+FOLDED = [  # a hull, [mm]; on one of its aspects the two facets below make an angle of 0.01 rad
+    (-12.97, -3.79, -0.58), (2.94, 10.7, 8.03), (-6.56, 8.38, 0.14), (-9.87, -1.53, -11.51),
+    (10.5, -3.46, -1.7), (6.1, 1.0, 3.34), (-7.76, -9.51, 5.38), (-10.86, -10.14, 4.04),
+    (7.23, 4.3, -5.26), (4.62, 5.73, -3.15),
+]  # fmt: skip
 LEGS = [(-10, 0), (-7, 0), (-7, 6), (7, 6), (7, 0), (10, 0), (10, 10), (-10, 10)]
 
 
@@ -71,6 +78,15 @@ def test_a_foot_beyond_the_track_supports_nothing(width, carried):
     assert across and all((one.margin > 0.0, not one.falls_off) == (carried, carried) for one in across)
     if not carried:
         assert all((one.balcony, one.canyon, one.gap) == (np.inf, 0.0, 0.0) for one in across)
+
+
+def test_what_stands_on_facets_not_in_one_plane_has_the_foot_that_headings_gives_it():
+    found = [one for one in lying(trimesh.convex.convex_hull(FOLDED)) if not one.posture.on_floor.any()]
+    assert found and not any(one.falls_off for one in found)
+    for one in found:
+        foot = turned(one.posture.feet[:, 0], one.heading)
+        assert one.foot.corners == pytest.approx(foot, abs=1e-12)
+        assert one.margin > 0.003
 
 
 def test_limits_scale_with_the_part():
