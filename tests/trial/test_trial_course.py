@@ -20,6 +20,7 @@ OWN = [
     "friction.static=0.4", "track.radius=50 m", "track.width=60 mm", "track.climb=2 deg", "track.bank=0 deg",
 ]  # fmt: skip
 PART = shapes.part(shapes.box(20, 12, 5))
+L_SHAPE = [(0, 0), (26, 0), (26, 7), (9, 7), (9, 18), (0, 18)]
 
 
 @pytest.fixture
@@ -64,6 +65,17 @@ def test_a_part_at_the_limit_of_a_device(bowl, device, length, passes):
     if passes:
         assert (seen.orientations[-1] == seen.entered).all()
         assert (seen.ended == 2).all()
+
+
+def test_a_part_that_falls_over_the_free_edge_does_not_sink_into_the_track():
+    """An L on the end of its long leg, across, the short one towards the edge, tips and slides down it."""
+    part, bowl = shapes.part(shapes.prism(L_SHAPE, 11)), bowls.read(None, [])
+    every = orientations(part, find(part), bowl.track)
+    across = [
+        k for k, one in enumerate(every) if one.aspect == "F" and one.distance < 7e-3 and one.length < 0.012
+    ]
+    seen = course.course(part, bowl, every, across, (), parts=2, seed=1)
+    assert (seen.fates == course.RETURNED).all() and seen.depths.max() < 5e-5
 
 
 def left(part, bowl, one, place, aside=0.0):
