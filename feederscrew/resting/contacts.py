@@ -26,10 +26,7 @@ def outlines(vertices, corners, owners, normals):
         they are where they lie on one line.
     """
     points, count = vertices[corners], len(normals)
-    k = np.abs(normals).argmax(axis=1)
-    upward = normals[np.arange(count), k] > 0.0  # seen along an axis of the file
-    first, second = np.where(upward, [k - 2, k - 1], [k - 1, k - 2])[:, owners]
-    x, y = points[np.arange(len(points)), first], points[np.arange(len(points)), second]
+    x, y = (vectors.dot(points, axes[owners]) for axes in _across(normals))
     u, v = (seen - (groups.sums(seen, owners, count) / np.bincount(owners))[owners] for seen in (x, y))
     around = np.lexsort((np.arctan2(v, u), owners))
     convex = _turn_at_every_corner(x[around], y[around], owners, count)
@@ -44,14 +41,19 @@ def _of_extreme_points(points, normal):
     """The same where some of the points lie within the outline or straight between others."""
     from scipy.spatial import ConvexHull, QhullError
 
-    first = np.eye(3)[np.argmin(np.abs(normal))]
-    u = vectors.unit(vectors.cross(normal, first))
-    plane = vectors.product(points, np.column_stack([u, vectors.cross(normal, u)]))
+    plane = vectors.product(points, np.column_stack(_across(normal)))
     try:
         corners = points[ConvexHull(plane).vertices]
     except QhullError:  # a contact line: a sliver of the hull
         return points
     return _without_straight_corners(corners)
+
+
+def _across(normals):
+    """Unit vectors (..., 3) and (..., 3) in planes of normals (..., 3), the three right-handed."""
+    first = np.eye(3)[np.abs(normals).argmin(axis=-1)]
+    u = vectors.unit(vectors.cross(normals, first))
+    return u, vectors.cross(normals, u)
 
 
 def _turn_at_every_corner(x, y, owners, count):

@@ -7,6 +7,8 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from feederscrew.geometry import vectors
+from feederscrew.resting import contacts
 from feederscrew.resting.aspects import find
 
 SIDES = st.integers(1, 40)  # sides that differ by less than 1e-4 count as equal
@@ -218,6 +220,21 @@ def test_the_half_turns_of_an_ellipsoid_do_not_depend_on_the_file():
     egg = shapes.ball(1.0, 4).apply_transform(np.diag([10.0, 7.0, 5.0, 1.0]))
     for mesh in (egg, shapes.turned(egg, np.random.default_rng(2))):
         assert find(shapes.part(mesh)).faces.tolist() == [2]
+
+
+def test_an_outline_is_that_seen_along_its_normal(rng):
+    """Of corners not quite in one plane: another view takes one of them for a corner, or for none."""
+    normal, plane = np.array([0.0, 0.0, 1.0]), np.array([[-3, -2, 0], [3, -2, 0], [3, 2, 0], [-3, 2, 0.0]])
+    for _ in range(20):
+        side = np.array([rng.uniform(-2.0, 2.0), 2.0 + rng.choice([-1e-3, 1e-3]), 0.05])
+        points = np.concatenate([plane, [side]])
+        turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        turn *= np.sign(np.linalg.det(turn))
+        turned = vectors.product(points, turn.T)
+        (found,) = contacts.outlines(
+            turned, np.arange(5), np.zeros(5, int), vectors.product(turn, normal)[None]
+        )
+        assert len(found) == (5 if side[1] > 2.0 else 4)
 
 
 def test_what_is_enclosed_twice_counts_in_the_symmetries_of_a_cube():
