@@ -132,33 +132,39 @@ def eigen(matrix):
     ----------
     G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed., Johns Hopkins, 2013, section 8.5.
     """
-    a = np.array(matrix, float)
-    if not np.isfinite(a).all():
+    entries = np.array(matrix, float)
+    if not np.isfinite(entries).all():
         raise ValueError("matrix: every entry must be finite")
-    turned = np.eye(len(a))
-    small = NOTHING * np.abs(a).max(initial=0.0)
+    small = NOTHING * np.abs(entries).max(initial=0.0)
+    a, turned = (
+        entries.tolist(),
+        np.eye(len(entries)).tolist(),
+    )  # lists: a dozen numbers are no work for numpy
     for _ in range(SWEEPS):
-        pairs = [(p, q) for p in range(len(a)) for q in range(p + 1, len(a)) if abs(a[p, q]) > small]
+        pairs = [(p, q) for p in range(len(a)) for q in range(p + 1, len(a)) if abs(a[p][q]) > small]
         if not pairs:
             break
         for p, q in pairs:
             _rotate(a, turned, p, q)
-    order = np.argsort(np.diag(a), kind="stable")
-    return np.diag(a)[order], turned[:, order]
+    values = np.array([row[k] for k, row in enumerate(a)])
+    order = np.argsort(values, kind="stable")
+    return values[order], np.array(turned)[:, order]
 
 
 def _rotate(a, turned, p, q):
-    """Turn axes p and q (in place) until the entry between them is zero."""
-    if a[p, q] == 0.0:
+    """Turn axes p and q (in place) until the entry between them is zero; lists of rows."""
+    if a[p][q] == 0.0:
         return
-    half = (a[q, q] - a[p, p]) / (2.0 * a[p, q])
+    half = (a[q][q] - a[p][p]) / (2.0 * a[p][q])
     t = math.copysign(1.0, half) / (abs(half) + math.hypot(1.0, half))  # tangent of the angle
     c = 1.0 / math.hypot(1.0, t)
     s = t * c
-    for array in (a.T, a, turned.T):  # columns of a, then its rows
-        first, second = array[p].copy(), array[q].copy()
-        array[p], array[q] = c * first - s * second, s * first + c * second
-    a[p, q] = a[q, p] = 0.0
+    for row in (*a, *turned):
+        row[p], row[q] = c * row[p] - s * row[q], s * row[p] + c * row[q]
+    first, second = a[p], a[q]
+    a[p] = [c * x - s * y for x, y in zip(first, second)]
+    a[q] = [s * x + c * y for x, y in zip(first, second)]
+    a[p][q] = a[q][p] = 0.0
 
 
 def solve(matrix, right):
