@@ -43,12 +43,12 @@ def adopted(tumbling, labels, count):
         taken = np.arange(len(labels))
         taken[claimed] = by
         return _links(np.arange(len(labels)), labels[forest.roots(taken)[members]], (len(labels), count))
-    square = (len(labels), len(labels))
-    goes = _links(np.append(own, claimed), np.append(own, by), square)
-    while goes[:, np.unique(claimed)].nnz:
+    goes = _links(np.append(own, claimed), np.append(own, by), (len(labels), len(labels)))
+    while (labels[goes.indices] == UNNAMED).any():
         goes = goes @ goes  # twice as far along the chain of claims
-    faces = _links(own, labels[own], (len(labels), count))
-    return _links(np.arange(len(labels)), members, square) @ goes @ faces
+    faces = type(goes)((goes.data, labels[goes.indices], goes.indptr), shape=(len(labels), count))
+    faces.sum_duplicates()
+    return faces[members]
 
 
 def _claims(tumbling, labels):
