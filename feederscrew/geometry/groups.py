@@ -1,5 +1,7 @@
 """Groups of unlike lengths in one array, the members of each behind those of the one before."""
 
+import itertools
+
 import numpy as np
 
 
@@ -27,7 +29,8 @@ def starts(owners, count):
 
 def split(members, owners, count):
     """Return the members (N, ...) of each of ``count`` groups, by ascending owners (N,): a list of arrays."""
-    return np.split(members, starts(owners, count)[1:])
+    bounds = starts(owners, count + 1).tolist()
+    return [members[start:stop] for start, stop in itertools.pairwise(bounds)]
 
 
 def sums(values, owners, count):

@@ -58,7 +58,9 @@ def _claims(tumbling, labels):
     parent, claims = np.arange(len(labels)), np.empty_like(pairs)
     adopt = fitting(forest.adopt, len(order))
     made = adopt(pairs, tops, TIE * tops.max(initial=0.0), labels.copy(), parent, claims)
-    return forest.roots(parent), np.unique(claims[:made], axis=0)
+    claimed, by = claims[:made].T
+    pairs = np.divmod(np.unique(claimed * len(labels) + by), len(labels))
+    return forest.roots(parent), np.column_stack(pairs)
 
 
 def _links(start, end, shape):

@@ -52,10 +52,11 @@ def tipping(tumbling, labels):
     saddles, faces = _between(basins, tumbling.pairs)
     order = np.flatnonzero(faces[:, 0] != faces[:, 1])
     order = order[np.lexsort((tumbling.saddle_heights[saddles[order]], *faces[order, ::-1].T))]
-    pairs, first = np.unique(faces[order], axis=0, return_index=True)
-    lowest = saddles[order][first]
+    pairs = faces[order]
+    first = np.append(True, (pairs[1:] != pairs[:-1]).any(axis=1))[: len(pairs)]
+    pairs, lowest = pairs[first], saddles[order[first]]
     return Tipping(
-        shares=check.frozen(tumbling.shares @ basins),
+        shares=check.frozen(np.bincount(basins.indices, tumbling.shares[sinks] * basins.data, len(heights))),
         heights=check.frozen(np.where(np.isfinite(heights), heights, np.nan)),
         pairs=check.frozen(pairs),
         tops=check.frozen(tumbling.saddle_heights[lowest]),
@@ -158,20 +159,23 @@ def critical_solid_angles(polygons, heights):
     restatement only, the paper itself was not at hand.
     """
     normals, across, first, counts = _edge_levers(polygons)
-    heights = np.repeat(heights, counts)
-    lifts = np.split(np.hypot(across, heights) - heights, first[1:])
-    fans = [_lifted(*face) for face in zip(polygons, normals, lifts)]
-    seen = solid_angles(np.zeros(3), np.concatenate([fan.reshape(-1, 3, 3) for fan in fans]))
-    ends = np.cumsum([fan.shape[0] * fan.shape[1] for fan in fans])
-    totals = [part.reshape(fan.shape[:2]).sum(axis=1) for part, fan in zip(np.split(seen, ends[:-1]), fans)]
-    return np.array([1.0 - total[1:].mean() / total[0] for total in totals])
+    heights, corners = np.repeat(heights, counts), np.concatenate(polygons)
+    lifts, shares = np.hypot(across, heights) - heights, np.empty(len(polygons))
+    for size in np.unique(counts):
+        alike = np.flatnonzero(counts == size)
+        edges = first[alike, None] + np.arange(size)
+        seen = _lifted_angles(corners[edges], normals[alike], lifts[edges])
+        shares[alike] = 1.0 - seen[:, 1:].mean(axis=1) / seen[:, 0]
+    return shares
 
 
-def _lifted(polygon, normal, lifts):
-    """(K + 1, K - 2, 3, 3) triangles of a polygon as it is, and seen from each lift of the centre of mass."""
-    fan = np.empty((len(polygon) - 2, 3, 3))
-    fan[:, 0], fan[:, 1], fan[:, 2] = polygon[0], polygon[1:-1], polygon[2:]
-    return fan + np.append(0.0, lifts)[:, None, None, None] * normal
+def _lifted_angles(polygons, normals, lifts):
+    """(F, K + 1) [sr] polygons (F, K, 3) seen from the centre of mass as it is and from each lift of it."""
+    apex, one, other = polygons[:, :1], polygons[:, 1:-1], polygons[:, 2:]
+    fan = np.stack([np.broadcast_to(apex, one.shape), one, other], axis=2)
+    down = np.insert(lifts, 0, 0.0, axis=1)[..., None] * normals[:, None]
+    triangles = fan[:, None] + down[:, :, None, None]
+    return solid_angles(np.zeros(3), triangles.reshape(-1, 3, 3)).reshape(triangles.shape[:3]).sum(axis=-1)
 
 
 def balance(tips):
