@@ -34,19 +34,18 @@ def split(members, owners, count):
 
 
 def sums(values, owners, count):
-    """Return the sums over the members of each of ``count`` groups.
+    """Return the sums over the members of each of ``count`` groups, none of them empty.
 
     Parameters
     ----------
-    values : (N,) or (N, K) float
+    values : (N,) or (K, N) float
+        Of one quantity, or of several, a row each.
     owners : (N,) int
+        Ascending.
     count : int
 
     Returns
     -------
     (G,) or (G, K) float
-        Added in the order of the members.
     """
-    if values.ndim == 1:
-        return np.bincount(owners, values, minlength=count)
-    return np.stack([np.bincount(owners, column, minlength=count) for column in values.T], axis=1)
+    return np.add.reduceat(values, starts(owners, count), axis=-1).T

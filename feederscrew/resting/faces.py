@@ -116,7 +116,8 @@ def _one_round(hull, sinks, members, sides):
     if len(sinks) >= FEWEST and _spread(hull.normals[sinks]) >= ARC and _round(hull, sinks):
         return True
     lowest, every = sinks[np.argmin(hull.heights[sinks])], np.concatenate(members)
-    return _rocks(hull, every[sides[every] == sides[lowest]], lowest)
+    side = every[sides[every] == sides[lowest]]
+    return bool(_may_roll(hull, [side])[0]) and _rocks(hull, side, lowest)
 
 
 def _strips(hull, basins, group, sides):
@@ -130,14 +131,20 @@ def _strips(hull, basins, group, sides):
     beside = sides[every] == sides[lowest][owners]
     strips = groups.split(every[level], owners[level], count)
     aside = groups.split(every[beside], owners[beside], count)
-    rocking, own = _curved(hull, aside), groups.split(every, owners, count)
+    rocking, own = _may_roll(hull, aside), groups.split(every, owners, count)
     for k in np.flatnonzero(rocking):
         rocking[k] = _rocks(hull, aside[k], lowest[k])
         strips[k] = aside[k] if rocking[k] else strips[k]
-    flat = np.flatnonzero(~rocking & ~_curved(hull, strips))
+    still = np.flatnonzero(~rocking)
+    flat = still[~_curved(hull, [strips[k] for k in still])]
     for k, plane in zip(flat, planes(hull, lowest[flat], [own[k] for k in flat])):
         strips[k] = plane
     return lowest, strips
+
+
+def _may_roll(hull, triangles):
+    """(F,) whether there are enough triangles, in each of a list of F arrays, and so unlike, for a curve."""
+    return _curved(hull, triangles) & (np.array([len(each) for each in triangles]) >= FEWEST)
 
 
 def _smooth_sides(hull, basins, group):
@@ -154,9 +161,7 @@ def _smooth_sides(hull, basins, group):
 
 
 def _rocks(hull, side, sink):
-    """Whether these triangles are strips of a curved side whose axis may lie off the centre of mass."""
-    if len(side) < FEWEST or not _curved(hull, [side])[0]:
-        return False
+    """Whether a side that may roll is of strips of a curve, whose axis may lie off the centre of mass."""
     normals, share = hull.normals[side], hull.areas[side] / hull.areas[side].sum()
     leans = angle(normals, hull.normals[sink])
     if share[leans < 0.5 * SMOOTH].sum() > 0.5 or _ring(leans, share):
@@ -227,7 +232,7 @@ def _seats(hull, triangles, owners, count):
     """(F, 3) normals, (F,) [m] heights and roughness of the triangles that F faces stand on."""
     weights = np.maximum(hull.areas[triangles], TINY)
     whole = groups.sums(weights, owners, count)
-    normals = vectors.unit(groups.sums(weights[:, None] * hull.normals[triangles], owners, count))
+    normals = vectors.unit(groups.sums(weights * hull.normals[triangles].T, owners, count))
     above = vectors.dot(hull.vertices[hull.triangles[triangles]], normals[owners][:, None])
     middle = groups.sums(above.sum(axis=1), owners, count) / (3 * np.bincount(owners, minlength=count))
     off = np.abs(above - middle[owners][:, None]).max(axis=1)
@@ -262,9 +267,11 @@ def _axis(normals, weights, lowest):
 
 def _curved(hull, triangles):
     """(F,) whether the triangles of each face, a list of F arrays, are strips of a curve and not a plane."""
+    if not len(triangles):
+        return np.empty(0, dtype=bool)
     (every, owners), count = groups.joined(triangles), len(triangles)
     areas = hull.areas[every]
-    mean = groups.sums(areas[:, None] * hull.normals[every], owners, count)
+    mean = groups.sums(areas * np.ascontiguousarray(hull.normals.T)[:, every], owners, count)
     several = np.bincount(owners, minlength=count) > 1
     return several & (vectors.norm(mean) < CURVED * groups.sums(areas, owners, count))
 

@@ -19,7 +19,7 @@ def test_groups_joined_and_split_are_what_they_were(given_groups):
 @given(GROUPS)
 def test_sums_are_of_each_group(given_groups):
     members, owners = groups.joined(given_groups)
-    both = np.column_stack([members, 2 * members])
+    both = np.stack([members, 2 * members])
     expected = np.array([group.sum() for group in given_groups])
     np.testing.assert_array_equal(groups.sums(members, owners, len(expected)), expected)
     np.testing.assert_array_equal(groups.sums(both, owners, len(expected)), np.outer(expected, [1, 2]))
