@@ -14,7 +14,7 @@ from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.aspects import answered
 from feederscrew.tooling.cutting import VERDICTS, Search
 from feederscrew.tooling.design import MARGIN, design, place
-from feederscrew.tooling.orientations import Orientation, named, orientations
+from feederscrew.tooling.orientations import Orientation, named, orientations, placed
 from feederscrew.tooling.result import Design
 
 CARRIED = (
@@ -175,6 +175,5 @@ def _isolating(every, shares, wanted, **asked):
     found = design(every, shares, wanted, **asked)
     if found.isolated or not any(one.carry > 0.0 for one in every):
         return found
-    placed = tuple(replace(one, carry=0.0, carry_ahead=0.0, grip=0.0, climbs=0.0) for one in every)
-    still = design(placed, shares, wanted, **asked)
+    still = design(placed(every), shares, wanted, **asked)
     return replace(still, reasons=(*still.reasons, CARRIED)) if still.isolated else found

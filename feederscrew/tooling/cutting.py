@@ -18,6 +18,7 @@ STEPS = 100  # changes tried of each
 ROOM = 1.3  # holes reach so far beyond the foot
 STEP = 1e-5  # [m] to which a corner is rounded
 HALVINGS = 24
+ROUNDING = 1e-12  # [m] of a score
 VERDICTS = 30000  # in the search for the holes of one orientation
 
 
@@ -81,20 +82,44 @@ class _Judge:
         self.length = ROOM * max(one.length for one in (every[wanted], *(every[k] for k in others)))
         self.width = max(one.width for one in (every[wanted], *(every[k] for k in others)))
         self.scratch = {}
+        self.order = list(range(len(others)))  # those that spoiled a hole last come first
 
-    def score(self, corners):
-        """(score, margins of the others): the worse of passing and of returning, at most the margin twice."""
+    def score(self, corners, beaten=-math.inf):
+        """(score, margins of the others); (-infinity, None) of a hole that does not pass, or is not better."""
         hole = feet.polygon(corners, self.radius)
-        passing = self._least(0, self.wanted, hole)
+        self.search.spent += 1
+        passing = self._least(-1, self.wanted, hole, -self.margin, 2.0 * self.margin)[0]
         if passing < -self.margin:
             return -math.inf, None
-        margins = [self._falling(k + 1, one, hole) for k, one in enumerate(self.others)]
+        self.search.spent += len(self.others)  # those that are not asked for count as well: so do equal searches
+        margins = [-2.0 * self.margin] * len(self.others)
+        if self._worth(passing, margins) <= beaten:
+            return -math.inf, None
+        for place, k in enumerate(self.order):
+            margins[k] = self._falling(k, hole, self._spoilt(passing, margins, k, beaten))
+            if margins[k] > -2.0 * self.margin and self._worth(passing, margins) <= beaten:
+                self.order.insert(0, self.order.pop(place))
+                return -math.inf, None
+        return self._worth(passing, margins), margins
+
+    def _worth(self, passing, margins):
+        """The score of a hole: the worse of passing and of returning, at most the margin twice.
+
+        More than that of any margin makes no difference: of those not known yet it is the best they can add.
+        """
         returned = sum(found <= -self.margin for found in margins)
         ready = passing >= self.margin
         total = sum(min(-found, 2.0 * self.margin) for found in margins)
         gain = min(passing, 2.0 * self.margin) * max(len(margins), 1) + total
         nearest = min(passing - self.margin, max(-found for found in margins) - self.margin)
-        return (returned if ready else 0) * 1e3 * self.margin + 3.0 * min(nearest, 0.0) + gain, margins
+        return (returned if ready else 0) * 1e3 * self.margin + 3.0 * min(nearest, 0.0) + gain
+
+    def _spoilt(self, passing, margins, k, beaten):
+        """The margin of one of the others from which on a hole is not better, whatever the rest may add."""
+        if beaten == -math.inf:
+            return math.inf
+        nearly = [*margins[:k], math.nextafter(-self.margin, 0.0), *margins[k + 1 :]]  # not quite returned
+        return -self.margin + max(self._worth(passing, nearly) - beaten, 0.0) + ROUNDING
 
     def searched(self, rng):
         """The best hole found, as (corners, margins), if it passes the wanted one and returns any other."""
@@ -104,8 +129,9 @@ class _Judge:
                 break
             corners = self._random(rng)
             if corners is not None:
-                found.append((*self.score(corners), corners))
-        found = sorted(found, key=lambda one: -one[0])[:CLIMBS]
+                beaten = found[-1][0] if len(found) == CLIMBS else -math.inf
+                found.append((*self.score(corners, beaten), corners))
+                found = sorted(found, key=lambda one: -one[0])[:CLIMBS]
         climbed = [self._climbed(one, rng) for one in found]
         best = max(climbed, key=lambda one: one[0], default=None)
         if best is None or best[0] < 500.0 * self.margin:
@@ -127,7 +153,7 @@ class _Judge:
             moved = self._tidy(moved)
             if moved is None:
                 continue
-            better, found = self.score(moved)
+            better, found = self.score(moved, score)
             if better > score:
                 score, margins, corners = better, found, moved
             else:
@@ -148,27 +174,28 @@ class _Judge:
         corners[:, 1] = np.clip(corners[:, 1], 0.0, min(1.2 * self.width, 0.9 * self.radius))
         corners[:, 0] -= corners[:, 0].min()
         corners = np.round(corners / STEP) * STEP
-        after = np.roll(corners, -1, axis=0)
-        area = 0.5 * abs((corners[:, 0] * after[:, 1] - corners[:, 1] * after[:, 0]).sum())
-        if area < (4.0 * self.margin) ** 2 or crossed([tuple(one) for one in corners]):
+        pairs = [tuple(one) for one in corners.tolist()]
+        sides = zip(pairs, (*pairs[1:], pairs[0]))
+        area = 0.5 * abs(sum(x0 * y1 - y0 * x1 for (x0, y0), (x1, y1) in sides))
+        if area < (4.0 * self.margin) ** 2 or crossed(pairs):
             return None
         return corners
 
-    def _falling(self, k, one, hole):
+    def _falling(self, k, hole, high):
         """Least margin of one that travels; what fails by too little anyway is left as it is placed."""
-        margin = self._least(k, one.standing, hole)
+        one, enough = self.others[k], 2.0 * self.margin
+        margin, work = self._least(k, one.standing, hole, -enough, high)
         if margin > -self.margin or not one.carry > 0.0:
             return margin
-        return carried(margin, feet.unheld(one.standing, hole), one.carry)
+        return carried(margin, feet.unheld(one.standing, hole, work, one.carry + enough), one.carry)
 
-    def _least(self, k, foot, hole):
-        """Least margin, in arrays kept for holes of that size."""
-        self.search.spent += 1
+    def _least(self, k, foot, hole, low, high):
+        """Least margin as far as it lies between two values, and the arrays kept for holes of that size."""
         key = k, len(hole.edges), 64 * (1 + len(hole.nodes) // 64)
         if key not in self.scratch:
             room = hole._replace(nodes=np.empty((key[2], 3)))
             self.scratch[key] = feet.scratch(foot, room)
-        return feet.least(foot, hole, self.scratch[key])[0]
+        return feet.least(foot, hole, self.scratch[key], low, high)[0], self.scratch[key]
 
 
 def _as_cut(every, wanted, held, corners):

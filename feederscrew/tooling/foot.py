@@ -1,5 +1,6 @@
 """Feet and holes as the compiled verdict takes them."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -10,6 +11,7 @@ from feederscrew import check
 
 SAGITTA = 4e-6  # of the radius: by which a hole's bulging edge may be seen too flat ...
 FLATTEST = 2e-6  # [m] ... and at most; a short base of the support makes up to ten times that of the margin
+BESIDE = 1e-9  # [1] of an angle or a distance: what is beyond by more is so for certain
 BEHIND = 1e-3  # [m] a hole that reaches the wall is cut on into it
 
 
@@ -65,7 +67,22 @@ def standing(foot, distance, radius, shift=0.0):
         polar=np.column_stack([np.arctan2(*corners.T), np.hypot(*corners.T)]),
         centre=middle + shift,
         reach=float(np.hypot(corners[:, 0], corners[:, 1] - middle - shift).max()),
+        every=np.arange(len(corners)),
+        sector=_sector(start[closed], end[closed], middle),
     )
+
+
+def _sector(start, end, middle):
+    """Angles and distances about the axis (4,) [rad, m] that sides closed to areas lie between for certain."""
+    start, end = ([1.0, -1.0] * (ends - [0.0, middle]) for ends in (start, end))
+    if len(start) == 0 or not start[:, 1].min() > 0.0:
+        return np.array([-np.inf, np.inf, 0.0, np.inf])
+    along = end - start
+    share = np.clip(-(start * along).sum(axis=1) / (along * along).sum(axis=1), 0.0, 1.0)
+    nearest = np.hypot(*(start + share[:, None] * along).T).min()
+    theta, far = np.arctan2(*start.T), np.hypot(*start.T).max()
+    least, most = theta.min() - BESIDE, theta.max() + BESIDE
+    return np.array([least, most, nearest * (1.0 - BESIDE), far * (1.0 + BESIDE)])
 
 
 def polygon(corners, radius):
@@ -84,11 +101,12 @@ def polygon(corners, radius):
     """
     from feederscrew.tooling.kernel.passage import Hole
 
-    corners = through_the_wall(_turned_left(check.shaped("corners", corners, (-1, 2))))
-    theta, r = corners[:, 0] / radius, radius - corners[:, 1]
-    rows = [_edge(*ends) for ends in zip(theta, r, np.roll(theta, -1), np.roll(r, -1))]
-    corner = np.column_stack([theta, r, np.ones(len(r))])[_reflex(corners)]
-    return Hole(edges=np.array(rows), nodes=np.concatenate([corner, *_bulging(corners, radius)]))
+    corners = through_the_wall(_turned_left(check.shaped("corners", corners, (-1, 2)).tolist()))
+    sides = _sides(corners)
+    rows = [_edge(s0 / radius, radius - y0, s1 / radius, radius - y1) for (s0, y0), (s1, y1) in sides]
+    nodes = [(s / radius, radius - y, 1.0) for s, y in _reflex(corners)]
+    nodes += [node for start, end in sides for node in _bulging(start, end, radius)]
+    return Hole(edges=np.array(rows), nodes=np.array(nodes).reshape(-1, 3))
 
 
 def gap(length, radius, width):
@@ -135,20 +153,27 @@ def scratch(foot, hole):
     )
 
 
-def least(foot, hole, work=None):
-    """Return the least margin [m] of a foot over a hole's passage, and the shift [rad] where it is."""
+def least(foot, hole, work=None, low=-np.inf, high=np.inf):
+    """Return the least margin [m] of a foot over a hole's passage, and the shift [rad] where it is.
+
+    A margin below ``low`` may be told as any that is below it, one above ``high`` as any above: that is sooner.
+    """
     from feederscrew.tooling.kernel import passage
 
     out = np.empty(2)
-    passage.least(foot, hole, work or scratch(foot, hole), out)
+    passage.least(foot, hole, work or scratch(foot, hole), low, high, out)
     return float(out[0]), float(out[1])
 
 
-def unheld(foot, hole):
-    """Return the longest way [m] over which a hole leaves a foot without support."""
+def unheld(foot, hole, work=None, enough=np.inf):
+    """Return the longest way [m] over which a hole leaves a foot without support.
+
+    One longer than ``enough`` may be told as any that is longer.
+    """
     from feederscrew.tooling.kernel import unheld as kernel
 
-    return float(kernel.longest(foot, hole, scratch(foot, hole))) * foot.centre
+    turn = enough * (1.0 + BESIDE) / foot.centre
+    return float(kernel.longest(foot, hole, work or scratch(foot, hole), turn)) * foot.centre
 
 
 def _hull(x, y):
@@ -192,38 +217,44 @@ def _edge(theta0, r0, theta1, r1):
 
 def _turned_left(corners):
     """The corners counter-clockwise, length along to the right and distance from the wall upwards."""
-    following = np.roll(corners, -1, axis=0)
-    twice = (corners[:, 0] * following[:, 1] - corners[:, 1] * following[:, 0]).sum()
+    twice = sum(s0 * y1 - y0 * s1 for (s0, y0), (s1, y1) in _sides(corners))
     return corners if twice > 0.0 else corners[::-1]
 
 
+def _sides(corners):
+    """Start and end of each side of a ring of corners."""
+    return list(zip(corners, (*corners[1:], corners[0])))
+
+
 def through_the_wall(corners):
-    """Return the corners (K, 2) [m] of a hole with every edge along the wall moved behind it."""
+    """Return the corners [m] of a hole, in pairs, with every edge along the wall moved behind it."""
     out = []
-    for (s0, y0), (s1, y1) in zip(corners, np.roll(corners, -1, axis=0)):
+    for (s0, y0), (s1, y1) in _sides(corners):
         out.append((s0, y0))
         if y0 <= 0.0 and y1 <= 0.0:
             out += [(s0, min(y0, y1) - BEHIND), (s1, min(y0, y1) - BEHIND)]
-    return np.array(out)
+    return out
 
 
 def _reflex(corners):
-    """Which corners of the hole point into it: there the track left has a corner."""
-    before, after = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners
-    return before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0] < 0.0
+    """The corners of the hole that point into it: there the track left has a corner."""
+    sides = _sides(corners)
+    for ((s0, y0), (s1, y1)), (_, (s2, y2)) in zip((sides[-1], *sides), sides):
+        if (s1 - s0) * (y2 - y1) - (y1 - y0) * (s2 - s1) < 0.0:
+            yield s1, y1
 
 
-def _bulging(corners, radius):
-    """Points along the edges beyond which the track left bulges, as nodes (N, 3)."""
+def _bulging(start, end, radius):
+    """Points along an edge beyond which the track left bulges, as nodes."""
+    (s0, y0), (s1, y1) = start, end
+    if s1 >= s0:
+        return
     flat = min(SAGITTA * radius, FLATTEST)
-    for start, end in zip(corners, np.roll(corners, -1, axis=0)):
-        if end[0] >= start[0]:
-            continue
-        r = max(radius - max(start[1], end[1]), 1e-3 * radius)
-        pieces = int(np.ceil(abs(end[0] - start[0]) * r / radius / np.sqrt(8.0 * r * flat)))
-        shares = np.arange(1, pieces)[:, None] / max(pieces, 1)
-        between = start + shares * (end - start)
-        yield np.column_stack([between[:, 0] / radius, radius - between[:, 1], 0.0 * between[:, 0]])
+    r = max(radius - max(y0, y1), 1e-3 * radius)
+    pieces = math.ceil(abs(s1 - s0) * r / radius / math.sqrt(8.0 * r * flat))
+    for k in range(1, pieces):
+        share = k / pieces
+        yield (s0 + share * (s1 - s0)) / radius, radius - (y0 + share * (y1 - y0)), 0.0
 
 
 def over_ring(foot, low, high):
@@ -250,13 +281,17 @@ def canyon(foot, radius):
 def longest_gap(foot, radius):
     """Return the greatest gap [m] across the track that a foot passes; 0 for none."""
     low, high = 0.0, 2.0 * foot.reach
-    work = scratch(foot, gap(high, radius, _extent(foot, radius)))
-    if least(foot, gap(1e-9, radius, _extent(foot, radius)), work)[0] < 0.0:
+    width = _extent(foot, radius)
+    work = scratch(foot, gap(high, radius, width))
+
+    def passes(length):
+        return least(foot, gap(length, radius, width), work, low=0.0, high=0.0)[0] >= 0.0
+
+    if not passes(1e-9):
         return 0.0
     while high - low > 1e-12:
         middle = 0.5 * (low + high)
-        passes = least(foot, gap(middle, radius, _extent(foot, radius)), work)[0] >= 0.0
-        low, high = (middle, high) if passes else (low, middle)
+        low, high = (middle, high) if passes(middle) else (low, middle)
     return low
 
 

@@ -110,6 +110,18 @@ class Orientation:
         return feet.longest_gap(self.standing, self.track.radius)
 
 
+def placed(found):
+    """Return orientations (M of them) as they are where nothing carries them on; what is known of them stays."""
+    return tuple(_placed(one) for one in found)
+
+
+def _placed(one):
+    other = replace(one, carry=0.0, carry_ahead=0.0, grip=0.0, climbs=0.0)
+    known = {name for name, value in vars(Orientation).items() if isinstance(value, cached_property)}
+    vars(other).update({name: value for name, value in vars(one).items() if name in known})
+    return other
+
+
 def orientations(part, aspects, track):
     """Return every stable aspect and heading of a part on a track.
 

@@ -176,5 +176,5 @@ def _hole(device, one, shift):
     if ring is None:
         return None
     shift = _shift(device, one, shift) if device.kind in ("gap", "cut_out") else -0.5 * length / track.radius
-    ring = bent(feet.through_the_wall(ring), track.radius, shift, CHORD)
+    ring = bent(np.array(feet.through_the_wall(ring.tolist())), track.radius, shift, CHORD)
     return shapely.make_valid(shapely.Polygon(ring))

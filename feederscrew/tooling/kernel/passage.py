@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from feederscrew.geometry.compiled import compiled, entry
+from feederscrew.geometry.compiled import apart, compiled, entry
 from feederscrew.tooling.kernel.crossing import (
     ALPHA,
     ARC,
@@ -29,6 +29,7 @@ INSTANT = 1e-12  # [rad] a shorter piece is one of rounding
 SAMPLES = 4  # parts of a piece that may hold the least margin
 STEEP = 2.0  # of a point's mean speed in a piece: no faster does a margin fall beside a sample
 SECTIONS = 40
+ROUNDING = 1e-12  # [m] of a margin: what is sure by more cannot come out lower
 ASIDE = 1e-3  # of a sample's distance: there the margin is seen to rise or to fall
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
@@ -44,6 +45,8 @@ class Foot(NamedTuple):
     hull: np.ndarray  # (H,) int, corners of the convex hull, counter-clockwise seen from above
     insets: np.ndarray  # (H,) [m] from the foot of the centre of mass to the line of the side behind each
     reach: float  # [m] from there to the farthest corner
+    every: np.ndarray  # (V,) int, all corners
+    sector: np.ndarray  # (4,) [rad, m] theta and r between which its areas lie for certain
 
 
 class Hole(NamedTuple):
@@ -69,7 +72,7 @@ class VerdictArrays(NamedTuple):
 
 
 @entry
-def least(foot, hole, scratch, out):
+def least(foot, hole, scratch, low, high, out):
     """Fill the least margin over a passage and the shift of the hole at which it occurs.
 
     Parameters
@@ -77,24 +80,67 @@ def least(foot, hole, scratch, out):
     foot : Foot
     hole : Hole
     scratch : VerdictArrays
+    low : float [m]
+        A margin below it is told as it is found, wherever it is lowest; minus infinity for none.
+    high : float [m]
+        A margin above it is told as any that is above; infinite for none.
     out : (2,) float [m, rad]
         To be filled.
     """
     for k in range(len(foot.corners)):
         scratch.keep[k] = 1
-    count = _gather(foot, hole, scratch, 0.0, 0, False, scratch.points)
-    out[0], out[1] = inset_beside(scratch.points, count, foot, scratch.keep), 0.0
-    number = _events(foot, hole, scratch)
-    for i in range(number - 1):
-        scratch.bounds[i] = math.inf
-        if scratch.events[i + 1] - scratch.events[i] > INSTANT:
-            active = _status(foot, hole, scratch, i)
-            low, high = scratch.events[i], scratch.events[i + 1]
-            before, after, way = _ends(foot, hole, scratch, low, high, active, out)
-            scratch.bounds[i], scratch.ways[i] = 0.5 * (before + after - way), way
-    for i in range(number - 1):
+    out[0], out[1] = min(_kept_inset(foot, scratch, foot.every), high + 2.0 * CLOSE), 0.0
+    pieces = _events(foot, hole, scratch) - 1
+    first = 0 if low == -math.inf else pieces // 2  # midway the hole is below the foot
+    for step in range(pieces):
+        if out[0] < low:
+            return
+        i = (first + step) % pieces
+        scratch.bounds[i] = _bound(foot, hole, scratch, i, out)
+    for i in range(pieces):
+        if out[0] < low:
+            return
         if scratch.bounds[i] < out[0] - CLOSE:
             _within(foot, hole, scratch, i, out)
+
+
+@compiled
+def _bound(foot, hole, scratch, i, out):
+    """What the margin in a piece is not below, from its two ends; infinite where it is not below ``out``."""
+    low, high = scratch.events[i], scratch.events[i + 1]
+    if high - low <= INSTANT:
+        return math.inf
+    if carried(foot, hole, scratch, i, out[0]):
+        return math.inf
+    active = status(foot, hole, scratch, i)
+    before, after, way = _ends(foot, hole, scratch, low, high, active, out)
+    scratch.ways[i] = way
+    return 0.5 * (before + after - way)
+
+
+@apart
+def carried(foot, hole, scratch, i, margin):
+    """Whether those corners that have track below in a piece carry a foot by more than a margin for certain.
+
+    More track can only carry it better, so the few corners of its hull are asked first. Fills ``keep`` where not.
+    """
+    keep_corners(foot, hole, scratch, i, foot.hull)
+    if _kept_inset(foot, scratch, foot.hull) > margin + ROUNDING:
+        return True
+    keep_corners(foot, hole, scratch, i, foot.every)
+    return _kept_inset(foot, scratch, foot.every) > margin + ROUNDING
+
+
+@apart
+def _kept_inset(foot, scratch, corners):
+    """The margin on no more than those of some corners of a foot that have track below."""
+    count = 0
+    for k in corners:
+        if scratch.keep[k]:
+            scratch.points[count, 0] = foot.corners[k, 0]
+            scratch.points[count, 1] = foot.centre - foot.corners[k, 1]
+            count += 1
+    return inset_beside(scratch.points, count, foot, scratch.keep)
 
 
 @compiled
@@ -111,13 +157,20 @@ def _events(foot, hole, scratch):
 
 
 @compiled
-def _status(foot, hole, scratch, i):
-    """Fill which corners have track below and which stretches are crossed in a piece; their number."""
+def keep_corners(foot, hole, scratch, i, corners):
+    """Fill which of some corners of the foot have track below in a piece between two events."""
     phi = 0.5 * (scratch.events[i] + scratch.events[i + 1])
-    for k in range(len(foot.corners)):
+    for k in corners:
         scratch.keep[k] = 0 if _over(hole.edges, foot.polar[k, 0] - phi, foot.polar[k, 1]) else 1
+
+
+@compiled
+def status(foot, hole, scratch, i):
+    """Fill which corners of the hole are below the foot and which stretches are crossed; their number."""
+    phi = 0.5 * (scratch.events[i] + scratch.events[i + 1])
     for k in range(len(hole.nodes)):
-        scratch.held[k] = _under(foot, hole.nodes[k, 0] + phi, hole.nodes[k, 1], scratch.points, 0)
+        if hole.nodes[k, 2] != 0.0:
+            scratch.held[k] = _under(foot, hole.nodes[k, 0] + phi, hole.nodes[k, 1], scratch.points, 0)
     active = 0
     for k in range(len(scratch.rows)):
         if scratch.rows[k, SIDE] < 0.0:
@@ -173,7 +226,8 @@ def _within(foot, hole, scratch, i, out):
 
     Of the hull's sides only those that move count: the others are told at the ends.
     """
-    active = _status(foot, hole, scratch, i)
+    keep_corners(foot, hole, scratch, i, foot.every)
+    active = status(foot, hole, scratch, i)
     start, step = scratch.events[i], (scratch.events[i + 1] - scratch.events[i]) / SAMPLES
     lowest, at = math.inf, 0
     for k in range(SAMPLES + 1):
@@ -256,6 +310,10 @@ def _border(foot, hole, held, phi, points, count):
 @compiled
 def _under(foot, theta, radius, points, count):
     """Add a point if it lies under an area of the foot."""
+    if not foot.sector[2] < radius < foot.sector[3]:
+        return count
+    if not foot.sector[0] < theta < foot.sector[1] and abs(theta) < math.pi:
+        return count
     x, q, inside = radius * math.sin(theta), radius * math.cos(theta), False
     for k in range(len(foot.sides)):
         if not foot.closed[k]:

@@ -8,7 +8,7 @@ SAMPLES = 8  # parts of a piece between two events
 
 
 @entry
-def longest(foot, hole, scratch):
+def longest(foot, hole, scratch, enough):
     """Return the longest turn of the hole [rad] through which the margin stays below zero.
 
     Between samples the margin is taken to change evenly.
@@ -18,13 +18,18 @@ def longest(foot, hole, scratch):
     foot : Foot
     hole : Hole
     scratch : VerdictArrays
+    enough : float [rad]
+        A longer turn is told as soon as it is so long; infinite to be told the longest.
     """
     best = turn = 0.0
     for i in range(passage._events(foot, hole, scratch) - 1):
         step = (scratch.events[i + 1] - scratch.events[i]) / SAMPLES
         if step * SAMPLES <= passage.INSTANT:
             continue
-        active = passage._status(foot, hole, scratch, i)
+        if passage.carried(foot, hole, scratch, i, 0.0):
+            turn = 0.0
+            continue
+        active = passage.status(foot, hole, scratch, i)
         before = _margin(foot, hole, scratch, scratch.events[i], active)
         for k in range(1, SAMPLES + 1):
             after = _margin(foot, hole, scratch, scratch.events[i] + k * step, active)
@@ -36,6 +41,8 @@ def longest(foot, hole, scratch):
                 turn = step * after / (after - before) if after < 0.0 else 0.0
             before = after
         best = max(best, turn)
+        if best >= enough:
+            break
     return best
 
 
