@@ -120,12 +120,17 @@ def _bound(foot, hole, scratch, i, out):
 
 @apart
 def carried(foot, hole, scratch, i, margin):
-    """Whether those corners that have track below in a piece carry a foot by more than a margin for certain.
+    """Whether those corners that have track below in a piece carry a foot by no less than a margin for certain.
 
-    More track can only carry it better, so the few corners of its hull are asked first. Fills ``keep`` where not.
+    More track can only carry it better, so the few corners of its hull are asked first; with all of them it
+    is carried as on the whole track, to the last digit. Fills ``keep`` where that is not certain.
     """
     keep_corners(foot, hole, scratch, i, foot.hull)
-    if _kept_inset(foot, scratch, foot.hull) > margin + ROUNDING:
+    whole = len(foot.hull) > 0
+    for k in foot.hull:
+        whole = whole and scratch.keep[k] == 1
+    found = _kept_inset(foot, scratch, foot.hull)
+    if found > margin + ROUNDING or (whole and found >= max(margin, 0.0)):
         return True
     keep_corners(foot, hole, scratch, i, foot.every)
     return _kept_inset(foot, scratch, foot.every) > margin + ROUNDING
@@ -241,13 +246,14 @@ def _within(foot, hole, scratch, i, out):
         if 0 <= beside <= SAMPLES:
             way = (beside - at) * step
             if _margin(foot, hole, scratch, start + at * step + ASIDE * way, active) < lowest:
-                _section(foot, hole, scratch, start + at * step, start + beside * step, active, out)
+                _section(foot, hole, scratch, i, start + at * step, start + beside * step, active, out)
 
 
 @compiled
-def _section(foot, hole, scratch, start, end, active, out):
-    """Tell ``out`` of the least margin between two shifts, by the golden section."""
+def _section(foot, hole, scratch, i, start, end, active, out):
+    """Tell ``out`` of the least margin between two shifts of piece ``i``, by the golden section."""
     low, high = start, end
+    steepest = STEEP * scratch.ways[i] / (scratch.events[i + 1] - scratch.events[i])
     first, second = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
     here = _margin(foot, hole, scratch, first, active)
     there = _margin(foot, hole, scratch, second, active)
@@ -262,6 +268,8 @@ def _section(foot, hole, scratch, start, end, active, out):
             there = _margin(foot, hole, scratch, second, active)
         if abs(high - low) * foot.centre < CLOSE:
             break
+        if min(here, there) - steepest * abs(high - low) > out[0]:
+            return
     _lower(out, min(here, there), first if here < there else second)
 
 
