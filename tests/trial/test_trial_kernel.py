@@ -16,6 +16,7 @@ from feederscrew.geometry import vectors
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import looks, runs, shape, stations
+from feederscrew.trial.kernel import search
 
 BOWL = bowls.read(
     None,
@@ -55,6 +56,16 @@ def rode(block, one, bowl, state, seconds, every=None):
 def laid(block, one, bowl, **own):
     _, length, principal = shape.solid_of(block[0])
     return runs.laid(one, principal, length, bowl.track, place=0.0, aside=1e-3, **own)
+
+
+@pytest.mark.parametrize(("behind", "gap"), [(0.001, np.inf), (0.1, -0.02)])
+def test_an_edge_that_sank_beside_a_cut_is_not_under_its_border(behind, gap):
+    """0.02 below the surface, its end so far behind the side: what is nearer to the side touches that."""
+    border = np.array([0.0, 0.0, 0.0, 2.0, 1.0, 0.0])  # start, end, normal away from the side
+    edge = np.array([[-behind, 1.0, -0.02], [1.0, 1.0, -0.02]])
+    below = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])  # into its faces, that below first
+    found = search.crossing(*edge, border, below, 0.003, 0.002)
+    assert found[-1] == pytest.approx(gap, abs=1e-12)
 
 
 def test_a_flat_part_slides_as_the_point_mass(block):

@@ -15,7 +15,7 @@ from feederscrew.trial.kernel.search import (
     PARALLEL,
     ROUNDED,
     SLANT,
-    _crossing,
+    crossing,
     front,
 )
 
@@ -83,7 +83,7 @@ def edges_on(plate, borders, nears, lows, solid, turn, reach, work, contacts, co
                 ready, s = True, solid.sides[k]
                 _vector(plate, turn, s[0], s[1], s[2], work.vectors[0])
                 _vector(plate, turn, s[3], s[4], s[5], work.vectors[1])
-            share, u, v, w, gap = _crossing(p, q, border, work.vectors, plate[ROUNDED], reach)
+            share, u, v, w, gap = crossing(p, q, border, work.vectors, plate[ROUNDED], reach)
             if gap < math.inf:
                 x = spots[i, 0] + share * (spots[j, 0] - spots[i, 0])
                 y = spots[i, 1] + share * (spots[j, 1] - spots[i, 1])

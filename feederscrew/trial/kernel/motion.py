@@ -99,7 +99,7 @@ def found(surface, solid, work, reach):
                 plate, surface.borders, work.shown, work.spots, turn, solid, tangent, reach, nears,
                 work.low, contacts, count,
             )  # fmt: skip
-            if nears:
+            if nears and least <= -plate[search.ROUNDED]:
                 count = edges.edges_on_posts(
                     plate, surface.borders, nears, solid, turn, reach, work, contacts, count
                 )
