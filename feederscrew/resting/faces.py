@@ -174,9 +174,8 @@ def _rocks(hull, side, sink):
 def _even(normals, share):
     """Effective number of strips, of (N, 3) normals and (N,) shares: 1 over the sum of squared shares."""
     places = vectors.product(np.round(100.0 * normals), np.array([1.0, 1e3, 1e6]))  # one number a direction
-    order = np.argsort(places, kind="stable")
-    strips = np.flatnonzero(np.diff(places[order], prepend=np.nan))
-    return 1.0 / (np.add.reduceat(share[order], strips) ** 2).sum()
+    strips = np.unique(places, return_inverse=True)[1]
+    return 1.0 / (np.bincount(strips, share) ** 2).sum()
 
 
 def _ring(leans, share):
