@@ -132,3 +132,22 @@ def barrier(points):
     some = some if len(some) else np.flatnonzero(stands)
     first = some[np.argmin(turn[some])]
     return float(turn[first]), float(far[first])
+
+
+def convex(points):
+    """Return the places (H,) of the corners of a convex hull, counter-clockwise; fewer than 3 of a line."""
+    order = np.lexsort((points[:, 1], points[:, 0]))
+    chains = []
+    for places in (order, order[::-1]):
+        chain = []
+        for k in places.tolist():
+            while len(chain) > 1 and _right(points[chain[-2]], points[chain[-1]], points[k]):
+                chain.pop()
+            chain.append(k)
+        chains += chain[:-1]
+    return np.array(chains, dtype=np.int64)
+
+
+def _right(a, b, c):
+    """Whether the way from a over b to c does not turn left."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) <= 1e-16

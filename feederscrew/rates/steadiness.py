@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew.bowl.devices import KINDS
-from feederscrew.geometry.polygons import inset
+from feederscrew.geometry.polygons import convex, inset
 from feederscrew.mechanics.cycle import phases
 from feederscrew.mechanics.floor.balance import HOP
 from feederscrew.mechanics.track import balance
@@ -92,7 +92,7 @@ def _keeps_down(one, span, offset, margin):
     if feet.over_ring(one.standing, max(radius - last, 0.0), high) > one.margin - SAME:
         return True
     left = contact.beside(one.foot, span, one.distance, radius).corners
-    hull = left[feet.convex(left)]
+    hull = left[convex(left)]
     return len(hull) > 2 and bool(inset(hull, offset).min() >= margin)
 
 

@@ -85,13 +85,13 @@ class _Judge:
         self.order = list(range(len(others)))  # those that spoiled a hole last come first
 
     def score(self, corners, beaten=-math.inf):
-        """(score, margins of the others); (-infinity, None) of a hole that does not pass, or is not better."""
+        """(score, margins of the others); (-infinity, None) where it does not pass or is not better."""
         hole = feet.polygon(corners, self.radius)
         self.search.spent += 1
         passing = self._least(-1, self.wanted, hole, -self.margin, 2.0 * self.margin)[0]
         if passing < -self.margin:
             return -math.inf, None
-        self.search.spent += len(self.others)  # those that are not asked for count as well: so do equal searches
+        self.search.spent += len(self.others)  # also of those that need not be asked for
         margins = [-2.0 * self.margin] * len(self.others)
         if self._worth(passing, margins) <= beaten:
             return -math.inf, None

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from feederscrew import check
+from feederscrew.geometry import polygons
 
 SAGITTA = 4e-6  # of the radius: by which a hole's bulging edge may be seen too flat ...
 FLATTEST = 2e-6  # [m] ... and at most; a short base of the support makes up to ten times that of the margin
@@ -73,7 +74,7 @@ def standing(foot, distance, radius, shift=0.0):
 
 
 def _sector(start, end, middle):
-    """Angles and distances about the axis (4,) [rad, m] that sides closed to areas lie between for certain."""
+    """Angles and distances about the axis (4,) [rad, m] between which areas of such sides lie."""
     start, end = ([1.0, -1.0] * (ends - [0.0, middle]) for ends in (start, end))
     if len(start) == 0 or not start[:, 1].min() > 0.0:
         return np.array([-np.inf, np.inf, 0.0, np.inf])
@@ -156,7 +157,7 @@ def scratch(foot, hole):
 def least(foot, hole, work=None, low=-np.inf, high=np.inf):
     """Return the least margin [m] of a foot over a hole's passage, and the shift [rad] where it is.
 
-    A margin below ``low`` may be told as any that is below it, one above ``high`` as any above: that is sooner.
+    A margin below ``low`` may be told as any that is below it, one above ``high`` as any above.
     """
     from feederscrew.tooling.kernel import passage
 
@@ -179,31 +180,12 @@ def unheld(foot, hole, work=None, enough=np.inf):
 def _hull(x, y):
     """Corners of the convex hull about the origin, counter-clockwise, and the insets of its sides."""
     points = np.column_stack([x, y])
-    order = convex(points)
+    order = polygons.convex(points)
     if len(order) < 3:
         return np.empty(0, dtype=np.int64), np.empty(0)
     start = points[order]
     along = np.roll(start, -1, axis=0) - start
     return order, (start[:, 0] * along[:, 1] - start[:, 1] * along[:, 0]) / np.hypot(*along.T)
-
-
-def convex(points):
-    """Return the places (H,) of the corners of a convex hull, counter-clockwise; fewer than 3 of a line."""
-    order = np.lexsort((points[:, 1], points[:, 0]))
-    chains = []
-    for places in (order, order[::-1]):
-        chain = []
-        for k in places.tolist():
-            while len(chain) > 1 and _right(points[chain[-2]], points[chain[-1]], points[k]):
-                chain.pop()
-            chain.append(k)
-        chains += chain[:-1]
-    return np.array(chains, dtype=np.int64)
-
-
-def _right(a, b, c):
-    """Whether the way from a over b to c does not turn left."""
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) <= 1e-16
 
 
 def _edge(theta0, r0, theta1, r1):

@@ -111,7 +111,7 @@ class Orientation:
 
 
 def placed(found):
-    """Return orientations (M of them) as they are where nothing carries them on; what is known of them stays."""
+    """Return orientations as they are where nothing carries them on; what is known of them stays."""
     return tuple(_placed(one) for one in found)
 
 

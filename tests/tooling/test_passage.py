@@ -6,6 +6,7 @@ import shapely
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from feederscrew.geometry.polygons import convex
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling.foot import Footprint
 
@@ -24,7 +25,7 @@ def rectangle(length, width, x=0.0, y=0.0):
 
 def random_foot(rng):
     points = rng.uniform(-0.01, 0.01, (int(rng.integers(6, 14)), 2))
-    ring = points[feet.convex(points)]
+    ring = points[convex(points)]
     return footprint(ring - ring.mean(axis=0))
 
 

@@ -5,14 +5,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from feederscrew.geometry.compiled import apart, compiled, entry
+from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.tooling.kernel.crossing import (
     ALPHA,
     ARC,
     BULGE,
     EDGE,
-    GAMMA,
-    HIGH,
     KAPPA,
     LOW,
     PHI0,
@@ -23,13 +21,13 @@ from feederscrew.tooling.kernel.crossing import (
     stretches,
 )
 from feederscrew.tooling.kernel.hull import inset_beside
+from feederscrew.tooling.kernel.kept import carried, keep_corners, kept_inset
 
 CLOSE = 1e-9  # [m] a lower margin is looked for if it may be lower by more
 INSTANT = 1e-12  # [rad] a shorter piece is one of rounding
 SAMPLES = 4  # parts of a piece that may hold the least margin
 STEEP = 2.0  # of a point's mean speed in a piece: no faster does a margin fall beside a sample
 SECTIONS = 40
-ROUNDING = 1e-12  # [m] of a margin: what is sure by more cannot come out lower
 ASIDE = 1e-3  # of a sample's distance: there the margin is seen to rise or to fall
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
@@ -89,7 +87,7 @@ def least(foot, hole, scratch, low, high, out):
     """
     for k in range(len(foot.corners)):
         scratch.keep[k] = 1
-    out[0], out[1] = min(_kept_inset(foot, scratch, foot.every), high + 2.0 * CLOSE), 0.0
+    out[0], out[1] = min(kept_inset(foot, scratch, foot.every), high + 2.0 * CLOSE), 0.0
     pieces = _events(foot, hole, scratch) - 1
     first = 0 if low == -math.inf else pieces // 2  # midway the hole is below the foot
     for step in range(pieces):
@@ -118,36 +116,6 @@ def _bound(foot, hole, scratch, i, out):
     return 0.5 * (before + after - way)
 
 
-@apart
-def carried(foot, hole, scratch, i, margin):
-    """Whether those corners that have track below in a piece carry a foot by no less than a margin for certain.
-
-    More track can only carry it better, so the few corners of its hull are asked first; with all of them it
-    is carried as on the whole track, to the last digit. Fills ``keep`` where that is not certain.
-    """
-    keep_corners(foot, hole, scratch, i, foot.hull)
-    whole = len(foot.hull) > 0
-    for k in foot.hull:
-        whole = whole and scratch.keep[k] == 1
-    found = _kept_inset(foot, scratch, foot.hull)
-    if found > margin + ROUNDING or (whole and found >= max(margin, 0.0)):
-        return True
-    keep_corners(foot, hole, scratch, i, foot.every)
-    return _kept_inset(foot, scratch, foot.every) > margin + ROUNDING
-
-
-@apart
-def _kept_inset(foot, scratch, corners):
-    """The margin on no more than those of some corners of a foot that have track below."""
-    count = 0
-    for k in corners:
-        if scratch.keep[k]:
-            scratch.points[count, 0] = foot.corners[k, 0]
-            scratch.points[count, 1] = foot.centre - foot.corners[k, 1]
-            count += 1
-    return inset_beside(scratch.points, count, foot, scratch.keep)
-
-
 @compiled
 def _events(foot, hole, scratch):
     """Fill the shifts at which a corner of either crosses the border of the other, sorted; their number."""
@@ -159,14 +127,6 @@ def _events(foot, hole, scratch):
         scratch.events[2 * k + 1] = scratch.rows[k, PHI1]
     sort(scratch.events, 2 * count)
     return 2 * count
-
-
-@compiled
-def keep_corners(foot, hole, scratch, i, corners):
-    """Fill which of some corners of the foot have track below in a piece between two events."""
-    phi = 0.5 * (scratch.events[i] + scratch.events[i + 1])
-    for k in corners:
-        scratch.keep[k] = 0 if _over(hole.edges, foot.polar[k, 0] - phi, foot.polar[k, 1]) else 1
 
 
 @compiled
@@ -185,19 +145,6 @@ def status(foot, hole, scratch, i):
             scratch.active[active] = k
             active += 1
     return active
-
-
-@compiled
-def _over(edges, theta, radius):
-    """Whether a point is over the hole."""
-    inside = False
-    for j in range(len(edges)):
-        if edges[j, ARC] > 0.0 or not edges[j, LOW] <= radius < edges[j, HIGH]:
-            continue
-        bend = 0.0 if edges[j, GAMMA] == 0.0 else math.asin(min(edges[j, GAMMA] / radius, 1.0))
-        if edges[j, ALPHA] + edges[j, KAPPA] * radius + bend > theta:
-            inside = not inside
-    return inside
 
 
 @compiled

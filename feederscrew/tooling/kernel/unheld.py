@@ -3,6 +3,7 @@
 from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.tooling.kernel import passage
 from feederscrew.tooling.kernel.hull import inset_beside
+from feederscrew.tooling.kernel.kept import carried
 
 SAMPLES = 8  # parts of a piece between two events
 
@@ -26,7 +27,7 @@ def longest(foot, hole, scratch, enough):
         step = (scratch.events[i + 1] - scratch.events[i]) / SAMPLES
         if step * SAMPLES <= passage.INSTANT:
             continue
-        if passage.carried(foot, hole, scratch, i, 0.0):
+        if carried(foot, hole, scratch, i, 0.0):
             turn = 0.0
             continue
         active = passage.status(foot, hole, scratch, i)

@@ -1,0 +1,60 @@
+"""Which corners of a foot keep track below while a hole passes, and what these alone carry."""
+
+import math
+
+from feederscrew.geometry.compiled import apart, compiled
+from feederscrew.tooling.kernel.crossing import ALPHA, ARC, GAMMA, HIGH, KAPPA, LOW
+from feederscrew.tooling.kernel.hull import inset_beside
+
+ROUNDING = 1e-12  # [m] of a margin: what is sure by more cannot come out lower
+
+
+@apart
+def carried(foot, hole, scratch, i, margin):
+    """Whether the corners that have track below in a piece carry a foot by a margin for certain.
+
+    More track can only carry it better, so the few corners of its hull are asked first; with all of them it
+    is carried as on the whole track, to the last digit. Fills ``keep`` where that is not certain.
+    """
+    keep_corners(foot, hole, scratch, i, foot.hull)
+    whole = len(foot.hull) > 0
+    for k in foot.hull:
+        whole = whole and scratch.keep[k] == 1
+    found = kept_inset(foot, scratch, foot.hull)
+    if found > margin + ROUNDING or (whole and found >= max(margin, 0.0)):
+        return True
+    keep_corners(foot, hole, scratch, i, foot.every)
+    return kept_inset(foot, scratch, foot.every) > margin + ROUNDING
+
+
+@apart
+def kept_inset(foot, scratch, corners):
+    """The margin on no more than those of some corners of a foot that have track below."""
+    count = 0
+    for k in corners:
+        if scratch.keep[k]:
+            scratch.points[count, 0] = foot.corners[k, 0]
+            scratch.points[count, 1] = foot.centre - foot.corners[k, 1]
+            count += 1
+    return inset_beside(scratch.points, count, foot, scratch.keep)
+
+
+@compiled
+def keep_corners(foot, hole, scratch, i, corners):
+    """Fill which of some corners of the foot have track below in a piece between two events."""
+    phi = 0.5 * (scratch.events[i] + scratch.events[i + 1])
+    for k in corners:
+        scratch.keep[k] = 0 if _over(hole.edges, foot.polar[k, 0] - phi, foot.polar[k, 1]) else 1
+
+
+@compiled
+def _over(edges, theta, radius):
+    """Whether a point is over the hole."""
+    inside = False
+    for j in range(len(edges)):
+        if edges[j, ARC] > 0.0 or not edges[j, LOW] <= radius < edges[j, HIGH]:
+            continue
+        bend = 0.0 if edges[j, GAMMA] == 0.0 else math.asin(min(edges[j, GAMMA] / radius, 1.0))
+        if edges[j, ALPHA] + edges[j, KAPPA] * radius + bend > theta:
+            inside = not inside
+    return inside
