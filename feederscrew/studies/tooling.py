@@ -104,7 +104,7 @@ def tooling(
     seconds : float [s]
         The last resort: what is found until then may differ from machine to machine, and is marked.
     told : callable, optional
-        Called with how many designs are done of how many.
+        Called with how many designs are done of how many, first with none.
     known : Aspects, optional
         Of the part, with the answer to take, where they are known already.
 
@@ -132,6 +132,8 @@ def tooling(
     asked_of_each = {"purity": purity, "efficiency": efficiency, "turn": turn, "before": bowl.devices}
     asked = range(len(every)) if wanted is None else [wanted]
     designs = [None] * len(every)
+    if told is not None:
+        told(0, len(asked))
     for done, k in enumerate(asked):
         designs[k] = _designed(every, shares, k, bowl, margin=margin, search=search, **asked_of_each)
         if told is not None:

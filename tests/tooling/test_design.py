@@ -93,6 +93,22 @@ def test_a_hole_parts_mirror_images(bracket):
     assert again.device == cut.device
 
 
+def test_a_hole_that_is_not_better_is_left_early(bracket, rng):
+    """What is said of a hole, and how many verdicts it counts as, does not depend on when it is left."""
+    _, _, every, _ = bracket
+    wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
+    others = [k for k in range(len(every)) if k != wanted][:6]
+    whole, short = (cutting._Judge(every, wanted, others, MARGIN, cutting.Search()) for _ in range(2))
+    holes = [whole._random(rng) for _ in range(60)]
+    best = -np.inf
+    for corners in (one for one in holes if one is not None):
+        told = whole.score(corners)
+        assert short.score(corners, best) == (told if told[0] > best else (-np.inf, None))
+        best = max(best, told[0])
+    assert best > -np.inf
+    assert short.search.spent == whole.search.spent
+
+
 def test_a_bowl_of_the_design_is_as_pure_and_efficient(bracket, tmp_path):
     part, aspects, every, shares = bracket
     wanted = int(np.argmax([one.canyon for one in every]))

@@ -72,6 +72,20 @@ def test_margins_against_a_scan(radius, pieces, near, rng):
         assert np.nanmin(there) == pytest.approx(least, abs=20.0 * near)
 
 
+def test_a_margin_between_two_values_is_told_to_the_last_digit(rng):
+    """Beyond them it is only told on which side: a search for holes asks no more."""
+    for _ in range(100):
+        ring, hole = random_foot(rng).rings[0], feet.polygon(random_hole(rng), CURVED)
+        foot = feet.standing(footprint(ring), 5e-4 - ring[:, 1].min(), CURVED)
+        least, way = feet.least(foot, hole)[0], feet.unheld(foot, hole)
+        low, high = least + np.sort(rng.uniform(-1e-3, 1e-3, 2))
+        told = feet.least(foot, hole, low=low, high=high)[0]
+        assert told == least if low <= least <= high else (told < low if least < low else told > high)
+        enough = way * rng.uniform(0.5, 1.5)
+        told = feet.unheld(foot, hole, enough=enough)
+        assert told == way if way <= enough else told >= enough
+
+
 @pytest.mark.parametrize("radius", [STRAIGHT, CURVED])
 @pytest.mark.parametrize(("length", "width"), [(0.02, 0.012), (0.012, 0.02), (0.008, 0.008)])
 def test_a_rectangle_passes_a_gap_of_half_its_length(radius, length, width):
