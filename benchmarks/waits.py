@@ -134,6 +134,12 @@ def reports(folder):
     yield Row("its memory", 300.0, median(runs, "memory"), "MiB")
 
 
+def designs():
+    """Designs for every orientation of a bracket, most of it the search for cut-outs."""
+    _, run = [spent(*CALL, "tooling", PART, "-q") for _ in range(2)]
+    yield Row("`feeder tooling` of a bracket, all orientations", 20.0, run.cpu, "s CPU", clock([run]))
+
+
 def batches(folder):
     """A batch with pictures: what a part takes, what a second job gives, and what the machine could give.
 
@@ -237,6 +243,7 @@ def waits(folder):
     yield from printed()
     yield from asked()
     yield from reports(folder)
+    yield from designs()
     yield from batches(folder)
     yield from memory(folder)
     yield from first_use(folder)
