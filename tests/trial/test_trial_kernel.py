@@ -1,6 +1,7 @@
 """One part on the moving track against closed forms."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from feederscrew.geometry import vectors
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import looks, runs, shape, stations
-from feederscrew.trial.kernel import search
+from feederscrew.trial.kernel import edges
 
 BOWL = bowls.read(
     None,
@@ -58,14 +59,27 @@ def laid(block, one, bowl, **own):
     return runs.laid(one, principal, length, bowl.track, place=0.0, aside=1e-3, **own)
 
 
-@pytest.mark.parametrize(("behind", "gap"), [(0.001, np.inf), (0.1, -0.02)])
-def test_an_edge_that_sank_beside_a_cut_is_not_under_its_border(behind, gap):
-    """0.02 below the surface, its end so far behind the side: what is nearer to the side touches that."""
+@pytest.mark.parametrize(
+    ("end", "beyond", "level", "gap", "touches"),
+    [
+        ((-0.001, -0.02), (0.5, -0.02), 1.0, -0.02, True),  # sank beside the cut: its end touches the side
+        ((-0.100, -0.02), (0.5, -0.02), 1.0, -0.02, False),  # comes down on the border
+        ((-0.001, -0.02), (-0.5, -0.02), 1.0, -0.02, False),  # the part goes on there: no end
+        ((-0.007, -0.008), (-0.3, 0.3), 0.5, -0.01, True),  # a corner on the surface
+        ((-0.007, -0.008), (0.05, -0.3), 0.5, -0.01, False),  # the part is lower over the hole: on the border
+        ((-0.007, -0.002), (0.05, -0.3), 0.5, -0.01, True),  # the border's round does not catch it
+    ],
+)
+def test_an_end_of_an_edge_touches_a_surface_or_a_side_if_nothing_lies_beyond_it(
+    end, beyond, level, gap, touches
+):
+    """Ends of places across the border and heights, units of the part's length; the hole is at x > 0."""
     border = np.array([0.0, 0.0, 0.0, 2.0, 1.0, 0.0])  # start, end, normal away from the side
-    edge = np.array([[-behind, 1.0, -0.02], [1.0, 1.0, -0.02]])
-    below = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])  # into its faces, that below first
-    found = search.crossing(*edge, border, below, 0.003, 0.002)
-    assert found[-1] == pytest.approx(gap, abs=1e-12)
+    shown = np.array([(end[0], 1.0, end[1]), (1.0, 1.0, 0.5), (beyond[0], 1.0, beyond[1])])
+    if level == 1.0:
+        shown[1, 2] = end[1]
+    solid = SimpleNamespace(firsts=np.array([0, 2, 3, 4]), beside=np.array([1, 2, 0, 0]))
+    assert edges.end_touches(solid, shown, 0, 1, border, level, gap, 0.003) == touches
 
 
 def test_a_flat_part_slides_as_the_point_mass(block):

@@ -12,11 +12,13 @@ from feederscrew.trial.kernel.search import (
     FIRST,
     FRONT,
     LAST,
+    LEVEL,
     PARALLEL,
     ROUNDED,
     SLANT,
     crossing,
     front,
+    points_to,
 )
 
 BEND, END = 6, 7  # columns of a border: a convex corner at its start; no border but the end of the drawing
@@ -83,8 +85,8 @@ def edges_on(plate, borders, nears, lows, solid, turn, reach, work, contacts, co
                 ready, s = True, solid.sides[k]
                 _vector(plate, turn, s[0], s[1], s[2], work.vectors[0])
                 _vector(plate, turn, s[3], s[4], s[5], work.vectors[1])
-            share, u, v, w, gap = crossing(p, q, border, work.vectors, plate[ROUNDED], reach)
-            if gap < math.inf:
+            share, u, v, w, gap = crossing(p, q, border, work.vectors, reach)
+            if gap < math.inf and not end_touches(solid, shown, i, j, border, w, gap, plate[ROUNDED]):
                 x = spots[i, 0] + share * (spots[j, 0] - spots[i, 0])
                 y = spots[i, 1] + share * (spots[j, 1] - spots[i, 1])
                 z = spots[i, 2] + share * (spots[j, 2] - spots[i, 2])
@@ -92,6 +94,24 @@ def edges_on(plate, borders, nears, lows, solid, turn, reach, work, contacts, co
                     plate, solid.inertia, turn, work.tangent, x, y, z, u, v, w, gap, contacts, count
                 )
     return count
+
+
+@compiled
+def end_touches(solid, shown, i, j, border, level, gap, rounded):
+    """Say whether an end of an edge touches a surface or its side, and so the edge not the border.
+
+    It is nearer to that than the edge is to the border, and none of its neighbours lies beyond it. How level
+    the edge's contact is, ``level``, tells surface and side apart.
+    """
+    u, v, w = (border[NORMAL], border[NORMAL + 1], 0.0) if level >= LEVEL else (0.0, 0.0, 1.0)
+    x, y = shown[i, 0] - border[0], shown[i, 1] - border[1]
+    first = u * x + v * y + w * shown[i, 2]
+    x, y = shown[j, 0] - border[0], shown[j, 1] - border[1]
+    second = u * x + v * y + w * shown[j, 2]
+    k, height = (i, first) if first < second else (j, second)
+    if level < LEVEL and height > -rounded:  # an edge that is less deep does not catch
+        return True
+    return height > gap and gap < -rounded and points_to(solid, shown, k, u, v, w)
 
 
 @compiled

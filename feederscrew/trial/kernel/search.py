@@ -214,14 +214,7 @@ def corners_on(plate, borders, shown, spots, turn, solid, tangent, reach, nears,
 
 
 @compiled
-def _behind(p, q, border):
-    """How far the further end of an edge from p to q lies behind the side below a border."""
-    side = border[4] * border[0] + border[5] * border[1]
-    return side - min(border[4] * p[0] + border[5] * p[1], border[4] * q[0] + border[5] * q[1])
-
-
-@compiled
-def crossing(p, q, border, wedge, rounded, reach):
+def crossing(p, q, border, wedge, reach):
     """Where an edge from p to q touches a border, in the plate's coordinates.
 
     Returns
@@ -242,10 +235,6 @@ def crossing(p, q, border, wedge, rounded, reach):
     x, y, z = p[0] - border[0], p[1] - border[1], p[2]
     gap = nx * x + ny * y + nz * z
     if gap > reach or gap < -DEEP:
-        return 0.0, 0.0, 0.0, 0.0, math.inf
-    if nz < LEVEL and min(p[2], q[2]) > min(-rounded, gap):  # nearer to the surface than to the border's side
-        return 0.0, 0.0, 0.0, 0.0, math.inf
-    if nz >= LEVEL and gap < -rounded and _behind(p, q, border) < -gap:  # nearer to the side: its end touches
         return 0.0, 0.0, 0.0, 0.0, math.inf
     x, y, z = x - gap * nx, y - gap * ny, z - gap * nz
     # in the plane of both: share of the edge where it meets the border's line, then of the border
