@@ -2,7 +2,7 @@
 
 import math
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -31,6 +31,7 @@ class Search:
     until: float = math.inf  # [s] of time.monotonic(): the last resort
     late: bool = False  # whether that was reached
     spent: int = 0  # verdicts so far
+    known: dict = field(default_factory=dict)  # what whole searches found, and the verdicts each took
 
     def started(self):
         """Return the same search for another orientation."""
@@ -62,14 +63,44 @@ def cut_out(every, wanted, others, margin, search):
     (Cut, sequence of int) or None
         The hole and those of the others that it returns by the margin.
     """
-    rng = np.random.default_rng((search.seed, wanted, *others))
-    judge = _Judge(every, wanted, others, margin, search)
-    best = judge.searched(rng)
+    best = _found(every, wanted, others, margin, search)
+    if best is None and any(every[k].name == every[wanted].mirror for k in others):
+        best = _mirrored(every, wanted, others, margin, search)
     if best is None:
         return None
     corners, margins = best
     held = [k for k, found in zip(others, margins) if found <= -margin]
     return _as_cut(every, wanted, held, corners), held
+
+
+def _found(every, wanted, others, margin, search):
+    """The best hole, as (corners, margins of the others), or None; a whole search is made once."""
+    asked = (wanted, *others, margin, *(every[k].carry for k in others))
+    best, spent = search.known.get(asked, (None, math.inf))
+    if search.spent + spent < search.verdicts:
+        search.spent += spent
+        return best
+    before = search.spent
+    best = _Judge(every, wanted, others, margin, search).searched(
+        np.random.default_rng((search.seed, wanted, *others))
+    )
+    if not search.over():
+        search.known[asked] = best, search.spent - before
+    return best
+
+
+def _mirrored(every, wanted, others, margin, search):
+    """The same of the mirror images, fore and aft: a hole that parts those, mirrored, parts these."""
+    places = {one.name: k for k, one in enumerate(every)}
+    image = [places.get(one.mirror, k) for k, one in enumerate(every)]
+    best = _found(every, image[wanted], sorted(image[k] for k in others), margin, search)
+    if best is None:
+        return None
+    corners = best[0] * [-1.0, 1.0]
+    corners[:, 0] -= corners[:, 0].min()
+    judge = _Judge(every, wanted, others, margin, search)
+    score, margins = judge.score(corners)
+    return (corners, margins) if judge.is_enough(score) else None
 
 
 class _Judge:
@@ -134,9 +165,11 @@ class _Judge:
                 found = sorted(found, key=lambda one: -one[0])[:CLIMBS]
         climbed = [self._climbed(one, rng) for one in found]
         best = max(climbed, key=lambda one: one[0], default=None)
-        if best is None or best[0] < 500.0 * self.margin:
-            return None
-        return best[2], best[1]
+        return (best[2], best[1]) if best is not None and self.is_enough(best[0]) else None
+
+    def is_enough(self, score):
+        """Return whether a hole of that score passes the wanted one and returns any other."""
+        return score >= 500.0 * self.margin
 
     def _climbed(self, start, rng):
         """One hole improved by moving a corner, or all of it, at random."""

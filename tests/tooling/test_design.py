@@ -109,6 +109,23 @@ def test_a_hole_that_is_not_better_is_left_early(bracket, rng):
     assert short.search.spent == whole.search.spent
 
 
+def test_where_no_hole_is_found_that_of_the_mirror_images_is_mirrored(bracket, monkeypatch):
+    _, _, every, _ = bracket
+    wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
+    partner = next(k for k, one in enumerate(every) if one.name == every[wanted].mirror)
+    search, direct = cutting.Search(seed=3), cutting._found
+
+    def found(every, k, *rest):
+        return None if k == wanted else direct(every, k, *rest)
+
+    monkeypatch.setattr(cutting, "_found", found)
+    cut, held = cutting.cut_out(every, wanted, [partner], MARGIN, search)
+    image, _ = cutting.cut_out(every, partner, [wanted], MARGIN, search)
+    assert held == [partner]
+    assert cut.margin_pass == pytest.approx(image.margin_pass, abs=2e-6)
+    assert cut.margin_reject == pytest.approx(image.margin_reject, abs=2e-6)
+
+
 def test_a_bowl_of_the_design_is_as_pure_and_efficient(bracket, tmp_path):
     part, aspects, every, shares = bracket
     wanted = int(np.argmax([one.canyon for one in every]))
