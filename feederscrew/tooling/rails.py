@@ -44,7 +44,10 @@ def design(given):
 
 
 def _between(one, margin):
-    """Rails about the foot of the centre of mass, midway between shank and head; None without a head."""
+    """Rails about the foot of the centre of mass, midway between shank and head; None without a head.
+
+    None either where the slot would leave no rail by the wall, or none at the free edge of the track.
+    """
     found = neck(one)
     if found is None or found.head - found.shank < 2.0 * margin:
         return None
@@ -59,8 +62,8 @@ def _ends(one, device):
 def _rails(one, width):
     middle = one.distance - one.shift
     first = chain.fine(middle - 0.5 * width)
-    if first <= 0.0:
-        return None
     span = first, first + chain.fine(width)
+    if first <= 0.0 or span[1] >= one.track.width:
+        return None
     text = f"{{from: {chain.millimetres(span[0])}, to: {chain.millimetres(span[1])}}}"
     return Device("rails", chain.WHERE, span=span, text=text)

@@ -152,6 +152,18 @@ def test_a_headed_pin_is_fed_hanging():
     assert study.design.purity == pytest.approx(1.0)
 
 
+def test_rails_end_on_the_track():
+    """An L that hangs over a track by more than half has no second rail there."""
+    outline = [(0, 0), (26, 0), (26, 7), (9, 7), (9, 18), (0, 18)]
+    part, track = shapes.part(shapes.prism(outline, 11)), bowls.read(None, ["track.width=8 mm"]).track
+    every = named(orientations(part, find(part), track))
+    flat = [k for k, one in enumerate(every) if one.aspect in "AB" and not one.falls_off]
+    assert flat
+    for wanted in flat:
+        cuts = design(every, np.ones(len(every)), wanted, holes=False).cuts
+        assert all(cut.device.span[1] < track.width for cut in cuts if cut.device.kind == "rails")
+
+
 def test_what_cannot_be_told_apart_is_said():
     """A plate whose one face has a chamfer of 0.1 mm: its two faces down differ by nothing else."""
     plate, thin = shapes.box(12, 12, 3.8), shapes.box(11.8, 11.8, 0.2)
