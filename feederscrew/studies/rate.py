@@ -212,8 +212,7 @@ def most_frequent(known, rule):
         Where none leaves, the ones most likely to land in.
     """
     chance = np.nan_to_num(known.rules[rule])
-    lengths = np.array([one.length for one in known.states])
-    leaving = ((chance[:, None] * known.leaving).sum(axis=0) / lengths)[known.leaves_as]
+    leaving = (chance[:, None] * known.leaving).sum(axis=0)[known.leaves_as]
     weight = leaving if leaving.any() else chance
     row = int(np.argmax(weight >= ALIKE * weight.max()))  # the first of equals, whatever the rounding
     return known.aspects[row], known.headings[row]
