@@ -11,7 +11,7 @@ import numpy as np
 import trimesh
 from closed_forms import TRIED
 
-from feederscrew.dropping import conditions, runs
+from feederscrew.dropping import conditions, drop_test
 from feederscrew.resting.aspects import find
 from feederscrew.resting.rules import recommended
 from feederscrew.resting.rules.surface import surface_weights
@@ -70,7 +70,7 @@ class Body:
         """Counts of a drop test."""
         if launch not in self.tallies:
             own = dict.fromkeys(conditions.KEYS)
-            tested = runs.test(self.part, self.aspects, launch, own, drops=self.drops, jobs=self.jobs)
+            tested = drop_test.test(self.part, self.aspects, launch, own, drops=self.drops, jobs=self.jobs)
             self.tallies[launch] = tested.tally
             self._keep()
         return self.tallies[launch]

@@ -22,9 +22,9 @@ import numpy as np
 import trimesh
 
 from feederscrew.dropping import ensemble
-from feederscrew.dropping.kernel import body, motion
-from feederscrew.dropping.kernel.floor import at_rest
-from feederscrew.dropping.kernel.motion import Steps
+from feederscrew.dropping.kernel import body, falling
+from feederscrew.dropping.kernel.falling import Steps
+from feederscrew.dropping.kernel.floor_motion import at_rest
 from feederscrew.dropping.launches import PRESETS
 from feederscrew.dropping.shape import shape_of_part
 from feederscrew.geometry.compiled import entry
@@ -83,13 +83,13 @@ def follow(solid, work, corner, until, steps):
     """Follow a body that sticks to a floor at rest."""
     floor, time, gap = at_rest(), 0.0, 0.0
     while time < until:
-        corner, gap, dt, _, _ = motion.advance(solid, work, floor, time, corner, gap, 0.0, 5.0, steps)
+        corner, gap, dt, _, _ = falling.advance(solid, work, floor, time, corner, gap, 0.0, 5.0, steps)
         time += dt
 
 
 def rolled(shape, step):
     """Attitude of a coin that leans and rolls on its rim for two units of time."""
-    work, steps = motion.scratch(shape), Steps(contact=step, swing=1e9, rolling=0.0, tolerance=1e-5)
+    work, steps = falling.scratch(shape), Steps(contact=step, swing=1e9, rolling=0.0, tolerance=1e-5)
     lean = 0.25
     axis = int(np.argmax(np.abs(shape.solid.rims[0, 3:6])))
     spin, other = np.eye(3)[axis], np.eye(3)[(axis + 1) % 3]
@@ -99,7 +99,7 @@ def rolled(shape, step):
     turn = np.einsum("ij,kj->ik", tilt, frame)
     work.state[body.Q : body.Q + 4] = np.roll(_quaternion(turn), 1)
     work.state[body.W : body.W + 3] = 3.0 * spin
-    corner, gap = motion.start(shape.solid, work)
+    corner, gap = falling.start(shape.solid, work)
     work.state[body.Z] -= gap
     contact_point = _lowest(shape, work.turn.reshape(3, 3))
     rates = np.einsum("ij,j->i", work.turn.reshape(3, 3), work.state[body.W : body.W + 3])

@@ -16,7 +16,7 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
-from feederscrew.dropping.plate import runs
+from feederscrew.dropping.plate import bowl_test
 from feederscrew.resting.aspects import find
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
@@ -44,7 +44,7 @@ def flat():
         bowl_list = [plate(ratio, restitution) for ratio in (0.5, 0.9, 1.2, 1.5, 2.0, 2.5)]
         own = NOTHING | {"fall": "0 mm"}
         for bowl, seen in zip(
-            bowl_list, runs.test(part, find(part), bowl_list, "place", own, drops=20, seconds=2.0)
+            bowl_list, bowl_test.test(part, find(part), bowl_list, "place", own, drops=20, seconds=2.0)
         ):
             deepest = np.argmin(find(part).heights)
             ours, exact = seen.occupancy.velocities[deepest, 0], answer.answer(bowl).velocity
@@ -65,7 +65,9 @@ def t_shapes(parts):
         deepest = np.argmin(aspects.heights)
         for ratio in (1.5, 2.0, 2.5):
             start = time.process_time()
-            (seen,) = runs.test(part, aspects, [plate(ratio, 0.3)], "drop", NOTHING, drops=parts, seconds=4.0)
+            (seen,) = bowl_test.test(
+                part, aspects, [plate(ratio, 0.3)], "drop", NOTHING, drops=parts, seconds=4.0
+            )
             took = (time.process_time() - start) / parts
             course = seen.occupancy.course[:, deepest]
             print(

@@ -30,7 +30,7 @@ from scipy.spatial import ConvexHull
 from scipy.stats import chi2_contingency
 
 from feederscrew.dropping import ensemble
-from feederscrew.dropping.kernel import body, drop
+from feederscrew.dropping.kernel import body, one_drop
 from feederscrew.dropping.launches import Launch, sample
 from feederscrew.dropping.shape import shape_of_part
 from feederscrew.part.hull import convex_hull
@@ -131,10 +131,10 @@ def bodies():
 def rates(shape, count, launch=THROW, steps=None):
     """Drops a second and core, and the faces."""
     starts = sample(launch, shape, count, np.random.default_rng(1))
-    faces, times, work = np.empty(count, int), np.empty(count), drop.scratch(shape)
-    steps = steps or drop.Steps()
+    faces, times, work = np.empty(count, int), np.empty(count), one_drop.scratch(shape)
+    steps = steps or one_drop.Steps()
     given = shape, work, starts.states, starts.restitutions, starts.frictions, steps, faces, times
-    return count / seconds(drop.settle_all, *given, repeats=2), faces
+    return count / seconds(one_drop.settle_all, *given, repeats=2), faces
 
 
 def jobs(shape):
@@ -198,10 +198,10 @@ def mujoco_drop(engine, model, data, shape, stiffness, friction, state):
         here[2] += 0.5 * stiffness * np.sum(np.minimum(data.contact.dist, 0.0) ** 2)
         body.rotation(here, turn)
         corner, _ = body.lowest(shape.vertices, shape.solid.links, turn, 0)
-        face = drop.decided(shape, here, turn, corner, max(data.ncon, 1), friction, 0, drop.Steps())
-        if face != drop.UNSETTLED:
+        face = one_drop.decided(shape, here, turn, corner, max(data.ncon, 1), friction, 0, one_drop.Steps())
+        if face != one_drop.UNSETTLED:
             return face
-    return drop.UNSETTLED
+    return one_drop.UNSETTLED
 
 
 def mujoco_faces(shape, setting, count, seed):

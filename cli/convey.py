@@ -109,11 +109,11 @@ def _curve(settings, ranges, pictures, folder, out):
 def _phase(settings, pictures, folder, out):
     from feederscrew import bowl as bowls
     from feederscrew.output import offers
-    from feederscrew.output.convey import files, phase
+    from feederscrew.output.convey import files, phase_tables
     from feederscrew.studies import convey as studies
 
     waiting.conveying(out)
     found, texts = studies.best_phase(bowls.record(settings)), bowls.texts(settings)
-    best = phase.document(found.best)
+    best = phase_tables.document(found.best)
     offers.write(folder, files.phase_offers(found, texts), pictures=pictures)
-    out.show(phase.summary(best), {"best_phase": best, "bowl": texts})
+    out.show(phase_tables.summary(best), {"best_phase": best, "bowl": texts})

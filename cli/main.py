@@ -13,7 +13,7 @@ import click
 from feederscrew import __version__
 from feederscrew.errors import ArgumentError, Faults, FeederError
 from feederscrew.units import printable
-from feederscrew_cli import naming
+from feederscrew_cli import argument_names
 from feederscrew_cli.interrupt import INTERRUPTED
 
 COMMANDS = {
@@ -120,9 +120,11 @@ def _of_the_system(error):
 
 def _lines(error, command):
     """Every fault as its own line; an argument of the library goes by the name of its option."""
-    options = naming.options(command)
+    options = argument_names.options(command)
     faults = error.faults if isinstance(error, Faults) else (error,)
-    return tuple(naming.translated(line, options) for fault in faults for line in _of_options(fault, options))
+    return tuple(
+        argument_names.translated(line, options) for fault in faults for line in _of_options(fault, options)
+    )
 
 
 def _of_options(fault, options):

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import click
 
 from feederscrew.units import printable
-from feederscrew_cli import naming
+from feederscrew_cli import argument_names
 from feederscrew_cli.interrupt import held_back
 
 FORMATS = ("table", "csv", "json")
@@ -43,7 +43,7 @@ class Output:
             command=name,
             arguments=tuple(context.obj or ()),
             inputs=tuple(_inputs(context)),
-            options=naming.options(context.command),
+            options=argument_names.options(context.command),
             **options,
         )
 
@@ -61,7 +61,7 @@ class Output:
                     click.echo(printable(self._named(text)), err=True)
 
     def _named(self, text):
-        return naming.translated(text, self.options)
+        return argument_names.translated(text, self.options)
 
     def detail(self, text):
         """One line on stderr, with ``-v`` only."""

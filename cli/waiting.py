@@ -5,9 +5,9 @@ from feederscrew_cli.progress import Progress
 
 def drops(out):
     """Say so when the first drop on this machine must wait for the compiler."""
-    from feederscrew.dropping import runs
+    from feederscrew.dropping import drop_test
 
-    if not runs.compiled():
+    if not drop_test.compiled():
         out.say("Compiling the drop kernel, once on this machine: about ten seconds.")
 
 

@@ -16,7 +16,7 @@ from feederscrew.errors import ConfigError, Faults, FeederError, MeshError
 from feederscrew.output.aspects import tables as _tables
 from feederscrew.output.tables import data_frame as _data_frame
 from feederscrew.part import Part
-from feederscrew.rates.queue import Rate
+from feederscrew.rates.well_oriented import Rate
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.naming import write_names
 from feederscrew.resting.posture import Posture, posture
@@ -25,8 +25,8 @@ from feederscrew.studies import convey as _convey
 from feederscrew.studies import rate as _rate
 
 if TYPE_CHECKING:
-    from feederscrew.dropping.plate.runs import Shaken
-    from feederscrew.dropping.runs import Result
+    from feederscrew.dropping.drop_test import Result
+    from feederscrew.dropping.plate.bowl_test import Shaken
     from feederscrew.output.tables import pd
 
 __all__ = [

@@ -17,7 +17,7 @@ DOORS = {
     "pandas": {"feederscrew/output"},
     "matplotlib": {"feederscrew/output"},
     "embreex": {"feederscrew/output"},
-    "ezdxf": {"feederscrew/bowl/drawing.py"},
+    "ezdxf": {"feederscrew/bowl/dxf.py"},
     "manifold3d": {"feederscrew/tooling/solid.py"},
     "OCP": {"feederscrew/output/tooling/step.py"},
     "click": {"cli"},

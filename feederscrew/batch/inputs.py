@@ -14,7 +14,7 @@ from feederscrew.conveying import answer
 from feederscrew.documents import found_as, raise_all
 from feederscrew.errors import ConfigError, FeederError
 from feederscrew.output.folder import safe_name
-from feederscrew.part import naming
+from feederscrew.part import aspect_names
 from feederscrew.part.reading.formats import CARD, FORMATS
 
 MESHES = {suffix for name, known in FORMATS.items() if name != CARD for suffix in known.suffixes}
@@ -74,7 +74,7 @@ def _names(rows, faults):
         if row.names not in known:
             known[row.names] = None
             try:
-                known[row.names] = naming.read(row.names)
+                known[row.names] = aspect_names.read(row.names)
             except FeederError as fault:
                 one = ConfigError(f"{row.line}: {fault.where}", fault.what, fault.mend)
                 faults += getattr(fault, "faults", [one])

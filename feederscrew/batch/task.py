@@ -10,7 +10,7 @@ from importlib import metadata
 from feederscrew import __version__
 from feederscrew.bowl import Bowl
 from feederscrew.output.folder import LIBRARIES
-from feederscrew.part.naming import AspectNames
+from feederscrew.part.aspect_names import AspectNames
 
 DONE, FAILED = "done", "failed"
 THUMBNAIL = "thumbnail.png"  # among the files of a part

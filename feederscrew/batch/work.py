@@ -15,7 +15,7 @@ from feederscrew.output.convey import tables as convey_tables
 from feederscrew.output.rate import files as rate_files
 from feederscrew.output.rate import tables as rate_tables
 from feederscrew.part import load
-from feederscrew.rates import queue
+from feederscrew.rates import well_oriented
 from feederscrew.resting.aspects import find
 from feederscrew.resting.rules.recommended import launch_named
 from feederscrew.studies.aspects import AspectsStudy, with_drops
@@ -94,7 +94,7 @@ def _results(task):
 @functools.lru_cache(maxsize=64)
 def travel(conditions):
     """Return the document of ``convey.json``: the same for every part, a point mass."""
-    queue.velocity(conditions.bowl)  # raises where there is no steady state
+    well_oriented.velocity(conditions.bowl)  # raises where there is no steady state
     return convey_tables.document(convey(conditions.bowl)) | {"bowl": dict(conditions.texts)}
 
 

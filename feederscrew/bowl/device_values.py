@@ -132,9 +132,9 @@ def _drawn(entry):
     path = Path(node.text)
     if not path.is_absolute():
         path = Path(node.where.rsplit(":", 2)[0]).parent / path
-    from feederscrew.bowl import drawing
+    from feederscrew.bowl import dxf
 
-    found = drawing.closed_polylines(path, layer, node.where)
+    found = dxf.closed_polylines(path, layer, node.where)
     if len(found) != 1:
         what = f"layer {units.shown(layer)} of {path.name} holds {len(found)} closed polylines"
         raise ConfigError(given["layer"].value.where, what, "give each cut_out a layer of its own")

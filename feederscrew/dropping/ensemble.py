@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from feederscrew import check
-from feederscrew.dropping.kernel import drop as kernel
+from feederscrew.dropping.kernel import one_drop as kernel
 from feederscrew.dropping.launches import sample
 from feederscrew.dropping.pool import gather
 

@@ -10,8 +10,8 @@ from feederscrew.dropping.rims import AXIS, CENTRE, MIDDLE, RADIUS, rims_of, tru
 from feederscrew.geometry import vectors
 from feederscrew.resting.basins import barriers
 from feederscrew.resting.basins.landscape import SMOOTH
-from feederscrew.resting.tumbling.edges import Edges, half_edges, saddles, sinks
 from feederscrew.resting.tumbling.exact import tumble
+from feederscrew.resting.tumbling.half_edges import Edges, half_edges, saddles, sinks
 
 
 class RoundedHull(NamedTuple):

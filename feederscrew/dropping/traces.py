@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from feederscrew import check
-from feederscrew.dropping.kernel import body, drop
+from feederscrew.dropping.kernel import body, one_drop
 from feederscrew.dropping.rims import lowest_on
 from feederscrew.geometry import vectors
 from feederscrew.units import GRAVITY
@@ -87,10 +87,10 @@ def follow(shape, length, principal, starts, drops, rows):
         states = _to_rest(shape, state, *limits, face)
         still = states is not None
         if not still:
-            _, states = _path(shape, state, *limits, drop.Steps())
+            _, states = _path(shape, state, *limits, one_drop.Steps())
         states = _filled(shape, states)
         energies = _energies(shape, states)
-        impacts = _strongest(_impacts(shape, states, drop.Steps()), energies)
+        impacts = _strongest(_impacts(shape, states, one_drop.Steps()), energies)
         kept = _kept(states[:, 0], impacts, drops.times[k])
         states, energies, impacts = states[kept], energies[kept], impacts[kept]
         turns = Rotation.from_quat(states[:, 1 + body.Q + np.array([1, 2, 3, 0])]) * to_body
@@ -98,7 +98,7 @@ def follow(shape, length, principal, starts, drops, rows):
             DropTrace(
                 number=k + 1,
                 face=face,
-                row=int(rows[face]) if face != drop.UNSETTLED else drop.UNSETTLED,
+                row=int(rows[face]) if face != one_drop.UNSETTLED else one_drop.UNSETTLED,
                 decided=float(second * drops.times[k]),
                 still=still,
                 times=check.frozen(second * states[:, 0]),
@@ -118,9 +118,9 @@ def telling(traces):
 
 def _to_rest(shape, start, restitution, friction, face):
     """Rows until the part lies still on a face; None if it does not."""
-    if face == drop.UNSETTLED:
+    if face == one_drop.UNSETTLED:
         return None
-    end, states = _path(shape, start, restitution, friction, drop.Steps(early=False))
+    end, states = _path(shape, start, restitution, friction, one_drop.Steps(early=False))
     lies = end == face and _energies(shape, states[-1:])[0] - shape.heights[face] < STILL
     return states if lies else None
 
@@ -149,9 +149,9 @@ def _path(shape, start, restitution, friction, steps):
     rows, used = ROWS // 2, None
     while used is None or used == rows:
         rows *= 2
-        work = drop.scratch(shape, rows=rows)
+        work = one_drop.scratch(shape, rows=rows)
         work.state[:] = start
-        face, time, used = drop.settle(shape, work, restitution, friction, steps)
+        face, time, used = one_drop.settle(shape, work, restitution, friction, steps)
     steady = work.trace[:used][work.trace[:used, 0] < time]  # the end replaces a row of the same time
     return face, np.vstack([steady, [time, *work.state]])
 

@@ -8,7 +8,7 @@ from feederscrew import check
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import turned
-from feederscrew.mechanics.wall.headings import headings
+from feederscrew.mechanics.wall.stable_headings import headings
 from feederscrew.resting.posture import posture
 
 STRAIGHT = Track(climb=0.0, bank=0.0, radius=1e3, width=1.0)  # [m] a wall without a bend

@@ -8,7 +8,7 @@ from feederscrew import units
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.machine.stroke import greatest_amplitude
-from feederscrew.rates import queue
+from feederscrew.rates import well_oriented
 
 STEPS = 120  # strokes that are looked at
 HALVINGS = 40
@@ -51,9 +51,11 @@ def flow(found, rule, *, target=None, gap=0.0, fill=1.0):
     """
     chances = found.rules[rule] / np.nansum(found.rules[rule])
     if target is not None:
-        parts = queue.parts_per_metre(found, target, rule, gap=gap, fill=fill)
+        parts = well_oriented.parts_per_metre(found, target, rule, gap=gap, fill=fill)
         row = list(zip(found.aspects, found.headings)).index(target)
-        return Flow(parts, queue.efficiency(found, row, rule), float(queue.fed(found, row).length))
+        return Flow(
+            parts, well_oriented.efficiency(found, row, rule), float(well_oriented.fed(found, row).length)
+        )
     share = float(np.nansum(chances * found.through))
     if not share > 0.0:
         raise FeederError("devices", "let no part pass", "see what each returns in feeder rate")

@@ -7,7 +7,7 @@ from math import factorial
 import numpy as np
 
 from feederscrew import check
-from feederscrew.geometry import columns, vectors
+from feederscrew.geometry import coordinates, vectors
 
 ORDER = 6
 HALF = [powers for powers in product(range(4), repeat=3) if sum(powers) <= ORDER // 2]  # 20 monomials
@@ -135,7 +135,7 @@ def _quadrature(points, facets):
     """
     a, b, c = (points[:, corner] for corner in facets)
     ab, bc, ca = b - a, c - b, a - c
-    flux = 0.5 * columns.dot(a, columns.cross(ca, ab))
+    flux = 0.5 * coordinates.dot(a, coordinates.cross(ca, ab))
     extent = np.abs([ab, bc, ca]).max(axis=(0, 1))
     large, small = extent >= MIDDLE, extent < SMALL
     by_nodes = ((large, _sixth_order), (~(large | small), _fourth_order))

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew.part.aspect_names import AspectNames
 from feederscrew.part.hull import Hull
-from feederscrew.part.naming import AspectNames
 
 
 @dataclass(frozen=True, eq=False)

@@ -66,7 +66,7 @@ def named(groups, normals, hull, given):
 
 
 def text(part, found):
-    """Return the names of a part's stable aspects as the text of a file that ``part.naming.read`` takes.
+    """Return the names of a part's stable aspects as the text of the file that ``aspect_names.read`` takes.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ from feederscrew.machine import building, checks, filling, sizing, throughput, t
 from feederscrew.machine.springs import Springs, gain, leaf_stress, springs
 from feederscrew.machine.stroke import Stroke, angles, greatest_amplitude, stroke
 from feederscrew.part.record import Part
-from feederscrew.rates import queue, stream
+from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.tipping import remark
 from feederscrew.studies.aspects import answered
 from feederscrew.tooling.orientations import orientations
@@ -131,13 +131,13 @@ def bowl(
     plain = answer.conveying(bowls.record(settings))
     found = answered(part) if known is None else known
     straight = replace(sizing.STRAIGHT, climb=plain.track.climb)
-    wanted = None if aspect is None else queue.wanted(part, found, straight, aspect, heading)
+    wanted = None if aspect is None else well_oriented.wanted(part, found, straight, aspect, heading)
     lying = sizing.lying(part, found, wanted)
     _check_rule(rule, found)
     size = _size(lying, part, plain, settings, sorts=wanted is None)
     track = replace(plain.track, radius=0.5 * size.diameter, width=size.track_width, climb=size.climb)
     if wanted is not None:
-        wanted = queue.wanted(part, found, track, *wanted)
+        wanted = well_oriented.wanted(part, found, track, *wanted)
     ways = _ways(part, found, track, plain.devices)
     counted = {"rule": rule, "target": wanted, "gap": gap, "fill": fill}
     driven, flow = _brought(replace(plain, track=track), size, settings, target, ways, counted)

@@ -5,7 +5,7 @@ from os import PathLike
 
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.resting.counts import passed, profiles, sheet
+from feederscrew.resting.counts import count_rows, passed, profiles
 from feederscrew.resting.counts.calibration_file import Fit, fit_of_passes, fits
 from feederscrew.studies import passages
 
@@ -40,8 +40,8 @@ def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
         Every fault of the file, each with its line; if the part has no shape, no column holds counts, or
         they do not tell an exponent.
     """
-    text, sha256 = sheet.content(counts)
-    table, found = sheet.parse(text, str(counts)), find(part)
+    text, sha256 = count_rows.content(counts)
+    table, found = count_rows.parse(text, str(counts)), find(part)
     if not passed.by_device(table):
         measured = profiles.measured(table, str(counts), sha256, found.names)
         return CalibrateStudy(part, found, measured, tuple(fits(part, found, measured)))

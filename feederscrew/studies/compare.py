@@ -9,7 +9,7 @@ from feederscrew.errors import Faults, FeederError
 from feederscrew.part import load
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.counts import deviation, passed, profiles, sheet
+from feederscrew.resting.counts import count_rows, deviation, passed, profiles
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.passages import FeedingStudy, feeding
@@ -142,8 +142,8 @@ def compare(
     FeederError
         Every fault of the file, each with its line.
     """
-    text, sha256 = sheet.content(counts)
-    table = sheet.parse(text, str(counts))
+    text, sha256 = count_rows.content(counts)
+    table = count_rows.parse(text, str(counts))
     if passed.by_device(table):
         tested = passed.understood(table, str(counts), sha256)
         return feeding(part, tested, launch=launch, progress=progress, before=before)
@@ -200,8 +200,8 @@ def compare_sets(
 
 def _studies(path, launch, as_published, inputs):
     """Every profile of one file against every answer; of a file by device one FeedingStudy."""
-    text, sha256 = sheet.content(path)
-    table = sheet.parse(text, path)
+    text, sha256 = count_rows.content(path)
+    table = count_rows.parse(text, path)
     if not table.head.part:
         raise FeederError(path, "does not say which part was counted", "add a line '# part: FILE' at its top")
     beside = Path(path).parent / table.head.part

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from feederscrew import check
-from feederscrew.dropping import runs, traces
+from feederscrew.dropping import drop_test, traces
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules.recommended import launch_named
@@ -18,7 +18,7 @@ class DropStudy:
 
     part: Part
     aspects: Aspects
-    result: runs.Result
+    result: drop_test.Result
 
     @property
     def drops(self) -> int:
@@ -91,7 +91,7 @@ def drop(
     launch_named(launch)
     check_run(drops, seed, jobs)
     found = find(part) if aspects is None else aspects
-    result = runs.test(
+    result = drop_test.test(
         part, found, launch, dict(conditions or {}),
         drops=drops, until=until, seed=seed, jobs=jobs, traced=traced, progress=progress, before=before,
     )  # fmt: skip

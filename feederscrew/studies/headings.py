@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from feederscrew.bowl.record import Track
-from feederscrew.mechanics.wall import headings as wall
+from feederscrew.mechanics.wall import stable_headings as wall
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture, posture

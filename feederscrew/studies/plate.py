@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
-from feederscrew.dropping.plate import runs
+from feederscrew.dropping.plate import bowl_test
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules.recommended import launch_named
@@ -21,7 +21,7 @@ class PlateStudy:
     part: Part
     aspects: Aspects
     seed: int  # of the random launches
-    plates: tuple[runs.Shaken, ...]  # one a bowl; fewer, the last of them partial, after an interrupt
+    plates: tuple[bowl_test.Shaken, ...]  # one a bowl; fewer, the last of them partial, after an interrupt
     names: tuple[str, ...]  # of the bowl of each plate
 
     @property
@@ -87,7 +87,7 @@ def plate(
     if seconds is not None:
         check.argument("seconds", seconds, LEAST)
     found = find(part)
-    plates = runs.test(
+    plates = bowl_test.test(
         part, found, bowls, launch, dict(conditions or {}),
         drops=drops, seconds=seconds, seed=seed, jobs=jobs, progress=progress, before=before,
     )  # fmt: skip

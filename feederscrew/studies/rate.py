@@ -12,7 +12,7 @@ from feederscrew.bowl.devices import Device, strangers
 from feederscrew.bowl.record import Bowl
 from feederscrew.machine import speeds
 from feederscrew.part.record import Part
-from feederscrew.rates import chances, queue
+from feederscrew.rates import arrivals, well_oriented
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH, launch_named
@@ -80,7 +80,7 @@ def shares(
     if probabilities is not None:
         found = resting(part, drops=0).aspects
         measured = profiles.read(probabilities, found.names)
-        return Shares(chances.counted(found, measured), measured)
+        return Shares(arrivals.counted(found, measured), measured)
     if not fed or part.vertices is None:
         return Shares(resting(part, launch=launch, **own).aspects)
     from feederscrew.dropping.plate.arrival import arrival
@@ -91,7 +91,7 @@ def shares(
     if before:
         before(None)
     floor = arrival(part, found, bowl, seed=SEED, jobs=jobs or os.cpu_count() or 1, progress=progress)
-    arrived = chances.arrived(found, floor, SEED)
+    arrived = arrivals.arrived(found, floor, SEED)
     return Shares(arrived, fed=arrived.recommended is not found.recommended)
 
 
@@ -104,7 +104,7 @@ class RateStudy:
     aspects: Aspects
     devices: tuple[Device, ...]  # in the order parts meet them
     rule: str  # whose probabilities are taken
-    rate: queue.Rate
+    rate: well_oriented.Rate
     measured: profiles.Measured | None = None  # the counts that are taken, if they are
 
     @property
@@ -172,10 +172,10 @@ def rate(
     chain = bowl.devices if devices is None else tuple(devices)
     known = shares(part, bowl) if known is None else known
     found = known.aspects
-    target = None if aspect is None else queue.wanted(part, found, bowl.track, aspect, heading)
-    ways = queue.orientations(part, found, bowl.track, chain, sigma, bowl)
-    lying = chances.oriented(ways, known.measured)
-    speed = queue.velocity(bowl)
+    target = None if aspect is None else well_oriented.wanted(part, found, bowl.track, aspect, heading)
+    ways = well_oriented.orientations(part, found, bowl.track, chain, sigma, bowl)
+    lying = arrivals.oriented(ways, known.measured)
+    speed = well_oriented.velocity(bowl)
     target = most_frequent(lying, rule) if target is None else target
     return RateStudy(
         part=part,
@@ -183,7 +183,7 @@ def rate(
         aspects=found,
         devices=chain,
         rule=rule,
-        rate=queue.rate(lying, speed, target, rule, gap=gap, fill=fill),
+        rate=well_oriented.rate(lying, speed, target, rule, gap=gap, fill=fill),
         measured=known.measured,
     )
 

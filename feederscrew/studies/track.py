@@ -16,7 +16,7 @@ from feederscrew.mechanics.standing import standing
 from feederscrew.mechanics.track import balance, cells, equilibrium
 from feederscrew.mechanics.track.frame import Seat, bank_without_radial_friction
 from feederscrew.mechanics.track.opening import Opening, first_to_open
-from feederscrew.mechanics.wall.headings import Headings
+from feederscrew.mechanics.wall.stable_headings import Headings
 from feederscrew.part.record import Part
 from feederscrew.resting.posture import Posture
 from feederscrew.studies.aspects import answered

@@ -13,8 +13,8 @@ from feederscrew.documents import hint
 from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.part.record import Part
-from feederscrew.rates import chances, stream
-from feederscrew.rates.queue import RECOMMENDED
+from feederscrew.rates import arrivals, stream
+from feederscrew.rates.well_oriented import RECOMMENDED
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH
@@ -165,7 +165,7 @@ def trial(
     for bowl in bowls:
         answer.answer(bowl)  # refuses a drive that cannot convey
         ways = stream.orientations(part, found, bowl.track, bowl.devices, bowl=bowl)
-        ways = chances.oriented(ways, known.measured)
+        ways = arrivals.oriented(ways, known.measured)
         tried = _tried(part, found, ways, aspect)
         shares = _shares(ways, rule, tried)
         own = {"parts": max(count, len(tried)), "seed": seed, "jobs": jobs, "before": before}

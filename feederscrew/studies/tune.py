@@ -11,8 +11,8 @@ from feederscrew.bowl.devices import Device, strangers
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer, sensitivity
 from feederscrew.part.record import Part
-from feederscrew.rates import chances, queue
-from feederscrew.rates import tune as knobs
+from feederscrew.rates import arrivals, well_oriented
+from feederscrew.rates import drive_settings as knobs
 from feederscrew.rates.stream import along
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.rate import LEAST, Shares, checked, shares
@@ -24,7 +24,8 @@ class Tuned:
     """One setting that reaches the rate, with what it gives."""
 
     solution: knobs.Solution
-    velocity: queue.Range  # [m/s] over all starts and for friction a fifth lower and higher; the low end >= 0
+    # [m/s] over all starts and for friction a fifth lower and higher; the low end >= 0
+    velocity: well_oriented.Range
     over: tuple[str, ...]  # orientations that this drive turns over on the track
     several: bool  # steady velocities, depending on how the part arrives
 
@@ -88,12 +89,13 @@ def tune(
     chain = bowl.devices if devices is None else tuple(devices)
     known = shares(part, bowl) if known is None else known
     found = known.aspects
-    wanted = queue.wanted(part, found, bowl.track, aspect, heading)
+    wanted = well_oriented.wanted(part, found, bowl.track, aspect, heading)
     ways = _ways(part, bowl, chain, known)
-    queue.parts_per_metre(ways(None), wanted, rule, gap=gap, fill=fill)  # raises where none ever leaves so
+    # raises where none ever leaves so
+    well_oriented.parts_per_metre(ways(None), wanted, rule, gap=gap, fill=fill)
 
     def density(driven):
-        return queue.leaving_per_metre(ways(driven), wanted, rule, gap=gap, fill=fill)
+        return well_oriented.leaving_per_metre(ways(driven), wanted, rule, gap=gap, fill=fill)
 
     return TuneStudy(
         part=part,
@@ -112,7 +114,7 @@ def _ways(part, bowl, chain, known):
 
     @cache
     def ways(driven):
-        return chances.oriented(along(every, known.aspects, chain, bowl=driven), known.measured)
+        return arrivals.oriented(along(every, known.aspects, chain, bowl=driven), known.measured)
 
     return ways
 
@@ -125,7 +127,7 @@ def _tuned(solution, bowl, ways):
     fastest = np.nanmax([found.high, doubt.less, doubt.more])
     return Tuned(
         solution=solution,
-        velocity=queue.Range(found.velocity, max(slowest, 0.0), max(fastest, 0.0)),
+        velocity=well_oriented.Range(found.velocity, max(slowest, 0.0), max(fastest, 0.0)),
         over=tuple(one.name for one in ways(driven).lying if one.turns_over),
         several=bool(found.high - found.low > answer.COEXIST * found.speed),
     )

@@ -10,7 +10,7 @@ from feederscrew.conveying import answer
 from feederscrew.errors import ConfigError
 from feederscrew.geometry.polygons import turned
 from feederscrew.mechanics.wall import sameness
-from feederscrew.mechanics.wall.headings import headings
+from feederscrew.mechanics.wall.stable_headings import headings
 from feederscrew.resting.posture import Posture, posture
 from feederscrew.tooling import contact
 from feederscrew.tooling import foot as feet

@@ -17,10 +17,10 @@ from feederscrew import check
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import fitting
 from feederscrew.geometry.polygons import barrier, cross, outline
-from feederscrew.mechanics.wall import headings as wall
 from feederscrew.mechanics.wall import sameness
+from feederscrew.mechanics.wall import stable_headings as wall
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting.tumbling import edges as tumbling
+from feederscrew.resting.tumbling import half_edges as tumbling
 from feederscrew.resting.tumbling import walk
 
 BEYOND = 1e-7  # [rad] past the barrier a part rolls down by itself

@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.dropping.launches import named
-from feederscrew.dropping.plate.runs import EXACT
+from feederscrew.dropping.plate.bowl_test import EXACT
 from feederscrew.trial import course, runs, starts, stations
 from feederscrew.trial.looks import OTHER, AspectsBelow
 from feederscrew.trial.rounding import rounded

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.dropping.kernel.drop import UNSETTLED, face_below
+from feederscrew.dropping.kernel.one_drop import UNSETTLED, face_below
 from feederscrew.dropping.shape import shape_of_part
 from feederscrew.geometry import vectors
 from feederscrew.resting.tumbling.by_class import ground

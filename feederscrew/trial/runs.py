@@ -8,7 +8,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.dropping.kernel import body
-from feederscrew.dropping.kernel.floor import Floor
+from feederscrew.dropping.kernel.floor_motion import Floor
 from feederscrew.dropping.plate import drive
 from feederscrew.dropping.pool import in_batches
 from feederscrew.geometry import vectors

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from feederscrew.dropping.kernel import body, contact, drop, impulses, touch
-from feederscrew.dropping.kernel.drop import Steps, scratch, settle
+from feederscrew.dropping.kernel import body, floor_contacts, impulses, one_drop, touch
+from feederscrew.dropping.kernel.one_drop import Steps, scratch, settle
 from feederscrew.dropping.launches import PRESETS, sample
 
 BOX, LENGTH = drop_bodies.box((1.0, 1.3, 1.7))
@@ -82,7 +82,7 @@ def struck(shape, state, restitution, friction):
     body.rotation(work.state, work.turn)
     corner, _ = body.lowest(shape.vertices, shape.solid.links, work.turn, 0)
     count = touch.touching(shape.solid, work, state[body.Z], corner, 1e-3)
-    contact.levers(shape.inertia, work, count)
+    floor_contacts.levers(shape.inertia, work, count)
     impulses.strike(
         shape.inertia,
         work.state,
@@ -109,7 +109,7 @@ def on_a_corner(rng):
 def test_an_impact_balances_momentum(friction, rng):
     state = on_a_corner(rng)
     work, count = struck(BOX, state, 0.4, friction)
-    impulses = work.contacts[:count, contact.IMPULSE : contact.IMPULSE + 3]
+    impulses = work.contacts[:count, floor_contacts.IMPULSE : floor_contacts.IMPULSE + 3]
     corners = work.spots[:count]
     gained = work.state[body.VX : body.VX + 3] - state[body.VX : body.VX + 3]
     spun = BOX.inertia * (work.state[body.W :] - state[body.W :])
@@ -160,7 +160,7 @@ def test_a_sliding_block_stops_where_friction_says():
 def run(shape, count, steps, seed=3, preset="feed"):
     starts = sample(PRESETS[preset], shape, count, np.random.default_rng(seed))
     faces, times = np.empty(count, int), np.empty(count)
-    drop.settle_all(
+    one_drop.settle_all(
         shape, scratch(shape), starts.states, starts.restitutions, starts.frictions, steps, faces, times
     )
     return faces
@@ -202,7 +202,7 @@ def test_a_body_set_down_rests_where_it_tumbles_to():
 
 def test_a_drop_that_takes_too_long_is_unsettled():
     faces = run(BOX, 20, Steps(longest=0.1))
-    assert (faces == drop.UNSETTLED).all()
+    assert (faces == one_drop.UNSETTLED).all()
 
 
 def test_measured_tosses_of_square_cuboids():

@@ -10,7 +10,7 @@ from scipy.stats import binom
 
 from feederscrew.dropping import conditions, ensemble
 from feederscrew.dropping.ensemble import Aim, Drops, drop, tally, wilson
-from feederscrew.dropping.kernel.drop import UNSETTLED
+from feederscrew.dropping.kernel.one_drop import UNSETTLED
 from feederscrew.dropping.launches import PRESETS, named, sample
 from feederscrew.dropping.pool import gather
 from feederscrew.errors import ArgumentError, ConfigError

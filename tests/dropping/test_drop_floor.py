@@ -9,9 +9,9 @@ from scipy.spatial.transform import Rotation
 
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
-from feederscrew.dropping.kernel import body, drop, floor, motion
+from feederscrew.dropping.kernel import body, falling, floor_motion, one_drop
 from feederscrew.dropping.kernel import ride as shaken
-from feederscrew.dropping.kernel.floor import Floor, at_rest
+from feederscrew.dropping.kernel.floor_motion import Floor, at_rest
 from feederscrew.dropping.launches import PRESETS, sample
 from feederscrew.dropping.plate import drive
 
@@ -33,7 +33,7 @@ def lying_flat(shape, turn=0.0):
 
 def ride(shape, plate, state, looks, friction, restitution=0.0, steps=None):
     """Faces and places of one ride."""
-    work = motion.scratch(shape)
+    work = falling.scratch(shape)
     work.state[:] = state
     faces, places = np.full(len(looks), -1), np.full((len(looks), 2), np.nan)
     steps = steps or drive.steps_of(plate)
@@ -46,27 +46,27 @@ def ride(shape, plate, state, looks, friction, restitution=0.0, steps=None):
 def test_speed_is_the_slope_of_place(amplitude):
     for time in np.linspace(0.0, 3.0, 7):
         angle, step = 3.0 * time, 1e-6
-        ahead, behind = (floor.place(ELLIPSE, amplitude, angle + 3.0 * way * step) for way in (1, -1))
+        ahead, behind = (floor_motion.place(ELLIPSE, amplitude, angle + 3.0 * way * step) for way in (1, -1))
         slope = (ahead - behind) / (2.0 * step)
-        assert floor.speed(ELLIPSE, amplitude, angle) == pytest.approx(slope, abs=1e-8)
+        assert floor_motion.speed(ELLIPSE, amplitude, angle) == pytest.approx(slope, abs=1e-8)
 
 
 def test_flight_over_a_moving_floor_is_a_parabola_in_the_room():
     """Seen from the room a flying part knows nothing of the floor."""
-    work, time = motion.scratch(BOX), 0.4
+    work, time = falling.scratch(BOX), 0.4
     work.state[:] = sample(PRESETS["roll"], BOX, 1, np.random.default_rng(2)).states[0]
 
     def in_the_room(state, time):
         at = 3.0 * time
-        place = [floor.place(ELLIPSE, 0.2, at + 0.7), 0.0, floor.place(ELLIPSE, 0.1, at)]
-        speed = [floor.speed(ELLIPSE, 0.2, at + 0.7), 0.0, floor.speed(ELLIPSE, 0.1, at)]
+        place = [floor_motion.place(ELLIPSE, 0.2, at + 0.7), 0.0, floor_motion.place(ELLIPSE, 0.1, at)]
+        speed = [floor_motion.speed(ELLIPSE, 0.2, at + 0.7), 0.0, floor_motion.speed(ELLIPSE, 0.1, at)]
         return state[:3] + place, state[3:6] + speed
 
     start, speed = in_the_room(work.state, time)
     begun = time
     for dt in (0.03, 0.2, 0.17):
         body.keep(work.state, work.saved)
-        motion.gap_after(BOX.solid, work, ELLIPSE, time, 0, dt)
+        falling.gap_after(BOX.solid, work, ELLIPSE, time, 0, dt)
         time += dt
     gone = time - begun
     place, now = in_the_room(work.state, time)
@@ -79,10 +79,12 @@ def test_a_floor_that_does_not_move_is_the_floor_of_a_drop_test():
     starts = sample(PRESETS["roll"], BOX, 150, np.random.default_rng(4))
     faces, times = np.empty(150, int), np.empty(150)
     given = starts.states, starts.restitutions, starts.frictions
-    drop.settle_all(BOX, drop.scratch(BOX), *given, drop.Steps(early=False, longest=60.0), faces, times)
+    one_drop.settle_all(
+        BOX, one_drop.scratch(BOX), *given, one_drop.Steps(early=False, longest=60.0), faces, times
+    )
     seen, places = np.full((150, 1), -1), np.zeros((150, 1, 2))
     shaken.ride_all(
-        BOX, motion.scratch(BOX), at_rest(), *given, drop.Steps(), np.array([60.0]), seen, places,
+        BOX, falling.scratch(BOX), at_rest(), *given, one_drop.Steps(), np.array([60.0]), seen, places,
         np.zeros(150, int),
     )  # fmt: skip
     assert (seen[:, 0] == faces).mean() >= 0.985
@@ -148,7 +150,7 @@ def test_a_part_without_friction_stays_where_it_is_in_the_room():
     bowl = bowl_of(0.8)
     plate, unit = drive.floor_of(bowl, LENGTH), math.sqrt(LENGTH / bowl.gravity)
     state = lying_flat(PLATE)
-    state[body.VX] = -floor.speed(plate, plate.along, 0.0)
+    state[body.VX] = -floor_motion.speed(plate, plate.along, 0.0)
     _, places = ride(PLATE, plate, state, np.arange(10, 60) / 60.0 / unit, 0.0)
     assert np.abs(places[:, 0]).max() < 0.05 * plate.along
 
@@ -158,25 +160,25 @@ def test_below_the_hop_no_part_leaves_its_face(ratio):
     plate = drive.floor_of(bowl_of(ratio), LENGTH)
     for turn in (0.0, 1.1):
         faces, _ = ride(PLATE, plate, lying_flat(PLATE, turn), np.arange(1.0, 90.0), 0.4)
-        assert len(set(faces)) == 1 and faces[0] != drop.UNSETTLED
+        assert len(set(faces)) == 1 and faces[0] != one_drop.UNSETTLED
 
 
 def test_a_part_near_its_edge_lies_on_no_face():
     """Tilted almost over the lowest way out, it holds nearly the whole barrier: it may be tipping over."""
-    flat, least, work = lying_flat(BOX), BOX.barriers.min(), motion.scratch(BOX)
+    flat, least, work = lying_flat(BOX), BOX.barriers.min(), falling.scratch(BOX)
 
     def seen(tilt, axis):
         turn = Rotation.from_rotvec(tilt * np.array(axis)) * Rotation.from_quat(flat[[7, 8, 9, 6]])
         work.state[:] = flat
         work.state[body.Q : body.Q + 4] = turn.as_quat()[[3, 0, 1, 2]]
-        corner, gap = motion.start(BOX.solid, work)
+        corner, gap = falling.start(BOX.solid, work)
         return shaken.lying(BOX, work.state, work.turn, corner), work.state[body.Z] - gap - flat[body.Z]
 
-    assert seen(0.0, (1, 0, 0))[0] != drop.UNSETTLED
+    assert seen(0.0, (1, 0, 0))[0] != one_drop.UNSETTLED
     for axis in ((1, 0, 0), (0, 1, 0)):
         for tilt in np.linspace(0.02, 1.5, 40):
             face, lift = seen(tilt, axis)
-            if face != drop.UNSETTLED:
+            if face != one_drop.UNSETTLED:
                 assert lift - (BOX.heights[face] - flat[body.Z]) < shaken.SURE * BOX.barriers[face]
         tipping = [lift for face, lift in (seen(t, axis) for t in np.linspace(0.0, 1.5, 40)) if face < 0]
         assert tipping and max(tipping) > shaken.SURE * least

@@ -8,14 +8,14 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from feederscrew.dropping import ensemble
-from feederscrew.dropping.kernel import body, motion, touch
-from feederscrew.dropping.kernel.drop import Steps
-from feederscrew.dropping.kernel.floor import at_rest
+from feederscrew.dropping.kernel import body, falling, touch
+from feederscrew.dropping.kernel.floor_motion import at_rest
+from feederscrew.dropping.kernel.one_drop import Steps
 from feederscrew.dropping.launches import PRESETS
 from feederscrew.dropping.rims import MIDDLE, OPENING, RADIUS, lowest_on, rims_of
 from feederscrew.dropping.shape import principal_axes, shape_of_part
 from feederscrew.resting.aspects import find
-from feederscrew.resting.tumbling.edges import half_edges
+from feederscrew.resting.tumbling.half_edges import half_edges
 
 MM = 1e-3
 
@@ -121,7 +121,7 @@ def test_a_tilted_disc_touches_in_one_point_and_a_flat_one_in_four(tilt, points)
     axis = shape.solid.rims[0, 3:6]
     across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
     up = np.cos(tilt) * axis + np.sin(tilt) * across / np.linalg.norm(across)
-    work = motion.scratch(shape)
+    work = falling.scratch(shape)
     work.turn[6:] = up
     corner, level = body.bottom(shape.solid, work.turn, 0)
     count = touch.touching(shape.solid, work, -level, corner, 1e-4)
@@ -147,7 +147,7 @@ def test_a_disc_that_rolls_upright_keeps_its_energy_and_goes_straight():
     """Both rims touch; without resistance nothing slows it."""
     shape = shaped(cylinder(5.0, 2.0, 32))[2]
     axis = int(np.argmax(np.abs(shape.solid.rims[0, 3:6])))
-    work = motion.scratch(shape)
+    work = falling.scratch(shape)
     order = [axis, (axis + 1) % 3, (axis + 2) % 3]
     turn = np.eye(3)[order]  # the disc's axis along the floor's x
     work.state[body.Q : body.Q + 4] = np.roll(Rotation.from_matrix(turn).as_quat(), 1)
@@ -155,10 +155,10 @@ def test_a_disc_that_rolls_upright_keeps_its_energy_and_goes_straight():
     work.state[body.Z] = radius
     work.state[body.W + axis], work.state[body.VY] = rate, -rate * radius
     before = body.energy(work.state, shape.inertia)
-    corner, gap = motion.start(shape.solid, work)
+    corner, gap = falling.start(shape.solid, work)
     time, steps = 0.0, Steps(rolling=0.0, pivot=0.0)
     while time < 5.0:
-        corner, gap, dt, count, _ = motion.advance(
+        corner, gap, dt, count, _ = falling.advance(
             shape.solid, work, at_rest(), time, corner, gap, 0.3, 0.4, steps
         )
         time += dt

@@ -8,7 +8,7 @@ import shapes
 from scipy.constants import g
 from scipy.spatial.transform import Rotation
 
-from feederscrew.dropping import runs, stills, traces
+from feederscrew.dropping import drop_test, key_moments, traces
 from feederscrew.dropping.traces import telling
 from feederscrew.output import style, tables
 from feederscrew.output.drop import trace_curve, trace_strip, trace_tables
@@ -30,7 +30,7 @@ def followed(path, preset="feed", count=8, drops=300, own=None, **more):
     """A part, its aspects and a test of it with some traces."""
     part = load(path)
     aspects = find(part)
-    return part, aspects, runs.test(part, aspects, preset, own or {}, drops=drops, traced=count, **more)
+    return part, aspects, drop_test.test(part, aspects, preset, own or {}, drops=drops, traced=count, **more)
 
 
 def corners(part, trace):
@@ -203,7 +203,7 @@ def test_the_drop_shown_tumbles_if_one_does(bracket):
 def test_stills_go_from_the_first_impact_to_the_end(bracket):
     _, aspects, result = bracket
     for trace in result.traces:
-        rows = stills.chosen(trace, 12)
+        rows = key_moments.chosen(trace, 12)
         assert rows[0] == np.argmax(trace.impacts) and rows[-1] == len(trace.times) - 1
         assert len(rows) == 12 and (np.diff(rows) > 0).all()
         end = trace_strip.said(trace, rows[-1], aspects.names, 0.0)
@@ -215,7 +215,7 @@ def test_the_curve_shows_energy_over_the_heights_it_comes_down_to(bracket):
     _, aspects, result = bracket
     trace = result.traces[0]
     axes = style.figure().add_subplot()
-    trace_curve.curve(axes, trace, aspects, stills.chosen(trace, 12))
+    trace_curve.curve(axes, trace, aspects, key_moments.chosen(trace, 12))
     assert axes.get_xlabel() == "time [ms]" and axes.get_ylabel() == "energy as height [mm]"
     energy, height = axes.get_lines()[:2]
     assert energy.get_ydata() == pytest.approx(trace.energies / MM)

@@ -6,9 +6,9 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.dropping.kernel.drop import UNSETTLED
+from feederscrew.dropping.kernel.one_drop import UNSETTLED
 from feederscrew.dropping.launches import PRESETS, sample
-from feederscrew.dropping.plate import drive, runs
+from feederscrew.dropping.plate import bowl_test, drive
 from feederscrew.dropping.plate.occupancy import lasting, limit_of, occupancy
 from feederscrew.dropping.plate.rides import BATCH, ride
 from feederscrew.resting.aspects import find
@@ -120,7 +120,7 @@ def bowl(*own):
 def shaken(part, *bowl_list, preset="drop", **more):
     given = dict.fromkeys(("fall", "spin", "speed", "restitution", "friction"))
     more = {"drops": 40, "seconds": 1.0} | more
-    return runs.test(part, find(part), bowl_list, preset, given, **more)
+    return bowl_test.test(part, find(part), bowl_list, preset, given, **more)
 
 
 def test_the_outcome_does_not_depend_on_the_jobs():
@@ -164,7 +164,7 @@ def test_the_plate_is_the_bowls_and_the_surface_too_unless_given():
     rough = [bowl("friction.static=0.8", "drive.amplitude=0.2 mm")]
     given = {"drops": 10, "seconds": 0.5}
     speeds = [
-        runs.test(part, find(part), bowls_of, "place", texts, **given)[0].occupancy.velocity[0]
+        bowl_test.test(part, find(part), bowls_of, "place", texts, **given)[0].occupancy.velocity[0]
         for bowls_of, texts in ((slippery, own), (rough, own), (slippery, own | {"friction": "0.8"}))
     ]
     assert speeds[0] < 0.5 * speeds[1] and speeds[1] == pytest.approx(speeds[2])
@@ -172,7 +172,7 @@ def test_the_plate_is_the_bowls_and_the_surface_too_unless_given():
 
 @pytest.mark.parametrize(("frequency", "seconds", "apart"), [(60.0, 5.0, 1 / 60), (100.0, 60.0, 0.1)])
 def test_looks_are_whole_periods_apart(frequency, seconds, apart):
-    assert runs.looks_apart(frequency, seconds) == pytest.approx(apart)
+    assert bowl_test.looks_apart(frequency, seconds) == pytest.approx(apart)
 
 
 def test_the_throw_number_of_a_plate():
@@ -216,7 +216,7 @@ def test_a_launch_keeps_its_speed_whatever_the_gravity():
     part = shapes.part(shapes.box(12.0, 12.0, 3.0))
     own = dict.fromkeys(("fall", "spin", "restitution")) | {"speed": "0.1 m/s", "friction": "0"}
     plates = [bowl("drive.amplitude=0 mm", f"gravity={gravity} m/s2") for gravity in (9.81, 1.0)]
-    earth, moon = runs.test(part, find(part), plates, "place", own, drops=16, seconds=0.2)
+    earth, moon = bowl_test.test(part, find(part), plates, "place", own, drops=16, seconds=0.2)
     assert earth.launch["speed_mm_s"] == moon.launch["speed_mm_s"] == pytest.approx([100.0, 100.0])
     assert abs(earth.occupancy.velocity[0]) > 1e-3  # not all ways cancel
     assert moon.occupancy.velocity[0] == pytest.approx(earth.occupancy.velocity[0], rel=1e-3)

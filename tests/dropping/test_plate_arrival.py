@@ -7,7 +7,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.dropping.plate import arrival, runs
+from feederscrew.dropping.plate import arrival, bowl_test
 from feederscrew.resting.aspects import find
 
 
@@ -20,7 +20,7 @@ def shaken():
     """Few parts on a gentle floor."""
     part = shapes.part(shapes.box(8.0, 12.0, 15.0))
     aspects = find(part)
-    return part, aspects, runs.test(part, aspects, [plate(0.02)], "feed", {}, drops=30, seconds=0.5)[0]
+    return part, aspects, bowl_test.test(part, aspects, [plate(0.02)], "feed", {}, drops=30, seconds=0.5)[0]
 
 
 def changed(shaken, **values):

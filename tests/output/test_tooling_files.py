@@ -70,7 +70,7 @@ def test_the_drawing_opens_in_millimetres_with_closed_polylines(drawn):
 
 
 def test_the_drawing_is_the_same_bytes_in_another_process(tmp_path):
-    code = "from feederscrew.bowl.drawing import Layer, written; import sys; sys.stdout.buffer.write(" \
+    code = "from feederscrew.bowl.dxf import Layer, written; import sys; sys.stdout.buffer.write(" \
         "written([Layer('CUT', 1, rings=[[(0, 0), (1, 0), (0, 1)]], texts=(('a', (0, 0)),))]))"  # fmt: skip
     seeds = [{**os.environ, "PYTHONHASHSEED": seed} for seed in "12"]
     one, two = (subprocess.run([sys.executable, "-c", code], capture_output=True, env=env) for env in seeds)

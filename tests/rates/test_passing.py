@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from feederscrew.errors import FeederError
 from feederscrew.rates import passing
-from feederscrew.resting.counts import passed, sheet
+from feederscrew.resting.counts import count_rows, passed
 
 KNOWN = SimpleNamespace(
     names=("track", "wiper_1", "gap_2", "gap_3"),
@@ -23,7 +23,7 @@ KNOWN = SimpleNamespace(
 
 def counted(*rows):
     text = "\n".join(["device,passed,rejected", *rows])
-    return passed.understood(sheet.parse(text, "c.csv"), "c.csv", "")
+    return passed.understood(count_rows.parse(text, "c.csv"), "c.csv", "")
 
 
 def test_parts_are_followed_from_device_to_device():

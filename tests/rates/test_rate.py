@@ -9,8 +9,8 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
 from feederscrew.errors import FeederError
-from feederscrew.rates import queue
-from feederscrew.rates.queue import Range
+from feederscrew.rates import well_oriented
+from feederscrew.rates.well_oriented import Range
 from feederscrew.resting.aspects import find
 
 BOWL = bowls.read(
@@ -23,7 +23,7 @@ LSHAPE = [(0, 0), (30, 0), (30, 3), (3, 3), (3, 20), (0, 20)]
 def stream(mesh, track=STRAIGHT, chain=()):
     part = shapes.part(mesh)
     found = find(part)
-    return part, found, queue.orientations(part, found, track, chain)
+    return part, found, well_oriented.orientations(part, found, track, chain)
 
 
 def chain(tmp_path, text):
@@ -63,8 +63,8 @@ def test_a_square_prism_has_one_heading_on_its_end():
 
 def test_rate_is_the_product_of_its_chain():
     part, found, known = stream(shapes.box(10, 20, 30))
-    target = queue.wanted(part, found, STRAIGHT, "A")
-    made = queue.rate(known, Range(0.1, 0.05, 0.2), target, "csa", gap=5e-3, fill=0.8)
+    target = well_oriented.wanted(part, found, STRAIGHT, "A")
+    made = well_oriented.rate(known, Range(0.1, 0.05, 0.2), target, "csa", gap=5e-3, fill=0.8)
     row = made.row
     chance = known.rules["csa"]
     assert made.pitch == pytest.approx((chance * (known.lengths + 5e-3)).sum())
@@ -75,12 +75,12 @@ def test_rate_is_the_product_of_its_chain():
     chances = [chance[row] for chance in known.rules.values()]
     assert made.parts.high == pytest.approx(0.2 / made.pitch * max(chances) * 0.8)
     assert made.purity == pytest.approx(known.rules["csa"][row])
-    density = queue.parts_per_metre(known, target, "csa", gap=5e-3, fill=0.8)
+    density = well_oriented.parts_per_metre(known, target, "csa", gap=5e-3, fill=0.8)
     assert made.parts.value == pytest.approx(0.1 * density)
 
 
 def test_velocity_brackets_friction_and_starts():
-    found = queue.velocity(BOWL)
+    found = well_oriented.velocity(BOWL)
     softer = answer.answer(answer.scaled(BOWL, friction=0.8)).velocity
     assert found.value == pytest.approx(answer.answer(BOWL).velocity)
     assert found.low <= min(softer, found.value)
@@ -91,22 +91,22 @@ def test_a_part_that_travels_back_gives_no_rate():
     back = replace(BOWL, drive=replace(BOWL.drive, vibration_angle=np.radians(15)))
     friction = replace(BOWL.friction, static=0.2, kinetic=0.2)
     assert answer.answer(replace(back, friction=friction)).velocity < 0.0
-    assert queue.velocity(replace(back, friction=friction)).value == 0.0
+    assert well_oriented.velocity(replace(back, friction=friction)).value == 0.0
 
 
 def test_no_steady_state_is_a_fault():
     with pytest.raises(FeederError, match=r"track\.climb: is steeper than friction holds"):
-        queue.velocity(replace(BOWL, track=replace(BOWL.track, climb=0.6)))
+        well_oriented.velocity(replace(BOWL, track=replace(BOWL.track, climb=0.6)))
 
 
 def test_rules_and_aspects_that_do_not_exist():
     part, found, known = stream(shapes.box(10, 20, 30))
-    target = queue.wanted(part, found, STRAIGHT, "a")
+    target = well_oriented.wanted(part, found, STRAIGHT, "a")
     with pytest.raises(FeederError) as caught:
-        queue.rate(known, Range(1, 1, 1), target, "guess")
+        well_oriented.rate(known, Range(1, 1, 1), target, "guess")
     assert str(caught.value).startswith("rule guess: has no probabilities of this part - known are pmi, ")
     with pytest.raises(FeederError, match="there is no aspect"):
-        queue.wanted(part, found, STRAIGHT, "Z")
+        well_oriented.wanted(part, found, STRAIGHT, "Z")
 
 
 def test_heights_decide_wiper_and_bar(tmp_path):
@@ -145,12 +145,12 @@ def test_yield_by_aspect(tmp_path):
 
 def test_what_never_leaves_the_bowl(tmp_path):
     part, found, known = stream(shapes.box(10, 20, 30), chain=chain(tmp_path, "devices:\n  - wiper: 5 mm\n"))
-    target = queue.wanted(part, found, STRAIGHT, "A", heading=0.0)
-    made = queue.rate(known, Range(0.1, 0.1, 0.1), target, "pmi")
+    target = well_oriented.wanted(part, found, STRAIGHT, "A", heading=0.0)
+    made = well_oriented.rate(known, Range(0.1, 0.1, 0.1), target, "pmi")
     assert made.parts.value == 0.0
     assert np.isnan(made.purity)
     with pytest.raises(FeederError, match="never leaves the bowl - see the devices"):
-        queue.parts_per_metre(known, target, "pmi")
+        well_oriented.parts_per_metre(known, target, "pmi")
 
 
 def test_no_devices():

@@ -9,7 +9,7 @@ import shapes
 from feederscrew import batch, load, write_names
 from feederscrew.batch import task, work
 from feederscrew.errors import FeederError
-from feederscrew.part.naming import read
+from feederscrew.part.aspect_names import read
 from feederscrew.resting import naming
 from feederscrew.resting.aspects import find
 from feederscrew_cli.main import feeder

@@ -19,8 +19,8 @@ from feederscrew.part.hull import convex_hull
 from feederscrew.resting import aspects
 from feederscrew.resting.posture import posture
 from feederscrew.resting.tumbling.borders import borders
-from feederscrew.resting.tumbling.edges import half_edges
 from feederscrew.resting.tumbling.exact import tumble
+from feederscrew.resting.tumbling.half_edges import half_edges
 
 # Seeds of bodies that had a doubt, or some of whose walks arrived nowhere.
 WENT_WRONG = (11, 80, 83, 161, 174, 209, 299, 100430, 101374, 101382, 102273)

@@ -207,7 +207,7 @@ def test_an_independent_monte_carlo_of_the_flow(seed, offset):
 def test_rolls_agree_with_basin_areas(seed):
     from feederscrew.geometry.compiled import SMALL, fitting
     from feederscrew.resting.tumbling import walk
-    from feederscrew.resting.tumbling.edges import half_edges, sinks
+    from feederscrew.resting.tumbling.half_edges import half_edges, sinks
 
     points, centre = random_body(seed)
     hull = convex_hull(points, centre)

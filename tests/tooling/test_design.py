@@ -9,7 +9,7 @@ from feederscrew.bowl.devices import Device
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
 from feederscrew.output.tooling import bowl_file
-from feederscrew.rates import queue
+from feederscrew.rates import well_oriented
 from feederscrew.rates.steadiness import steady
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
@@ -134,9 +134,9 @@ def test_a_bowl_of_the_design_is_as_pure_and_efficient(bracket, tmp_path):
     path = tmp_path / "tooling.yaml"
     path.write_text(f"track: {{radius: 150 mm, width: 200 mm}}\ndevices:\n{lines}")
     bowl = bowls.read(path)
-    known = queue.orientations(part, aspects, bowl.track, bowl.devices)
+    known = well_oriented.orientations(part, aspects, bowl.track, bowl.devices)
     target = every[wanted].aspect, every[wanted].heading
-    made = queue.rate(known, queue.Range(0.02, 0.02, 0.02), target, "recommended")
+    made = well_oriented.rate(known, well_oriented.Range(0.02, 0.02, 0.02), target, "recommended")
     assert made.purity == pytest.approx(found.purity, rel=1e-9)
     assert made.efficiency == pytest.approx(found.efficiency, rel=1e-9)
     assert made.offered.value == pytest.approx(0.02 / (shares * [one.length for one in every]).sum())

@@ -3,7 +3,7 @@
 import math
 
 from feederscrew.dropping.kernel.body import VX, VZ, W, energy, keep
-from feederscrew.dropping.kernel.contact import (
+from feederscrew.dropping.kernel.floor_contacts import (
     CHANGE,
     IMPULSE,
     LAST,
@@ -17,7 +17,7 @@ from feederscrew.dropping.kernel.contact import (
     push,
     speed,
 )
-from feederscrew.dropping.kernel.slide import slide
+from feederscrew.dropping.kernel.slipping import slide
 from feederscrew.geometry.compiled import apart, compiled
 
 EVERY = 6  # sweeps from one leap to the next

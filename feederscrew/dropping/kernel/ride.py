@@ -5,8 +5,8 @@ import numpy as np
 from feederscrew import check
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VY, W, X, Y
-from feederscrew.dropping.kernel.drop import UNSETTLED, face_below, rolling_energy
-from feederscrew.dropping.kernel.motion import advance, start
+from feederscrew.dropping.kernel.falling import advance, start
+from feederscrew.dropping.kernel.one_drop import UNSETTLED, face_below, rolling_energy
 from feederscrew.geometry.compiled import compiled, entry
 
 SURE = 0.5  # of the barrier: what tilt and spin of a part that lies on a face may hold together

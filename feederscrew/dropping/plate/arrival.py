@@ -5,13 +5,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew import check
-from feederscrew.dropping.plate import runs
+from feederscrew.dropping.plate import bowl_test
 from feederscrew.dropping.plate.occupancy import Occupancy
 
 LAUNCH = "feed"
 SPELLS = (0.5, 2.0)  # [s] on the floor: the longer one where the shorter decides nothing
 PARTS = 100
-PACE = runs.Pace(coarse=3.0, settling=15.0)  # shares alone are asked for, not velocities: a fifth of the time
+PACE = bowl_test.Pace(coarse=3.0, settling=15.0)  # for shares alone, not velocities: a fifth of the time
 NEAR = 0.05  # [1] of a share: so near to where the rates lead it has arrived
 MOVING = "the shares still change after {:g} s on the floor - how long the parts stay in the bowl decides"
 UNSEEN = "{} of {} parts lie on no aspect while the floor moves - the drive may be too strong for this part"
@@ -27,7 +27,7 @@ class Arrival:
     high: np.ndarray  # (A,) [1]
     settled: bool  # whether time or the rates of change decide them
     reason: str  # why they are not settled, for a user; empty where they are
-    shaken: runs.Shaken  # what the parts did on the floor
+    shaken: bowl_test.Shaken  # what the parts did on the floor
 
 
 def arrival(part, aspects, bowl, *, drops=PARTS, seed=1, jobs=1, progress=None):
@@ -62,7 +62,7 @@ def arrival(part, aspects, bowl, *, drops=PARTS, seed=1, jobs=1, progress=None):
     for seconds in SPELLS:
         own = {"drops": drops, "seconds": seconds, "seed": seed, "jobs": jobs, "progress": progress}
         try:
-            shaken = runs.test(part, aspects, [bowl], LAUNCH, {}, pace=PACE, **own)[0]
+            shaken = bowl_test.test(part, aspects, [bowl], LAUNCH, {}, pace=PACE, **own)[0]
         except KeyboardInterrupt:
             if found is None:
                 raise

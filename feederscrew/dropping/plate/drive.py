@@ -4,8 +4,8 @@ import math
 from dataclasses import replace
 
 from feederscrew.conveying import answer
-from feederscrew.dropping.kernel.floor import Floor
-from feederscrew.dropping.kernel.motion import Steps
+from feederscrew.dropping.kernel.falling import Steps
+from feederscrew.dropping.kernel.floor_motion import Floor
 
 PERIOD = 200  # steps of a period, at least: eight times as many change a flat part's velocity by 2 % at most
 FINER = 2.0  # than the steps of a drop

@@ -7,7 +7,7 @@ from scipy.special import gammaincinv  # half a quantile of chi-square; scipy.st
 
 from feederscrew import check
 from feederscrew.dropping.ensemble import NORMAL, wilson
-from feederscrew.dropping.kernel.drop import UNSETTLED
+from feederscrew.dropping.kernel.one_drop import UNSETTLED
 from feederscrew.geometry import vectors
 
 DRAWS = 400  # of the rates, for the interval of where they lead

@@ -6,9 +6,9 @@ from functools import partial
 import numpy as np
 
 from feederscrew import check
-from feederscrew.dropping.kernel import motion
+from feederscrew.dropping.kernel import falling
 from feederscrew.dropping.kernel import ride as shaken
-from feederscrew.dropping.kernel.drop import UNSETTLED
+from feederscrew.dropping.kernel.one_drop import UNSETTLED
 from feederscrew.dropping.pool import in_batches
 from feederscrew.geometry.compiled import on_disk
 
@@ -71,7 +71,7 @@ def _batch(shape, floor, starts, looks, steps, part):
     faces = np.full((len(states), len(looks)), UNSETTLED)
     places, taken = np.full((*faces.shape, 2), np.nan), np.zeros(len(states), int)
     shaken.ride_all(
-        shape, motion.scratch(shape), floor, states, starts.restitutions[part], starts.frictions[part],
+        shape, falling.scratch(shape), floor, states, starts.restitutions[part], starts.frictions[part],
         steps, looks, faces, places, taken,
     )  # fmt: skip
     return faces, places, taken == len(looks)

@@ -11,7 +11,7 @@ from feederscrew.mechanics.floor.balance import HOP, STATES
 from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import card_seat, seat
 from feederscrew.mechanics.wall import support
-from feederscrew.mechanics.wall.headings import headings, laid, on_track
+from feederscrew.mechanics.wall.stable_headings import headings, laid, on_track
 
 REGIMES = (*STATES, "leaves the wall", "does not fit")  # a code is a place in this list
 LEAVES, UNFIT = len(STATES), len(STATES) + 1

@@ -1,7 +1,7 @@
 """What ``feeder convey`` leaves in its folder: at one point, along a curve, over a map."""
 
 from feederscrew.output import offers as offer
-from feederscrew.output.convey import phase, tables
+from feederscrew.output.convey import phase_tables, tables
 
 
 def offers(study, settings):
@@ -36,7 +36,7 @@ def phase_offers(study, settings):
     """Offer the files of a ConveyPhase, as a list of Offer; ``settings`` as for ``offers``."""
     return [
         offer.document(
-            "convey_phase.json", lambda: {"best_phase": phase.document(study.best), "bowl": settings}
+            "convey_phase.json", lambda: {"best_phase": phase_tables.document(study.best), "bowl": settings}
         ),
         *curve_offers(study.curve),
     ]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import binary_dilation
 
-from feederscrew.dropping.stills import chosen
+from feederscrew.dropping.key_moments import chosen
 from feederscrew.dropping.traces import DropTrace
 from feederscrew.output import style
 from feederscrew.output.columns import MM

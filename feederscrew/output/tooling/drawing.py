@@ -4,8 +4,8 @@ import html
 
 import numpy as np
 
-from feederscrew.bowl import drawing
-from feederscrew.bowl.drawing import Layer
+from feederscrew.bowl import dxf as files
+from feederscrew.bowl.dxf import Layer
 from feederscrew.units import factor
 
 MM = factor("mm", "length")
@@ -48,7 +48,7 @@ def dxf(strip, ghosts=()):
     -------
     bytes
     """
-    return drawing.written(layers(strip, ghosts))
+    return files.written(layers(strip, ghosts))
 
 
 def layers(strip, ghosts=()):

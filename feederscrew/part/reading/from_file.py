@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew import check, documents
 from feederscrew.errors import ArgumentError, MeshError
-from feederscrew.part import card, naming
+from feederscrew.part import aspect_names, card
 from feederscrew.part.density import density as density_of
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.reading import source as read
@@ -70,7 +70,9 @@ def load(source, *, units=None, density=None, centre_of_mass=None, names=None, a
     if read.is_card(file):
         _refuse_beside_card(units=units, density=density, centre_of_mass=centre_of_mass, names=names)
         return card.part(file)
-    known = names if names is None or isinstance(names, naming.AspectNames) else naming.read(names)
+    known = (
+        names if names is None or isinstance(names, aspect_names.AspectNames) else aspect_names.read(names)
+    )
     solid = _solid(file, read.soup(file), units, (value, material), centre_of_mass, allow_open)
     return replace(solid, names=known)
 

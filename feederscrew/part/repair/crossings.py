@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.geometry import columns, vectors
+from feederscrew.geometry import coordinates, vectors
 from feederscrew.part.repair import weld
 
 MOST, MOST_PAIRS = 300_000, 20_000_000  # facets, and pairs of boxes that overlap: looked at within seconds
@@ -84,7 +84,7 @@ def _in_columns(corners, normals):
     """(3, 3, F) coordinates of the corners from one of them, (3, F) normals, (F,) offsets of the planes."""
     places = np.ascontiguousarray((corners - corners[0, 0]).transpose(1, 2, 0))
     normals = np.ascontiguousarray(normals.T)
-    return places, normals, columns.dot(normals, places[0])
+    return places, normals, coordinates.dot(normals, places[0])
 
 
 def _piercing(places, normals, offsets, pairs, tolerance):
@@ -92,7 +92,7 @@ def _piercing(places, normals, offsets, pairs, tolerance):
     for one, other in ((0, 1), (1, 0)):
         ones, others = pairs[:, one], pairs[:, other]
         normal, offset = normals[:, others], offsets[others]
-        a, b, c = (columns.dot(normal, corner[:, ones]) - offset for corner in places)
+        a, b, c = (coordinates.dot(normal, corner[:, ones]) - offset for corner in places)
         above, below = np.maximum(np.maximum(a, b), c), np.minimum(np.minimum(a, b), c)
         pairs = pairs[(above > 0.5 * tolerance) & (below < -0.5 * tolerance)]
     return pairs

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.geometry import columns, vectors
+from feederscrew.geometry import coordinates, vectors
 
 SHORT = 0.25  # [1] of the part's reach across its axis: how far the axis ends before the part does
 AWAY = 1e-12  # [1] sine beyond which rounding does not decide whether a facet faces away from a point
@@ -52,12 +52,12 @@ def _feet(places, faces, low, high):
     """(F,) and (F,) first and last foot of each facet, (F,) whether it faces away from all of its feet."""
     a, b, c = places[:, faces.T].swapaxes(0, 1)
     u, v = b - a, c - a
-    normal = columns.cross(u, v)
+    normal = coordinates.cross(u, v)
     feet = np.clip(places[0], low, high)
     i, j, k = feet[faces.T]
     first, last = np.minimum(np.minimum(i, j), k), np.maximum(np.maximum(i, j), k)
-    offset = columns.dot(normal, a)
-    sure = AWAY * np.abs(places).max() * np.sqrt(columns.dot(u, u) * columns.dot(v, v))
+    offset = coordinates.dot(normal, a)
+    sure = AWAY * np.abs(places).max() * np.sqrt(coordinates.dot(u, u) * coordinates.dot(v, v))
     away = np.minimum(offset - normal[0] * first, offset - normal[0] * last) > sure
     return first, last, away
 

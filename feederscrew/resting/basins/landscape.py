@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.geometry import columns, vectors
+from feederscrew.geometry import coordinates, vectors
 from feederscrew.geometry.compiled import fitting
 from feederscrew.resting.basins import forest
 
@@ -58,16 +58,16 @@ def passes(hull, pairs, ends):
     -------
     (E,) float [m]
     """
-    p, q = columns.at(hull.vertices, ends)
-    n1, n2 = columns.at(hull.normals, pairs)
+    p, q = coordinates.at(hull.vertices, ends)
+    n1, n2 = coordinates.at(hull.normals, pairs)
     along = q - p
-    square = np.maximum(columns.dot(along, along), np.finfo(float).tiny)
-    foot = p - along * (columns.dot(p, along) / square)  # of the centre
+    square = np.maximum(coordinates.dot(along, along), np.finfo(float).tiny)
+    foot = p - along * (coordinates.dot(p, along) / square)  # of the centre
     ways = ((n1, n2), (n1, foot), (foot, n2))
-    turn, before, after = (columns.dot(columns.cross(*way), along) for way in ways)
+    turn, before, after = (coordinates.dot(coordinates.cross(*way), along) for way in ways)
     between = (before * turn > 0.0) & (after * turn > 0.0)
     higher = np.maximum(*hull.heights[pairs.T])
-    return np.where(between, np.maximum(np.sqrt(columns.dot(foot, foot)), higher), higher)
+    return np.where(between, np.maximum(np.sqrt(coordinates.dot(foot, foot)), higher), higher)
 
 
 def landscape(hull):
@@ -128,7 +128,7 @@ def gentle(normals, pairs):
     -------
     (E,) bool
     """
-    return columns.dot(*columns.at(normals, pairs)) > GENTLE
+    return coordinates.dot(*coordinates.at(normals, pairs)) > GENTLE
 
 
 def _downhill(hull, pairs, tops):
@@ -152,8 +152,8 @@ def _broad_normals(hull, below):
 
     A corner moved by noise, or a chamfer too small to see, leads round a sharp edge by gentle bends.
     """
-    a, b, c = columns.at(hull.vertices, hull.triangles)
-    sides = [np.sqrt(columns.dot(side, side)) for side in (b - c, c - a, a - b)]  # opposite each corner
+    a, b, c = coordinates.at(hull.vertices, hull.triangles)
+    sides = [np.sqrt(coordinates.dot(side, side)) for side in (b - c, c - a, a - b)]  # opposite each corner
     thin = 2.0 * hull.areas < SLIVER * hull.radius * np.maximum(np.maximum(*sides[:2]), sides[2])
     end = forest.roots(np.where(thin, below, np.arange(len(thin))))
     still = np.flatnonzero(thin & (end == np.arange(len(thin))))  # no way down, or half of a flat strip

@@ -6,10 +6,10 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.errors import FeederError
-from feederscrew.resting.counts import sheet
+from feederscrew.resting.counts import count_rows
+from feederscrew.resting.counts.count_rows import Few
 from feederscrew.resting.counts.head import NO_HEAD, Head
 from feederscrew.resting.counts.profiles import DEVICE, INTEGER, MOST, of_another_part
-from feederscrew.resting.counts.sheet import Few
 from feederscrew.units import shown
 
 PASSED, REJECTED = "passed", "rejected"  # the columns after the device, in either order
@@ -87,8 +87,8 @@ def understood(table, where, sha256):
 
 def read(path):
     """Read the counts by device of a CSV file, as ``understood`` does."""
-    text, sha256 = sheet.content(path)
-    return understood(sheet.parse(text, str(path)), str(path), sha256)
+    text, sha256 = count_rows.content(path)
+    return understood(count_rows.parse(text, str(path)), str(path), sha256)
 
 
 def _judge(where, row, columns, lines, faults):

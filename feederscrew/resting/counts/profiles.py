@@ -8,9 +8,9 @@ import numpy as np
 from feederscrew import check
 from feederscrew.documents import hint
 from feederscrew.errors import Faults, FeederError
-from feederscrew.resting.counts import sheet
+from feederscrew.resting.counts import count_rows
+from feederscrew.resting.counts.count_rows import EXAMPLE, Few
 from feederscrew.resting.counts.head import NO_HEAD, Head
-from feederscrew.resting.counts.sheet import EXAMPLE, Few
 from feederscrew.units import shown
 
 ROUNDING = 0.005  # of the whole: how far printed fractions may miss their sum
@@ -112,13 +112,13 @@ def read(path, names, taken=()):
     FeederError
         Faults of the file, each with its line.
     """
-    text, sha256 = sheet.content(path)
-    return measured(sheet.parse(text, str(path)), str(path), sha256, names, taken)
+    text, sha256 = count_rows.content(path)
+    return measured(count_rows.parse(text, str(path)), str(path), sha256, names, taken)
 
 
 def parse(text, where, names, taken=()):
     """Read the profiles of a CSV text, as ``measured`` does."""
-    return measured(sheet.parse(text, where), where, "", names, taken).profiles
+    return measured(count_rows.parse(text, where), where, "", names, taken).profiles
 
 
 def measured(table, where, sha256, names, taken=()):
@@ -173,7 +173,7 @@ def measured(table, where, sha256, names, taken=()):
 def _profiles(where, columns, texts):
     made = [_measured(where, name, column) for name, column in zip(columns, texts, strict=True)]
     if faults := [entry for entry in made if isinstance(entry, FeederError)]:
-        raise Faults(faults[: sheet.TOLD])
+        raise Faults(faults[: count_rows.TOLD])
     return tuple(made)
 
 

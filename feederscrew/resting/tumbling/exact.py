@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.geometry import compiled, vectors
 from feederscrew.resting.tumbling import abreast, walk
-from feederscrew.resting.tumbling import edges as tumbling_edges
+from feederscrew.resting.tumbling import half_edges as tumbling_edges
 
 SPHERE = 4.0 * np.pi  # [sr]
 ROUNDING = 1e-6  # [1] what the shares may miss 1 by before the result is called doubtful

@@ -3,7 +3,7 @@
 import math
 
 from feederscrew.dropping.kernel.body import VX, W
-from feederscrew.dropping.kernel.contact import IMPULSE, MASS, RATE, WANTED
+from feederscrew.dropping.kernel.floor_contacts import IMPULSE, MASS, RATE, WANTED
 from feederscrew.geometry.compiled import compiled
 from feederscrew.trial.kernel import contact, motion
 from feederscrew.trial.kernel.contact import AHEAD, AXES, GAP, NORMAL

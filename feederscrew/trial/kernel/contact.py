@@ -1,6 +1,6 @@
 """Compiled contacts of a part with anything: rows of WIDTH numbers, and the impulses at them.
 
-A row begins as one of `dropping.kernel.contact`: along each of its axes the lever in body axes and the rates
+A row begins as one of `floor_contacts`: along each of its axes the lever in body axes and the rates
 that one unit of impulse gives; the effective masses; the speed along the normal wanted after the impulse; the
 impulse. Here the axes are its own, in the bowl's frame, two along the contact and its normal, towards the
 part; then come the friction against sliding ahead and back, the gap, and whether it is with the wall.
@@ -9,7 +9,7 @@ part; then come the friction against sliding ahead and back, the gap, and whethe
 import math
 
 from feederscrew.dropping.kernel.body import VX, VZ, W
-from feederscrew.dropping.kernel.contact import IMPULSE, LEVER, MASS, RATE, WANTED, masses, rates
+from feederscrew.dropping.kernel.floor_contacts import IMPULSE, LEVER, MASS, RATE, WANTED, masses, rates
 from feederscrew.geometry.compiled import compiled
 
 AXES = IMPULSE + 3

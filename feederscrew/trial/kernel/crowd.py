@@ -11,7 +11,7 @@ import numpy as np
 
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VZ, W
-from feederscrew.dropping.kernel.contact import IMPULSE
+from feederscrew.dropping.kernel.floor_contacts import IMPULSE
 from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.trial.kernel import between, contact, motion
 from feederscrew.trial.kernel.contact import GAP, TOWARDS

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from feederscrew.dropping.kernel import body
-from feederscrew.dropping.kernel import floor as floors
+from feederscrew.dropping.kernel import floor_motion as floors
 from feederscrew.dropping.kernel.body import VX, VY, VZ, W, X, Y
 from feederscrew.geometry.compiled import compiled, shared
 from feederscrew.trial.kernel import contact, edges, search

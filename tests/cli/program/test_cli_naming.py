@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from feederscrew_cli import naming
+from feederscrew_cli import argument_names
 from feederscrew_cli.main import feeder
 
 LIBRARY = Path(__file__).parents[3] / "feederscrew"
@@ -49,4 +49,4 @@ def test_no_sentence_of_the_library_names_an_option():
     ],
 )
 def test_an_argument_goes_by_its_option_where_the_command_has_one(command, text, told):
-    assert naming.translated(text, naming.options(feeder.commands[command])) == told
+    assert argument_names.translated(text, argument_names.options(feeder.commands[command])) == told

@@ -10,7 +10,7 @@ import pytest
 import shapes
 
 from feederscrew.errors import FeederError
-from feederscrew.resting.counts import passed, profiles, sheet
+from feederscrew.resting.counts import count_rows, passed, profiles
 
 ROUND = 5e-4  # of a printed share
 
@@ -27,7 +27,7 @@ def rows(text):
 def test_the_files_hold_what_was_published(files, request):
     root = request.config.rootpath
     printed = {row["x_over_y"]: row for row in rows((root / "tests/data/square_cuboids.csv").read_text())}
-    heads = [sheet.parse(sheet.content(path)[0], str(path)) for path in files]
+    heads = [count_rows.parse(count_rows.content(path)[0], str(path)) for path in files]
     cuboids = [table for table in heads if table.head.series == "square cuboids"]
     assert len(cuboids) == len(printed) == 8
     for table in cuboids:

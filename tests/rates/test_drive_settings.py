@@ -5,7 +5,7 @@ import pytest
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
 from feederscrew.errors import FeederError
-from feederscrew.rates import tune
+from feederscrew.rates import drive_settings
 
 BOWL = bowls.read(
     None,
@@ -25,61 +25,65 @@ def per_metre(bowl):
 
 
 def test_each_solution_reaches_the_target():
-    found = tune.solutions(BOWL, 0.05, per_metre)
+    found = drive_settings.solutions(BOWL, 0.05, per_metre)
     assert {one.key.name for one in found} >= {"drive.amplitude", "drive.frequency"}
     for one in found:
-        again = answer.answer(tune.turned(BOWL, one.key, one.value))
+        again = answer.answer(drive_settings.turned(BOWL, one.key, one.value))
         assert again.velocity == pytest.approx(0.05 / PER_METRE, rel=1e-6)
         assert again.regime == one.answer.regime
 
 
 def test_gentle_solutions_lead():
-    found = tune.solutions(BOWL, 0.4, per_metre)
+    found = drive_settings.solutions(BOWL, 0.4, per_metre)
     orders = [one.order for one in found]
     assert orders == sorted(orders)
-    assert tune.GENTLE.index("forward") < tune.GENTLE.index("both") < tune.GENTLE.index("hop")
+    assert (
+        drive_settings.GENTLE.index("forward")
+        < drive_settings.GENTLE.index("both")
+        < drive_settings.GENTLE.index("hop")
+    )
 
 
 def test_only_the_knob_is_turned():
-    one = tune.solutions(BOWL, 0.05, per_metre)[0]
-    there = tune.turned(BOWL, one.key, one.value)
+    one = drive_settings.solutions(BOWL, 0.05, per_metre)[0]
+    there = drive_settings.turned(BOWL, one.key, one.value)
     assert there.track == BOWL.track
     assert getattr(there.drive, one.key.word) == one.value
 
 
 def test_an_unreachable_target_says_what_is_reached():
     with pytest.raises(FeederError) as caught:
-        tune.solutions(BOWL, 100.0, per_metre)
+        drive_settings.solutions(BOWL, 100.0, per_metre)
     line = str(caught.value)
     assert line.startswith("target: no setting reaches 6000/min: the most is ")
     assert line.endswith("lower the target, or change two keys of the drive together")
     most = float(line.split("the most is ")[1].split("/min")[0])
     name, amplitude = line.split(", at ")[1].split(" mm")[0].split()
     assert name == "drive.amplitude"
-    key = tune.BY_NAME[name]
-    there = answer.answer(tune.turned(BOWL, key, float(amplitude) * 1e-3))
+    key = drive_settings.BY_NAME[name]
+    there = answer.answer(drive_settings.turned(BOWL, key, float(amplitude) * 1e-3))
     assert there.velocity * PER_METRE * 60 == pytest.approx(most, rel=1e-2)
-    assert there.throw_number < tune.HIGHEST_THROW
+    assert there.throw_number < drive_settings.HIGHEST_THROW
 
 
 def test_a_climb_too_steep():
     steep = bowls.read(None, ("track.climb=40 deg",))
     with pytest.raises(FeederError, match=r"track\.climb: is steeper than friction holds - lower the climb"):
-        tune.solutions(steep, 0.1, per_metre)
+        drive_settings.solutions(steep, 0.1, per_metre)
 
 
 def test_a_part_that_only_travels_back():
     flat = bowls.read(None, ("drive.vibration_angle=0 deg", "drive.amplitude=0.001 mm", "restitution=0"))
     with pytest.raises(FeederError, match="no setting reaches 6/min: the part never travels up the track"):
-        tune.solutions(flat, 0.1, per_metre)
+        drive_settings.solutions(flat, 0.1, per_metre)
 
 
 def test_a_target_that_the_velocity_jumps_over():
     gentle = ("drive.amplitude=0.05 mm", "drive.frequency=60 Hz", "drive.vibration_angle=30 deg")
     bouncing = bowls.read(None, gentle)  # from rest its velocity jumps onto the regular bounce of a period
-    found = tune.solutions(bouncing, 0.866, per_metre)
+    found = drive_settings.solutions(bouncing, 0.866, per_metre)
     rates = [one.answer.velocity * PER_METRE for one in found]
-    assert all(rate >= 0.866 * (1.0 - tune.REACHED) for rate in rates)
+    assert all(rate >= 0.866 * (1.0 - drive_settings.REACHED) for rate in rates)
     beyond = found[rates.index(max(rates))]
     assert max(rates) > 0.87 and beyond.key.name == "drive.amplitude"
     assert 1e3 * beyond.value == pytest.approx(0.3308, abs=1e-4)

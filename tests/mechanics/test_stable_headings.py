@@ -12,8 +12,8 @@ from mechanics_samples import DEG, box_posture, rectangle
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import outline, turned
-from feederscrew.mechanics.wall.headings import headings, laid
 from feederscrew.mechanics.wall.outline import axis_of_bowl, rests
+from feederscrew.mechanics.wall.stable_headings import headings, laid
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.posture import Posture, posture

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from feederscrew.dropping.kernel import body, contact, impulses, touch
-from feederscrew.dropping.kernel import floor as floors
+from feederscrew.dropping.kernel import body, floor_contacts, impulses, touch
+from feederscrew.dropping.kernel import floor_motion as floors
 from feederscrew.dropping.kernel.body import VX, VZ, W, X, Z
 from feederscrew.geometry.compiled import compiled, shared
 
@@ -45,7 +45,7 @@ def scratch(shape, rows=0):
         found=np.zeros(size, int),
         spots=np.zeros((room, 3)),
         owners=np.zeros(room, int),
-        contacts=np.zeros((touch.MOST, contact.WIDTH)),
+        contacts=np.zeros((touch.MOST, floor_contacts.WIDTH)),
         pressed=np.zeros(2),
         trace=np.zeros((rows, 1 + body.STATE)),
         rows=np.zeros(1, int),
@@ -140,7 +140,7 @@ def press_on(solid, work, floor, time, corner, count, friction, steps):
     ahead, rise = floors.quickening(floor, time, whole)
     before = body.moving_energy(state, solid.inertia)
     body.keep(state, work.saved)
-    contact.levers_ahead(solid, work, count, whole)
+    floor_contacts.levers_ahead(solid, work, count, whole)
     body.turn_freely(state, solid.inertia, whole)
     state[VX] -= ahead
     state[VZ] -= whole + rise
@@ -201,11 +201,11 @@ def advance(solid, work, floor, time, corner, gap, restitution, friction, steps)
     state, contacts, count, struck, rise = work.state, work.contacts, 0, False, math.inf
     if gap <= steps.tolerance:
         count = touch.touching(solid, work, state[Z], corner, steps.tolerance)
-        contact.arms(work, count)
+        floor_contacts.arms(work, count)
         rise = impulses.steepest(state, contacts, count)
         struck = rise < -steps.threshold
         if struck or rise < -CREEP:
-            contact.levers(solid.inertia, work, count)
+            floor_contacts.levers(solid.inertia, work, count)
         if struck:
             impulses.strike(solid.inertia, state, work.saved, contacts, count, restitution, friction, steps)
             rise = impulses.steepest(state, contacts, count)

@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.dropping import conditions, ensemble
 from feederscrew.dropping.ensemble import Aim, Drops, Tally
-from feederscrew.dropping.kernel import drop
+from feederscrew.dropping.kernel import one_drop
 from feederscrew.dropping.launches import sample
 from feederscrew.dropping.shape import principal_axes, shape_of_part
 from feederscrew.dropping.traces import DropTrace, follow
@@ -115,4 +115,4 @@ def _heights(shape, length, rows, heights):
 
 def compiled():
     """Tell whether the drop kernel is on disk already; else the first drop on a machine compiles it."""
-    return on_disk(drop.settle_all)
+    return on_disk(one_drop.settle_all)

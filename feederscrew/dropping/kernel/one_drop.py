@@ -7,8 +7,8 @@ import numpy as np
 from feederscrew import check
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VY, VZ, W, Z
-from feederscrew.dropping.kernel.floor import at_rest
-from feederscrew.dropping.kernel.motion import Steps, advance, scratch, start
+from feederscrew.dropping.kernel.falling import Steps, advance, scratch, start
+from feederscrew.dropping.kernel.floor_motion import at_rest
 from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.resting.tumbling.walk import LOST, roll_from_corner, roll_from_facet
 

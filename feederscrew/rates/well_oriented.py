@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew.conveying import answer, sensitivity
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError, FeederError
-from feederscrew.mechanics.wall.headings import headings, laid
+from feederscrew.mechanics.wall.stable_headings import headings, laid
 from feederscrew.rates.stream import Orientations, orientations
 from feederscrew.resting.posture import posture
 

@@ -8,7 +8,7 @@ and CHANGE the rates that this gives.
 
 import math
 
-from feederscrew.dropping.kernel.contact import CHANGE, LAST, LEVER, RATE, WANTED, push, speed
+from feederscrew.dropping.kernel.floor_contacts import CHANGE, LAST, LEVER, RATE, WANTED, push, speed
 from feederscrew.geometry.compiled import compiled
 
 TURNS = 6  # changes of the directions after which the sweeps take over
