@@ -17,9 +17,9 @@ euler         momentum screw, dual Euler equation, spatial triangle
 notation      one screw in the four notations of the literature
 """
 
+from feederscrew.screw.angle_between import dual_angle
 from feederscrew.screw.chasles import displacement, finite_twist
 from feederscrew.screw.dual import Dual
-from feederscrew.screw.dual_angle import dual_angle
 from feederscrew.screw.euler import Body, SpatialTriangle, force_screw, spatial_triangle, twist_rate
 from feederscrew.screw.forces import poinsot
 from feederscrew.screw.point import ORIGIN, Point

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.screw.dual_angle import dual_angle
+from feederscrew.screw.angle_between import dual_angle
 from feederscrew.screw.point import Point, dot, vectors
 from feederscrew.screw.screws import Momentum, Twist, Wrench
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.screw.dual_angle import dual_angle
+from feederscrew.screw.angle_between import dual_angle
 from feederscrew.screw.point import Point, length
 from feederscrew.screw.screws import Twist
 

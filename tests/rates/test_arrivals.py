@@ -108,10 +108,10 @@ def test_a_stop_before_the_longer_spell_keeps_the_shorter(part, plain, monkeypat
     def test(*_, seconds, **__):
         if ran:
             raise KeyboardInterrupt
-        ran.append(floor.runs.Shaken(plain, {}, 1.0, 5, seconds, None, 0, False))
+        ran.append(floor.bowl_test.Shaken(plain, {}, 1.0, 5, seconds, None, 0, False))
         return ran
 
-    monkeypatch.setattr(floor.runs, "test", test)
+    monkeypatch.setattr(floor.bowl_test, "test", test)
     found = floor.arrival(part, None, plain)
     assert found.shaken.partial and not found.settled
 
