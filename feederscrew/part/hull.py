@@ -10,6 +10,10 @@ from feederscrew.errors import MeshError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.solid_angle import solid_angles
 
+STRAIGHT = 3e-4  # [rad] a corner at which edges or facets turn by less is one of the file's rounding
+MANY = 24  # edges at a corner from which it is the tip of a cone, and never on a straight edge
+KEPT = 1e-5  # [1] of the volume: what leaving such corners out may change
+
 
 @dataclass(frozen=True, eq=False)
 class Hull:
@@ -56,6 +60,11 @@ def convex_hull(points, centre, where="part"):
     MeshError
         If the points span no volume, or the centre of mass is on or outside the hull.
 
+    Notes
+    -----
+    Corners on a straight edge or in a plane, but for what the file was rounded to, are left out: a surface
+    that was split has the hull of the surface that was not.
+
     References
     ----------
     C. B. Barber, D. P. Dobkin, H. Huhdanpaa, "The quickhull algorithm for convex hulls", ACM Trans.
@@ -67,9 +76,15 @@ def convex_hull(points, centre, where="part"):
     points = check.shaped("points", points, (-1, 3)) - centre
     try:
         qhull = ConvexHull(points)
+        triangles, neighbours, areas = _outward(points, qhull)
+        real = _real(points, triangles)
+        if not real[triangles].all():
+            fewer = ConvexHull(points[real])
+            if abs(fewer.volume - qhull.volume) < KEPT * qhull.volume:
+                points, qhull = points[real], fewer
+                triangles, neighbours, areas = _outward(points, qhull)
     except (QhullError, ValueError) as error:
         raise MeshError(where, "the part has no volume", "export it as a closed solid") from error
-    triangles, neighbours, areas = _outward(points, qhull)
     used = np.zeros(len(points), dtype=bool)  # Qhull lists points in the middle of a facet among its vertices
     used[triangles] = True
     vertices = points[used]
@@ -103,3 +118,30 @@ def _outward(points, qhull):
         for k, j, m in (qhull.simplices.T, qhull.neighbors.T)
     )
     return triangles, neighbours, 0.5 * vectors.norm(cross)
+
+
+def _real(points, triangles):
+    """(V,) bool: corners of the hull at which it turns, by more than rounding."""
+    origins, targets = triangles[:, [1, 2, 0]].ravel(), triangles[:, [2, 0, 1]].ravel()
+    degrees = np.bincount(origins, minlength=len(points))
+    some = np.flatnonzero(degrees[origins] < MANY)
+    some = some[np.argsort(origins[some], kind="stable")]
+    origins, ways = origins[some], vectors.unit(points[targets[some]] - points[origins[some]])
+    real = degrees > 0
+    for shift in range(1, MANY - 1):  # every pair of edges of a corner, those so many apart in its list
+        pairs = np.flatnonzero(origins[shift:] == origins[:-shift])
+        bent = vectors.norm(ways[pairs] + ways[pairs + shift])
+        real[origins[pairs[bent < STRAIGHT]]] = False
+    return real & ~_in_a_plane(points, triangles)
+
+
+def _in_a_plane(points, triangles):
+    """(V,) bool: corners whose triangles all lie in one plane, but for rounding."""
+    a, b, c = (points[corner] for corner in triangles.T)
+    normals, corners, tiny = vectors.cross(b - a, c - a), triangles.ravel(), np.finfo(float).tiny
+    each = np.repeat(normals, 3, axis=0)
+    mean = np.stack([np.bincount(corners, column, len(points)) for column in each.T], axis=1)
+    each, mean = (some / np.maximum(vectors.norm(some), tiny)[:, None] for some in (each, mean))
+    off = np.zeros(len(points))
+    np.maximum.at(off, corners, vectors.norm(each - mean[corners]))
+    return off < STRAIGHT

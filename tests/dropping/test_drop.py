@@ -1,5 +1,7 @@
 """The drop kernel against closed forms and the laws of mechanics."""
 
+from pathlib import Path
+
 import drop_bodies
 import numpy as np
 import pytest
@@ -8,7 +10,11 @@ from scipy.spatial.transform import Rotation
 from feederscrew.dropping.kernel import body, floor_contacts, impulses, one_drop, touch
 from feederscrew.dropping.kernel.one_drop import Steps, scratch, settle
 from feederscrew.dropping.launches import PRESETS, sample
+from feederscrew.dropping.shape import shape_of_part
+from feederscrew.part import load
+from feederscrew.resting.aspects import find
 
+DATA = Path(__file__).parents[1] / "data"
 BOX, LENGTH = drop_bodies.box((1.0, 1.3, 1.7))
 
 
@@ -203,6 +209,35 @@ def test_a_body_set_down_rests_where_it_tumbles_to():
 def test_a_drop_that_takes_too_long_is_unsettled():
     faces = run(BOX, 20, Steps(longest=0.1))
     assert (faces == one_drop.UNSETTLED).all()
+
+
+def test_a_drop_of_too_many_steps_is_unsettled_whatever_the_time():
+    faces = run(BOX, 20, Steps(most=3))
+    assert (faces == one_drop.UNSETTLED).all()
+
+
+def test_a_cone_whose_drops_never_ended():
+    """Turned, in single precision, every facet in sixteen: corners on its straight edges made arcs."""
+    part = load(str(DATA / "cone_never_ends.stl"))
+    shape, _ = shape_of_part(part, find(part).ground)
+    assert len(shape.solid.rims) == 2 and shape.solid.inner.sum() == len(shape.vertices) - 1
+    assert (
+        run(shape, 1200, Steps(), seed=1) != one_drop.UNSETTLED
+    ).mean() > 0.99  # the 1,066th never came back
+
+
+def test_an_arc_that_does_not_hold_what_it_replaces_leaves_no_hole_in_the_body():
+    """The lowest point is never higher than the lowest corner, and something touches where it does."""
+    solid = BOX.solid._replace(
+        rims=np.array([[0.0, 0.0, -0.5, 0.0, 0.0, 1.0, 0.1, 1.0, 0.0, 0.0, 0.9]]),
+        inner=np.ones(len(BOX.vertices), bool),
+    )
+    work = scratch(BOX._replace(solid=solid))
+    for turn in Rotation.random(50, random_state=1).as_matrix():
+        work.turn[:] = turn.ravel()
+        corner, level = body.bottom(solid, work.turn, 0)
+        assert level <= (BOX.vertices @ turn[2]).min() + 1e-12
+        assert touch.touching(solid, work, -level, corner, 1e-4) >= 1
 
 
 def test_measured_tosses_of_square_cuboids():

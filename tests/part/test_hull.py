@@ -41,3 +41,22 @@ def test_flat_points_and_a_centre_outside_are_said():
             MeshError, match=r"^b.stl: the centre of mass is not inside the part's convex hull - "
         ):
             convex_hull(shapes.box(1, 1, 1).vertices, centre, "b.stl")
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_split_and_rounded_surface_has_the_hull_of_the_whole_one(seed, rng):
+    """Corners in the middle of edges and faces stand out by single precision: they are none."""
+    mesh = shapes.turned(shapes.prism(shapes.l_profile(), 9.0), np.random.default_rng(seed))
+    fine = shapes.subdivided(mesh, 3)
+    points = fine.vertices.astype(np.float32).astype(float)
+    hull = convex_hull(points, points.mean(axis=0))
+    assert len(hull.vertices) == len(convex_hull(mesh.vertices, mesh.vertices.mean(axis=0)).vertices)
+
+
+def test_a_fine_circle_and_a_shallow_bevel_keep_their_corners():
+    turn = 2.0 * np.pi * np.arange(12000) / 12000
+    ring = np.column_stack([np.cos(turn), np.sin(turn)])
+    coin = np.concatenate([np.column_stack([ring, np.full(len(ring), z)]) for z in (-0.1, 0.1)])
+    assert len(convex_hull(coin, np.zeros(3)).vertices) == 24000
+    bevelled = np.vstack([shapes.box(2.0, 2.0, 2.0).vertices, [(0.0, 0.0, 1.0 + 1e-3)]])
+    assert len(convex_hull(bevelled, np.zeros(3)).vertices) == 9

@@ -98,7 +98,7 @@ def test_a_needle_on_an_edge_becomes_part_of_its_neighbour():
 def test_a_facet_that_would_not_be_convex_is_left_in_triangles():
     """Two of the four triangles of a box's face are merged to a kite with a reflex corner: not for long."""
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
-    hull = convex_hull(np.vstack([corners, [(0.0, 0.0, 1.0 + 1e-6)]]), np.zeros(3))
+    hull = convex_hull(np.vstack([corners, [(0.0, 0.0, 1.0 + 1e-3)]]), np.zeros(3))
     edges = half_edges(hull)
     top = np.flatnonzero((hull.triangles == 8).any(axis=1))
     assert len(top) == 4 and len(np.unique(edges.facets[top])) == 4

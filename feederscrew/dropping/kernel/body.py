@@ -178,10 +178,11 @@ def rim_level(rims, k, turn):
 
 @compiled
 def bottom(solid, turn, corner):
-    """Return the corner from which to look on, and the height of the body's lowest point over its centre."""
+    """Return the corner from which to look on, and the height of the body's lowest point over its centre.
+
+    A corner that a rim replaces counts, too: beyond an arc's end, and by rounding, its rim is not lower.
+    """
     corner, level = lowest(solid.vertices, solid.links, turn, corner)
-    if solid.inner[corner]:  # its rim is lower, but for rounding
-        level = math.inf
     for k in range(len(solid.rims)):
         level = min(level, rim_level(solid.rims, k, turn))
     return corner, level

@@ -67,6 +67,9 @@ class Steps(NamedTuple):
     rolling: float = 0.02  # rolling resistance of a rim: lever of the normal force
     pivot: float = 2e-3  # ... of a corner or an edge
     longest: float = 400.0  # time after which a drop counts as unsettled
+    most: int = (
+        100_000  # steps after which it does, whatever the time: of 100,000 drops none took half of them
+    )
     early: bool = True  # stop as soon as the face is decided, not at rest
 
 

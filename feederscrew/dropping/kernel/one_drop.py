@@ -94,7 +94,9 @@ def settle_all(shape, work, starts, restitutions, frictions, steps, faces, times
             work.state[k] = starts[n, k]
         face, time, rows, rests, quiet = UNSETTLED, 0.0, 0, 0, 0
         corner, gap = start(shape.solid, work)
-        while time < steps.longest:
+        for _ in range(steps.most):
+            if time >= steps.longest:
+                break
             if rows < len(work.trace):
                 record(work.trace, rows, time, work.state)
                 rows += 1

@@ -16,11 +16,17 @@ def touching(solid, work, height, corner, reach):
     """Find the points within ``reach`` of the floor: fills ``work.spots`` and returns how many.
 
     Corners are found by flooding the hull's edges from the lowest one, through corners that rims replace.
+    Where none of these rims is as low as their lowest corner, that is the point.
     """
     count = flooded(solid, work, height, corner, reach) if solid.corners else 0
     for k in range(len(solid.rims)):
         if height + rim_level(solid.rims, k, work.turn) <= reach:
             count = on_rim(solid.rims, k, work, height, reach, count)
+    if count == 0:
+        for i in range(3):
+            work.spots[0, i] = solid.vertices[corner, i]
+        work.owners[0] = CORNER
+        return 1
     return thin_out(work.spots, work.owners, work.turn, count) if count > MOST else count
 
 
