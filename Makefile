@@ -16,7 +16,7 @@ NAMES := $(basename $(notdir $(PARTS)))
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .SUFFIXES:
-.PHONY: help demo test check lint format all-aspects inertia maps bench docs fuzz clean distclean
+.PHONY: help demo test check lint format all-aspects inertia maps bench mutants docs fuzz clean distclean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -91,6 +91,9 @@ docs/drop.png: parts/$(BOLT).stl | $(READY)
 docs/bowl.png: parts/$(DEMO).stl | $(READY)
 	$(FEEDER) bowl $< --target 60/min -o results --quiet > /dev/null
 	cp results/$(DEMO)/bowl.png $@
+
+mutants: $(READY_TO_TEST) ## small changes to the physics that no test notices, ten minutes
+	$(BIN)/python benchmarks/mutants.py
 
 fuzz: $(READY_TO_TEST) ## 2,000 round bodies, then ten minutes of damaged files
 	PYTHONPATH=tests $(BIN)/python -m fuzz.rounds 2000

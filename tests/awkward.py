@@ -1,0 +1,63 @@
+"""One awkward case for everybody: a curved, banked track, friction that differs each way, a skew body.
+
+What is straight, level, even or symmetric hides wrong signs and swapped values; nothing here is.
+"""
+
+import functools
+from dataclasses import replace
+
+import numpy as np
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.resting.aspects import find
+from feederscrew.tooling.orientations import orientations, travelling
+
+SETTINGS = (
+    "track.radius=150 mm",
+    "track.bank=3 deg",
+    "track.climb=2 deg",
+    "friction.static=0.5",
+    "friction.kinetic=0.42",
+    "friction.static_backward=0.62",
+    "friction.kinetic_backward=0.55",
+    "friction.wall=0.27",
+)
+OFF = 1.7e-3  # [m] between part and wall, for what shall not touch it
+
+
+def bowl(*more):
+    """The bowl, with further settings."""
+    return bowls.read(None, (*SETTINGS, *more))
+
+
+def plain_bowl(*more):
+    """The same with one friction both ways: what tips is followed on such a bowl only."""
+    return bowls.read(None, (*(one for one in SETTINGS if "backward" not in one), *more))
+
+
+def mesh():
+    """An angle of unequal legs, sheared along its length: no turn and no mirror maps it onto itself [mm]."""
+    made = shapes.prism(shapes.l_profile(17.0, 11.0, 3.0), 26.0)
+    made.vertices = made.vertices + np.outer(made.vertices[:, 2], (0.21, 0.13, 0.0))
+    return made
+
+
+@functools.cache
+def part():
+    """The body as a part of steel, and its aspects."""
+    made = shapes.part(mesh(), "skew")
+    return made, find(made)
+
+
+@functools.cache
+def lying(*more):
+    """Every orientation of the body on the bowl's track, knowing how it travels."""
+    made, found = part()
+    own = bowl(*more)
+    return travelling(orientations(made, found, own.track), own)
+
+
+def off_the_wall(one, way=OFF):
+    """The same orientation so far from the wall."""
+    return replace(one, distance=one.distance + way)

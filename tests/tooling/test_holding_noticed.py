@@ -1,0 +1,100 @@
+"""Signs, limits and rules of devices that a level, symmetric block would not show."""
+
+from dataclasses import replace
+
+import awkward
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew.bowl.devices import Device
+from feederscrew.bowl.record import Track
+from feederscrew.resting.aspects import find
+from feederscrew.tooling import holding, turning
+from feederscrew.tooling.hanging import head_first
+from feederscrew.tooling.orientations import orientations, placed
+from feederscrew.tooling.verdicts import UNSURE, verdict
+
+LEVEL = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
+
+
+@pytest.mark.parametrize("bank", [0.0, 3.0, 12.0])
+def test_weight_meets_a_banked_track_nearer_to_the_wall_and_tips_over_what_is_behind_it_there(bank):
+    """The vertical through the centre of mass meets the track; the foot's rear border at that place."""
+    for one in awkward.lying():
+        if one.falls_off or one.kind != "flat":
+            continue
+        leant = replace(one, track=replace(one.track, bank=np.radians(bank)))
+        down = np.array([np.sin(np.radians(bank)), np.cos(np.radians(bank))])  # towards the wall, down
+        across = -one.posture.height / down[1] * down[0]
+        rear = rear_border(one.foot.corners, across)
+        assert holding._behind(leant) == pytest.approx(max(-rear, 0.0), abs=1e-9)
+
+
+def rear_border(corners, across):
+    """Where the convex hull of points (K, 2) is left by a line along the track at some distance across."""
+    places = []
+    for a in corners:
+        for b in corners:
+            if (a[1] - across) * (b[1] - across) <= 0.0 and a[1] != b[1]:
+                share = (across - a[1]) / (b[1] - a[1])
+                places.append(a[0] + share * (b[0] - a[0]))
+    return min(places, default=corners[:, 0].min())
+
+
+@pytest.fixture(scope="module")
+def pin():
+    part = shapes.part(shapes.box(6, 6, 20))
+    every = orientations(part, find(part), LEVEL)
+    return replace(next(one for one in every if one.height > 19e-3), grip=0.5)
+
+
+@pytest.mark.parametrize(("held", "stands"), [(0.235e-3, False), (0.265e-3, True)])
+def test_what_an_opening_holds_by_a_quarter_of_a_millimetre_wears_off(pin, held, stands):
+    """Held up at its foot a pin stands before the gate; if that edge is gone, its top is pushed over."""
+    corners = ((0.0, 0.0), (6e-3 - held, 0.0), (6e-3 - held, 12e-3), (0.0, 12e-3))
+    margin = verdict(Device("profile", "test", corners=corners), pin).margin
+    assert margin == (pytest.approx(-8e-3, abs=1e-4) if stands else -UNSURE)
+
+
+@pytest.fixture(scope="module")
+def headed():
+    """A pin with a round head, lying along the track, its head ahead."""
+    head = shapes.cylinder(5.0, 4.0, 64)
+    head.apply_translation([0, 0, 12.0])
+    part = shapes.part(head.union(shapes.cylinder(2.0, 20.0, 64)))
+    every = orientations(part, find(part), LEVEL)
+    found = next(one for one in every if one.length > 0.02 and head_first(one))
+    return replace(found, heading=np.pi, distance=5e-3)  # straight along the track, on the rails' middle
+
+
+@pytest.mark.parametrize(("lean", "certain"), [(1e-2, False), (-1e-2, True)])
+def test_a_head_that_comes_first_wedges_where_the_sides_are_steeper_than_friction(headed, lean, certain):
+    """Where the edges of a slot of width w meet a head of radius R it leans by acos(w / 2 R) from upright."""
+    slot, radius = 6e-3, 5e-3
+    angle = np.arccos(0.5 * slot / radius)
+    span = (headed.distance - 0.5 * slot, headed.distance + 0.5 * slot)
+    device = Device("rails", "test", span=span)
+    found = verdict(device, replace(headed, grip=np.tan(angle + lean + np.pi / 64 * (1 if lean > 0 else -1))))
+    free = verdict(device, replace(headed, grip=0.0))
+    assert free.margin == pytest.approx(2e-3, rel=0.01)  # 6 mm lets 4 mm down and holds 10 mm
+    assert found.sure == certain
+    assert found.margin == (pytest.approx(free.margin) if certain else 0.0)
+
+
+def test_beyond_a_ledge_a_margin_is_the_least_of_what_it_lacks_and_what_turns_it():
+    """Widths from where a part just fails to stand to where nothing is left of the ledge."""
+    seen = set()
+    every = placed(awkward.lying())
+    for one in every:
+        if one.falls_off or not np.isfinite(one.balcony):
+            continue
+        for share in (0.05, 0.3, 0.6, 0.9):
+            limit = share * one.balcony
+            lacks = one.balcony - limit
+            _, certain = turning.beyond_ledge(one, every, limit)
+            found = verdict(Device("tip", "test", limit=limit), one, every).margin
+            assert found <= min(lacks, certain) + 1e-12
+            assert min(abs(found - lacks), abs(found - certain)) < 1e-12
+            seen.add(bool(lacks < certain))
+    assert seen == {True, False}
