@@ -29,14 +29,15 @@ def floor(part, aspect, heading, as_published, bowl, pictures, out):
     from feederscrew.bowl import record, settings, texts
     from feederscrew.output import columns, offers
     from feederscrew.output.floor import files, tables
-    from feederscrew.studies.floor import floor as study
+    from feederscrew.studies import floor as complete
+    from feederscrew.thesis.motion import as_published as by_print
 
     solid, given = out.part(part), settings(**bowl)
     conditions = columns.conditions(solid) | texts(given)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
-        found = study(solid, record(given), aspect, heading)
+        found = (by_print if as_published else complete).floor(solid, record(given), aspect, heading)
         out.say(*tables.remarks(found), *(tables.map_remarks(found) if folder else ()))
-        offered = files.offers(found, texts(given), as_published=as_published)
+        offered = files.offers(found, texts(given))
         offers.write(folder, offered, pictures=pictures)
-    document = tables.document(found, texts(given), as_published=as_published)
+    document = tables.document(found, texts(given))
     out.show(tables.shown(document, out.format), document)

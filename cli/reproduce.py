@@ -17,8 +17,8 @@ def reproduce(out):
     With -o: DIR/thesis/ with a CSV for each item, a PNG for each figure, the findings, and one page
     to read from top to bottom, thesis.md and thesis.html.
     """
-    from feederscrew.output.thesis import files as thesis_files
     from feederscrew.thesis import reproduction
+    from feederscrew.thesis.pages import files as thesis_files
 
     with out.step("tables and figures"):
         items = reproduction.items()

@@ -36,19 +36,20 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out):
     from feederscrew.bowl import ranges, record, settings, texts
     from feederscrew.output import columns, offers
     from feederscrew.output.track import files, map_tables, tables
-    from feederscrew.studies.track import track as study
+    from feederscrew.studies import track as complete
+    from feederscrew.thesis.motion import as_published as by_print
 
     _fitting(spans)
     solid, given, varied = out.part(part), settings(**bowl), ranges(spans)
     conditions = columns.conditions(solid) | texts(given)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
-        found = study(solid, record(given), aspect, heading)
+        found = (by_print if as_published else complete).track(solid, record(given), aspect, heading)
         grid = found.over(given, varied) if spans or folder else None
         out.say(*tables.remarks(found), *(map_tables.remarks(grid) if grid else ()))
         if folder:
-            offered = files.offers(found, texts(given), grid, as_published=as_published)
+            offered = files.offers(found, texts(given), grid)
             offers.write(folder, offered, pictures=pictures)
-    document = tables.document(found, texts(given), as_published=as_published)
+    document = tables.document(found, texts(given))
     out.show(map_tables.cells(grid) if spans else tables.shown(document, out.format), document)
 
 

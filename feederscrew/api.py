@@ -18,7 +18,7 @@ from feederscrew.output.tables import data_frame as _data_frame
 from feederscrew.part import Part
 from feederscrew.rates.well_oriented import Rate
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.naming import write_names
+from feederscrew.resting.names_file import write_names
 from feederscrew.resting.posture import Posture, posture
 from feederscrew.studies import aspects as _aspects
 from feederscrew.studies import convey as _convey

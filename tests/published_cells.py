@@ -2,7 +2,7 @@
 
 import pytest
 
-from feederscrew.thesis.cells import GIVEN
+from feederscrew.thesis.printed_cells import GIVEN
 from feederscrew.thesis.recompute import cells
 
 MISPRINTS = {

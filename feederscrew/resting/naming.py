@@ -1,21 +1,13 @@
 """Names of the rows of aspects: letters by rank, or those a user has given, found again by direction."""
 
 import itertools
-from os import PathLike
-from pathlib import Path
 from string import ascii_uppercase
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from feederscrew.errors import ArgumentError, ConfigError, FeederError
+from feederscrew.errors import ConfigError
 from feederscrew.geometry import vectors
-from feederscrew.part.record import Part
 from feederscrew.resting.basins.landscape import angle
-from feederscrew.units import one_line
-
-if TYPE_CHECKING:
-    from feederscrew.resting.aspects import Aspects
 
 REACH = {"flat": np.radians(3.0), "rolling": np.radians(15.0)}  # off its direction an aspect is the one named
 EXACT = np.radians(0.05)  # a direction closer than this to an aspect means that one
@@ -63,54 +55,6 @@ def named(groups, normals, hull, given):
         for row in fresh
     ]
     return every, tuple(said)
-
-
-def text(part, found):
-    """Return the names of a part's stable aspects as the text of the file that ``aspect_names.read`` takes.
-
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    found : Aspects
-        Of that part.
-    """
-    rows = np.flatnonzero(found.stable)
-    return "\n".join(
-        [
-            f"# Aspects of {one_line(part.name)}: which direction of its file is down on each.",
-            "# Change a name and leave its direction, then give this file as the names of the part.",
-            "aspects:",
-            *(f"  {found.names[row]}: [{', '.join(f'{x:.7g}' for x in found.normals[row])}]" for row in rows),
-            "",
-        ]
-    )
-
-
-def write_names(part: Part, found: "Aspects", path: str | PathLike[str]) -> None:
-    """Write the names of a part's aspects to a file that ``load`` takes as ``names``.
-
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    found : Aspects
-        Of that part.
-    path : str or Path
-        Of the file, written anew: change a name there and leave its direction.
-
-    Raises
-    ------
-    FeederError
-        If the part is a card, which has its own names, or the file cannot be written.
-    """
-    if part.vertices is None:
-        raise ArgumentError("part", "a part card has its own names", "give a mesh")
-    try:
-        Path(path).write_text(text(part, found), encoding="utf-8")
-    except OSError as error:
-        what = f"cannot be written ({error.strerror or error})"
-        raise FeederError(path, what, "give another path") from None
 
 
 def letters(k):

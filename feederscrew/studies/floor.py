@@ -1,6 +1,6 @@
 """The study of ``feeder floor``: a part on one aspect in one heading on the floor of one bowl."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -9,7 +9,6 @@ from feederscrew.geometry.grids import evaluate, span
 from feederscrew.mechanics import limits
 from feederscrew.mechanics.cycle import Cycle
 from feederscrew.mechanics.floor import balance, cells
-from feederscrew.mechanics.published import floor as published
 from feederscrew.mechanics.standing import standing
 from feederscrew.part.record import Part
 from feederscrew.resting.posture import Posture
@@ -29,15 +28,32 @@ class FloorStudy:
     bowl: Bowl
     heading: float  # [rad] theta
     now: balance.FloorMotion  # at the upper reversal, from rest
-    printed: published.PrintedFloor  # the same by the printed equations
     cycle: balance.FloorMotion  # over one settled period
     course: Cycle
     why: str | None = None  # this aspect; None where it was asked for
+    printed = None  # the upper reversal by print, in `thesis.motion.as_published`
 
     @property
     def stable_heading(self):
         """Return the heading [rad] that the part turns to while it slides; NaN for none."""
         return balance.stable_heading(self.posture, self.bowl)
+
+    def cells(self, bowl, heading):
+        """Compute the upper reversal for arrays of bowl settings and headings.
+
+        Parameters
+        ----------
+        bowl : Bowl
+            Fields may be arrays.
+        heading : array_like [rad]
+            theta.
+
+        Returns
+        -------
+        dict of str to array
+            As ``mechanics.floor.cells.cells`` names them.
+        """
+        return cells.cells(self.posture, bowl, heading)
 
     def over_angle_and_friction(self, count):
         """Compute the upper reversal over vibration angle and friction, as Figure 5-6.
@@ -53,7 +69,8 @@ class FloorStudy:
         """
 
         def function(beta, mu):
-            return cells.over_angle_and_friction(self.posture, self.bowl, self.heading, beta, mu)
+            varied = replace(self.bowl, drive=replace(self.bowl.drive, vibration_angle=beta))
+            return self.cells(balance.with_friction(varied, mu), self.heading)
 
         angle = span("beta_deg", 0.0, TOP_ANGLE, count, np.pi / 180.0)
         friction = span("friction", 0.0, TOP_FRICTION, count)
@@ -73,7 +90,8 @@ class FloorStudy:
         """
 
         def function(f, a):
-            return cells.over_frequency_and_amplitude(self.posture, self.bowl, self.heading, f, a)
+            drive = replace(self.bowl.drive, frequency=f, amplitude=a)
+            return self.cells(replace(self.bowl, drive=drive), self.heading)
 
         highest = max(TOP_FREQUENCY, ROOM * self.bowl.drive.frequency)
         widest = max(TOP_AMPLITUDE, ROOM * self.bowl.drive.amplitude)
@@ -91,7 +109,7 @@ class FloorStudy:
             As ``mechanics.floor.cells.cells`` names them.
         """
         headings = np.radians(np.arange(-180.0, 181.0, 1.0))
-        return headings, cells.cells(self.posture, self.bowl, headings)
+        return headings, self.cells(self.bowl, headings)
 
 
 def floor(part, bowl, aspect=None, heading=0.0):
@@ -125,7 +143,6 @@ def floor(part, bowl, aspect=None, heading=0.0):
         bowl=bowl,
         heading=heading,
         now=balance.motion(stand, bowl, heading),
-        printed=published.motion(stand, bowl, heading),
         cycle=cycle,
         course=course,
         why=why,

@@ -10,8 +10,6 @@ from feederscrew.geometry import grids
 from feederscrew.mechanics import limits
 from feederscrew.mechanics.cycle import Cycle
 from feederscrew.mechanics.floor.balance import SLIDE, STICK, TIP
-from feederscrew.mechanics.published import track as published
-from feederscrew.mechanics.published.comparison import Term, omitted_terms
 from feederscrew.mechanics.standing import standing
 from feederscrew.mechanics.track import balance, cells, equilibrium
 from feederscrew.mechanics.track.frame import Seat, bank_without_radial_friction
@@ -35,8 +33,6 @@ class TrackStudy:
     headings: Headings | None  # None of a part card
     row: int  # of the headings, the one taken
     now: balance.TrackMotion  # at the upper reversal, from rest
-    printed: published.PrintedTrack  # the same by the printed equations
-    omitted: tuple[Term, ...]  # what these leave out
     cycle: balance.TrackMotion  # over one settled period
     course: Cycle
     opening: Opening
@@ -44,6 +40,7 @@ class TrackStudy:
     held_across: bool  # at rest, by friction that the reactions of ``now`` do not show
     laid: float | None  # [rad] heading as laid down; None for the most frequent that stays on the track
     why: str | None = None  # this aspect; None where it was asked for
+    printed = None  # the upper reversal by print, in `thesis.motion.as_published`
 
     def over(self, settings, ranges=()):
         """Compute the upper reversal at every pair of two values of the bowl.
@@ -96,7 +93,6 @@ def track(part, bowl, aspect=None, heading=None):
     limits.plain(bowl)
     posture, why = standing(part, aspect, "track", answered)
     seat, found, row = cells.seated(posture, bowl, heading)
-    levers = _levers(part, posture, seat)
     now, held_across = _from_rest(seat, bowl)
     cycle, course = balance.over_cycle(seat, bowl)
     return TrackStudy(
@@ -107,8 +103,6 @@ def track(part, bowl, aspect=None, heading=None):
         headings=found,
         row=row,
         now=now,
-        printed=published.motion(levers, bowl, seat.heading),
-        omitted=omitted_terms(seat, bowl, now, levers.offset),
         cycle=cycle,
         course=course,
         opening=first_to_open(seat, bowl),
@@ -125,11 +119,3 @@ def _from_rest(seat, bowl):
     if now.state not in (SLIDE, TIP) or not equilibrium.exists(seat, bowl):
         return now, False
     return replace(balance.motion(seat, bowl, held=True), state=np.array(STICK)), True
-
-
-def _levers(part, posture, seat):
-    """Levers of the printed equations: the card's own, or the mesh's."""
-    printed = {} if posture.corners is not None else posture.printed["track"]
-    ahead = posture.offset * np.cos(seat.heading)
-    levers = published.levers(seat, float(ahead), printed.get("axes", "tilted"))
-    return published.printed_levers(levers, printed) if printed else levers

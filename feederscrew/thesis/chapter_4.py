@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew import bowl
-from feederscrew.studies.track import track
 from feederscrew.thesis import parts
 from feederscrew.thesis.finding import Finding
+from feederscrew.thesis.motion.as_published import track
 from feederscrew.units import factor
 
 BANK, TURN = np.radians(10.0), np.radians(20.0)  # [rad] delta (and alpha), theta the sizes are shown at

@@ -6,9 +6,9 @@ import numpy as np
 
 from feederscrew.mechanics import limits
 from feederscrew.resting.counts.deviation import deviation
-from feederscrew.thesis import chapter_5, figures, parts
-from feederscrew.thesis.cells import DIFFERS, EXACT, EXPLAINED
-from feederscrew.thesis.tables import table
+from feederscrew.thesis import chapter_5, figure_data, parts
+from feederscrew.thesis.printed_cells import DIFFERS, EXACT, EXPLAINED
+from feederscrew.thesis.printed_tables import table
 
 
 @dataclass(frozen=True)
@@ -71,16 +71,16 @@ def _falling(data):
 
 
 def _pmi_by_ratio():
-    data = figures.pmi_by_ratio()
+    data = figure_data.pmi_by_ratio()
     yield from _falling(data)
-    ours, theirs = (np.ptp(lines["E"]) for lines in (data.lines, figures.csa_by_ratio().lines))
+    ours, theirs = (np.ptp(lines["E"]) for lines in (data.lines, figure_data.csa_by_ratio().lines))
     yield Claim(
         "range of aspect E, smaller by PMI than by CSA", f"< {theirs:.3f}", float(ours), bool(ours < theirs)
     )
 
 
 def _csa_by_ratio():
-    yield from _falling(figures.csa_by_ratio())
+    yield from _falling(figure_data.csa_by_ratio())
 
 
 def _arc_chute_csa():
@@ -96,8 +96,8 @@ def _arc_chute_measured():
     yield Claim(
         "deviation between amplitudes 78 and 80, above 80 and 82", f"> {second:.3f}", first, first > second
     )
-    led = [profiles[name].argmax() == profiles["PMI"].argmax() for name in figures.MEASURED]
-    low = ["78" in name and "MDBT" in name for name in figures.MEASURED]
+    led = [profiles[name].argmax() == profiles["PMI"].argmax() for name in figure_data.MEASURED]
+    low = ["78" in name and "MDBT" in name for name in figure_data.MEASURED]
     explained = all(agrees or odd for agrees, odd in zip(led, low, strict=True))
     yield Claim(
         "tests whose dominant aspect PMI predicts",
@@ -131,10 +131,10 @@ def _magnet_csa():
 
 def _magnet_measured():
     profiles = parts.profiles("magnet")
-    worst = max(deviation(profiles["STABILITY"], profiles[name]) for name in figures.MEASURED)
-    value = min(deviation(profiles["PMI"], profiles[name]) for name in figures.MEASURED)
+    worst = max(deviation(profiles["STABILITY"], profiles[name]) for name in figure_data.MEASURED)
+    value = min(deviation(profiles["PMI"], profiles[name]) for name in figure_data.MEASURED)
     yield Claim("deviation of PMI from any test, above stability's", f"> {worst:.3f}", value, value > worst)
-    led = [profiles[name].argmax() == profiles["PMI"].argmax() for name in figures.MEASURED]
+    led = [profiles[name].argmax() == profiles["PMI"].argmax() for name in figure_data.MEASURED]
     yield Claim("tests whose dominant aspect PMI predicts", f"{len(led)}", float(sum(led)), all(led))
 
 

@@ -4,9 +4,9 @@ import numpy as np
 
 from feederscrew.resting.counts.deviation import deviation
 from feederscrew.thesis import parts, t_shape
+from feederscrew.thesis.printed_tables import TOTAL, table
 from feederscrew.thesis.recompute import cells, rounded_shares
 from feederscrew.thesis.t_shape import RATIOS
-from feederscrew.thesis.tables import TOTAL, table
 
 
 def printed(part):

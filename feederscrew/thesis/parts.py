@@ -11,7 +11,7 @@ from feederscrew.part import mass
 from feederscrew.part.record import CardAspect, Part
 from feederscrew.resting.aspects import find
 from feederscrew.thesis import t_shape
-from feederscrew.thesis.tables import table
+from feederscrew.thesis.printed_tables import table
 from feederscrew.units import factor
 
 TABLES = {  # of each part that is known by its tables only

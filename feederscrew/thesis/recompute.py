@@ -7,9 +7,9 @@ import numpy as np
 from feederscrew.resting.counts.deviation import deviation
 from feederscrew.resting.rules import published
 from feederscrew.thesis import digits, parts
-from feederscrew.thesis.cells import Cell, given
+from feederscrew.thesis.printed_cells import Cell, given
+from feederscrew.thesis.printed_tables import TOTAL, table
 from feederscrew.thesis.t_shape import RATIOS
-from feederscrew.thesis.tables import TOTAL, table
 
 THINNER = 0.4  # aspect ratio whose CSA profile Table 3-1 prints under 0.6
 DIGITS = 2  # the thesis rounds I [g mm2] and h [mm] before it divides them

@@ -3,11 +3,11 @@
 from collections import Counter
 from dataclasses import dataclass
 
-from feederscrew.thesis.cells import DIFFERS, EXACT, EXPLAINED, GIVEN, Cell
 from feederscrew.thesis.claims import Claim, claims
-from feederscrew.thesis.figures import FIGURES
+from feederscrew.thesis.figure_data import FIGURES
+from feederscrew.thesis.printed_cells import DIFFERS, EXACT, EXPLAINED, GIVEN, Cell
+from feederscrew.thesis.printed_tables import NUMBERS, table
 from feederscrew.thesis.recompute import cells
-from feederscrew.thesis.tables import NUMBERS, table
 
 BEARS_ON = {  # findings that no single cell carries
     ("table", "3-1"): ("drawings-lost",),

@@ -212,9 +212,9 @@ def test_cycle_does_not_depend_on_the_heading_of_a_free_part():
 
 
 def test_a_map_cell_is_the_single_answer():
-    posture, settings = box_posture(offset=1e-3), bowl(direction=10 * DEG)
     beta, mu = np.radians([10.0, 20.0, 30.0])[:, None], np.array([[0.1, 0.3]])
-    cells = floor_cells.over_angle_and_friction(posture, settings, 0.2, beta, mu)
+    posture, settings = box_posture(offset=1e-3), bowl(direction=10 * DEG, vibration_angle=beta)
+    cells = floor_cells.cells(posture, balance.with_friction(settings, mu), 0.2)
     one = balance.motion(
         posture, bowl(direction=10 * DEG, vibration_angle=30 * DEG, static=0.1, kinetic=0.1), 0.2
     )
@@ -222,12 +222,9 @@ def test_a_map_cell_is_the_single_answer():
     assert cells["regime"][2, 0] == one.state
 
 
-def test_a_map_past_the_hop_is_empty_but_the_print_goes_on():
+def test_a_map_past_the_hop_is_empty():
     """Figure 5-6's own values hop above asin(g / A w^2) = 7.9 deg."""
-    settings = bowl(amplitude=0.5e-3, gravity=9.8)
-    cells = floor_cells.over_angle_and_friction(
-        box_posture(), settings, 0.0, np.radians([7.8, 8.0])[:, None], np.array([[0.2]])
-    )
-    assert np.isnan(cells["acceleration_z_m_s2"].ravel()).tolist() == [False, True]
-    assert np.isfinite(cells["published_z_m_s2"]).all()
-    assert [balance.STATES[code] for code in cells["regime"].ravel()][1] == "hop"
+    settings = bowl(amplitude=0.5e-3, gravity=9.8, vibration_angle=np.radians([7.8, 8.0]))
+    cells = floor_cells.cells(box_posture(), settings, 0.0)
+    assert np.isnan(cells["acceleration_z_m_s2"]).tolist() == [False, True]
+    assert [balance.STATES[code] for code in cells["regime"]][1] == "hop"

@@ -12,7 +12,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.resting.counts.deviation import deviation
 from feederscrew.thesis import evidence, motion_evidence, parts
 from feederscrew.thesis.findings import BY_ID, FINDINGS
-from feederscrew.thesis.tables import table
+from feederscrew.thesis.printed_tables import table
 
 
 @pytest.mark.parametrize("finding", FINDINGS, ids=lambda finding: finding.id)

@@ -7,8 +7,8 @@ from feederscrew.part import mass
 from feederscrew.resting.aspects import find
 from feederscrew.thesis import parts, t_shape
 from feederscrew.thesis.digits import prints_as
+from feederscrew.thesis.printed_tables import table
 from feederscrew.thesis.recompute import rounded_shares
-from feederscrew.thesis.tables import table
 
 RATIOS = [float(ratio) for ratio in t_shape.RATIOS]
 

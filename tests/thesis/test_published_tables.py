@@ -5,9 +5,9 @@ import pytest
 from published_cells import MISPRINTS, cases
 
 from feederscrew.thesis import digits
-from feederscrew.thesis.cells import DIFFERS, EXACT, EXPLAINED, GIVEN, Cell
+from feederscrew.thesis.printed_cells import DIFFERS, EXACT, EXPLAINED, GIVEN, Cell
+from feederscrew.thesis.printed_tables import NUMBERS, table
 from feederscrew.thesis.recompute import cells
-from feederscrew.thesis.tables import NUMBERS, table
 
 SHAPES = {  # rows without the total, columns
     "3-1": (5, 2), "3-2": (5, 5), "3-3": (5, 4), "3-4": (5, 6), "3-5": (3, 4), "3-6": (3, 4), "3-7": (3, 6),

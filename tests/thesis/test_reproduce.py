@@ -11,16 +11,16 @@ from feederscrew.output import style
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.page.blocks import Heading, Links, MarkedCell, Matrix, Page, Section
-from feederscrew.output.thesis import figures as thesis_plots
-from feederscrew.output.thesis import page as thesis_page
-from feederscrew.thesis import chapter_5, figures, reproduction
-from feederscrew.thesis.cells import DIFFERS, EXACT, EXPLAINED, Cell
+from feederscrew.thesis import chapter_5, figure_data, reproduction
 from feederscrew.thesis.claims import Claim, claims
 from feederscrew.thesis.findings import BY_ID, FINDINGS
-from feederscrew.thesis.tables import NUMBERS, table
+from feederscrew.thesis.pages import figures as thesis_plots
+from feederscrew.thesis.pages import page as thesis_page
+from feederscrew.thesis.printed_cells import DIFFERS, EXACT, EXPLAINED, Cell
+from feederscrew.thesis.printed_tables import NUMBERS, table
 
 FIGURES = [f"3-{n}" for n in range(6, 14)] + [f"5-{n}" for n in range(1, 8)]
-BY_NUMBER = {figure.number: figure for figure in figures.FIGURES}
+BY_NUMBER = {figure.number: figure for figure in figure_data.FIGURES}
 
 
 @pytest.fixture(scope="module")
@@ -138,14 +138,14 @@ def test_sliding_starts_at_the_limiting_friction():
 
 
 def test_figure_3_7_goes_through_the_table(items):
-    data = figures.pmi_by_ratio()
+    data = figure_data.pmi_by_ratio()
     _, points = data.points["Table 3-9"]
     for name, line in data.lines.items():
         np.testing.assert_allclose(line, points[name], rtol=0, atol=5e-5)
 
 
 def test_figure_3_8_shows_what_survives():
-    data = figures.csa_by_ratio()
+    data = figure_data.csa_by_ratio()
     assert list(data.points) == ["CSA, Table 3-1", "experiment, Table 3-1"]
     assert all(len(ratios) == 1 for ratios, _ in data.points.values())
 

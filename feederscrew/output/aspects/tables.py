@@ -6,7 +6,7 @@ from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
 from feederscrew.output import columns, tables
 from feederscrew.output.columns import DEG, G_MM2, MM, MM2, UJ
-from feederscrew.resting import naming
+from feederscrew.resting import names_file
 from feederscrew.units import shown
 
 MOST = 24  # rows that a picture shows
@@ -125,7 +125,7 @@ def document(study):
 
 def names(study):
     """Return the text of ``names.yaml``: the aspects by name, to be edited and read again."""
-    return naming.text(study.part, study.aspects)
+    return names_file.text(study.part, study.aspects)
 
 
 def profiles(study):

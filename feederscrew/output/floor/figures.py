@@ -97,12 +97,12 @@ def cycle(found, course, title):
 
 
 def alignment(grid, direction, title):
-    """Draw the alignment acceleration over the heading, complete and as published, with the stable heading.
+    """Draw the alignment acceleration over the heading, where known by print, with the stable heading.
 
     Parameters
     ----------
     grid : dict of str to array
-        ``heading_deg``, ``alignment_acceleration_rad_s2``, ``published_alignment_rad_s2``.
+        ``heading_deg``, ``alignment_acceleration_rad_s2`` and, where known, ``published_alignment_rad_s2``.
     direction : float [deg]
         Stable heading, NaN for none.
     title : str
@@ -115,10 +115,9 @@ def alignment(grid, direction, title):
     axes = plots.tidy(
         figure.add_subplot(), title=title, x="heading θ [deg]", y="alignment acceleration θ'' [rad/s²]"
     )
-    axes.plot(
-        grid["heading_deg"], grid["published_alignment_rad_s2"], color=plots.SPARE[3], linestyle="--",
-        label="as published [4.17], sliding or not",
-    )  # fmt: skip
+    if (printed := grid.get("published_alignment_rad_s2")) is not None:
+        label = "as published [4.17], sliding or not"
+        axes.plot(grid["heading_deg"], printed, color=plots.SPARE[3], linestyle="--", label=label)
     axes.plot(
         grid["heading_deg"],
         grid["alignment_acceleration_rad_s2"],

@@ -17,7 +17,7 @@ ALTS = {
 }
 
 
-def offers(study, settings, *, as_published=False):
+def offers(study, settings):
     """Offer the files of a FloorStudy.
 
     Parameters
@@ -25,8 +25,6 @@ def offers(study, settings, *, as_published=False):
     study : FloorStudy
     settings : dict of str to str
         The bowl's values in effect.
-    as_published : bool
-        As for ``tables.document``.
 
     Returns
     -------
@@ -34,7 +32,7 @@ def offers(study, settings, *, as_published=False):
     """
     plan = offer.picture("floor_plan.png", "The part from above, with the forces on it", _plan, study)
     return [
-        offer.document("floor.json", tables.document, study, settings, as_published=as_published),
+        offer.document("floor.json", tables.document, study, settings),
         offer.table("floor_cycle.csv", tables.over_cycle, study.cycle, study.course),
         *(offer.table(f"floor_{kind}.csv", tables.map_cells, study, kind) for kind in tables.MAPS),
         offer.table("floor_heading.csv", tables.alignment, study),

@@ -3,7 +3,6 @@
 import numpy as np
 
 from feederscrew.mechanics.floor.balance import HOP, ON_THE_LINE, STATES, regime, rolls, stable_heading
-from feederscrew.mechanics.published.comparison import FLOOR_TERMS
 from feederscrew.output import tables
 from feederscrew.studies.floor import FloorStudy
 from feederscrew.units import factor
@@ -89,24 +88,24 @@ def over_cycle(found, course):
     }
 
 
-def document(found, settings, *, as_published=False):
-    """Return all of one FloorStudy, for JSON.
+def document(found, settings):
+    """Return all of one FloorStudy, for JSON; of one as published, the upper reversal by print.
 
     Parameters
     ----------
     found : FloorStudy
     settings : dict of str to str
         The bowl's values in effect.
-    as_published : bool
-        Give the printed equations' upper reversal, and its difference from the complete one.
 
     Returns
     -------
     dict
     """
     posture, bowl = found.posture, found.bowl
-    complete, printed = (instant(one, posture, bowl) for one in (found.now, found.printed))
-    told = {"difference": difference(printed, complete)} if as_published else {}
+    now, told = instant(found.now, posture, bowl), {}
+    if found.printed is not None:
+        told = {"instant": instant(found.printed, posture, bowl)}
+        told["difference"] = difference(told["instant"], now, found.terms)
     return {
         "part": found.part.name,
         "aspect": posture.name,
@@ -117,9 +116,9 @@ def document(found, settings, *, as_published=False):
         "drive_offset_mm": posture.offset / MM,
         "rolling_circle_mm": posture.rolling_circle / MM if np.isfinite(posture.rolling_circle) else None,
         "turning_inertia_g_mm2": posture.turning_inertia / factor("g mm2", "inertia"),
-        "as_published": as_published,
+        "as_published": found.printed is not None,
         "regime": regime(found.cycle.state),
-        "instant": printed if as_published else complete,
+        "instant": now,
         **told,
         "mean_velocity_m_s": mean_velocity(found),
         "settled": found.course.settled,
@@ -143,7 +142,7 @@ def summary(document):
     return tables.frame({"quantity": list(rows), "value": [shown_value(value) for value in rows.values()]})
 
 
-def difference(printed, complete, terms=FLOOR_TERMS):
+def difference(printed, complete, terms):
     """Return printed against complete values, with the omitted term named.
 
     Parameters
@@ -219,7 +218,7 @@ def alignment(study):
     """Return theta'' over every heading as columns."""
     headings, cells = study.alignment()
     names = ("alignment_acceleration_rad_s2", "published_alignment_rad_s2")
-    return {"heading_deg": np.degrees(headings), **{name: cells[name] for name in names}}
+    return {"heading_deg": np.degrees(headings), **{name: cells[name] for name in names if name in cells}}
 
 
 def mean_velocity(found):

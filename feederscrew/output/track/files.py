@@ -8,7 +8,7 @@ from feederscrew.output.track import map_tables, tables
 SHOWN = "acceleration_x_m_s2"
 
 
-def offers(study, settings, grid, *, as_published=False):
+def offers(study, settings, grid):
     """Offer the files of a TrackStudy.
 
     Parameters
@@ -18,8 +18,6 @@ def offers(study, settings, grid, *, as_published=False):
         The bowl's values in effect.
     grid : Grid
         Of ``study.over``.
-    as_published : bool
-        As for ``tables.document``.
 
     Returns
     -------
@@ -30,10 +28,10 @@ def offers(study, settings, grid, *, as_published=False):
         offer.table("track_omitted_terms.csv", tables.omitted_terms, study),
     ]
     return [
-        offer.document("track.json", tables.document, study, settings, as_published=as_published),
+        offer.document("track.json", tables.document, study, settings),
         offer.table("track_cycle.csv", tables.over_cycle, study.cycle, study.course),
         offer.table("track_map.csv", map_tables.cells, grid),
-        *(differences if as_published else []),
+        *(differences if study.printed is not None else []),
         offer.picture(
             "track_part.png",
             "The part on the track from above and from behind, with the forces on it",

@@ -3,7 +3,6 @@
 import numpy as np
 
 from feederscrew.mechanics.floor.balance import HOP, STATES, regime
-from feederscrew.mechanics.published.comparison import TRACK_TERMS
 from feederscrew.output import tables
 from feederscrew.output.floor.tables import (
     EVERY,
@@ -108,33 +107,32 @@ def over_cycle(found, course):
     }
 
 
-def document(found, settings, *, as_published=False):
-    """Return all of one TrackStudy, for JSON.
+def document(found, settings):
+    """Return all of one TrackStudy, for JSON; of one as published, the upper reversal by print.
 
     Parameters
     ----------
     found : TrackStudy
     settings : dict of str to str
         The bowl's values in effect.
-    as_published : bool
-        Give the printed equations' upper reversal, its difference from the complete one, and the terms that
-        make it.
 
     Returns
     -------
     dict
     """
-    complete, published = instant(found.now), printed(found.printed)
-    told = {"difference": differences(found), "omitted_terms": omitted_terms(found)} if as_published else {}
+    told = {}
+    if found.printed is not None:
+        told = {"instant": printed(found.printed), "difference": differences(found)}
+        told["omitted_terms"] = omitted_terms(found)
     return {
         "part": found.part.name,
         "aspect": found.posture.name,
         "heading_deg": float(np.degrees(found.seat.heading)),
         "height_mm": found.seat.height / MM,
         "wall_contacts": _contacts(found),
-        "as_published": as_published,
+        "as_published": found.printed is not None,
         "regime": regime(found.cycle.state),
-        "instant": published if as_published else complete,
+        "instant": instant(found.now),
         **told,
         "first_to_open": found.opening.contact,
         "opens_at_drive_factor": found.opening.drive_factor,
@@ -152,12 +150,12 @@ def document(found, settings, *, as_published=False):
 
 
 def differences(found):
-    """Return the printed against the complete upper reversal of a TrackStudy, as a frame."""
-    return difference(printed(found.printed), instant(found.now), TRACK_TERMS)
+    """Return the printed against the complete upper reversal of a TrackAsPublished, as a frame."""
+    return difference(printed(found.printed), instant(found.now), found.terms)
 
 
 def omitted_terms(found):
-    """Return the terms that the printed equations of a TrackStudy leave out, as a frame."""
+    """Return the terms that the printed equations of a TrackAsPublished leave out, as a frame."""
     names = ("name", "equation", "value", "unit")
     return tables.frame({name: [getattr(term, name) for term in found.omitted] for name in names})
 

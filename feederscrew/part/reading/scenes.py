@@ -14,8 +14,9 @@ import numpy as np
 
 from feederscrew import units
 from feederscrew.errors import MeshError
-from feederscrew.part.reading import source, step, threemf
+from feederscrew.part.reading import step, threemf
 from feederscrew.part.reading.formats import FORMATS, plain
+from feederscrew.part.reading.soup import LARGEST, Soup
 
 MOST = 20_000_000  # facets, instances counted
 DAMAGE = (  # what trimesh's readers raise on damaged files
@@ -63,7 +64,7 @@ def soup(data, kind, where):
 
     Returns
     -------
-    read.Soup
+    Soup
 
     Raises
     ------
@@ -121,7 +122,7 @@ def _joined(meshes, unit, data, kind):
         unit, factor = THREEMF_UNITS.get((unit or "").rstrip("s"), ("mm", 1.0))
         vertices = vertices * factor
     stated = {"glb": "m", "step": unit, "3mf": unit}.get(kind)
-    return source.Soup(vertices, faces, kind, stated)
+    return Soup(vertices, faces, kind, stated)
 
 
 def _claims(data, kind):
@@ -138,7 +139,7 @@ def _claims(data, kind):
     if kind == "3mf":
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             packed_out = sum(member.file_size for member in archive.infolist())
-        return packed_out if packed_out > source.LARGEST else 0
+        return packed_out if packed_out > LARGEST else 0
     return 0
 
 

@@ -5,14 +5,12 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from feederscrew import documents
 from feederscrew.errors import MeshError
-from feederscrew.part.reading import formats
+from feederscrew.part.reading import formats, scenes, stl
 from feederscrew.part.reading.formats import CARD, FORMATS
+from feederscrew.part.reading.soup import LARGEST, Soup
 
-LARGEST = 1 << 29  # [bytes] ten million facets: five hundred times what a fed part needs
 EXPORT = "export the part as STL, OBJ, PLY, OFF, GLB, 3MF or STEP"
 
 
@@ -26,17 +24,6 @@ class File:
     suffix: str  # lower case, without the dot; '' for standard input
     data: bytes
     sha256: str
-
-
-@dataclass(frozen=True, eq=False)
-class Soup:
-    """Triangles as a file has them; corners that coincide are not yet joined."""
-
-    vertices: np.ndarray  # (V, 3) [unit of the file] maybe not finite
-    faces: np.ndarray  # (F, 3) int
-    format: str  # a key of read_format.FORMATS
-    unit: str | None = None  # that the file or its format states
-    warnings: tuple[str, ...] = ()
 
 
 def file(source, stdin=None):
@@ -86,8 +73,6 @@ def soup(file):
     MeshError
         If the content is of no known format, or is cut short or damaged.
     """
-    from feederscrew.part.reading import scenes, stl
-
     kind, alien = formats.detect(file.data, file.suffix)
     if kind in (None, CARD):
         mend = "save it as ASCII or UTF-8 text" if alien == formats.UTF16 else EXPORT

@@ -7,8 +7,8 @@ import warnings
 import numpy as np
 
 from feederscrew.errors import MeshError
-from feederscrew.part.reading import source
 from feederscrew.part.reading.formats import ASCII, BINARY, FACET, HEADER, claimed_facets, plain
+from feederscrew.part.reading.soup import Soup
 
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 UNKNOWN_COUNTS = (0, 0xFFFFFFFF)  # what streaming exporters leave in the header
@@ -29,7 +29,7 @@ def soup(data, kind, where):
 
     Returns
     -------
-    read.Soup
+    Soup
 
     Raises
     ------
@@ -44,7 +44,7 @@ def _binary(data, where):
     facets = np.frombuffer(data, dtype=RECORD, offset=HEADER)
     with np.errstate(invalid="ignore"):  # a signalling NaN; the gate names it
         vertices = facets["corners"].reshape(-1, 3).astype(float)
-    return source.Soup(vertices, np.arange(len(vertices)).reshape(-1, 3), BINARY, warnings=said)
+    return Soup(vertices, np.arange(len(vertices)).reshape(-1, 3), BINARY, warnings=said)
 
 
 def _honest(data, where):
@@ -94,7 +94,7 @@ def _from_text(text, warned, where):
     vertices = np.concatenate([solid["vertices"] for solid in solids] or [np.empty((0, 3))])
     if len(vertices) != said:
         raise _garbled(where)
-    return source.Soup(vertices, np.arange(len(vertices)).reshape(-1, 3), ASCII, warnings=warned)
+    return Soup(vertices, np.arange(len(vertices)).reshape(-1, 3), ASCII, warnings=warned)
 
 
 def _garbled(where):

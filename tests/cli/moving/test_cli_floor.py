@@ -72,7 +72,17 @@ def test_files(run, tmp_path):
     assert names == maps | {"floor.json", "floor_cycle.csv", "floor_cycle.png", "floor_plan.png", "run.json"}
     table = (tmp_path / "out/lbracket_30x20x15/floor_beta_friction.csv").read_text()
     rows = list(csv.DictReader(table.splitlines()))
-    assert {"beta_deg", "friction", "acceleration_z_m_s2", "published_z_m_s2", "regime"} <= set(rows[0])
+    assert {"beta_deg", "friction", "acceleration_z_m_s2", "regime"} <= set(rows[0])
+
+
+def test_maps_as_published_have_the_printed_formula_beside(run, tmp_path):
+    """Figure 5-6's own values hop above asin(g / A w^2) = 7.9 deg, where the print goes on."""
+    assert run("floor", BRACKET, *GENTLE, "--as-published", "-o", "out", "--no-pictures").exit_code == 0
+    table = (tmp_path / "out/lbracket_30x20x15/floor_frequency_amplitude.csv").read_text()
+    rows = list(csv.DictReader(table.splitlines()))
+    hopping = [row for row in rows if row["regime"] == "hop"]
+    assert hopping and not any(row["acceleration_z_m_s2"] for row in hopping)
+    assert all(row["published_z_m_s2"] for row in rows)
 
 
 def test_a_map_on_which_nothing_slides_is_drawn_and_said(run, tmp_path):

@@ -8,15 +8,15 @@ import pytest
 from mechanics_samples import DEG, bowl, box_posture, rectangle
 
 from feederscrew.mechanics.floor import balance
-from feederscrew.mechanics.published import floor as published_floor
-from feederscrew.mechanics.published import track as published_track
-from feederscrew.mechanics.published.comparison import FLOOR_TERMS, TRACK_TERMS, omitted_terms
 from feederscrew.mechanics.track import balance as track
 from feederscrew.mechanics.track.frame import frame, seat
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.posture import posture
 from feederscrew.screw import Wrench
+from feederscrew.thesis.motion import printed_floor as published_floor
+from feederscrew.thesis.motion import printed_track as published_track
+from feederscrew.thesis.motion.comparison import FLOOR_TERMS, TRACK_TERMS, omitted_terms
 
 PARTS = Path(__file__).parents[2] / "parts"
 ASPECTS = {"arc_chute": "5", "magnet": "3"}

@@ -4,11 +4,11 @@ import math
 from collections import Counter
 
 from feederscrew.output.page.blocks import Heading, Links, MarkedCell, Matrix, Page, Picture, Section, Text
-from feederscrew.thesis.cells import DIFFERS, EXACT, EXPLAINED, GIVEN
 from feederscrew.thesis.claims import Claim
 from feederscrew.thesis.findings import BY_ID, FINDINGS
+from feederscrew.thesis.printed_cells import DIFFERS, EXACT, EXPLAINED, GIVEN
+from feederscrew.thesis.printed_tables import table
 from feederscrew.thesis.reproduction import summary
-from feederscrew.thesis.tables import table
 
 MARKS = {EXACT: "exact", EXPLAINED: "explained", DIFFERS: "differs", GIVEN: "given"}  # of a cell, by verdict
 EXTRA = 1  # digits shown beyond the printed ones

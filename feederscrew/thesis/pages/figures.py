@@ -8,7 +8,7 @@ from feederscrew.output import style as plots
 from feederscrew.output import tables
 from feederscrew.output.compare import figures as profile_plots
 from feederscrew.output.slide import figures as slide_plots
-from feederscrew.thesis import chapter_5, figures
+from feederscrew.thesis import chapter_5, figure_data
 
 ASPECTS = (  # of the T shape, A to E: colour and dashes
     ("#0072b2", "-"),
@@ -30,16 +30,16 @@ def drawn(figure):
 
     Parameters
     ----------
-    figure : thesis.figures.Figure
+    figure : thesis.figure_data.Figure
 
     Returns
     -------
     matplotlib Figure
     """
     data, title = figure.data(), f"Figure {figure.number}. {figure.caption}"
-    if isinstance(data, figures.Bars):
+    if isinstance(data, figure_data.Bars):
         return _bars(title, data)
-    if isinstance(data, figures.ByRatio):
+    if isinstance(data, figure_data.ByRatio):
         return _by_ratio(title, data)
     if isinstance(data, chapter_5.Curves):
         return _curves(title, data)
@@ -57,17 +57,17 @@ def numbers(figure):
 
     Parameters
     ----------
-    figure : thesis.figures.Figure
+    figure : thesis.figure_data.Figure
 
     Returns
     -------
     Frame
     """
     data = figure.data()
-    if isinstance(data, figures.Bars):
+    if isinstance(data, figure_data.Bars):
         printed = {f"{name}_printed": values for name, values in data.printed.items()}
         return tables.frame({"aspect": data.aspects, **data.profiles, **printed})
-    if isinstance(data, figures.ByRatio):
+    if isinstance(data, figure_data.ByRatio):
         return tables.frame({"aspect_ratio": data.ratios, **data.lines})
     if isinstance(data, chapter_5.Curves):
         limits = {f"mu_limit_beta_{beta:g}": values for beta, values in data.limits.items()}

@@ -3,10 +3,10 @@
 from feederscrew.output import style, tables
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
-from feederscrew.output.thesis import figures as thesis_plots
-from feederscrew.output.thesis import page as thesis_page
-from feederscrew.thesis.figures import FIGURES
+from feederscrew.thesis.figure_data import FIGURES
 from feederscrew.thesis.findings import FINDINGS
+from feederscrew.thesis.pages import figures as thesis_plots
+from feederscrew.thesis.pages import page as thesis_page
 from feederscrew.thesis.reproduction import summary
 
 BY_NUMBER = {figure.number: figure for figure in FIGURES}

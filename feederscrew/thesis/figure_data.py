@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew.thesis import chapter_5, parts
+from feederscrew.thesis.printed_tables import table
 from feederscrew.thesis.recompute import THINNER
 from feederscrew.thesis.t_shape import RATIOS
-from feederscrew.thesis.tables import table
 
 
 @dataclass(frozen=True, eq=False)
