@@ -1,6 +1,8 @@
 """The folders are the pipeline: a room imports only rooms before it, and heavy libraries have one door."""
 
 import ast
+from collections import Counter
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -70,3 +72,32 @@ def test_every_room_of_the_order_exists():
     library = ROOT / "feederscrew"
     rooms = {path.relative_to(library).parts[0].removesuffix(".py") for path in library.glob("**/*.py")}
     assert rooms - {"__init__"} <= set(ORDER)
+
+
+def module(path):
+    """The dotted name of a file: 'feederscrew.part.hull'."""
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+
+
+def test_no_imports_go_in_a_circle():
+    """Those inside functions and for types alone count too."""
+    names = {module(path) for path in FILES}
+    graph = {}
+    for path in FILES:
+        wanted = (name if name in names else name.rpartition(".")[0] for name in imports(path))
+        graph[module(path)] = {name for name in wanted if name in names} - {module(path)}
+    TopologicalSorter(graph).prepare()  # raises CycleError, which names the circle
+
+
+# a command, its study and what it is made of go by one name; so do the views of every study's record
+ALIKE = {path.stem for path in ROOT.glob("cli/*.py")} | {"tables", "files", "figures", "record"}
+ALIKE |= {"balance", "cells"}  # the same of a part on the floor and on the track
+AGAIN = {
+    "contact", "course", "crowd", "cutting", "edges", "groups", "hull", "motion", "passages", "result",
+    "shape", "sheet", "step", "stl",
+}  # fmt: skip  # to be told apart: the list only gets shorter
+
+
+def test_modules_of_one_name_are_of_one_kind():
+    names = Counter(path.stem for path in FILES if path.stem != "__init__")
+    assert {name for name, count in names.items() if count > 1} <= ALIKE | AGAIN
