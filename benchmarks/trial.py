@@ -18,7 +18,7 @@ from feederscrew.conveying import answer
 from feederscrew.dropping.kernel import body
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import runs, shape, stations
+from feederscrew.trial import runs, shape, stations, whereabouts
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 import shapes
@@ -62,7 +62,7 @@ class Ours:
         """A part laid down, by its height and its length along the track [m]."""
         one = min(self.every, key=lambda k: round(abs(k.height - height) + abs(k.length - length), 6))
         one = max((k for k in self.every if abs(k.height - one.height) < 1e-6), key=_legs)
-        return runs.laid(one, self.principal, self.length, self.bowl.track, place=place, aside=1e-3)
+        return whereabouts.laid(one, self.principal, self.length, self.bowl.track, place=place, aside=1e-3)
 
 
 def _legs(one):
@@ -131,12 +131,12 @@ def hanging():
     """How deep a headed bar hangs between rails: its head's underside at the track [mm]."""
     ours = Ours(PIN, STILL, device("rails: {from: 5 mm, to: 11 mm}"))
     upright = next(k for k in ours.every if k.height > 14e-3)
-    state = runs.laid(upright, ours.principal, ours.length, STILL.track, place=0.01)
+    state = whereabouts.laid(upright, ours.principal, ours.length, STILL.track, place=0.01)
     turned = state.copy()
     low = -12e-3 - PIN.centre_of_mass[1]  # the shank's end under the centre of mass
     axes = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])  # the file's y up
     across = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # the head across the rails
-    turned[body.Q : body.Q + 4] = runs.quaternion(across @ axes @ ours.principal)
+    turned[body.Q : body.Q + 4] = whereabouts.quaternion(across @ axes @ ours.principal)
     theta = 0.01 / STILL.track.radius
     off = STILL.track.radius - 8e-3
     turned[:3] = off * np.sin(theta), STILL.track.radius - off * np.cos(theta), 0.4e-3 + PIN.centre_of_mass[1]

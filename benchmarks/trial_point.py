@@ -18,7 +18,7 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import course, looks, runs, shape, stations
+from feederscrew.trial import course, looks, runs, shape, stations, whereabouts
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 import shapes
@@ -50,7 +50,7 @@ def headings(part):
     known, stage = runs.setting(solid, length, bowl), stations.plain(bowl.track, every, WAY)
     turns = np.random.default_rng(1).uniform(0.0, 2.0 * np.pi, TRIED)
     laid = [replace(flat[0], heading=turn, distance=OFF) for turn in turns]
-    states = np.array([runs.laid(one, principal, length, bowl.track, place=0.0) for one in laid])
+    states = np.array([whereabouts.laid(one, principal, length, bowl.track, place=0.0) for one in laid])
     limits = course._limits(bowl, stage, every)
     ride = runs.ride(known, stage, states, np.zeros(TRIED), jobs=2, **limits)
     seen = looks.Looks(every, solid, length, principal, bowl.track.radius).of(ride.states)

@@ -71,10 +71,10 @@ def trial(part, aspect, rule, taken, parts, landing, queued, amplitudes, seed, j
 
     Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed,
     while all of it vibrates with the drive: one part at a time, its orientations in turn. Each part
-    passes, is returned, hangs or is stuck. Orientations count in the shares in which they arrive: from
-    the moving floor of the bowl file, or as --launch, --rule or a file (docs/counts.md) says. Beside each
-    stands what the static rule of feeder tooling says, and its margin; those that do something else come
-    first.
+    passes, is turned, returned, hangs, is stopped, rolls back or is stuck. Orientations count in the
+    shares in which they arrive: from the moving floor of the bowl file, or as --launch, --rule or a file
+    (docs/counts.md) says. Beside each stands what the static rule of feeder tooling says, and its margin;
+    those that do something else come first.
 
     --landing adds parts that fall onto the moving track as --launch says, anywhere over its width, and go
     through the devices as they then lie, against the wall or not: by aspect, what became of them.

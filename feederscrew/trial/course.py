@@ -7,19 +7,20 @@ import numpy as np
 from feederscrew import check
 from feederscrew.conveying import answer
 from feederscrew.geometry import vectors
-from feederscrew.trial import groups, runs, starts, stations
+from feederscrew.trial import groups, runs, starts, stations, whereabouts
 from feederscrew.trial.looks import Looks
 from feederscrew.trial.rounding import rounded
 from feederscrew.trial.shape import solid_of
 
-PASSED, TURNED, RETURNED, HANGING, STUCK = range(5)
-FATES = ("passed", "turned", "returned", "hanging", "stuck")
+PASSED, TURNED, RETURNED, HANGING, STOPPED, ROLLED_BACK, STUCK = range(7)
+FATES = ("passed", "turned", "returned", "hanging", "stopped", "rolled_back", "stuck")
 RUN_UP = 1.0  # of the part's size: how far it travels before the first device
 LOOKS = 300  # places noted of a part at a station
 SPARE = 3.0  # times what it should take is given to a part
 SLOWEST = 1e-3  # [m/s] a slower bowl is given up after the time this takes
 GETS_ON = 0.08  # of the way it should come in the time it has to get on
 BELOW = 1e-4  # [m] under the track: a part that reaches so deep hangs
+AT = 5e-4  # [m] from a device: a part that near is at it
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +38,7 @@ class Course:
     fell: np.ndarray  # (N,) [m] along the wall from the device's start, where it ended
     rides: tuple  # runs.Runs of each station, of the parts that came so far
     riders: tuple  # (P,) int, which parts those are
-    stations: tuple  # stations.Stage
+    stations: tuple  # scene.Stage
     length: float  # [m] the unit of length of the states
     principal: np.ndarray  # (3, 3) [1]
     partial: bool
@@ -97,7 +98,7 @@ def course(
     states, times, entered = begun
     looks = Looks(every if poses is None else poses, solid, length, principal, bowl.track.radius)
     leaves = np.eye(len(every), len(looks.known), dtype=bool) if leaves is None else leaves
-    found = _Found([station.drop for station in chain], parts, looks, entered)
+    found = _Found(chain, parts, looks, entered)
     for first in range(0, parts, groups.SIZE):
         group = slice(first, min(first + groups.SIZE, parts))
         told = groups.Told(progress, first, parts, len(chain), group.stop - first)
@@ -133,7 +134,9 @@ def _led_on(states, station, begin, known):
 
     What went down to a lower track goes on at its level; one that begins beside a ledge leads to the wall.
     """
-    states = runs.moved(states, begin / known.length - runs.ways(states, known.radius), known.radius)
+    states = whereabouts.moved(
+        states, begin / known.length - whereabouts.ways(states, known.radius), known.radius
+    )
     if station.drop > 0.0:
         down = states[:, 2] < 0.0 if station.aside > 0.0 else np.ones(len(states), dtype=bool)
         states[down, 2] += station.drop / known.length
@@ -196,8 +199,8 @@ def _limits(bowl, station, every):
 class _Found:
     """Collects what became of the parts, station by station."""
 
-    def __init__(self, drops, parts, looks, entered):
-        self.looks, self.drops, count = looks, drops, len(drops)
+    def __init__(self, chain, parts, looks, entered):
+        self.looks, self.chain, count = looks, chain, len(chain)
         self.entered, self.orientations = entered, np.full((count + 1, parts), -2)
         self.orientations[0] = entered
         self.fates, self.ended = np.full(parts, STUCK), np.full(parts, -1)
@@ -221,18 +224,28 @@ class _Found:
             self.velocities[riders] = velocities(ride, bowl.track.radius)
         passed = ride.outcomes == runs.PASSED
         self.ended[riders] = np.where(passed, place + 1, place)
-        self.fell[riders] = runs.ways(ride.states, self.looks.radius) * bowl.track.radius / self.looks.radius
-        fates = np.where(ride.outcomes == runs.RETURNED, RETURNED, STUCK)
-        low = (
-            np.array([starts.lowest(self.looks.corners, state) for state in ride.states])
-            * bowl.track.radius
-            / self.looks.radius
+        self.fell[riders] = (
+            whereabouts.ways(ride.states, self.looks.radius) * bowl.track.radius / self.looks.radius
         )
-        lost = low < -BELOW - self.drops[place]
-        fates = np.where((ride.outcomes == runs.RUNNING) & lost, HANGING, fates)
+        fates = [
+            self._fate(self.chain[place], outcome, state, bowl.track.radius / self.looks.radius)
+            for outcome, state in zip(ride.outcomes, ride.states)
+        ]
         self.fates[riders] = np.where(passed, PASSED, fates)
         self.orientations[place + 1][riders[passed]] = self.looks.of(ride.states[passed])
         return passed
+
+    def _fate(self, station, outcome, state, length):
+        """What became of a part that has not passed a station."""
+        if outcome in (runs.RETURNED, runs.ROLLED):
+            return RETURNED if outcome == runs.RETURNED else ROLLED_BACK
+        rear, front, low = (
+            np.array(whereabouts.extents(state, self.looks.corners, self.looks.radius)) * length
+        )
+        if outcome == runs.RUNNING and station.below and low < -BELOW - station.drop:
+            return HANGING
+        first, last = station.cut
+        return STOPPED if front > first - AT and rear < last + AT else STUCK
 
     def course(self, chain, length, principal, leaves):
         """All of it as a record; what leaves as it should has passed, what else leaves was turned."""

@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.dropping.launches import named
 from feederscrew.dropping.plate.bowl_test import EXACT
-from feederscrew.trial import course, runs, starts, stations
+from feederscrew.trial import course, runs, starts, stations, whereabouts
 from feederscrew.trial.looks import OTHER, AspectsBelow
 from feederscrew.trial.rounding import rounded
 from feederscrew.trial.shape import solid_of
@@ -22,7 +22,7 @@ class Landing:
     launch: str
     parts: int  # N
     lost: int  # of them off the track before they had come to lie
-    fates: np.ndarray  # (A, 5) int, by the aspect on which they came to lie, at any heading; columns as
+    fates: np.ndarray  # (A, 7) int, by the aspect on which they came to lie, at any heading; columns as
     # ``course.FATES``: passed on the same aspect, turned onto another
     leaving: np.ndarray  # (S + 1,) int, orientation in which they left; the last is none of the known
     velocity: float  # [m/s] mean on the bare track; NaN where none travelled
@@ -88,7 +88,7 @@ def landing(part, bowl, aspects, every, poses, *, launch, parts, seed=1, jobs=1,
     if not on.any():
         return _told(launch, parts, aspects, poses, None, below)
     radius = bowl.track.radius / solid_of(part)[1]
-    states = runs.moved(ride.states[on], -runs.ways(ride.states[on], radius), radius)
+    states = whereabouts.moved(ride.states[on], -whereabouts.ways(ride.states[on], radius), radius)
     leaves = np.ones((len(aspects.names), len(poses)), bool)
     own = {"begun": (states, (times + ride.seconds)[on], entered[on]), "jobs": jobs, "progress": progress}
     count = int(on.sum())
@@ -108,7 +108,7 @@ def _fallen(part, bowl, every, shape, launch, parts, seed, jobs, progress):
     stage = replace(stations.plain(bowl.track, every, 2.0 * room), exit=np.inf)
     seconds = known.unit * (flight + EXACT.settling)
     ride = runs.ride(
-        known, stage, runs.moved(states, room / length, known.radius), times,
+        known, stage, whereabouts.moved(states, room / length, known.radius), times,
         limits=(seconds, 2.0 * seconds, 0.0, np.inf), every=seconds, places=1, jobs=jobs,
         progress=progress and (lambda done: progress(done, parts)),
     )  # fmt: skip

@@ -7,7 +7,7 @@ from feederscrew.dropping.shape import shape_of_part
 from feederscrew.geometry import vectors
 from feederscrew.resting.tumbling.by_class import ground
 from feederscrew.tooling.hanging import Hanging
-from feederscrew.trial import runs
+from feederscrew.trial import whereabouts
 
 ALIKE = 0.05  # of the part's size: a part whose outline is off by more lies in no known orientation
 DIRECTIONS = 160
@@ -44,13 +44,13 @@ class Looks:
 
     def _of(self, state):
         place = np.arctan2(state[0], self.radius - state[1])
-        level = runs.moved(state[None], -place * self.radius, self.radius)[0]
-        seen = vectors.product(self.corners, runs.matrix(level).T)
+        level = whereabouts.moved(state[None], -place * self.radius, self.radius)[0]
+        seen = vectors.product(self.corners, whereabouts.matrix(level).T)
         reach = vectors.product(seen, self.directions.T).max(axis=0)
         off = np.abs(self.known - reach).max(axis=1)
         best = int(np.argmin(off))
         if self.ups and state[2] < self.low:
-            up = {k: float(vectors.dot(runs.matrix(level)[2], one)) for k, one in self.ups.items()}
+            up = {k: float(vectors.dot(whereabouts.matrix(level)[2], one)) for k, one in self.ups.items()}
             return max((k for k in up if up[k] > SWINGS), key=up.get, default=OTHER)
         return best if off[best] < self.near else OTHER
 
@@ -65,7 +65,7 @@ class AspectsBelow:
 
     def of(self, states):
         """Return (N,) row of each state's aspect, OTHER where it would come to lie on none."""
-        return np.array([self._of(runs.matrix(state)) for state in states], int)
+        return np.array([self._of(whereabouts.matrix(state)) for state in states], int)
 
     def _of(self, turn):
         lowest = int(np.argmin(vectors.product(self.shape.vertices, turn[2])))

@@ -8,7 +8,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.dropping.kernel import body
 from feederscrew.tooling.hanging import Hanging
-from feederscrew.trial import course, crowd, runs, starts
+from feederscrew.trial import course, crowd, runs, starts, whereabouts
 from feederscrew.trial.kernel.crowd import BEHIND, BELOW
 from feederscrew.trial.looks import OTHER, AspectsBelow, Looks
 from feederscrew.trial.rounding import rounded
@@ -135,13 +135,13 @@ class _Queue:
         end = min((self.crowd.extents(n)[0] for n in lying), default=0.0)
         while self.waiting:
             state, length = self.fresh()
-            rear, front, _ = crowd.extents(state, self.known.solid, self.known.radius)
+            rear, front, _ = whereabouts.extents(state, self.known.solid.corners, self.known.radius)
             gap = 0.0 if self.poured else 2.0 * GAPS * self.rng.random() * length
             place = min(end, 0.0) - gap - front
             if place + rear < self.track.start / self.known.length:
                 break
             n = self.waiting.pop(0)
-            self.crowd.lay(n, runs.moved(state[None], place, self.known.radius)[0])
+            self.crowd.lay(n, whereabouts.moved(state[None], place, self.known.radius)[0])
             self.mark[n], self.since[n], self.on_others[n] = place, self.time, False
             end = place + rear
         self.most = max(self.most, int(self.crowd.on.sum()))
@@ -151,8 +151,9 @@ class _Queue:
         k = min(int(np.searchsorted(self.chances, self.rng.random() * self.chances[-1])), len(self.every) - 1)
         one, track = self.every[k], self.bowl.track
         if not self.poured:
-            aside = starts.PLAY * self.rng.random()
-            state = runs.laid(one, self.principal, self.known.length, track, place=0.0, aside=aside)
+            play = starts.PLAY * self.rng.random()
+            state = whereabouts.laid(one, self.principal, self.known.length, track, place=0.0)
+            state = starts.clear(state, self.known.solid, track, self.known.length, play)
             return state, one.length / self.known.length
         radius, state = self.known.solid.radius, np.zeros(body.STATE)
         turn = self.rng.standard_normal(4)
@@ -163,10 +164,10 @@ class _Queue:
     def ride(self, turn):
         """Move all for one period of the drive, and look what became of them."""
         lying = np.flatnonzero(self.crowd.on)
-        before = runs.ways(self.crowd.arrays.states, self.known.radius)
+        before = whereabouts.ways(self.crowd.arrays.states, self.known.radius)
         self.depth = max(self.depth, self.crowd.ride(turn))
         self.periods += 1
-        ways = runs.ways(self.crowd.arrays.states, self.known.radius)
+        ways = whereabouts.ways(self.crowd.arrays.states, self.known.radius)
         self.way.append((ways - before)[lying].mean())
         reach = {n: self.crowd.extents(n) for n in lying}
         order = sorted(lying, key=lambda n: -ways[n])

@@ -45,7 +45,7 @@ class TrialRun:
 
     @cached_property
     def counts(self):
-        """Return (M, 5) int, parts by the orientation laid down and by fate, columns as ``course.FATES``."""
+        """Return (M, 7) int, parts by the orientation laid down and by fate, columns as ``course.FATES``."""
         found = np.zeros((len(self.shares), len(course.FATES)), int)
         np.add.at(found, (self.course.entered, self.course.fates), 1)
         return found
@@ -95,14 +95,25 @@ class TrialRun:
 
     @property
     def velocity(self):
-        """Return the mean velocity on the bare track [m/s], by the shares; NaN where none travels."""
-        found, weights = (
-            self.course.velocities,
-            (self.shares / np.maximum(self.tried, 1))[self.course.entered],
-        )
-        travels = np.isfinite(found)
-        weight = weights[travels].sum()
-        return float((weights * found)[travels].sum() / weight) if weight > 0.0 else np.nan
+        """Return the mean velocity on the bare track [m/s] of the parts that travel up it, by the shares.
+
+        Where none does it is that of those that roll back; NaN where none moves on.
+        """
+        up = self._mean(self.course.velocities > 0.0)
+        return up if np.isfinite(up) else self.rolling_back
+
+    @property
+    def rolling_back(self):
+        """Return the mean velocity on the bare track [m/s] of parts that roll back; NaN where none does."""
+        return self._mean(self.course.velocities < 0.0)
+
+    def _mean(self, which):
+        """Mean velocity of some of the parts that do not stick on the bare track, by the shares."""
+        found = self.course
+        which &= ~((found.ended == 0) & np.isin(found.fates, (course.STOPPED, course.STUCK)))
+        weights = (self.shares / np.maximum(self.tried, 1))[found.entered][which]
+        total = weights.sum()
+        return float((weights * found.velocities[which]).sum() / total) if total > 0.0 else np.nan
 
     @property
     def parts(self):
@@ -121,7 +132,7 @@ class TrialRun:
         """Count parts that neither passed nor were returned; in a queue, those that had to be taken out."""
         if self.queue is not None:
             return self.queue.jams
-        return int(self.counts[:, [course.HANGING, course.STUCK]].sum())
+        return int(self.counts[:, [course.HANGING, course.STOPPED, course.STUCK]].sum())
 
     @property
     def predicted(self):

@@ -5,7 +5,7 @@ import numpy as np
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.launches import sample
 from feederscrew.geometry import vectors
-from feederscrew.trial import runs
+from feederscrew.trial import whereabouts
 
 PLAY = 5e-5  # [m] from the wall, at most, where a part is laid down
 TURN = np.radians(0.1)  # [rad] of its heading, at most
@@ -40,13 +40,24 @@ def laid_down(bowl, every, entered, solid, principal, length, seed):
         rng = np.random.default_rng((seed, n))
         play, turn, phase = rng.random(3)
         lean = TURN * (2.0 * turn - 1.0)
-        states[n] = runs.laid(
+        states[n] = whereabouts.laid(
             every[k], principal, length, bowl.track, place=0.0,
-            aside=PLAY * play + 0.5 * every[k].length * abs(lean), turn=lean,
+            turn=lean,
         )  # fmt: skip
         states[n, body.Z] -= lowest(solid.corners, states[n])
+        states[n] = clear(states[n], solid, bowl.track, length, PLAY * play)
         times[n] = phase / bowl.drive.frequency
     return states, times
+
+
+def clear(state, solid, track, length, play):
+    """Return a part's state moved along the track's width until it is ``play`` [m] from the upright wall."""
+    spots = state[:3] + vectors.product(solid.corners, whereabouts.matrix(state).T)
+    radius, lean, up = track.radius / length, np.sin(track.bank), np.cos(track.bank)
+    gap = up * (radius - np.hypot(spots[:, 0], radius - spots[:, 1])) - lean * spots[:, 2]
+    out = state[:2] - [0.0, radius]
+    state[:2] += out / np.hypot(*out) * (gap.min() - play / length) / up
+    return state
 
 
 def falling(bowl, launch, shape, count, length, seed):
@@ -79,4 +90,4 @@ def falling(bowl, launch, shape, count, length, seed):
 
 def lowest(corners, state):
     """Return the height of the lowest corner (C, 3) of a part."""
-    return state[body.Z] + vectors.product(corners, runs.matrix(state)[2]).min()
+    return state[body.Z] + vectors.product(corners, whereabouts.matrix(state)[2]).min()

@@ -16,7 +16,7 @@ from feederscrew.dropping.plate import drive, rides
 from feederscrew.geometry import vectors
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import looks, runs, shape, stations
+from feederscrew.trial import looks, runs, shape, stations, whereabouts
 from feederscrew.trial.kernel import edges
 
 BOWL = bowls.read(
@@ -56,7 +56,7 @@ def rode(block, one, bowl, state, seconds, every=None):
 
 def laid(block, one, bowl, **own):
     _, length, principal = shape.solid_of(block[0])
-    return runs.laid(one, principal, length, bowl.track, place=0.0, aside=1e-3, **own)
+    return whereabouts.laid(one, principal, length, bowl.track, place=0.0, aside=1e-3, **own)
 
 
 @pytest.mark.parametrize(
@@ -169,10 +169,12 @@ def test_the_state_of_a_part_turns_about_the_axis_of_the_bowl(block):
     one = flat(block[1], 0.012)
     state = laid(block, one, BOWL)[None]
     radius = BOWL.track.radius / shape.solid_of(block[0])[1]
-    there = runs.moved(state, 30.0, radius)
-    assert runs.ways(there, radius)[0] == pytest.approx(30.0)
-    np.testing.assert_allclose(runs.moved(there, -30.0, radius), state, atol=1e-9)
-    np.testing.assert_allclose(runs.quaternion(runs.matrix(state[0])), state[0][6:10], atol=1e-12)
+    there = whereabouts.moved(state, 30.0, radius)
+    assert whereabouts.ways(there, radius)[0] == pytest.approx(30.0)
+    np.testing.assert_allclose(whereabouts.moved(there, -30.0, radius), state, atol=1e-9)
+    np.testing.assert_allclose(
+        whereabouts.quaternion(whereabouts.matrix(state[0])), state[0][6:10], atol=1e-12
+    )
 
 
 def lies_on_the_plate(part, bowl, launched, settled):
@@ -190,7 +192,7 @@ def lies_on_the_track(part, bowl, launched, settled):
     states, seconds = np.array(launched.states), settled * known.unit
     states[:, body.Y] += 0.5 * bowl.track.width / length
     ride = runs.ride(
-        known, stations.plain(bowl.track, every, 1.0), runs.moved(states, 0.5 / length, known.radius),
+        known, stations.plain(bowl.track, every, 1.0), whereabouts.moved(states, 0.5 / length, known.radius),
         np.zeros(len(states)), limits=(seconds, 2.0 * seconds, 0.0, np.inf), every=seconds, places=1,
     )  # fmt: skip
     return looks.AspectsBelow(part, find(part)).of(ride.states)
@@ -226,7 +228,7 @@ def test_nothing_passes_the_edges_below_the_surface(block, axes, place, speed, l
     stage = stations.station(Device("gap", "9 mm", limit=9e-3), track, block[1])
     u, v = (vectors.unit(np.array(axis)) for axis in axes)
     state = np.zeros(body.STATE)
-    state[body.Q : body.Q + 4] = runs.quaternion(np.column_stack([u, v, np.cross(u, v)]) @ principal)
+    state[body.Q : body.Q + 4] = whereabouts.quaternion(np.column_stack([u, v, np.cross(u, v)]) @ principal)
     state[:3] = 1e-3 * np.array(place) / length
     state[body.VX : body.VX + 2] = np.array(speed) / length * known.unit
     points = 1e-3 * np.linspace(*np.array(line), 61)
@@ -236,7 +238,7 @@ def test_nothing_passes_the_edges_below_the_surface(block, axes, place, speed, l
             known, stage, state[None], np.zeros(1), limits=(2e-3, 1.0, 0.0, 1.0), every=1.0, places=1
         )
         state = np.array(ride.states[0])
-        own = (points - length * state[:3]) @ runs.matrix(state) @ principal.T
+        own = (points - length * state[:3]) @ whereabouts.matrix(state) @ principal.T
         inside = max(inside, float((half - np.abs(own)).min(axis=1).max()))
     assert ride.ways[0] < 3e-4  # [m] of the last 2 ms, of 4e-4 without the edge
     assert inside < 5e-5

@@ -12,7 +12,7 @@ from feederscrew.dropping.kernel import body
 from feederscrew.resting.aspects import find
 from feederscrew.resting.counts import profiles
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import crowd, looks, outlet, queue, runs, shape
+from feederscrew.trial import crowd, looks, outlet, queue, runs, shape, whereabouts
 from feederscrew.trial.kernel.crowd import BEHIND, BELOW
 
 OWN = [
@@ -35,7 +35,7 @@ def parts_on(bowl, *places, heights=None, friction=None):
         known = replace(known, friction=np.full(5, friction))
     on = crowd.PartsOnTrack(known, crowd.crowded(bowl, EVERY, (), 0.5), len(places))
     for n, place in enumerate(places):
-        state = runs.laid(FLAT, PRINCIPAL, LENGTH, bowl.track, place=place, aside=1e-3)
+        state = whereabouts.laid(FLAT, PRINCIPAL, LENGTH, bowl.track, place=place, aside=1e-3)
         state[body.Z] += 0.0 if heights is None else heights[n] / LENGTH
         on.lay(n, state)
     return on
@@ -154,6 +154,6 @@ def test_what_left_stands_beside_what_was_measured():
 def test_a_part_lies_on_its_aspect_at_any_heading():
     below = looks.AspectsBelow(PART, ASPECTS)
     for one in EVERY:
-        laid = [runs.laid(replace(one, heading=turn), PRINCIPAL, LENGTH, BOWL.track, place=0.0)
+        laid = [whereabouts.laid(replace(one, heading=turn), PRINCIPAL, LENGTH, BOWL.track, place=0.0)
                 for turn in (0.0, 1.0, 4.0)]  # fmt: skip
         assert [ASPECTS.names[row] for row in below.of(laid)] == [one.aspect] * 3

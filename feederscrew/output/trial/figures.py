@@ -12,6 +12,8 @@ COLOURS = {
     "turned": "#56b4e9",
     "returned": "#d55e00",
     "hanging": "#cc79a7",
+    "stopped": "#e69f00",
+    "rolled_back": "#009e73",
     "stuck": "#7a5c3e",
 }
 TRACK = "#e3e8ec"
@@ -36,7 +38,9 @@ def matrix(run):
     lost = [fate for fate in range(course.RETURNED, len(course.FATES)) if run.counts[rows, fate].any()]
     counts = np.column_stack([run.matrix[rows][:, out], run.counts[rows][:, lost]])
     shown = counts / run.tried[rows][:, None]
-    titles = [names[m] for m in out] + [STAYS.get(fate, course.FATES[fate]) for fate in lost]
+    titles = [names[m] for m in out] + [
+        STAYS.get(fate, course.FATES[fate].replace("_", "\n")) for fate in lost
+    ]
     figure = style.figure(max(4.2, 1.8 + 0.62 * len(titles)), 1.5 + 0.3 * len(rows))
     axes = figure.add_subplot()
     axes.imshow(shown, cmap="Blues", vmin=0.0, vmax=1.25, aspect="auto")
@@ -89,7 +93,7 @@ def paths(run):
             ylim=(1.25 * widest / MM + 4.0, -1.0),
         )
     for fate, colour in COLOURS.items():
-        panels[0].plot([], [], color=colour, label=fate)
+        panels[0].plot([], [], color=colour, label=fate.replace("_", " "))
     panels[0].legend(fontsize=7, frameon=False, ncols=4, loc="lower right")
     return figure
 

@@ -20,7 +20,7 @@ class ShownRide:
         """'A@0 at gap 9 mm: returned'."""
         device = found.stations[self.place].device
         where = f"{device.kind.replace('_', ' ')} {device.text}".strip()
-        return f"{self.orientation} at {where}: {self.fate}"
+        return f"{self.orientation} at {where}: {self.fate.replace('_', ' ')}"
 
 
 def shown(run):

@@ -36,6 +36,7 @@ def _run(study, run):
         "amplitude_mm": run.bowl.drive.amplitude / MM,
         "throw_number": run.throw_number,
         "velocity_mm_s": run.velocity / MM_S,
+        "rolls_back_mm_s": run.rolling_back / MM_S,
         "parts_per_minute": run.parts / PER_MINUTE,
         "efficiency": run.efficiency,
         "purity": run.purity,
@@ -177,7 +178,7 @@ def stations(run):
             came = before == k
             for m in np.unique(after[came & (after > -2)]):
                 rows.append((place, station.device.kind, _name(run, k), _name(run, m), came & (after == m)))
-            for fate in (course.RETURNED, course.HANGING, course.STUCK):
+            for fate in range(course.RETURNED, len(course.FATES)):
                 here = came & (found.ended == place) & (found.fates == fate)
                 if here.any():
                     rows.append((place, station.device.kind, _name(run, k), course.FATES[fate], here))
@@ -191,9 +192,11 @@ def summary(study):
     yield f"orientations in the shares of {study.answer}"
     for run in study.runs:
         at = f"amplitude {run.bowl.drive.amplitude / MM:.4g} mm, throw number {run.throw_number:.3g}: "
+        back = run.rolling_back / MM_S
+        beside = f" (those that roll back {back:.4g} mm/s)" if np.isfinite(back) else ""
         yield at + (
-            f"{run.velocity / MM_S:.4g} mm/s, {run.parts / PER_MINUTE:.4g} parts per minute, efficiency "
-            f"{100.0 * run.efficiency:.4g} %, purity {100.0 * np.nan_to_num(run.purity):.4g} %"
+            f"{run.velocity / MM_S:.4g} mm/s{beside}, {run.parts / PER_MINUTE:.4g} parts per minute, "
+            f"efficiency {100.0 * run.efficiency:.4g} %, purity {100.0 * np.nan_to_num(run.purity):.4g} %"
         )
         yield (
             f"in {run.course.seconds.sum():.4g} part-seconds nothing was deeper in anything than "

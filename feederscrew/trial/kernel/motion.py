@@ -28,6 +28,7 @@ class StageSurface(NamedTuple):
 
     radius: float  # of the wall
     gravity: np.ndarray  # (3,) ahead, from the wall inwards, up
+    upright: np.ndarray  # (2,) inwards and up: the bowl's axis, along which it moves and the wall stands
     plates: np.ndarray  # (P, 17) rows as ``search`` names their columns
     borders: np.ndarray  # (B, 10) start, end, normal away, corner at the start, end of drawing, normal before
     friction: np.ndarray  # (5,) static and kinetic ahead, static and kinetic back, wall
@@ -51,8 +52,9 @@ def forces(surface, floor, time, dt, state):
     off = math.sqrt(x * x + y * y)
     c, s = y / off, x / off
     ahead, rise = floors.quickening(floor, time, dt)
-    along, across = dt * surface.gravity[0] - ahead * off / surface.radius, dt * surface.gravity[1]
-    upward = dt * surface.gravity[2] - rise
+    along = dt * surface.gravity[0] - ahead * off / surface.radius
+    across = dt * surface.gravity[1] - rise * surface.upright[0]
+    upward = dt * surface.gravity[2] - rise * surface.upright[1]
     return c * along - s * across, s * along + c * across, upward, ahead / surface.radius
 
 
@@ -78,9 +80,9 @@ def found(surface, solid, work, reach):
     tangent[0], tangent[1] = y / off, x / off
     search.placed(solid.corners, turn, work.spots)
     count = 0
-    if off + solid.radius > surface.radius - reach:
+    if off + solid.radius > (surface.radius - reach) * surface.upright[1]:
         count = search.on_wall(
-            work.shown, work.spots, state, turn, solid.inertia, surface.radius, tangent, reach, work.low,
+            work.shown, work.spots, state, turn, solid.inertia, surface, tangent, reach, work.low,
             contacts, count,
         )  # fmt: skip
     least = 0.0

@@ -20,7 +20,8 @@ LEVEL = 0.7  # [1] of a normal against a plate's front: one that lies flatter st
 DEEP = 0.03  # how far behind a surface an edge may be found, in units of the part's length
 WAYS, FALL = 6, 20.0  # corners are sought in so many directions, a lower one rather than one further out
 ORIGIN, ACROSS, ALONG, FRONT, DEPTH, ROUNDED, FIRST, LAST = 0, 3, 6, 9, 12, 13, 14, 15  # of a plate's row
-BACK = 16  # of a row: the back of the plate before it
+RUBS = 16  # its own friction; NaN: that of the track
+BACK = 17  # of a row: the back of the plate before it
 
 
 @compiled
@@ -168,27 +169,30 @@ def _outermost(shown, low, count):
 
 
 @compiled
-def on_wall(shown, spots, state, turn, inertia, radius, tangent, reach, low, contacts, count):
-    """Add contacts with the wall, a cylinder about the bowl's axis that a part is inside of."""
-    limit, lows = (radius - reach) * (radius - reach), 0
+def on_wall(shown, spots, state, turn, inertia, surface, tangent, reach, low, contacts, count):
+    """Add contacts with the wall, which stands upright about the bowl's axis, a part inside of it.
+
+    Square to the track only where that has no bank: in the track's frame it is a cone.
+    """
+    radius, lean, up = surface.radius, surface.upright[0], surface.upright[1]
+    lows = 0
     for k in range(len(spots)):
         x, y = state[X] + spots[k, 0], state[Y] + spots[k, 1] - radius
-        square = x * x + y * y
-        if square > limit:
+        gap = up * (radius - math.sqrt(x * x + y * y)) - lean * (state[Z] + spots[k, 2])
+        if gap < reach:
             shown[k, 0], shown[k, 1] = tangent[0] * spots[k, 0] + tangent[1] * spots[k, 1], spots[k, 2]
-            shown[k, 2] = radius - math.sqrt(square)
+            shown[k, 2] = gap
             low[lows] = k
             lows += 1
     if lows > WAYS + 1:
         lows = _outermost(shown, low, lows)
     for m in range(lows):
         k = low[m]
-        gap = shown[k, 2]
-        far = radius - gap
-        x, y = (state[X] + spots[k, 0]) / far, (state[Y] + spots[k, 1] - radius) / far
+        x, y = state[X] + spots[k, 0], state[Y] + spots[k, 1] - radius
+        far = math.sqrt(x * x + y * y)
         count = add(
             contacts, count, turn, inertia, tangent, spots[k, 0], spots[k, 1], spots[k, 2],
-            -x, -y, 0.0, gap, 1.0,
+            -up * x / far, -up * y / far, -lean, shown[k, 2], 1.0,
         )  # fmt: skip
     return count
 

@@ -8,7 +8,7 @@ from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.trial.kernel.balance import unpaid
 from feederscrew.trial.kernel.motion import step
 
-RUNNING, PASSED, RETURNED = 0, 1, 2
+RUNNING, PASSED, RETURNED, STANDS, ROLLED = range(5)  # STANDS gets on no more, ROLLED went back
 TIME, MOVED, SUNK, WON, NOTES = 0, 1, 2, 3, 4  # what a run notes: time, way, depth, energy; how many
 LEFT = 1e-6  # of a step: less is nothing
 
@@ -44,7 +44,7 @@ def travel(surface, solid, floor, work, time, every, path, notes):
     Returns
     -------
     int
-        PASSED, RETURNED or RUNNING.
+        PASSED, RETURNED, STANDS, ROLLED or, where its time was up, RUNNING.
     """
     state, dt, begun, start = work.state, floor.step, time, way(surface, work.state)
     work.memory[0] = -1.0
@@ -55,6 +55,7 @@ def travel(surface, solid, floor, work, time, every, path, notes):
         if k % apart == apart - 1:
             place = way(surface, state)
             if place - mark < surface.progress and level - state[Z] < surface.progress:
+                outcome = STANDS if place - mark > -surface.progress else ROLLED
                 break
             mark, level = place, state[Z]
         if k % every == 0 and noted < len(path):
@@ -81,6 +82,7 @@ def travel(surface, solid, floor, work, time, every, path, notes):
             outcome = PASSED if state[Z] > surface.under else RETURNED
             break
         if place < surface.back:
+            outcome = ROLLED
             break
     notes[TIME], notes[MOVED] = time - begun, way(surface, state) - start
     notes[SUNK], notes[WON] = -sunk, won

@@ -1,0 +1,231 @@
+"""What stands along the track as solid plates with borders in the bowl's own frame."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from feederscrew import check
+from feederscrew.tooling.orientations import ROUNDED
+from feederscrew.tooling.strip import bent
+from feederscrew.trial.kernel import search
+
+BEHIND = 0.5  # of the part's size: how far the track is drawn behind the wall
+CHORD = 5e-6  # [m] by which an arc may be seen too flat
+SMOOTH = 2e-6  # [m] corners of a border that stand out by less are left out
+CORNER = 1e-4  # [rad] a border that turns by less has no corner
+SPARE = 0.1  # of the part's size: how far before a device parts begin, and behind it they end
+BEFORE, AFTER = 1.2, 0.8  # of the part's size: track before where parts begin and behind where they end
+FAR = 10.0  # [m] beyond any opening
+THICK = 4e-3  # [m] of the track: deeper down its sides hold nothing
+WIDEST = 0.95  # of the radius: a wider track is not drawn whole
+OWN = np.nan  # friction of a plate that has that of the track
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """One device, or a stretch of the bare track, as solid geometry in the bowl's frame."""
+
+    device: object  # bowl.devices.Device
+    plates: np.ndarray  # (P, 17) [m], [1] as `trial.kernel.search` names the columns
+    borders: np.ndarray  # (B, 10) [m], [1]
+    begin: float  # [m] along the wall, where the part's centre of mass starts
+    exit: float  # [m] where it has passed
+    cut: tuple[float, float] = (np.inf, -np.inf)  # [m] along the wall, where the device begins and ends
+    drop: float = 0.0  # [m] by which the track lies lower there
+    aside: float = 0.0  # [m] from the wall, where a track that lies lower begins
+    below: bool = False  # whether parts leave hanging, their centres of mass below the track
+
+
+def size_of(every):
+    """Return the greatest length [m] of orientations, in the plane of the track or across it."""
+    return max(np.hypot(one.length, max(one.width, one.height)) for one in every)
+
+
+def width_of(track):
+    """Return the width [m] of a track as it is drawn."""
+    return min(track.width, WIDEST * track.radius)
+
+
+def stage(device, standing, track, every, start=0.0):
+    """Return one device with enough track before and behind it.
+
+    Parameters
+    ----------
+    device : Device
+    standing : Standing
+        What it has along the track.
+    track : Track
+    every : sequence of Orientation
+        Of the part.
+    start : float [m]
+        Where the device begins.
+
+    Returns
+    -------
+    Stage
+    """
+    size = size_of(every)
+    begin, beyond = start - (0.5 + SPARE) * size, passed(standing, start, size)
+    ends = begin - BEFORE * size, beyond + AFTER * size
+    return Stage(
+        device, *built([(standing, start, ends[1])], track, size, ends), begin=begin, exit=beyond,
+        cut=(start, start + standing.length), drop=standing.drop, aside=standing.aside, below=standing.hangs,
+    )  # fmt: skip
+
+
+def plain(device, track, every, length):
+    """Return a stretch of the bare track, from 0 to ``length`` [m]."""
+    size = size_of(every)
+    bare = built((), track, size, (-BEFORE * size, length + AFTER * size))
+    return Stage(device, *bare, begin=0.0, exit=length)
+
+
+def passed(standing, start, size):
+    """Return where [m] along the wall a centre of mass has passed a device that begins at ``start``."""
+    return start + standing.length + (standing.settles + 0.5 + SPARE) * size
+
+
+def built(placed, track, size, ends):
+    """Return plates (P, 17) and borders (B, 10) of a stretch of track with devices along it.
+
+    Parameters
+    ----------
+    placed : sequence of (Standing, float [m], float [m])
+        In the order parts meet them: where each begins, and where the track above its drop ends.
+    track : Track
+    size : float [m]
+        Of the part.
+    ends : (float [m], float [m])
+        Along the wall.
+    """
+    level, first, holes, plates, blades = 0.0, ends[0], [], [], []
+    for standing, start, last in placed:
+        holes += [(hole.outline, start) for hole in standing.holes]
+        blades += [_blade(blade, track, start, size, level) for blade in standing.blades]
+        if standing.drop > 0.0:
+            plates.append(_floor(holes, track, size, ends, (first, last), level, depth=standing.drop + THICK))
+            level, first, holes = level - standing.drop, start - THICK, []
+        for plate in standing.plates:
+            own = max(start + plate.begin, ends[0]), min(start + plate.end, ends[1])
+            plates.append(_floor((), track, size, ends, own, level + plate.level))
+    plates.append(_floor(holes, track, size, ends, (first, ends[1]), level))
+    return stacked([*plates, *blades])
+
+
+def _floor(holes, track, size, ends, own, level, depth=THICK):
+    """A level surface: a sector about the bowl's axis between two places, without the holes."""
+    behind, width = BEHIND * size, width_of(track)
+    length = own[1] - own[0]
+    coarse = np.linspace(*own, max(int(length / behind), 2) + 1)  # nothing comes there
+    fine = np.linspace(*own, int(length / np.sqrt(8.0 * track.radius * CHORD)) + 2)[::-1]
+    ring = np.vstack([_arc(coarse, -behind, track.radius), _arc(fine, width, track.radius)])
+    area = shapely.Polygon(ring)
+    for outline, start in holes:
+        taken = np.array(outline, float)
+        taken[:, 0] = np.minimum(taken[:, 0] + start, own[1] + behind)
+        taken[:, 1] = np.where(taken[:, 1] <= 0.0, -2.0 * behind, taken[:, 1])
+        taken[:, 1] = np.where(taken[:, 1] >= width - 1e-9, width + behind, taken[:, 1])
+        area = area.difference(shapely.make_valid(shapely.Polygon(bent(taken, track.radius, chord=CHORD))))
+    frame = np.array([[0.0, 0.0, level], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    return frame, depth, OWN, rings(area, lambda a, b: drawn_end(a, b, track.radius, ends))
+
+
+def _arc(places, across, radius):
+    """Points (K, 2) [m] at lengths along the wall and one distance from it, in the bowl's frame."""
+    theta, off = places / radius, radius - across
+    return np.column_stack([off * np.sin(theta), radius - off * np.cos(theta)])
+
+
+def drawn_end(a, b, radius, ends):
+    """Return whether a border is where the drawing ends: behind the wall, or at either end of the stretch."""
+    near = 1e-6 * radius
+    off = [np.hypot(x, radius - y) for x, y in (a, b)]
+    place = [radius * np.arctan2(x, radius - y) for x, y in (a, b)]
+    return min(off) > radius + near or max(place) < ends[0] + near or min(place) > ends[1] - near
+
+
+def _blade(blade, track, start, size, level):
+    """A blade as a plate seen by the part that arrives: along its face from the foot, and upwards.
+
+    It goes on into wall and track where it reaches them: a corner that touches either does not slip past it.
+    """
+    behind = BEHIND * size
+    at_wall = blade.foot[1] <= 0.0
+    solid = _onwards(blade.solid, behind, at_wall)
+    theta = (start + blade.foot[0]) / track.radius
+    ahead = np.array([np.cos(theta), np.sin(theta), 0.0])
+    inwards = np.array([-ahead[1], ahead[0], 0.0])
+    origin = np.array([0.0, track.radius, level]) - (track.radius - blade.foot[1]) * inwards
+    along = np.cos(blade.heading) * ahead + np.sin(blade.heading) * inwards
+    front = np.array([-along[1], along[0], 0.0])  # against the part that arrives
+    frame = np.array([origin, along, [0.0, 0.0, 1.0], front])
+    own = OWN if blade.friction is None else blade.friction
+    near = 0.0 if at_wall else -np.inf
+    borders = rings(solid, lambda a, b: max(a[0], b[0]) <= near or max(a[1], b[1]) <= 0.0)
+    return frame, blade.thickness, own, borders
+
+
+def _onwards(solid, behind, at_wall):
+    """What is solid of a blade, going on into the wall and into the track where it reaches them."""
+    made = [solid]
+    if at_wall:
+        beside = shapely.get_parts(solid.intersection(shapely.box(0.0, -FAR, SMOOTH, FAR)))
+        made += [shapely.box(-behind, low, SMOOTH, high) for _, low, _, high in shapely.bounds(beside)]
+        solid = shapely.union_all(made)
+    under = shapely.get_parts(solid.intersection(shapely.box(-FAR, 0.0, FAR, SMOOTH)))
+    made += [shapely.box(near, -behind, far, SMOOTH) for near, _, far, _ in shapely.bounds(under)]
+    return shapely.union_all(made)
+
+
+def rings(area, is_end):
+    """Return borders (B, 10) of a solid area: start, end, normal away, corner, end of drawing, normal before.
+
+    Parameters
+    ----------
+    area : shapely geometry
+    is_end : function
+        Of both ends (2,) of a border: whether what is drawn ends there, not what is solid.
+    """
+    found = []
+    for one in shapely.get_parts(shapely.simplify(area, SMOOTH)):
+        if one.geom_type != "Polygon" or one.area <= 0.0:
+            continue
+        one = shapely.geometry.polygon.orient(one)  # the solid on the left
+        for ring in (one.exterior, *one.interiors):
+            points = np.asarray(ring.coords)[:-1, :2]
+            found += _ring(points, is_end)
+    return np.array(found).reshape(-1, 10)
+
+
+def _ring(points, is_end):
+    after, before = np.roll(points, -1, axis=0), np.roll(points, 1, axis=0)
+    for p, q, o in zip(points, after, before):
+        along, came = q - p, p - o
+        size = np.hypot(*along)
+        bend = np.arctan2(came[0] * along[1] - came[1] * along[0], came[0] * along[0] + came[1] * along[1])
+        end = is_end(p, q)
+        corner = bend > CORNER and not end and not is_end(o, p)
+        before = np.array([came[1], -came[0]]) / np.hypot(*came)
+        yield [*p, *q, along[1] / size, -along[0] / size, float(corner), float(end), *before]
+
+
+def stacked(plates):
+    """Return plates as rows (P, 17), and all borders (B, 10) one below the other."""
+    rows, first = [], 0
+    for frame, depth, friction, borders in plates:
+        last = first + len(borders)
+        rows.append([*frame.ravel(), depth, ROUNDED, first, last, friction])
+        first = last
+    borders = np.concatenate([borders for *_, borders in plates])
+    return check.frozen(np.array(rows, float)), check.frozen(borders)
+
+
+def with_backs(plates):
+    """Return rows (2 P, 18) of plates (P, 17), each with that of its back, seen from behind, after it."""
+    backs = np.array(plates)
+    front = backs[:, search.FRONT : search.DEPTH]
+    backs[:, search.ORIGIN : search.ACROSS] -= backs[:, [search.DEPTH]] * front
+    front *= -1.0
+    both = np.stack([plates, backs], axis=1).reshape(-1, plates.shape[1])
+    return np.column_stack([both, np.resize([0.0, 1.0], len(both))])

@@ -1,0 +1,100 @@
+"""Where parts are: states laid on the track, turned about the bowl's axis, and how far they reach."""
+
+import numpy as np
+
+from feederscrew.dropping.kernel import body
+from feederscrew.geometry import vectors
+
+
+def laid(orientation, principal, length, track, *, place, aside=0.0, turn=0.0):
+    """Return the state of a part laid on the track in an orientation.
+
+    Parameters
+    ----------
+    orientation : Orientation
+    principal : (3, 3) float [1]
+        From ``solid_of``.
+    length : float [m]
+        The unit of length.
+    track : Track
+    place : float [m]
+        Of its centre of mass along the wall.
+    aside : float [m]
+        From the wall.
+    turn : float [rad]
+        Of its heading, counter-clockwise.
+
+    Returns
+    -------
+    (13,) float
+    """
+    theta, angle = place / track.radius, place / track.radius + orientation.heading + turn
+    axes = vectors.product(_about_z(angle), vectors.product(orientation.posture.axes, principal))
+    off = track.radius - orientation.distance - aside
+    state = np.zeros(body.STATE)
+    state[:3] = off * np.sin(theta), track.radius - off * np.cos(theta), orientation.posture.height
+    state[:3] /= length
+    state[body.Q : body.Q + 4] = quaternion(axes)
+    return state
+
+
+def _about_z(angle):
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def quaternion(axes):
+    """Return the quaternion (4,), w x y z, of a rotation matrix (3, 3)."""
+    trace = np.array([axes.trace(), *np.diag(axes)])
+    k = int(np.argmax(trace))
+    if k == 0:
+        spun = [axes[2, 1] - axes[1, 2], axes[0, 2] - axes[2, 0], axes[1, 0] - axes[0, 1]]
+        found = np.array([1.0 + trace[0], *spun])
+    else:
+        i, j, m = k - 1, k % 3, (k + 1) % 3
+        found = np.zeros(4)
+        found[0] = axes[m, j] - axes[j, m]
+        found[1 + i] = 1.0 + axes[i, i] - axes[j, j] - axes[m, m]
+        found[1 + j] = axes[j, i] + axes[i, j]
+        found[1 + m] = axes[m, i] + axes[i, m]
+    return found / vectors.length(found)
+
+
+def matrix(state):
+    """Return the rotation matrix (3, 3) of a state, body to bowl."""
+    a, b, c, d = state[body.Q : body.Q + 4]
+    return np.array(
+        [
+            [1.0 - 2.0 * (c * c + d * d), 2.0 * (b * c - a * d), 2.0 * (b * d + a * c)],
+            [2.0 * (b * c + a * d), 1.0 - 2.0 * (b * b + d * d), 2.0 * (c * d - a * b)],
+            [2.0 * (b * d - a * c), 2.0 * (c * d + a * b), 1.0 - 2.0 * (b * b + c * c)],
+        ]
+    )
+
+
+def ways(states, radius):
+    """Return how far along the wall states (N, 13) are (N,), in the unit of length of the radius."""
+    return radius * np.arctan2(states[:, 0], radius - states[:, 1])
+
+
+def extents(state, corners, radius):
+    """Return how far a part of some corners reaches along the wall, rear and front, and its lowest point."""
+    spots = state[:3] + vectors.product(corners, matrix(state).T)
+    along = radius * np.arctan2(spots[:, 0], radius - spots[:, 1])
+    return along.min(), along.max(), spots[:, 2].min()
+
+
+def moved(states, by, radius):
+    """Return states (N, 13) turned about the bowl's axis by ways along the wall, in one unit of length."""
+    theta = np.broadcast_to(np.asarray(by) / radius, len(states))
+    c, s = np.cos(theta), np.sin(theta)
+    out = np.array(states, float)
+    for first, middle in ((0, radius), (3, 0.0)):
+        x, y = states[:, first], states[:, first + 1] - middle
+        out[:, first], out[:, first + 1] = c * x - s * y, s * x + c * y + middle
+    a, d = np.cos(0.5 * theta), np.sin(0.5 * theta)
+    w, x, y, z = (states[:, body.Q + k] for k in range(4))
+    out[:, body.Q : body.Q + 4] = np.column_stack(
+        [a * w - d * z, a * x - d * y, a * y + d * x, a * z + d * w]
+    )
+    return out
