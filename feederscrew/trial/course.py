@@ -38,7 +38,7 @@ class Course:
     fell: np.ndarray  # (N,) [m] along the wall from the device's start, where it ended
     rides: tuple  # runs.Runs of each station, of the parts that came so far
     riders: tuple  # (P,) int, which parts those are
-    stations: tuple  # scene.Stage
+    stations: tuple  # staging.Stage
     length: float  # [m] the unit of length of the states
     principal: np.ndarray  # (3, 3) [1]
     partial: bool

@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry.compiled import on_disk
-from feederscrew.trial import runs, scene, stations, whereabouts
+from feederscrew.trial import runs, staging, stations, whereabouts
 from feederscrew.trial.kernel import contact
 from feederscrew.trial.kernel import crowd as kernel
 from feederscrew.trial.kernel.pairs import Crowd
@@ -20,7 +20,7 @@ TAIL = 0.7  # of the part's size: track that is drawn behind the outlet
 class CrowdedTrack:
     """The bare track for a row, then the devices one behind the other; D devices."""
 
-    stage: scene.Stage
+    stage: staging.Stage
     start: float  # [m] along the wall, where the drawn track begins
     windows: np.ndarray  # (D, 2) [m] where each device's stretch begins and ends
     levels: np.ndarray  # (D + 1,) [m] of the track before the first device and behind each
@@ -45,10 +45,10 @@ def crowded(bowl, every, devices, room):
     CrowdedTrack
     """
     track, place, level, windows, placed = bowl.track, 0.0, 0.0, [], []
-    size = scene.size_of(every)
+    size = staging.size_of(every)
     for device in [device for device in devices if device.kind != "yield"]:
-        standing, start = stations.standing(device, track, every), place + (0.5 + scene.SPARE) * size
-        last = scene.passed(standing, start, size)
+        standing, start = stations.standing(device, track, every), place + (0.5 + staging.SPARE) * size
+        last = staging.passed(standing, start, size)
         placed.append((standing, start, last))
         level -= standing.drop
         windows.append((place, last, level))
@@ -56,8 +56,8 @@ def crowded(bowl, every, devices, room):
     if placed:  # a ledge goes on behind the outlet
         placed[-1] = (*placed[-1][:2], place + TAIL * size)
     ends = -room - size, place + TAIL * size
-    made = scene.built(placed, track, size, ends)
-    stage = scene.Stage(stations.BARE, *made, begin=-room, exit=np.inf)
+    made = staging.built(placed, track, size, ends)
+    stage = staging.Stage(stations.BARE, *made, begin=-room, exit=np.inf)
     places = np.reshape(windows, (-1, 3))
     levels = np.append(0.0, places[:, 2])
     return CrowdedTrack(stage, -room, check.frozen(places[:, :2]), check.frozen(levels), place)

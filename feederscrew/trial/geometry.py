@@ -1,7 +1,7 @@
 """What stands along the track at one device: holes, blades, plates, sections and jets, of no kind by name.
 
 Coordinates of a device: x along the wall from where the device begins, y from the wall inwards, z over the
-track. A device hands over one `Standing`; `trial.scene` makes of it what the kernel takes.
+track. A device hands over one `Standing`; `trial.staging` makes of it what the kernel takes.
 """
 
 from dataclasses import dataclass

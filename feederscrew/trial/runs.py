@@ -12,7 +12,7 @@ from feederscrew.dropping.kernel.floor_motion import Floor
 from feederscrew.dropping.plate import drive
 from feederscrew.dropping.pool import in_batches
 from feederscrew.geometry.compiled import on_disk
-from feederscrew.trial import scene
+from feederscrew.trial import staging
 from feederscrew.trial.kernel import contact, motion, travel
 
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = (
@@ -157,7 +157,7 @@ def ride(known, station, states, times, *, limits, every, places, jobs=1, progre
 
 def surface_of(known, station, limits):
     """Return a station as the kernel takes it, with the limits of ``ride``."""
-    plates, borders = scene.with_backs(station.plates), np.array(station.borders)
+    plates, borders = staging.with_backs(station.plates), np.array(station.borders)
     plates[:, [0, 1, 2, 12, 13]] /= known.length
     borders[:, :4] /= known.length
     return motion.StageSurface(

@@ -6,7 +6,7 @@ import shapely
 from feederscrew.bowl.devices import KINDS, Device
 from feederscrew.tooling import turning
 from feederscrew.tooling.strip import FRAME, hole, opening
-from feederscrew.trial import scene
+from feederscrew.trial import staging
 from feederscrew.trial.geometry import Blade, Hole, Standing
 
 ROOM = 1.3  # of the greatest length: a device that goes on along the track has so much
@@ -27,17 +27,17 @@ def station(device, track, every, start=0.0):
     start : float [m]
         Where the cut begins.
     """
-    return scene.stage(device, standing(device, track, every), track, every, start)
+    return staging.stage(device, standing(device, track, every), track, every, start)
 
 
 def plain(track, every, length):
     """Return a stretch of the bare track, from 0 to ``length`` [m], a Stage."""
-    return scene.plain(BARE, track, every, length)
+    return staging.plain(BARE, track, every, length)
 
 
 def standing(device, track, every):
     """Return what a device has standing along the track, a Standing; parameters as of ``station``."""
-    room, width = ROOM * max(one.length for one in every), scene.width_of(track)
+    room, width = ROOM * max(one.length for one in every), staging.width_of(track)
     if device.kind == "yield":
         return Standing(room)
     if KINDS[device.kind].turns:
@@ -51,7 +51,7 @@ def standing(device, track, every):
     if device.kind != "rails":
         return Standing(float(cut[:, 0].max()), holes=(Hole(cut),))
     # those that hang are led on, they do not come back onto the track
-    longer = hole(device, track.radius, room + 2.0 * scene.size_of(every), width)
+    longer = hole(device, track.radius, room + 2.0 * staging.size_of(every), width)
     return Standing(room, holes=(Hole(longer),), hangs=True)
 
 
@@ -59,7 +59,7 @@ def _turning(device, every, width):
     """A step, or a ledge over a second track that lies half the part's greatest length lower."""
     step = device.kind == "step"
     drop, aside = (device.limit, 0.0) if step else (turning.below_ledge(every), device.limit)
-    far = 10.0 * scene.size_of(every)
+    far = 10.0 * staging.size_of(every)
     cut = Hole(np.array([[0.0, aside], [far, aside], [far, width], [0.0, width]]))
     return Standing(holes=(cut,), drop=drop, aside=aside, settles=SETTLES)
 
