@@ -26,10 +26,15 @@ class Reference:
         share, phase = self.second
         return math.sin(t) + 4.0 * share * math.sin(2.0 * t + phase)
 
-    def normal(self, t):
-        """Normal force while in contact."""
-        pressed = self.gravity * math.cos(self.climb) * math.cos(self.bank)
-        return pressed - math.sin(self.angle) * self.shake(t)
+    def pressed(self, t):
+        """Force that floor and upright wall carry together, square to the tangent, while in contact."""
+        return self.gravity * math.cos(self.climb) - math.sin(self.angle) * self.shake(t)
+
+    def held(self, pressed, coefficient):
+        """Largest friction force of floor and wall that share a force; their normals are told apart here."""
+        floor = pressed / math.cos(self.bank)  # the wall is level: it carries nothing upright
+        wall = floor * math.sin(self.bank)  # and all of what the tilted floor pushes it with
+        return coefficient * floor + self.wall * wall
 
     def needed(self, t):
         """Friction force that keeps the part from slipping."""
@@ -37,22 +42,21 @@ class Reference:
 
     def most(self, t, coefficient):
         """Largest friction force of track and wall."""
-        pressed = self.gravity * math.cos(self.climb) * math.sin(self.bank)
-        return coefficient * self.normal(t) + self.wall * pressed
+        return self.held(self.pressed(t), coefficient)
 
     def rate(self, phase):
         """Right-hand side for (way, speed, height, rising speed)."""
         if phase == "stick":
             return lambda t, y: (0.0, 0.0, 0.0, 0.0)
         if phase == "fly":
-            return lambda t, y: (y[1], -self.needed(t), y[3], -self.normal(t))
+            return lambda t, y: (y[1], -self.needed(t), y[3], -self.pressed(t))
         return lambda t, y: (y[1], -self.needed(t) - phase * self.most(t, self.kinetic[phase]), 0.0, 0.0)
 
     def ends(self, phase):
         """Event functions of a phase, each with the way it is crossed."""
         if phase == "fly":
             return [_event(lambda t, y: y[2], -1)]
-        lift = _event(lambda t, y: self.normal(t), -1)
+        lift = _event(lambda t, y: self.pressed(t), -1)
         if phase == "stick":
             ahead = _event(lambda t, y: self.most(t, self.static[1]) + self.needed(t), -1)
             return [lift, ahead, _event(lambda t, y: self.most(t, self.static[-1]) - self.needed(t), -1)]
@@ -60,12 +64,12 @@ class Reference:
 
     def longest_step(self, t, y):
         """A small part of a bounce: the solver overlooks one that ends within its first step."""
-        return min(0.2, 0.5 * y[3] / self.normal(t)) if y[3] > 0.0 < self.normal(t) else 0.2
+        return min(0.2, 0.5 * y[3] / self.pressed(t)) if y[3] > 0.0 < self.pressed(t) else 0.2
 
     def touch(self, t, speed):
         """Phase of a part in contact."""
-        lightening = self.normal(t + 1e-6) < self.normal(t - 1e-6)
-        if self.normal(t) < -1e-12 or (abs(self.normal(t)) <= 1e-12 and lightening):
+        lightening = self.pressed(t + 1e-6) < self.pressed(t - 1e-6)
+        if self.pressed(t) < -1e-12 or (abs(self.pressed(t)) <= 1e-12 and lightening):
             return "fly"
         if speed != 0.0:
             return 1 if speed > 0.0 else -1
@@ -78,9 +82,9 @@ class Reference:
         way, speed, _, rising = y
         if phase == "fly":
             rebound = -self.restitution * rising
-            rebound = rebound if rebound > GIVE_UP or (rebound > 0 > self.normal(t)) else 0.0
+            rebound = rebound if rebound > GIVE_UP or (rebound > 0 > self.pressed(t)) else 0.0
             kinetic = self.kinetic[1 if speed > 0.0 else -1]
-            speed -= math.copysign(min(abs(speed), kinetic * (rebound - rising)), speed)
+            speed -= math.copysign(min(abs(speed), self.held(rebound - rising, kinetic)), speed)
             return "fly" if rebound else self.touch(t, speed), (way, speed, 0.0, rebound)
         if which == 0:
             return "fly", (way, speed, 0.0, 0.0)

@@ -9,7 +9,7 @@ from feederscrew.bowl.record import Friction
 from feederscrew.conveying import law, onset, steady
 from feederscrew.conveying.setting import PHASES, OperatingPoint
 from feederscrew.errors import ConfigError
-from feederscrew.mechanics import limits
+from feederscrew.mechanics import limits, wedge
 
 STILL = 1e-9  # [1] least acceleration ratio computed with: a bowl at rest carries nothing
 REGIMES = (*limits.REGIMES, "no steady state")  # a regime code of a map is a place in this list
@@ -36,19 +36,11 @@ class Answer:
     hardest_impact: float  # [m/s] along the normal
     flights: float  # a period of the drive
     throw_number: float
-    mu_forward: float  # least static friction without slip up the track; NaN past the hop
+    mu_forward: float  # least static friction of the floor without slip up the track; NaN past the hop
     mu_backward: float
+    margins: dict[str, float]  # static friction above each limit of slip, throw number below the hop [1]
     regime: str
     runs_away: bool  # a part that once slides down the track fast enough does not stop again
-
-    @property
-    def margins(self):
-        """Return the static friction above each limit of slip, and the throw number below the hop [1]."""
-        return {
-            "forward": self.setting.static - self.mu_forward,
-            "backward": self.setting.static_back - self.mu_backward,
-            "hop": 1.0 - self.throw_number,
-        }
 
 
 def settings(bowl):
@@ -61,13 +53,14 @@ def settings(bowl):
 
     Returns
     -------
-    (..., 13) float
+    (..., 11) float
         An ``OperatingPoint`` along the last axis; the acceleration ratio of a bowl at rest is ``STILL``.
     """
-    drive, friction, track = bowl.drive, bowl.friction, bowl.track
+    here = wedge.level(bowl)
+    drive, friction = here.drive, here.friction
     ratio = np.maximum(limits.acceleration_ratio(drive.amplitude, drive.frequency, bowl.gravity), STILL)
-    surface = (friction.static, friction.kinetic, *friction.backward, friction.wall)
-    fields = (ratio, drive.vibration_angle, track.climb, track.bank, *surface, bowl.restitution)
+    surface = (friction.static, friction.kinetic, *friction.backward)
+    fields = (ratio, drive.vibration_angle, here.track.climb, *surface, bowl.restitution)
     second = (drive.second_harmonic, drive.second_harmonic_phase)
     rows = np.broadcast_arrays(*fields, -np.asarray(drive.phase), *second)
     return np.stack(rows, axis=-1).astype(float)
@@ -189,7 +182,8 @@ def scaled(bowl, *, amplitude=1.0, friction=1.0, angle=1.0):
 def _answer(bowl, setting, out):
     speed = float(greatest_speed(bowl))
     status = int(out[steady.STATUS])
-    mu_forward, mu_backward = onset.limits_of_slip(setting)
+    mu, throw, limit = bowl.friction, float(out[steady.THROW]), onset.limits_of_slip(setting)
+    forward, backward = (float(wedge.of_floor(one, mu.wall, bowl.track.bank)) for one in limit)
     return Answer(
         setting=setting,
         speed=speed,
@@ -204,9 +198,14 @@ def _answer(bowl, setting, out):
         longest_flight=float(out[steady.FLIGHT_TIME]),
         hardest_impact=float(out[steady.IMPACT]) * speed,
         flights=float(out[steady.HOPS]),
-        throw_number=float(out[steady.THROW]),
-        mu_forward=mu_forward,
-        mu_backward=mu_backward,
+        throw_number=throw,
+        mu_forward=forward,
+        mu_backward=backward,
+        margins={
+            "forward": mu.static - forward,
+            "backward": mu.backward[0] - backward,
+            "hop": 1.0 - throw,
+        },
         regime=REGIMES[-1] if status == steady.NO_STEADY_STATE else REGIMES[int(out[steady.REGIME])],
         runs_away=bool(out[steady.RUNAWAY]),
     )

@@ -22,7 +22,6 @@ class Law(NamedTuple):
     kinetic: float
     kinetic_back: float
     restitution: float
-    wall: float  # what the wall brakes a sliding part with; nothing while it flies
 
 
 def law(setting):
@@ -35,35 +34,29 @@ def law(setting):
     Returns
     -------
     Law
-
-    Notes
-    -----
-    The wall carries m g cos(climb) sin(bank); the centripetal force, of the order of (A w)^2 / (g radius),
-    is left out, and a part in flight is taken to be clear of the wall.
     """
     return Law(
         harmonic(lift_wave(setting)),
-        _pull(setting, 1.0, 0.0, 0.0),
-        _pull(setting, 1.0, setting.static, setting.wall),
-        _pull(setting, -1.0, setting.static_back, setting.wall),
-        _pull(setting, 1.0, setting.kinetic, setting.wall),
-        _pull(setting, -1.0, setting.kinetic_back, setting.wall),
+        _pull(setting, 1.0, 0.0),
+        _pull(setting, 1.0, setting.static),
+        _pull(setting, -1.0, setting.static_back),
+        _pull(setting, 1.0, setting.kinetic),
+        _pull(setting, -1.0, setting.kinetic_back),
         setting.kinetic,
         setting.kinetic_back,
         setting.restitution,
-        setting.wall * math.cos(setting.climb) * math.sin(setting.bank) / setting.ratio,
     )
 
 
 def lift_wave(setting):
     """Return the acceleration along the normal of a part in flight; pressed on, what is missing to it."""
-    weight = math.cos(setting.climb) * math.cos(setting.bank) / setting.ratio
+    weight = math.cos(setting.climb) / setting.ratio
     normal = math.sin(setting.angle)
     second, phase = normal * OVERTONE * setting.second, setting.second_phase
     return Wave(-weight, normal, 0.0, second * math.cos(phase), second * math.sin(phase))
 
 
-def pull_wave(setting, direction, friction, wall):
+def pull_wave(setting, direction, friction):
     """Return the acceleration left after friction of a part about to slip.
 
     Parameters
@@ -71,16 +64,14 @@ def pull_wave(setting, direction, friction, wall):
     setting : OperatingPoint
     direction : float
         Of the slip and of the acceleration: +1 up the track, -1 down.
-    friction, wall : float [1]
-        On the track and on the wall.
+    friction : float [1]
 
     Returns
     -------
     Wave
     """
     along, normal = direction * math.cos(setting.angle), friction * math.sin(setting.angle)
-    weight = math.cos(setting.climb) / setting.ratio
-    resist = weight * (friction * math.cos(setting.bank) + wall * math.sin(setting.bank))
+    resist = friction * math.cos(setting.climb) / setting.ratio
     level = -direction * math.sin(setting.climb) / setting.ratio - resist
     lead, second, phase = setting.lead, OVERTONE * setting.second, setting.second_phase
     turned = phase + 2.0 * lead  # a lead is a shift of the whole motion in time
@@ -93,8 +84,8 @@ def pull_wave(setting, direction, friction, wall):
     )
 
 
-def _pull(setting, direction, friction, wall):
-    return harmonic(pull_wave(setting, direction, friction, wall))
+def _pull(setting, direction, friction):
+    return harmonic(pull_wave(setting, direction, friction))
 
 
 def throw_number(rules):

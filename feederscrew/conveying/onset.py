@@ -23,8 +23,7 @@ def limits_of_slip(setting):
         Zero or less where no slip comes on any surface; NaN past the hop where it comes on every one.
     """
     if setting.lead == 0.0 and setting.second == 0.0:
-        drag = setting.wall * math.cos(setting.climb) * math.sin(setting.bank)
-        where = (setting.ratio, setting.angle, 0.0, setting.climb, setting.bank, drag)
+        where = (setting.ratio, setting.angle, 0.0, setting.climb)
         return float(limits.forward_limit(*where)), float(limits.backward_limit(*where))
     if law.throw_number(law.law(setting)) >= 1.0 - limits.ROUNDING:
         return math.nan, math.nan
@@ -39,11 +38,11 @@ def _least(setting, direction):
     W. Dinkelbach, "On nonlinear fractional programming", Management Science 13(7), 492-498, 1967: the
     ratio where the difference is greatest is the next estimate.
     """
-    pull = law.pull_wave(setting, direction, 0.0, setting.wall)
+    pull = law.pull_wave(setting, direction, 0.0)
     press = law.lift_wave(setting)
     mu = waves.height(pull, 0.0) / -waves.height(press, 0.0)
     for _ in range(STEPS):
-        angle = waves.crest(law.pull_wave(setting, direction, mu, setting.wall))
+        angle = waves.crest(law.pull_wave(setting, direction, mu))
         new = waves.height(pull, angle) / -waves.height(press, angle)
         if abs(new - mu) <= SAME * abs(new):
             break

@@ -1,4 +1,4 @@
-"""The five numbers that decide how fast a part travels on an unbanked track with one coefficient of friction.
+"""The five numbers that decide how fast a part travels on a track with one coefficient of friction.
 
 Along the track lengths scale with the amplitude along it, along the normal with the amplitude there; friction
 couples the two by mu tan(beta) alone.
@@ -27,7 +27,7 @@ def numbers(setting):
     Parameters
     ----------
     setting : OperatingPoint
-        Unbanked, harmonic, with one coefficient of friction above 0.
+        Harmonic, with one coefficient of friction above 0.
 
     Returns
     -------

@@ -18,12 +18,10 @@ class OperatingPoint(NamedTuple):
     ratio: float  # [1] A w^2 / g, the dimensionless vibration parameter
     angle: float  # [rad] beta, from the track to the direction of vibration
     climb: float  # [rad] gamma, rise along the track
-    bank: float  # [rad] delta, tilt that presses the part against the wall
-    static: float  # [1] friction that holds against slip up the track
+    static: float  # [1] friction that holds against slip up the track; of floor and wall together
     kinetic: float  # [1] friction during slip up the track, never above static
     static_back: float  # [1] the same against slip down the track; differs for a bristle coating
     kinetic_back: float  # [1]
-    wall: float  # [1] friction against the bowl wall
     restitution: float  # [1] of an impact on the track, from 0 to below 1
     lead: float = 0.0  # [rad] by which the motion along the track leads the one along the normal
     second: float = 0.0  # [1] second harmonic of the displacement, of the first
@@ -31,7 +29,7 @@ class OperatingPoint(NamedTuple):
 
 
 def plain(ratio, angle, climb, friction, restitution=0.0):
-    """Return an unbanked track with one coefficient of friction, as most closed forms assume.
+    """Return a track with one coefficient of friction, as most closed forms assume.
 
     Parameters
     ----------
@@ -45,7 +43,7 @@ def plain(ratio, angle, climb, friction, restitution=0.0):
     -------
     OperatingPoint
     """
-    return OperatingPoint(ratio, angle, climb, 0.0, friction, friction, friction, friction, 0.0, restitution)
+    return OperatingPoint(ratio, angle, climb, friction, friction, friction, friction, restitution)
 
 
 def checked(setting):
@@ -58,7 +56,7 @@ def checked(setting):
         raise ValueError("the vibration angle is not from 0 to 90 deg")
     if setting.kinetic > setting.static or setting.kinetic_back > setting.static_back:
         raise ValueError("kinetic friction is above static friction")
-    if min(setting.kinetic, setting.kinetic_back, setting.wall) < 0.0:
+    if min(setting.kinetic, setting.kinetic_back) < 0.0:
         raise ValueError("a coefficient of friction is negative")
     if not 0.0 <= setting.restitution < 1.0:
         raise ValueError("restitution is not from 0 to below 1")

@@ -102,7 +102,7 @@ def _long_run(rules, state, out, blocks):
         if _slid(tally) and (state.speed - first) * state.speed > 0.0:
             _nothing(out)
             break
-        if escape(rules, out[FRACTIONS + FLIGHT]) <= 0.0:
+        if escape(rules) <= 0.0:
             break
 
 
@@ -120,22 +120,20 @@ def _slid(tally):
     return tally[STOPS] == 0.0 and (tally[UPWARD] == 0.0) != (tally[DOWNWARD] == 0.0)
 
 
-def escape(rules, aloft):
+def escape(rules):
     """Return the greatest growth of the speed of a part that slides all the time, up or down the track.
 
     Parameters
     ----------
     rules : Law
-    aloft : float [1]
-        Share of the time in flight, in which the wall does not brake.
 
     Returns
     -------
     float [A w a radian of the drive]
         Positive where a part that once slides fast enough gets faster without end. Impacts pass on what the
-        weight would have in the time of the flight, so on an unbanked track flight does not matter.
+        weight would have in the time of the flight, so flight does not matter.
     """
-    return max(rules.slip.level, rules.slip_back.level) + rules.wall * aloft
+    return max(rules.slip.level, rules.slip_back.level)
 
 
 def _apart(one, other):
@@ -167,7 +165,7 @@ def survey(setting, out):
     if out[STATUS] == NO_STEADY_STATE:
         out[RUNAWAY] = 1.0
         return
-    out[RUNAWAY] = 1.0 if escape(rules, out[FRACTIONS + FLIGHT]) > 0.0 else 0.0
+    out[RUNAWAY] = 1.0 if escape(rules) > 0.0 else 0.0
     if setting.restitution > 0.0:
         _widen(rules, out, known, count)
 

@@ -40,7 +40,7 @@ def sweep(settings, workers=None):
 
     Parameters
     ----------
-    settings : (N, 13) float
+    settings : (N, 11) float
         One ``OperatingPoint`` a row.
     workers : int, optional
         Threads; by default one a core.
@@ -82,7 +82,7 @@ def _suspects(settings):
     s = OperatingPoint(*settings.T)
     bad = (s.ratio <= 0.0) | (s.angle < 0.0) | (s.angle > np.pi / 2)
     bad |= (s.kinetic > s.static) | (s.kinetic_back > s.static_back)
-    bad |= np.minimum(np.minimum(s.kinetic, s.kinetic_back), s.wall) < 0.0
+    bad |= np.minimum(s.kinetic, s.kinetic_back) < 0.0
     bad |= (s.restitution < 0.0) | (s.restitution >= 1.0)
     return np.flatnonzero(bad)
 
@@ -99,5 +99,5 @@ def _compiled():
 def _loop(settings, out):
     for row in range(len(settings)):
         s = settings[row]
-        drive = s[10], s[11], s[12]
-        survey(OperatingPoint(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8], s[9], *drive), out[row])
+        drive = s[8], s[9], s[10]
+        survey(OperatingPoint(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], *drive), out[row])

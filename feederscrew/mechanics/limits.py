@@ -1,9 +1,10 @@
 """When a part starts to slip or hop: closed forms over the two reversals of the vibration.
 
 The part is a point on a surface that vibrates harmonically. At phase s = sin(w t), and per unit of
-weight, the normal force is cos(climb) cos(bank) - G s sin(beta) and the force that friction must
-supply along the track is sin(climb) - G s cos(beta) cos(alpha - theta), with G = A w^2 / g. A wall
-carries what is across the track; cos(alpha - theta) is 1 where there is none. What friction must
+weight, the normal force is cos(climb) - G s sin(beta) and the force that friction must supply along
+the track is sin(climb) - G s cos(beta) cos(alpha - theta), with G = A w^2 / g. A wall carries what is
+across the track; cos(alpha - theta) is 1 where there is none. A banked track with a wall is a level
+one of another friction (``mechanics.wedge``). What friction must
 supply over the normal force is monotone in s, so the limits lie at the reversals, s = +1 (the
 part is lightest) and s = -1 (heaviest).
 
@@ -106,23 +107,23 @@ def published_ratio(friction, beta, alpha_minus_theta=0.0):
     return friction / slope  # eq. [4.27], solved for G
 
 
-def throw_number(ratio, beta, climb=0.0, bank=0.0):
-    """Return k = G sin(beta) / (cos(climb) cos(bank)) [1]; the part hops where it is above 1."""
-    return ratio * np.sin(beta) / (np.cos(climb) * np.cos(bank))
+def throw_number(ratio, beta, climb=0.0):
+    """Return k = G sin(beta) / cos(climb) [1], whatever the bank; the part hops where it is above 1."""
+    return ratio * np.sin(beta) / np.cos(climb)
 
 
-def hops(ratio, beta, climb=0.0, bank=0.0):
+def hops(ratio, beta, climb=0.0):
     """Return whether contact is lost within the cycle; at k = 1 within rounding it counts as lost."""
-    return throw_number(ratio, beta, climb, bank) >= 1.0 - ROUNDING
+    return throw_number(ratio, beta, climb) >= 1.0 - ROUNDING
 
 
-def hop_ratio(beta, climb=0.0, bank=0.0):
+def hop_ratio(beta, climb=0.0):
     """Return G [1] from which the part hops; infinite for beta = 0, where nothing lifts it."""
     with np.errstate(divide="ignore", over="ignore"):
-        return np.cos(climb) * np.cos(bank) / np.sin(beta)
+        return np.cos(climb) / np.sin(beta)
 
 
-def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_drag=0.0):
+def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0):
     """Return the least static friction at which a part never slips forward, up the track.
 
     Parameters
@@ -134,10 +135,8 @@ def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_
     alpha_minus_theta : array_like [rad]
         From the part's heading, up the track, to the vibration in the surface. Beyond 90 deg
         the strokes change places: the part is lightest while it is pushed back.
-    climb, bank : array_like [rad]
+    climb : array_like [rad]
         Of the track.
-    wall_drag : array_like [1]
-        Greatest friction force of the wall over the part's weight; 0 for a smooth wall.
 
     Returns
     -------
@@ -146,15 +145,15 @@ def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_
         where no slip comes on any surface; NaN past the hop where it comes on every one.
     """
     push = ratio * np.cos(beta) * np.cos(alpha_minus_theta)
-    return _limit(push, np.sin(climb) + wall_drag, ratio, beta, climb, bank)
+    return _limit(push, np.sin(climb), ratio, beta, climb)
 
 
-def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_drag=0.0):
+def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0):
     """Return the least static friction at which a part never slips back, down the track.
 
     Parameters
     ----------
-    ratio, beta, alpha_minus_theta, climb, bank, wall_drag : array_like
+    ratio, beta, alpha_minus_theta, climb : array_like
         As for ``forward_limit``.
 
     Returns
@@ -164,17 +163,17 @@ def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall
         where no slip comes on any surface; NaN past the hop where it comes on every one.
     """
     push = ratio * np.cos(beta) * np.cos(alpha_minus_theta)
-    return _limit(-push, wall_drag - np.sin(climb), ratio, beta, climb, bank)
+    return _limit(-push, -np.sin(climb), ratio, beta, climb)
 
 
-def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_drag=0.0):
+def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0):
     """Return G from which a part of a given static friction slips forward.
 
     Parameters
     ----------
     friction : array_like [1]
         Static.
-    beta, alpha_minus_theta, climb, bank, wall_drag : array_like
+    beta, alpha_minus_theta, climb : array_like
         As for ``forward_limit``.
 
     Returns
@@ -184,17 +183,17 @@ def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wa
         where it slides at rest; infinite where it hops before, or never slips.
     """
     along = np.cos(beta) * np.cos(alpha_minus_theta)
-    return _onset(friction, along, np.sin(climb) + wall_drag, beta, climb, bank)
+    return _onset(friction, along, np.sin(climb), beta, climb)
 
 
-def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_drag=0.0):
+def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0):
     """Return G from which a part of a given static friction slips back.
 
     Parameters
     ----------
     friction : array_like [1]
         Static.
-    beta, alpha_minus_theta, climb, bank, wall_drag : array_like
+    beta, alpha_minus_theta, climb : array_like
         As for ``forward_limit``.
 
     Returns
@@ -204,34 +203,34 @@ def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0, bank=0.0, w
         where it slides at rest; infinite where it hops before, or never slips.
     """
     along = np.cos(beta) * np.cos(alpha_minus_theta)
-    return _onset(friction, -along, wall_drag - np.sin(climb), beta, climb, bank)
+    return _onset(friction, -along, -np.sin(climb), beta, climb)
 
 
-def least_forward_angle(friction, climb, bank=0.0):
+def least_forward_angle(friction, climb):
     """Return the vibration angle [rad] above which growing G brings forward slip before backward slip.
 
     Parameters
     ----------
     friction : array_like [1]
         Static.
-    climb, bank : array_like [rad]
-        Of the track; its wall is smooth.
+    climb : array_like [rad]
+        Of the track.
 
     Returns
     -------
     array [rad]
-        Holds while the drive points up the track in space, tan(beta) tan(climb) < cos(bank);
+        Holds while the drive points up the track in space, tan(beta) tan(climb) < 1;
         beyond that no vibration slips the part forward.
     """
-    return np.arctan2(np.sin(climb), np.cos(climb) * np.cos(bank) * np.square(friction))
+    return np.arctan2(np.sin(climb), np.cos(climb) * np.square(friction))
 
 
-def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0, bank=0.0, wall_drag=0.0):
+def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0):
     """Return what a part does within one cycle.
 
     Parameters
     ----------
-    ratio, beta, alpha_minus_theta, climb, bank, wall_drag : array_like
+    ratio, beta, alpha_minus_theta, climb : array_like
         As for ``forward_limit``.
     friction : array_like [1]
         Static; a part whose friction equals a limit still sticks.
@@ -241,27 +240,27 @@ def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0, bank=0.0, w
     array of int
         Places in ``REGIMES``.
     """
-    where = (ratio, beta, alpha_minus_theta, climb, bank, wall_drag)
+    where = (ratio, beta, alpha_minus_theta, climb)
     forward = friction < forward_limit(*where)
     backward = friction < backward_limit(*where)
     slips = np.where(forward, FORWARD, RIDE) + np.where(backward, BACKWARD, RIDE)
-    return np.where(hops(ratio, beta, climb, bank), HOP, slips)
+    return np.where(hops(ratio, beta, climb), HOP, slips)
 
 
-def _limit(push, resist, ratio, beta, climb, bank):
+def _limit(push, resist, ratio, beta, climb):
     """Greatest (s push - resist) / (weight - s lift) while there is contact; NaN if unbounded."""
-    weight, lift = np.cos(climb) * np.cos(bank), ratio * np.sin(beta)
+    weight, lift = np.cos(climb), ratio * np.sin(beta)
     rises = push * weight > lift * resist  # the sign of its derivative in s
-    hopping = hops(ratio, beta, climb, bank)
+    hopping = hops(ratio, beta, climb)
     light = np.where(hopping, np.nan, (push - resist) / np.where(hopping, 1.0, weight - lift))
     return np.where(rises, light, (-push - resist) / (weight + lift))
 
 
-def _onset(friction, along, resist, beta, climb, bank):
+def _onset(friction, along, resist, beta, climb):
     """Least G with G s (along + friction sin b) > friction weight + resist at s = +1 or -1."""
-    weight = np.cos(climb) * np.cos(bank)
+    weight = np.cos(climb)
     gain = along + friction * np.sin(beta)
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.maximum(friction * weight + resist, 0.0) / np.abs(gain)
     ratio = np.where(gain == 0.0, np.inf, ratio)
-    return np.where((gain > 0.0) & hops(ratio, beta, climb, bank), np.inf, ratio)
+    return np.where((gain > 0.0) & hops(ratio, beta, climb), np.inf, ratio)

@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.geometry.grids import Grid, GridAxis, evaluate
-from feederscrew.mechanics import limits
+from feederscrew.mechanics import limits, wedge
 
 STEPS = (1.0, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)  # round numbers within a decade
 PLAIN_TOP = 3.0  # G that every sliding map reaches
@@ -127,8 +127,8 @@ def sliding_map(bowl, beta, *, as_published=False, shape=None):
     Returns
     -------
     SlideMap
-        Columns mu_limit [4.27] on a level floor, mu_forward and mu_backward on the bowl's track,
-        whose wall is smooth and takes what is across the track.
+        Columns mu_limit [4.27] on a level floor, mu_forward and mu_backward of the bowl's track beside its
+        upright wall. What a drive across the track presses against the wall is without friction.
 
     Raises
     ------
@@ -147,7 +147,7 @@ def sliding_map(bowl, beta, *, as_published=False, shape=None):
     grid = evaluate(first, second, cells, limits.REGIMES, rows=ROWS)
     point = {name: float(value) for name, value in cells(direction, ratio).items()}
     regime = limits.REGIMES[int(point.pop("regime"))]
-    point["throw_number"] = float(limits.throw_number(ratio, beta, bowl.track.climb, bowl.track.bank))
+    point["throw_number"] = float(limits.throw_number(ratio, beta, bowl.track.climb))
     hop = float(limits.hop_ratio(beta))
     return SlideMap(
         beta, grid, ratio, direction, bowl.friction.static, point, regime, _onsets(bowl, beta), hop
@@ -155,27 +155,28 @@ def sliding_map(bowl, beta, *, as_published=False, shape=None):
 
 
 def _cells(bowl, beta, alpha_minus_theta, ratio, as_published):
-    track = (bowl.track.climb, bowl.track.bank)
+    climb, wall = bowl.track.climb, (bowl.friction.wall, bowl.track.bank)
     published = limits.published_limit(ratio, beta, alpha_minus_theta)
     pole = np.abs(ratio * np.sin(beta) - 1.0) <= limits.ROUNDING
     reversed_ = np.cos(alpha_minus_theta) < -limits.ROUNDING
     hidden = pole if as_published else limits.hops(ratio, beta) | reversed_
     found = {
         "mu_limit": np.where(hidden, np.nan, published),
-        "mu_forward": limits.forward_limit(ratio, beta, alpha_minus_theta, *track),
-        "mu_backward": limits.backward_limit(ratio, beta, alpha_minus_theta, *track),
+        "mu_forward": wedge.of_floor(limits.forward_limit(ratio, beta, alpha_minus_theta, climb), *wall),
+        "mu_backward": wedge.of_floor(limits.backward_limit(ratio, beta, alpha_minus_theta, climb), *wall),
     }
-    regimes = limits.regimes(ratio, beta, bowl.friction.static, alpha_minus_theta, *track)
+    held = wedge.effective(bowl.friction.static, *wall)
+    regimes = limits.regimes(ratio, beta, held, alpha_minus_theta, climb)
     return {name: np.round(array, NOISE) + 0.0 for name, array in found.items()} | {"regime": regimes}
 
 
 def _onsets(bowl, beta):
-    track = (bowl.track.climb, bowl.track.bank)
-    slip = (bowl.friction.static, beta, bowl.drive.direction, *track)
+    here = wedge.level(bowl)
+    slip = (here.friction.static, beta, here.drive.direction, here.track.climb)
     return {
         "forward": float(limits.forward_ratio(*slip)),
         "backward": float(limits.backward_ratio(*slip)),
-        "hop": float(limits.hop_ratio(beta, *track)),
+        "hop": float(limits.hop_ratio(beta, here.track.climb)),
     }
 
 

@@ -177,7 +177,7 @@ def travelling(found, bowl):
     or even carry it on as it does what slides.
     """
     along, track = speed(bowl), bowl.track
-    held = np.tan(track.climb) <= bowl.friction.wall * np.sin(track.bank)
+    held = np.tan(track.climb) <= bowl.friction.wall * np.tan(track.bank)
     return tuple(
         replace(
             one,

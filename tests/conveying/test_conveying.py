@@ -9,7 +9,7 @@ from feederscrew.conveying import closed_forms, steady
 from feederscrew.conveying.harmonic import gain, harmonic, onward, reached, travel, value
 from feederscrew.conveying.law import law
 from feederscrew.conveying.motion import TALLY, State, at_rest, land, turn
-from feederscrew.conveying.setting import FLIGHT, FORWARD, STICK, TURN, OperatingPoint, checked, plain
+from feederscrew.conveying.setting import FLIGHT, FORWARD, STICK, TURN, checked, plain
 from feederscrew.conveying.waves import Wave
 from feederscrew.mechanics import limits
 
@@ -144,19 +144,6 @@ def test_thresholds_by_bisection(beta, climb, friction):
     assert bisected(share(3), 0.01, 8.0) == pytest.approx(float(limits.hop_ratio(**where)), rel=1e-14)
 
 
-def test_threshold_with_wall_and_bank():
-    climb, bank, wall, friction = 4 * DEG, 10 * DEG, 0.25, 0.4
-
-    def slips(ratio):
-        pair = (friction, friction, friction, friction)
-        found = travel_of(OperatingPoint(ratio, 25 * DEG, climb, bank, *pair, wall, 0.0))
-        return found[steady.FRACTIONS + FORWARD] > 0
-
-    drag = wall * math.cos(climb) * math.sin(bank)
-    wanted = float(limits.forward_ratio(friction, 25 * DEG, climb=climb, bank=bank, wall_drag=drag))
-    assert bisected(slips, 0.01, 3.0) == pytest.approx(wanted, rel=1e-14)
-
-
 def test_friction_at_its_limit_still_rides():
     friction = float(limits.forward_limit(0.5, 30 * DEG))
     assert travel_of(plain(0.5, 30 * DEG, 0.0, friction * (1 + 1e-15)))[steady.VELOCITY] == 0.0
@@ -277,7 +264,7 @@ def test_series_of_short_spans_keep_their_digits():
         ({"kinetic_back": 0.7}, "kinetic friction is above static"),
         ({"restitution": 1.0}, "restitution"),
         ({"angle": 1.6}, "vibration angle"),
-        ({"wall": -0.1}, "negative"),
+        ({"kinetic_back": -0.1}, "negative"),
         ({"climb": math.nan}, "not finite"),
     ],
 )

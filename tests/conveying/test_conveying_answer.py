@@ -5,13 +5,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from mechanics_samples import box_posture
 
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer, radius, sensitivity
 from feederscrew.conveying.setting import FLIGHT, PHASES, plain
 from feederscrew.conveying.trace import trace
 from feederscrew.errors import ConfigError
+from feederscrew.mechanics.floor.balance import HOP
+from feederscrew.mechanics.track import balance
+from feederscrew.mechanics.track.frame import seat
 from feederscrew.output.convey import figures as convey_plots
+from feederscrew.studies.slide import slide
 
 DEG = np.pi / 180.0
 
@@ -87,23 +92,82 @@ def test_regime_of_a_climb_too_steep():
     assert np.isnan(found.velocity)
 
 
-def test_a_bank_with_a_smooth_wall_is_a_steeper_level_track():
-    """Only the gravity along the track and along its normal counts."""
-    climb, bank = 5 * DEG, 20 * DEG
-    level = driven(50, 0.6, 25, 0.3)
-    smooth = replace(level.friction, wall=0.0)
-    banked = replace(level, friction=smooth, track=replace(level.track, climb=climb, bank=bank))
-    share = np.hypot(np.sin(climb), np.cos(climb) * np.cos(bank))
-    steeper = replace(level.track, climb=np.arctan2(np.sin(climb), np.cos(climb) * np.cos(bank)))
-    same = replace(level, gravity=level.gravity * share, track=steeper)
-    assert answer.answer(banked).velocity == pytest.approx(answer.answer(same).velocity, rel=1e-12)
+def banked(*more):
+    """The setting whose velocity independent code has by three-dimensional vectors: 15.28 mm/s."""
+    drive = ("drive.amplitude=0.15 mm", "drive.frequency=50 Hz", "drive.vibration_angle=25 deg")
+    surface = ("friction.static=0.4", "friction.kinetic=0.4", "friction.wall=0.8")
+    return bowl(*drive, *surface, "track.climb=2 deg", "track.bank=12 deg", *more)
 
 
-def test_a_rough_wall_holds_a_sliding_part_back():
-    level = driven(50, 0.14, 25, 0.3)
-    banked = replace(level, track=replace(level.track, bank=10 * DEG))
-    rough = replace(banked, friction=replace(banked.friction, wall=0.6))
-    assert answer.answer(rough).fractions["stick"] > answer.answer(banked).fractions["stick"]
+def test_a_banked_track_with_a_wall_is_a_level_one_of_another_friction():
+    found = answer.answer(banked())
+    assert found.setting.static == pytest.approx(0.57898, abs=5e-6)
+    assert found.velocity == pytest.approx(15.275e-3, abs=0.5e-6)
+    level = answer.answer(banked("track.bank=0 deg", f"friction.static={found.setting.static!r}",
+                                 f"friction.kinetic={found.setting.kinetic!r}"))  # fmt: skip
+    assert found.velocity == level.velocity
+    assert (found.regime, found.throw_number) == (level.regime, level.throw_number)
+
+
+@pytest.mark.parametrize("stroke", [0.15, 0.3, 0.5])
+def test_a_bank_takes_every_friction_with_it_hops_included(stroke):
+    """Bristles that hold more downwards, and impacts: all of it by the same two shares."""
+    bristles = ("friction.static_backward=0.7", "friction.kinetic_backward=0.6", "restitution=0.2")
+    here = banked(*bristles, f"drive.amplitude={stroke} mm", "friction.static=0.5")
+    mu, bank = here.friction, here.track.bank
+    values = [m / np.cos(bank) + mu.wall * np.tan(bank) for m in (mu.static, mu.kinetic, *mu.backward)]
+    static, kinetic, static_back, kinetic_back = map(float, values)
+    friction = replace(
+        mu, static=static, kinetic=kinetic, static_backward=static_back, kinetic_backward=kinetic_back
+    )
+    level = replace(here, friction=friction, track=replace(here.track, bank=0.0))
+    one, other = answer.answer(here), answer.answer(level)
+    assert (one.velocity, one.low, one.high) == pytest.approx(
+        (other.velocity, other.low, other.high), rel=1e-9
+    )
+    assert one.fractions == pytest.approx(other.fractions, rel=1e-9)
+
+
+def test_limits_of_slip_are_told_of_the_floor_beside_its_wall():
+    """At its limit the floor's own friction just holds; a wall may hold by itself."""
+    here = banked("drive.amplitude=0.05 mm")
+    limit = answer.answer(here).mu_forward
+    assert limit == pytest.approx(
+        (0.5030379 * np.cos(here.drive.vibration_angle) - np.sin(here.track.climb))
+        / (np.cos(here.track.climb) - 0.5030379 * np.sin(here.drive.vibration_angle))
+        * np.cos(here.track.bank)
+        - 0.8 * np.sin(here.track.bank),
+        rel=1e-6,
+    )
+    for friction, slips in ((limit * 1.001, False), (limit * 0.999, True)):
+        surface = (f"friction.static={friction}", "friction.kinetic=0.01")
+        found = answer.answer(banked("drive.amplitude=0.05 mm", *surface))
+        assert (found.fractions["forward"] > 0.0) == slips
+        assert (found.margins["forward"] < 0.0) == slips
+
+
+def test_slide_and_track_take_the_bank_as_convey_does():
+    """One wall for all: the same limits, regime and throw number, and contact lost at the same drive."""
+    for stroke in (0.05, 0.1, 0.3):
+        here = banked(f"drive.amplitude={stroke} mm")
+        found, (one,) = answer.answer(here), slide(here).maps
+        assert one.at_bowl["throw_number"] == pytest.approx(found.throw_number, rel=1e-12)
+        assert one.regime == found.regime
+        if found.regime != "hop":
+            limits = (one.at_bowl["mu_forward"], one.at_bowl["mu_backward"])
+            assert limits == pytest.approx((found.mu_forward, found.mu_backward), rel=1e-9)
+    place = seat(box_posture(height=0.0005), 0.0, np.array([[-0.015, -0.005], [0.015, -0.005]]), 1.0)
+    for share, hops in ((0.999, False), (1.001, True)):
+        there = banked(f"drive.amplitude={0.15 * share / 0.6381678} mm")
+        state = balance.motion(place, there, np.array([0.5 * np.pi])).state
+        assert bool((state == HOP).any()) == hops
+
+
+def test_no_steady_state_goes_by_the_effective_friction():
+    """A climb steeper than the floor's friction is carried beside a rough wall, not beside a smooth one."""
+    steep = ("track.climb=25 deg", "drive.amplitude=0.6 mm", "friction.static=0.4")
+    assert answer.answer(banked(*steep)).status == "periodic"
+    assert answer.answer(banked(*steep, "friction.wall=0.2")).status == "no steady state"
 
 
 @pytest.mark.parametrize(

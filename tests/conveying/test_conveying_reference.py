@@ -6,6 +6,7 @@ from conveying_agreement import agreed
 from conveying_reference import Reference, random_settings
 
 from feederscrew.conveying.setting import OperatingPoint, plain
+from feederscrew.mechanics.wedge import effective
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.3])
@@ -23,9 +24,8 @@ def test_every_other_parameter():
     for ratio, angle, climb, kinetic in random_settings(12, rng):
         more, bank, wall, lead, bristles = rng.uniform((0, 0, 0, -1, 1), (0.3, 0.3, 0.3, 1, 2))
         pair, back = (kinetic + more, kinetic), (bristles * kinetic + more, bristles * kinetic)
-        setting = OperatingPoint(
-            min(ratio, 0.9 / np.sin(angle)), angle, climb, bank, *pair, *back, wall, 0.0, lead
-        )
+        level = [float(effective(mu, wall, bank)) for mu in (*pair, *back)]
+        setting = OperatingPoint(ratio, angle, climb, *level, 0.0, lead)
         reference = Reference(setting.ratio, angle, climb, *pair, 0.0, bank, wall, lead, back)
         results.append(agreed(setting, reference))
     assert results.count(True) >= 8

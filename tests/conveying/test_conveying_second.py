@@ -13,6 +13,7 @@ from feederscrew.conveying.law import contact, law
 from feederscrew.conveying.motion import State
 from feederscrew.conveying.setting import TURN, OperatingPoint, plain
 from feederscrew.mechanics import limits
+from feederscrew.mechanics.wedge import effective
 
 DEG = math.pi / 180.0
 
@@ -94,8 +95,8 @@ def test_random_settings_with_everything(restitution):
         )
         pair, back = (kinetic + more, kinetic), (bristles * kinetic + more, bristles * kinetic)
         ratio = ratio / (1.0 + 4.0 * share)
-        rest = (wall, restitution, lead, share, phase)
-        setting = OperatingPoint(ratio, angle, climb, bank, *pair, *back, *rest)
+        level = [float(effective(mu, wall, bank)) for mu in (*pair, *back)]
+        setting = OperatingPoint(ratio, angle, climb, *level, restitution, lead, share, phase)
         reference = Reference(ratio, angle, climb, *pair, restitution, bank, wall, lead, back, (share, phase))
         results.append(agreed(setting, reference))
         hops += bool(results[-1]) and travel_of(setting)[steady.HOPS] > 0.0
@@ -174,7 +175,7 @@ def test_whole_turns_change_nothing():
 
 def test_limits_of_slip_of_any_drive():
     """Friction at the limit rides, a little less slips; without extras they are the closed forms."""
-    setting = everything()._replace(ratio=0.5, bank=0.1, wall=0.2)
+    setting = everything()._replace(ratio=0.5)
     forward, backward = onset.limits_of_slip(setting)
     for name, limit, phase in (("static", forward, 1), ("static_back", backward, 2)):
         kinetic = name.replace("static", "kinetic")

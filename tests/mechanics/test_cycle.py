@@ -44,6 +44,21 @@ def test_track_and_floor_travel_as_convey_does(seed):
     assert on_floor.mean == pytest.approx(answer.answer(level).velocity, rel=0, abs=1e-9 * speed)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_a_banked_track_travels_as_convey_does(seed):
+    """A flat box against a straight, rough, upright wall: convey's level track of another friction."""
+    rng = np.random.default_rng(seed)
+    settings = random_drive(rng)
+    bank, wall = rng.uniform(2, 25) * DEG, rng.uniform(0.1, 1.0)
+    settings = replace(settings, friction=replace(settings.friction, wall=wall))
+    settings = replace(settings, track=replace(settings.track, bank=bank))
+    part, speed = seat(FLAT, 0.0, rectangle(0.03, 0.01)[:2], bank), answer.greatest_speed(settings)
+    found, (_, course) = answer.answer(settings), track.over_cycle(part, settings)
+    assert course.settled == (found.status == "periodic")
+    if course.settled:
+        assert course.mean == pytest.approx(found.velocity, rel=0, abs=1e-8 * speed)
+
+
 def test_the_mean_does_not_depend_on_the_samples():
     part, settings = random_seat(np.random.default_rng(4)), random_bowl(np.random.default_rng(4))
     means = [track.over_cycle(part, settings, samples)[1].mean for samples in (60, 360)]

@@ -14,15 +14,13 @@ ratios = st.floats(0.0, 6.0)
 betas = st.floats(0.0, 90.0).map(lambda angle: angle * DEG)
 headings = st.floats(-180.0, 180.0).map(lambda angle: angle * DEG)
 climbs = st.floats(-20.0, 20.0).map(lambda angle: angle * DEG)
-banks = st.floats(0.0, 60.0).map(lambda angle: angle * DEG)
-drags = st.floats(0.0, 0.3)
 frictions = st.floats(0.0, 2.0)
 
 
-def forces(ratio, beta, heading, climb, bank):
+def forces(ratio, beta, heading, climb):
     """Normal force and what drives the part up the track, over its weight, sampled over a cycle."""
     s = np.sin(np.linspace(0.0, 2.0 * np.pi, 721))
-    normal = np.cos(climb) * np.cos(bank) - ratio * s * np.sin(beta)
+    normal = np.cos(climb) - ratio * s * np.sin(beta)
     return normal, ratio * s * np.cos(beta) * np.cos(heading) - np.sin(climb)
 
 
@@ -99,26 +97,26 @@ def test_nothing_hops_without_a_vertical_drive():
     assert limits.forward_limit(50.0, 0.0) == limits.backward_limit(50.0, 0.0) == 50.0
 
 
-@given(ratios, betas, headings, climbs, banks, drags)
+@given(ratios, betas, headings, climbs)
 @settings(max_examples=150, deadline=None)
-def test_limits_are_the_worst_instant_of_the_cycle(ratio, beta, heading, climb, bank, drag):
-    normal, drive = forces(ratio, beta, heading, climb, bank)
+def test_limits_are_the_worst_instant_of_the_cycle(ratio, beta, heading, climb):
+    normal, drive = forces(ratio, beta, heading, climb)
     assume(normal.min() > 1e-6)
-    forward = limits.forward_limit(ratio, beta, heading, climb, bank, drag)
-    backward = limits.backward_limit(ratio, beta, heading, climb, bank, drag)
-    assert forward == pytest.approx(((drive - drag) / normal).max(), rel=1e-9, abs=1e-9)
-    assert backward == pytest.approx(((-drive - drag) / normal).max(), rel=1e-9, abs=1e-9)
+    forward = limits.forward_limit(ratio, beta, heading, climb)
+    backward = limits.backward_limit(ratio, beta, heading, climb)
+    assert forward == pytest.approx((drive / normal).max(), rel=1e-9, abs=1e-9)
+    assert backward == pytest.approx((-drive / normal).max(), rel=1e-9, abs=1e-9)
 
 
-@given(frictions, betas, headings, climbs, banks, drags)
+@given(frictions, betas, headings, climbs)
 @settings(max_examples=150, deadline=None)
-def test_slip_starts_where_its_limit_meets_the_friction(friction, beta, heading, climb, bank, drag):
-    where = (beta, heading, climb, bank, drag)
+def test_slip_starts_where_its_limit_meets_the_friction(friction, beta, heading, climb):
+    where = (beta, heading, climb)
     pairs = (limits.forward_ratio, limits.forward_limit), (limits.backward_ratio, limits.backward_limit)
     for onset, limit in pairs:
         ratio = float(onset(friction, *where))
         assume(ratio < 1e6)
-        lightest = np.cos(climb) * np.cos(bank) - ratio * np.sin(beta)
+        lightest = np.cos(climb) - ratio * np.sin(beta)
         if ratio == 0.0:
             assert limit(0.0, *where) >= friction - 1e-12
         elif lightest > 1e-6:
@@ -126,11 +124,11 @@ def test_slip_starts_where_its_limit_meets_the_friction(friction, beta, heading,
             assert limit(ratio * 0.99, *where) <= friction + 1e-9
 
 
-@given(ratios, betas, headings, climbs, banks, frictions)
+@given(ratios, betas, headings, climbs)
 @settings(max_examples=150, deadline=None)
-def test_a_reversed_drive_on_a_reversed_climb_swaps_the_limits(ratio, beta, heading, climb, bank, friction):
-    forward = limits.forward_limit(ratio, beta, heading, climb, bank)
-    backward = limits.backward_limit(ratio, beta, heading + np.pi, -climb, bank)
+def test_a_reversed_drive_on_a_reversed_climb_swaps_the_limits(ratio, beta, heading, climb):
+    forward = limits.forward_limit(ratio, beta, heading, climb)
+    backward = limits.backward_limit(ratio, beta, heading + np.pi, -climb)
     assume(np.isfinite(forward) and np.isfinite(backward))
     assert forward == pytest.approx(backward, rel=1e-6, abs=1e-9)
 
@@ -144,17 +142,17 @@ def test_level_forward_limit_is_the_published_one_below_the_hop(ratio, beta, hea
     assert limits.forward_limit(ratio, beta, heading) == pytest.approx(published, rel=1e-12, abs=1e-15)
 
 
-@given(frictions, st.floats(0.5, 15.0), banks, st.floats(0.5, 88.0))
+@given(frictions, st.floats(0.5, 15.0), st.floats(0.5, 88.0))
 @settings(max_examples=150, deadline=None)
-def test_the_least_forward_angle_parts_which_slip_comes_first(friction, climb, bank, beta):
+def test_the_least_forward_angle_parts_which_slip_comes_first(friction, climb, beta):
     climb, beta = climb * DEG, beta * DEG
-    least = limits.least_forward_angle(friction, climb, bank)
-    assume(abs(beta - least) > 1e-6 and friction * np.cos(bank) > 1.01 * np.tan(climb))
-    forward = limits.forward_ratio(friction, beta, 0.0, climb, bank)
-    backward = limits.backward_ratio(friction, beta, 0.0, climb, bank)
-    if np.tan(beta) * np.tan(climb) < 0.999 * np.cos(bank):
+    least = limits.least_forward_angle(friction, climb)
+    assume(abs(beta - least) > 1e-6 and friction > 1.01 * np.tan(climb))
+    forward = limits.forward_ratio(friction, beta, 0.0, climb)
+    backward = limits.backward_ratio(friction, beta, 0.0, climb)
+    if np.tan(beta) * np.tan(climb) < 0.999:
         assert (forward < backward) == (beta > least)
-    elif np.tan(beta) * np.tan(climb) > 1.001 * np.cos(bank):
+    elif np.tan(beta) * np.tan(climb) > 1.001:
         assert forward == np.inf
 
 

@@ -76,7 +76,7 @@ def cells(posture, bowl, heading=None):
             found[name][here] = values
     drive, track = bowl.drive, bowl.track
     ratio = limits.acceleration_ratio(drive.amplitude, drive.frequency, bowl.gravity)
-    found["throw_number"] = limits.throw_number(ratio, drive.vibration_angle, track.climb, track.bank)
+    found["throw_number"] = limits.throw_number(ratio, drive.vibration_angle, track.climb)
     return found
 
 

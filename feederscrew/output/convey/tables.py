@@ -31,6 +31,8 @@ def document(study):
         "runs_away": found.runs_away,
         "acceleration_ratio": found.setting.ratio,
         "throw_number": found.throw_number,
+        "mu_effective": found.setting.static,
+        "mu_effective_kinetic": found.setting.kinetic,
         "mu_forward": found.mu_forward,
         "mu_backward": found.mu_backward,
         "margins": found.margins,
