@@ -25,7 +25,7 @@ FILES = {
     "rates/rocking.py": ("tests/rates/test_rocking.py", "tests/rates/test_rocking_noticed.py"),
     "rates/steadiness.py": ("tests/rates/test_rocking_noticed.py", "tests/rates/test_steadiness.py"),
     "rates/tipping.py": ("tests/rates/test_rocking_noticed.py", "tests/rates/test_tipping.py"),
-    "rates/queue.py": ("tests/rates/test_rate.py", "tests/rates/test_passing.py"),
+    "rates/well_oriented.py": ("tests/rates/test_rate.py", "tests/rates/test_passing.py"),
     "tooling/holding.py": ("tests/tooling/test_holding.py", "tests/tooling/test_holding_noticed.py"),
     "tooling/turning.py": ("tests/tooling/test_turning.py", "tests/tooling/test_holding_noticed.py"),
 }
@@ -62,7 +62,7 @@ NAMED = (
         '"drop": 0.45',
         "tests/resting/test_judged_by_measurement.py",
     ),
-    ("dropping/kernel/motion.py", "lever = steps.rolling", "pass", "tests/dropping/test_drop_resistance.py"),
+    ("dropping/kernel/floor_motion.py", "lever = steps.rolling", "pass", "tests/dropping/test_drop_resistance.py"),
 )
 """Changes that once stayed unnoticed, each with the test that notices it: file, text, changed text, test."""
 SWAPPED = {

@@ -5,7 +5,7 @@ import pytest
 import shapes
 
 from feederscrew.dropping.kernel import body
-from feederscrew.dropping.kernel.drop import Steps, scratch, settle
+from feederscrew.dropping.kernel.one_drop import Steps, scratch, settle
 from feederscrew.dropping.shape import shape_of_part
 from feederscrew.resting.aspects import find
 
