@@ -4,7 +4,7 @@ import os
 
 import click
 
-from feederscrew_cli import options, waiting
+from feederscrew_cli import options, tosses, waiting
 from feederscrew_cli import plate as plates
 from feederscrew_cli.interrupt import held_back
 
@@ -28,17 +28,22 @@ def conditions(command):
 @click.command(short_help="A virtual drop test: how often a part lands on each aspect.")
 @options.part
 @conditions
-@click.option("--drops", type=click.IntRange(1, 10**7), help="How many.  [default: 10000; on a plate 400]")
+@click.option(
+    "--drops",
+    type=click.IntRange(1, 10**7),
+    help="How many.  [default: 10000; on a plate 400; 64 of each of --launches]",
+)
 @click.option("--until", metavar="SHARE", help='Go on until no 95 % interval is wider: "1%" to either side.')
 @click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random launches.")
 @click.option("--jobs", type=click.IntRange(1, 256), metavar="N", help="Cores to use.  [default: all]")
 @click.option(
     "--trace", type=click.IntRange(1, 1000), metavar="K", help="With -o: the motion of the first K drops."
 )
+@tosses.launches
 @plates.plate
 @options.pictures
 @options.output
-def drop(part, launch, drops, until, seed, jobs, trace, plate, pictures, out, **own):
+def drop(part, launch, drops, until, seed, jobs, trace, launches, plate, pictures, out, **own):
     """Example: feeder drop parts/lbracket_30x20x15.stl --launch feed --until 1% -o results
 
     Drop PART on a hard plane, again and again, each time from a launch drawn from the ranges of
@@ -60,11 +65,22 @@ def drop(part, launch, drops, until, seed, jobs, trace, plate, pictures, out, **
     given: the share of the time parts lie on each aspect (p_plate, in the second half), where the rates
     at which they change lead in the end (p_limit), and how fast they travel. With -o: plate.csv,
     plate_drives.csv, plate_rates.csv, plate_time.csv, plate.json and plate.png.
+
+    With --launches each toss of a file is followed from its own state until it lies still: position,
+    quaternion w x y z, velocity and spin (in the part's axes), in SI units: the columns toss, x0_m to
+    z0_m, qw0 to qz0, vx0 to vz0, wx0 to wz0. face_up is the side of the part that points up at the end, x
+    and y are the place of its centre of mass, p is the share of the runs that end so while friction,
+    restitution and the state are changed by what is not known of them. Measured ends (xe_m, ye_m,
+    face_up_end) stand beside them. With -o: tosses.csv, tosses.json and tosses.png.
     """
     _fitting(until, trace, plate, out)
+    if plate and launches:
+        raise click.UsageError("--launches is for a plane at rest - leave it or --plate out")
     test = {"drops": drops, "seed": seed, "jobs": jobs or os.cpu_count()}
     if plate:
         plates.run(part, plate, launch, own, test, pictures, out)
+    elif launches:
+        tosses.run(part, launches, own, test | {"until": until, "traced": trace}, pictures, out)
     else:
         _on_floor(part, launch, own, test | {"until": until, "traced": trace or 0}, pictures, out)
 

@@ -86,7 +86,7 @@ def sample(launch, shape, count, rng):
     fall, spin = _between(launch.fall, u[:, 8]), _between(launch.spin, u[:, 3])
     drift = _between(launch.speed, u[:, 6])
     states[:, body.Q : body.Q + 4] = attitude
-    states[:, body.Z] = fall - _lowest(shape, _in_body(attitude, np.array([[0.0, 0.0, 1.0]])))
+    states[:, body.Z] = fall - lowest_points(shape, attitude)
     ahead = np.stack([np.cos(2.0 * np.pi * u[:, 7]), np.sin(2.0 * np.pi * u[:, 7])], axis=1)
     states[:, body.VX : body.VX + 2] = drift[:, None] * ahead
     states[:, body.W : body.W + 3] = spin[:, None] * axes
@@ -114,8 +114,9 @@ def _turns(kind, shape, u):
     return attitude, _in_body(attitude, level)
 
 
-def _lowest(shape, up):
-    """(N,) height of the lowest point over the centre, for (N, 3) directions up in body axes."""
+def lowest_points(shape, attitudes):
+    """Return the height of the lowest point over the centre (N,), for (N, 4) attitudes of the body."""
+    up = _in_body(attitudes, np.array([[0.0, 0.0, 1.0]]))
     lowest = np.einsum("ni,vi->nv", up, shape.vertices).min(axis=1)
     rims = np.einsum("ni,nri->nr", up, lowest_on(shape, up))
     return np.minimum(lowest, rims.min(axis=1, initial=np.inf))

@@ -100,17 +100,18 @@ def parse(text, where):
     if not table:
         raise FeederError(where, "is empty", EXAMPLE)
     first, header = table[0]
-    cells = _cells(where, first, header)
-    if len(cells) > COLUMNS:
+    names = cells(where, first, header)
+    if len(names) > COLUMNS:
         raise FeederError(f"{where}:{first}", f"has more than {COLUMNS} columns", "split the file")
     head, faults = heads.parse([line for line in lines if line[0] < first], where)
     if faults:
         raise Faults(faults[:TOLD])
-    return CountSheet(head, first, tuple(cells), tuple((k, _cells(where, k, line)) for k, line in table[1:]))
+    return CountSheet(head, first, tuple(names), tuple((k, cells(where, k, line)) for k, line in table[1:]))
 
 
-def _cells(where, number, line):
+def cells(where, number, line, mend=EXAMPLE):
+    """Return the cells of one line of CSV; raises a FeederError that ends in ``mend`` if it is none."""
     try:
         return [cell.strip() for cell in next(csv.reader([line]), [])]
     except csv.Error as error:
-        raise FeederError(f"{where}:{number}", f"is not CSV ({error})", EXAMPLE) from None
+        raise FeederError(f"{where}:{number}", f"is not CSV ({error})", mend) from None

@@ -287,3 +287,42 @@ def test_progress_grows_with_what_is_needed(capsys, monkeypatch):
         "2000/8000  widest interval ±2.1 %",
         "8000/8000  widest interval ±0.99 %",
     ]
+
+
+LAUNCHES = """# made up; 100 frames/s
+toss,frames_100Hz,x0_m,y0_m,z0_m,qw0,qx0,qy0,qz0,vx0,vy0,vz0,wx0,wy0,wz0,xe_m,ye_m,face_up_end
+4,80,0,0,0.00851,1,0,0,0,0,0,0,0,0,0,0,0,+z
+7,90,0,0,0.00851,0,1,0,0,0.2,0,0,0,0,0,0.02,0,-z
+"""
+
+
+def test_launches_of_a_file_are_followed_one_by_one(run, stl, tmp_path):
+    (tmp_path / "launches.csv").write_text(LAUNCHES)
+    call = ("drop", stl, "--launches", "launches.csv", "--friction", "0.3", "--drops", "5")
+    told = document(run(*call, "--format", "json"))
+    assert [(row["toss"], row["face_up"], row["p"]) for row in told["tosses"]] == [(4, "+z", 1), (7, "-z", 1)]
+    assert told["tosses"][0]["x_mm"] == pytest.approx(0.0, abs=1.0)
+    assert told["tosses"][1]["x_mm"] > 3.0
+    assert told["runs"] == 5 and told["frame_s"] == 0.01 and told["friction"] == [0.3, 0.3]
+    assert told["measured"]["told"] == 1.0 and told["measured"]["median_off_mm"] < 20.0
+    done = run(*call, "-o", "results")
+    assert "100.0 % of the upper sides are as measured" in done.stderr
+    folder = tmp_path / "results/box"
+    assert {path.name for path in folder.iterdir()} == {
+        "tosses.csv", "tosses.json", "tosses.png", "run.json",
+    }  # fmt: skip
+    inputs = json.loads((folder / "run.json").read_text())["drop launches"]["inputs"]
+    assert [Path(one["path"]).name for one in inputs] == ["box.stl", "launches.csv"]
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--launch", "roll"), "--launch cannot be combined with --launches - leave one of them out"),
+        (("--spin", "3 rad/s"), "--spin cannot be combined with --launches - leave one of them out"),
+        (("--plate",), "--launches is for a plane at rest - leave it or --plate out"),
+    ],
+)
+def test_launches_of_a_file_say_what_a_preset_would(run, stl, options, said):
+    done = run("drop", stl, "--launches", "launches.csv", *options)
+    assert done.exit_code == 2 and said in done.stderr

@@ -1,0 +1,52 @@
+"""``feeder drop --launches``: its run."""
+
+from dataclasses import replace
+
+import click
+
+from feederscrew_cli import options, waiting
+from feederscrew_cli.interrupt import held_back
+
+FOREIGN = {"fall": "--height", "spin": "--spin", "speed": "--speed"}  # what the file says instead
+
+
+def launches(command):
+    """--launches; the command receives ``launches``, a path or None."""
+    return click.option(
+        "--launches",
+        metavar="FILE",
+        type=options.Place(),
+        help="Follow each launch of a CSV file from its own state, in place of random ones.",
+    )(command)
+
+
+def run(part, path, own, test, pictures, out):
+    """Follow the launches of a file, write and tell where they lead."""
+    _fitting(own, test)
+    with held_back():
+        from feederscrew.output import columns, offers
+        from feederscrew.output.drop import toss_files, toss_tables
+        from feederscrew.studies import tosses
+
+    out = replace(out, command="drop launches")
+    solid = out.part(part)
+    with waiting.bar(out, "tosses") as bar:
+        told = {"progress": bar.reach, "before": lambda: waiting.drops(out)}
+        run = {"runs": test["drops"], "seed": test["seed"], "jobs": test["jobs"]}
+        study = tosses.follow(solid, path, own, **told, **run)
+    inputs = solid.inputs | {study.launches.source: study.launches.sha256}
+    with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
+        out.warn(*toss_tables.remarks(study))
+        out.say(*toss_tables.summary(study))
+        offers.write(folder, toss_files.offers(study), pictures=pictures)
+    out.show(toss_tables.told(study), toss_tables.document(study), hidden=toss_tables.HIDDEN)
+
+
+def _fitting(own, test):
+    """Wrong calls."""
+    context = click.get_current_context()
+    given = context.get_parameter_source("launch") is click.core.ParameterSource.COMMANDLINE
+    foreign = ["--launch"] * given + [option for key, option in FOREIGN.items() if own[key] is not None]
+    foreign += [option for key, option in (("until", "--until"), ("traced", "--trace")) if test[key]]
+    if foreign:
+        raise click.UsageError(f"{foreign[0]} cannot be combined with --launches - leave one of them out")
