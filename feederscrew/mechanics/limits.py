@@ -206,25 +206,6 @@ def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0):
     return _onset(friction, -along, -np.sin(climb), beta, climb)
 
 
-def least_forward_angle(friction, climb):
-    """Return the vibration angle [rad] above which growing G brings forward slip before backward slip.
-
-    Parameters
-    ----------
-    friction : array_like [1]
-        Static.
-    climb : array_like [rad]
-        Of the track.
-
-    Returns
-    -------
-    array [rad]
-        Holds while the drive points up the track in space, tan(beta) tan(climb) < 1;
-        beyond that no vibration slips the part forward.
-    """
-    return np.arctan2(np.sin(climb), np.cos(climb) * np.square(friction))
-
-
 def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0):
     """Return what a part does within one cycle.
 

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 import pytest
+import steady_formulas
 
-from feederscrew.conveying import closed_forms, steady
+from feederscrew.conveying import flights, steady
 from feederscrew.conveying.harmonic import gain, harmonic, onward, reached, travel, value
 from feederscrew.conveying.law import law
 from feederscrew.conveying.motion import TALLY, State, at_rest, land, turn
@@ -32,7 +33,7 @@ def thrown_at(throw, angle=30 * DEG, climb=0.0, friction=0.3, restitution=0.0):
     [(0.5, 30, 0, 0.3), (0.5, 30, 3, 0.3), (1.0, 30, 3, 0.8), (0.35, 30, 6, 0.3), (0.9, 20, 2, 0.6)],
 )
 def test_two_burst_velocity(ratio, beta, climb, friction):
-    wanted = closed_forms.two_burst_velocity(ratio, beta * DEG, climb * DEG, friction)
+    wanted = steady_formulas.two_burst_velocity(ratio, beta * DEG, climb * DEG, friction)
     found = travel_of(plain(ratio, beta * DEG, climb * DEG, friction))
     assert found[steady.STATUS] == steady.PERIODIC
     assert found[steady.PERIOD] == 1
@@ -40,18 +41,18 @@ def test_two_burst_velocity(ratio, beta, climb, friction):
 
 
 def test_two_bursts_that_meet_have_no_formula():
-    assert math.isnan(closed_forms.two_burst_velocity(1.5, 20 * DEG, 0.0, 0.1))
-    assert math.isnan(closed_forms.two_burst_velocity(2.5, 30 * DEG, 0.0, 0.3))
+    assert math.isnan(steady_formulas.two_burst_velocity(1.5, 20 * DEG, 0.0, 0.1))
+    assert math.isnan(steady_formulas.two_burst_velocity(2.5, 30 * DEG, 0.0, 0.3))
 
 
 @pytest.mark.parametrize(("periods", "throw"), [(0.5, 1.368461), (1, 3.296908), (2, 6.362265), (3, 9.477681)])
 def test_throw_number_of_a_whole_flight(periods, throw):
-    assert closed_forms.throw_of_flight(periods) == pytest.approx(throw, abs=5e-7)
+    assert flights.throw_of_flight(periods) == pytest.approx(throw, abs=5e-7)
 
 
 @pytest.mark.parametrize("periods", [0.01, 0.1, 0.5, 0.9, 0.999])
 def test_flight_of_a_throw_number(periods):
-    found = travel_of(thrown_at(closed_forms.throw_of_flight(periods)))
+    found = travel_of(thrown_at(flights.throw_of_flight(periods)))
     assert found[steady.FLIGHT_TIME] == pytest.approx(periods, rel=1e-12)
 
 
@@ -64,7 +65,7 @@ def test_flight_over_several_periods():
             state = turn(rules, state, tally)
         while high - low > 1e-14:
             middle = 0.5 * (low + high)
-            longer = closed_forms.throw_of_flight(middle) < throw
+            longer = flights.throw_of_flight(middle) < throw
             low, high = (middle, high) if longer else (low, middle)
         assert tally[5] / TURN == pytest.approx(low, rel=1e-12)
 
@@ -72,22 +73,22 @@ def test_flight_over_several_periods():
 @pytest.mark.parametrize("above", [1e-4, 1e-6, 1e-8, 1e-10])
 def test_grazing_flight(above):
     found = travel_of(thrown_at(1.0 + above, climb=2 * DEG))
-    assert found[steady.FLIGHT_TIME] == pytest.approx(closed_forms.grazing_flight(1.0 + above), rel=above)
+    assert found[steady.FLIGHT_TIME] == pytest.approx(steady_formulas.grazing_flight(1.0 + above), rel=above)
 
 
 @pytest.mark.parametrize("periods", [0.3, 0.7, 1.0])
 @pytest.mark.parametrize("climb", [0.0, 3 * DEG])
 def test_ideal_throw(periods, climb):
     angle = 30 * DEG
-    throw = closed_forms.throw_of_flight(periods)
+    throw = flights.throw_of_flight(periods)
     setting = thrown_at(throw, angle, climb, friction=1e12)
-    velocity = closed_forms.ideal_throw_velocity(periods, angle, climb, frequency=1.0 / TURN, gravity=1.0)
+    velocity = steady_formulas.ideal_throw_velocity(periods, angle, climb, frequency=1.0 / TURN, gravity=1.0)
     # with w = g = 1 the amplitude is the ratio itself
     assert travel_of(setting)[steady.VELOCITY] == pytest.approx(velocity / setting.ratio, rel=1e-9)
 
 
 def test_ideal_throw_of_the_trade():
-    assert closed_forms.ideal_throw_velocity(1.0, 30 * DEG, 0.0, 50.0, 9.81) == pytest.approx(
+    assert steady_formulas.ideal_throw_velocity(1.0, 30 * DEG, 0.0, 50.0, 9.81) == pytest.approx(
         0.1699, abs=5e-5
     )
 
@@ -97,7 +98,7 @@ def test_ideal_throw_of_the_trade():
     [(0.0, math.pi, 3.7242), (0.2, 2.094, 2.544), (0.3, 1.692, 2.127), (0.5, 1.047, 1.527)],
 )
 def test_regular_bounce_lives_within_its_window(restitution, low, high):
-    window = closed_forms.bounce_window(1, restitution)
+    window = steady_formulas.bounce_window(1, restitution)
     assert window == pytest.approx((low, high), abs=6e-4)
     inside = (0.05, 0.5, 0.9) if restitution else ()
     for share in inside:
@@ -175,14 +176,14 @@ def test_velocity_never_exceeds_the_plate():
     rng = np.random.default_rng(5)
     for ratio, beta, friction in rng.uniform((0.1, 5, 0.1), (6.0, 60, 1.0), (60, 3)):
         found = travel_of(plain(ratio, beta * DEG, 2 * DEG, friction, 0.2))
-        assert found[steady.HIGH] <= closed_forms.velocity_bound(beta * DEG)
+        assert found[steady.HIGH] <= steady_formulas.velocity_bound(beta * DEG)
 
 
 def test_best_throw_number_of_the_trade():
     throws = np.linspace(1.5, 5.0, 141)
     for angle, friction in ((20 * DEG, 0.3), (40 * DEG, 0.8)):
         velocities = [travel_of(thrown_at(k, angle, 3 * DEG, friction))[steady.VELOCITY] for k in throws]
-        shares = np.array(velocities) / closed_forms.velocity_bound(angle)
+        shares = np.array(velocities) / steady_formulas.velocity_bound(angle)
         # per A w the best lies just below the flight of one period
         assert 2.9 < throws[np.argmax(shares)] < 3.2
         assert shares.max() > 0.85

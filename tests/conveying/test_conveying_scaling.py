@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 import pytest
+import steady_formulas
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from feederscrew.conveying import closed_forms, steady
+from feederscrew.conveying import steady
 from feederscrew.conveying.scaling import Numbers, numbers, with_numbers
 
 DEG = math.pi / 180.0
@@ -54,7 +55,7 @@ def test_numbers_of_a_setting_come_back():
 )
 def test_elliptical_drive_at_small_friction(throw, steepness, want):
     """cos a with a + k sin a = (pi/2)(1 + tan(climb)/mu), reached as the coupling falls."""
-    level = closed_forms.elliptical_velocity(throw, steepness)
+    level = steady_formulas.elliptical_velocity(throw, steepness)
     assert level == pytest.approx(want, abs=5e-6)
     a = brentq(lambda a: a + throw * math.sin(a) - 0.5 * math.pi * (1.0 + steepness), 0.0, math.pi)
     assert level == pytest.approx(math.cos(a), rel=1e-12)

@@ -12,7 +12,7 @@ from mechanics_samples import DEG, box_posture, rectangle
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import outline, turned
-from feederscrew.mechanics.wall.outline import axis_of_bowl, rests
+from feederscrew.mechanics.wall.outline import rests
 from feederscrew.mechanics.wall.stable_headings import headings, laid
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
@@ -63,6 +63,15 @@ def test_rests_match_a_search(seed, radius):
     directions, shares = by_search(corners, radius)
     assert np.sort(np.mod(found.outward, 2 * np.pi)) == pytest.approx(np.sort(directions), abs=5e-4)
     assert np.sort(found.share) == pytest.approx(np.sort(shares), abs=2e-4)
+
+
+def axis_of_bowl(touching, radius):
+    """Where the bowl's axis passes when two corners (..., 2, 2) touch a wall of finite radius."""
+    first, second = touching[..., 0, :], touching[..., 1, :]
+    along = second - first
+    length = np.hypot(along[..., 0], along[..., 1])
+    inward = np.stack([-along[..., 1], along[..., 0]], axis=-1) / length[..., None]
+    return 0.5 * (first + second) + np.sqrt(radius**2 - 0.25 * length**2)[..., None] * inward
 
 
 @pytest.mark.parametrize("seed", range(4))

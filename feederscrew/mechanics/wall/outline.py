@@ -77,25 +77,6 @@ def rests(outline, radius, merge=ROUND):
     )
 
 
-def axis_of_bowl(touching, radius):
-    """Return where the bowl's axis passes when two corners touch a wall of finite radius.
-
-    Parameters
-    ----------
-    touching : (..., 2, 2) float [m]
-        The two corners, counter-clockwise along the outline.
-    radius : float [m]
-        Of the wall.
-
-    Returns
-    -------
-    (..., 2) float [m]
-    """
-    first, second = touching[..., 0, :], touching[..., 1, :]
-    middle, inward, half = _chord(first, second)
-    return middle + np.sqrt(radius**2 - half**2)[..., None] * inward
-
-
 def _chord(first, second):
     """Middle of two corners, unit vector into the outline, half their distance."""
     along = second - first

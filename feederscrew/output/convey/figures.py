@@ -6,7 +6,7 @@ from matplotlib.colors import ListedColormap, TwoSlopeNorm
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from feederscrew.conveying.closed_forms import throw_of_flight
+from feederscrew.conveying.flights import throw_of_flight
 from feederscrew.conveying.setting import PHASES
 from feederscrew.output import style
 from feederscrew.output.tables import heading

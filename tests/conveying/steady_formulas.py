@@ -2,7 +2,6 @@
 
 import math
 
-from feederscrew import check
 from feederscrew.mechanics import limits
 
 PRECISION = 1e-15
@@ -38,23 +37,6 @@ def two_burst_velocity(ratio, angle, climb, friction):
         return math.nan
     push, lift = math.cos(angle), friction * math.sin(angle)
     return (push + lift) * _way(forward, start, end) - (push - lift) * _way(backward, start_back, end_back)
-
-
-def throw_of_flight(periods):
-    """Return the throw number at which a part that does not rebound flies for a given time.
-
-    Parameters
-    ----------
-    periods : float
-        Length of the flight, above 0; of one that starts from contact.
-
-    Returns
-    -------
-    float [1]
-        sqrt(1 + pi^2) for one period.
-    """
-    turn = 2.0 * math.pi * check.positive("periods", periods)
-    return math.hypot(1.0, (0.5 * turn * turn - 1.0 + math.cos(turn)) / (turn - math.sin(turn)))
 
 
 def grazing_flight(throw):
