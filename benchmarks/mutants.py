@@ -62,7 +62,12 @@ NAMED = (
         '"drop": 0.45',
         "tests/resting/test_judged_by_measurement.py",
     ),
-    ("dropping/kernel/floor_motion.py", "lever = steps.rolling", "pass", "tests/dropping/test_drop_resistance.py"),
+    (
+        "dropping/kernel/floor_motion.py",
+        "lever = steps.rolling",
+        "pass",
+        "tests/dropping/test_drop_resistance.py",
+    ),
 )
 """Changes that once stayed unnoticed, each with the test that notices it: file, text, changed text, test."""
 SWAPPED = {
