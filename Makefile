@@ -72,11 +72,12 @@ bench: $(READY_TO_TEST) ## what people wait for and the kernels, under ten minut
 	for name in $(BENCHES); do $(BIN)/python benchmarks/$$name.py || exit 1; done
 	$(BIN)/python benchmarks/aspects.py --repeats 1
 
-docs: docs/aspects.png docs/regimes.png docs/drop.png docs/bowl.png $(READY) ## pictures, outputs and tables of the README
+docs: docs/aspects.png docs/regimes.png docs/drop.png docs/bowl.png $(READY) ## pictures, outputs and tables of the pages
 	$(BIN)/python docs/readme.py
 	$(BIN)/python docs/commands.py
 	$(BIN)/python docs/equations.py
 	$(BIN)/python docs/rules.py
+	$(BIN)/python docs/bowl_file.py
 
 docs/aspects.png: results/$(DEMO)/aspects.csv
 	cp results/$(DEMO)/aspects.png $@

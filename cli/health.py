@@ -81,7 +81,7 @@ def completion():
     """The line that turns completion on in the shell that is in use."""
     shell = Path(os.environ.get("SHELL", "")).name
     if shell not in SHELLS:
-        return "for bash, zsh and fish: see the README"
+        return "for bash, zsh and fish: see docs/examples.md"
     if shell == "fish":
         return "_FEEDER_COMPLETE=fish_source feeder > ~/.config/fish/completions/feeder.fish"
     return f'eval "$(_FEEDER_COMPLETE={shell}_source feeder)" in ~/.{shell}rc'

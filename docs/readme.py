@@ -1,4 +1,4 @@
-"""Bring the README and the worked pages up to what the program says: its outputs, its commands, its keys.
+"""Bring the README and the worked pages up to what the program says: its outputs and its commands.
 
 Example: python docs/readme.py          (writes README.md and the pages of WORKED)
          python docs/readme.py --check  (status 1, and the differences, if it is out of date)
@@ -13,10 +13,13 @@ from pathlib import Path
 
 from click.testing import CliRunner
 
-from feederscrew.bowl import documentation
 from feederscrew_cli.main import feeder
 
-WORKED = ("docs/bowl.md", "docs/tooling.md")  # pages whose console examples are outputs as well
+WORKED = (
+    "docs/examples.md",
+    "docs/bowl.md",
+    "docs/tooling.md",
+)  # pages whose console examples are outputs as well
 TUTORIAL = "docs/tutorial.md"  # written with them; a test of its own runs it
 ROOT = Path(__file__).resolve().parent.parent
 BLOCK = re.compile(r"```console( sampled)?\n\$ (feeder .*)\n((?:(?!```).*\n)*)```")
@@ -25,11 +28,8 @@ FEW = ("--drops", "10")  # in place of those the example asks for
 
 
 def filled(text):
-    """The README with every output, command and key as it is now."""
-    text = BLOCK.sub(_block, text)
-    text = _between(text, "commands", _commands())
-    text = _between(text, "bowl keys", documentation.markdown())
-    return _between(text, "devices", documentation.devices_markdown())
+    """The README with every output and command as it is now."""
+    return _between(BLOCK.sub(_block, text), "commands", _commands())
 
 
 def _block(match):

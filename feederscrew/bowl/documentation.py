@@ -53,7 +53,7 @@ def write_template(path, *, replace=False):
 
 
 def markdown():
-    """Return the keys as a Markdown table, for the README."""
+    """Return the keys as a Markdown table, for docs/bowl_file.md."""
     head = "| Key | Default | From | To | Meaning |\n|---|---|---|---|---|\n"
     return head + "".join(
         f"| `{key.name}` | {_default_for_people(key)} | {key.lowest} | {key.highest} | {key.meaning} |\n"
@@ -69,7 +69,7 @@ def _opening(section):
 
 
 def devices_markdown():
-    """Return the kinds of devices as a Markdown table, for the README."""
+    """Return the kinds of devices as a Markdown table, for docs/bowl_file.md."""
     head = "| Device | Example | Meaning |\n|---|---|---|\n"
     return head + "".join(f"| `{name}` | `{one.example}` | {one.meaning} |\n" for name, one in KINDS.items())
 

@@ -88,11 +88,9 @@ def test_the_shipped_files():
     assert math.degrees(math.asin(1 / ratio)) == pytest.approx(7.9, abs=0.05)
 
 
-def test_the_readme_has_the_table_of_keys():
-    readme = ROOT / "README.md"
-    if not readme.exists():
-        pytest.skip("no README yet")
-    assert documentation.markdown() in readme.read_text()
+def test_the_page_has_the_tables_of_keys_and_devices():
+    page = (ROOT / "docs/bowl_file.md").read_text()
+    assert documentation.markdown() in page and documentation.devices_markdown() in page
 
 
 @pytest.mark.parametrize(

@@ -49,7 +49,7 @@ def test_it_counts_the_kernels_of_the_folder_that_numba_is_told(monkeypatch, tmp
     [
         ("/bin/zsh", 'eval "$(_FEEDER_COMPLETE=zsh_source feeder)" in ~/.zshrc'),
         ("/usr/bin/fish", "_FEEDER_COMPLETE=fish_source feeder > ~/.config/fish/completions/feeder.fish"),
-        ("", "for bash, zsh and fish: see the README"),
+        ("", "for bash, zsh and fish: see docs/examples.md"),
     ],
 )
 def test_it_knows_how_completion_is_turned_on(monkeypatch, shell, line):

@@ -1,0 +1,80 @@
+"""The pages that lead through the project: every page is reached, every name on them is there."""
+
+import importlib
+import re
+from pathlib import Path
+
+import pytest
+from test_layers import DOORS, ORDER
+
+ROOT = Path(__file__).parent.parent
+DOCS = ROOT / "docs"
+PAGES = sorted([ROOT / "README.md", *DOCS.glob("*.md")])
+LINK = re.compile(r"\]\(([^)#\s]+)(?:#([^)\s]+))?\)")
+ARCHITECTURE = (DOCS / "architecture.md").read_text()
+
+
+def rows(heading):
+    """Cells of each row of the first table below a heading of the architecture page."""
+    below = ARCHITECTURE.split(f"\n## {heading}\n")[1].split("\n## ")[0]
+    lines = [line for line in below.splitlines() if line.startswith("|")][2:]
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+
+
+def test_the_readme_is_short():
+    assert len((ROOT / "README.md").read_text().splitlines()) <= 260
+
+
+def test_the_index_leads_to_every_page():
+    index = (DOCS / "README.md").read_text()
+    assert [page.name for page in DOCS.glob("*.md") if f"]({page.name})" not in index] == ["README.md"]
+
+
+def anchors(page):
+    """The headings of a page as links name them."""
+    titles = re.findall(r"^#+ (.*)$", page.read_text(), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_link_of_a_page_leads_somewhere(page):
+    for target, anchor in LINK.findall(page.read_text()):
+        if "://" in target:
+            continue
+        path = page.parent / target
+        assert path.exists(), f"{page.name} leads to {target}"
+        assert not anchor or anchor in anchors(path), f"{page.name} leads to {target}#{anchor}"
+
+
+def test_no_page_names_the_host_of_a_package_registry():
+    for page in [*PAGES, *(ROOT / "feederscrew").rglob("*.md")]:
+        assert not re.search(r"https?://[^\s)>\]]*(npm|pypi|debian)", page.read_text()), page
+
+
+def test_the_rooms_are_those_of_the_layers_in_their_order():
+    assert [name for cells in rows("Rooms") for name in re.findall(r"`(\w+)`", cells[0])] == ORDER
+
+
+def test_the_doors_are_those_of_the_layers():
+    for libraries, door in rows("One door a library"):
+        for library in libraries.split(", "):
+            held = DOORS[library]
+            room = door.strip("`")
+            assert any(place.removeprefix("feederscrew/").startswith(room) for place in held), (library, held)
+
+
+def test_the_functions_on_the_way_of_a_part_are_there():
+    named = re.findall(r"`(feederscrew(?:\.\w+)+)`", ARCHITECTURE)
+    assert len(named) >= 4
+    for dotted in named:
+        module, _, name = dotted.rpartition(".")
+        assert callable(getattr(importlib.import_module(module), name))
+
+
+def test_the_folders_on_the_page_are_there():
+    named = re.findall(r"`((?:\w+/)+)`", ARCHITECTURE)
+    assert len(named) >= 6
+    for folder in named:
+        assert folder == "feederscrew/" or any(
+            (root / folder).is_dir() for root in (ROOT, ROOT / "feederscrew")
+        )
