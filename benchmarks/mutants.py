@@ -63,7 +63,7 @@ NAMED = (
         "tests/resting/test_judged_by_measurement.py",
     ),
     (
-        "dropping/kernel/floor_motion.py",
+        "dropping/kernel/falling.py",
         "lever = steps.rolling",
         "pass",
         "tests/dropping/test_drop_resistance.py",
