@@ -12,7 +12,8 @@ from feederscrew_cli import options
 def config(ctx):
     """Example: feeder config init bowl.yaml
 
-    Bowl files: start one with all defaults, or show the values in effect and where each came from.
+    Bowl files: start one with all defaults, show the values in effect and where each came from, or print the
+    schema that editors complete and check them by.
     """
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help())
@@ -24,14 +25,35 @@ def config(ctx):
 def init(file, replace):
     """Example: feeder config init bowl.yaml
 
-    Write a bowl file of all defaults, each key with its meaning, to FILE or to standard output.
+    Write a bowl file of all defaults, each key with its meaning, to FILE or to standard output. Its first
+    line names the JSON Schema that editors complete and check it by; with FILE that is written beside it.
     """
-    from feederscrew.bowl import documentation
+    from feederscrew.bowl import documentation, json_schema
 
     if file == "-":
         click.echo(documentation.template(), nl=False)
     else:
         documentation.write_template(file, replace=replace)
+        click.echo(f"Wrote {file}", err=True)
+        click.echo(f"Wrote {json_schema.write_beside(file)}, which editors read", err=True)
+
+
+@config.command(short_help="Print the JSON Schema of a bowl file, for editors.")
+@click.argument("file", type=options.FILE, default="-")
+@click.option("--force", "replace", is_flag=True, help="Replace the file if it exists.")
+def schema(file, replace):
+    """Example: feeder config schema feeder.schema.json
+
+    Write the JSON Schema of a bowl file to FILE or to standard output: its keys with units, bounds, defaults
+    and meaning, and every device. Editors with a YAML language server then complete and check bowl files
+    that begin with '# yaml-language-server: $schema=feeder.schema.json', as those of config init do.
+    """
+    from feederscrew.bowl import documentation, json_schema
+
+    if file == "-":
+        click.echo(json_schema.text(), nl=False)
+    else:
+        documentation.write_new(file, json_schema.text(), replace=replace)
         click.echo(f"Wrote {file}", err=True)
 
 

@@ -1,4 +1,4 @@
-"""The schema for people: a commented bowl file and a table of its keys."""
+"""The schema for people: a commented bowl file."""
 
 from pathlib import Path
 
@@ -7,6 +7,8 @@ from feederscrew.bowl.schema import BY_NAME, KEYS, OPTIONAL, rival
 from feederscrew.bowl.settings import OF_THE_MACHINE, default
 from feederscrew.errors import FeederError
 
+SCHEMA_FILE = "feeder.schema.json"  # what the JSON Schema is called beside a bowl file
+EDITORS = f"# yaml-language-server: $schema={SCHEMA_FILE}"  # the line by which editors find it
 WHY = """\
 The defaults are a typical bowl: steel on a dry steel track that climbs 3 deg, driven at the 50 Hz of a
 half-wave supply with 0.42 mm from end to end. Parts travel at 25 mm/s, the speed behind the handbook's
@@ -21,7 +23,8 @@ friction; there are no tables of friction on coatings to rely on.
 def template():
     """Return a bowl file of all defaults, commented: what ``feeder config init`` writes."""
     lines = [
-        "# A bowl feeder: its drive, its surface and its track. Write a unit after every dimensional value."
+        EDITORS,
+        "# A bowl feeder: its drive, its surface and its track. Write a unit after every dimensional value.",
     ]
     lines += [f"# {line}" for line in WHY.splitlines()]
     section = ""
@@ -37,11 +40,16 @@ def template():
 
 def write_template(path, *, replace=False):
     """Write ``template`` to a file; FeederError if it exists, unless ``replace``, or cannot be made."""
+    write_new(path, template(), replace=replace)
+
+
+def write_new(path, text, *, replace=False):
+    """Write a text to a file; FeederError if it exists, unless ``replace``, or cannot be made."""
     if Path(path).is_dir():
         raise FeederError(path, "is a folder", f"name a file in it, such as {Path(path) / 'bowl.yaml'}")
     try:
         with Path(path).open("w" if replace else "x", encoding="utf-8", newline="\n") as file:
-            file.write(template())
+            file.write(text)
     except FileExistsError:
         raise FeederError(
             path, "exists already", "name another file, or pass `replace` to replace it"
@@ -52,26 +60,11 @@ def write_template(path, *, replace=False):
         ) from None
 
 
-def markdown():
-    """Return the keys as a Markdown table, for docs/bowl_file.md."""
-    head = "| Key | Default | From | To | Meaning |\n|---|---|---|---|---|\n"
-    return head + "".join(
-        f"| `{key.name}` | {_default_for_people(key)} | {key.lowest} | {key.highest} | {key.meaning} |\n"
-        for key in KEYS
-    )
-
-
 def _opening(section):
     """The line that opens a section; an optional one stands behind comment signs."""
     if section not in OPTIONAL:
         return [f"{section}:"]
     return ["# Take the '# ' away from these lines to describe your own drive unit.", f"# {section}:"]
-
-
-def devices_markdown():
-    """Return the kinds of devices as a Markdown table, for docs/bowl_file.md."""
-    head = "| Device | Example | Meaning |\n|---|---|---|\n"
-    return head + "".join(f"| `{name}` | `{one.example}` | {one.meaning} |\n" for name, one in KINDS.items())
 
 
 def _template_line(key):

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from feederscrew import bowl, units
-from feederscrew.bowl import documentation, schema
+from feederscrew.bowl import documentation, json_schema, schema
 from feederscrew.conveying import answer
 from feederscrew.errors import FeederError
 from feederscrew.mechanics import limits
@@ -61,7 +61,7 @@ def test_the_template_holds_the_defaults(file):
     path = file(documentation.template())
     assert bowl.read(path) == bowl.default()
     origins = {s.key.name: s.origin for s in bowl.settings(path)}
-    assert origins["drive.amplitude"] == "bowl.yaml:11"
+    assert origins["drive.amplitude"] == "bowl.yaml:12"
     assert origins["friction.kinetic"] == "as friction.static"
 
 
@@ -88,9 +88,8 @@ def test_the_shipped_files():
     assert math.degrees(math.asin(1 / ratio)) == pytest.approx(7.9, abs=0.05)
 
 
-def test_the_page_has_the_tables_of_keys_and_devices():
-    page = (ROOT / "docs/bowl_file.md").read_text()
-    assert documentation.markdown() in page and documentation.devices_markdown() in page
+def test_the_schema_beside_it_is_as_the_program_has_it():
+    assert (ROOT / "configs" / documentation.SCHEMA_FILE).read_text() == json_schema.text()
 
 
 @pytest.mark.parametrize(

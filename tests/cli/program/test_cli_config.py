@@ -8,12 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from feederscrew.bowl import documentation
+from feederscrew.bowl import documentation, json_schema
 
 
 def test_init_writes_a_commented_file_that_is_valid(run):
     result = run("config", "init", "bowl.yaml")
-    assert (result.exit_code, result.stdout, result.stderr) == (0, "", "Wrote bowl.yaml\n")
+    assert (result.exit_code, result.stdout) == (0, "")
+    assert result.stderr == "Wrote bowl.yaml\nWrote feeder.schema.json, which editors read\n"
+    assert Path("feeder.schema.json").read_text() == json_schema.text()
     assert Path("bowl.yaml").read_text() == documentation.template()
     assert run("config", "show", "--config", "bowl.yaml").exit_code == 0
 
@@ -101,3 +103,23 @@ def test_a_fault_prints_nothing_on_stdout(run):
 def test_without_a_command_of_its_own_it_shows_its_help(run):
     shown = run("config")
     assert shown.exit_code == 0 and shown.stdout == run("config", "--help").stdout and not shown.stderr
+
+
+def test_schema_prints_what_init_leaves_beside_the_file(run):
+    printed = run("config", "schema")
+    assert (printed.exit_code, printed.stdout) == (0, json_schema.text())
+    Path("feeder.schema.json").write_text('{"title": "feeder bowl file", "old": true}')
+    assert run("config", "init", "bowl.yaml").exit_code == 0
+    assert Path("feeder.schema.json").read_text() == printed.stdout
+    assert Path("bowl.yaml").read_text().splitlines()[0] == (
+        "# yaml-language-server: $schema=feeder.schema.json"
+    )
+
+
+def test_another_file_of_the_schemas_name_is_left_alone(run):
+    Path("feeder.schema.json").write_text("mine")
+    done = run("config", "init", "bowl.yaml")
+    assert done.exit_code == 1 and Path("feeder.schema.json").read_text() == "mine"
+    assert done.stderr.splitlines()[-1] == (
+        "Error: feeder.schema.json: exists already - name another file, or pass --force to replace it"
+    )

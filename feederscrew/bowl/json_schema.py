@@ -1,0 +1,181 @@
+"""The bowl file's JSON Schema, for editors: made from the tables that the checks read."""
+
+import json
+import re
+from pathlib import Path
+
+from feederscrew import units
+from feederscrew.bowl import documentation
+from feederscrew.bowl.devices import SECTION
+from feederscrew.bowl.schema import BY_NAME, KEYS, SECTIONS, rival
+
+DRAFT = "http://json-schema.org/draft-07/schema#"  # the latest one that YAML editors know well
+TITLE = "feeder bowl file"
+NUMBER = r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"
+PLAIN = ("number", "count")  # dimensions without a unit
+ABOUT = {
+    "drive": "How the bowl vibrates.",
+    "friction": "Coefficients of friction.",
+    "track": "The track and its wall.",
+    "machine": "The drive unit under the bowl: springs and masses.",
+    "sizing": "Rules of thumb of `feeder bowl`.",
+}
+
+
+def schema():
+    """Return the JSON Schema of a bowl file.
+
+    Returns
+    -------
+    dict
+        Draft 7. A value with a unit is a string with a pattern; ``x-lowest``, ``x-highest``, ``x-units`` and
+        ``x-dimension`` say what the checks of `feeder` hold it to, as the draft has no bounds for strings.
+    """
+    properties = {key.name: _value(key) for key in KEYS if not key.section}
+    for section in SECTIONS:
+        properties[section] = _section(section)
+    properties[SECTION] = {
+        "description": "Devices along the track, in the order in which parts meet them.",
+        "type": "array",
+        "items": {
+            "type": "object",
+            "properties": {kind: _device(one) for kind, one in documentation.KINDS.items()},
+            "additionalProperties": False,
+            "minProperties": 1,
+            "maxProperties": 1,
+        },
+    }
+    return {
+        "$schema": DRAFT,
+        "title": TITLE,
+        "description": "A bowl feeder: its drive, its surface, its track and its devices.",
+        "type": "object",
+        "properties": properties,
+        "additionalProperties": False,
+    }
+
+
+def text():
+    """Return ``schema`` as the text of a file."""
+    return json.dumps(schema(), indent=1, ensure_ascii=False) + "\n"
+
+
+def write_beside(path):
+    """Write the schema beside a bowl file, in place of an older one of ours.
+
+    Parameters
+    ----------
+    path : str or Path
+        Of the bowl file.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    FeederError
+        If another file has that name, or it cannot be written.
+    """
+    place = Path(path).parent / documentation.SCHEMA_FILE
+    ours = place.is_file() and f'"title": "{TITLE}"' in place.read_text(encoding="utf-8", errors="replace")
+    documentation.write_new(place, text(), replace=ours)
+    return place
+
+
+def _section(section):
+    keys = [key for key in KEYS if key.section == section]
+    made = {
+        "description": ABOUT.get(section, f"Values of {section}."),
+        "type": "object",
+        "properties": {key.word: _value(key) for key in keys},
+        "additionalProperties": False,
+    }
+    rivals = {frozenset((key.word, rival(key).word)) for key in keys if rival(key) is not None}
+    if rivals:
+        made["allOf"] = [{"not": {"required": sorted(pair)}} for pair in sorted(rivals, key=sorted)]
+    return made
+
+
+def _value(key):
+    """The schema of one key."""
+    bounds = f"From {key.lowest} to {key.highest}."
+    follows = key.default in BY_NAME
+    left_out = f"Left out: as {key.default}." if follows else f"Default: {key.default}."
+    made = {
+        "description": f"{key.meaning}. {bounds} {left_out}",
+        **_quantity(key.dimension, key.lowest, key.highest),
+        "x-dimension": key.dimension,
+        "x-lowest": key.lowest,
+        "x-highest": key.highest,
+        "x-units": [unit for unit in units.UNITS[key.dimension] if unit],
+    }
+    return made if follows else {**made, "default": _typed(key.default, key.dimension)}
+
+
+def _typed(text, dimension):
+    """A default as YAML reads it: a number where it has no unit."""
+    number, unit = units.split(text)
+    if dimension not in PLAIN or unit:
+        return text
+    return int(number) if number.is_integer() else number
+
+
+def _quantity(dimension, lowest=None, highest=None):
+    """A value with its unit; without one a number within bounds, or a text of it."""
+    text = {"type": "string", "pattern": pattern(dimension)}
+    if dimension not in PLAIN:
+        return text
+    number = {"type": "number"}
+    if lowest is not None:
+        number |= {
+            "minimum": units.quantity(lowest, dimension),
+            "maximum": units.quantity(highest, dimension),
+        }
+    return {"anyOf": [number, text]}
+
+
+def pattern(dimension):
+    """Return the regular expression of a quantity as a bowl file writes it."""
+    spelt = [
+        *units.UNITS[dimension],
+        *(name for name, unit in units.SPELLINGS.items() if unit in units.UNITS[dimension]),
+    ]
+    ends = sorted({_loose(name) for name in spelt if name}, key=lambda end: (-len(end), end))
+    behind = f"\\s*({'|'.join(ends)})" if ends else ""
+    return f"^\\s*{NUMBER}{behind}{'?' if dimension in PLAIN and ends else ''}\\s*$"
+
+
+def _loose(unit):
+    """A unit with a superscript or a caret where it has a power, and any blanks."""
+    escaped = re.escape(unit).replace("\\ ", r"[\s*·]+").replace("\\-", "-")
+    return escaped.replace("2", r"\^?[2²]").replace("3", r"\^?[3³]")
+
+
+def _device(kind):
+    return {"description": f"{kind.meaning}. Example: {kind.example}", **_DEVICES.get(kind.dimension, {})}
+
+
+_LENGTH = _quantity("length")
+_POLYGON = {
+    "type": "array",
+    "minItems": 3,
+    "items": {"type": "array", "items": _LENGTH, "minItems": 2, "maxItems": 2},
+}
+
+
+def _mapping(**values):
+    """A mapping of exactly these keys; one that Python keeps for itself ends in '_'."""
+    named = {name.rstrip("_"): value for name, value in values.items()}
+    return {"type": "object", "properties": named, "required": list(named), "additionalProperties": False}
+
+
+_DRAWN = _mapping(dxf={"type": "string"}, layer={"type": ["string", "number"]})
+_LIKE = _mapping(of={"type": "string", "pattern": "^.+@.+$"}, play=_LENGTH)
+_DEVICES = {  # what is written after 'kind:', by the dimension of the kind
+    "length": _LENGTH,
+    "span": _mapping(from_=_LENGTH, to=_LENGTH),
+    "polygon": {"anyOf": [_POLYGON, _DRAWN]},
+    "opening": {"anyOf": [_POLYGON, _LIKE]},
+    "shares": {"type": "object", "minProperties": 1, "additionalProperties": _quantity("number", "0", "1")},
+}
