@@ -1,0 +1,176 @@
+"""The bowl as one body: made of swept, turned and extruded pieces."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from feederscrew.part import mass
+from feederscrew.solidbowl import facets, track
+from feederscrew.solidbowl.plan import DOME, TURN, BowlPlan
+from feederscrew.units import factor
+
+MM = factor("mm", "length")
+INTO = 1e-3  # [m] by which one piece reaches into another
+FAR = 1.0  # [m] beyond everything
+PLAY = 1e-4  # [m] of a gate in its notch, to each side
+EARS = 4e-3  # [m] by which a gate stands out of the wall
+SIDES = 48  # of a bolt's hole
+
+
+@dataclass(frozen=True, eq=False)
+class BowlSolid:
+    """A bowl as a closed surface, with what it is and weighs."""
+
+    plan: BowlPlan
+    vertices: np.ndarray  # (V, 3) [m]
+    faces: np.ndarray  # (F, 3)
+    gates: tuple[tuple[str, np.ndarray, np.ndarray], ...]  # name, vertices and faces of each part of its own
+    volume: float  # [m3]
+    mass: float  # [kg] gates included
+    inertia: float  # [kg m2] about the axis
+    centre: np.ndarray  # (3,) [m]
+
+
+def body(plan):
+    """Return the bowl of a plan.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+
+    Returns
+    -------
+    BowlSolid
+
+    Raises
+    ------
+    FeederError
+        If cuts leave a piece loose.
+    """
+    whole, gates = pieces(plan)
+    vertices, faces = facets.mesh(_placed(whole, plan))
+    found = mass.solid(vertices[faces])
+    extra = tuple((name, *facets.mesh(_placed(one, plan))) for name, one in gates)
+    parts = [found, *(mass.solid(v[f]) for _, v, f in extra)]
+    weights = np.array([plan.material.density * one.volume for one in parts])
+    total = float(weights.sum())
+    centre = sum(w * one.centre for w, one in zip(weights, parts)) / total
+    inertia = sum(
+        plan.material.density * one.inertia[2, 2] + w * (one.centre[0] ** 2 + one.centre[1] ** 2)
+        for w, one in zip(weights, parts)
+    )
+    return BowlSolid(plan, vertices, faces, extra, float(found.volume), total, float(inertia), centre)
+
+
+def pieces(plan):
+    """Return the bowl as one Manifold [mm] and its gates (name, Manifold), the outlet at the angle 0."""
+    ring = facets.without(_wall(plan), [*_opening(plan), *(_notch(plan, one) for one in _gates(plan))])
+    slab = facets.without(track.slab(plan), [_hole(plan, cut) for cut in _holes(plan)])
+    blades = [_plate(plan, one) for one in _blades(plan) if not one.alone]
+    whole = facets.united([_floor(plan), ring, slab, *track.sides(plan), *track.yokes(plan), *blades])
+    whole = facets.without(whole, [*track.slots(plan), *_drilled(plan)])
+    gates = [(f"gate_{k + 1}", _plate(plan, one)) for k, one in enumerate(_gates(plan))]
+    return facets.one_piece(whole, "devices"), gates
+
+
+def _placed(one, plan):
+    """The body turned to the angle of its outlet, mirrored where the track is left-handed."""
+    placed = one.mirror((0.0, 1.0, 0.0)) if plan.left else one
+    return placed.rotate((0.0, 0.0, float(np.degrees(plan.turned)))) if plan.turned else placed
+
+
+def _floor(plan):
+    """Floor with its dome, and the hub below it."""
+    radius, floor, low = plan.way.radius, plan.material.floor, plan.underside
+    inner, outer = radius - plan.across, radius + plan.material.wall
+    top = [(outer, 0.0), (inner, 0.0), (0.0, inner * np.tan(DOME))]
+    if plan.material.flat:
+        return facets.turned([(0.0, low), (outer, low), *top], plan.segments)
+    shell = facets.turned([(0.0, inner * np.tan(DOME) - floor), (inner, low), (outer, low), *top], plan.segments)
+    under = plan.hub
+    hub = [(0.0, low), (under, low), (under, float(plan.floor(under)) - 0.5 * floor), (0.0, plan.dome - 0.5 * floor)]
+    return facets.united([shell, facets.turned(hub, plan.segments)])
+
+
+def _wall(plan):
+    inner, outer = plan.way.radius, plan.way.radius + plan.material.wall
+    return facets.turned(
+        [(inner, plan.underside + INTO), (outer, plan.underside), (outer, plan.top), (inner, plan.top)], plan.segments
+    )
+
+
+def _opening(plan):
+    """Where the outlet passes through the wall."""
+    end, far = plan.way.end, plan.way.end + 2.0 * plan.outlet
+    area = plan.way.laid(np.array([[end, 0.0], [far, 0.0], [far, plan.width], [end, plan.width]]), plan.chord)
+    lift = plan.width * np.sin(plan.way.bank)
+    return [facets.prism(area, plan.outlet_height - 0.5 * plan.material.plate, plan.top + lift + FAR)]
+
+
+def _drilled(plan):
+    """Holes of the bolts, in the middle and on their circle, and drain holes."""
+    angles = TURN * (np.arange(plan.bolts) + 0.5) / plan.bolts
+    circle = [(0.0, 0.0)] + [(0.5 * plan.bolt_circle * np.cos(a), 0.5 * plan.bolt_circle * np.sin(a)) for a in angles]
+    holes = [(one, plan.bolt) for one in circle]
+    edge = plan.way.radius - plan.across - plan.drain
+    angles = TURN * np.arange(plan.drains) / max(plan.drains, 1)
+    holes += [((edge * np.cos(a), edge * np.sin(a)), plan.drain) for a in angles]
+    return [_drill(at, size, plan) for at, size in holes]
+
+
+def _drill(at, size, plan):
+    angles = TURN * np.arange(SIDES) / SIDES
+    ring = np.array(at) + 0.5 * size * np.column_stack([np.cos(angles), np.sin(angles)])
+    return facets.prism(shapely.Polygon(ring), plan.underside - INTO, plan.dome + INTO)
+
+
+def _holes(plan):
+    return () if plan.stretch is None else tuple(cut for cut in plan.stretch.cuts if not cut.hangs)
+
+
+def _blades(plan):
+    return () if plan.stretch is None else plan.stretch.blades
+
+
+def _gates(plan):
+    return [one for one in _blades(plan) if one.alone]
+
+
+def _hole(plan, cut):
+    """The body that a cut takes out of the track."""
+    ring = cut.ring + [plan.first, 0.0]
+    heights = plan.way.height(ring[:, 0], ring[:, 1])
+    deep = plan.material.plate + track.fillet(plan) + INTO
+    return facets.prism(plan.way.laid(ring, 0.2 * plan.chord), heights.min() - deep, heights.max() + INTO)
+
+
+def _plate(plan, blade):
+    """A blade across the track, at its height over the higher of its two faces."""
+    s = plan.first + blade.start
+    area = blade.area
+    if blade.alone:
+        x0, _, _, x3 = area.bounds
+        ear = shapely.box(-plan.material.wall - EARS, 0.0, x0 + INTO, x3)
+        area = shapely.union_all([area, ear])
+    return _standing(plan, s, blade.thickness, area)
+
+
+def _standing(plan, s, thickness, area):
+    """An area of distances from the wall and heights over the track, as a plate across the track."""
+    plate = facets.prism(area, 0.0, thickness)
+    theta, z = plan.way.angle(s), float(plan.way.height(s + thickness))
+    ahead, inward = np.array([-np.sin(theta), np.cos(theta), 0.0]), -np.array([np.cos(theta), np.sin(theta), 0.0])
+    bank = plan.way.bank
+    across = np.cos(bank) * inward + [0.0, 0.0, np.sin(bank)]
+    upright = np.array([0.0, 0.0, 1.0])
+    foot = np.array([*plan.way.plan(s, 0.0), z]) / MM
+    turned = plate.transform(np.column_stack([across, upright, ahead, foot]))
+    return turned
+
+
+def _notch(plan, blade):
+    """The notch of the wall in which a gate stands, open above."""
+    z = -PLAY
+    area = shapely.box(-plan.material.wall - INTO, z, INTO, FAR)
+    return _standing(plan, plan.first + blade.start - PLAY, blade.thickness + 2.0 * PLAY, area)

@@ -1,0 +1,108 @@
+"""What the devices of a chain take from the track and stand on it, unrolled: the one door to tooling's strip."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from shapely import affinity
+
+from feederscrew.tooling.strip import BLADE, OVERHEAD, strip
+
+BEYOND = 2e-3  # [m] by which what reaches an edge of the track is cut over it
+
+
+@dataclass(frozen=True, eq=False)
+class Cut:
+    """A hole in the track; s along the wall from where the stretch begins."""
+
+    label: str  # 'gap 9 mm'
+    kind: str
+    ring: np.ndarray  # (K, 2) [m] s and distance from the wall
+    hangs: bool  # parts hang in it from there on: it goes on to the end of the track
+
+    @property
+    def span(self):
+        """From and to [m] along the wall."""
+        return float(self.ring[:, 0].min()), float(self.ring[:, 0].max())
+
+
+@dataclass(frozen=True, eq=False)
+class Blade:
+    """A plate across the track."""
+
+    label: str
+    kind: str
+    start: float  # [m] s
+    thickness: float  # [m]
+    area: object  # shapely geometry [m]: distance from the wall, height over the track
+    alone: bool  # a gate that is a part of its own, and stands in a notch of the wall
+
+
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """The tooled stretch of the track."""
+
+    length: float  # [m] along the wall
+    tallest: float  # [m] of all orientations
+    longest: float  # [m] of all orientations, along the track
+    cuts: tuple[Cut, ...]
+    blades: tuple[Blade, ...]
+    drops: tuple[tuple[float, float], ...]  # s and height [m] of each step down
+    labels: tuple[tuple[float, float, str], ...]  # from, to [m] and label of each device
+
+    @property
+    def falls(self):
+        """Where the last part that a cut returns goes down [m]; None without cuts."""
+        return max((cut.span[1] for cut in self.cuts), default=None)
+
+
+def stretch(track, devices, every):
+    """Return the tooled stretch of a track.
+
+    Parameters
+    ----------
+    track : Track
+    devices : sequence of Device
+    every : sequence of Orientation
+        Of the part on that track.
+
+    Returns
+    -------
+    Stretch
+    """
+    section = strip(track, devices, every)
+    stations = section.stations
+    return Stretch(
+        length=section.length,
+        tallest=section.tallest,
+        longest=max(one.length for one in every),
+        cuts=tuple(_cut(one, section.width, track.width) for one in stations if one.hole is not None),
+        blades=tuple(_blade(one, track.width) for one in stations if one.blade is not None),
+        drops=tuple((one.start + 0.5 * one.length, one.drop) for one in stations if one.drop > 0.0),
+        labels=tuple((one.start, one.start + one.length, one.label) for one in stations),
+    )
+
+
+def _cut(station, drawn, width):
+    """A hole, carried a little over the edge of the track that it reaches, and into the wall."""
+    s, y = station.hole.T
+    y = np.where(y >= drawn - 1e-9, width + BEYOND, np.where(y <= 1e-9, -BEYOND, y))
+    return Cut(
+        station.label, station.device.kind, np.column_stack([s, y]), station.device.kind == "rails"
+    )
+
+
+def _blade(station, width):
+    """The plate of a gate without its opening; it reaches into the wall."""
+    free = shapely.union_all([shapely.Polygon(ring) for ring in station.openings])
+    ways = ((0.0, 0.0), (-2.0 * BEYOND, 0.0), (0.0, -2.0 * BEYOND))
+    free = shapely.union_all([affinity.translate(free, *by) for by in ways])
+    frame = shapely.box(-BEYOND, 0.0, width, station.top)
+    return Blade(
+        label=station.label,
+        kind=station.device.kind,
+        start=float(station.blade[:, 0].min()),
+        thickness=BLADE,
+        area=frame.difference(free),
+        alone=station.device.kind not in OVERHEAD,
+    )

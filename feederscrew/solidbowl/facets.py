@@ -1,0 +1,173 @@
+"""Bodies of our own facets, united and cut: the bowl's door to manifold3d."""
+
+import numpy as np
+import shapely
+
+from feederscrew import check
+from feederscrew.errors import FeederError
+from feederscrew.units import factor
+
+MM = factor("mm", "length")  # manifold3d works on numbers of that size
+FINEST = 2e-6  # [m] corners nearer than this become one
+CRUMB = 1e-9  # [m3] a loose piece smaller than this is left out
+
+
+def swept(sections, frames):
+    """Return a body whose section is handed on from frame to frame.
+
+    Parameters
+    ----------
+    sections : (M, K, 2) float [m]
+        Corners of each section, counter-clockwise: outwards, upwards.
+    frames : (M, 2, 2) float
+        Of each section the place from above where its first coordinate is zero, and the unit vector along
+        which it grows.
+
+    Returns
+    -------
+    Manifold [mm]
+    """
+    from manifold3d import Manifold, Mesh64, triangulate
+
+    place, outward = frames[:, None, 0], frames[:, None, 1]
+    flat = place + sections[..., :1] * outward
+    points = np.concatenate([flat, sections[..., 1:]], axis=-1)
+    count, corners = sections.shape[:2]
+    k, row = np.arange(corners), corners * np.arange(count - 1)[:, None]
+    a, b = row + k, row + (k + 1) % corners
+    sides = np.stack([a, a + corners, b, b, a + corners, b + corners], axis=-1).reshape(-1, 3)
+    first, last = (np.asarray(triangulate([sections[m] / MM])) for m in (0, -1))
+    faces = np.concatenate([sides, first, corners * (count - 1) + last[:, ::-1]])
+    mesh = Mesh64(points.reshape(-1, 3) / MM, faces.astype(np.uint64))
+    return sound(Manifold(mesh), "a swept body")
+
+
+def turned(profile, segments):
+    """Return a body of revolution about Z.
+
+    Parameters
+    ----------
+    profile : (K, 2) float [m]
+        Radius and height of its corners, counter-clockwise.
+    segments : int
+
+    Returns
+    -------
+    Manifold [mm]
+    """
+    from manifold3d import CrossSection
+
+    return CrossSection([np.asarray(profile) / MM]).revolve(segments)
+
+
+def prism(area, low, high):
+    """Return a body over an area from above, between two heights.
+
+    Parameters
+    ----------
+    area : shapely geometry [m]
+    low, high : float [m]
+
+    Returns
+    -------
+    Manifold [mm]
+    """
+    from manifold3d import CrossSection, FillRule, Manifold
+
+    polygons = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
+    rings = [ring for part in polygons for ring in (part.exterior, *part.interiors)]
+    flat = CrossSection([np.asarray(ring.coords)[:-1] / MM for ring in rings], FillRule.EvenOdd)
+    return Manifold.extrude(flat, (high - low) / MM).translate((0.0, 0.0, low / MM))
+
+
+def united(bodies):
+    """Return the union of a list of Manifolds."""
+    from manifold3d import Manifold, OpType
+
+    return Manifold.batch_boolean(list(bodies), OpType.Add)
+
+
+def without(body, tools):
+    """Return a Manifold with a list of others cut out of it."""
+    from manifold3d import Manifold, OpType
+
+    return Manifold.batch_boolean([body, *tools], OpType.Subtract) if tools else body
+
+
+def sound(body, what):
+    """Return a Manifold that is one; a ValueError otherwise."""
+    if body.is_empty():
+        raise ValueError(f"{what} is not a closed surface: {body.status()}")
+    return body
+
+
+def one_piece(body, where):
+    """Return the one piece of a body.
+
+    Raises
+    ------
+    FeederError
+        If more than a crumb hangs loose.
+    """
+    pieces = sorted(body.decompose(), key=lambda one: -one.volume())
+    loose = [one for one in pieces[1:] if one.volume() * MM**3 > CRUMB]
+    if loose:
+        what = f"the cuts leave {len(loose)} loose piece{'s' * (len(loose) > 1)} of the track"
+        raise FeederError(where, what, "leave some track on both sides of each cut, or move them apart")
+    return pieces[0]
+
+
+def mesh(body):
+    """Return the surface of a Manifold, the same however it was made.
+
+    Parameters
+    ----------
+    body : Manifold [mm]
+
+    Returns
+    -------
+    vertices : (V, 3) float [m]
+        Numbers that single precision holds in millimetres.
+    faces : (F, 3) int
+        Counter-clockwise seen from outside.
+    """
+    found = body.simplify(FINEST / MM).to_mesh64()
+    points = np.asarray(found.vert_properties)[:, :3].astype(np.float32).astype(float)
+    points, places = np.unique(points, axis=0, return_inverse=True)
+    faces = places.ravel()[np.asarray(found.tri_verts).astype(int)]
+    faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
+    faces = _in_order(_with_area(points, faces))
+    return check.frozen(points * MM), check.frozen(faces)
+
+
+def _with_area(points, faces):
+    """The facets without those that rounding left no area: their long side is split in the neighbour."""
+    faces = [tuple(one) for one in faces.tolist()]
+    for _ in range(100):
+        a, b, c = points[np.array(faces)].transpose(1, 0, 2)
+        flat = np.flatnonzero(~np.cross(b - a, c - a).any(axis=1))
+        if not len(flat):
+            break
+        faces = _split(points, faces, int(flat[0]))
+    return np.array(faces)
+
+
+def _split(points, faces, at):
+    """The facets without one whose corners lie on a line."""
+    one = faces[at]
+    sides = [np.sum((points[one[k]] - points[one[k - 1]]) ** 2) for k in range(3)]
+    k = int(np.argmax(sides))
+    a, b, c = one[k - 1], one[k], one[k - 2]  # c lies between a and b
+    kept = [face for place, face in enumerate(faces) if place != at]
+    for place, face in enumerate(kept):
+        for turn in range(3):
+            if (face[turn], face[turn - 2]) == (b, a):
+                d = face[turn - 1]
+                return [*kept[:place], (b, c, d), (c, a, d), *kept[place + 1 :]]
+    return kept
+
+
+def _in_order(faces):
+    first = np.argmin(faces, axis=1)[:, None]
+    turned_round = np.take_along_axis(faces, (first + np.arange(3)) % 3, axis=1)
+    return turned_round[np.lexsort(turned_round.T[::-1])]

@@ -1,0 +1,45 @@
+"""What a bowl is made of, and how thick its walls are then."""
+
+from dataclasses import dataclass
+
+STEEL = "steel"
+
+
+@dataclass(frozen=True)
+class Material:
+    """Thicknesses and density of one way to make a bowl."""
+
+    name: str
+    wall: float  # [m]
+    floor: float  # [m]
+    plate: float  # [m] of the track
+    density: float  # [kg/m3]
+    supported: bool  # every face may hang free: welded, or held up by the powder around it
+    flat: bool  # the underside of the floor is flat, to stand on a printer's bed
+
+
+PRINTED = (
+    Material("pla", 4e-3, 5e-3, 4e-3, 1240.0, supported=False, flat=True),
+    Material("pa12", 3e-3, 4e-3, 3e-3, 1010.0, supported=True, flat=False),
+)
+NAMES = (*(one.name for one in PRINTED), STEEL)
+
+
+def material(name, rules):
+    """Return a material by name.
+
+    Parameters
+    ----------
+    name : str
+        Of ``NAMES``; 'steel' is the sheet of the bowl file.
+    rules : Sizing
+        Its thickness and density of the sheet.
+
+    Returns
+    -------
+    Material
+    """
+    if name == STEEL:
+        sheet = rules.sheet
+        return Material(STEEL, sheet, sheet, sheet, rules.sheet_density, supported=True, flat=False)
+    return next(one for one in PRINTED if one.name == name)

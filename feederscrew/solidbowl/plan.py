@@ -1,0 +1,189 @@
+"""The measures of a bowl as a solid, decided before a facet is made."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew.errors import FeederError
+from feederscrew.solidbowl.cuts import Stretch
+from feederscrew.solidbowl.materials import Material
+from feederscrew.solidbowl.way import Way
+
+CHORD = 5e-5  # [m] by which an arc may be seen too flat
+DOME = np.radians(3.0)  # slope of the floor outwards
+ABOVE = 5e-3  # [m] of the wall over the tallest part on the track's end
+OUTLET = 15e-3  # [m] by which the outlet stands out of the wall
+LEAD = 10e-3  # [m] of track between the last device and the outlet
+DIP = 0.06  # [rad] the track begins so far below the floor: no edge where it grows from it
+CLEAR = 2e-3  # [m] more than a part needs, below rails
+NARROW = 0.75  # of the radius: no track is wider
+TURN = 2.0 * np.pi
+
+
+@dataclass(frozen=True, eq=False)
+class BowlPlan:
+    """A bowl in lengths [m] and angles [rad]; heights over the floor's edge."""
+
+    way: Way
+    width: float  # of the track, along its surface
+    material: Material
+    stretch: Stretch | None  # None without devices
+    first: float  # s where the stretch begins
+    outlet: float  # length of the outlet
+    hanging: float  # depth that parts hang below rails
+    headroom: float  # free height that parts need above the track
+    top: float  # of the wall
+    hub: float  # radius of the hub below the floor
+    bolts: int
+    bolt: float  # diameter of their holes
+    bolt_circle: float  # diameter
+    drains: int
+    drain: float  # diameter of a drain hole
+    turned: float  # angle of the outlet's begin, seen from above
+    left: bool  # mirrored: parts travel clockwise, seen from above
+    chord: float
+
+    @property
+    def across(self):
+        """Width of the track, seen from above."""
+        return self.width * float(np.cos(self.way.bank))
+
+    @property
+    def segments(self):
+        """How many facets a full turn has."""
+        return int(np.ceil(TURN / (2.0 * np.arccos(1.0 - self.chord / self.way.radius)) / 4.0)) * 4
+
+    @property
+    def outlet_height(self):
+        """Height of the outlet's surface by the wall."""
+        return float(self.way.height(self.way.end))
+
+    @property
+    def turns(self):
+        """Turns of the track from the floor to the outlet."""
+        return self.way.end / self.way.radius / TURN
+
+    @property
+    def dome(self):
+        """Rise of the floor from its edge to the middle."""
+        return (self.way.radius - self.across) * float(np.tan(DOME))
+
+    @property
+    def underside(self):
+        """Height of the face that stands on the drive."""
+        return -self.material.floor
+
+    def floor(self, r):
+        """Return the height [m] of the floor at radii."""
+        inner = self.way.radius - self.across
+        return np.maximum(inner - np.asarray(r, float), 0.0) * np.tan(DOME)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is asked of the solid beside the sizes of the sheet."""
+
+    chord: float = CHORD
+    material: str = "steel"
+    outlet_height: float = 0.0  # [m] 0: as the track's turns make it
+    outlet_angle: float = 0.0  # [rad]
+    left: bool = False
+    bolts: int = 6
+    bolt: float = 8e-3  # [m]
+    bolt_circle: float = 0.0  # [m] 0: by the rule
+    drains: int = 0
+    drain: float = 4e-3  # [m]
+
+
+def plan(size, track, made_of, tooled, asked, *, greatest):
+    """Return the measures of a bowl as a solid.
+
+    Parameters
+    ----------
+    size : machine.sizing.Size
+    track : Track
+        Of that size.
+    made_of : Material
+    tooled : Stretch or None
+    asked : Asked
+    greatest : float [m]
+        Greatest extent of the part.
+
+    Returns
+    -------
+    BowlPlan
+
+    Raises
+    ------
+    FeederError
+        If the track is too wide for the bowl, does not rise, is too short for the devices, or what falls
+        through them would not reach the floor.
+    """
+    _check(size, track)
+    way, first = _way(size, track, tooled, asked)
+    across = track.width * np.cos(track.bank)
+    outer = track.radius + made_of.wall
+    outlet = np.sqrt(outer**2 - (track.radius - across) ** 2) + OUTLET
+    tallest = greatest if tooled is None else tooled.tallest
+    gates = [one.area.bounds[3] for one in tooled.blades] if tooled else []
+    hangs = tooled is not None and any(cut.hangs for cut in tooled.cuts)
+    circle = asked.bolt_circle or 0.4 * size.diameter
+    return BowlPlan(
+        way=way,
+        width=track.width,
+        material=made_of,
+        stretch=tooled,
+        first=first,
+        outlet=float(outlet),
+        hanging=greatest + CLEAR if hangs else 0.0,
+        headroom=tallest,
+        top=float(way.height(way.end)) + sum(d for _, d in way.drops) + max([tallest + ABOVE, *gates]),
+        hub=0.5 * circle + 2.0 * asked.bolt,
+        bolts=asked.bolts,
+        bolt=asked.bolt,
+        bolt_circle=circle,
+        drains=asked.drains,
+        drain=asked.drain,
+        turned=asked.outlet_angle,
+        left=asked.left,
+        chord=asked.chord,
+    )
+
+
+def _check(size, track):
+    widest = NARROW * track.radius
+    if track.width > widest:
+        what = f"{1e3 * track.width:.4g} mm is too wide for a bowl of {1e3 * size.diameter:.4g} mm"
+        raise FeederError("track.width", what, f"give at most {1e3 * widest:.4g} mm, or a larger track.radius")
+    if track.climb <= 0.0:
+        what = f"{np.degrees(track.climb):.3g} deg does not lead a track out of the bowl"
+        raise FeederError("track.climb", what, "give a climb, as 3.5 deg, or leave it out")
+
+
+def _way(size, track, tooled, asked):
+    """The way of the track, and where on it the tooled stretch begins."""
+    needed = 0.0 if tooled is None else tooled.length + LEAD
+    drops = () if tooled is None else tooled.drops
+    rise = np.tan(track.climb)
+    round_once = TURN * track.radius
+    falls = None if tooled is None else tooled.falls
+    most = np.inf if falls is None else round_once + needed - falls
+    end = min(size.turns * round_once, most)
+    if asked.outlet_height > 0.0:
+        end = (asked.outlet_height + sum(drop for _, drop in drops)) / rise
+        _check_height(asked.outlet_height, end, most, rise, drops)
+    first = end - needed
+    if first < 0.0:
+        what = f"the devices take {1e3 * needed:.4g} mm of track, and it has {1e3 * end:.4g} mm"
+        raise FeederError("devices", what, "take fewer, a larger sizing.depth, or a larger bowl")
+    return Way(
+        radius=track.radius, climb=track.climb, bank=track.bank, end=float(end),
+        drops=tuple((first + at, drop) for at, drop in drops),
+    ), float(first)  # fmt: skip
+
+
+def _check_height(height, end, most, rise, drops):
+    if end > most:
+        highest = most * rise - sum(drop for _, drop in drops)
+        what = f"{1e3 * height:.4g} mm puts a turn of the track below the cuts: what falls stays on it"
+        raise FeederError("sizing.outlet_height", what, f"give at most {1e3 * highest:.4g} mm")

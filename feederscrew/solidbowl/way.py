@@ -1,0 +1,67 @@
+"""Where the track runs: round the wall as a helix of one climb, then straight on along its tangent."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """The foot of the wall as a line in space, and the track inwards of it.
+
+    Lengths s [m] run along the wall from where the track leaves the floor, distances y [m] from the wall
+    along the track's surface. Seen from above parts travel counter-clockwise about the Z axis and leave
+    where the outlet begins, at the angle 0.
+    """
+
+    radius: float  # [m] of the wall's inner face where the outlet begins
+    climb: float  # [rad]
+    bank: float  # [rad] down towards the wall
+    end: float  # [m] s where the outlet begins: from there on the way is straight and level
+    drops: tuple[tuple[float, float], ...] = ()  # s of each step of the track and its height [m]
+    flare: float = 0.0  # [1] by which the wall's radius grows over s
+
+    def wall_radius(self, s):
+        """Return the radius [m] of the wall's inner face at lengths s."""
+        return self.radius + self.flare * (np.minimum(s, self.end) - self.end)
+
+    def angle(self, s):
+        """Return the angle [rad] about the axis at lengths s; it stays at 0 along the outlet."""
+        return (np.minimum(s, self.end) - self.end) / self.radius
+
+    def plan(self, s, y):
+        """Return the places (..., 2) [m] from above at lengths s and distances y."""
+        s, y = np.broadcast_arrays(np.asarray(s, float), np.asarray(y, float))
+        theta, straight = self.angle(s), np.maximum(s - self.end, 0.0)
+        r, c, sn = self.wall_radius(s) - y * np.cos(self.bank), np.cos(theta), np.sin(theta)
+        return np.stack([r * c - straight * sn, r * sn + straight * c], axis=-1)
+
+    def height(self, s, y=0.0):
+        """Return the height [m] of the track's surface over the floor's edge at lengths s, distances y."""
+        s = np.asarray(s, float)
+        fallen = sum((np.where(s >= at, drop, 0.0) for at, drop in self.drops), np.zeros(s.shape))
+        return np.tan(self.climb) * np.minimum(s, self.end) - fallen + np.sin(self.bank) * np.asarray(y)
+
+    def places(self, s, y):
+        """Return points (..., 3) [m] of the track's surface."""
+        flat = self.plan(s, y)
+        z = np.broadcast_to(self.height(s, y), flat.shape[:-1])
+        return np.concatenate([flat, z[..., None]], axis=-1)
+
+    def laid(self, ring, chord):
+        """Return a ring (K, 2) [m] of lengths and distances as a polygon seen from above.
+
+        Parameters
+        ----------
+        ring : (K, 2) float [m]
+        chord : float [m]
+            By which an arc may be seen too flat.
+
+        Returns
+        -------
+        shapely geometry [m]
+        """
+        border = shapely.linestrings(np.vstack([ring, ring[:1]]))
+        fine = shapely.get_coordinates(shapely.segmentize(border, np.sqrt(4.0 * self.radius * chord)))[:-1]
+        return shapely.make_valid(shapely.Polygon(self.plan(fine[:, 0], fine[:, 1])))
