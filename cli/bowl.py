@@ -17,6 +17,26 @@ ASPECT = click.option(
     help="Aspect that counts.  [default: every one that passes the track and the devices]",
 )
 
+SOLID = (
+    click.option("--solid", is_flag=True, help="Make the bowl as one closed body: STL, 3MF and a drawing."),
+    click.option(
+        "--print",
+        "material",
+        type=click.Choice(["pla", "pa12", "steel"]),
+        default="steel",
+        show_default=True,
+        help="What the solid is made of: thickness of wall and floor.",
+    ),
+    click.option(
+        "--chord",
+        type=Quantity("length", positive=True),
+        default="0.05 mm",
+        show_default=True,
+        metavar="LENGTH",
+        help="By which an arc of the solid may be seen too flat.",
+    ),
+)
+
 
 def _wanted(command):
     """The options of ``orientation.CHAIN``, none of them required."""
@@ -25,13 +45,19 @@ def _wanted(command):
     return command
 
 
+def _of_the_solid(command):
+    """The options of SOLID, packed as ``made``."""
+    return options.stacked(options.packed(command, "made", ("solid", "material", "chord")), *SOLID)
+
+
 @click.command(short_help="Size the bowl for a part and a rate; its springs, tuning and drift.")
 @options.optional_part
 @_wanted
+@_of_the_solid
 @options.bowl
 @options.pictures
 @options.output
-def bowl(part, target, bowl, pictures, out, **wanted):
+def bowl(part, target, made, bowl, pictures, out, **wanted):
     """Example: feeder bowl parts/lbracket_30x20x15.stl --target 60/min -o results
 
     With PART and --target: diameter, track, climb, turns, fill, hopper, drive, stroke and leaf springs that
@@ -42,14 +68,17 @@ def bowl(part, target, bowl, pictures, out, **wanted):
 
     What the bowl file says of track, drive and machine is kept; section 'sizing' has the rules of thumb.
     With -o: bowl.json, bowl.csv, bowl_angles.csv, bowl_leaves.csv, bowl_leaf_changes.csv,
-    bowl_emptying.csv and bowl.png.
+    bowl_emptying.csv and bowl.png. With --solid also bowl.stl and bowl.3mf, the bowl as one closed body
+    with its track, cuts, blades and outlet, and bowl.pdf, a drawing sheet; its mass and inertia then take
+    the place of the estimate.
     """
     from feederscrew import bowl as bowls
     from feederscrew.output import columns, machine, offers
     from feederscrew.output.machine import tables
     from feederscrew.studies import bowl as study
+    from feederscrew.studies import solidbowl as solids
 
-    _fitting(part, target)
+    _fitting(part, target, made)
     settings, path = bowls.settings(**bowl), bowl["path"]
     solid = out.part(part) if part["source"] else None
     identity = solid.inputs if solid else {}
@@ -57,14 +86,19 @@ def bowl(part, target, bowl, pictures, out, **wanted):
     name = solid.name if solid else bowls.name(path)
     with out.folder(name, identity | bowls.identity(path), effective) as folder:
         waiting.conveying(out)
-        found = study.bowl(settings, solid, target, **wanted) if solid else study.machine(settings)
+        shape = solids.asked(settings, **made)
+        found = (
+            study.bowl(settings, solid, target, **wanted, solid=shape) if solid else study.machine(settings)
+        )
         out.warn(*found.remarks)
         offers.write(folder, machine.offers(found), pictures=pictures)
         out.show(tables.summary(found), tables.document(found))
 
 
-def _fitting(part, target):
+def _fitting(part, target, made):
     """Wrong calls."""
+    if made["solid"] and not part["source"]:
+        raise click.UsageError("--solid is given without PART - name the part's file")
     if part["source"] and target is None:
         raise click.UsageError("PART is given without --target - give the rate as well: --target 120/min")
     if target is not None and not part["source"]:

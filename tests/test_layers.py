@@ -11,7 +11,7 @@ ROOT = Path(__file__).parent.parent
 ORDER = [
     "errors", "check", "units", "documents",
     "geometry", "part", "resting", "bowl", "screw", "mechanics", "conveying", "dropping",
-    "tooling", "rates", "trial", "machine", "studies", "output", "thesis", "batch", "api",
+    "tooling", "rates", "trial", "machine", "solidbowl", "studies", "output", "thesis", "batch", "api",
 ]  # fmt: skip
 DOORS = {
     "trimesh": {"feederscrew/part"},
@@ -20,7 +20,7 @@ DOORS = {
     "matplotlib": {"feederscrew/output", "feederscrew/thesis/pages"},
     "embreex": {"feederscrew/output"},
     "ezdxf": {"feederscrew/bowl/dxf.py"},
-    "manifold3d": {"feederscrew/tooling/solid.py"},
+    "manifold3d": {"feederscrew/tooling/solid.py", "feederscrew/solidbowl/facets.py"},
     "OCP": {"feederscrew/output/tooling/step.py"},
     "click": {"cli"},
     "numba": {"feederscrew/geometry"},

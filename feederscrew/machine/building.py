@@ -40,7 +40,9 @@ def machine_for(bowl, size, given):
 
 
 def _bowl(radius, size, rules):
-    """Mass and inertia of floor, wall and track of sheet, with tooling and frame [kg], [kg m2]."""
+    """Mass and inertia [kg], [kg m2]: of the solid, or of floor, wall and track of sheet with tooling."""
+    if size.mass is not None:
+        return size.mass, size.inertia
     weight = rules.sheet * rules.sheet_density  # [kg/m2]
     floor = weight * np.pi * radius**2
     wall = weight * 2.0 * np.pi * radius * size.depth

@@ -39,6 +39,8 @@ class Size:
     depth: float  # [m] rise of the track
     turns: float
     pitch: float  # [m] rise of one turn
+    mass: float | None = None  # [kg] of the bowl, where it is known from its solid
+    inertia: float | None = None  # [kg m2] of the same about its axis
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""What the devices of a chain take from the track and stand on it, unrolled: the one door to tooling's strip."""
+"""What the devices of a chain take from the track and set on it, unrolled: the door to tooling's strip."""
 
 from dataclasses import dataclass
 
@@ -87,9 +87,7 @@ def _cut(station, drawn, width):
     """A hole, carried a little over the edge of the track that it reaches, and into the wall."""
     s, y = station.hole.T
     y = np.where(y >= drawn - 1e-9, width + BEYOND, np.where(y <= 1e-9, -BEYOND, y))
-    return Cut(
-        station.label, station.device.kind, np.column_stack([s, y]), station.device.kind == "rails"
-    )
+    return Cut(station.label, station.device.kind, np.column_stack([s, y]), station.device.kind == "rails")
 
 
 def _blade(station, width):

@@ -94,6 +94,11 @@ def without(body, tools):
     return Manifold.batch_boolean([body, *tools], OpType.Subtract) if tools else body
 
 
+def above(body, height):
+    """Return what of a Manifold lies above a height [m]."""
+    return body.trim_by_plane((0.0, 0.0, 1.0), height / MM)
+
+
 def sound(body, what):
     """Return a Manifold that is one; a ValueError otherwise."""
     if body.is_empty():
@@ -171,3 +176,55 @@ def _in_order(faces):
     first = np.argmin(faces, axis=1)[:, None]
     turned_round = np.take_along_axis(faces, (first + np.arange(3)) % 3, axis=1)
     return turned_round[np.lexsort(turned_round.T[::-1])]
+
+
+def unplaced(made):
+    """Return a BowlSolid as a Manifold [mm] with its outlet at the angle 0, right-handed, to cast rays at."""
+    from manifold3d import Manifold, Mesh64
+
+    whole = Manifold(Mesh64(made.vertices / MM, made.faces.astype(np.uint64)))
+    whole = whole.rotate((0.0, 0.0, -float(np.degrees(made.plan.turned))))
+    return whole.mirror((0.0, 1.0, 0.0)) if made.plan.left else whole
+
+
+def below(body, place, deep=10.0):
+    """Return the height [m] of the first surface straight below a place (3,) [m]; None if there is none."""
+    return _met(body, place, (0.0, 0.0, -deep))
+
+
+def _met(body, place, way):
+    start = np.asarray(place) / MM
+    hits = body.ray_cast(tuple(start), tuple(start + np.asarray(way) / MM))
+    return float(hits[0].position[2]) * MM if hits else None
+
+
+def section(body, angle):
+    """Return what a plane through the axis cuts of a Manifold.
+
+    Parameters
+    ----------
+    body : Manifold [mm]
+    angle : float [rad]
+        About Z from the XZ plane.
+
+    Returns
+    -------
+    list of (K, 2) float [m]
+        Closed outlines, holes among them: place along the plane, height.
+    """
+    flat = body.rotate((0.0, 0.0, -float(np.degrees(angle)))).rotate((-90.0, 0.0, 0.0))
+    return [np.asarray(ring) * MM for ring in flat.slice(1e-3).to_polygons()]
+
+
+def first_met(body, start, towards):
+    """Return the distances [m] of all surfaces on a straight line from a place (3,) to another (3,) [m]."""
+    start, towards = np.asarray(start, float), np.asarray(towards, float)
+    hits = body.ray_cast(tuple(start / MM), tuple(towards / MM))
+    return [float(np.sqrt(np.sum((np.asarray(one.position) * MM - start) ** 2))) for one in hits]
+
+
+def placed(made):
+    """Return a BowlSolid as a Manifold [mm] as it stands in its files."""
+    from manifold3d import Manifold, Mesh64
+
+    return Manifold(Mesh64(made.vertices / MM, made.faces.astype(np.uint64)))

@@ -16,6 +16,7 @@ OUTLET = 15e-3  # [m] by which the outlet stands out of the wall
 LEAD = 10e-3  # [m] of track between the last device and the outlet
 DIP = 0.06  # [rad] the track begins so far below the floor: no edge where it grows from it
 CLEAR = 2e-3  # [m] more than a part needs, below rails
+BESIDE = 1e-3  # [m] of level floor beside the track
 NARROW = 0.75  # of the radius: no track is wider
 TURN = 2.0 * np.pi
 
@@ -64,9 +65,14 @@ class BowlPlan:
         return self.way.end / self.way.radius / TURN
 
     @property
+    def ring(self):
+        """Radius up to which the floor is level, a little more than the track covers; the dome is within."""
+        return self.way.radius - self.across - BESIDE
+
+    @property
     def dome(self):
         """Rise of the floor from its edge to the middle."""
-        return (self.way.radius - self.across) * float(np.tan(DOME))
+        return self.ring * float(np.tan(DOME))
 
     @property
     def underside(self):
@@ -75,8 +81,7 @@ class BowlPlan:
 
     def floor(self, r):
         """Return the height [m] of the floor at radii."""
-        inner = self.way.radius - self.across
-        return np.maximum(inner - np.asarray(r, float), 0.0) * np.tan(DOME)
+        return np.maximum(self.ring - np.asarray(r, float), 0.0) * np.tan(DOME)
 
 
 @dataclass(frozen=True)
@@ -154,7 +159,9 @@ def _check(size, track):
     widest = NARROW * track.radius
     if track.width > widest:
         what = f"{1e3 * track.width:.4g} mm is too wide for a bowl of {1e3 * size.diameter:.4g} mm"
-        raise FeederError("track.width", what, f"give at most {1e3 * widest:.4g} mm, or a larger track.radius")
+        raise FeederError(
+            "track.width", what, f"give at most {1e3 * widest:.4g} mm, or a larger track.radius"
+        )
     if track.climb <= 0.0:
         what = f"{np.degrees(track.climb):.3g} deg does not lead a track out of the bowl"
         raise FeederError("track.climb", what, "give a climb, as 3.5 deg, or leave it out")
@@ -174,12 +181,21 @@ def _way(size, track, tooled, asked):
         _check_height(asked.outlet_height, end, most, rise, drops)
     first = end - needed
     if first < 0.0:
-        what = f"the devices take {1e3 * needed:.4g} mm of track, and it has {1e3 * end:.4g} mm"
-        raise FeederError("devices", what, "take fewer, a larger sizing.depth, or a larger bowl")
+        raise _too_short(asked.outlet_height, end, needed, rise, drops)
     return Way(
         radius=track.radius, climb=track.climb, bank=track.bank, end=float(end),
         drops=tuple((first + at, drop) for at, drop in drops),
     ), float(first)  # fmt: skip
+
+
+def _too_short(height, end, needed, rise, drops):
+    if height > 0.0:
+        least = needed * rise - sum(drop for _, drop in drops)
+        what = f"{1e3 * height:.4g} mm leaves {1e3 * end:.4g} mm of track"
+        what += f", and the devices take {1e3 * needed:.4g} mm"
+        return FeederError("sizing.outlet_height", what, f"give at least {1e3 * least:.4g} mm")
+    what = f"they take {1e3 * needed:.4g} mm of track, and it has {1e3 * end:.4g} mm"
+    return FeederError("devices", what, "take fewer, a larger sizing.depth, or a larger bowl")
 
 
 def _check_height(height, end, most, rise, drops):

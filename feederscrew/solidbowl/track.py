@@ -1,5 +1,7 @@
 """The track as a body: a plate along its way, the sides of its outlet, and the yokes that carry rails."""
 
+import itertools
+
 import numpy as np
 
 from feederscrew.solidbowl import facets
@@ -29,12 +31,13 @@ def slab(plan):
     """
     runs, way = [], plan.way
     borders = [-DIP * way.radius, *(at for at, _ in way.drops), way.end + plan.outlet]
-    for start, end in zip(borders, borders[1:]):
+    for start, end in itertools.pairwise(borders):
         s = _steps(plan, start, end)
         inside = np.clip(s, start + 1e-9, end - 1e-9)
         runs.append(_swept(plan, s, plan.way.height(inside)))
     risers = [_riser(plan, at, drop) for at, drop in way.drops]
-    return facets.united([*runs, *risers]) if len(runs) > 1 else runs[0]
+    whole = facets.united([*runs, *risers]) if len(runs) > 1 else runs[0]
+    return facets.above(whole, plan.underside + 0.5 * INTO)
 
 
 def frames(plan, s):
@@ -86,7 +89,9 @@ def _riser(plan, at, drop):
     """The face below a step down, a plate thick."""
     plate = plan.material.plate
     s = np.array([at - plate, at + 1e-4])
-    area = plan.way.laid(np.array([[s[0], -INTO], [s[1], -INTO], [s[1], plan.width], [s[0], plan.width]]), plan.chord)
+    area = plan.way.laid(
+        np.array([[s[0], -INTO], [s[1], -INTO], [s[1], plan.width], [s[0], plan.width]]), plan.chord
+    )
     low = float(plan.way.height(at))
     return facets.prism(area, low - plate, low + drop - 0.5 * plate)
 

@@ -19,6 +19,8 @@ from feederscrew.machine.stroke import Stroke, angles, greatest_amplitude, strok
 from feederscrew.part.record import Part
 from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.tipping import remark
+from feederscrew.solidbowl.closed_body import BowlSolid
+from feederscrew.studies import solidbowl
 from feederscrew.studies.aspects import answered
 from feederscrew.tooling.orientations import orientations
 
@@ -69,6 +71,7 @@ class MachineSheet:
     velocities: np.ndarray  # (M,) [m/s] at each level of the emptying bowl, the controller left alone
     controlled: np.ndarray  # (M,) [m/s] the same under amplitude control
     order: Order | None
+    solid: BowlSolid | None = None  # where it was asked for
 
     @property
     def remarks(self):
@@ -97,8 +100,9 @@ def machine(settings):
 
 
 def bowl(
-    settings, part, target, *, aspect=None, heading=None, rule="recommended", gap=0.0, fill=1.0, known=None
-):
+    settings, part, target, *, aspect=None, heading=None, rule="recommended", gap=0.0, fill=1.0, known=None,
+    solid=None,
+):  # fmt: skip
     """Compute the bowl, the drive and the stroke that bring a part at a rate.
 
     Parameters
@@ -117,6 +121,8 @@ def bowl(
     fill : float [1]
     known : Aspects, optional
         Of the part, with the answer to take, where they are known already.
+    solid : Asked, optional
+        Of the bowl as a solid, whose rise and mass then take the place of the estimate.
 
     Returns
     -------
@@ -128,7 +134,7 @@ def bowl(
     FeederError
         If no bowl is so large, or none reaches the target.
     """
-    plain = answer.conveying(bowls.record(settings))
+    plain = solidbowl.in_material(answer.conveying(bowls.record(settings)), solid)
     found = answered(part) if known is None else known
     straight = replace(sizing.STRAIGHT, climb=plain.track.climb)
     wanted = None if aspect is None else well_oriented.wanted(part, found, straight, aspect, heading)
@@ -140,6 +146,7 @@ def bowl(
         wanted = well_oriented.wanted(part, found, track, *wanted)
     ways = _ways(part, found, track, plain.devices)
     counted = {"rule": rule, "target": wanted, "gap": gap, "fill": fill}
+    size, made = solidbowl.solid(replace(plain, track=track), size, part, ways(None).lying, solid)
     driven, flow = _brought(replace(plain, track=track), size, settings, target, ways, counted)
     order = Order(
         part=part,
@@ -156,7 +163,7 @@ def bowl(
         handbook=plain.sizing.handbook_speed * flow.share / flow.length,
         shape=sizing.shape(part, found, track, wanted),
     )
-    return _sheet(driven, settings, size.depth, part.mass / part.volume, order)
+    return replace(_sheet(driven, settings, size.depth, part.mass / part.volume, order), solid=made)
 
 
 def _on_its_springs(bowl, settings):

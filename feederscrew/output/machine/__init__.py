@@ -14,10 +14,13 @@ def offers(study):
     -------
     tuple of Offer
     """
+    from feederscrew.output import solidbowl
     from feederscrew.output.machine import figures, tables
 
     alt = "The bowl from above and in section, with its sizes, and what it does from full to empty"
+    solid = () if study.solid is None else solidbowl.offers(study)
     return (
+        *solid,
         document("bowl.json", tables.document, study),
         table("bowl.csv", tables.summary, study),
         table("bowl_angles.csv", tables.angles, study),

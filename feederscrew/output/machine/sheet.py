@@ -92,15 +92,15 @@ def _full(study):
 
 def _drive(study):
     rules = study.bowl.sizing
-    yield "supply, drive [Hz]", _supply(study.stroke.frequency)
+    yield "supply, drive [Hz]", supply(study.stroke.frequency)
     yield from _readings(study)
     yield from _travel(study)
     low, high = (rules.controller + sign * rules.retune for sign in (-1.0, 1.0))
     yield "tune again outside [%]", f"{100 * low:.3g} to {100 * high:.3g} of the controller, at that rate"
 
 
-def _supply(frequency):
-    """The mains and waves that give a frequency."""
+def supply(frequency):
+    """Return the mains and waves that give a frequency [Hz], as text."""
     for mains in (50.0, 60.0):
         for wave, times in (("half wave", 1.0), ("full wave", 2.0)):
             if abs(frequency - times * mains) < 1e-6:

@@ -5,6 +5,7 @@ import numpy as np
 from feederscrew import units
 from feederscrew.output import tables
 from feederscrew.output.machine import sheet as sheets
+from feederscrew.output.solidbowl import tables as solids
 
 MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
 N_MM, MPA = units.factor("N/mm", "stiffness"), units.factor("MPa", "stress")
@@ -37,6 +38,7 @@ def document(study):
         },
         "emptying": emptying(study),
         "remarks": list(study.remarks),
+        **({} if study.solid is None else solids.document(study.solid)),
     }
 
 

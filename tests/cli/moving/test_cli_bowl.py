@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 
 import pytest
+import trimesh
 
 from feederscrew import part
 from feederscrew.output.page.blocks import Picture, Table
@@ -194,3 +195,26 @@ def test_the_chapter_of_a_report(target):
     assert picture.content.startswith(b"\x89PNG") and len(tables) == 4
     assert ("rate asked for [1/min]" in list(tables[0].frame["quantity"])) == bool(target)
     assert page(report(part.load(PART)), chapters=[row]).sections == ()
+
+
+def test_the_bowl_as_a_solid(run, tmp_path):
+    config = tmp_path / "gap.yaml"
+    config.write_text("devices:\n  - gap: 9 mm\n")
+    line = ["bowl", PART, "--target", "40/min", "--config", config, "--solid"]
+    found = document(run(*line, "-o", tmp_path, "--no-pictures", "--format", "json"))
+    made = tmp_path / "lbracket_30x20x15"
+    assert {path.name for path in made.iterdir()} >= {"bowl.stl", "bowl.3mf", "bowl.pdf"}
+    shape = trimesh.load(made / "bowl.stl")
+    assert shape.is_watertight and shape.body_count == 1
+    assert shape.volume == pytest.approx(found["solid_volume_mm3"], rel=1e-5)
+    assert found["bowl_mass_kg"] == pytest.approx(7900e-9 * shape.volume, rel=1e-5)
+    assert found["bowl_depth_mm"] == found["outlet_height_mm"]
+    again = part.load(made / "bowl.3mf")
+    assert again.volume * 1e9 == pytest.approx(shape.volume, rel=1e-6)
+    sheet = (made / "bowl.pdf").read_bytes()
+    assert sheet.startswith(b"%PDF-") and b"/Subtype /Image" not in sheet and b"CreationDate" not in sheet
+
+
+def test_a_solid_needs_a_part(run):
+    found = run("bowl", "--solid")
+    assert found.exit_code == 2 and "--solid is given without PART - name the part's file" in found.stderr

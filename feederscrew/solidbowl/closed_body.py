@@ -7,7 +7,7 @@ import shapely
 
 from feederscrew.part import mass
 from feederscrew.solidbowl import facets, track
-from feederscrew.solidbowl.plan import DOME, TURN, BowlPlan
+from feederscrew.solidbowl.plan import TURN, BowlPlan
 from feederscrew.units import factor
 
 MM = factor("mm", "length")
@@ -82,21 +82,21 @@ def _placed(one, plan):
 
 def _floor(plan):
     """Floor with its dome, and the hub below it."""
-    radius, floor, low = plan.way.radius, plan.material.floor, plan.underside
-    inner, outer = radius - plan.across, radius + plan.material.wall
-    top = [(outer, 0.0), (inner, 0.0), (0.0, inner * np.tan(DOME))]
+    low, inner, outer = plan.underside, plan.ring, plan.way.radius + plan.material.wall
+    top = [(outer, 0.0), (inner, 0.0), (0.0, plan.dome)]
     if plan.material.flat:
         return facets.turned([(0.0, low), (outer, low), *top], plan.segments)
-    shell = facets.turned([(0.0, inner * np.tan(DOME) - floor), (inner, low), (outer, low), *top], plan.segments)
-    under = plan.hub
-    hub = [(0.0, low), (under, low), (under, float(plan.floor(under)) - 0.5 * floor), (0.0, plan.dome - 0.5 * floor)]
-    return facets.united([shell, facets.turned(hub, plan.segments)])
+    shell = [(0.0, plan.dome + low), (inner, low), (outer, low), *top]
+    rim, middle = float(plan.floor(plan.hub)) + 0.5 * low, plan.dome + 0.5 * low
+    hub = [(0.0, low), (plan.hub, low), (plan.hub, rim), (0.0, middle)]
+    return facets.united([facets.turned(one, plan.segments) for one in (shell, hub)])
 
 
 def _wall(plan):
     inner, outer = plan.way.radius, plan.way.radius + plan.material.wall
     return facets.turned(
-        [(inner, plan.underside + INTO), (outer, plan.underside), (outer, plan.top), (inner, plan.top)], plan.segments
+        [(inner, plan.underside + INTO), (outer, plan.underside), (outer, plan.top), (inner, plan.top)],
+        plan.segments,
     )
 
 
@@ -111,7 +111,9 @@ def _opening(plan):
 def _drilled(plan):
     """Holes of the bolts, in the middle and on their circle, and drain holes."""
     angles = TURN * (np.arange(plan.bolts) + 0.5) / plan.bolts
-    circle = [(0.0, 0.0)] + [(0.5 * plan.bolt_circle * np.cos(a), 0.5 * plan.bolt_circle * np.sin(a)) for a in angles]
+    circle = [(0.0, 0.0)] + [
+        (0.5 * plan.bolt_circle * np.cos(a), 0.5 * plan.bolt_circle * np.sin(a)) for a in angles
+    ]
     holes = [(one, plan.bolt) for one in circle]
     edge = plan.way.radius - plan.across - plan.drain
     angles = TURN * np.arange(plan.drains) / max(plan.drains, 1)
@@ -160,7 +162,10 @@ def _standing(plan, s, thickness, area):
     """An area of distances from the wall and heights over the track, as a plate across the track."""
     plate = facets.prism(area, 0.0, thickness)
     theta, z = plan.way.angle(s), float(plan.way.height(s + thickness))
-    ahead, inward = np.array([-np.sin(theta), np.cos(theta), 0.0]), -np.array([np.cos(theta), np.sin(theta), 0.0])
+    ahead, inward = (
+        np.array([-np.sin(theta), np.cos(theta), 0.0]),
+        -np.array([np.cos(theta), np.sin(theta), 0.0]),
+    )
     bank = plan.way.bank
     across = np.cos(bank) * inward + [0.0, 0.0, np.sin(bank)]
     upright = np.array([0.0, 0.0, 1.0])

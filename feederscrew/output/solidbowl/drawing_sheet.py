@@ -1,0 +1,167 @@
+"""The drawing sheet of a bowl: A3, to scale, vector; its dimensions are measured on the solid."""
+
+import numpy as np
+
+from feederscrew.output.solidbowl import lists, views
+from feederscrew.output.solidbowl.paper import THICK, THIN, Paper
+from feederscrew.solidbowl import facets
+from feederscrew.solidbowl.measuring import measures
+from feederscrew.units import factor
+
+MM = factor("mm", "length")
+SCALES = (1.0, 0.5, 0.4, 0.2, 0.1, 0.05, 0.02)  # ISO 5455, with 1 : 2.5
+ROOM = 128.0  # [mm] of paper for the bowl across
+STRIP = 205.0, 26.0  # [mm] of paper for the unrolled track
+FRAME = 20.0, 10.0, 410.0, 287.0
+
+
+def pdf(study):
+    """Return the drawing sheet of a bowl as the bytes of a PDF.
+
+    Parameters
+    ----------
+    study : MachineSheet
+        With its order and its solid.
+
+    Returns
+    -------
+    bytes
+    """
+    paper, solid = Paper(), study.solid
+    found = measures(solid)
+    scale = _scale(max(found.extent[:2]) / MM, ROOM)
+    paper.box(*FRAME, width=THICK)
+    _above(paper, solid, found, scale)
+    _cut(paper, solid, found, scale)
+    _from_outside(paper, solid, found, scale)
+    _standing(paper, solid)
+    _unrolled(paper, solid)
+    lists.cuts(paper, study, (25.0, 84.0))
+    lists.parts(paper, study, (246.0, 134.0))
+    lists.title(paper, study, found, scale)
+    return paper.pdf(f"{study.order.part.name}: bowl")
+
+
+def _scale(size, room):
+    return next((one for one in SCALES if one * size <= room), SCALES[-1])
+
+
+def named(scale):
+    """Return a scale as it is written: 1 : 2.5."""
+    return f"1 : {1.0 / scale:g}"
+
+
+def _placed(pieces, at, scale):
+    return np.asarray(pieces) / MM * scale + np.asarray(at)
+
+
+def _above(paper, solid, found, scale):
+    """The bowl from above, with its diameter, the track's width and the bolts."""
+    at, plan = np.array([95.0, 207.0]), solid.plan
+    looked = views.camera(-90.0, 90.0)
+    paper.lines(_placed(views.lines(solid.vertices, solid.faces, looked), at, scale), THIN * 1.6)
+    r = 0.5 * found.diameter / MM * scale
+    low = at[1] - 0.5 * max(found.extent[:2]) / MM * scale - 6.0
+    paper.dimension((at[0] - r, at[1]), (at[0] + r, at[1]), f"Ø{found.diameter / MM:.5g}", (0.0, low - at[1]))
+    _track_width(paper, plan, found, at, scale)
+    circle = np.linspace(0.0, 2.0 * np.pi, 181)
+    ring = 0.5 * plan.bolt_circle / MM * scale * np.column_stack([np.cos(circle), np.sin(circle)]) + at
+    paper.lines([ring], THIN, linestyles="dashdot")
+    told = f"{plan.bolts} x Ø{plan.bolt / MM:.4g} on Ø{plan.bolt_circle / MM:.4g}, and one in the middle"
+    paper.text(at[0], at[1] - 5.0, told, size=2.0, ha="center", va="top")
+    paper.lines([[at - [r + 6, 0], at + [r + 6, 0]]], THIN, linestyles="dashdot")
+    for side in (-1, 1):
+        paper.text(at[0] + side * (r + 9.0), at[1] + 1.0, "A", size=3.5, ha="center", fontweight="bold")
+    paper.text(25.0, 281.0, f"from above  {named(scale)}", size=3.0, fontweight="bold")
+
+
+def _track_width(paper, plan, found, at, scale):
+    """The width of the track, a quarter turn before the outlet."""
+    turn = plan.turned + (1.0 if plan.left else -1.0) * 0.5 * np.pi
+    outward, r = np.array([np.cos(turn), np.sin(turn)]), 0.5 * found.diameter / MM * scale
+    wide = found.track_width * np.cos(plan.way.bank) / MM * scale
+    paper.lines([[at + outward * (r - wide - 7.0), at + outward * r]])
+    told = f"track {found.track_width / MM:.4g}"
+    paper.text(*(at + outward * (r - wide - 9.5)), told, size=2.2, ha="center", va="center")
+
+
+def _cut(paper, solid, found, scale):
+    """The section A-A."""
+    rings = facets.section(facets.placed(solid), 0.0)
+    at = np.array([255.0, 248.0])
+    rings = [_placed(ring, at, scale) for ring in rings]
+    paper.hatched(rings)
+    low = at[1] + solid.vertices[:, 2].min() / MM * scale
+    left = min(ring[:, 0].min() for ring in rings)
+    right = max(ring[:, 0].max() for ring in rings)
+    paper.dimension(
+        (left, low), (left, low + found.height / MM * scale), f"{found.height / MM:.4g}", (-6.0, 0.0)
+    )
+    foot, told = (right, at[1]), f"{found.outlet_height / MM:.4g}"
+    paper.dimension(foot, (right, at[1] + found.outlet_height / MM * scale), told, (6.0, 0.0))
+    paper.text(190.0, 281.0, f"A-A  {named(scale)}", size=3.0, fontweight="bold")
+    plate = solid.plan.material.plate / MM
+    told = f"wall {found.wall / MM:.3g}, floor {found.floor / MM:.3g}, track {plate:.3g}"
+    paper.text(at[0], low - 8.0, f"{told}; outlet {found.outlet_height / MM:.4g} over the floor's edge",
+               size=2.2, ha="center")  # fmt: skip
+
+
+def _from_outside(paper, solid, found, scale):
+    """The bowl from the side that its outlet leaves to."""
+    at = np.array([255.0, 172.0])
+    turn = np.degrees(solid.plan.turned) + (-90.0 if solid.plan.left else 90.0)
+    looked = views.camera(turn, 0.0)
+    paper.lines(_placed(views.lines(solid.vertices, solid.faces, looked), at, scale), THIN * 1.6)
+    low = at[1] + solid.vertices[:, 2].min() / MM * scale
+    r = (0.5 * found.diameter + found.wall) / MM * scale
+    told = f"Ø{2.0 * (0.5 * found.diameter + found.wall) / MM:.5g}"
+    paper.dimension((at[0] - r, low), (at[0] + r, low), told, (0.0, -6.0))
+    paper.text(190.0, 218.0, f"towards the outlet  {named(scale)}", size=3.0, fontweight="bold")
+
+
+def _standing(paper, solid):
+    """The bowl as it stands, not to scale."""
+    looked = views.camera(np.degrees(solid.plan.turned) - 125.0, 42.0)
+    pieces = views.lines(solid.vertices, solid.faces, looked)
+    low, high = pieces.reshape(-1, 2).min(axis=0), pieces.reshape(-1, 2).max(axis=0)
+    scale = min(72.0 / (high - low)[0], 80.0 / (high - low)[1])
+    paper.lines((pieces - 0.5 * (low + high)) * scale + [371.0, 235.0], THIN)
+    paper.text(335.0, 281.0, "not to scale", size=2.2)
+
+
+def _unrolled(paper, solid):
+    """The tooled stretch unrolled, seen from above: the wall below, parts move to the right."""
+    plan, stretch = solid.plan, solid.plan.stretch
+    if stretch is None:
+        paper.text(25.0, 125.0, "no devices on the track", size=2.5)
+        return
+    scale = min(_scale(stretch.length / MM, STRIP[0]), _scale(plan.width / MM, STRIP[1]))
+    at = np.array([27.0, 94.0])
+
+    def laid(ring):
+        inside = np.column_stack([ring[:, 0], np.clip(ring[:, 1], 0.0, plan.width)])
+        return inside / MM * scale + at
+
+    length, wide = stretch.length / MM * scale, plan.width / MM * scale
+    paper.box(at[0], at[1], at[0] + length, at[1] + wide, THICK)
+    paper.lines([[at + [0.0, -0.8], at + [length, -0.8]]], 3.0 * THICK)
+    for number, cut in enumerate(stretch.cuts, start=1):
+        ring = cut.ring.copy()
+        if cut.hangs:
+            ring[ring[:, 0] >= cut.span[1] - 1e-9, 0] = stretch.length
+        ring = laid(ring)
+        paper.axes.fill(*ring.T, facecolor="white", edgecolor="#d55e00", linewidth=THICK)
+        paper.text(*ring.mean(axis=0), str(number), size=2.5, ha="center", va="center")
+    for number, blade in enumerate(stretch.blades, start=len(stretch.cuts) + 1):
+        x = at[0] + blade.start / MM * scale
+        thick = max(blade.thickness / MM * scale, 0.4)
+        paper.axes.fill(
+            [x, x + thick, x + thick, x], [at[1], at[1], at[1] + wide, at[1] + wide], color="#0072b2"
+        )
+        paper.text(x + thick + 0.8, at[1] + 0.5 * wide, str(number), size=2.5, va="center")
+    paper.dimension(at, at + [length, 0.0], f"{stretch.length / MM:.4g}", (0.0, -5.0), size=2.2)
+    told = f"{plan.width / MM:.4g}"
+    paper.dimension(at + [length, 0.0], at + [length, wide], told, (4.0, 0.0), size=2.2)
+    head = f"track unrolled  {named(scale)}: wall below, parts move to the right; its end lies "
+    behind = (plan.way.end - plan.first - stretch.length) / MM
+    paper.text(25.0, 127.0, f"{head}{behind:.4g} mm before the outlet", size=2.5, fontweight="bold")

@@ -1,0 +1,115 @@
+"""The lists of a drawing sheet: cuts with tolerances, parts, and the title block of the quotation."""
+
+import numpy as np
+
+from feederscrew.output.machine import sheet as sheets
+from feederscrew.units import factor
+
+MM, MIN, LITRE = factor("mm", "length"), factor("/min", "rate"), factor("l", "volume")
+CUT = "±0.1"  # [mm] of an edge that parts meet
+GENERAL = "ISO 2768-m"
+MOST = 12  # rows of a list
+LONG = 46  # letters of a line in the title block
+
+
+def cuts(paper, study, at):
+    """Draw the table of cuts and blades at its upper left corner [mm]."""
+    stretch, plan = study.solid.plan.stretch, study.solid.plan
+    rows = [["no.", "device", "from [mm]", "to [mm]", "tolerance [mm]"]]
+    if stretch is not None:
+        for one in stretch.cuts:
+            far = "outlet, open" if one.hangs else f"{one.span[1] / MM:.5g}"
+            rows.append([str(len(rows)), one.label, f"{one.span[0] / MM:.5g}", far, CUT])
+        for one in stretch.blades:
+            start, end = one.start / MM, (one.start + one.thickness) / MM
+            rows.append([str(len(rows)), one.label, f"{start:.5g}", f"{end:.5g}", CUT])
+        for place, drop in stretch.drops:
+            told = f"step {drop / MM:.4g} mm down"
+            rows.append([str(len(rows)), told, f"{place / MM:.5g}", f"{place / MM:.5g}", CUT])
+    left = len(rows) - MOST
+    rows = rows if left <= 0 else [*rows[: MOST - 1], ["", f"and {left + 1} more in bowl.json", "", "", ""]]
+    low = paper.table(*at, [9.0, 90.0, 32.0, 32.0, 32.0], rows)
+    told = [
+        f"from and to: along the wall from the begin of the stretch; cuts {CUT}, everything else {GENERAL}",
+        f"arcs are facets within {plan.chord / MM:.3g} mm; edges that parts meet: broken at most 0.05 mm",
+    ]
+    for k, line in enumerate(told):
+        paper.text(at[0], low - 4.0 - 3.6 * k, line, size=2.2)
+
+
+def parts(paper, study, at):
+    """Draw the parts list at its upper left corner [mm]."""
+    plan, under = study.solid.plan, study.bowl.machine
+    leaf = " x ".join(
+        f"{side / MM:.3g}" for side in (under.leaf_width, under.leaf_thickness, under.leaf_length)
+    )
+    rows = [["pos.", "quantity", "what"]]
+    rows.append(["1", "1", f"bowl, {plan.material.name}, {study.solid.mass:.4g} kg"])
+    for name, _, _ in study.solid.gates:
+        rows.append([str(len(rows)), "1", f"{name.replace('_', ' ')}, in its notch of the wall"])
+    rows.append([str(len(rows)), str(plan.bolts + 1), f"bolts for holes of {plan.bolt / MM:.4g} mm"])
+    rows.append([str(len(rows)), f"{under.leaves:.0f}", f"leaves {leaf} mm"])
+    rows.append(
+        [
+            str(len(rows)),
+            "1",
+            f"coil, force amplitude {study.force:.3g} N, {sheets.supply(study.stroke.frequency)} Hz",
+        ]
+    )
+    peak = study.stroke.peak_to_peak / MM
+    share = 100.0 * study.bowl.sizing.controller
+    rows.append([str(len(rows)), "1", f"controller, set to {share:.3g} %: {peak:.3g} mm peak to peak"])
+    paper.table(*at, [10.0, 18.0, 136.0], rows)
+
+
+def title(paper, study, found, scale):
+    """Draw the title block in the lower right corner."""
+    left, low, right, high = 246.0, 10.0, 410.0, 78.0
+    paper.box(left, low, right, high, 1.2)
+    solid, order = study.solid, study.order
+    paper.text(left + 2.0, high - 6.0, f"Bowl for {_short(order.part.name)}", size=4.0, fontweight="bold")
+    pairs = _fields(study, solid, found, scale)
+    half = (len(pairs) + 1) // 2
+    for k, (name, value) in enumerate(pairs):
+        x, y = left + 2.0 + 82.0 * (k // half), high - 13.0 - 5.6 * (k % half)
+        paper.text(x, y, name, size=1.9, color="#5b6b78")
+        paper.text(x + 27.0, y, value, size=2.1)
+
+
+def _short(words):
+    return words if len(words) <= LONG else f"{words[: LONG - 1]}…"
+
+
+def _fields(study, solid, found, scale):
+    """Names and values of the title block."""
+    plan, order = solid.plan, study.order
+    centre = ", ".join(f"{x / MM:.1f}" for x in solid.centre)
+    extent = " x ".join(f"{x / MM:.4g}" for x in found.extent)
+    wanted = (
+        "all that pass"
+        if order.wanted is None
+        else f"{order.wanted[0]} at {np.degrees(order.wanted[1]):.3g}°"
+    )
+    return [
+        ("drawing of part", _short(order.part.source.rpartition("/")[2])),
+        ("rate asked for", f"{order.target / MIN:.4g} a minute"),
+        ("orientation", wanted),
+        ("part material", f"{order.part.material}"),
+        ("fill, hopper", f"{study.fill.mass:.3g} kg, {order.hopper / LITRE:.3g} l"),
+        ("drive", f"{study.stroke.frequency:.4g} Hz, {study.stroke.peak_to_peak / MM:.3g} mm"),
+        ("natural frequency", f"{study.springs.natural_frequency:.4g} Hz"),
+        ("climb, bank", f"{np.degrees(plan.way.climb):.3g}°, {np.degrees(plan.way.bank):.3g}°"),
+        (
+            "hand",
+            f"{'left' if plan.left else 'right'}: parts climb {'' if plan.left else 'counter-'}clockwise",
+        ),
+        ("turns", f"{plan.turns:.3g}"),
+        ("material", f"{plan.material.name}, {plan.material.density:.4g} kg/m³"),
+        ("mass, volume", f"{solid.mass:.4g} kg, {solid.volume / MM**3:.6g} mm³"),
+        ("inertia about axis", f"{solid.inertia:.4g} kg m²"),
+        ("centre of mass", f"{centre} mm"),
+        ("size", f"{extent} mm"),
+        ("general tolerance", f"{GENERAL}; cuts {CUT} mm"),
+        ("scale, sheet", f"1 : {1.0 / scale:g}, A3, sizes in mm"),
+        ("drawn by", "feeder bowl --solid"),
+    ]

@@ -1,0 +1,96 @@
+"""The solid to print: binary STL of the bowl, 3MF of the bowl and of each part of its own."""
+
+import io
+import zipfile
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+from feederscrew.units import factor
+
+MM = factor("mm", "length")
+HEADER = b"feeder bowl: the bowl as a solid, in mm"
+WHEN = (1980, 1, 1, 0, 0, 0)  # of each file in the archive: the same bytes twice
+TYPES = (
+    '<?xml version="1.0" encoding="UTF-8"?>\n'
+    '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
+    '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+    '<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>'
+    "</Types>\n"
+)
+RELATIONS = (
+    '<?xml version="1.0" encoding="UTF-8"?>\n'
+    '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
+    '<Relationship Target="/3D/3dmodel.model" Id="rel0" '
+    'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>\n'
+)
+MODEL = (
+    '<?xml version="1.0" encoding="UTF-8"?>\n'
+    '<model unit="millimeter" xml:lang="en-US" '
+    'xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">\n'
+)
+
+
+def stl(solid):
+    """Return the bowl as a binary STL in millimetres.
+
+    Parameters
+    ----------
+    solid : BowlSolid
+
+    Returns
+    -------
+    bytes
+    """
+    return binary(solid.vertices, solid.faces)
+
+
+def binary(vertices, faces):
+    """Return a surface (V, 3) [m], (F, 3) as the bytes of a binary STL in millimetres."""
+    corners = (vertices / MM).astype("<f4")[faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).astype(float)
+    size = np.sqrt((normal**2).sum(axis=1, keepdims=True))
+    normal = np.divide(normal, size, out=np.zeros_like(normal), where=size > 0.0)
+    record = np.zeros(len(corners), dtype=[("numbers", "<f4", (4, 3)), ("nothing", "<u2")])
+    record["numbers"][:, 0], record["numbers"][:, 1:] = normal, corners
+    return HEADER.ljust(80) + np.uint32(len(corners)).tobytes() + record.tobytes()
+
+
+def threemf(solid, title):
+    """Return the bowl and each gate of its own as the bytes of a 3MF file, one object each.
+
+    Parameters
+    ----------
+    solid : BowlSolid
+    title : str
+
+    Returns
+    -------
+    bytes
+        In millimetres.
+    """
+    objects = [("bowl", solid.vertices, solid.faces), *solid.gates]
+    return packed(objects, title)
+
+
+def packed(objects, title):
+    """Return objects (name, vertices (V, 3) [m], faces (F, 3)) as the bytes of a 3MF file."""
+    model = MODEL + f'<metadata name="Title">{quoteattr(title)[1:-1]}</metadata>\n<resources>\n'
+    model += "".join(_object(k + 1, *one) for k, one in enumerate(objects))
+    items = "".join(f'<item objectid="{k + 1}"/>' for k in range(len(objects)))
+    model += f"</resources>\n<build>{items}</build>\n</model>\n"
+    contents = {"[Content_Types].xml": TYPES, "_rels/.rels": RELATIONS, "3D/3dmodel.model": model}
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as file:
+        for name, text in contents.items():
+            file.writestr(zipfile.ZipInfo(name, WHEN), text.encode(), zipfile.ZIP_DEFLATED)
+    return archive.getvalue()
+
+
+def _object(number, name, vertices, faces):
+    points = "".join(f'<vertex x="{x:.9g}" y="{y:.9g}" z="{z:.9g}"/>' for x, y, z in vertices / MM)
+    facets = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in faces)
+    return (
+        f'<object id="{number}" type="model" name={quoteattr(name)}><mesh>\n'
+        f"<vertices>{points}</vertices>\n<triangles>{facets}</triangles>\n</mesh></object>\n"
+    )

@@ -1,0 +1,43 @@
+"""The bowl as a solid as a document."""
+
+from feederscrew.units import factor
+
+MM, DEG = factor("mm", "length"), factor("deg", "angle")
+
+
+def document(solid):
+    """Return what a bowl as a solid measures and weighs.
+
+    Parameters
+    ----------
+    solid : BowlSolid
+
+    Returns
+    -------
+    dict
+    """
+    plan, extent = solid.plan, solid.vertices.max(axis=0) - solid.vertices.min(axis=0)
+    return {
+        "diameter_mm": 2.0 * plan.way.radius / MM,
+        "solid_volume_mm3": solid.volume / MM**3,
+        "solid_mass_kg": solid.mass,
+        "solid_inertia_kg_m2": solid.inertia,
+        "solid_centre_of_mass_mm": list(solid.centre / MM),
+        "solid_extent_mm": list(extent / MM),
+        "solid_facets": len(solid.faces),
+        "material": plan.material.name,
+        "hand": "left" if plan.left else "right",
+        "wall_mm": plan.material.wall / MM,
+        "floor_mm": plan.material.floor / MM,
+        "track_plate_mm": plan.material.plate / MM,
+        "wall_height_mm": plan.top / MM,
+        "dome_rise_mm": plan.dome / MM,
+        "solid_turns": plan.turns,
+        "outlet_height_mm": plan.outlet_height / MM,
+        "outlet_angle_deg": plan.turned / DEG,
+        "bolts": plan.bolts,
+        "bolt_hole_mm": plan.bolt / MM,
+        "bolt_circle_mm": plan.bolt_circle / MM,
+        "chord_mm": plan.chord / MM,
+        "separate_parts": [name for name, _, _ in solid.gates],
+    }

@@ -1,0 +1,87 @@
+"""What the finished solid measures, by rays on its surface and not by its plan."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew.solidbowl import facets
+
+ASIDE = 1e-4  # [rad] beside the corners of facets
+
+
+@dataclass(frozen=True)
+class Measures:
+    """Lengths [m] of a solid, as a shop would measure them."""
+
+    diameter: float  # inner, of the wall
+    wall: float
+    floor: float  # thickness by the wall
+    height: float  # from the underside to the rim
+    track_width: float  # half a turn before the outlet, along the surface
+    outlet_height: float  # of the outlet's surface over the floor's edge, by the wall
+    extent: tuple[float, float, float]  # of a box around it
+
+
+def measures(made):
+    """Measure a bowl.
+
+    Parameters
+    ----------
+    made : BowlSolid
+
+    Returns
+    -------
+    Measures
+    """
+    plan, body = made.plan, facets.unplaced(made)
+    way, far = plan.way, 3.0 * plan.way.radius
+    high = plan.top - 1e-3
+    rim = facets.first_met(body, (0.0, 0.0, high), _towards(np.pi + ASIDE, far, high))
+    r = way.radius - 1e-3
+    bare = np.array([r * np.cos(_bare(plan)), r * np.sin(_bare(plan))])
+    floor = facets.first_met(body, (*bare, 5e-4), (*bare, -far))
+    s = way.end - 0.5 * np.pi * way.radius
+    outlet = way.end + 0.5 * plan.outlet
+    at = plan.way.places(outlet, 1e-3) + [0.0, 0.0, 1e-3]
+    lift = 1e-3 * np.sin(way.bank)
+    return Measures(
+        diameter=2.0 * rim[0],
+        wall=rim[1] - rim[0],
+        floor=floor[1] - floor[0],
+        height=float(np.ptp(made.vertices[:, 2])),
+        track_width=track_width(plan, body, s),
+        outlet_height=facets.below(body, at) - lift,
+        extent=tuple(float(x) for x in np.ptp(made.vertices, axis=0)),
+    )
+
+
+def track_width(plan, body, s):
+    """Return the width [m] of the track at a length along the wall, along its surface.
+
+    Two rays: outwards above the track to the wall, and outwards below its surface to its free edge.
+    """
+    way = plan.way
+    theta = float(way.angle(s))
+    inside = way.radius - plan.across
+    z = float(way.height(s, plan.width))
+    to_wall = facets.first_met(body, (0.0, 0.0, z + 1e-3), _towards(theta, 3.0 * way.radius, z + 1e-3))[0]
+    under = z - 0.3 * plan.material.plate
+    start = 0.5 * inside
+    near = (start * np.cos(theta), start * np.sin(theta), under)
+    to_edge = start + facets.first_met(body, near, _towards(theta, 3.0 * way.radius, under))[0]
+    return (to_wall - to_edge) / float(np.cos(way.bank))
+
+
+def heights(plan, body, s, y):
+    """Return the height [m] of the first surface below a place a little over the track."""
+    place = plan.way.places(s, y)
+    return facets.below(body, place + [0.0, 0.0, 0.5 * plan.headroom])
+
+
+def _towards(theta, far, z):
+    return far * np.cos(theta), far * np.sin(theta), z
+
+
+def _bare(plan):
+    """An angle at which the floor lies bare by the wall, or about: opposite to the track's first rise."""
+    return float(plan.way.angle(0.0)) - 0.1

@@ -1,0 +1,214 @@
+"""The bowl as a solid: closed, one body, of its plan's sizes, with its tooling in it."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from feederscrew.bowl.devices import Device
+from feederscrew.bowl.record import Track
+from feederscrew.bowl.schema import BY_NAME
+from feederscrew.bowl.settings import effective, record
+from feederscrew.errors import FeederError
+from feederscrew.machine.sizing import Size
+from feederscrew.output.solidbowl import printing
+from feederscrew.solidbowl import cuts, facets
+from feederscrew.solidbowl.closed_body import body
+from feederscrew.solidbowl.materials import material
+from feederscrew.solidbowl.measuring import heights, measures, track_width
+from feederscrew.solidbowl.plan import Asked, plan
+from feederscrew.solidbowl.ways_down import check_ways_down
+
+RULES = record(effective({})).sizing
+TRACK = Track(climb=np.radians(3.5), bank=0.0, radius=0.15, width=0.02)
+NEAR = 5e-5  # [m]
+RAILS = Device("rails", "b", span=(3e-3, 7e-3))
+CHAINS = {
+    "none": (),
+    "narrowed and rails": (Device("narrowed_track", "b", limit=9e-3, text="9 mm"), RAILS),
+    "gap": (Device("gap", "b", limit=9e-3),),
+    "canyon, slot": (Device("canyon", "b", limit=6e-3), Device("slot", "b", span=(8e-3, 12e-3))),
+    "cut out": (Device("cut_out", "b", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 8e-3))),),
+    "blades": (Device("wiper", "b", limit=6e-3), Device("hold_down", "b", limit=8e-3)),
+    "gate": (Device("profile", "b", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 5e-3), (0.0, 7e-3))),),
+    "step": (Device("step", "b", limit=4e-3), Device("gap", "b", limit=5e-3)),
+}
+
+
+def planned(devices=(), track=TRACK, asked=None, name="steel", turns=1.5):
+    asked = Asked() if asked is None else asked
+    one = SimpleNamespace(length=18e-3, height=12e-3, width=14e-3, track=track)
+    pitch = 2.0 * np.pi * track.radius * np.tan(track.climb)
+    size = Size(2.0 * track.radius, {}, track.width, 0.0, 0.0, track.climb, turns * pitch, turns, pitch)
+    tooled = cuts.stretch(track, devices, [one]) if devices else None
+    return plan(size, track, material(name, RULES), tooled, asked, greatest=18e-3)
+
+
+def closed(solid):
+    """The volume of a surface in which each edge has two facets that run opposite ways, and one piece."""
+    faces = solid.faces
+    sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    assert len(np.unique(sides, axis=0)) == len(sides)
+    assert set(map(tuple, sides)) == set(map(tuple, sides[:, ::-1]))
+    corners = (solid.vertices * 1e3).astype(np.float32).astype(float)[faces]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert across.any(axis=1).all()
+    points = np.unique((solid.vertices * 1e3).astype(np.float32), axis=0)
+    assert not cKDTree(points).query_pairs(1e-4)  # [mm] readers unite what lies nearer than 1e-5
+    return float((corners[:, 0] * across).sum()) / 6.0
+
+
+@pytest.mark.parametrize("name", CHAINS)
+def test_one_closed_body(name):
+    solid = body(planned(CHAINS[name]))
+    assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
+    assert facets.placed(solid).decompose().__len__() == 1
+    check_ways_down(solid)
+
+
+@pytest.mark.parametrize("name", ["pla", "pa12"])
+def test_of_other_material(name):
+    solid = body(planned(CHAINS["gap"], name=name))
+    assert closed(solid) > 0.0
+    found = measures(solid)
+    assert found.wall == pytest.approx(solid.plan.material.wall, abs=NEAR)
+    assert found.floor == pytest.approx(solid.plan.material.floor, abs=NEAR)
+    assert solid.mass == pytest.approx(solid.volume * solid.plan.material.density)
+
+
+@pytest.mark.parametrize("bank", [0.0, 8.0])
+def test_height_and_width_of_the_track_are_those_of_the_formula(bank, rng):
+    solid = body(planned(track=replace(TRACK, bank=np.radians(bank), climb=np.radians(4.0))))
+    made, whole = solid.plan, facets.unplaced(solid)
+    s = rng.uniform(0.02, made.way.end, 200)
+    y = rng.uniform(2e-4, TRACK.width - 3e-4, 200)
+    found = np.array([heights(made, whole, *one) for one in zip(s, y)])
+    formula = np.tan(made.way.climb) * s + y * np.sin(made.way.bank)
+    np.testing.assert_allclose(found, formula, rtol=0, atol=NEAR)
+    within = s[(s > 0.1) & (s < made.way.end - 0.05)]
+    widths = np.array([track_width(made, whole, one) for one in within])
+    np.testing.assert_allclose(widths, TRACK.width, rtol=0, atol=NEAR)
+
+
+def test_what_is_measured_is_what_was_planned():
+    solid = body(planned(CHAINS["canyon, slot"]))
+    made, found = solid.plan, measures(solid)
+    assert found.diameter == pytest.approx(0.3, abs=NEAR)
+    assert found.track_width == pytest.approx(0.02, abs=NEAR)
+    assert found.outlet_height == pytest.approx(made.outlet_height, abs=NEAR)
+    assert found.height == pytest.approx(made.top + made.material.floor, abs=NEAR)
+
+
+def test_arcs_keep_within_the_chord():
+    for chord in (2e-4, 5e-5, 1e-5):
+        made = planned(asked=Asked(chord=chord))
+        assert made.way.radius * (1.0 - np.cos(np.pi / made.segments)) <= chord
+
+
+def test_a_cut_is_as_large_as_its_device_says():
+    whole = facets.unplaced(body(made := planned(CHAINS["canyon, slot"])))
+    for cut, (low, high) in zip(made.stretch.cuts, ((-1.0, 6e-3), (8e-3, 12e-3))):
+        s = made.first + 0.5 * sum(cut.span)
+        for y in np.linspace(3e-4, TRACK.width - 3e-4, 60):
+            if min(abs(y - low), abs(y - high)) > NEAR:
+                on_track = heights(made, whole, s, y) > made.way.height(s, y) - 1e-3
+                assert on_track == (not low < y < high)
+
+
+def test_a_left_hand_is_the_mirror_image():
+    right, left = (body(planned(CHAINS["gap"], asked=Asked(left=hand))) for hand in (False, True))
+    assert closed(left) == pytest.approx(closed(right), rel=1e-7)
+    np.testing.assert_allclose(left.centre * [1, -1, 1], right.centre, rtol=0, atol=1e-8)
+
+
+def test_the_outlet_lies_where_it_is_asked():
+    made = planned(asked=Asked(outlet_height=0.04, outlet_angle=0.7))
+    found = body(made)
+    assert measures(found).outlet_height == pytest.approx(0.04, abs=NEAR)
+    straight = body(replace(made, turned=0.0))
+    c, s = np.cos(0.7), np.sin(0.7)
+    x, y, z = straight.centre
+    np.testing.assert_allclose(found.centre, [c * x - s * y, s * x + c * y, z], rtol=0, atol=1e-8)
+
+
+def test_blades_leave_the_clearance_free():
+    made = planned((Device("wiper", "b", limit=6e-3),))
+    whole, blade = facets.unplaced(body(made)), made.stretch.blades[0]
+    s = made.first + blade.start + 0.5 * blade.thickness
+    at = made.way.places(s, 5e-3)
+    hits = facets.first_met(whole, at + [0, 0, 1e-3], at + [0, 0, 0.05])
+    assert hits[0] + 1e-3 == pytest.approx(6e-3, abs=0.1e-3)
+
+
+def test_rails_are_open_at_their_end():
+    made = planned((RAILS,))
+    whole = facets.unplaced(body(made))
+    for s in np.linspace(made.first + made.stretch.cuts[0].span[0] + 1e-3, made.way.end + made.outlet, 40):
+        place = made.way.places(s, 5e-3)
+        met = facets.below(whole, place)
+        assert met is None or met < place[2] - made.material.plate - made.hanging + 1e-9
+
+
+def test_the_same_bytes_twice():
+    one, other = (body(planned(CHAINS["narrowed and rails"])) for _ in range(2))
+    assert printing.stl(one) == printing.stl(other)
+    assert printing.threemf(one, "a & b") == printing.threemf(other, "a & b")
+
+
+def test_gates_are_parts_of_their_own():
+    solid = body(planned(CHAINS["gate"]))
+    assert [name for name, _, _ in solid.gates] == ["gate_1"]
+    gate = facets.placed(SimpleNamespace(vertices=solid.gates[0][1], faces=solid.gates[0][2]))
+    assert (gate ^ facets.placed(solid)).volume() < 20.0  # [mm3] it stands on the track and in its notch
+    assert b"gate_1" in model_of(printing.threemf(solid, "bowl"))
+
+
+def model_of(data):
+    import io
+    import zipfile
+
+    return zipfile.ZipFile(io.BytesIO(data)).read("3D/3dmodel.model")
+
+
+@pytest.mark.parametrize(
+    ("track", "asked", "devices", "line"),
+    [
+        (
+            replace(TRACK, width=0.14), Asked(), (),
+            "track.width: 140 mm is too wide for a bowl of 300 mm - give at most 112.5 mm, or a larger "
+            "track.radius",
+        ),
+        (
+            replace(TRACK, climb=0.0), Asked(), (),
+            "track.climb: 0 deg does not lead a track out of the bowl - give a climb, as 3.5 deg, or leave "
+            "it out",
+        ),
+        (
+            TRACK, Asked(outlet_height=0.09), CHAINS["gap"],
+            "sizing.outlet_height: 90 mm puts a turn of the track below the cuts: what falls stays on it - "
+            "give at most 59.77 mm",
+        ),
+        (
+            TRACK, Asked(outlet_height=0.003), CHAINS["gap"],
+            "sizing.outlet_height: 3 mm leaves 49.05 mm of track, and the devices take 56.8 mm - give at "
+            "least 3.474 mm",
+        ),
+    ],
+)  # fmt: skip
+def test_faults(track, asked, devices, line):
+    with pytest.raises(FeederError) as fault:
+        planned(devices, track=track, asked=asked)
+    assert str(fault.value) == line
+
+
+def test_a_turn_below_a_cut_is_found():
+    made = planned(CHAINS["gap"])
+    longer = replace(made, way=replace(made.way, end=made.way.end + 0.3), first=made.first + 0.3)
+    with pytest.raises(FeederError, match="meets the track at"):
+        check_ways_down(body(longer))
+
+
+def test_every_default_of_the_schema_is_read():
+    assert BY_NAME["sizing.sheet"].default == f"{1e3 * material('steel', RULES).wall:g} mm"
