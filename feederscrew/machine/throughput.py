@@ -49,17 +49,17 @@ def flow(found, rule, *, target=None, gap=0.0, fill=1.0):
     FeederError
         If nothing leaves.
     """
-    chances = found.rules[rule] / np.nansum(found.rules[rule])
     if target is not None:
         parts = well_oriented.parts_per_metre(found, target, rule, gap=gap, fill=fill)
         row = list(zip(found.aspects, found.headings)).index(target)
         return Flow(
             parts, well_oriented.efficiency(found, row, rule), float(well_oriented.fed(found, row).length)
         )
-    share = float(np.nansum(chances * found.through))
-    if not share > 0.0:
+    chances = np.nan_to_num(found.rules[rule])
+    leaving = float((chances * found.through).sum())
+    if not leaving > 0.0:
         raise FeederError("devices", "let no part pass", "see what each returns in feeder rate")
-    length = float(np.nansum(chances * found.lengths))
+    share, length = leaving / float((chances * found.stays).sum()), well_oriented.mean_length(found, rule)
     return Flow(fill * share / (length + gap), share, length)
 
 

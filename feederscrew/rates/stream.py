@@ -58,6 +58,11 @@ class Orientations:
         return np.array([one.width for one in self.lying])
 
     @property
+    def stays(self):
+        """(M,) share that the bare track carries: what falls off it or turns over on it does not queue."""
+        return self.passes[:, 0]
+
+    @property
     def through(self):
         """(M,) share that passes every station."""
         return self.passes.prod(axis=1)

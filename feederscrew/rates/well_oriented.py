@@ -138,8 +138,8 @@ def rate(found, speed, target, rule, *, gap=0.0, fill=1.0):
     probability = _probability(found, row, rule)
     offered, most = speed * density, speed * (1.0 / fed(found, row).length)
     made = offered * Range(share, *_efficiency_ends(found, row, rule))
-    chance = np.nan_to_num(found.rules[rule])
-    leaving = float((chance * found.through).sum() / chance.sum()) if chance.sum() > 0.0 else 0.0
+    chance, enters = _entering(found, rule)
+    leaving = float((chance * found.through).sum() / enters) if enters > 0.0 else 0.0
     through = float(found.through[row])
     return Rate(
         parts=Range(*(min(one, cap) for one, cap in zip(made.all, most.all))),
@@ -157,16 +157,30 @@ def rate(found, speed, target, rule, *, gap=0.0, fill=1.0):
     )
 
 
-def _queued(found, row, rule, gap, fill):
-    """Parts on a length of track before the devices [1/m], all orientations end to end."""
+def mean_length(found, rule):
+    """Return the mean length along the track of the parts that stay on it [m]; NaN where none does.
+
+    What falls off at the entry, or is turned over on the track, goes back at once: it is in nobody's way.
+    """
+    chance, enters = _entering(found, rule)
+    weights = chance * found.stays
+    return float((weights * found.lengths).sum() / enters) if enters > 0.0 else np.nan
+
+
+def _entering(found, rule):
+    """(M,) chance of each orientation by a rule, and the share of all parts that stay on the track."""
     chance = np.nan_to_num(found.rules[rule])
-    if not chance.sum() > 0.0:
-        return fill / (found.lengths[row] + gap)
-    return float(fill * chance.sum() / (chance * (found.lengths + gap)).sum())
+    return chance, float((chance * found.stays).sum())
+
+
+def _queued(found, row, rule, gap, fill):
+    """Parts on a length of track before the devices [1/m], all orientations that stay on it end to end."""
+    length = mean_length(found, rule)
+    return float(fill / ((found.lengths[row] if np.isnan(length) else length) + gap))
 
 
 def efficiency(found, row, rule):
-    """Return the share of the parts offered that leave in the orientation of a row.
+    """Return the share of the parts offered, which are on the track, that leave in the orientation of a row.
 
     Parameters
     ----------
@@ -178,17 +192,18 @@ def efficiency(found, row, rule):
     -------
     float [1]
     """
-    chance = np.nan_to_num(found.rules[rule])
-    total = chance.sum()
-    return float((chance * _fed_share(found, row)).sum() / total) if total > 0.0 else 0.0
+    chance, enters = _entering(found, rule)
+    return float((chance * _fed_share(found, row)).sum() / enters) if enters > 0.0 else 0.0
 
 
 def _efficiency_ends(found, row, rule):
     """The least and the greatest efficiency, by the rule's own interval or over all rules."""
-    fed = _fed_share(found, row)
+    fed, (_, enters) = _fed_share(found, row), _entering(found, rule)
+    if not enters > 0.0:
+        return 0.0, 0.0
     if rule == RECOMMENDED and not np.isnan(found.interval).any():
-        return tuple(min(float((end * fed).sum()), 1.0) for end in found.interval.T)
-    all_rules = [float((np.nan_to_num(chance) * fed).sum()) for chance in found.rules.values()]
+        return tuple(min(float((end * fed).sum()) / enters, 1.0) for end in found.interval.T)
+    all_rules = [efficiency(found, row, one) for one in found.rules]
     return min(all_rules), max(all_rules)
 
 

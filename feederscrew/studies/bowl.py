@@ -209,13 +209,15 @@ def _ways(part, aspects, track, devices):
 
 def _brought(plain, size, settings, target, ways, counted):
     """The bowl whose drive brings the target, without the parts that this drive turns over, and the flow."""
-    flow = throughput.flow(ways(None), **counted)
+    flow, tried = throughput.flow(ways(None), **counted), set()
     while True:
         driven = _driven(plain, size, settings, target, flow)
         own = throughput.flow(ways(driven), **counted)
-        if own.parts >= flow.parts * (1.0 - EVEN):
+        enough = own.parts >= flow.parts * (1.0 - EVEN)
+        if enough and (own.parts <= flow.parts * (1.0 + EVEN) or flow.parts in tried):
             return driven, own
-        flow = own  # less with every round: there are only so many orientations to turn over
+        tried.add(flow.parts)
+        flow = own  # there are only so many orientations to turn over
 
 
 def _driven(plain, size, settings, target, flow):

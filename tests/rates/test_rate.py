@@ -1,6 +1,7 @@
 """Parts per minute: the chain of factors, orientations that are one, devices and their faults."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
 from feederscrew.errors import FeederError
+from feederscrew.part.reading.from_file import load
 from feederscrew.rates import well_oriented
 from feederscrew.rates.well_oriented import Range
 from feederscrew.resting.aspects import find
@@ -17,6 +19,7 @@ BOWL = bowls.read(
     None, ("drive.peak_to_peak=1 mm", "drive.frequency=50 Hz", "restitution=0", "friction.static=0.4")
 )
 STRAIGHT = replace(BOWL.track, radius=1e6, climb=0.0, bank=0.0, width=0.1)
+PARTS = Path(__file__).parents[2] / "parts"
 LSHAPE = [(0, 0), (30, 0), (30, 3), (3, 3), (3, 20), (0, 20)]
 
 
@@ -77,6 +80,35 @@ def test_rate_is_the_product_of_its_chain():
     assert made.purity == pytest.approx(known.rules["csa"][row])
     density = well_oriented.parts_per_metre(known, target, "csa", gap=5e-3, fill=0.8)
     assert made.parts.value == pytest.approx(0.1 * density)
+
+
+@pytest.mark.parametrize(("width", "wanted"), [(25, 5.607), (14, 5.775), (8, 8.221)])
+def test_what_falls_off_at_the_entry_is_in_nobodys_way(width, wanted):
+    """A narrower track: fewer ways to lie on it, so more of what is on it is as wanted."""
+    bowl = bowls.read(None, (f"track.width={width} mm",))
+    part = load(PARTS / "lbracket_30x20x15.stl")
+    found = find(part)
+    target = well_oriented.wanted(part, found, bowl.track, "A")
+    known = well_oriented.orientations(part, found, bowl.track)
+    made = well_oriented.rate(known, well_oriented.velocity(bowl), target, "quasistatic")
+    assert made.parts.value * 60 == pytest.approx(wanted, abs=5e-4)
+    chance, stays = known.rules["quasistatic"], known.passes[:, 0] == 1.0
+    assert 0 < stays.sum() < len(stays)
+    assert made.pitch == pytest.approx((chance * known.lengths)[stays].sum() / chance[stays].sum())
+    assert made.efficiency == pytest.approx(chance[made.row] / chance[stays].sum())
+    assert made.efficiency == pytest.approx(made.purity)
+    assert made.parts.value == pytest.approx(made.offered.value * made.efficiency)
+    density = well_oriented.parts_per_metre(known, target, "quasistatic")
+    assert made.parts.value == pytest.approx(made.velocity.value * density)
+
+
+def test_a_track_that_carries_nothing_offers_nothing():
+    part, found, known = stream(shapes.box(10, 20, 30))
+    target = well_oriented.wanted(part, found, STRAIGHT, "A")
+    gone = replace(known, passes=np.zeros_like(known.passes), leaving=np.zeros_like(known.leaving))
+    made = well_oriented.rate(gone, Range(0.1, 0.1, 0.1), target, "csa")
+    assert made.parts.all == (0.0, 0.0, 0.0)
+    assert np.isnan(well_oriented.mean_length(gone, "csa"))
 
 
 def test_velocity_brackets_friction_and_starts():
