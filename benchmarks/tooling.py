@@ -14,6 +14,7 @@ import shapely
 import waits
 
 from feederscrew.tooling import foot as feet
+from feederscrew.tooling.devices.hole_shapes import polygon
 from feederscrew.tooling.foot import Footprint
 
 RADIUS, DISTANCE, CORNERS = 0.15, 9e-3, 30
@@ -65,7 +66,7 @@ def rate(function, items):
 def polygons(count, positions, rng):
     print_foot = foot_of(CORNERS)
     foot, shapes = feet.standing(print_foot, DISTANCE, RADIUS), [random_hole(rng) for _ in range(count)]
-    holes = [feet.polygon(corners, RADIUS) for corners in shapes]
+    holes = [polygon(corners, RADIUS) for corners in shapes]
     work = feet.scratch(foot, max(holes, key=lambda hole: len(hole.nodes)))
     feet.least(foot, holes[0], work)
     compiled, exact = rate(lambda hole: feet.least(foot, hole, work)[0], holes)

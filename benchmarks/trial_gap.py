@@ -9,8 +9,8 @@ that a part travels in two time constants of its tipping.
 import trial_parts
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.devices import Device
 from feederscrew.resting.aspects import find
+from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.trial import course
 
@@ -23,7 +23,7 @@ SHARES, TRIED = (-0.25, 0.25, 0.5, 0.75, 1.0, 1.25), 4
 
 def passed(part, bowl, every, place, gap):
     """How many of some parts laid in one orientation pass a gap [m]."""
-    device = Device("gap", "here", limit=gap)
+    device = made("gap", "here", limit=gap)
     seen = course.course(part, bowl, every, [place], [device], parts=TRIED, seed=2)
     return int((seen.fates == course.PASSED).sum())
 

@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.devices import Device
 from feederscrew.part import load
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
+from feederscrew.tooling.devices.kinds import made
 from feederscrew.trial import course, looks, runs
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
@@ -34,7 +34,7 @@ TRIED, CLEAR = 4, 2.5e-4  # trials of an orientation; [m] margin from which a ve
 def counted(part, kind, limit):
     """Clear verdicts tried, those on the aspect said, those that left as said, and parts without one."""
     bowl, aspects = bowls.read(None, OWN), find(part)
-    device = Device(kind, "here", limit=1e-3 * limit, text=f"{limit} mm")
+    device = made(kind, "here", limit=1e-3 * limit, text=f"{limit} mm")
     ways = stream.orientations(part, aspects, bowl.track, (device,), bowl=bowl)
     every, below = list(range(len(ways.lying))), looks.AspectsBelow(part, aspects)
     own = {"poses": ways.states, "leaves": course.rightly(ways.leaving), "seed": 5, "jobs": 2}

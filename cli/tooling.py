@@ -85,7 +85,7 @@ def tooling(
     from feederscrew.studies.tooling import tooling as study
 
     if step:
-        from feederscrew.output.tooling import step as steps
+        from feederscrew.output.tooling import written_step as steps
 
         steps.check()
     solid, settings = out.part(part), bowls.settings(**bowl)

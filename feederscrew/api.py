@@ -10,7 +10,6 @@ from typing import IO, TYPE_CHECKING
 from feederscrew import bowl as _bowls
 from feederscrew import part as _parts
 from feederscrew.bowl import Bowl
-from feederscrew.bowl.devices import Device
 from feederscrew.conveying.answer import Answer
 from feederscrew.errors import ConfigError, Faults, FeederError, MeshError
 from feederscrew.output.aspects import tables as _tables
@@ -23,6 +22,7 @@ from feederscrew.resting.posture import Posture, posture
 from feederscrew.studies import aspects as _aspects
 from feederscrew.studies import convey as _convey
 from feederscrew.studies import rate as _rate
+from feederscrew.tooling.devices.base import Device
 
 if TYPE_CHECKING:
     from feederscrew.dropping.drop_test import Result

@@ -2,10 +2,11 @@
 
 from pathlib import Path
 
-from feederscrew.bowl.devices import KINDS, SECTION
+from feederscrew.bowl.devices import SECTION
 from feederscrew.bowl.schema import BY_NAME, KEYS, OPTIONAL, rival
 from feederscrew.bowl.settings import OF_THE_MACHINE, default
 from feederscrew.errors import FeederError
+from feederscrew.tooling.devices.kinds import KINDS
 
 SCHEMA_FILE = "feeder.schema.json"  # what the JSON Schema is called beside a bowl file
 EDITORS = f"# yaml-language-server: $schema={SCHEMA_FILE}"  # the line by which editors find it

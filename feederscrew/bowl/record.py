@@ -2,7 +2,9 @@
 
 from dataclasses import dataclass
 
-from feederscrew.bowl.devices import Device
+from feederscrew.tooling.devices.base import Device
+
+WIDEST = 0.95  # of the wall's radius: about the axis there is no track
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,11 @@ class Track:
     bank: float  # [rad] delta, tilt about the track's direction
     radius: float  # [m] of the bowl wall
     width: float  # [m]
+
+    @property
+    def extent(self):
+        """How far from the wall there is track [m]: its width, or nearly to the bowl's axis."""
+        return min(self.width, WIDEST * self.radius)
 
 
 @dataclass(frozen=True)

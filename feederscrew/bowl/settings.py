@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew import units
-from feederscrew.bowl.devices import KINDS, SECTION
+from feederscrew.bowl.devices import SECTION
 from feederscrew.bowl.direction import vibration_angle
 from feederscrew.bowl.record import Bowl, Drive, Friction, Machine, Sizing, Track
 from feederscrew.bowl.schema import BY_NAME, KEYS, OPTIONAL, Key, rival
@@ -64,8 +64,7 @@ def effective(given):
 
 def of_device(place, device):
     """Return a device as the Setting 'devices.1', for people: 'gap: 9 mm'."""
-    kind = KINDS[device.kind]
-    key = Key(f"{SECTION}.{place}", SECTION, kind.dimension, "", "", "", kind.meaning)
+    key = Key(f"{SECTION}.{place}", SECTION, device.dimension, "", "", "", device.meaning)
     return Setting(key, f"{device.kind}: {device.text}", device, device.where)
 
 

@@ -8,8 +8,8 @@ from feederscrew import check
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
+from feederscrew.tooling.devices.named import place
 
-NEAR = 3.0  # [deg] so near a counted heading must be to one the part can have
 UNDECIDED = "the shares at the track's entry are undecided: {}"
 STOPPED = "the parts on the floor were stopped after {}"
 NOTHING = "no part came to lie on the moving floor: the closed form is taken"
@@ -106,21 +106,10 @@ def oriented(known, measured):
     values = np.zeros(len(known.lying))
     for (aspect, heading), count in zip(measured.lying, measured.by_orientation[:, 0]):
         if count > 0.0:
-            values[_row(known, aspect, heading, measured.source)] += count
+            row = place(known.aspects, known.headings, aspect, heading, measured.source, "counts")
+            values[row] += count
     shares = values / values.sum()
     low, high = wilson(values, values.sum()) if _only(measured).counted else (shares, shares)
     ends = np.column_stack([np.minimum(low, shares), np.maximum(high, shares)])
     rules = known.rules | {"recommended": check.frozen(shares)}
     return replace(known, rules=rules, interval=check.frozen(ends))
-
-
-def _row(known, aspect, heading, source):
-    """The row of an aspect at the heading nearest to one that was counted."""
-    away = np.degrees(np.abs(np.arctan2(np.sin(known.headings - heading), np.cos(known.headings - heading))))
-    away = np.where(np.array(known.aspects) == aspect, away, np.inf)
-    row = int(np.argmin(away))
-    if away[row] > NEAR:
-        names = ", ".join(one.name for one in known.lying if one.aspect == aspect) or "none"
-        what = f"counts {aspect}@{np.degrees(heading):.4g}, which the part does not have on this track"
-        raise FeederError(source, what, f"known are {names}")
-    return row

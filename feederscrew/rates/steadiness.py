@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from feederscrew.bowl.devices import KINDS
 from feederscrew.geometry.polygons import convex, inset
 from feederscrew.mechanics.cycle import phases
 from feederscrew.mechanics.floor.balance import HOP
@@ -12,8 +11,8 @@ from feederscrew.mechanics.track import balance
 from feederscrew.mechanics.track.frame import seat
 from feederscrew.rates.rocking import Rocker, goes_over, over_period
 from feederscrew.rates.tipping import FLAT, plain
-from feederscrew.tooling import contact
 from feederscrew.tooling import foot as feet
+from feederscrew.tooling import touching
 from feederscrew.tooling.orientations import gyration, speed
 
 INSTANTS = 12  # of one period
@@ -61,28 +60,16 @@ def _steady(devices, one, bowl, margin):
         return True
     force, offset = over_period(place, bowl)
     for device in devices:
-        if KINDS[device.kind].turns or device.kind == "rails":  # behind it, it does not come as it lies
+        if device.turns or device.hangs:  # behind it, it does not come as it lies
             break
-        span, hole = _span(device, one), _hole(device, one)
+        if not device.carries:
+            continue
+        span, hole = device.span_on(one.track), device.hole_on(one.track)
         if span is not None and not _keeps_down(one, span, offset, margin):
             return False
         if hole is not None and not _keeps_upright(one, hole, place, force, offset, bowl):
             return False
     return True
-
-
-def _span(device, one):
-    """What is missing along the track, from the wall (2,) [m]; None of other devices."""
-    spans = {"narrowed_track": (device.limit, one.track.radius), "canyon": (0.0, device.limit)}
-    return device.span if device.kind == "slot" else spans.get(device.kind)
-
-
-def _hole(device, one):
-    """What passes below it with an edge across the track, a Hole; None of other devices."""
-    radius = one.track.radius
-    if device.kind == "gap":
-        return feet.gap(device.limit, radius, one.track.width)
-    return feet.polygon(np.array(device.corners), radius) if device.kind == "cut_out" else None
 
 
 def _keeps_down(one, span, offset, margin):
@@ -91,7 +78,7 @@ def _keeps_down(one, span, offset, margin):
     high = radius - first if first > 0.0 else 2.0 * radius
     if feet.over_ring(one.standing, max(radius - last, 0.0), high) > one.margin - SAME:
         return True
-    left = contact.beside(one.foot, span, one.distance, radius).corners
+    left = touching.beside(one.foot, span, one.distance, radius).corners
     hull = left[convex(left)]
     return len(hull) > 2 and bool(inset(hull, offset).min() >= margin)
 

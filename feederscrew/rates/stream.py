@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.rates.tipping import TrackTipping, marked
 from feederscrew.tooling import orientations as tooling
-from feederscrew.tooling.course import course
+from feederscrew.tooling.fates import course
 from feederscrew.tooling.orientations import Orientation
 
 

@@ -6,7 +6,8 @@ import numpy as np
 import shapely
 from shapely import affinity
 
-from feederscrew.tooling.strip import BLADE, OVERHEAD, strip
+from feederscrew.tooling.devices.pieces import BLADE
+from feederscrew.tooling.strip import strip
 
 BEYOND = 2e-3  # [m] by which what reaches an edge of the track is cut over it
 
@@ -87,7 +88,7 @@ def _cut(station, drawn, width):
     """A hole, carried a little over the edge of the track that it reaches, and into the wall."""
     s, y = station.hole.T
     y = np.where(y >= drawn - 1e-9, width + BEYOND, np.where(y <= 1e-9, -BEYOND, y))
-    return Cut(station.label, station.device.kind, np.column_stack([s, y]), station.device.kind == "rails")
+    return Cut(station.label, station.device.kind, np.column_stack([s, y]), station.device.hangs)
 
 
 def _blade(station, width):
@@ -102,5 +103,5 @@ def _blade(station, width):
         start=float(station.blade[:, 0].min()),
         thickness=BLADE,
         area=frame.difference(free),
-        alone=station.device.kind not in OVERHEAD,
+        alone=not station.device.overhead,
     )

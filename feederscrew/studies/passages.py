@@ -7,7 +7,6 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew import check
-from feederscrew.bowl.devices import Device
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
@@ -17,8 +16,9 @@ from feederscrew.rates.tipping import marked
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts.passed import DeviceCounts
 from feederscrew.studies.rate import shares
+from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import Orientation, orientations
-from feederscrew.tooling.passages import Passage, until_returned
+from feederscrew.tooling.tightest import Passage, until_returned
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +57,7 @@ def passages(part: Part, bowl: Bowl, aspects: Aspects, rule: str) -> PassagesStu
     PassagesStudy
     """
     every, _ = marked(orientations(part, aspects, bowl.track), bowl)
-    devices = tuple(device for device in bowl.devices if device.kind != "yield")
+    devices = tuple(device for device in bowl.devices if device.placed)
     return PassagesStudy(
         devices=devices,
         orientations=every,

@@ -8,7 +8,7 @@ from os import PathLike
 import numpy as np
 
 from feederscrew import check
-from feederscrew.bowl.devices import Device, strangers
+from feederscrew.bowl.devices import strangers
 from feederscrew.bowl.record import Bowl
 from feederscrew.machine import speeds
 from feederscrew.part.record import Part
@@ -17,6 +17,7 @@ from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH, launch_named
 from feederscrew.studies.aspects import aspects as resting
+from feederscrew.tooling.devices.base import Device
 
 ALIKE = 1.0 - 1e-9  # of the most frequent orientation: as frequent
 LEAST = 1e-6  # of what must be above 0

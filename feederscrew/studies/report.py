@@ -97,7 +97,7 @@ class ReportStudy:
     @cached_property
     def passages(self):
         """What the bowl's devices do with each orientation, a PassagesStudy; None without such devices."""
-        if all(device.kind == "yield" for device in self.bowl.devices):
+        if not any(device.placed for device in self.bowl.devices):
             return None
         return passages(self.part, self.bowl, self.resting.aspects, self.rule)
 

@@ -12,10 +12,10 @@ from feederscrew.rates.steadiness import steady
 from feederscrew.rates.tipping import marked, remark
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.aspects import answered
-from feederscrew.tooling.cutting import VERDICTS, Search
 from feederscrew.tooling.design import MARGIN, design, place
+from feederscrew.tooling.hole_search import VERDICTS, Search
 from feederscrew.tooling.orientations import Orientation, named, orientations, placed
-from feederscrew.tooling.result import Design
+from feederscrew.tooling.proposal import Design
 
 CARRIED = (
     "quasi-static: at the bowl's speed a part may be carried over a cut that returns it, laid over by a "
@@ -156,7 +156,7 @@ def _designed(every, shares, wanted, bowl, **asked):
     found = _isolating(every, shares, wanted, **asked)
     if _steady(found, every, bowl, asked["margin"]):
         return found
-    holes = any(cut.device.kind == "cut_out" for cut in found.cuts)
+    holes = any(cut.device.corners for cut in found.cuts)
     gentle = found if holes else _isolating(every, shares, wanted, gentle=True, **asked)
     same = (gentle.isolated, gentle.efficiency, gentle.purity) == (
         found.isolated, found.efficiency, found.purity,

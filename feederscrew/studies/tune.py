@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 
 from feederscrew import check
-from feederscrew.bowl.devices import Device, strangers
+from feederscrew.bowl.devices import strangers
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer, sensitivity
 from feederscrew.part.record import Part
@@ -16,6 +16,7 @@ from feederscrew.rates import drive_settings as knobs
 from feederscrew.rates.stream import along
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.rate import LEAST, Shares, checked, shares
+from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
 
 

@@ -6,19 +6,10 @@ import numpy as np
 import shapely
 
 from feederscrew.mechanics.wall import sameness
-from feederscrew.tooling.chain import LOWER, UPPER, limits
-from feederscrew.tooling.verdicts import opening_margin, seen
+from feederscrew.tooling.chain import around, limits, numbered
+from feederscrew.tooling.verdicts import opening_margin
 
 ROUNDS = 4  # of the fit of one hull over the other
-
-FEATURES = {  # what a device measures of a part, in the part's own terms
-    "wiper": "height",
-    "narrowed_track": "distance from the wall to the centre of mass",
-    "pressure_break": "width",
-    "canyon": "distance from the wall to the centre of mass",
-    "gap": "reach of the foot ahead of and behind the centre of mass",
-    "profile": "outline seen along the track",
-}
 SIDES = (("ahead", "behind"), ("on the inner side", "at the wall"), ("on top", "at the bottom"))
 
 
@@ -82,8 +73,8 @@ def _inside(apart):
 
 def smallest_change(wanted, other, margin):
     """Return in words the least that has to be added to what some device measures of a part."""
-    kind, step = _nearest(wanted, other)
-    return f"{1e3 * max(2.0 * margin - step, 0.0):.2g} mm more in {FEATURES[kind]} would part them"
+    feature, step = _nearest(wanted, other)
+    return f"{1e3 * max(2.0 * margin - step, 0.0):.2g} mm more in {feature} would part them"
 
 
 def carries_more(one, other, margin):
@@ -118,11 +109,11 @@ def difference(wanted, other):
 
 
 def _nearest(wanted, other):
-    """The device at which two orientations are farthest apart, and by how much [m]."""
-    found = [(-opening_margin(seen(wanted), other), "profile")]
-    for kind in (*UPPER, *LOWER):
+    """What some device measures in which two orientations are farthest apart, and by how much [m]."""
+    found = [(-opening_margin(wanted.seen, other), kind.kind, kind.feature) for kind in around()]
+    for kind in numbered():
         first, second = limits(kind, (wanted, other))
-        step = second - first if kind in UPPER else first - second
-        found.append((float(step) if np.isfinite(step) else -np.inf, kind))
-    step, kind = max(found)
-    return kind, max(step, 0.0)
+        step = second - first if kind.bound == "upper" else first - second
+        found.append((float(step) if np.isfinite(step) else -np.inf, kind.kind, kind.feature))
+    step, _, feature = max(found)
+    return feature, max(step, 0.0)

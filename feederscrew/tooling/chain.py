@@ -5,13 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feederscrew.bowl.devices import Device
-from feederscrew.tooling.holding import leans
-from feederscrew.tooling.verdicts import UNSURE, gate_margin, opening_margin, seen, verdict
+from feederscrew.tooling.devices.base import UNSURE, Device
+from feederscrew.tooling.devices.kinds import KINDS
+from feederscrew.tooling.verdicts import Meeting, gate_margin, opening_margin, verdict
 
-UPPER = ("wiper", "narrowed_track", "pressure_break")  # pass what needs no more than their value
-LOWER = ("canyon", "gap")  # pass what bears no less
-CARRYING = ("narrowed_track", "canyon", "gap")  # leave less of a foot
 WHERE = "design"
 HALVINGS = 10  # of the way from the value nearest to the wanted orientation to the middle
 FINE = 1e-7  # [m] to which a value is rounded
@@ -46,25 +43,35 @@ def candidates(every, wanted, margin):
         The device at which it returns the most, with the margin of each orientation at it.
     """
     found = {}
-    for kind in (*UPPER, *LOWER):
-        values = limits(kind, every)
-        if not np.isfinite(values[wanted]) or (kind in LOWER and values[wanted] <= 2.0 * margin):
+    for kind in numbered():
+        values, lower = limits(kind, every), kind.bound == "lower"
+        if not np.isfinite(values[wanted]) or (lower and values[wanted] <= 2.0 * margin):
             continue
-        sign = 1.0 if kind in UPPER else -1.0
-        limit = float(values[wanted] + sign * margin)
-        if limit > 0.0 and not (kind == "narrowed_track" and limit >= every[wanted].track.width):
-            device = Device(kind, WHERE, limit=limit)
+        limit = float(values[wanted] + (-margin if lower else margin))
+        device = kind(WHERE, limit=limit)
+        if limit > 0.0 and device.acts(every[wanted].track):
             found[device] = np.array([verdict(device, one, every).margin for one in every])
-    gate = Device("profile", WHERE, like=(every[wanted].aspect, every[wanted].heading, margin))
-    opening = seen(every[wanted]).buffer(margin)
-    found[gate] = np.array([gate_margin(opening, one) for one in every])
+    for kind in around():
+        gate = kind.around(every[wanted], margin, WHERE)
+        opening = gate.free(every)
+        found[gate] = np.array([gate_margin(opening, one) for one in every])
     return found
+
+
+def numbered():
+    """Return the kinds of one number that a design tries, what a greater cut makes of them last."""
+    kinds = [kind for kind in KINDS.values() if kind.proposed and kind.bound]
+    return sorted(kinds, key=lambda kind: (kind.bound == "lower", kind.rank))
+
+
+def around():
+    """Return the kinds of gates that a design tries, with the wanted orientation's own outline."""
+    return [kind for kind in KINDS.values() if kind.proposed and hasattr(kind, "around")]
 
 
 def limits(kind, every):
     """Return the value [m] of a device of one number that each orientation just passes, (M,)."""
-    names = {"wiper": "height", "narrowed_track": "balcony", "pressure_break": "width"}
-    return np.array([getattr(one, names.get(kind, kind)) for one in every])
+    return np.array([kind.needed(one) for one in every])
 
 
 def fewest(found, others, margin, enough=0.0):
@@ -128,9 +135,9 @@ def shared_out(found, devices, margin):
 
 
 def _cut(every, wanted, device, must, least):
-    if device.kind == "profile":
+    if not device.bound:
         return _gate(every, wanted, device, must)
-    values, upper = limits(device.kind, every), device.kind in UPPER
+    values, upper = limits(type(device), every), device.bound == "upper"
     values = values + np.where(np.arange(len(every)) == wanted, 0.0, _more(device, every))
     nearest = (values[must].min() if upper else values[must].max()) if must.any() else values[wanted]
     middle = float(0.5 * (values[wanted] + nearest))
@@ -139,7 +146,7 @@ def _cut(every, wanted, device, must, least):
         return replace(device, limit=fine(value), text=millimetres(fine(value)))
 
     chosen = _surest(every, must, at, middle if np.isfinite(nearest) else device.limit, device.limit)
-    if device.kind in CARRYING and least < np.inf:
+    if device.carries and least < np.inf:
         eased = max(chosen.limit, nearest - least) if upper else min(chosen.limit, nearest + least)
         chosen = _surest(every, must, at, float(eased), chosen.limit, least - 2.0 * FINE)
     ends = [replace(device, limit=float(end), text=millimetres(end)) for end in (nearest, values[wanted])]
@@ -148,21 +155,16 @@ def _cut(every, wanted, device, must, least):
 
 def _more(device, every):
     """By how much more [m] than placed each orientation passes a device as it travels, (M,)."""
-    if device.kind == "gap":
-        return np.array([one.carry_ahead for one in every])
-    if device.kind == "canyon":
-        return np.array([leans(one, device.limit) for one in every])
-    return np.zeros(len(every))
+    return np.array([device.more(Meeting(one)) for one in every])
 
 
 def _gate(every, wanted, device, must):
-    aspect, heading, least = device.like
-    outside = [-opening_margin(seen(every[wanted]), one) for one, some in zip(every, must) if some]
+    least = device.like[2]
+    outside = [-opening_margin(every[wanted].seen, one) for one, some in zip(every, must) if some]
     widest = min(outside, default=2.0 * least)
 
     def at(play):
-        text = f"{{of: {aspect}@{np.degrees(heading):.6g}, play: {millimetres(play)}}}"
-        return replace(device, like=(aspect, heading, float(play)), text=text)
+        return device.with_play(play, millimetres(play))
 
     def rounded(play):
         return at(fine(play) if np.isfinite(widest) else play)

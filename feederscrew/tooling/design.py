@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew.errors import FeederError
-from feederscrew.tooling import chain, cutting, rails, turners
-from feederscrew.tooling.result import task as asked_for
-from feederscrew.tooling.result import told, weights, without
+from feederscrew.tooling import chain, hole_search, rails, turners
+from feederscrew.tooling.devices.named import place_of
+from feederscrew.tooling.proposal import task as asked_for
+from feederscrew.tooling.proposal import told, weights, without
 
 MARGIN = 2.5e-4  # [m] to either side
 MOST_HOLES = 3  # cut-outs in one chain
@@ -49,7 +50,7 @@ def design(
     -------
     Design
     """
-    search = search or cutting.Search()
+    search = search or hole_search.Search()
     given = asked_for(every, shares, wanted, margin, purity, before, gentle=gentle)
     found = _returning(given, search.started(), holes)
     if turn and not (found.isolated and found.efficiency >= efficiency > 0.0):
@@ -60,7 +61,7 @@ def design(
 
 def _returning(given, search, holes):
     """The best chain of devices that only return parts: they leave lying, or hanging."""
-    if any(device.kind == "rails" for device in given.before):
+    if any(device.hangs for device in given.before):
         return told(given, (), np.zeros(len(given.every), dtype=bool))
     found = _plain(given, search, holes)
     hung = rails.design(given)
@@ -143,7 +144,7 @@ def _with_holes(given, cuts, returned, search):
         left = [k for k in np.flatnonzero(~returned) if k != given.wanted and given.often[k]]
         if given.coming[left].sum() <= given.allowed:
             break
-        made = cutting.cut_out(given.every, given.wanted, left, given.margin, search) if left else None
+        made = hole_search.cut_out(given.every, given.wanted, left, given.margin, search) if left else None
         if made is None:
             break
         cuts, returned[made[1]] = (*cuts, made[0]), True
@@ -158,15 +159,9 @@ def place(every, aspect, heading, where):
     FeederError
         If the part has no such orientation.
     """
+    if heading is not None:
+        return place_of(every, aspect, heading, where, kind=FeederError)
     known = [k for k, one in enumerate(every) if one.aspect.casefold() == aspect.strip().casefold()]
     if not known:
-        names = ", ".join(dict.fromkeys(one.aspect for one in every))
-        raise FeederError(where, f"there is no aspect {aspect[:20]!r}", f"choose one of {names}")
-    if heading is None:
-        return max(known, key=lambda k: (not every[k].returned, every[k].heading_share, -k))
-    away = [abs(np.remainder(every[k].heading - heading + np.pi, 2.0 * np.pi) - np.pi) for k in known]
-    if min(away) > np.radians(1.0):
-        names = ", ".join(f"{np.degrees(every[k].heading):.4g}" for k in known)
-        what = f"aspect {every[known[0]].aspect} has no stable heading {np.degrees(heading):.4g} deg"
-        raise FeederError(where, what, f"choose one of {names} deg")
-    return known[int(np.argmin(away))]
+        return place_of(every, aspect, np.nan, where, kind=FeederError)
+    return max(known, key=lambda k: (not every[k].returned, every[k].heading_share, -k))

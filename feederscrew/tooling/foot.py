@@ -1,19 +1,15 @@
 """Feet and holes as the compiled verdict takes them."""
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from feederscrew import check
 from feederscrew.geometry import polygons
+from feederscrew.tooling.devices.hole_shapes import BEHIND, gap
 
-SAGITTA = 4e-6  # of the radius: by which a hole's bulging edge may be seen too flat ...
-FLATTEST = 2e-6  # [m] ... and at most; a short base of the support makes up to ten times that of the margin
 BESIDE = 1e-9  # [1] of an angle or a distance: what is beyond by more is so for certain
-BEHIND = 1e-3  # [m] a hole that reaches the wall is cut on into it
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,53 +82,6 @@ def _sector(start, end, middle):
     return np.array([least, most, nearest * (1.0 - BESIDE), far * (1.0 + BESIDE)])
 
 
-def polygon(corners, radius):
-    """Return a hole about the bowl's axis from its unrolled polygon.
-
-    Parameters
-    ----------
-    corners : (K, 2) float [m]
-        Length along the wall and distance from the wall; straight edges when unrolled.
-    radius : float [m]
-        Of the wall.
-
-    Returns
-    -------
-    passage.Hole
-    """
-    from feederscrew.tooling.kernel.passage import Hole
-
-    corners = through_the_wall(_turned_left(check.shaped("corners", corners, (-1, 2)).tolist()))
-    sides = _sides(corners)
-    rows = [_edge(s0 / radius, radius - y0, s1 / radius, radius - y1) for (s0, y0), (s1, y1) in sides]
-    nodes = [(s / radius, radius - y, 1.0) for s, y in _reflex(corners)]
-    nodes += [node for start, end in sides for node in _bulging(start, end, radius)]
-    return Hole(edges=np.array(rows), nodes=np.array(nodes).reshape(-1, 3))
-
-
-def gap(length, radius, width):
-    """Return a gap across the track: the edge left is radial, the edge met is parallel to it.
-
-    Parameters
-    ----------
-    length : float [m]
-    radius : float [m]
-        Of the wall.
-    width : float [m]
-        How far it reaches from the wall.
-
-    Returns
-    -------
-    passage.Hole
-    """
-    from feederscrew.tooling.kernel.passage import Hole
-
-    low, high = max(radius - width, 1e-3 * radius, 1.000001 * length), radius + BEHIND
-    rows = [[0.0, 0.0, 0.0, 0.0, low, high, 0.0], [0.0, 0.0, 0.0, length, low, high, 0.0]]
-    inner = [1.0, 0.0, np.arcsin(length / low), 0.0, low, low, 1.0]
-    return Hole(edges=np.array([*rows, inner]), nodes=np.empty((0, 3)))
-
-
 def scratch(foot, hole):
     """Return arrays for the verdict of feet and holes no larger than these."""
     from feederscrew.tooling.kernel.crossing import CUTS
@@ -186,57 +135,6 @@ def _hull(x, y):
     start = points[order]
     along = np.roll(start, -1, axis=0) - start
     return order, (start[:, 0] * along[:, 1] - start[:, 1] * along[:, 0]) / np.hypot(*along.T)
-
-
-def _edge(theta0, r0, theta1, r1):
-    """One straight edge of the unrolled polygon as `crossing` has it; from a later to an earlier angle the
-    hole, on its left, lies nearer to the wall, and the track left beyond it bulges."""
-    if r0 == r1:
-        return [1.0, min(theta0, theta1), max(theta0, theta1), 0.0, r0, r0, float(theta1 < theta0)]
-    kappa = (theta1 - theta0) / (r1 - r0)
-    return [0.0, theta0 - kappa * r0, kappa, 0.0, min(r0, r1), max(r0, r1), float(theta1 < theta0)]
-
-
-def _turned_left(corners):
-    """The corners counter-clockwise, length along to the right and distance from the wall upwards."""
-    twice = sum(s0 * y1 - y0 * s1 for (s0, y0), (s1, y1) in _sides(corners))
-    return corners if twice > 0.0 else corners[::-1]
-
-
-def _sides(corners):
-    """Start and end of each side of a ring of corners."""
-    return list(zip(corners, (*corners[1:], corners[0])))
-
-
-def through_the_wall(corners):
-    """Return the corners [m] of a hole, in pairs, with every edge along the wall moved behind it."""
-    out = []
-    for (s0, y0), (s1, y1) in _sides(corners):
-        out.append((s0, y0))
-        if y0 <= 0.0 and y1 <= 0.0:
-            out += [(s0, min(y0, y1) - BEHIND), (s1, min(y0, y1) - BEHIND)]
-    return out
-
-
-def _reflex(corners):
-    """The corners of the hole that point into it: there the track left has a corner."""
-    sides = _sides(corners)
-    for ((s0, y0), (s1, y1)), (_, (s2, y2)) in zip((sides[-1], *sides), sides):
-        if (s1 - s0) * (y2 - y1) - (y1 - y0) * (s2 - s1) < 0.0:
-            yield s1, y1
-
-
-def _bulging(start, end, radius):
-    """Points along an edge beyond which the track left bulges, as nodes."""
-    (s0, y0), (s1, y1) = start, end
-    if s1 >= s0:
-        return
-    flat = min(SAGITTA * radius, FLATTEST)
-    r = max(radius - max(y0, y1), 1e-3 * radius)
-    pieces = math.ceil(abs(s1 - s0) * r / radius / math.sqrt(8.0 * r * flat))
-    for k in range(1, pieces):
-        share = k / pieces
-        yield (s0 + share * (s1 - s0)) / radius, radius - (y0 + share * (y1 - y0)), 0.0
 
 
 def over_ring(foot, low, high):

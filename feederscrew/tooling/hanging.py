@@ -8,7 +8,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import cross, outline, sides
-from feederscrew.tooling import contact
+from feederscrew.tooling import touching
 from feederscrew.tooling.foot import Footprint
 from feederscrew.tooling.orientations import Orientation
 
@@ -50,9 +50,9 @@ class Hanging(Orientation):
     def foot(self):
         """What of the head rests on the rails: a Footprint."""
         size = np.ptp(self.posture.corners, axis=0).max()
-        for depth in (contact.TOUCHING * size, SEATED * self.height):
-            rings = contact.rings(self._rests(depth), contact.SLIVER * size**2)
-            if len(rings) > 1 or depth > contact.TOUCHING * size:
+        for depth in (touching.TOUCHING * size, SEATED * self.height):
+            rings = touching.rings(self._rests(depth), touching.SLIVER * size**2)
+            if len(rings) > 1 or depth > touching.TOUCHING * size:
                 break
         return Footprint(rings=rings, edges=np.empty((0, 2, 2)), points=np.empty((0, 2)))
 
@@ -66,9 +66,9 @@ class Hanging(Orientation):
     def _rests(self, depth):
         """What of the part lies lower over the rails than a depth, as an area about the foot."""
         points, faces = self.posture.surface, self.posture.solid.faces
-        area = contact.area_below(points[:, :2], points[:, 2], faces, depth, True)
+        area = touching.area_below(points[:, :2], points[:, 2], faces, depth, True)
         reach = np.hypot(*self.posture.corners[:, :2].T).max()
-        return area.difference(contact.ring(self.span, self.distance, self.track.radius, 2.0 * reach))
+        return area.difference(touching.ring(self.span, self.distance, self.track.radius, 2.0 * reach))
 
 
 def neck(one):

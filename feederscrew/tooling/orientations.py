@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import shapely
 
 from feederscrew.bowl.record import Track
 from feederscrew.conveying import answer
@@ -12,9 +13,9 @@ from feederscrew.geometry.polygons import turned
 from feederscrew.mechanics.wall import sameness
 from feederscrew.mechanics.wall.stable_headings import headings
 from feederscrew.resting.posture import Posture, posture
-from feederscrew.tooling import contact
 from feederscrew.tooling import foot as feet
-from feederscrew.tooling.contact import silhouette
+from feederscrew.tooling import touching
+from feederscrew.tooling.touching import silhouette
 
 ROUNDED = 5e-5  # [m] by which the borders of a cut are rounded: less depth does not catch
 FALLEN = 2.0  # time constants after which a part that tips is lost
@@ -71,8 +72,8 @@ class Orientation:
     @cached_property
     def foot(self):
         """What of it touches the track: a Footprint."""
-        whole = contact.footprint(self.posture, self.heading)
-        return contact.within(whole, self.distance, self.track.radius, self.track.width)
+        whole = touching.footprint(self.posture, self.heading)
+        return touching.within(whole, self.distance, self.track.radius, self.track.width)
 
     @cached_property
     def standing(self):
@@ -93,6 +94,11 @@ class Orientation:
     def silhouette(self):
         """Outline seen along the track: rings (K, 2) [m] of distance from the wall and height."""
         return silhouette(self.posture, self.heading, self.distance, self.track.radius)
+
+    @cached_property
+    def seen(self):
+        """Its silhouette as a shapely geometry."""
+        return shapely.union_all([shapely.Polygon(ring) for ring in self.silhouette])
 
     @cached_property
     def balcony(self):

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from feederscrew.bowl.devices import Device
 from feederscrew.tooling import chain
+from feederscrew.tooling.devices.hanging_rails import Rails
 from feederscrew.tooling.hanging import neck
-from feederscrew.tooling.result import told, weights
+from feederscrew.tooling.proposal import told, weights
 from feederscrew.tooling.verdicts import verdict
 
 
@@ -66,4 +66,4 @@ def _rails(one, width):
     if first <= 0.0 or span[1] >= one.track.width:
         return None
     text = f"{{from: {chain.millimetres(span[0])}, to: {chain.millimetres(span[1])}}}"
-    return Device("rails", chain.WHERE, span=span, text=text)
+    return Rails(chain.WHERE, span=span, text=text)

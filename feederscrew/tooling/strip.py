@@ -1,24 +1,16 @@
 """A stretch of track with a chain of devices on it, one after the other, as it is drawn and made."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 
-from feederscrew.bowl.devices import Device
 from feederscrew.bowl.record import Track
-from feederscrew.tooling.design import place
-from feederscrew.tooling.verdicts import JUDGES, seen
+from feederscrew.tooling.devices.base import FRAME, Device, room_of
+from feederscrew.tooling.devices.pieces import BLADE
 
-ROOM = 1.3  # a device has so many lengths of the longest part to itself
 BESIDE = 5e-3  # [m] of track beyond what parts and cuts need, where the whole track is not drawn
-DRAWN = 0.9  # of the radius: a wider track is not drawn whole
-BLADE = 1.5e-3  # [m] thickness of a gate
-FRAME = 5e-3  # [m] of a gate above its opening
-EDGE = 2e-4  # [m] the width with which an edge over which parts turn is drawn
-STEPS = 33  # points along the edge of a gap that is parallel to a radial one
 CHORD = 1e-5  # [m] by which an arc may be seen too flat
-OVERHEAD = ("wiper", "height_bar", "hold_down")
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,9 +30,7 @@ class Station:
     @property
     def label(self):
         """'gap 9 mm': kind and value, the latter where it is one number."""
-        return (
-            f"{self.device.kind} {self.device.text}" if np.isfinite(self.device.limit) else self.device.kind
-        )
+        return self.device.label
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,16 +74,16 @@ def strip(track, devices, every, lead=0.5):
     -------
     TrackSection
     """
-    made = [device for device in devices if device.kind != "yield"]
-    room = ROOM * max(one.length for one in every)
-    width = _width(track, made, every)
+    made = [device for device in devices if device.placed]
+    room = room_of(every)
     tallest = max(one.height for one in every)
+    bare = TrackSection(track, 0.0, _width(track, made, every), tallest, ())
     stations, start = [], lead * room
     for device in made:
-        length = room + max((x for x, _ in device.corners), default=0.0) * (device.kind == "cut_out")
-        stations.append(_station(device, start, length, width, tallest, every))
+        length = room + device.reach
+        stations.append(_station(device, start, length, bare, every))
         start += length + 0.5 * room
-    return TrackSection(track=track, length=start, width=width, tallest=tallest, stations=tuple(stations))
+    return replace(bare, length=start, stations=tuple(stations))
 
 
 def bent(ring, radius, shift=0.0, chord=CHORD):
@@ -120,91 +110,22 @@ def bent(ring, radius, shift=0.0, chord=CHORD):
     return np.column_stack([r * np.sin(theta), radius - r * np.cos(theta)])
 
 
-def hole(device, radius, length, width):
-    """Return what a device cuts out of the track, unrolled from its own start.
-
-    Parameters
-    ----------
-    device : Device
-    radius : float [m]
-        Of the wall.
-    length : float [m]
-        Of a device that goes on along the track.
-    width : float [m]
-        Of the track.
-
-    Returns
-    -------
-    (K, 2) float [m] or None
-        None for a device that cuts nothing.
-    """
-    if device.kind == "cut_out":
-        return np.array(device.corners)
-    if device.kind == "gap":
-        across = np.linspace(width, 0.0, STEPS)
-        met = radius * np.arcsin(np.minimum(device.limit / (radius - across), 1.0))
-        return np.vstack([[0.0, width], [0.0, 0.0], np.column_stack([met, across])[::-1]])
-    between = {"canyon": (0.0, device.limit), "narrowed_track": (device.limit, width)}
-    between["pressure_break"] = between["tip"] = between["narrowed_track"]
-    low, high = device.span or between.get(device.kind, (0.0, 0.0))
-    if not high > low:
-        return None
-    return np.array([[0.0, low], [length, low], [length, high], [0.0, high]])
-
-
-def opening(device, every, width):
-    """Return the opening of a gate over the track, in distances from the wall and heights [m].
-
-    Parameters
-    ----------
-    device : Device
-    every : sequence of Orientation
-        Of the part, which a profile may name.
-    width : float [m]
-        Of the track.
-
-    Returns
-    -------
-    shapely geometry or None
-        None for a device that is no gate.
-    """
-    if device.kind in OVERHEAD:
-        return shapely.box(0.0, 0.0, width, device.limit)
-    if device.kind != "profile":
-        return None
-    if not device.like:
-        return shapely.Polygon(device.corners)
-    aspect, heading, play = device.like
-    free = seen(every[place(every, aspect, heading, device.where)]).buffer(play)
-    return free.intersection(shapely.box(0.0, 0.0, width, 1.0))
-
-
 def _width(track, devices, every):
     """The track's own width, or as much of a very wide one as parts and cuts need."""
-    if track.width < DRAWN * track.radius:
+    if track.width <= track.extent:
         return track.width
-    needed = [one.width for one in every]
-    needed += [y for device in devices for _, y in device.corners if JUDGES[device.kind].cut]
-    needed += [last for device in devices for last in device.span]
-    needed += [device.limit for device in devices if np.isfinite(device.limit)]
-    return min(max(needed) + BESIDE, DRAWN * track.radius)
+    needed = [one.width for one in every] + [device.across for device in devices]
+    return min(max(needed) + BESIDE, track.extent)
 
 
-def _station(device, start, length, width, tallest, every):
+def _station(device, start, length, section, every):
     """A device at its start; a gate stands in the middle of its length."""
-    cut = hole(device, every[0].track.radius, length, width)
-    gate = opening(device, every, width)
-    middle = start + 0.5 * length
-    blade, edge = None, None
-    if device.kind == "step":
-        edge = np.array([[middle, 0.0], [middle + EDGE, 0.0], [middle + EDGE, width], [middle, width]])
-    elif device.kind == "tip":
-        low = device.limit
-        edge = np.array(
-            [[start, low], [start + length, low], [start + length, low + EDGE], [start, low + EDGE]]
-        )
+    cut = device.outline_on(replace(section.track, width=section.width), length)
+    gate = device.opening(every, section.width)
+    lower = device.lower(every)
+    middle, blade = start + 0.5 * length, None
     if gate is not None:
-        blade = np.array([[0.0, 0.0], [BLADE, 0.0], [BLADE, width], [0.0, width]])
+        blade = np.array([[0.0, 0.0], [BLADE, 0.0], [BLADE, section.width], [0.0, section.width]])
         blade += np.array([middle, 0.0])
     return Station(
         device=device,
@@ -213,9 +134,9 @@ def _station(device, start, length, width, tallest, every):
         hole=None if cut is None else np.add(cut, [start, 0.0]),
         blade=blade,
         openings=() if gate is None else _rings(gate),
-        top=0.0 if gate is None else max(tallest, gate.bounds[3]) + FRAME,
-        drop=device.limit if device.kind == "step" else 0.0,
-        edge=edge,
+        top=0.0 if gate is None else max(section.tallest, gate.bounds[3]) + FRAME,
+        drop=lower[0] if lower is not None and lower[1] <= 0.0 else 0.0,
+        edge=device.edge(start, length, section.width),
     )
 
 

@@ -4,12 +4,11 @@ import itertools
 
 import numpy as np
 
-from feederscrew.bowl.devices import Device
-from feederscrew.tooling import turning
 from feederscrew.tooling.chain import WHERE, Cut, millimetres
-from feederscrew.tooling.course import course
-from feederscrew.tooling.result import LEAST_SHARE
-from feederscrew.tooling.verdicts import verdict
+from feederscrew.tooling.devices.kinds import KINDS
+from feederscrew.tooling.fates import course
+from feederscrew.tooling.proposal import LEAST_SHARE
+from feederscrew.tooling.verdicts import Meeting, verdict
 
 ROUND = 1e-4  # [m] to which a height or width is rounded
 MORE = 1.05  # a chain is tried if it brings so many times what the best shorter one does
@@ -48,17 +47,15 @@ def _devices(given):
     every = given.every
     often = [one for one, some in zip(every, given.often & given.stays) if some]
     longest = max((max(one.length, one.height) for one in often), default=0.0)
-    made = [_device(kind, one) for kind in ("step", "tip") for one in _between(_changes(given, kind))]
-    return [one for one in made if one.kind == "tip" or one.limit <= HIGHEST * longest]
+    kinds = [kind for kind in KINDS.values() if kind.turns]
+    made = [_device(kind, one) for kind in kinds for one in _between(_changes(given, kind))]
+    return [one for one in made if one.inwards or one.limit <= HIGHEST * longest]
 
 
 def _changes(given, kind):
     """Values [m] at which a device changes what it does with an orientation that comes often, ascending."""
     often = [one for one, some in zip(given.every, given.often & given.stays) if some]
-    if kind == "tip":
-        return sorted({one.balcony for one in often if np.isfinite(one.balcony)})
-    turns = [turning.pitched(one, given.every) for one in often]
-    return sorted({end for turn in turns for end in (turn.lift, turn.sure, turn.holds) if np.isfinite(end)})
+    return kind.changes([Meeting(one, given.every) for one in often])
 
 
 def _between(known):
@@ -69,7 +66,7 @@ def _between(known):
 
 
 def _device(kind, limit):
-    return Device(kind, WHERE, limit=float(limit), text=millimetres(limit))
+    return kind(WHERE, limit=float(limit), text=millimetres(limit))
 
 
 def _sure(given, device):
@@ -116,14 +113,14 @@ def _cuts(given, devices):
             if onto != k and coming[k] >= LEAST_SHARE
         ]
         often = [one.margin for one, share in zip(told, coming) if share >= LEAST_SHARE]
-        below, above = _around(_changes(given, device.kind), device.limit)
+        below, above = _around(_changes(given, type(device)), device.limit)
         cuts.append(
             Cut(
                 device=device,
                 margin_pass=float(min((one for one in often if one >= given.margin), default=np.nan)),
                 margin_reject=np.nan,
-                smallest=_device(device.kind, below),
-                largest=_device(device.kind, above),
+                smallest=_device(type(device), below),
+                largest=_device(type(device), above),
                 returns=(),
                 turns=tuple(moved),
             )

@@ -22,11 +22,11 @@ from feederscrew.mechanics.wall import stable_headings as wall
 from feederscrew.part.hull import convex_hull
 from feederscrew.resting.tumbling import half_edges as tumbling
 from feederscrew.resting.tumbling import walk
+from feederscrew.tooling.devices.ledge_edges import below_ledge
 
 BEYOND = 1e-7  # [rad] past the barrier a part rolls down by itself
 TOUCHES = 1e-5  # of the part's size: hull corners that low rest on the track
 SKEW = 0.2  # sine of the angle from which a side of the foot is neither along the track nor across it
-LOWER = 0.5  # of the part's greatest length: how far below a ledge the second track lies
 
 
 @dataclass(frozen=True)
@@ -128,11 +128,6 @@ def beyond_ledge(one, every, width):
     if missed > 0.0:
         return (), min(missed, pitched(one, every).lift - left, _skew_lift(one) - drop)
     return _turned(turn, 0.5, drop), drop - turn.sure
-
-
-def below_ledge(every):
-    """Return how far below a ledge the second track lies [m]: half the part's greatest length."""
-    return LOWER * max(max(one.length, one.height) for one in every)
 
 
 def _certain(one, every, turn, drop):

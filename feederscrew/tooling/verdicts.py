@@ -1,53 +1,16 @@
-"""What each kind of device does with an orientation: one table from kind to verdict."""
-
-import math
-from collections.abc import Callable
-from dataclasses import dataclass
+"""An orientation at a device: what statics knows to tell of it, and the device's verdict."""
 
 import numpy as np
 import shapely
 
-from feederscrew.bowl.devices import KINDS
-from feederscrew.errors import ConfigError
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling import turning
+from feederscrew.tooling.devices.base import UNSURE, Verdict, share
 from feederscrew.tooling.hanging import Hanging, hanging_margin, head_first
 from feederscrew.tooling.holding import leans, may_lay_over, may_wedge, rides, widest
 
-CLOSE = 1e-9  # [m] a part this much over a limit still passes
-UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
 WORN = 2.5e-4  # [m] what an opening holds by less does not hold a part up
 FAR = 10.0  # [m] an opening goes on so far below the track and behind the wall
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """What a device does with one orientation."""
-
-    passes: float  # [1] share that passes; the rest goes back into the bowl
-    margin: float  # [m] by which it passes, negative: by which it fails; NaN of a measured share
-    shift: float = 0.0  # [rad] of the device from the foot's radial line where the margin is least
-    hangs: bool = False  # whether it goes on hanging by the head
-    onto: tuple[tuple[int, float], ...] = ()  # orientations it goes on in, with their shares; () as it is
-
-    @property
-    def decided(self):
-        """Whether statics tells what becomes of it: where a device turns, momentum may."""
-        return not self.onto or self.margin >= 0.0
-
-    @property
-    def sure(self):
-        """Whether its margin is one: not where momentum, friction or the wall may decide otherwise."""
-        return not -UNSURE <= self.margin <= 0.0
-
-
-@dataclass(frozen=True)
-class Judge:
-    """How one kind of device is judged and drawn."""
-
-    verdict: Callable | None  # (device, orientation, all) -> (margin [m], shift [rad]); None: its own way
-    picture: str  # what of the orientation a picture shows: 'side', 'above', 'ahead', 'turned' or ''
-    cut: bool  # whether it is cut out of the track
 
 
 def verdict(device, one, every=(), sigma=0.0):
@@ -58,7 +21,7 @@ def verdict(device, one, every=(), sigma=0.0):
     device : Device
     one : Orientation
     every : sequence of Orientation
-        Of the part, which a profile may name.
+        Of the part, which a device may name.
     sigma : float [m]
         Standard deviation of play and tolerance together: the share that passes is then
         Phi(margin / sigma), not 0 or 1.
@@ -70,127 +33,102 @@ def verdict(device, one, every=(), sigma=0.0):
     Raises
     ------
     ConfigError
-        If a profile names an orientation that the part does not have.
+        If a device names an orientation that the part does not have.
     """
-    if device.kind == "yield":
-        shares = {name.casefold(): share for name, share in device.shares}
-        return Verdict(shares.get(one.aspect.casefold(), 1.0), math.nan)
-    if KINDS[device.kind].turns:
-        return _turned(device, one, every, sigma)
-    margin, shift = JUDGES[device.kind].verdict(device, one, every)
-    hangs = not isinstance(one, Hanging) and _hangs(device, one, margin)
-    return Verdict(share(margin, sigma), float(margin), float(shift), hangs)
+    return device.judged(Meeting(one, every, sigma))
 
 
-def _turned(device, one, every, sigma):
-    """What a step or a ledge does: every part goes on, some of them turned over."""
-    every = tuple(every)
-    here = next((k for k, other in enumerate(every) if other is one), None)
-    if here is None:
-        raise ValueError(f"{one.name} is not one of the orientations")
-    if device.kind == "step":
-        turned, margin = turning.over_step(one, every, device.limit)
-    else:
-        margin, _ = _balcony(device, one, every)
-        beyond = 1.0 - share(margin, sigma)
-        turned = ()
-        if beyond > 0.0:
-            turned, certain = turning.beyond_ledge(one, every, device.limit)
-            turned = tuple((place, beyond * part) for place, part in turned)
-            margin = margin if margin >= 0.0 else min(-margin, certain)
-    stays = 1.0 - sum(part for _, part in turned)
-    return Verdict(1.0, float(margin), onto=(((here, stays),) if stays > 0.0 else ()) + turned)
+class Meeting:
+    """One orientation at a device: what a device asks of it, and how it says what becomes of it."""
 
+    def __init__(self, one, every=(), sigma=0.0):
+        self.one, self.every, self.sigma = one, tuple(every), sigma
 
-def _hangs(device, one, margin):
-    """Whether rails that an orientation passes let it down by its shank."""
-    return device.kind == "rails" and margin >= 0.0 and _slot(device, one, ())[0] < 0.0
+    @property
+    def hanging(self):
+        """Whether it comes hanging between rails."""
+        return isinstance(self.one, Hanging)
 
+    def passing(self):
+        """Return the verdict of a device that does nothing."""
+        return Verdict(1.0, float("nan"))
 
-def share(margin, sigma):
-    """Return the share that passes at a margin [m], its standard deviation being ``sigma`` [m]."""
-    if sigma > 0.0:
-        return 0.5 * math.erfc(-margin / (sigma * math.sqrt(2.0)))
-    return float(margin >= -CLOSE)
+    def verdict(self, margin, shift=0.0, hangs=False):
+        """Return the verdict of a margin [m]; ``shift`` [rad] and ``hangs`` as in Verdict."""
+        return Verdict(self.share(margin), float(margin), float(shift), hangs)
 
+    def turning(self, turned, margin):
+        """Return the verdict of a device that turns shares of it into others: (place, share) each."""
+        here = next((k for k, other in enumerate(self.every) if other is self.one), None)
+        if here is None:
+            raise ValueError(f"{self.one.name} is not one of the orientations")
+        stays = 1.0 - sum(part for _, part in turned)
+        return Verdict(1.0, float(margin), onto=(((here, stays),) if stays > 0.0 else ()) + tuple(turned))
 
-def _height(device, one, every):
-    return _unless_laid_over(device.limit - one.height, one, device.limit), 0.0
+    def share(self, margin):
+        """Return the share that passes at a margin [m]."""
+        return share(margin, self.sigma)
 
+    def over_span(self, span):
+        """Return its margin [m] on a track without what lies between two distances off the wall."""
+        radius, (first, last) = self.one.track.radius, span
+        high = radius - first if first > 0.0 else 2.0 * radius
+        return feet.over_ring(self.one.standing, max(radius - last, 0.0), high)
 
-def _unless_laid_over(margin, one, low):
-    """Margin of what a blade with its edge at a height holds up: none where it may lay the part over."""
-    if margin < 0.0 < one.grip and may_lay_over(one, low):
-        return max(margin, -UNSURE)
-    return margin
+    def over_slot(self, span):
+        """Return the same, unless it may ride over the hole on its sides: it is then not sure."""
+        margin = self.over_span(span)
+        return max(margin, -UNSURE) if self.rides(span[1] - span[0], np.inf) else margin
 
+    def over_hole(self, hole):
+        """Return its least margin [m] over a Hole's passage, and the shift [rad] where it is."""
+        return feet.least(self.one.standing, hole)
 
-def _width(device, one, every):
-    return device.limit - one.width, 0.0
+    def unheld(self, hole):
+        """Return the longest way [m] over which a Hole leaves it without support."""
+        return feet.unheld(self.one.standing, hole)
 
+    def leans(self, width):
+        """Return by how much [m] a strip along the wall may be wider than it passes, as it leans there."""
+        return leans(self.one, width)
 
-def _balcony(device, one, every):
-    needed = one.balcony
-    return (device.limit - needed if math.isfinite(needed) else -one.standing.reach), 0.0
+    def rides(self, width, length):
+        """Return whether it rides on its round sides over a hole of a width and a length [m]."""
+        return rides(self.one, width, length)
 
+    def widest(self, corners):
+        """Return the greatest width [m] across the track of a hole with some corners (K, 2) [m]."""
+        return widest(corners)
 
-def _canyon(device, one, every):
-    margin = one.canyon - device.limit
-    return carried(margin, -margin, leans(one, device.limit) if margin < 0.0 else 0.0), 0.0
+    def unless_laid_over(self, margin, low):
+        """Return the margin [m] of what a blade from a height on holds up: none where it may lay it over."""
+        if margin < 0.0 < self.one.grip and may_lay_over(self.one, low):
+            return max(margin, -UNSURE)
+        return margin
 
+    def through(self, opening):
+        """Return its margin [m] in an opening: ``gate_margin``."""
+        return gate_margin(opening, self.one)
 
-def _gap(device, one, every):
-    return carried(one.gap - device.limit, device.limit - one.gap, one.carry_ahead), 0.0
+    def held_by_head(self, width):
+        """Return by how much [m] a slot of some width lets its shank down and holds its head."""
+        return hanging_margin(self.one, width)
 
+    def wedges(self, span):
+        """Return whether its head, which comes first, may stick between rails as a wedge."""
+        return self.one.grip > 0.0 and head_first(self.one) and may_wedge(self.one, span)
 
-def _slot(device, one, every):
-    first, last = device.span
-    radius = one.track.radius
-    high = radius - first if first > 0.0 else 2.0 * radius
-    margin = feet.over_ring(one.standing, max(radius - last, 0.0), high)
-    return (max(margin, -UNSURE) if rides(one, last - first, np.inf) else margin), 0.0
+    def pitched(self):
+        """Return how it turns over its leading edge: a Turn."""
+        return turning.pitched(self.one, self.every)
 
+    def pitched_over(self, height):
+        """Return what a step of some height [m] turns it into, and the margin [m]."""
+        return turning.over_step(self.one, self.every, height)
 
-def _rails(device, one, every):
-    if isinstance(one, Hanging):
-        return one.over(device.span), 0.0
-    over, _ = _slot(device, one, every)
-    held = hanging_margin(one, device.span[1] - device.span[0]) if over < 0.0 else -np.inf
-    if held > 0.0 and one.grip > 0.0 and head_first(one) and may_wedge(one, device.span):
-        return 0.0, 0.0
-    return (min(held, -over) if held > 0.0 else over), 0.0
-
-
-def _cut_out(device, one, every):
-    hole = feet.polygon(np.array(device.corners), one.track.radius)
-    margin, shift = feet.least(one.standing, hole)
-    if margin < 0.0 < one.carry:
-        margin = carried(margin, feet.unheld(one.standing, hole), one.carry)
-        length = float(np.ptp(np.array(device.corners)[:, 0]))
-        margin = max(margin, -UNSURE) if rides(one, widest(device.corners), length) else margin
-    return margin, shift
-
-
-def carried(margin, way, carry):
-    """Return the margin [m] of an orientation that travels, from that of one that is placed.
-
-    Parameters
-    ----------
-    margin : float [m]
-    way : float [m]
-        Over which it is not supported.
-    carry : float [m]
-        What it travels on before it has tipped is taken from that; within it the verdict has no margin.
-    """
-    return margin if margin >= 0.0 else min(max(margin, carry - way), -UNSURE)
-
-
-def _profile(device, one, every):
-    if device.like:
-        opening = seen(_named(device, every)).buffer(device.like[2])
-    else:
-        opening = shapely.Polygon(device.corners)
-    return gate_margin(opening, one), 0.0
+    def rolled_over(self, width):
+        """Return what a ledge of some width [m] turns it into if its weight lies beyond, and the margin."""
+        return turning.beyond_ledge(self.one, self.every, width)
 
 
 def gate_margin(opening, one):
@@ -199,7 +137,7 @@ def gate_margin(opening, one):
     if margin >= 0.0 or one.grip <= 0.0:
         return margin
     worn = opening.buffer(min(WORN, -0.5 * margin))
-    return _unless_laid_over(margin, one, _beside(worn, one).bounds[1])
+    return Meeting(one).unless_laid_over(margin, _beside(worn, one).bounds[1])
 
 
 def opening_margin(opening, one):
@@ -212,7 +150,7 @@ def opening_margin(opening, one):
     one : Orientation
         What of it is beyond the track's free edge meets no gate.
     """
-    shown = seen(one).intersection(shapely.box(-FAR, -FAR, one.track.width, FAR))
+    shown = one.seen.intersection(shapely.box(-FAR, -FAR, one.track.width, FAR))
     inside = shown.distance(_solid(opening, one.track.width))
     if inside > 0.0:
         return inside
@@ -228,41 +166,4 @@ def _solid(opening, width):
 
 def _beside(opening, one):
     """What is seen of an orientation beside an opening."""
-    return seen(one).intersection(_solid(opening, one.track.width))
-
-
-def seen(one):
-    """Return the silhouette of an orientation as a shapely geometry."""
-    return shapely.union_all([shapely.Polygon(ring) for ring in one.silhouette])
-
-
-def _named(device, every):
-    """The orientation a profile names: of its aspect the one nearest in heading."""
-    aspect, heading, _ = device.like
-    known = [one for one in every if one.aspect.casefold() == aspect.casefold()]
-    apart = [abs(math.remainder(one.heading - heading, 2.0 * math.pi)) for one in known]
-    if not known or min(apart) > math.radians(1.0):
-        names = ", ".join(one.name for one in every)
-        what = f"profile names orientation {aspect}@{math.degrees(heading):.4g}, which the part does not have"
-        raise ConfigError(device.where, what, f"known are {names}")
-    return known[apart.index(min(apart))]
-
-
-JUDGES = {
-    "wiper": Judge(_height, "side", False),
-    "height_bar": Judge(_height, "side", False),
-    "hold_down": Judge(_height, "side", False),
-    "pressure_break": Judge(_width, "above", False),
-    "narrowed_track": Judge(_balcony, "above", True),
-    "canyon": Judge(_canyon, "above", True),
-    "gap": Judge(_gap, "above", True),
-    "slot": Judge(_slot, "above", True),
-    "rails": Judge(_rails, "above", True),
-    "cut_out": Judge(_cut_out, "above", True),
-    "profile": Judge(_profile, "ahead", False),
-    "step": Judge(None, "turned", False),
-    "tip": Judge(None, "turned", False),
-    "yield": Judge(None, "", False),
-}
-if set(JUDGES) != set(KINDS):
-    raise ImportError(f"devices without a verdict, or verdicts without a device: {set(JUDGES) ^ set(KINDS)}")
+    return one.seen.intersection(_solid(opening, one.track.width))

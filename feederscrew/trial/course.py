@@ -176,7 +176,7 @@ def rightly(leaving):
 def _chain(bowl, every, devices):
     """The bare track, then each device that is no measured yield."""
     size = max(one.length for one in every)
-    made = [stations.station(device, bowl.track, every) for device in devices if device.kind != "yield"]
+    made = [stations.station(device, bowl.track, every) for device in devices if device.placed]
     return [stations.plain(bowl.track, every, RUN_UP * size), *made]
 
 

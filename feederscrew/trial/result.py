@@ -162,7 +162,7 @@ class TrialRun:
         passes may rock where a device leaves little of its foot.
         """
         lying, found = self.known.lying, self.known.sure.copy()
-        breaks = [device.limit for device in self.bowl.devices if device.kind == "pressure_break"]
+        breaks = [device.limit for device in self.bowl.devices if device.queued]
         found &= ~np.array([any(one.balcony <= limit < one.width for limit in breaks) for one in lying], bool)
         rows = np.flatnonzero(found & self.predicted)
         found[rows] = steady(self.bowl.devices, [lying[k] for k in rows], self.bowl, CLEAR)

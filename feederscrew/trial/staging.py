@@ -18,7 +18,6 @@ SPARE = 0.1  # of the part's size: how far before a device parts begin, and behi
 BEFORE, AFTER = 1.2, 0.8  # of the part's size: track before where parts begin and behind where they end
 FAR = 10.0  # [m] beyond any opening
 THICK = 4e-3  # [m] of the track: deeper down its sides hold nothing
-WIDEST = 0.95  # of the radius: a wider track is not drawn whole
 OWN = np.nan  # friction of a plate that has that of the track
 
 
@@ -26,7 +25,7 @@ OWN = np.nan  # friction of a plate that has that of the track
 class Stage:
     """One device, or a stretch of the bare track, as solid geometry in the bowl's frame."""
 
-    device: object  # bowl.devices.Device
+    device: object  # tooling.devices.base.Device
     plates: np.ndarray  # (P, 17) [m], [1] as `trial.kernel.search` names the columns
     borders: np.ndarray  # (B, 10) [m], [1]
     begin: float  # [m] along the wall, where the part's centre of mass starts
@@ -40,11 +39,6 @@ class Stage:
 def size_of(every):
     """Return the greatest length [m] of orientations, in the plane of the track or across it."""
     return max(np.hypot(one.length, max(one.width, one.height)) for one in every)
-
-
-def width_of(track):
-    """Return the width [m] of a track as it is drawn."""
-    return min(track.width, WIDEST * track.radius)
 
 
 def stage(device, standing, track, every, start=0.0):
@@ -115,7 +109,7 @@ def built(placed, track, size, ends):
 
 def _floor(holes, track, size, ends, own, level, depth=THICK):
     """A level surface: a sector about the bowl's axis between two places, without the holes."""
-    behind, width = BEHIND * size, width_of(track)
+    behind, width = BEHIND * size, track.extent
     length = own[1] - own[0]
     coarse = np.linspace(*own, max(int(length / behind), 2) + 1)  # nothing comes there
     fine = np.linspace(*own, int(length / np.sqrt(8.0 * track.radius * CHORD)) + 2)[::-1]

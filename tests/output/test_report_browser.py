@@ -15,7 +15,6 @@ import shapes
 from PIL import Image
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.devices import Device
 from feederscrew.output import tables
 from feederscrew.output.aspects import tables as aspects_tables
 from feederscrew.output.page.as_html import html
@@ -29,6 +28,7 @@ from feederscrew.part import load
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.report import report
 from feederscrew.studies.trial import trial
+from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.orientations import orientations
 
 BRACKET = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
@@ -174,7 +174,7 @@ def test_it_prints_on_a4(visit, text, tmp_path):
 
 def test_the_part_turns_over_the_cut(visit, case):
     every = orientations(case.part, case.resting.aspects, case.bowl.track)
-    shown = relief.poses([Device("gap", "test", limit=9e-3)], every, [0.1] * len(every), 0)
+    shown = relief.poses([made("gap", "test", limit=9e-3)], every, [0.1] * len(every), 0)
     views = Views(
         over_cuts(case.part, [met for met, _ in shown], every),
         tuple((met.orientation.name, told, ()) for met, told in shown), "cuts", "Orientation",

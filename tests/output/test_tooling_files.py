@@ -16,14 +16,24 @@ import trimesh
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
 from feederscrew.errors import FeederError
-from feederscrew.output.tooling import bowl_file, drawing, figures, files, relief, sheet, step, stl
+from feederscrew.output.tooling import (
+    bowl_file,
+    drawing,
+    figures,
+    files,
+    ink,
+    relief,
+    written_step,
+    written_stl,
+)
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling import passages, solid
+from feederscrew.tooling import solid, tightest
+from feederscrew.tooling.devices.base import UNSURE, Verdict
 from feederscrew.tooling.orientations import orientations
 from feederscrew.tooling.strip import bent, strip
-from feederscrew.tooling.verdicts import JUDGES, UNSURE, Verdict, verdict
+from feederscrew.tooling.verdicts import verdict
 
 PART = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
 BOWL = """\
@@ -70,7 +80,7 @@ def test_the_drawing_opens_in_millimetres_with_closed_polylines(drawn):
 
 
 def test_the_drawing_is_the_same_bytes_in_another_process(tmp_path):
-    code = "from feederscrew.bowl.dxf import Layer, written; import sys; sys.stdout.buffer.write(" \
+    code = "from feederscrew.dxf import Layer, written; import sys; sys.stdout.buffer.write(" \
         "written([Layer('CUT', 1, rings=[[(0, 0), (1, 0), (0, 1)]], texts=(('a', (0, 0)),))]))"  # fmt: skip
     seeds = [{**os.environ, "PYTHONHASHSEED": seed} for seed in "12"]
     one, two = (subprocess.run([sys.executable, "-c", code], capture_output=True, env=env) for env in seeds)
@@ -86,16 +96,16 @@ def test_each_cut_read_back_from_the_drawing_gives_the_verdicts_again(lying, dra
     read = bowls.read(tmp_path / "back.yaml").devices
     assert len(cuts) == len(read) == CUTS
     for cut, hole in zip(cuts, read):
-        if JUDGES[cut.kind].cut:
+        if not cut.queued:
             told = [verdict(cut, one, lying[1]).passes for one in lying[1]]
             assert told == [verdict(hole, one).passes for one in lying[1]], cut.kind
 
 
 def test_the_section_to_print_is_one_closed_body(drawn):
-    mesh = trimesh.load(io.BytesIO(stl.stl(drawn)), file_type="stl")
+    mesh = trimesh.load(io.BytesIO(written_stl.stl(drawn)), file_type="stl")
     assert mesh.is_watertight
     assert mesh.body_count == 1
-    assert stl.stl(drawn) == stl.stl(drawn)
+    assert written_stl.stl(drawn) == written_stl.stl(drawn)
     vertices, faces = solid.solid(drawn)
     assert len(faces) == len(mesh.faces) and vertices[faces].min() == pytest.approx(
         1e-3 * mesh.bounds[0].min()
@@ -116,7 +126,7 @@ def test_the_hull_drawn_at_the_worst_place_is_that_of_the_verdict(lying):
     bowl, every = lying
     cut = next(device for device in bowl.devices if device.kind == "cut_out")
     for one in every:
-        found = passages.passage(cut, one, every)
+        found = tightest.passage(cut, one, every)
         hull, weight = shapely.MultiPoint(found.supported).convex_hull, shapely.Point(found.weight)
         away = hull.boundary.distance(weight) if hull.contains(weight) else -hull.distance(weight)
         assert away == pytest.approx(found.verdict.margin, abs=2e-5), one.name
@@ -164,7 +174,7 @@ def test_texts_of_the_pictures_do_not_meet(lying, isolated):
 def test_a_part_that_a_gate_stops_is_drawn_in_front_of_it(lying):
     bowl, every = lying
     gates = [device for device in bowl.devices if device.kind in ("wiper", "profile")]
-    met = [passages.passage(device, one, every) for device in gates for one in every]
+    met = [tightest.passage(device, one, every) for device in gates for one in every]
     stopped = [one for one in met if one.verdict.passes <= 0.0]
     assert {met.device.kind for met in stopped} == {"wiper", "profile"}
     for met in stopped:
@@ -177,8 +187,8 @@ def test_a_part_that_a_gate_stops_is_drawn_in_front_of_it(lying):
 def test_step_where_opencascade_is(lying):
     reading = pytest.importorskip("OCP.STEPControl")
     short = strip(lying[0].track, lying[0].devices[1:3], lying[1])
-    made = step.step(short)
-    assert made == step.step(short)
+    made = written_step.step(short)
+    assert made == written_step.step(short)
     assert made.startswith(b"ISO-10303-21;") and b"track section" in made
     assert reading is not None
 
@@ -186,10 +196,10 @@ def test_step_where_opencascade_is(lying):
 def test_step_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "OCP.STEPControl", None)
     with pytest.raises(FeederError, match=r"^step: needs OpenCASCADE, which is not installed - pip"):
-        step.check()
+        written_step.check()
 
 
 def test_a_margin_that_is_none_is_not_printed_as_a_number():
-    assert sheet.margin(Verdict(1.0, 1.234e-3)) == "margin +1.23 mm"
-    assert sheet.margin(Verdict(0.0, -2e-3)) == "margin -2.00 mm"
-    assert sheet.margin(Verdict(0.0, -UNSURE)) == "not sure"
+    assert ink.margin(Verdict(1.0, 1.234e-3)) == "margin +1.23 mm"
+    assert ink.margin(Verdict(0.0, -2e-3)) == "margin -2.00 mm"
+    assert ink.margin(Verdict(0.0, -UNSURE)) == "not sure"

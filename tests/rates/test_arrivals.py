@@ -56,7 +56,7 @@ def test_orientations_that_were_counted_stand_as_they_are(part, plain, tmp_path)
     row = [one.name for one in found.lying].index(a.name)
     assert found.interval[row, 0] < 0.75 < found.interval[row, 1]
     nowhere = counts(tmp_path, f"orientation,track\nA@47,30\n{b.name},10\nC@0,0\n")
-    with pytest.raises(FeederError, match=r"counts A@47, which the part does not have on this track - known"):
+    with pytest.raises(FeederError, match=r"counts orientation A@47, which the part does not have - known"):
         study.rate(part, plain, known=study.shares(part, plain, probabilities=nowhere))
 
 

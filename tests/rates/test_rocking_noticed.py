@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 import shapes
 
-from feederscrew.bowl.devices import Device
 from feederscrew.rates import rocking, steadiness, stream, tipping
 from feederscrew.rates.rocking import INSTANTS, Rocker, goes_over
 from feederscrew.resting.aspects import find
+from feederscrew.tooling.devices.kinds import made
 
 GRAVITY = 9.81
 
@@ -71,7 +71,7 @@ def followed(monkeypatch, one, bowl, limit):
     """What is asked of rocking for a part over a gap, answered by never: (Rocker, start) in their order."""
     asked = []
     monkeypatch.setattr(steadiness, "goes_over", lambda *args: asked.append(args) or False)
-    steadiness.steady([Device("gap", "test", limit=limit)], [one], bowl, 2.5e-4)
+    steadiness.steady([made("gap", "test", limit=limit)], [one], bowl, 2.5e-4)
     return asked
 
 

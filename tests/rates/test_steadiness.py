@@ -7,11 +7,11 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.devices import Device
 from feederscrew.mechanics.track.frame import seat
 from feederscrew.rates.rocking import over_period
 from feederscrew.rates.steadiness import steady
 from feederscrew.resting.aspects import find
+from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.orientations import orientations
 
 BOWL = bowls.read(None, ["track.radius=100 m"])
@@ -26,7 +26,7 @@ def upright():
 
 
 def is_steady(one, kind, limit, bowl=BOWL, margin=CLEAR):
-    (found,) = steady([Device(kind, "test", limit=limit)], [one], bowl, margin)
+    (found,) = steady([made(kind, "test", limit=limit)], [one], bowl, margin)
     return found
 
 
@@ -48,7 +48,7 @@ def test_over_a_gap_a_part_rocks_over_where_little_carries_it(upright):
 def test_a_hole_across_the_track_is_judged_as_the_gap_it_is(upright):
     for limit in (upright.gap - 0.05e-3, upright.gap - 2e-3):
         corners = ((0.0, 0.0), (limit, 0.0), (limit, 0.1), (0.0, 0.1))
-        (hole,) = steady([Device("cut_out", "test", corners=corners)], [upright], BOWL, CLEAR)
+        (hole,) = steady([made("cut_out", "test", corners=corners)], [upright], BOWL, CLEAR)
         assert hole == is_steady(upright, "gap", limit)
 
 
@@ -64,7 +64,7 @@ def test_beside_an_edge_along_the_track_the_force_stays_within_what_is_left(upri
 
 def test_nothing_is_said_behind_rails_of_what_rolls_or_of_a_drive_that_is_not_followed(upright):
     limit = upright.gap - 0.01e-3
-    rails, gap = Device("rails", "test", span=(0.1, 0.11)), Device("gap", "test", limit=limit)
+    rails, gap = made("rails", "test", span=(0.1, 0.11)), made("gap", "test", limit=limit)
     assert steady([rails, gap], [upright], BOWL, CLEAR).all()
     assert not steady([gap, rails], [upright], BOWL, CLEAR).any()
     assert is_steady(replace(upright, kind="rolling"), "gap", limit)

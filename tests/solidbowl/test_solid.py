@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from feederscrew.bowl.devices import Device
 from feederscrew.bowl.record import Track
 from feederscrew.bowl.schema import BY_NAME
 from feederscrew.bowl.settings import effective, record
@@ -20,20 +19,21 @@ from feederscrew.solidbowl.materials import material
 from feederscrew.solidbowl.measuring import heights, measures, track_width
 from feederscrew.solidbowl.plan import Asked, plan
 from feederscrew.solidbowl.ways_down import check_ways_down
+from feederscrew.tooling.devices.kinds import made
 
 RULES = record(effective({})).sizing
 TRACK = Track(climb=np.radians(3.5), bank=0.0, radius=0.15, width=0.02)
 NEAR = 5e-5  # [m]
-RAILS = Device("rails", "b", span=(3e-3, 7e-3))
+RAILS = made("rails", "b", span=(3e-3, 7e-3))
 CHAINS = {
     "none": (),
-    "narrowed and rails": (Device("narrowed_track", "b", limit=9e-3, text="9 mm"), RAILS),
-    "gap": (Device("gap", "b", limit=9e-3),),
-    "canyon, slot": (Device("canyon", "b", limit=6e-3), Device("slot", "b", span=(8e-3, 12e-3))),
-    "cut out": (Device("cut_out", "b", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 8e-3))),),
-    "blades": (Device("wiper", "b", limit=6e-3), Device("hold_down", "b", limit=8e-3)),
-    "gate": (Device("profile", "b", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 5e-3), (0.0, 7e-3))),),
-    "step": (Device("step", "b", limit=4e-3), Device("gap", "b", limit=5e-3)),
+    "narrowed and rails": (made("narrowed_track", "b", limit=9e-3, text="9 mm"), RAILS),
+    "gap": (made("gap", "b", limit=9e-3),),
+    "canyon, slot": (made("canyon", "b", limit=6e-3), made("slot", "b", span=(8e-3, 12e-3))),
+    "cut out": (made("cut_out", "b", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 8e-3))),),
+    "blades": (made("wiper", "b", limit=6e-3), made("hold_down", "b", limit=8e-3)),
+    "gate": (made("profile", "b", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 5e-3), (0.0, 7e-3))),),
+    "step": (made("step", "b", limit=4e-3), made("gap", "b", limit=5e-3)),
 }
 
 
@@ -134,7 +134,7 @@ def test_the_outlet_lies_where_it_is_asked():
 
 
 def test_blades_leave_the_clearance_free():
-    made = planned((Device("wiper", "b", limit=6e-3),))
+    made = planned((made("wiper", "b", limit=6e-3),))
     whole, blade = facets.unplaced(body(made)), made.stretch.blades[0]
     s = made.first + blade.start + 0.5 * blade.thickness
     at = made.way.places(s, 5e-3)

@@ -5,7 +5,6 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.devices import Device
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
 from feederscrew.output.tooling import bowl_file
@@ -14,8 +13,9 @@ from feederscrew.rates.steadiness import steady
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling import apart, cutting
+from feederscrew.tooling import apart, hole_search
 from feederscrew.tooling.design import design, place
+from feederscrew.tooling.devices.kinds import made as device_of
 from feederscrew.tooling.orientations import named, orientations
 from feederscrew.tooling.verdicts import verdict
 
@@ -33,7 +33,7 @@ def bracket():
 
 
 def test_a_block_is_isolated_by_devices_of_one_number(monkeypatch):
-    monkeypatch.setattr(cutting, "STARTS", 20)
+    monkeypatch.setattr(hole_search, "STARTS", 20)
     study = tooling(shapes.part(shapes.box(20, 12, 5)), bowls.read(None, SETTINGS), seconds=20.0)
     told = [one.reasons[0] for one in study.designs if not one.isolated]
     assert len(told) == 3  # what stands tall on a small foot goes wherever the block lying flat goes
@@ -52,7 +52,7 @@ def test_a_cut_leaves_as_much_of_a_foot_as_keeps_it_from_rocking(heading, is_ste
     bowl = bowls.read(None, [])
     study = tooling(shapes.part(shapes.box(22, 13, 6)), bowl, "C", heading=heading, verdicts=1)
     found, one = study.design, study.orientations[study.wanted]
-    asked = {"margin": study.margin, "search": cutting.Search(verdicts=1)}
+    asked = {"margin": study.margin, "search": hole_search.Search(verdicts=1)}
     midway = design(study.orientations, study.shares, study.wanted, **asked)
     assert not steady(midway.devices, [one], bowl, study.margin)[0]
     assert found.steady == is_steady == steady(found.devices, [one], bowl, study.margin)[0]
@@ -81,7 +81,7 @@ def test_a_hole_parts_mirror_images(bracket):
     _, _, every, _ = bracket
     wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
     partner = next(k for k, one in enumerate(every) if one.name == every[wanted].mirror)
-    found = cutting.cut_out(every, wanted, [partner], MARGIN, cutting.Search(seed=3))
+    found = hole_search.cut_out(every, wanted, [partner], MARGIN, hole_search.Search(seed=3))
     assert found is not None
     cut, held = found
     assert held == [partner]
@@ -89,7 +89,7 @@ def test_a_hole_parts_mirror_images(bracket):
     assert cut.margin_pass >= MARGIN and cut.margin_reject >= MARGIN
     assert verdict(cut.smallest, every[partner]).margin < 1e-6
     assert verdict(cut.largest, every[wanted]).margin > -1e-6
-    again, _ = cutting.cut_out(every, wanted, [partner], MARGIN, cutting.Search(seed=3))
+    again, _ = hole_search.cut_out(every, wanted, [partner], MARGIN, hole_search.Search(seed=3))
     assert again.device == cut.device
 
 
@@ -98,7 +98,7 @@ def test_a_hole_that_is_not_better_is_left_early(bracket, rng):
     _, _, every, _ = bracket
     wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
     others = [k for k in range(len(every)) if k != wanted][:6]
-    whole, short = (cutting._Judge(every, wanted, others, MARGIN, cutting.Search()) for _ in range(2))
+    whole, short = (hole_search._Judge(every, wanted, others, MARGIN, hole_search.Search()) for _ in range(2))
     holes = [whole._random(rng) for _ in range(60)]
     best = -np.inf
     for corners in (one for one in holes if one is not None):
@@ -113,14 +113,14 @@ def test_where_no_hole_is_found_that_of_the_mirror_images_is_mirrored(bracket, m
     _, _, every, _ = bracket
     wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
     partner = next(k for k, one in enumerate(every) if one.name == every[wanted].mirror)
-    search, direct = cutting.Search(seed=3), cutting._found
+    search, direct = hole_search.Search(seed=3), hole_search._found
 
     def found(every, k, *rest):
         return None if k == wanted else direct(every, k, *rest)
 
-    monkeypatch.setattr(cutting, "_found", found)
-    cut, held = cutting.cut_out(every, wanted, [partner], MARGIN, search)
-    image, _ = cutting.cut_out(every, partner, [wanted], MARGIN, search)
+    monkeypatch.setattr(hole_search, "_found", found)
+    cut, held = hole_search.cut_out(every, wanted, [partner], MARGIN, search)
+    image, _ = hole_search.cut_out(every, partner, [wanted], MARGIN, search)
     assert held == [partner]
     assert cut.margin_pass == pytest.approx(image.margin_pass, abs=2e-6)
     assert cut.margin_reject == pytest.approx(image.margin_reject, abs=2e-6)
@@ -203,7 +203,7 @@ def test_a_purity_that_is_enough_makes_a_shorter_chain(bracket):
 def test_the_design_is_found_behind_the_devices_of_the_bowl(bracket, tmp_path):
     part, _, every, shares = bracket
     wanted = int(np.argmax([one.canyon for one in every]))
-    before = (Device("wiper", "bowl.yaml:2:3", limit=0.019, text="19 mm"),)
+    before = (device_of("wiper", "bowl.yaml:2:3", limit=0.019, text="19 mm"),)
     found = design(every, shares, wanted, holes=False, before=before)
     assert not found.cuts and "does not come past" in found.reasons[0]
     low = max((k for k, one in enumerate(every) if one.height < 0.016), key=lambda k: shares[k])
@@ -226,11 +226,11 @@ def test_the_design_is_found_behind_the_devices_of_the_bowl(bracket, tmp_path):
 def test_the_search_ends_by_a_count_of_verdicts_and_says_when_by_time(bracket):
     _, _, every, shares = bracket
     wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
-    search = cutting.Search(verdicts=300)
+    search = hole_search.Search(verdicts=300)
     first, second = (design(every, shares, wanted, search=search) for _ in range(2))
     assert [cut.device for cut in first.cuts] == [cut.device for cut in second.cuts]
     assert not first.late
-    assert design(every, shares, wanted, search=cutting.Search(until=0.0)).late
+    assert design(every, shares, wanted, search=hole_search.Search(until=0.0)).late
 
 
 def test_an_inside_that_differs_is_told_from_a_chamfer():

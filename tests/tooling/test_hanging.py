@@ -7,13 +7,13 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.devices import Device
 from feederscrew.errors import FeederError
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.course import course
+from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.fates import course
 from feederscrew.tooling.hanging import Hanging
 from feederscrew.tooling.orientations import orientations
-from feederscrew.tooling.passages import until_returned
+from feederscrew.tooling.tightest import until_returned
 
 HEAD, SHANK, UNDER = 5e-3, 2e-3, 4e-3  # [m] radii, height of the head
 SLOT = 6e-3
@@ -30,7 +30,7 @@ def pin():
 
 def rails(every, width=SLOT):
     along = next(one for one in every if one.length > 0.02 and one.height < 0.012)
-    return Device("rails", "test", span=(along.distance - 0.5 * width, along.distance + 0.5 * width))
+    return made("rails", "test", span=(along.distance - 0.5 * width, along.distance + 0.5 * width))
 
 
 def test_what_hangs_by_one_head_is_one_orientation(pin):
@@ -52,10 +52,10 @@ def test_what_hangs_by_one_head_is_one_orientation(pin):
 @pytest.mark.parametrize(
     ("device", "margin"),
     [
-        (Device("hold_down", "test", limit=4.5e-3), 0.5e-3),
-        (Device("wiper", "test", limit=3.8e-3), -0.2e-3),
-        (Device("gap", "test", limit=3.5e-3), 0.5e-3),
-        (Device("gap", "test", limit=4.3e-3), -0.3e-3),
+        (made("hold_down", "test", limit=4.5e-3), 0.5e-3),
+        (made("wiper", "test", limit=3.8e-3), -0.2e-3),
+        (made("gap", "test", limit=3.5e-3), 0.5e-3),
+        (made("gap", "test", limit=4.3e-3), -0.3e-3),
     ],
 )
 def test_devices_behind_rails_judge_what_hangs(pin, device, margin):
@@ -71,14 +71,14 @@ def test_devices_behind_rails_judge_what_hangs(pin, device, margin):
 def test_rails_may_narrow_and_widen(pin):
     first, last = rails(pin).span
     for by, margin in ((0.5e-3, 0.5e-3), (-1.5e-3, 0.5e-3), (-2.5e-3, -0.5e-3), (1.2e-3, -0.2e-3)):
-        other = Device("rails", "test", span=(first + by, last - by))
+        other = made("rails", "test", span=(first + by, last - by))
         found = course([rails(pin), other], pin)
         assert found.verdicts[1][len(pin)].margin == pytest.approx(margin, abs=3e-5)
 
 
 def test_what_lies_over_the_slot_stands_beside_it_from_there_on(pin):
     across = next(k for k, one in enumerate(pin) if one.height > 0.023)
-    wide, gap = rails(pin, 8e-3), Device("gap", "test", limit=4e-3)
+    wide, gap = rails(pin, 8e-3), made("gap", "test", limit=4e-3)
     assert course([gap], pin).leaving[across].sum() == 1.0  # half of 10 mm
     assert course([wide], pin).leaving[across].sum() == 1.0
     assert course([wide, gap], pin).leaving[across].sum() == 0.0  # 3 mm of the disc beside the slot
@@ -106,7 +106,7 @@ def test_a_conical_head_rests_on_its_cone():
     every = orientations(part, find(part), track)
     row = next(k for k, one in enumerate(every) if one.length > 0.015)
     span = every[row].distance - 3e-3, every[row].distance + 3e-3
-    hung = course([Device("rails", "test", span=span)], every).states[-1]
+    hung = course([made("rails", "test", span=span)], every).states[-1]
     assert hung.name == "hanging"
     assert hung.height == pytest.approx(2.5e-3, abs=1e-4)  # the cone is 6 mm wide 2.5 mm below its top
     assert len(hung.foot.rings) == 2

@@ -10,9 +10,9 @@ import trimesh
 from feederscrew.bowl.record import Track
 from feederscrew.geometry.polygons import turned
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.contact import silhouette
 from feederscrew.tooling.hanging import neck
 from feederscrew.tooling.orientations import named, orientations
+from feederscrew.tooling.touching import silhouette
 
 STRAIGHT = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
 CURVED = replace(STRAIGHT, radius=0.15)

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from feederscrew.geometry.polygons import convex
 from feederscrew.tooling import foot as feet
+from feederscrew.tooling.devices import hole_shapes
 from feederscrew.tooling.foot import Footprint
 
 STRAIGHT, CURVED = 100.0, 0.15  # [m]
@@ -61,7 +62,7 @@ def test_margins_against_a_scan(radius, pieces, near, rng):
         foot, corners = random_foot(rng), random_hole(rng)
         ring = foot.rings[0]
         distance = 5e-4 - ring[:, 1].min()
-        least, shift = feet.least(feet.standing(foot, distance, radius), feet.polygon(corners, radius))
+        least, shift = feet.least(feet.standing(foot, distance, radius), hole_shapes.polygon(corners, radius))
         span = (np.ptp(corners[:, 0]) + 0.03) / radius
         about = np.array([-20.0, -5.0, -1.0, 0.0, 1.0, 5.0, 20.0]) * near / radius  # chords shift the events
         there = [margin_at(ring, corners, distance, radius, shift + e, pieces) for e in about]
@@ -75,7 +76,7 @@ def test_margins_against_a_scan(radius, pieces, near, rng):
 def test_a_margin_between_two_values_is_told_to_the_last_digit(rng):
     """Beyond them it is only told on which side: a search for holes asks no more."""
     for _ in range(100):
-        ring, hole = random_foot(rng).rings[0], feet.polygon(random_hole(rng), CURVED)
+        ring, hole = random_foot(rng).rings[0], hole_shapes.polygon(random_hole(rng), CURVED)
         foot = feet.standing(footprint(ring), 5e-4 - ring[:, 1].min(), CURVED)
         least, way = feet.least(foot, hole)[0], feet.unheld(foot, hole)
         low, high = least + np.sort(rng.uniform(-1e-3, 1e-3, 2))
@@ -108,13 +109,13 @@ def test_two_legs_bear_a_gap_of_one_leg():
     legs = footprint(rectangle(0.003, 0.008, -0.0085), rectangle(0.003, 0.008, 0.0085))
     foot = feet.standing(legs, 0.004, 1e4)
     assert feet.longest_gap(foot, 1e4) == pytest.approx(0.003, rel=1e-4)
-    assert feet.least(foot, feet.gap(0.0031, 1e4, 0.02))[0] == pytest.approx(-0.007, rel=1e-3)
+    assert feet.least(foot, hole_shapes.gap(0.0031, 1e4, 0.02))[0] == pytest.approx(-0.007, rel=1e-3)
 
 
 def test_a_canyon_as_a_long_polygon():
     foot = feet.standing(footprint(rectangle(0.02, 0.012)), 0.0063, CURVED)
     for width in (0.004, 0.006, 0.007):
-        hole = feet.polygon(np.array([[0.0, 0.0], [0.2, 0.0], [0.2, width], [0.0, width]]), CURVED)
+        hole = hole_shapes.polygon(np.array([[0.0, 0.0], [0.2, 0.0], [0.2, width], [0.0, width]]), CURVED)
         ring = feet.over_ring(foot, CURVED - width, 1.0)
         assert feet.least(foot, hole)[0] <= ring + 1e-12
         assert ring == pytest.approx(0.0063 - width, abs=2e-6)
@@ -171,4 +172,6 @@ def test_a_hole_that_is_even_fore_and_aft_parts_no_mirror_images(seed):
 
 
 def _least(ring, corners, distance, radius):
-    return feet.least(feet.standing(footprint(ring), distance, radius), feet.polygon(corners, radius))[0]
+    return feet.least(feet.standing(footprint(ring), distance, radius), hole_shapes.polygon(corners, radius))[
+        0
+    ]

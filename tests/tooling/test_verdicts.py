@@ -8,13 +8,15 @@ import shapes
 from scipy.special import ndtr
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.devices import KINDS
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
 from feederscrew.resting.aspects import find
 from feederscrew.tooling import foot as feet
+from feederscrew.tooling.devices import hole_shapes
+from feederscrew.tooling.devices.base import share
+from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.orientations import orientations
-from feederscrew.tooling.verdicts import JUDGES, share, verdict
+from feederscrew.tooling.verdicts import verdict
 
 TRACK = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
 
@@ -95,7 +97,6 @@ def test_a_share_passes_by_margin_over_deviation(block, device):
 
 
 def test_every_kind_has_a_verdict_and_an_example_that_reads(tmp_path):
-    assert set(JUDGES) == set(KINDS)
     lines = "".join(f"  - {kind}: {one.example}\n" for kind, one in KINDS.items())
     path = tmp_path / "bowl.yaml"
     path.write_text("devices:\n" + lines)
@@ -167,7 +168,7 @@ def test_what_travels_is_carried_over_what_it_is_unsupported_for(block, device):
     over = verdict(device("gap: 11 mm"), one)  # sooner over it than it has tipped
     assert over.passes == 0.0 and -1e-8 < over.margin < 0.0
     assert verdict(device("gap: 14 mm"), one).margin == pytest.approx(-2e-3, rel=1e-3)
-    hole = feet.gap(14e-3, TRACK.radius, 0.02)
+    hole = hole_shapes.gap(14e-3, TRACK.radius, 0.02)
     assert feet.unheld(one.standing, hole) == pytest.approx(4e-3, rel=1e-3)
     cut = device("cut_out: [[0 mm, 0 mm], [14 mm, 0 mm], [14 mm, 15 mm], [0 mm, 15 mm]]")
     assert verdict(cut, one).margin == pytest.approx(-2e-3, rel=2e-2)

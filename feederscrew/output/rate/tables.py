@@ -3,7 +3,6 @@
 import numpy as np
 
 from feederscrew import units
-from feederscrew.bowl.devices import KINDS
 from feederscrew.output import columns, tables
 from feederscrew.rates.tipping import remark
 
@@ -35,7 +34,7 @@ def document(study):
         "passes_devices": found.through,
         "fill": found.fill,
         "well_oriented_of_leaving": found.purity,
-        "quasi_static": [device.kind for device in study.devices if KINDS[device.kind].turns],
+        "quasi_static": [device.kind for device in study.devices if device.turns],
         "orientations": orientations(known, rule),
     }
 
@@ -139,7 +138,7 @@ def _rolling(found):
 
 def _turned(devices):
     """What is not certain of the devices."""
-    kinds = [device.kind for device in devices if KINDS[device.kind].turns]
+    kinds = [device.kind for device in devices if device.turns]
     return [f"{', '.join(kinds)}: quasi-static, until a trial confirms it"] if kinds else []
 
 

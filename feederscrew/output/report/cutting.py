@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-from feederscrew.bowl.devices import KINDS
 from feederscrew.output import tables as tables_of
 from feederscrew.output.page.blocks import Notes, Picture, Section, Table, Text, Views
 from feederscrew.output.report.scene import over_cuts
@@ -55,7 +54,7 @@ def trial(case):
 
 def _turning(study):
     """What is not certain of the devices."""
-    kinds = [device.kind for device in study.devices if KINDS[device.kind].turns]
+    kinds = [device.kind for device in study.devices if device.turns]
     if kinds:
         yield Text(
             f"Where parts land that {' and '.join(dict.fromkeys(kinds))} turn over is quasi-static, until a "

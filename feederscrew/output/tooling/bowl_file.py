@@ -1,6 +1,6 @@
 """A bowl file with the devices of a design, which every command reads back."""
 
-from feederscrew.bowl.devices import KINDS, SECTION
+from feederscrew.bowl.devices import SECTION
 from feederscrew.tooling.chain import millimetres
 
 
@@ -38,7 +38,7 @@ def _value(device):
 
 def _mark(cut):
     """What is not certain of a device."""
-    return "  # quasi-static, until a trial confirms it" if KINDS[cut.device.kind].turns else ""
+    return "  # quasi-static, until a trial confirms it" if cut.device.turns else ""
 
 
 def _head(study):

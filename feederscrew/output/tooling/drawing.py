@@ -4,8 +4,8 @@ import html
 
 import numpy as np
 
-from feederscrew.bowl import dxf as files
-from feederscrew.bowl.dxf import Layer
+from feederscrew import dxf as files
+from feederscrew.dxf import Layer
 from feederscrew.units import factor
 
 MM = factor("mm", "length")
@@ -124,10 +124,9 @@ def _plan(strip):
         "TRACK": [_rectangle(0.0, 0.0, length, width)],
         "WALL": [_rectangle(0.0, -WALL, length, -NARROW)],
     }
-    turning = [station for station in strip.stations if station.edge is not None]
-    for kind, layer in (("step", "STEP"), ("tip", "LEDGE")):
-        edges = [station.edge for station in turning if station.device.kind == kind]
-        found |= {layer: edges} if edges else {}
+    for station in strip.stations:
+        if station.edge is not None:
+            found.setdefault(station.device.layer, []).append(station.edge)
     cuts = [one.hole for one in strip.stations if one.hole is not None and one.edge is None]
     found |= {_numbered("CUT", place): [ring] for place, ring in enumerate(cuts)}
     blades = [station.blade for station in strip.stations if station.blade is not None]

@@ -8,10 +8,9 @@ from matplotlib.patches import Polygon
 from shapely import affinity
 
 from feederscrew.output import style
-from feederscrew.output.tooling import sheet, tables
-from feederscrew.tooling import passages
-from feederscrew.tooling.result import LEAST_SHARE  # orientations that come less often have no row
-from feederscrew.tooling.verdicts import seen
+from feederscrew.output.tooling import ink, tables
+from feederscrew.tooling import tightest
+from feederscrew.tooling.proposal import LEAST_SHARE  # orientations that come less often have no row
 from feederscrew.units import factor
 
 MM = factor("mm", "length")
@@ -45,7 +44,7 @@ def chain(devices, every, shares, wanted=None):
     -------
     Figure
     """
-    shown = [device for device in devices if device.kind != "yield"]
+    shown = [device for device in devices if device.placed]
     rows = _rows(every, shares, wanted)
     wide = max(WIDTH, LEFT + COLUMN * len(shown))
     page = style.page(wide, HEAD + ROW * len(rows) + FOOT)
@@ -55,12 +54,12 @@ def chain(devices, every, shares, wanted=None):
     )  # fmt: skip
     _heading(page, title, _missing(every, rows, shares))
     for place, device in enumerate(shown):
-        sheet.text(page, LEFT + place * column + 8, HEAD - 22, _device(device, place), weight="bold")
+        ink.text(page, LEFT + place * column + 8, HEAD - 22, _device(device, place), weight="bold")
     size = _scale(every, rows, column)
     for place, k in enumerate(rows):
         top = HEAD + place * ROW
-        found = passages.until_returned(shown, every[k], every)
-        sheet.rule(page, top)
+        found = tightest.until_returned(shown, every[k], every)
+        ink.rule(page, top)
         _told(page, top, every[k], shares[k], found, k == wanted)
         for step, one in enumerate(found):
             _cell(page, (LEFT + step * column, top, column, ROW), one, size)
@@ -87,17 +86,17 @@ def limits(study):
         (LEFT + COLUMN + 8, "along the track"),
         (830, "isolated by"),
     ):
-        sheet.text(page, left, HEAD - 22, text, weight="bold")
+        ink.text(page, left, HEAD - 22, text, weight="bold")
     size = _scale(every, rows, COLUMN)
     for place, k in enumerate(rows):
         top, one, found = HEAD + place * ROW, every[k], study.designs[k]
-        sheet.rule(page, top)
+        ink.rule(page, top)
         _measured(page, top, one, shares[k])
         colour = style.INK if found is None else PASSES if found.isolated else FALLS
         _above(_axes(page, (LEFT, top, COLUMN, ROW), size, True), one, None, None, colour)
         _ahead(_axes(page, (LEFT + COLUMN, top, COLUMN, ROW), size, False), one, None, colour)
         for line, text in enumerate(_isolated(found)):
-            sheet.text(page, 830, top + 30 + line * LINE, text, colour=colour)
+            ink.text(page, 830, top + 30 + line * LINE, text, colour=colour)
     return page
 
 
@@ -122,27 +121,27 @@ def _cell(page, box, found, size):
         if found.picture == "above"
         else "is stopped"
     )
-    sheet.text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, {sheet.margin(found.verdict)}", colour=colour)
+    ink.text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, {ink.margin(found.verdict)}", colour=colour)
 
 
 def _turned(page, axes, found, box, colour):
     """The part before and after a device that may turn it: along a step, across a ledge."""
-    along = found.device.kind == "step"
+    along = not found.device.inwards
     turned = found.after is not found.orientation
     one, other = (_side(k, along) for k in (found.orientation, found.after))
     wide = one.bounds[2] - one.bounds[0]
     if turned:
         room = 0.5 * (axes.get_xlim()[1] - wide - (other.bounds[2] - other.bounds[0]))
         other = affinity.translate(other, wide + max(min(room, 12.0), 2.0) - other.bounds[0], 0.0)
-        sheet.fill(axes, other, f"{PART}b0", colour, 4, width=1.8)
+        ink.fill(axes, other, f"{PART}b0", colour, 4, width=1.8)
     one = affinity.translate(one, -one.bounds[0], 0.0)
-    sheet.fill(axes, one, "none" if turned else f"{PART}b0", "#4d5b68" if turned else colour, 5, width=1.2)
+    ink.fill(axes, one, "none" if turned else f"{PART}b0", "#4d5b68" if turned else colour, 5, width=1.2)
     right = (other if turned else one).bounds[2]
     axes.plot([0.0, right], [0.0, 0.0], color=style.INK, lw=1.5, zorder=6)
     share = max(share for _, share in found.verdict.onto)
     word = f"turns into {found.after.name}" if turned else "stays as it lies"
     word += f", {100.0 * share:.3g} %" if share < 0.9995 else ""
-    sheet.text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, quasi-static", colour=colour)
+    ink.text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, quasi-static", colour=colour)
 
 
 def _side(one, along):
@@ -159,16 +158,16 @@ def _above(axes, one, hole, found, colour):
     half = min(0.95 * max(one.length, one.width) / MM, right)
     track = shapely.box(-half, 0.0, half, one.track.width / MM)
     curved = _sunk(track, one.track.radius / MM)
-    sheet.fill(axes, curved if hole is None else curved.difference(sheet.mm(hole)), TRACK, "#b8c2cb", 1)
+    ink.fill(axes, curved if hole is None else curved.difference(ink.mm(hole)), TRACK, "#b8c2cb", 1)
     outline = np.add(one.outline, [0.0, one.distance]) / MM
     axes.add_patch(Polygon(outline, fc=PART, ec="#4d5b68", lw=0.9, alpha=0.45, zorder=3))
-    touching = sheet.mm(passages.foot(one))
+    touching = ink.mm(tightest.foot(one))
     if hole is not None:
-        sheet.fill(axes, sheet.mm(hole).intersection(curved), "none", style.INK, 6, width=0.8)
-    left_over = touching if hole is None else touching.difference(sheet.mm(hole))
-    sheet.fill(axes, left_over, TOUCHING, TOUCHING, 4)
+        ink.fill(axes, ink.mm(hole).intersection(curved), "none", style.INK, 6, width=0.8)
+    left_over = touching if hole is None else touching.difference(ink.mm(hole))
+    ink.fill(axes, left_over, TOUCHING, TOUCHING, 4)
     hull = left_over.convex_hull if found is None else shapely.MultiPoint(found.supported / MM).convex_hull
-    sheet.fill(axes, hull, "none", colour, 5, width=1.8)
+    ink.fill(axes, hull, "none", colour, 5, width=1.8)
     weight = 0.0, (one.distance - one.shift) / MM
     axes.plot(*weight, "o", ms=5.5, color=colour, mec="white", mew=0.8, zorder=7)
 
@@ -178,12 +177,12 @@ def _ahead(axes, one, opening, colour):
     top = axes.get_ylim()[1]
     right = min(axes.get_xlim()[1], one.track.width / MM, 1.5 * max(one.length, one.width) / MM)
     if opening is not None:
-        plate = shapely.box(0.0, 0.0, right, top).difference(sheet.mm(opening))
-        sheet.fill(axes, plate, "#c3ccd4", "#8593a0", 2)
+        plate = shapely.box(0.0, 0.0, right, top).difference(ink.mm(opening))
+        ink.fill(axes, plate, "#c3ccd4", "#8593a0", 2)
     axes.plot([0.0, 0.0, right], [top, 0.0, 0.0], color=style.INK, lw=1.5, zorder=6)
-    shown = sheet.mm(seen(one))
-    sheet.fill(axes, shown, f"{PART}b0", "none", 4)
-    sheet.fill(axes, shown, "none", colour, 5, width=1.8)
+    shown = ink.mm(one.seen)
+    ink.fill(axes, shown, f"{PART}b0", "none", 4)
+    ink.fill(axes, shown, "none", colour, 5, width=1.8)
 
 
 def _sunk(track, radius):
@@ -216,30 +215,30 @@ def _scale(every, rows, column):
 
 
 def _heading(page, title, missing):
-    sheet.text(page, 16, 26, title, size=11, weight="bold")
-    sheet.text(page, 16, 50, KEY, size=8)
-    sheet.text(page, 16, 68, missing, size=8)
+    ink.text(page, 16, 26, title, size=11, weight="bold")
+    ink.text(page, 16, 50, KEY, size=8)
+    ink.text(page, 16, 68, missing, size=8)
 
 
 def _told(page, top, one, share, found, is_wanted):
     """What becomes of an orientation, at the left of its row."""
     if all(passage.verdict.passes > 0.0 for passage in found):
-        word = passages.fate(one, found)
+        word = tightest.fate(one, found)
         colour = PASSES if word.startswith("leaves") else FALLS
     else:
         word, colour = f"returned by {found[-1].device.kind.replace('_', ' ')}", FALLS
-    sheet.text(page, 16, top + 30, one.name, size=12, weight="bold", colour=colour)
-    sheet.text(page, 16, top + 52, f"{100.0 * share:.3g} % of the parts")
+    ink.text(page, 16, top + 30, one.name, size=12, weight="bold", colour=colour)
+    ink.text(page, 16, top + 52, f"{100.0 * share:.3g} % of the parts")
     lines = textwrap.wrap(word, NARROW)
     for line, text in enumerate(lines):
-        sheet.text(page, 16, top + 52 + (1 + line) * LINE, text, colour=colour)
+        ink.text(page, 16, top + 52 + (1 + line) * LINE, text, colour=colour)
     if is_wanted:
-        sheet.text(page, 16, top + 52 + (1 + len(lines)) * LINE, "wanted", weight="bold")
+        ink.text(page, 16, top + 52 + (1 + len(lines)) * LINE, "wanted", weight="bold")
 
 
 def _measured(page, top, one, share):
     """Share and limits of an orientation, at the left of its row."""
-    sheet.text(page, 16, top + 24, one.name, size=12, weight="bold")
+    ink.text(page, 16, top + 24, one.name, size=12, weight="bold")
     balcony = f"{one.balcony / MM:.2f} mm" if np.isfinite(one.balcony) else "none"
     lines = [
         ("of the parts", f"{100.0 * share:.3g} %"), ("track at least", balcony),
@@ -247,8 +246,8 @@ def _measured(page, top, one, share):
         ("gap up to", f"{one.gap / MM:.2f} mm"), ("height", f"{one.height / MM:.2f} mm"),
     ]  # fmt: skip
     for place, (name, value) in enumerate(lines):
-        sheet.text(page, 16, top + 50 + place * LINE, name)
-        sheet.text(page, 138, top + 50 + place * LINE, value)
+        ink.text(page, 16, top + 50 + place * LINE, name)
+        ink.text(page, 138, top + 50 + place * LINE, value)
 
 
 def _isolated(found):

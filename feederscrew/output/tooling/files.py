@@ -75,7 +75,7 @@ def chain_picture(devices, every, shares):
 
 def _views(study):
     """The part over the cuts in three dimensions, where there is a cut to see."""
-    if all(device.kind in ("step", "tip", "yield") for device in study.design.devices):
+    if all(device.turns or not device.placed for device in study.design.devices):
         return []
 
     given = study.design.devices, study.orientations, study.shares, study.wanted
@@ -117,15 +117,15 @@ def _drawn(kind, study):
 
 
 def _printed(study):
-    from feederscrew.output.tooling import stl
+    from feederscrew.output.tooling import written_stl
 
-    return stl.stl(_strip(study))
+    return written_stl.stl(_strip(study))
 
 
 def _quoted(study):
-    from feederscrew.output.tooling import step
+    from feederscrew.output.tooling import written_step
 
-    return step.step(_strip(study))
+    return written_step.step(_strip(study))
 
 
 def _strip(study):

@@ -8,9 +8,9 @@ from feederscrew.geometry.polygons import turned
 from feederscrew.output import style
 from feederscrew.output.solid import pair
 from feederscrew.output.solid.render import Camera
-from feederscrew.output.tooling import sheet
-from feederscrew.tooling import passages, solid
-from feederscrew.tooling.result import LEAST_SHARE  # what comes less often is not the nearest that falls
+from feederscrew.output.tooling import ink
+from feederscrew.tooling import solid, tightest
+from feederscrew.tooling.proposal import LEAST_SHARE  # what comes less often is not the nearest that falls
 from feederscrew.tooling.strip import strip
 
 WIDE, HIGH, HEAD = 620, 520, 96  # pixels of one view and of the lines over it
@@ -34,7 +34,7 @@ def figure(devices, every, shares, wanted):
     Figure or None
         None where no device cuts or gates the track.
     """
-    shown = [device for device in devices if device.kind != "yield"]
+    shown = [device for device in devices if device.placed]
     views = [view for view in (_leaves(shown, every, wanted), _falls(shown, every, shares, wanted)) if view]
     if not views:
         return None
@@ -56,7 +56,7 @@ def figure(devices, every, shares, wanted):
 
 def poses(devices, every, shares, wanted):
     """Return the passages worth a view, of what leaves and of what falls by least, each with a few words."""
-    shown = [device for device in devices if device.kind != "yield"]
+    shown = [device for device in devices if device.placed]
     found = [_leaves(shown, every, wanted), _falls(shown, every, shares, wanted)]
     return [(met, _short(met)) for met, _, _ in (one for one in found if one)]
 
@@ -65,7 +65,7 @@ def _short(met):
     """'gap, margin +0.64 mm': device and margin."""
     if met.orientation.kind == "hanging":
         return "in the rails"
-    return f"{met.device.kind.replace('_', ' ')}, {sheet.margin(met.verdict)}"
+    return f"{met.device.kind.replace('_', ' ')}, {ink.margin(met.verdict)}"
 
 
 def _drawable(met):
@@ -74,7 +74,7 @@ def _drawable(met):
 
 def _leaves(devices, every, wanted):
     """The passage of the wanted orientation with the least margin, with lines of text."""
-    met = _drawable(passages.until_returned(devices, every[wanted], every))
+    met = _drawable(tightest.until_returned(devices, every[wanted], every))
     if not met:
         return None
     least = min(met, key=lambda one: one.verdict.margin)
@@ -89,7 +89,7 @@ def _falls(devices, every, shares, wanted):
     found = []
     for k, one in enumerate(every):
         if k != wanted and shares[k] >= LEAST_SHARE and not one.returned:
-            met = passages.until_returned(devices, one, every)
+            met = tightest.until_returned(devices, one, every)
             found += [last for last in met[-1:] if last.verdict.passes <= 0.0 and _drawable([last])]
     if not found:
         return None
@@ -103,7 +103,7 @@ def _told(met, word):
     where = "half way through" if met.verdict.passes > 0.0 else "in front of it"
     if met.picture == "above":
         where = "where it bears least; outline: hull of its support, dot: its weight"
-    return f"{met.orientation.name} {word} the {kind}, {sheet.margin(met.verdict)}", where
+    return f"{met.orientation.name} {word} the {kind}, {ink.margin(met.verdict)}", where
 
 
 def track_below(met, every):

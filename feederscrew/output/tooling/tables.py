@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from feederscrew.bowl.devices import KINDS
 from feederscrew.output import columns, tables
-from feederscrew.tooling import passages as passages_of
-from feederscrew.tooling.result import LEAST_SHARE
+from feederscrew.tooling import tightest as passages_of
+from feederscrew.tooling.proposal import LEAST_SHARE
 from feederscrew.units import factor
 
 MM, DEG = factor("mm", "length"), factor("deg", "angle")
@@ -33,7 +32,7 @@ def document(study):
         "purity": study.design.purity,
         "before": [f"{device.kind}: {device.text}" for device in study.design.before],
         "chain": [_cut(cut) for cut in study.design.cuts],
-        "quasi_static": [cut.device.kind for cut in study.design.cuts if KINDS[cut.device.kind].turns],
+        "quasi_static": [cut.device.kind for cut in study.design.cuts if cut.device.turns],
         "reasons": list(study.design.reasons),
     }
 
@@ -170,11 +169,11 @@ def _designed(found):
 def _cut(cut):
     return {
         "device": cut.device.kind,
-        **_value(cut.device),
+        **cut.device.told(),
         "margin_pass_mm": cut.margin_pass / MM,
         "margin_reject_mm": cut.margin_reject / MM,
-        "smallest": _value(cut.smallest),
-        "largest": _value(cut.largest),
+        "smallest": cut.smallest.told(),
+        "largest": cut.largest.told(),
         "returns": list(cut.returns),
         "text": cut.device.text,
         **_turned(cut),
@@ -183,7 +182,7 @@ def _cut(cut):
 
 def _turned(cut):
     """What a turning device does, and how sure that is; nothing of any other."""
-    if not KINDS[cut.device.kind].turns:
+    if not cut.device.turns:
         return {}
     return {
         "turns": [{"from": start, "to": end, "share": share} for start, end, share in cut.turns],
@@ -198,15 +197,6 @@ def _turns(cut):
         for start, end, share in cut.turns
     ]
     return f"turns {', '.join(told)}; {QUASI_STATIC}" if told else ""
-
-
-def _value(device):
-    if device.corners:
-        return {"outline_mm": [[x / MM, y / MM] for x, y in device.corners]}
-    if device.span:
-        first, last = device.span
-        return {"value_mm": (last - first) / MM, "span_mm": [first / MM, last / MM]}
-    return {"value_mm": (device.like[2] if device.like else device.limit) / MM}
 
 
 def _finite(value):

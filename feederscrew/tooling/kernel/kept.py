@@ -4,7 +4,7 @@ import math
 
 from feederscrew.geometry.compiled import apart, compiled
 from feederscrew.tooling.kernel.crossing import ALPHA, ARC, GAMMA, HIGH, KAPPA, LOW
-from feederscrew.tooling.kernel.hull import inset_beside
+from feederscrew.tooling.kernel.hull_depth import inset_beside
 
 ROUNDING = 1e-12  # [m] of a margin: what is sure by more cannot come out lower
 

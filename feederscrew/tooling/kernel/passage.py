@@ -20,7 +20,7 @@ from feederscrew.tooling.kernel.crossing import (
     sort,
     stretches,
 )
-from feederscrew.tooling.kernel.hull import inset_beside
+from feederscrew.tooling.kernel.hull_depth import inset_beside
 from feederscrew.tooling.kernel.kept import carried, keep_corners, kept_inset
 
 CLOSE = 1e-9  # [m] a lower margin is looked for if it may be lower by more
@@ -45,13 +45,6 @@ class Foot(NamedTuple):
     reach: float  # [m] from there to the farthest corner
     every: np.ndarray  # (V,) int, all corners
     sector: np.ndarray  # (4,) [rad, m] theta and r between which its areas lie for certain
-
-
-class Hole(NamedTuple):
-    """What is cut out of the track, about the bowl's axis."""
-
-    edges: np.ndarray  # (M, 7) as `crossing` has them
-    nodes: np.ndarray  # (P, 3) [rad, m] points of its border that what is left may end in; 1: corner
 
 
 class VerdictArrays(NamedTuple):

@@ -3,7 +3,7 @@
 import math
 
 from feederscrew.geometry.compiled import compiled, entry
-from feederscrew.tooling.kernel.hull import inset_beside
+from feederscrew.tooling.kernel.hull_depth import inset_beside
 from feederscrew.tooling.kernel.passage import _under
 
 

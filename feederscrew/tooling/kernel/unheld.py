@@ -2,7 +2,7 @@
 
 from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.tooling.kernel import passage
-from feederscrew.tooling.kernel.hull import inset_beside
+from feederscrew.tooling.kernel.hull_depth import inset_beside
 from feederscrew.tooling.kernel.kept import carried
 
 SAMPLES = 8  # parts of a piece between two events

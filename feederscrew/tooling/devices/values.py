@@ -132,7 +132,7 @@ def _drawn(entry):
     path = Path(node.text)
     if not path.is_absolute():
         path = Path(node.where.rsplit(":", 2)[0]).parent / path
-    from feederscrew.bowl import dxf
+    from feederscrew import dxf
 
     found = dxf.closed_polylines(path, layer, node.where)
     if len(found) != 1:

@@ -7,7 +7,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.bowl.devices import beyond_rails
-from feederscrew.tooling import contact
+from feederscrew.tooling import touching
 from feederscrew.tooling.hanging import Hanging, hung
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.tooling.verdicts import Verdict, verdict
@@ -101,7 +101,7 @@ def course(devices, every, sigma=0.0):
         ways.append([_way(device, k, one, found, states) for k, (one, found) in enumerate(zip(here, told))])
         verdicts.append(told)
         here = here + states[len(here) :]
-        if device.kind == "rails":
+        if device.hangs:
             here = [astride(one, device.span) for one in here]
     return DeviceFlow(
         states=tuple(states),
@@ -137,7 +137,7 @@ def astride(one, span):
     """Return an orientation over the rails' slot, which goes on: lying, it stands on what is beside it."""
     if isinstance(one, Hanging) or one.falls_off:
         return one
-    foot = contact.beside(one.foot, span, one.distance, one.track.radius)
+    foot = touching.beside(one.foot, span, one.distance, one.track.radius)
     if not len(foot.corners):  # it fell
         return one
     over = replace(one)

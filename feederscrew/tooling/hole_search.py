@@ -6,11 +6,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from feederscrew.bowl.device_values import crossed
-from feederscrew.bowl.devices import Device
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling.chain import WHERE, judged, millimetres
-from feederscrew.tooling.verdicts import carried, verdict
+from feederscrew.tooling.devices import hole_shapes
+from feederscrew.tooling.devices.base import carried
+from feederscrew.tooling.devices.openings import CutOut
+from feederscrew.tooling.devices.values import crossed
+from feederscrew.tooling.verdicts import verdict
 
 STARTS = 220  # random holes tried
 CLIMBS = 6  # the best of them are improved
@@ -117,7 +119,7 @@ class _Judge:
 
     def score(self, corners, beaten=-math.inf):
         """(score, margins of the others); (-infinity, None) where it does not pass or is not better."""
-        hole = feet.polygon(corners, self.radius)
+        hole = hole_shapes.polygon(corners, self.radius)
         self.search.spent += 1
         passing = self._least(-1, self.wanted, hole, -self.margin, 2.0 * self.margin)[0]
         if passing < -self.margin:
@@ -253,7 +255,7 @@ def _as_cut(every, wanted, held, corners):
 
 
 def _margin(one, corners):
-    return feet.least(one.standing, feet.polygon(corners, one.track.radius))[0]
+    return feet.least(one.standing, hole_shapes.polygon(corners, one.track.radius))[0]
 
 
 def _border(holds, inside, outside):
@@ -272,4 +274,4 @@ def _border(holds, inside, outside):
 def _device(corners):
     shape = tuple((float(x), float(y)) for x, y in corners)
     text = ", ".join(f"[{millimetres(x)}, {millimetres(y)}]" for x, y in shape)
-    return replace(Device("cut_out", WHERE), corners=shape, text=f"[{text}]")
+    return CutOut(WHERE, corners=shape, text=f"[{text}]")

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.bowl.devices import Device
 from feederscrew.tooling import apart
 from feederscrew.tooling.chain import Cut
-from feederscrew.tooling.course import course
+from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.fates import course
 
 LEAST_SHARE = 5e-3  # [1] orientations that come less often need not be returned
 

@@ -6,13 +6,14 @@ from functools import reduce
 import numpy as np
 import shapely
 
-from feederscrew.bowl.devices import Device
 from feederscrew.tooling import foot as feet
-from feederscrew.tooling.course import astride
+from feederscrew.tooling.devices.base import Device, Verdict
+from feederscrew.tooling.devices.hole_shapes import through_the_wall
+from feederscrew.tooling.fates import astride
 from feederscrew.tooling.hanging import hung
 from feederscrew.tooling.orientations import Orientation
-from feederscrew.tooling.strip import bent, hole, opening
-from feederscrew.tooling.verdicts import JUDGES, Verdict, verdict
+from feederscrew.tooling.strip import bent
+from feederscrew.tooling.verdicts import verdict
 
 CHORD = 1e-7  # [m] by which an arc may be seen too flat
 BESIDE = 3e-6  # [rad] to either side of a place where an edge of the hole meets a corner of the foot
@@ -48,8 +49,8 @@ class Passage:
             ahead, from_wall = self.outline.T
             blade = station.blade[:, 0].min() / radius
             return blade - np.arctan2(ahead, radius - from_wall).max()  # it touches it
-        if self.device.kind in ("gap", "cut_out"):
-            return station.start / radius - _shift(self.device, one, self.verdict.shift)
+        if self.device.hole_on(one.track) is not None:
+            return station.start / radius - _shift(self.device, one)
         return (station.start + 0.5 * station.length) / radius
 
 
@@ -71,7 +72,7 @@ def passage(device, one, every, known=()):
     """
     found = verdict(device, one, every)
     touching, weight = foot(one), (0.0, one.distance - one.shift)
-    holes = [_hole(device, one, found.shift + by) for by in (0.0, -BESIDE, BESIDE)]
+    holes = [_hole(device, one, by) for by in (0.0, -BESIDE, BESIDE)]
     hulls = [(touching if cut is None else touching.difference(cut)).convex_hull for cut in holes]
     worst = int(np.argmin([_within(hull, weight) for hull in hulls]))
     return Passage(
@@ -79,13 +80,13 @@ def passage(device, one, every, known=()):
         orientation=one,
         verdict=found,
         after=_after(device, one, found, every, known),
-        picture=JUDGES[device.kind].picture,
+        picture=device.picture,
         outline=np.add(one.outline, [0.0, one.distance]),
         foot=touching,
         hole=holes[worst],
         supported=shapely.get_coordinates(hulls[worst]),
         weight=weight,
-        opening=opening(device, every, one.track.width),
+        opening=device.opening(every, one.track.width),
     )
 
 
@@ -133,7 +134,7 @@ def _after(device, one, found, every, known):
         return every[max(found.onto, key=lambda place: place[1])[0]]
     if found.hangs:
         return hung(one, device.span, known)
-    return astride(one, device.span) if device.kind == "rails" and found.passes > 0.0 else one
+    return astride(one, device.span) if device.hangs and found.passes > 0.0 else one
 
 
 def until_returned(devices, one, every):
@@ -160,21 +161,18 @@ def until_returned(devices, one, every):
     return found
 
 
-def _shift(device, one, shift):
-    """By how much [rad] a gap or cut-out is turned ahead of the part where the margin is least."""
-    if device.kind == "cut_out":
-        return shift
-    width = min(one.track.width, 0.999 * one.track.radius)
-    return feet.least(one.standing, feet.gap(device.limit, one.track.radius, width))[1]
+def _shift(device, one):
+    """By how much [rad] a hole with an edge across the track is ahead of the part where it bears least."""
+    hole = device.hole_on(one.track)
+    return None if hole is None else feet.least(one.standing, hole)[1]
 
 
-def _hole(device, one, shift):
+def _hole(device, one, by):
     """What a device cuts away where the margin is least, about the radial line of the foot."""
     track, length = one.track, LONG * one.length
-    width = min(track.width, 0.999 * track.radius)
-    ring = hole(device, track.radius, length, width)
+    ring, shift = device.outline_on(track, length), _shift(device, one)
     if ring is None:
         return None
-    shift = _shift(device, one, shift) if device.kind in ("gap", "cut_out") else -0.5 * length / track.radius
-    ring = bent(np.array(feet.through_the_wall(ring.tolist())), track.radius, shift, CHORD)
+    shift = -0.5 * length / track.radius if shift is None else shift + by
+    ring = bent(np.array(through_the_wall(ring.tolist())), track.radius, shift, CHORD)
     return shapely.make_valid(shapely.Polygon(ring))

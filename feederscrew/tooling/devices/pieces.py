@@ -1,13 +1,13 @@
 """What stands along the track at one device: holes, blades, plates, sections and jets, of no kind by name.
 
 Coordinates of a device: x along the wall from where the device begins, y from the wall inwards, z over the
-track. A device hands over one `Standing`; `trial.staging` makes of it what the kernel takes.
+track. A device hands over one `Standing`; `trial.staging` makes of
+it what the kernel takes.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 
 BLADE = 1.5e-3  # [m] thickness of a blade
 
@@ -23,7 +23,7 @@ class Hole:
 class Blade:
     """An upright plate on or over the track, at any angle to it."""
 
-    solid: shapely.Geometry  # of its face: [m] along the face from its foot, height over the track
+    solid: object  # shapely: of its face [m], along the face from its foot, height over the track
     foot: tuple[float, float] = (0.0, 0.0)  # [m] x, y where the face begins
     heading: float = 0.5 * np.pi  # [rad] from the track's direction; less than a right angle is swept back
     thickness: float = BLADE  # [m] behind the face

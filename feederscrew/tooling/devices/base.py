@@ -1,0 +1,243 @@
+"""What every device along the track offers to those who read, judge, draw, make and try it."""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from feederscrew import units
+from feederscrew.errors import ConfigError
+from feederscrew.tooling.devices.pieces import Blade, Hole, Standing
+
+CLOSE = 1e-9  # [m] a part this much over a limit still passes
+UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
+MM = units.factor("mm", "length")
+ROOM = 1.3  # a device has so many lengths of the longest part to itself
+FRAME = 5e-3  # [m] of a gate above its opening
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a device does with one orientation."""
+
+    passes: float  # [1] share that passes; the rest goes back into the bowl
+    margin: float  # [m] by which it passes, negative: by which it fails; NaN of a measured share
+    shift: float = 0.0  # [rad] of the device from the foot's radial line where the margin is least
+    hangs: bool = False  # whether it goes on hanging by the head
+    onto: tuple[tuple[int, float], ...] = ()  # orientations it goes on in, with their shares; () as it is
+
+    @property
+    def decided(self):
+        """Whether statics tells what becomes of it: where a device turns, momentum may."""
+        return not self.onto or self.margin >= 0.0
+
+    @property
+    def sure(self):
+        """Whether its margin is one: not where momentum, friction or the wall may decide otherwise."""
+        return not -UNSURE <= self.margin <= 0.0
+
+
+@dataclass(frozen=True)
+class Device:
+    """One device of a chain: its values, and what its kind makes of them.
+
+    A new kind is a class in a module of this folder: it gives ``kind``, ``dimension``, ``example`` and
+    ``meaning``, and says below what differs from a device that does nothing. Nothing else names a kind.
+    """
+
+    where: str  # 'bowl.yaml:20:5'
+    limit: float = np.nan  # [m] clearance, width or length
+    shares: tuple[tuple[str, float], ...] = ()  # measured: share that passes, by aspect
+    span: tuple[float, float] = ()  # [m] from the wall
+    corners: tuple[tuple[float, float], ...] = ()  # [m] of a hole unrolled, of an opening (y, z)
+    like: tuple[str, float, float] = ()  # of an opening: aspect, heading [rad], play [m]
+    text: str = ""  # its value as written
+
+    kind: ClassVar[str] = "track"  # what it is called in a bowl file
+    dimension: ClassVar[str] = ""  # 'length', 'span', 'polygon', 'opening', 'shares'
+    example: ClassVar[str] = ""  # as written after 'kind:'
+    meaning: ClassVar[str] = ""
+    hanging: ClassVar[bool] = True  # whether it means anything to parts that hang between rails
+    placed: ClassVar[bool] = True  # whether it has a place along the track
+    turns: ClassVar[bool] = False  # whether it turns parts over instead of returning them
+    hangs: ClassVar[bool] = False  # whether parts go on hanging by their heads
+    overhead: ClassVar[bool] = False  # whether it is a blade over the track, open to its free edge
+    queued: ClassVar[bool] = False  # whether it needs a queue that pushes
+    bound: ClassVar[str] = ""  # 'upper', 'lower': what passes needs no more, bears no less
+    proposed: ClassVar[bool] = False  # whether a design tries it
+    rank: ClassVar[int] = 0  # of those of one bound, which a design tries first
+    carries: ClassVar[bool] = False  # whether it leaves less of a foot that goes on over it
+    feature: ClassVar[str] = ""  # what it measures of a part, in the part's own terms
+    picture: ClassVar[str] = ""  # where a part at it is seen from: 'side', 'above', 'ahead', 'turned'
+    layer: ClassVar[str] = ""  # of its edge in a drawing, where it is none of cuts and gates
+
+    @classmethod
+    def read(cls, entry):
+        """Return what an entry of a bowl file gives of the fields, as a dict."""
+        raise NotImplementedError(f"{cls.kind} cannot be written")
+
+    def misfits(self, width):
+        """Return what is wrong with it on a track of some width [m], a ConfigError each."""
+        return []
+
+    def span_on(self, track):
+        """Return from where to where (m, m) off the wall it takes the track away along its way, or None."""
+        return None
+
+    def hole_on(self, track):
+        """Return the Hole that it cuts, if that has an edge across the track, or None."""
+        return None
+
+    def outline_on(self, track, length):
+        """Return what it cuts away, unrolled from its start, (K, 2) [m], or None.
+
+        Parameters
+        ----------
+        track : Track
+        length : float [m]
+            Of one that goes on along the track.
+        """
+        span = self.span_on(track)
+        if span is None:
+            return None
+        low, high = span
+        return np.array([[0.0, low], [length, low], [length, high], [0.0, high]])
+
+    @property
+    def reach(self):
+        """How far along the track it goes beyond the room that every device has [m]."""
+        return 0.0
+
+    @property
+    def across(self):
+        """How far from the wall it reaches by its own values [m], as far as they say; 0 where they do not."""
+        ends = [*self.span[1:], *(y for _, y in self.corners)] if self.cuts else []
+        return max([*ends, 0.0 if math.isnan(self.limit) else self.limit])
+
+    @property
+    def cuts(self):
+        """Whether it is cut out of the track."""
+        kind = type(self)
+        return kind.span_on is not Device.span_on or kind.hole_on is not Device.hole_on
+
+    def opening(self, every, width):
+        """Return the opening of a gate, in distances from the wall and heights [m]: shapely, or None.
+
+        Parameters
+        ----------
+        every : sequence of Orientation
+            Of the part, which an opening may name.
+        width : float [m]
+            Of the track.
+        """
+        return None
+
+    def lower(self, every):
+        """Return the track that goes on lower, (drop, from where off the wall) [m], or None."""
+        return None
+
+    def edge(self, start, length, width):
+        """Return the edge over which parts turn, unrolled, two corners (2, 2) [m], or None."""
+        return None
+
+    def judged(self, met):
+        """Return what it does with an orientation, a Verdict.
+
+        Parameters
+        ----------
+        met : Meeting
+            The orientation, and what statics knows to tell of it.
+        """
+        return met.passing()
+
+    def standing(self, track, every):
+        """Return all that stands along the track at it, a Standing: for the trial, drawings and solids.
+
+        Parameters
+        ----------
+        track : Track
+        every : sequence of Orientation
+            Of the part: the longest sets how long one is that goes on along the track.
+        """
+        room, width = room_of(every), track.extent
+        gate = self.opening(every, width)
+        if gate is not None:
+            return Standing(0.5 * room, blades=(across(gate, width, every, 0.5 * room),))
+        cut = self.outline_on(track, room)
+        return Standing(room) if cut is None else Standing(float(cut[:, 0].max()), holes=(Hole(cut),))
+
+    @classmethod
+    def needed(cls, one):
+        """Return the value [m] of a device of this kind that an orientation just passes."""
+        raise NotImplementedError(f"{cls.kind} is not one number")
+
+    def acts(self, track):
+        """Return whether it does anything at all on a track."""
+        return True
+
+    def more(self, met):
+        """Return by how much more [m] an orientation that travels passes it than one that is placed."""
+        return 0.0
+
+    def told(self):
+        """Return its values for a document, in mm."""
+        if self.corners:
+            return {"outline_mm": [[x / MM, y / MM] for x, y in self.corners]}
+        if self.span:
+            first, last = self.span
+            return {"value_mm": (last - first) / MM, "span_mm": [first / MM, last / MM]}
+        return {"value_mm": (self.like[2] if self.like else self.limit) / MM}
+
+    @property
+    def label(self):
+        """'gap 9 mm': kind and value, the latter where it is one number."""
+        return f"{self.kind} {self.text}" if math.isfinite(self.limit) else self.kind
+
+    def beside(self, width):
+        """Return the ConfigError of a hole that lies beside a track of some width [m]."""
+        what = f"{self.kind} lies beside the track: {_told(width)}"
+        return ConfigError(self.where, what, "move it onto the track")
+
+    def whole(self, width):
+        """Return the ConfigError of a hole that leaves nothing of a track of some width [m]."""
+        what = f"{self.kind} leaves no track: {_told(width)}"
+        return ConfigError(self.where, what, "give a smaller one, or a wider track")
+
+
+def room_of(every):
+    """Return the length of track [m] that one has to itself, by the longest orientation."""
+    return ROOM * max(one.length for one in every)
+
+
+def across(gate, width, every, place):
+    """Return a Blade square across a track of some width [m], with an opening, at a place [m] along it."""
+    import shapely
+
+    tall = 2.0 * max(max(one.height for one in every), gate.bounds[3]) + FRAME
+    return Blade(shapely.box(0.0, 0.0, width, tall).difference(gate), foot=(place, 0.0))
+
+
+def _told(width):
+    return f"the track is {1e3 * width:.4g} mm wide"
+
+
+def share(margin, sigma):
+    """Return the share that passes at a margin [m], its standard deviation being ``sigma`` [m]."""
+    if sigma > 0.0:
+        return 0.5 * math.erfc(-margin / (sigma * math.sqrt(2.0)))
+    return float(margin >= -CLOSE)
+
+
+def carried(margin, way, carry):
+    """Return the margin [m] of an orientation that travels, from that of one that is placed.
+
+    Parameters
+    ----------
+    margin : float [m]
+    way : float [m]
+        Over which it is not supported.
+    carry : float [m]
+        What it travels on before it has tipped is taken from that; within it the verdict has no margin.
+    """
+    return margin if margin >= 0.0 else min(max(margin, carry - way), -UNSURE)

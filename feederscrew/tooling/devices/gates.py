@@ -1,0 +1,60 @@
+"""Gates with an opening: profile."""
+
+import numpy as np
+
+from feederscrew.tooling.devices import named, values
+from feederscrew.tooling.devices.base import Device
+
+HIGH = 1.0  # [m] no opening is higher
+
+
+class Profile(Device):
+    """A gate across the track with an opening."""
+
+    kind = "profile"
+    dimension = "opening"
+    example = "{of: A@90, play: 0.2 mm}"
+    meaning = (
+        "gate with an opening: a polygon of distances from the wall and heights, or an orientation's own "
+        "outline with play"
+    )
+    proposed = True
+    feature = "outline seen along the track"
+    picture = "ahead"
+
+    @classmethod
+    def read(cls, entry):
+        return values.opening(entry)
+
+    @property
+    def across(self):
+        return 0.0
+
+    def opening(self, every, width):
+        import shapely
+
+        free = self.free(every)
+        return free.intersection(shapely.box(0.0, 0.0, width, HIGH)) if self.like else free
+
+    def free(self, every):
+        """Return the opening however wide the track is, in distances from the wall and heights [m]."""
+        import shapely
+
+        if not self.like:
+            return shapely.Polygon(self.corners)
+        aspect, heading, play = self.like
+        return every[named.place_of(every, aspect, heading, self.where, "profile names")].seen.buffer(play)
+
+    @classmethod
+    def around(cls, one, margin, where, text=""):
+        """Return the gate with the outline of an orientation, and play [m] around it."""
+        return cls(where, like=(one.aspect, one.heading, float(margin)), text=text)
+
+    def with_play(self, play, text):
+        """Return the same gate with other play [m], written as some text."""
+        aspect, heading, _ = self.like
+        written = f"{{of: {aspect}@{np.degrees(heading):.6g}, play: {text}}}"
+        return type(self)(self.where, like=(aspect, heading, float(play)), text=written)
+
+    def judged(self, met):
+        return met.verdict(met.through(self.free(met.every)))

@@ -1,0 +1,140 @@
+"""Devices that take the track away along its way: narrowed track, canyon, slot; and the pressure break."""
+
+import math
+from typing import ClassVar
+
+import numpy as np
+
+from feederscrew.tooling.devices import values
+from feederscrew.tooling.devices.base import UNSURE, Device, carried
+
+DISTANCE = "distance from the wall to the centre of mass"
+
+
+class _OneNumber(Device):
+    dimension: ClassVar[str] = ""
+    picture: ClassVar[str] = "above"
+
+    @classmethod
+    def read(cls, entry):
+        return values.length(entry)
+
+
+class NarrowedTrack(_OneNumber):
+    """A track of a lesser width."""
+
+    kind = "narrowed_track"
+    dimension = "length"
+    example = "9 mm"
+    meaning = (
+        "track of a lesser width, a balcony; returns orientations whose foot of the centre of mass is not "
+        "supported"
+    )
+    bound = "upper"
+    proposed = True
+    rank = 2
+    carries = True
+    feature = DISTANCE
+
+    def acts(self, track):
+        return self.limit < track.width
+
+    def span_on(self, track):
+        return (self.limit, track.extent) if self.limit < track.extent else None
+
+    @classmethod
+    def needed(cls, one):
+        return one.balcony
+
+    def judged(self, met):
+        needed = met.one.balcony
+        return met.verdict(self.limit - needed if math.isfinite(needed) else -met.one.standing.reach)
+
+
+class PressureBreak(_OneNumber):
+    """A ledge from which the queue pushes parts off."""
+
+    kind = "pressure_break"
+    dimension = "length"
+    example = "10 mm"
+    meaning = "gap where the queue pushes parts off; returns orientations wider than the ledge left"
+    hanging = False
+    queued = True
+    bound = "upper"
+    proposed = True
+    rank = 3
+    feature = "width"
+
+    def span_on(self, track):
+        return (self.limit, track.extent) if self.limit < track.extent else None
+
+    @classmethod
+    def needed(cls, one):
+        return one.width
+
+    def judged(self, met):
+        return met.verdict(self.limit - met.one.width)
+
+
+class Canyon(_OneNumber):
+    """A strip removed along the wall."""
+
+    kind = "canyon"
+    dimension = "length"
+    example = "8 mm"
+    meaning = "strip of that width removed along the wall; returns orientations whose foot lies over it"
+    bound = "lower"
+    proposed = True
+    rank = 1
+    carries = True
+    feature = DISTANCE
+
+    def misfits(self, width):
+        return [self.whole(width)] if self.limit >= width else []
+
+    def span_on(self, track):
+        return 0.0, self.limit
+
+    @classmethod
+    def needed(cls, one):
+        return one.canyon
+
+    def more(self, met):
+        return met.leans(self.limit)
+
+    def judged(self, met):
+        margin = met.one.canyon - self.limit
+        return met.verdict(carried(margin, -margin, self.more(met) if margin < 0.0 else 0.0))
+
+
+class Slot(Device):
+    """A long hole along the track."""
+
+    kind = "slot"
+    dimension = "span"
+    example = "{from: 2 mm, to: 5 mm}"
+    meaning = "long hole along the track between two distances from the wall"
+    picture = "above"
+    carries = True
+
+    @classmethod
+    def read(cls, entry):
+        return values.span(entry)
+
+    def misfits(self, width):
+        return between(self, width)
+
+    def span_on(self, track):
+        return self.span
+
+    def judged(self, met):
+        margin = met.over_span(self.span)
+        first, last = self.span
+        return met.verdict(max(margin, -UNSURE) if met.rides(last - first, np.inf) else margin)
+
+
+def between(device, width):
+    """Return the faults [ConfigError] of a hole between two distances off the wall of a track."""
+    first, last = device.span
+    found = [device.whole(width)] if first <= 0.0 and last >= width else []
+    return found + ([device.beside(width)] if first >= width else [])

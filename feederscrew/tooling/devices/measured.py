@@ -1,0 +1,24 @@
+"""What was measured of a device that is not described: yield."""
+
+import math
+
+from feederscrew.tooling.devices import values
+from feederscrew.tooling.devices.base import Device, Verdict
+
+
+class Yield(Device):
+    """A share that passes, by aspect."""
+
+    kind = "yield"
+    dimension = "shares"
+    example = "{A: 0.9}"
+    meaning = "share that passes, by aspect, as measured; aspects not named pass"
+    placed = False
+
+    @classmethod
+    def read(cls, entry):
+        return values.shares(entry)
+
+    def judged(self, met):
+        shares = {name.casefold(): share for name, share in self.shares}
+        return Verdict(shares.get(met.one.aspect.casefold(), 1.0), math.nan)

@@ -1,0 +1,64 @@
+"""The orientation that a text such as A@90 names."""
+
+import numpy as np
+
+from feederscrew.errors import ConfigError, FeederError
+
+WITHIN = np.radians(3.0)  # so near to a heading that the part can have, a named one is that
+
+
+def place(aspects, headings, aspect, heading, where, named="", kind=FeederError):
+    """Return the place of an orientation by its aspect and heading: the one nearest in heading.
+
+    Parameters
+    ----------
+    aspects : sequence of str
+        Of the M orientations, their names.
+    headings : sequence of float [rad]
+        Of them.
+    aspect : str
+        In capitals or not.
+    heading : float [rad]
+    where, named : str
+        For the fault: where it is written, and what names it ('profile names').
+    kind : type of FeederError
+        Of the fault.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    FeederError
+        If the part has no such orientation.
+    """
+    known = [k for k, name in enumerate(aspects) if name.casefold() == aspect.strip().casefold()]
+    away = [abs(_turn(headings[k] - heading)) for k in known]
+    if known and min(away) <= WITHIN:
+        return known[int(np.argmin(away))]
+    if named:
+        some = known or range(len(aspects))
+        listed = ", ".join(f"{aspects[k]}@{round(np.degrees(headings[k])) % 360}" for k in some)
+        what = f"{named} orientation {aspect}@{np.degrees(heading):.4g}, which the part does not have"
+        raise kind(where, what, f"known are {listed}")
+    if not known:
+        raise kind(where, f"there is no aspect {aspect[:20]!r}", f"choose one of {_once(aspects)}")
+    listed = ", ".join(f"{np.degrees(headings[k]):.4g}" for k in known)
+    what = f"aspect {aspects[known[0]]} has no stable heading {np.degrees(heading):.4g} deg"
+    raise kind(where, what, f"choose one of {listed} deg")
+
+
+def place_of(every, aspect, heading, where, named="", kind=ConfigError):
+    """Return the same among orientations (M,)."""
+    return place(
+        [one.aspect for one in every], [one.heading for one in every], aspect, heading, where, named, kind
+    )
+
+
+def _turn(angle):
+    return np.remainder(angle + np.pi, 2.0 * np.pi) - np.pi
+
+
+def _once(names):
+    return ", ".join(dict.fromkeys(names))

@@ -1,0 +1,78 @@
+"""A device of a kind of its own, added in one file: every command and every drawing knows it."""
+
+import io
+import json
+
+import numpy as np
+import pytest
+import trimesh
+from click.testing import CliRunner
+
+from feederscrew.tooling import devices
+from feederscrew.tooling.devices import kinds
+from feederscrew_cli.main import feeder
+
+FILE = '''
+"""A strip removed along the wall, by another name."""
+
+from feederscrew.tooling.devices import values
+from feederscrew.tooling.devices.base import Device
+
+
+class Ravine(Device):
+    kind = "ravine"
+    dimension = "length"
+    example = "8 mm"
+    meaning = "strip along the wall"
+    picture = "above"
+
+    @classmethod
+    def read(cls, entry):
+        return values.length(entry)
+
+    def span_on(self, track):
+        return 0.0, self.limit
+
+    def judged(self, met):
+        return met.verdict(met.over_span((0.0, self.limit)))
+'''
+
+
+@pytest.fixture
+def ravine(tmp_path, monkeypatch):
+    folder = tmp_path / "kinds"
+    folder.mkdir()
+    (folder / "ravine.py").write_text(FILE)
+    monkeypatch.setattr(devices, "__path__", [*devices.__path__, str(folder)])
+    kinds.found()
+    trimesh.creation.box((0.02, 0.012, 0.005)).apply_scale(1e3).export(tmp_path / "block.stl")
+    (tmp_path / "bowl.yaml").write_text("track: {width: 30 mm}\ndevices:\n  - ravine: 8 mm\n")
+    yield tmp_path
+    kinds.KINDS.pop("ravine")
+
+
+def test_a_device_added_in_one_file_is_known_everywhere(ravine):
+    part, bowl = str(ravine / "block.stl"), ["--config", str(ravine / "bowl.yaml")]
+
+    def ran(*words):
+        found = CliRunner().invoke(feeder, [*words, *bowl], catch_exceptions=False)
+        assert found.exit_code == 0, found.output
+        return found.stdout
+
+    rows = json.loads(ran("rate", part, "--aspect", "A", "--rule", "csa", "--format", "json"))["orientations"]
+    passes = {round(row["length_mm"]): row["ravine_1"] for row in rows if row["aspect"] == "A"}
+    assert passes == {20: 0.0, 12: 1.0}
+    out = ravine / "out"
+    ran("tooling", part, "--aspect", "A", "--heading", "90", "--rule", "csa", "-o", str(out))
+    files = {path.name: path for path in out.rglob("*")}
+    assert "ravine 8 mm" in files["tooling.dxf"].read_text() and "CUT" in files["tooling.dxf"].read_text()
+    assert "ravine: 8 mm" in files["tooling.yaml"].read_text()
+    mesh = trimesh.load(io.BytesIO(files["tooling.stl"].read_bytes()), file_type="stl")
+    assert mesh.is_watertight
+    over = mesh.triangles_center[np.abs(mesh.triangles_center[:, 2]) < 1e-6]
+    assert len(over) and files["tooling.png"].stat().st_size > 1000
+    tried = json.loads(ran("trial", part, "--parts", "8", "--rule", "csa", "--format", "json"))[
+        "orientations"
+    ]
+    passed = {(row["aspect"], round(row["heading_deg"])): row["passed"] for row in tried if row["tried"]}
+    assert passed["A", 0] == 0 and passed["A", 90] > 0
