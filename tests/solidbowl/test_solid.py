@@ -20,6 +20,7 @@ from feederscrew.solidbowl.measuring import heights, measures, track_width
 from feederscrew.solidbowl.plan import Asked, plan
 from feederscrew.solidbowl.ways_down import check_ways_down
 from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import made as device_of
 
 RULES = record(effective({})).sizing
 TRACK = Track(climb=np.radians(3.5), bank=0.0, radius=0.15, width=0.02)
@@ -134,7 +135,7 @@ def test_the_outlet_lies_where_it_is_asked():
 
 
 def test_blades_leave_the_clearance_free():
-    made = planned((made("wiper", "b", limit=6e-3),))
+    made = planned((device_of("wiper", "b", limit=6e-3),))
     whole, blade = facets.unplaced(body(made)), made.stretch.blades[0]
     s = made.first + blade.start + 0.5 * blade.thickness
     at = made.way.places(s, 5e-3)
