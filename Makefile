@@ -78,6 +78,7 @@ docs: docs/aspects.png docs/regimes.png docs/drop.png docs/bowl.png $(READY) ## 
 	$(BIN)/python docs/equations.py
 	$(BIN)/python docs/rules.py
 	$(BIN)/python docs/bowl_file.py
+	$(BIN)/python docs/validation.py
 
 docs/aspects.png: results/$(DEMO)/aspects.csv
 	cp results/$(DEMO)/aspects.png $@
