@@ -94,7 +94,7 @@ def tosses():
             name, f"{percent(found.told)} ({percent(found.low)} to {percent(found.high)})",
             percent(found.at_release), f"{1e3 * found.median_off:.1f}",
             f"{1e3 * np.percentile(study.off, 75):.1f}",
-            *((percent(found.expected), f"{found.sure}: {percent(found.sure_told)}") if runs > 1 else ("", "")),
+            *([percent(found.expected), f"{found.sure}: {percent(found.sure_told)}"] if runs > 1 else "  "),
         ])  # fmt: skip
     head = ["ours", "upper side as measured [%]", "nearest at release [%]", "median distance [mm]",
             "three quarters within [mm]", "mean p [%]", "p of at least 0.95: right [%]"]  # fmt: skip
