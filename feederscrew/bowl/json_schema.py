@@ -100,6 +100,8 @@ def _section(section):
 def _value(key):
     """The schema of one key."""
     bounds = f"From {key.lowest} to {key.highest}."
+    if key.choices:
+        return _word(key)
     follows = key.default in BY_NAME
     left_out = f"Left out: as {key.default}." if follows else f"Default: {key.default}."
     made = {
@@ -111,6 +113,20 @@ def _value(key):
         "x-units": [unit for unit in units.UNITS[key.dimension] if unit],
     }
     return made if follows else {**made, "default": _typed(key.default, key.dimension)}
+
+
+def _word(key):
+    """The schema of a key that is one of several words."""
+    return {
+        "description": f"{key.meaning}. One of {', '.join(key.choices)}. Default: {key.default}.",
+        "type": "string",
+        "enum": list(key.choices),
+        "x-dimension": key.dimension,
+        "x-lowest": key.choices[0],
+        "x-highest": key.choices[-1],
+        "x-units": [],
+        "default": key.default,
+    }
 
 
 def _typed(text, dimension):

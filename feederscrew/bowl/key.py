@@ -17,6 +17,7 @@ class Key:
     default: str  # a value as typed, or the name of the key whose value is taken
     meaning: str
     share: float = 1.0  # the field's value over the key's
+    choices: tuple[str, ...] = ()  # words of which it is one; then it has no unit and no size
 
     @property
     def section(self):
@@ -31,7 +32,21 @@ class Key:
     @property
     def unit(self):
         """The unit of its lowest value, in which we show it."""
-        return units.split(self.lowest)[1]
+        return "" if self.choices else units.split(self.lowest)[1]
+
+    @property
+    def bounds(self):
+        """What it may be, for people: '0 mm to 20 mm', 'right or left'."""
+        return " or ".join(self.choices) if self.choices else f"{self.lowest} to {self.highest}"
+
+    def value(self, text):
+        """Return a value as typed: in SI units, or the word; QuantityError where it is neither."""
+        if not self.choices:
+            return units.quantity(text, self.dimension, suggest=self.unit)
+        word = text.strip().casefold()
+        if word not in self.choices:
+            raise units.QuantityError(f"{units.shown(text)} is not known", f"write {self.bounds}")
+        return word
 
     @property
     def column(self):

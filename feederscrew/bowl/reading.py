@@ -70,9 +70,16 @@ def checked(key, text, where, *, bare=False, kind=ConfigError):
     """
     subject = "" if where.endswith(key.name) else f"{key.name}: "
     try:
-        value = units.quantity(text, key.dimension, suggest=key.unit, bare=key.unit if bare else None)
+        unit = key.unit if bare else None
+        value = (
+            key.value(text)
+            if key.choices
+            else units.quantity(text, key.dimension, suggest=key.unit, bare=unit)
+        )
     except units.QuantityError as fault:
         raise kind(where, f"{subject}{fault.what}", fault.mend) from None
+    if key.choices:
+        return Setting(key, value, value, where)
     low, high = (units.quantity(limit, key.dimension) for limit in (key.lowest, key.highest))
     if not low <= value <= high:
         what = f"{subject}{units.shown(text)} is out of range"

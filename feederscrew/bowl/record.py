@@ -109,6 +109,15 @@ class Sizing:
     slowest: float  # [m/s]
     fastest: float  # [m/s]
     handbook_speed: float  # [m/s]
+    hand: str = "right"  # of the helix; 'left' is the mirror image
+    bolts: float = 6.0  # of the bowl on its drive, beside the one in the middle
+    bolt_hole: float = 9e-3  # [m] diameter
+    bolt_circle: float = 0.12  # [m] diameter
+    bolt_share: float = 0.4  # [1] circle of the bolts over the bowl's diameter, where none is given
+    outlet_height: float = 0.0  # [m] over the floor's edge; 0: where the turns end
+    outlet_angle: float = 0.0  # [rad] where the outlet leaves the wall
+    drains: float = 0.0  # holes in the floor
+    drain_hole: float = 4e-3  # [m] diameter
 
 
 @dataclass(frozen=True)

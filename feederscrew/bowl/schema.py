@@ -2,6 +2,7 @@
 
 from feederscrew.bowl.key import Key
 from feederscrew.bowl.machine_keys import MACHINE, SIZING
+from feederscrew.bowl.solid_keys import DRIVE, HAND, SOLID
 
 KEYS = (
     Key(
@@ -80,8 +81,11 @@ KEYS = (
         "track.width", "track.width", "length", "0.1 mm", "1000 mm", "25 mm",
         "of the track, from the wall to its free edge",
     ),
+    *HAND,
     *MACHINE,
+    *DRIVE,
     *SIZING,
+    *SOLID,
 )  # fmt: skip
 BY_NAME = {key.name: key for key in KEYS}
 OPTIONAL = ("machine",)  # sections that change other keys once one of theirs is given

@@ -80,7 +80,7 @@ def record(settings):
     is replaced later must not keep the old value.
     """
     keyed = [s for s in settings if s.key.field != SECTION]
-    fields = {s.key.field: s.value * s.key.share for s in keyed}
+    fields = {s.key.field: s.value if s.key.choices else s.value * s.key.share for s in keyed}
     fields |= {s.key.field: None for s in keyed if s.key.field in FOLLOWING and not s.given}
     sections = {name: {} for name in RECORDS}
     for name, value in fields.items():
@@ -122,14 +122,14 @@ def texts(settings):
 
 
 def has_machine(given):
-    """Return whether a key of ``machine`` is among those given.
+    """Return whether a key of what moves the bowl is among those given; its bolts do not.
 
     Parameters
     ----------
     given : dict of str to Setting
         By key name.
     """
-    return any(name.startswith("machine.") for name in given)
+    return any(name in BY_NAME and BY_NAME[name].field.startswith("machine.") for name in given)
 
 
 def default(key):
@@ -153,7 +153,7 @@ def _effective(key, given):
     if key.default in BY_NAME:
         source = _effective(BY_NAME[key.default], given)
         return Setting(key, source.text, source.value, f"as {key.default}", given=False)
-    return Setting(key, key.default, units.quantity(key.default, key.dimension), "default", given=False)
+    return Setting(key, key.default, key.value(key.default), "default", given=False)
 
 
 def _converted(key, source):
@@ -168,7 +168,7 @@ def _of_the_machine(key, given):
     if key.name == "drive.frequency":
         supply = _effective(BY_NAME["machine.supply"], given)
         return _derived(key, supply.value, "from machine.supply")
-    names = [one.name for one in KEYS if one.section == "machine"]
+    names = [one.name for one in KEYS if one.field.startswith("machine.")]
     machine = Machine(**{name.partition(".")[2]: _effective(BY_NAME[name], given).value for name in names})
     radius, climb = (_effective(BY_NAME[name], given).value for name in ("track.radius", "track.climb"))
     return _derived(key, vibration_angle(machine, radius, climb), "from machine")

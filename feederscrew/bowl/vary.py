@@ -53,6 +53,8 @@ def _range(text):
     name, _, span = (part.strip() for part in text.partition("="))
     where = f"vary {units.one_line(name)}"
     key = named(name, where)
+    if key.choices:
+        raise ArgumentError(where, "is a word, not a number", f"set it to {key.bounds}")
     ends = span.split(":")
     if len(ends) != 3:
         what = f"{units.shown(span)} is not a range"

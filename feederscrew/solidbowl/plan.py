@@ -94,13 +94,14 @@ class Asked:
     outlet_angle: float = 0.0  # [rad]
     left: bool = False
     bolts: int = 6
-    bolt: float = 8e-3  # [m]
+    bolt: float = 9e-3  # [m] diameter of their holes
     bolt_circle: float = 0.0  # [m] 0: by the rule
+    bolt_share: float = 0.4  # [1] the rule: of the bowl's diameter
     drains: int = 0
     drain: float = 4e-3  # [m]
 
 
-def plan(size, track, made_of, tooled, asked, *, greatest):
+def plan(size, track, made_of, tooled, asked, *, extents):
     """Return the measures of a bowl as a solid.
 
     Parameters
@@ -111,8 +112,8 @@ def plan(size, track, made_of, tooled, asked, *, greatest):
     made_of : Material
     tooled : Stretch or None
     asked : Asked
-    greatest : float [m]
-        Greatest extent of the part.
+    extents : (3,) float [m]
+        Of the part along its axes.
 
     Returns
     -------
@@ -125,14 +126,15 @@ def plan(size, track, made_of, tooled, asked, *, greatest):
         through them would not reach the floor.
     """
     _check(size, track)
+    _check_holes(track, asked, extents)
     way, first = _way(size, track, tooled, asked)
     across = track.width * np.cos(track.bank)
     outer = track.radius + made_of.wall
     outlet = np.sqrt(outer**2 - (track.radius - across) ** 2) + OUTLET
+    greatest = float(max(extents))
     tallest = greatest if tooled is None else tooled.tallest
     gates = [one.area.bounds[3] for one in tooled.blades] if tooled else []
     hangs = tooled is not None and any(cut.hangs for cut in tooled.cuts)
-    circle = asked.bolt_circle or 0.4 * size.diameter
     return BowlPlan(
         way=way,
         width=track.width,
@@ -143,10 +145,10 @@ def plan(size, track, made_of, tooled, asked, *, greatest):
         hanging=greatest + CLEAR if hangs else 0.0,
         headroom=tallest,
         top=float(way.height(way.end)) + sum(d for _, d in way.drops) + max([tallest + ABOVE, *gates]),
-        hub=0.5 * circle + 2.0 * asked.bolt,
+        hub=_hub(track, asked),
         bolts=asked.bolts,
         bolt=asked.bolt,
-        bolt_circle=circle,
+        bolt_circle=_circle(track, asked),
         drains=asked.drains,
         drain=asked.drain,
         turned=asked.outlet_angle,
@@ -165,6 +167,28 @@ def _check(size, track):
     if track.climb <= 0.0:
         what = f"{np.degrees(track.climb):.3g} deg does not lead a track out of the bowl"
         raise FeederError("track.climb", what, "give a climb, as 3.5 deg, or leave it out")
+
+
+def _circle(track, asked):
+    """Diameter of the circle of bolts."""
+    return asked.bolt_circle or asked.bolt_share * 2.0 * track.radius
+
+
+def _hub(track, asked):
+    """Radius of the hub."""
+    return 0.5 * _circle(track, asked) + 2.0 * asked.bolt
+
+
+def _check_holes(track, asked, extents):
+    room = track.radius - track.width - 2.0 * BESIDE
+    if _hub(track, asked) > room:
+        what = f"{1e3 * _circle(track, asked):.4g} mm lies under the track of a bowl this small"
+        most = 2e3 * (room - 2.0 * asked.bolt)
+        raise FeederError("machine.bolt_circle", what, f"give at most {most:.4g} mm, or smaller bolts")
+    least = float(min(extents))
+    if asked.drains and asked.drain >= least:
+        what = f"{1e3 * asked.drain:.4g} mm may let parts through that are {1e3 * least:.4g} mm thick"
+        raise FeederError("sizing.drain_hole", what, f"give less than {1e3 * least:.4g} mm")
 
 
 def _way(size, track, tooled, asked):

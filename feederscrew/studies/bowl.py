@@ -10,7 +10,7 @@ from feederscrew import check
 from feederscrew.bowl.direction import vibration_angle
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.schema import BY_NAME
-from feederscrew.bowl.settings import default
+from feederscrew.bowl.settings import default, has_machine
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError
 from feederscrew.machine import building, checks, filling, sizing, throughput, tuning
@@ -117,12 +117,11 @@ def bowl(
     heading : float [rad], optional
         As for ``queue.wanted``.
     rule : str
-    gap : float [m]
-    fill : float [1]
+    gap, fill : float [m], [1]
     known : Aspects, optional
         Of the part, with the answer to take, where they are known already.
     solid : Asked, optional
-        Of the bowl as a solid, whose rise and mass then take the place of the estimate.
+        Of the bowl as a solid: its rise and mass take the place of the estimate.
 
     Returns
     -------
@@ -142,12 +141,12 @@ def bowl(
     _check_rule(rule, found)
     size = _size(lying, part, plain, settings, sorts=wanted is None)
     track = replace(plain.track, radius=0.5 * size.diameter, width=size.track_width, climb=size.climb)
-    if wanted is not None:
-        wanted = well_oriented.wanted(part, found, track, *wanted)
+    wanted = None if wanted is None else well_oriented.wanted(part, found, track, *wanted)
     ways = _ways(part, found, track, plain.devices)
     counted = {"rule": rule, "target": wanted, "gap": gap, "fill": fill}
-    size, made = solidbowl.solid(replace(plain, track=track), size, part, ways(None).lying, solid)
-    driven, flow = _brought(replace(plain, track=track), size, settings, target, ways, counted)
+    plain = replace(plain, track=track)
+    size, made = solidbowl.solid(plain, size, part, ways(None).lying, solid)
+    driven, flow = _brought(plain, size, settings, target, ways, counted)
     order = Order(
         part=part,
         target=target,
@@ -273,7 +272,7 @@ def _sheet(bowl, settings, depth, density, order):
     radii, turned = angles(under, bowl.track)
     return MachineSheet(
         bowl=bowl,
-        has_machine=bool(_given(settings, "machine")),
+        has_machine=has_machine({s.key.name for s in settings if s.given}),
         springs=made,
         stroke=moved,
         answer=answer.answer(bowl),

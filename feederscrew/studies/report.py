@@ -6,7 +6,7 @@ from functools import cached_property
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.settings import Setting
+from feederscrew.bowl.settings import Setting, has_machine
 from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
 from feederscrew.resting.posture import posture
@@ -119,7 +119,7 @@ class ReportStudy:
                 **wanted, rule=self.rule, gap=self.gap, fill=self.fill,
                 known=self.resting.aspects,
             )  # fmt: skip
-        given = any(s.given and s.key.section == "machine" for s in self.settings)
+        given = has_machine({s.key.name for s in self.settings if s.given})
         return machines.machine(self.settings) if given else None
 
     @cached_property

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from feederscrew import bowl as bowls
 from feederscrew.solidbowl import cuts
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.materials import material
@@ -26,7 +27,23 @@ def asked(settings, *, solid, material, chord):
     -------
     Asked or None
     """
-    return Asked(chord=chord, material=material) if solid else None
+    if not solid:
+        return None
+    rules = bowls.record(settings).sizing
+    given = {s.key.name for s in settings if s.given}
+    return Asked(
+        chord=chord,
+        material=material,
+        outlet_height=rules.outlet_height,
+        outlet_angle=rules.outlet_angle,
+        left=rules.hand == "left",
+        bolts=int(rules.bolts),
+        bolt=rules.bolt_hole,
+        bolt_circle=rules.bolt_circle if "machine.bolt_circle" in given else 0.0,
+        bolt_share=rules.bolt_share,
+        drains=int(rules.drains),
+        drain=rules.drain_hole,
+    )
 
 
 def in_material(bowl, asked):
@@ -78,8 +95,7 @@ def solid(bowl, size, part, every, asked):
         return size, None
     made_of = material(asked.material, bowl.sizing)
     tooled = cuts.stretch(bowl.track, bowl.devices, every) if _tooled(bowl.devices) else None
-    greatest = float(np.ptp(part.vertices, axis=0).max())
-    made = body(plan(size, bowl.track, made_of, tooled, asked, greatest=greatest))
+    made = body(plan(size, bowl.track, made_of, tooled, asked, extents=np.ptp(part.vertices, axis=0)))
     check_ways_down(made)
     own = {"depth": made.plan.outlet_height, "turns": made.plan.turns}
     return replace(size, **own, mass=made.mass, inertia=made.inertia), made

@@ -307,7 +307,7 @@ def test_the_schema_agrees_with_the_record():
     assert bowl.texts(bowl.settings()).keys() == {k.name for k in schema.KEYS if k.section != "machine"}
     with_machine = bowl.settings(None, ["machine.leaves=10"])
     assert bowl.texts(with_machine).keys() == {key.name for key in schema.KEYS}
-    for key in schema.KEYS:
+    for key in (key for key in schema.KEYS if not key.choices):
         low, high = (units.quantity(text, key.dimension) for text in (key.lowest, key.highest))
         default = next(s.value for s in bowl.settings() if s.key is key)
         assert low <= default <= high

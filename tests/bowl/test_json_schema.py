@@ -63,7 +63,7 @@ def test_every_default_and_bound_is_accepted():
 
 
 def test_every_unit_and_spelling_that_the_checks_read_is_accepted(tmp_path):
-    for dimension in {key.dimension for key in KEYS}:
+    for dimension in {key.dimension for key in KEYS if not key.choices}:
         key = next(key for key in KEYS if key.dimension == dimension)
         spelt = [name for name, unit in units.SPELLINGS.items() if unit in units.UNITS[dimension]]
         for unit in [*units.UNITS[dimension], *spelt]:

@@ -44,7 +44,7 @@ def planned(devices=(), track=TRACK, asked=None, name="steel", turns=1.5):
     pitch = 2.0 * np.pi * track.radius * np.tan(track.climb)
     size = Size(2.0 * track.radius, {}, track.width, 0.0, 0.0, track.climb, turns * pitch, turns, pitch)
     tooled = cuts.stretch(track, devices, [one]) if devices else None
-    return plan(size, track, material(name, RULES), tooled, asked, greatest=18e-3)
+    return plan(size, track, material(name, RULES), tooled, asked, extents=(18e-3, 14e-3, 12e-3))
 
 
 def closed(solid):
@@ -185,6 +185,15 @@ def model_of(data):
             replace(TRACK, climb=0.0), Asked(), (),
             "track.climb: 0 deg does not lead a track out of the bowl - give a climb, as 3.5 deg, or leave "
             "it out",
+        ),
+        (
+            TRACK, Asked(bolt_circle=0.25), (),
+            "machine.bolt_circle: 250 mm lies under the track of a bowl this small - give at most 220 mm, or "
+            "smaller bolts",
+        ),
+        (
+            TRACK, Asked(drains=8, drain=12e-3), (),
+            "sizing.drain_hole: 12 mm may let parts through that are 12 mm thick - give less than 12 mm",
         ),
         (
             TRACK, Asked(outlet_height=0.09), CHAINS["gap"],
