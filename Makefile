@@ -16,7 +16,7 @@ NAMES := $(basename $(notdir $(PARTS)))
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .SUFFIXES:
-.PHONY: help demo test check lint format all-aspects inertia maps bench mutants docs fuzz clean distclean
+.PHONY: help demo test check lint format all-aspects inertia maps bench mutants docs release fuzz clean distclean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -72,7 +72,9 @@ bench: $(READY_TO_TEST) ## what people wait for and the kernels, under ten minut
 	for name in $(BENCHES); do $(BIN)/python benchmarks/$$name.py || exit 1; done
 	$(BIN)/python benchmarks/aspects.py --repeats 1
 
-docs: docs/aspects.png docs/regimes.png docs/drop.png docs/bowl.png $(READY) ## pictures, outputs and tables of the pages
+PICTURES := aspects regimes drop bowl tooling trial report conveying_map
+
+docs: $(PICTURES:%=docs/%.png) $(READY) ## pictures, outputs and tables of the pages
 	$(BIN)/python docs/readme.py
 	$(BIN)/python docs/commands.py
 	$(BIN)/python docs/equations.py
@@ -96,6 +98,24 @@ docs/bowl.png: parts/$(DEMO).stl | $(READY)
 
 mutants: $(READY_TO_TEST) ## small changes to the physics that no test notices, ten minutes
 	$(BIN)/python benchmarks/mutants.py
+
+docs/tooling.png: parts/$(BOLT).stl | $(READY)
+	$(FEEDER) tooling $< --aspect A -o results --quiet > /dev/null
+	cp results/$(BOLT)/tooling.png $@
+
+docs/trial.png: docs/tooling.png | $(READY)
+	$(FEEDER) trial parts/$(BOLT).stl --config results/$(BOLT)/tooling.yaml --parts 12 -o results --quiet > /dev/null
+	cp results/$(BOLT)/trial.png $@
+
+docs/report.png: parts/$(DEMO).stl docs/screenshot.py | $(READY)
+	$(FEEDER) report $< --config configs/bowl.yaml -o results --quiet > /dev/null
+	$(BIN)/python docs/screenshot.py results/$(DEMO)/report.html $@
+
+docs/conveying_map.png: docs/conveying_map.py | $(READY)
+	$(BIN)/python docs/conveying_map.py
+
+release: ## what a release is, step by step; checks version and changelog
+	@$(PYTHON) docs/release.py
 
 fuzz: $(READY_TO_TEST) ## 2,000 round bodies, then ten minutes of damaged files
 	PYTHONPATH=tests $(BIN)/python -m fuzz.rounds 2000

@@ -2,6 +2,8 @@
 
 import importlib
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -52,7 +54,7 @@ def test_no_page_names_the_host_of_a_package_registry():
 
 
 def test_the_rooms_are_those_of_the_layers_in_their_order():
-    assert [name for cells in rows("Rooms") for name in re.findall(r"`(\w+)`", cells[0])] == ORDER
+    assert [name for cells in rows("Rooms") for name in re.findall(r"`([\w.]+)`", cells[0])] == ORDER
 
 
 def test_the_doors_are_those_of_the_layers():
@@ -78,3 +80,17 @@ def test_the_folders_on_the_page_are_there():
         assert folder == "feederscrew/" or any(
             (root / folder).is_dir() for root in (ROOT, ROOT / "feederscrew")
         )
+
+
+def test_a_release_knows_its_version_and_its_changes():
+    text = (ROOT / "CHANGELOG.md").read_text()
+    version = re.search(r'__version__ = "(.*)"', (ROOT / "feederscrew/__init__.py").read_text())[1]
+    assert f'version = "{version}"' in (ROOT / "pyproject.toml").read_text()
+    assert re.search(r"^## (\S+?),", text, re.MULTILINE)[1] == version
+    said = subprocess.run([sys.executable, "docs/release.py"], cwd=ROOT, capture_output=True, text=True)
+    assert f"git tag v{version}" in said.stdout and not said.stderr
+
+
+def test_every_picture_of_the_pages_is_made_by_make_docs():
+    made = re.search(r"^PICTURES := (.*)$", (ROOT / "Makefile").read_text(), re.MULTILINE)[1].split()
+    assert sorted(made) == sorted(path.stem for path in DOCS.glob("*.png"))
