@@ -12,7 +12,7 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 PAGE = (ROOT / "docs/contributing.md").read_text()
-BLOCK = re.compile(r"<!-- (new|in|shows) (.*?) -->\n```(?:python|sh)\n(.*?)```", re.DOTALL)
+BLOCK = re.compile(r"<!-- (new|in|shows) (.*?) -->\n```(?:python|sh|)\n(.*?)```", re.DOTALL)
 CHANGE = re.compile(r"(\S+) (after|instead of) (.*)", re.DOTALL)
 RECIPES = {
     chapter.splitlines()[0]: blocks
