@@ -2,12 +2,12 @@
 
 import click
 
-from feederscrew_cli import options, waiting
+from feederscrew_cli import grouped, options, waiting
 
 SURFACES = click.Choice(["soft", "medium", "hard"])
 
 
-@click.command(short_help="Resting aspects of a part and how often it lands on each.")
+@grouped.command(short_help="Resting aspects of a part and how often it lands on each.")
 @options.part
 @click.option("--all", "unstable", is_flag=True, help="List the facets it rolls off as well.")
 @click.option(

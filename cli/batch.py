@@ -2,7 +2,7 @@
 
 import click
 
-from feederscrew_cli import options, orientation
+from feederscrew_cli import grouped, options, orientation
 from feederscrew_cli.interrupt import ended_within
 from feederscrew_cli.progress import Progress
 
@@ -23,7 +23,7 @@ class Jobs(click.ParamType):
         return int(value)
 
 
-@click.command(short_help="Aspects, conveying and rate of any number of parts, in parallel.")
+@grouped.command(short_help="Aspects, conveying and rate of any number of parts, in parallel.")
 @click.argument("sources", metavar="PARTS...", nargs=-1, required=True, type=options.FILE)
 @click.option(
     "--config",

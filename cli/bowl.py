@@ -2,7 +2,7 @@
 
 import click
 
-from feederscrew_cli import options, orientation, waiting
+from feederscrew_cli import grouped, options, orientation, waiting
 from feederscrew_cli.quantity import Quantity
 
 TARGET = click.option(
@@ -50,7 +50,7 @@ def _of_the_solid(command):
     return options.stacked(options.packed(command, "made", ("solid", "material", "chord")), *SOLID)
 
 
-@click.command(short_help="Size the bowl for a part and a rate; its springs, tuning and drift.")
+@grouped.command(short_help="Size the bowl for a part and a rate; its springs, tuning and drift.")
 @options.optional_part
 @_wanted
 @_of_the_solid

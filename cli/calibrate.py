@@ -2,10 +2,10 @@
 
 import click
 
-from feederscrew_cli import options
+from feederscrew_cli import grouped, options
 
 
-@click.command(short_help="The surface exponent that your own counts ask for.")
+@grouped.command(short_help="The surface exponent that your own counts ask for.")
 @options.part
 @click.option(
     "--with", "counts", metavar="CSV", required=True, type=options.Place(), help="Counted parts by aspect."

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import click
 
-from feederscrew_cli import options, orientation, waiting
+from feederscrew_cli import grouped, options, orientation, waiting
 
 
-@click.command(short_help="Measured aspects against every rule, of one part or over many files.")
+@grouped.command(short_help="Measured aspects against every rule, of one part or over many files.")
 @options.parts
 @click.option("--with", "counts", metavar="CSV", type=options.Place(), help="Counts or fractions of PART.")
 @click.option(

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import click
 
-from feederscrew_cli import completion, options, waiting
+from feederscrew_cli import completion, grouped, options, waiting
 
 WAYS = {1: "convey curve", 2: "convey map"}  # by how many keys are varied
 
 
-@click.command(short_help="How fast a part travels on the track, and how.")
+@grouped.command(short_help="How fast a part travels on the track, and how.")
 @options.bowl
 @click.option(
     "--vary",

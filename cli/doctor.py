@@ -2,8 +2,10 @@
 
 import click
 
+from feederscrew_cli import grouped
 
-@click.command(short_help="What is installed here, what is missing, and how to get it.")
+
+@grouped.command(short_help="What is installed here, what is missing, and how to get it.")
 def doctor():
     """Example: feeder doctor
 

@@ -4,7 +4,7 @@ import os
 
 import click
 
-from feederscrew_cli import options, tosses, waiting
+from feederscrew_cli import grouped, options, tosses, waiting
 from feederscrew_cli import plate as plates
 from feederscrew_cli.interrupt import held_back
 
@@ -25,7 +25,7 @@ def conditions(command):
     return command
 
 
-@click.command(short_help="A virtual drop test: how often a part lands on each aspect.")
+@grouped.command(short_help="A virtual drop test: how often a part lands on each aspect.")
 @options.part
 @conditions
 @click.option(

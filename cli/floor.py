@@ -2,11 +2,11 @@
 
 import click
 
-from feederscrew_cli import options
+from feederscrew_cli import grouped, options
 from feederscrew_cli.angle import Angle
 
 
-@click.command(short_help="Forces and motion of a part on the bowl floor.")
+@grouped.command(short_help="Forces and motion of a part on the bowl floor.")
 @options.part
 @click.option("--aspect", metavar="NAME", help="As `feeder aspects` names it.  [default: the likeliest]")
 @click.option(

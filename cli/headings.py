@@ -2,10 +2,10 @@
 
 import click
 
-from feederscrew_cli import options
+from feederscrew_cli import grouped, options
 
 
-@click.command(short_help="How a part lies along the track's wall, and whether it stays on.")
+@grouped.command(short_help="How a part lies along the track's wall, and whether it stays on.")
 @options.part
 @click.option("--aspect", metavar="NAME", help="As `feeder aspects` names it.  [default: every one]")
 @options.bowl

@@ -1,11 +1,9 @@
 """``feeder inertia``."""
 
-import click
-
-from feederscrew_cli import options
+from feederscrew_cli import grouped, options
 
 
-@click.command(short_help="Volume, mass, centre of mass and inertia of a part.")
+@grouped.command(short_help="Volume, mass, centre of mass and inertia of a part.")
 @options.part
 @options.output
 def inertia(part, out):

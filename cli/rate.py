@@ -2,12 +2,10 @@
 
 import math
 
-import click
-
-from feederscrew_cli import options, orientation
+from feederscrew_cli import grouped, options, orientation
 
 
-@click.command(short_help="Correctly oriented parts per minute, with each factor of the chain.")
+@grouped.command(short_help="Correctly oriented parts per minute, with each factor of the chain.")
 @options.part
 @orientation.chain
 @orientation.taken

@@ -5,7 +5,7 @@ import shlex
 
 import click
 
-from feederscrew_cli import options, orientation, talk, waiting
+from feederscrew_cli import grouped, options, orientation, talk, waiting
 from feederscrew_cli.quantity import Quantity
 
 WANTED = (
@@ -54,7 +54,7 @@ def _all(decorators):
     return decorate
 
 
-@click.command(short_help="All that is known of a part in a bowl, on one page to turn, print and keep.")
+@grouped.command(short_help="All that is known of a part in a bowl, on one page to turn, print and keep.")
 @options.part
 @_all(WANTED)
 @orientation.taken

@@ -1,11 +1,9 @@
 """``feeder reproduce``."""
 
-import click
-
-from feederscrew_cli import options
+from feederscrew_cli import grouped, options
 
 
-@click.command(short_help="The thesis's tables and figures, recomputed cell by cell.")
+@grouped.command(short_help="The thesis's tables and figures, recomputed cell by cell.")
 @options.output
 def reproduce(out):
     """Example: feeder reproduce -o results

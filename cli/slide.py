@@ -2,7 +2,7 @@
 
 import click
 
-from feederscrew_cli import options
+from feederscrew_cli import grouped, options
 
 
 class VibrationAngle(click.ParamType):
@@ -23,7 +23,7 @@ class VibrationAngle(click.ParamType):
             return self.fail(f"{fault.what} - {fault.mend}", param, ctx)
 
 
-@click.command(short_help="Map of when a part slips, and which way.")
+@grouped.command(short_help="Map of when a part slips, and which way.")
 @click.option(
     "--beta",
     "betas",

@@ -2,13 +2,13 @@
 
 import click
 
-from feederscrew_cli import options, orientation
+from feederscrew_cli import grouped, options, orientation
 from feederscrew_cli.angle import Angle
 from feederscrew_cli.progress import Progress
 from feederscrew_cli.quantity import Quantity
 
 
-@click.command(short_help="Which cuts let only one orientation leave the bowl.")
+@grouped.command(short_help="Which cuts let only one orientation leave the bowl.")
 @options.part
 @click.option(
     "--aspect", metavar="NAME", help="Aspect the part shall leave on.  [default: every orientation]"

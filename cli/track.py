@@ -2,11 +2,11 @@
 
 import click
 
-from feederscrew_cli import completion, options
+from feederscrew_cli import completion, grouped, options
 from feederscrew_cli.angle import Angle
 
 
-@click.command(short_help="Reactions and motion of a part on the track, against the wall.")
+@grouped.command(short_help="Reactions and motion of a part on the track, against the wall.")
 @options.part
 @click.option("--aspect", metavar="NAME", help="As `feeder aspects` names it.  [default: the likeliest]")
 @click.option("--heading", type=Angle(), metavar="ANGLE", help="As laid down.  [default: the most frequent]")

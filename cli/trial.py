@@ -4,7 +4,7 @@ import os
 
 import click
 
-from feederscrew_cli import options, orientation, waiting
+from feederscrew_cli import grouped, options, orientation, waiting
 from feederscrew_cli.interrupt import held_back
 
 
@@ -43,7 +43,7 @@ def _together(queue, **others):
     return {"queue": queue, **others}
 
 
-@click.command(short_help="A trial run: parts of true shape on the vibrating, tooled track.")
+@grouped.command(short_help="A trial run: parts of true shape on the vibrating, tooled track.")
 @options.part
 @click.option("--aspect", metavar="NAME", help="Only its orientations.  [default: every orientation]")
 @options.rule

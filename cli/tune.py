@@ -2,11 +2,11 @@
 
 import click
 
-from feederscrew_cli import options, orientation, waiting
+from feederscrew_cli import grouped, options, orientation, waiting
 from feederscrew_cli.quantity import Quantity
 
 
-@click.command(short_help="Amplitude, angle or frequency that reaches a rate.")
+@grouped.command(short_help="Amplitude, angle or frequency that reaches a rate.")
 @options.part
 @click.option(
     "--target",

@@ -1,16 +1,20 @@
 """What the program says, in the words of the trade."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+import click
 import part_files as files
 import pytest
 
 from feederscrew.part.density import MATERIALS
 from feederscrew.resting.rules import registry
+from feederscrew_cli import grouped
+from feederscrew_cli.main import feeder
 
 PARTS = Path(__file__).parents[3] / "parts"
 NUT = PARTS / "squarenut_m5.stl"
@@ -83,3 +87,15 @@ def test_a_part_that_does_not_move_on_the_plate_sticks():
     from feederscrew.output.slide.figures import REGIMES
 
     assert (REGIMES["stick"][1], HATCHES["stick"][2]) == ("sticks", "sticks")
+
+
+@pytest.mark.parametrize("name", list(feeder.commands))
+def test_the_help_of_a_command_lists_each_option_once_in_groups(run, name):
+    command = feeder.commands[name]
+    said = run(name, "--help").stdout.partition("\nOptions:\n")[2]
+    shown = [option for option in command.params if isinstance(option, click.Option)]
+    for option in shown:
+        longest = max(option.opts, key=len)
+        assert len(re.findall(rf"^  (?:-\w, )?{longest}(?=[ \n])", said, re.MULTILINE)) == 1, longest
+    long = isinstance(command, grouped.Grouped) and len(shown) >= grouped.LONG
+    assert "\nOutput:\n" in said or not long
