@@ -74,6 +74,21 @@ def shares(out, part, bowl, taken, path=None):
     return study.shares(part, bowl, **choice(taken, path), **telling(out))
 
 
+def arriving(out, part, taken, path=None):
+    """Return a function from a bowl to what ``shares`` returns of it; it shows how far the first one is."""
+    from feederscrew.studies import rate as study
+
+    known = {}
+
+    def found(bowl):
+        if bowl not in known:
+            told = {} if known else telling(out)
+            known[bowl] = study.shares(part, bowl, **choice(taken, path), **told)
+        return known[bowl]
+
+    return found
+
+
 def choice(taken, path=None):
     """Return the keywords of ``studies.rate.shares`` that the options name; a wrong call if two clash."""
     asked = click.get_current_context().get_parameter_source("rule") is click.core.ParameterSource.COMMANDLINE

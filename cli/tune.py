@@ -17,16 +17,18 @@ from feederscrew_cli.quantity import Quantity
 )
 @orientation.chain
 @orientation.taken
+@click.option("--worst", is_flag=True, help="Give the rate at the worst friction, a fifth lower or higher.")
 @options.bowl
 @options.output
-def tune(part, target, aspect, heading, rule, gap, fill, taken, bowl, out):
+def tune(part, target, aspect, heading, rule, gap, fill, taken, worst, bowl, out):
     """Example: feeder tune parts/lbracket_30x20x15.stl --aspect A --target 20/min
 
-    Every setting of amplitude, vibration angle or frequency alone that reaches at least the target, one-way
+    Every setting of amplitude, vibration angle or frequency alone that gives the target to 2 %, one-way
     and gentle motions first, each with its regime, hardest impact, the margins to slip forward, slip
     back and hop (below 0: beyond it), and the rate if friction is a fifth lower or higher.
-    The shares of the aspects are those of `feeder rate` at the bowl's own drive, and stay so while the
-    drive changes: ask `feeder rate` again at the setting you choose.
+    Another drive lets other shares of the aspects arrive: each setting is found with its own, so that
+    `feeder rate` says the same of it. The rate is met at the bowl's friction, with --worst at the worst
+    of friction a fifth lower and higher and of every start; the table says which.
     With -o: tune.csv and tune.json.
     """
     from feederscrew import bowl as bowls
@@ -38,11 +40,11 @@ def tune(part, target, aspect, heading, rule, gap, fill, taken, bowl, out):
     effective = columns.conditions(solid) | bowls.texts(settings)
     waiting.conveying(out)
     record = bowls.record(settings)
-    known = orientation.shares(out, solid, record, taken, bowl["path"])
-    with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
+    arriving = orientation.arriving(out, solid, taken, bowl["path"])
+    with out.folder(solid.name, solid.inputs | arriving(record).inputs, effective) as folder:
         found = study(
-            solid, record, aspect, target, known=known,
-            heading=heading, rule=rule, gap=gap, fill=fill,
+            solid, record, aspect, target, arriving=arriving, progress=waiting.told(out, "settings"),
+            heading=heading, rule=rule, gap=gap, fill=fill, worst=worst,
         )  # fmt: skip
         out.warn(*found.warnings, *tables.remarks(found))
         offers.write(folder, files.offers(found))

@@ -1,5 +1,7 @@
 """What a person is told who must wait: for the compiler, and how far a long run is."""
 
+import click
+
 from feederscrew_cli.progress import Progress
 
 
@@ -41,6 +43,13 @@ def conveying(out):
 
     if not sweep.compiled():
         out.say("Compiling the conveying kernel, once on this machine: about ten seconds.")
+
+
+def told(out, what):
+    """Return a function of how many ``what`` are done and of how many, which shows it in a bar."""
+    shown = bar(out, what)
+    click.get_current_context().with_resource(shown)
+    return shown.reach
 
 
 def bar(out, what):

@@ -1,6 +1,5 @@
 """From a bowl to its conveying velocity and back: SI units on both sides of the unitless kernel."""
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -171,7 +170,7 @@ def scaled(bowl, *, amplitude=1.0, friction=1.0, angle=1.0):
     drive = replace(
         bowl.drive,
         amplitude=bowl.drive.amplitude * amplitude,
-        vibration_angle=min(bowl.drive.vibration_angle * angle, math.pi / 2),
+        vibration_angle=np.minimum(bowl.drive.vibration_angle * angle, np.pi / 2),
     )
     mu = bowl.friction
     values = (mu.static, mu.kinetic, mu.wall, *mu.backward)

@@ -1,12 +1,13 @@
-"""Settings of the drive that reach a wanted velocity, the gentle ones first."""
+"""Settings of the drive that give a wanted rate, the gentle ones first."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from feederscrew import units
+from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.schema import BY_NAME, Key
-from feederscrew.conveying import answer
+from feederscrew.conveying import answer, sensitivity
 from feederscrew.errors import ArgumentError, FeederError
 
 KNOBS = ("drive.amplitude", "drive.vibration_angle", "drive.frequency")  # turned one at a time
@@ -15,7 +16,12 @@ STEPS = 241  # values of a knob that are looked at
 HIGHEST_THROW = 3.5  # beyond the best throw number, about 3, velocity falls and rests on chance
 HALVINGS = 45
 FASTEST = 20  # settings that are asked what they bring at most
-REACHED = 1e-6  # of the velocity
+REACHED = 1e-6  # of the rate
+CLOSE = 0.01  # of the rate: no further step is made
+WITHIN = 0.04  # of the rate: a setting gives it; what arrives is sampled, so that it jumps by a few per cent
+ROUNDS, REMEMBERED = 8, 3  # steps towards a setting, and those whose parts lead on
+ALIKE = 0.01  # of a value: two settings are one
+DIGITS = 6  # of a value as it is printed
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,12 +31,18 @@ class Solution:
     key: Key  # what was turned
     value: float  # [SI]
     answer: answer.Answer
-    parts_per_metre: float = np.nan  # [1/m] well-oriented parts on a length of track at that drive
+    speed: float  # [m/s] that the target is met with: from rest, or the slowest of every start and friction
+    parts_per_metre: float  # [1/m] well-oriented parts on a length of track, with what arrives at that drive
+
+    @property
+    def shown(self):
+        """The value in the key's unit, as it is given back."""
+        return float(f"{self.value / units.factor(self.key.unit, self.key.dimension):.12g}")
 
     @property
     def rate(self):
-        """Well-oriented parts [1/s]."""
-        return self.answer.velocity * self.parts_per_metre
+        """Well-oriented parts [1/s] at that speed."""
+        return self.speed * self.parts_per_metre
 
     @property
     def order(self):
@@ -40,8 +52,8 @@ class Solution:
         return GENTLE.index(found.regime), several, found.hardest_impact
 
 
-def solutions(bowl, target, density):
-    """Every setting of amplitude, angle or frequency alone that reaches at least a rate.
+def solutions(bowl, target, density, *, worst=False, progress=None):
+    """Find every setting of amplitude, angle or frequency alone that gives a rate, with what it lets arrive.
 
     Parameters
     ----------
@@ -49,32 +61,71 @@ def solutions(bowl, target, density):
     target : float [1/s]
         Well-oriented parts, from rest; above 0.
     density : callable
-        From a bowl to the well-oriented parts on a length of its track [1/m], without those that its drive
-        turns over; of None, as if it turned over none.
+        From a bowl to the well-oriented parts on a length of its track [1/m], with what arrives at its drive
+        and without what that turns over; of None, at the bowl's own drive as if it turned over none.
+    worst : bool
+        Reach the target at the slowest of every start, here and for friction a fifth lower and higher.
+    progress : function, optional
+        Told how many settings are found out, and of how many.
 
     Returns
     -------
     list of Solution
-        Each reaches at least the rate: more of it where the velocity jumps over the wanted one; those come
-        last. One-way and gentle regimes first.
+        Each gives the rate to ``WITHIN``; where none does, because the velocity jumps over the wanted one,
+        each gives more. One-way and gentle regimes first. Values are round numbers in their unit.
 
     Raises
     ------
     FeederError
         If none does; the line says what the bowl reaches at most.
     """
-    looks = [_look(bowl, BY_NAME[name]) for name in KNOBS]
-    asked, found = [density(None)], []
-    for parts in asked:  # grows by what is left where a setting turns some over
-        for one in _reaching(bowl, looks, target / parts):
-            one = replace(one, parts_per_metre=density(turned(bowl, one.key, one.value)))
-            if one.parts_per_metre >= (1.0 - REACHED) * parts:
-                found.append(one)
-            elif one.parts_per_metre > 0.0 and not np.isclose(one.parts_per_metre, asked, atol=0.0).any():
-                asked.append(one.parts_per_metre)
-    if not found:
-        raise _unreachable(bowl, looks, target, density)
-    return sorted(found, key=lambda one: (one.rate > (1.0 + REACHED) * target, *one.order))
+    looks = [_look(bowl, BY_NAME[name], worst) for name in KNOBS]
+    if not any(np.isfinite(look.speeds).any() for look in looks):
+        raise FeederError("track.climb", "is steeper than friction holds", "lower the climb")
+    starts = [(look, value) for look in looks for value in look.starts(target / density(None))]
+    found = []
+    for count, (look, value) in enumerate(starts):
+        found.append(_settled(look, value, target, density))
+        if progress:
+            progress(count + 1, len(starts))
+    several = _apart(found, target)
+    near = [one for one in several if abs(one.rate - target) <= WITHIN * target]
+    beyond = [one for one in several if one.rate > target]
+    if not near and not beyond:
+        raise _unreachable(looks, target, density)
+    return sorted(near or beyond, key=lambda one: one.order)
+
+
+def _settled(look, value, target, density):
+    """The setting near a start that gives the target with what arrives there, or comes nearest to it.
+
+    Each step takes the parts that arrived at the step before it, since another drive brings others; they are
+    sampled, so after some steps the mean of the last ones leads on.
+    """
+    seen, last = [], None
+    for _ in range(ROUNDS):
+        jumps = value == last
+        seen.append(look.solution(value if jumps else look.readable(value), density))
+        if abs(seen[-1].rate - target) <= CLOSE * target or jumps or not seen[-1].parts_per_metre > 0.0:
+            break
+        led = seen[-REMEMBERED:] if len(seen) > REMEMBERED else seen[-1:]
+        there = look.crossings(target / np.mean([one.parts_per_metre for one in led]))
+        if not there.size:
+            break
+        last, value = value, float(there[np.argmin(np.abs(there - value))])
+    away = [(abs(one.rate - target), one) for one in seen]
+    enough = [pair for pair in away if pair[0] <= WITHIN * target or pair[1].rate > target]
+    return min(enough or away, key=lambda pair: pair[0])[1]
+
+
+def _apart(found, target):
+    """Those of each key that are no other's neighbour, the nearest to the target of such neighbours."""
+    kept = []
+    for one in sorted(found, key=lambda one: abs(one.rate - target)):
+        others = [other.value for other in kept if other.key == one.key]
+        if all(abs(one.value - other) > ALIKE * other for other in others):
+            kept.append(one)
+    return kept
 
 
 def turned(bowl, key, value):
@@ -97,41 +148,66 @@ def _values(bowl, key):
     return values[throw <= HIGHEST_THROW] if key.word == "vibration_angle" else values
 
 
-def _look(bowl, key):
-    """A key, its values and the velocity at each [m/s]."""
+@dataclass(frozen=True, eq=False)
+class _Look:
+    """A key, values of it and the velocity at each."""
+
+    bowl: Bowl
+    key: Key
+    worst: bool
+    values: np.ndarray  # (V,) [SI]
+    speeds: np.ndarray  # (V,) [m/s]
+
+    def starts(self, velocity):
+        """Values from which a setting is sought: where a velocity is passed, else the fastest there is."""
+        there = self.crossings(velocity)
+        if there.size or not np.isfinite(self.speeds).any() or np.nanmax(self.speeds) <= 0.0:
+            return there
+        return self.values[[np.nanargmax(self.speeds)]]
+
+    def crossings(self, velocity):
+        """Where a velocity is passed, (N,): the faster side of it, beyond a jump where it jumps over it."""
+        above, known = self.speeds >= velocity, np.isfinite(self.speeds)
+        k = np.flatnonzero((above[1:] != above[:-1]) & known[1:] & known[:-1])
+        low, high, rises = self.values[k], self.values[k + 1], above[k + 1]
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            beyond = (_speeds(self.bowl, self.key, middle, self.worst) >= velocity) == rises
+            low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+        return np.where(rises, high, low)
+
+    def readable(self, value):
+        """The value as it is printed in the key's unit, so that it is the same when it is given back."""
+        shown = value / units.factor(self.key.unit, self.key.dimension)
+        return units.quantity(f"{shown:.{DIGITS}g} {self.key.unit}", self.key.dimension)
+
+    def solution(self, value, density):
+        """What the bowl does at a value, a Solution."""
+        driven = turned(self.bowl, self.key, value)
+        speed = float(_speeds(self.bowl, self.key, np.array([value]), self.worst)[0])
+        return Solution(self.key, value, answer.answer(driven), speed, density(driven))
+
+
+def _look(bowl, key, worst):
     values = _values(bowl, key)
-    return key, values, _speeds(bowl, key, values)
+    return _Look(bowl, key, worst, values, _speeds(bowl, key, values, worst))
 
 
-def _reaching(bowl, looks, velocity):
-    """Every setting that travels at least so fast."""
-    fast = [one for look in looks for one in _crossings(bowl, *look, velocity)]
-    return [one for one in fast if one.answer.velocity >= (1.0 - REACHED) * velocity]
+def _speeds(bowl, key, values, worst):
+    """Velocity at each value [m/s]: from rest, or the slowest of every start and friction."""
+    there = turned(bowl, key, values)
+    if not worst:
+        return answer.cells(there)["velocity"]
+    doubt = sensitivity.FRICTION_DOUBT
+    around = (answer.cells(answer.scaled(there, friction=1.0 + sign * doubt)) for sign in (-1.0, 0.0, 1.0))
+    return np.min([one["low"] for one in around], axis=0)  # NaN where one friction has no steady state
 
 
-def _speeds(bowl, key, values):
-    return answer.cells(turned(bowl, key, values))["velocity"]
-
-
-def _crossings(bowl, key, values, speeds, velocity):
-    """Where a velocity is passed: the faster side of it, beyond a jump where it jumps over the wanted one."""
-    above, known = speeds >= velocity, np.isfinite(speeds)
-    k = np.flatnonzero((above[1:] != above[:-1]) & known[1:] & known[:-1])
-    low, high, rises = values[k], values[k + 1], above[k + 1]
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        beyond = (_speeds(bowl, key, middle) >= velocity) == rises
-        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
-    fast = np.where(rises, high, low)
-    return [Solution(key, float(value), answer.answer(turned(bowl, key, value))) for value in fast]
-
-
-def _unreachable(bowl, looks, target, density):
+def _unreachable(looks, target, density):
     """The fault that no setting brings so many parts, and what is the most."""
-    peaks = [(speed, key, value) for key, values, speeds in looks for speed, value in zip(speeds, values)]
+    bowl = looks[0].bowl
+    peaks = [(speed, one.key, value) for one in looks for speed, value in zip(one.speeds, one.values)]
     peaks = sorted((peak for peak in peaks if np.isfinite(peak[0])), key=lambda peak: -peak[0])
-    if not peaks:
-        return FeederError("track.climb", "is steeper than friction holds", "lower the climb")
     per_minute = units.factor("/min", "rate")
     what = f"no setting reaches {target / per_minute:.6g}/min"
     mend = "lower the target, or change two keys of the drive together"

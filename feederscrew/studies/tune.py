@@ -1,15 +1,13 @@
 """The study of ``feeder tune``: settings of the drive that reach a wanted rate."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
-
-import numpy as np
+from functools import cache, partial
 
 from feederscrew import check
 from feederscrew.bowl.devices import strangers
 from feederscrew.bowl.record import Bowl
-from feederscrew.conveying import answer, sensitivity
+from feederscrew.conveying import answer
 from feederscrew.part.record import Part
 from feederscrew.rates import arrivals, well_oriented
 from feederscrew.rates import drive_settings as knobs
@@ -22,26 +20,25 @@ from feederscrew.tooling.orientations import orientations
 
 @dataclass(frozen=True, eq=False)
 class Tuned:
-    """One setting that reaches the rate, with what it gives."""
+    """One setting that gives the rate, with what it gives."""
 
     solution: knobs.Solution
-    # [m/s] over all starts and for friction a fifth lower and higher; the low end >= 0
-    velocity: well_oriented.Range
+    velocity: well_oriented.Range  # [m/s] over all starts and for friction a fifth lower and higher; >= 0
     over: tuple[str, ...]  # orientations that this drive turns over on the track
     several: bool  # steady velocities, depending on how the part arrives
 
 
 @dataclass(frozen=True, eq=False)
 class TuneStudy:
-    """Every setting of one key of the drive that reaches a rate, the recommended one first."""
+    """Every setting of one key of the drive that gives a rate, the recommended one first."""
 
     part: Part
     bowl: Bowl
-    aspects: Aspects
+    aspects: Aspects  # with what arrives at the bowl's own drive
     devices: tuple[Device, ...]
     target: float  # [1/s] well-oriented parts
+    worst: bool  # whether it is met at the slowest of every start and friction, else from rest
     settings: tuple[Tuned, ...]
-    own_drive: bool  # whether the shares are those on the moving floor at the bowl's own drive
 
     @property
     def warnings(self):
@@ -60,9 +57,11 @@ def tune(
     devices: Sequence[Device] | None = None,
     gap: float = 0.0,
     fill: float = 1.0,
-    known: Shares | None = None,
+    worst: bool = False,
+    arriving: Callable[[Bowl], Shares] | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> TuneStudy:
-    """Study which amplitude, angle or frequency alone reaches a rate.
+    """Study which amplitude, angle or frequency alone gives a rate.
 
     Parameters
     ----------
@@ -73,62 +72,69 @@ def tune(
         The one wanted.
     target : float [1/s]
         Well-oriented parts, above 0.
-    heading, rule, devices, gap, fill, known
-        As for ``rate``; the shares stay as they are while the drive changes, what turns over does not.
+    heading, rule, devices, gap, fill
+        As for ``rate``.
+    worst : bool
+        Meet the target at the slowest of every start, here and for friction a fifth lower and higher.
+    arriving : function, optional
+        From a bowl to the Shares that arrive at its drive; ``studies.rate.shares`` without it.
+    progress : function, optional
+        Told how many settings are found out, and of how many.
 
     Returns
     -------
     TuneStudy
+        ``rate`` at one of its settings, with the same shares, says what the setting says.
 
     Raises
     ------
     FeederError
-        If the part never leaves in that orientation, or no setting reaches the rate.
+        If the part never leaves in that orientation, or no setting gives the rate.
     """
     check.argument("target", target, LEAST)
     checked(bowl, heading, gap, fill)
     chain = bowl.devices if devices is None else tuple(devices)
-    known = shares(part, bowl) if known is None else known
-    found = known.aspects
+    ways = _Ways(part, bowl, chain, arriving or partial(shares, part))
+    found = ways.shares(bowl).aspects
     wanted = well_oriented.wanted(part, found, bowl.track, aspect, heading)
-    ways = _ways(part, bowl, chain, known)
     # raises where none ever leaves so
-    well_oriented.parts_per_metre(ways(None), wanted, rule, gap=gap, fill=fill)
+    well_oriented.parts_per_metre(ways.along(None), wanted, rule, gap=gap, fill=fill)
 
     def density(driven):
-        return well_oriented.leaving_per_metre(ways(driven), wanted, rule, gap=gap, fill=fill)
+        return well_oriented.leaving_per_metre(ways.along(driven), wanted, rule, gap=gap, fill=fill)
 
+    made = knobs.solutions(bowl, target, density, worst=worst, progress=progress)
     return TuneStudy(
         part=part,
         bowl=bowl,
         aspects=found,
         devices=chain,
         target=target,
-        settings=tuple(_tuned(one, bowl, ways) for one in knobs.solutions(bowl, target, density)),
-        own_drive=known.fed and rule == "recommended",
+        worst=worst,
+        settings=tuple(_tuned(one, bowl, ways) for one in made),
     )
 
 
-def _ways(part, bowl, chain, known):
-    """A function from a bowl with another drive, or None, to the orientations along its track."""
-    every = orientations(part, known.aspects, bowl.track)
+class _Ways:
+    """The orientations along the track of a bowl at other drives, with what arrives at each of them."""
 
-    @cache
-    def ways(driven):
-        return arrivals.oriented(along(every, known.aspects, chain, bowl=driven), known.measured)
+    def __init__(self, part, bowl, chain, arriving):
+        self.part, self.bowl, self.chain = part, bowl, chain
+        self.shares, self.along = cache(arriving), cache(self._along)
 
-    return ways
+    def _along(self, driven):
+        """At a drive; None: at the bowl's own as if it turned nothing over."""
+        known = self.shares(driven or self.bowl)
+        every = orientations(self.part, known.aspects, self.bowl.track)
+        return arrivals.oriented(along(every, known.aspects, self.chain, bowl=driven), known.measured)
 
 
 def _tuned(solution, bowl, ways):
     """Add to a solution what it gives if friction is a fifth lower or higher, and what it turns over."""
     found, driven = solution.answer, knobs.turned(bowl, solution.key, solution.value)
-    doubt = sensitivity.friction_doubt(driven)
-    slowest = np.nanmin([found.low, doubt.less, doubt.more])
-    fastest = np.nanmax([found.high, doubt.less, doubt.more])
     return Tuned(
         solution=solution,
-        velocity=well_oriented.Range(found.velocity, max(slowest, 0.0), max(fastest, 0.0)),
-        over=tuple(one.name for one in ways(driven).lying if one.turns_over),
+        velocity=well_oriented.velocity(driven),
+        over=tuple(one.name for one in ways.along(driven).lying if one.turns_over),
         several=bool(found.high - found.low > answer.COEXIST * found.speed),
     )

@@ -2,18 +2,20 @@
 
 from feederscrew import units
 from feederscrew.output import columns, tables
+from feederscrew.rates.drive_settings import WITHIN
 
 PER_MINUTE, MM_S = units.factor("/min", "rate"), units.factor("mm/s", "velocity")
 SEVERAL = ", several"  # velocities, depending on how the part arrives
-OWN_DRIVE = (
-    "the shares of the aspects are those on the floor at the bowl's own drive: ask feeder rate again at the "
-    "setting you choose"
-)
+MET = {False: "at this friction", True: "at the worst friction"}
 
 
 def document(study):
     """Return a TuneStudy as the JSON document."""
-    return columns.part(study.part, study.aspects.warnings) | {"settings": settings(study)}
+    return columns.part(study.part, study.aspects.warnings) | {
+        "target_per_minute": study.target / PER_MINUTE,
+        "target_met": MET[study.worst],
+        "settings": settings(study),
+    }
 
 
 def settings(study):
@@ -24,21 +26,18 @@ def settings(study):
 
 def shown(study, format):
     """Return what a format prints: every column as CSV, for people no more than a terminal holds."""
-    return settings(study) if format == "csv" else summary(settings(study))
+    return settings(study) if format == "csv" else summary(study)
 
 
-def summary(frame):
-    """Return the settings as a frame for people: no more than a terminal holds.
-
-    Parameters
-    ----------
-    frame : Frame
-        Of ``settings``.
-    """
+def summary(study):
+    """Return the settings as a frame for people: no more than a terminal holds."""
+    frame = settings(study)
     rows = frame.rows()
     return tables.frame(
         {
-            "setting": [f"{row['key']} {row['value']:.4g} {row['unit']}" for row in rows],
+            f"{study.target / PER_MINUTE:.6g}/min {MET[study.worst]}": [
+                f"{row['key']} {row['value']:.6g} {row['unit']}" for row in rows
+            ],
             "per min": frame["parts_per_minute"],
             "mu +-20 %": [_between(row) for row in rows],
             "velocity_mm_s": frame["velocity_mm_s"],
@@ -52,16 +51,17 @@ def summary(frame):
 
 
 def remarks(study):
-    """Return what a reader must not overlook: parts that are turned over, and the drive the shares are of."""
+    """Return what a reader must not overlook: parts that are turned over, and targets that are passed."""
     tipping = [_told(one) for one in study.settings if one.over]
     said = [f"{line} can tip over on the track and count as returned" for line in tipping]
-    return [*said, OWN_DRIVE] if study.own_drive else said
+    if any(one.solution.rate > (1.0 + WITHIN) * study.target for one in study.settings):
+        said.append("no setting gives that rate: the velocity jumps over it, and these give more")
+    return said
 
 
 def _told(one):
     key = one.solution.key
-    value = one.solution.value / units.factor(key.unit, key.dimension)
-    return f"at {key.name} {value:.4g} {key.unit}, {units.listed(one.over)}"
+    return f"at {key.name} {one.solution.shown:.6g} {key.unit}, {units.listed(one.over)}"
 
 
 def _between(row):
@@ -73,7 +73,7 @@ def _row(one, per_minute):
     found, key = one.solution.answer, one.solution.key
     return {
         "key": key.name,
-        "value": one.solution.value / units.factor(key.unit, key.dimension),
+        "value": one.solution.shown,
         "unit": key.unit,
         "parts_per_minute": one.velocity.value * per_minute,
         "parts_per_minute_low": one.velocity.low * per_minute,

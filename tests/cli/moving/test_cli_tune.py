@@ -3,6 +3,8 @@
 import json
 from pathlib import Path
 
+import pytest
+
 PART = Path(__file__).parents[3] / "parts" / "lbracket_30x20x15.stl"
 BOWL = ("--set", "drive.frequency=50 Hz", "--set", "restitution=0", "--set", "friction.static=0.4")
 
@@ -50,4 +52,16 @@ def test_the_table_fits_a_terminal(run):
     lines = result.stdout.splitlines()
     assert max(map(len, lines)) <= 110
     assert lines[2].startswith("drive.")
+    assert lines[0].startswith("12/min at this friction ")
     assert lines[0].endswith("to hop")
+
+
+def test_the_table_says_at_which_friction_the_rate_is_met(run):
+    asked = ("tune", PART, "--aspect", "A", "--target", "6/min", *BOWL, "--worst")
+    assert run(*asked).stdout.startswith("6/min at the worst friction ")
+    document = json.loads(run(*asked, "--format", "json").stdout)
+    assert document["target_met"] == "at the worst friction"
+    assert document["target_per_minute"] == pytest.approx(6.0)
+    rows = document["settings"]
+    assert all(one["parts_per_minute_low"] == pytest.approx(6.0, rel=0.04) for one in rows)
+    assert max(one["parts_per_minute"] for one in rows) > 6.5
