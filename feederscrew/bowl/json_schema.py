@@ -180,17 +180,26 @@ _POLYGON = {
 }
 
 
-def _mapping(**values):
+def _mapping(optional=(), **values):
     """A mapping of exactly these keys; one that Python keeps for itself ends in '_'."""
     named = {name.rstrip("_"): value for name, value in values.items()}
-    return {"type": "object", "properties": named, "required": list(named), "additionalProperties": False}
+    needed = [name for name in named if name not in optional]
+    return {"type": "object", "properties": named, "required": needed, "additionalProperties": False}
 
 
 _DRAWN = _mapping(dxf={"type": "string"}, layer={"type": ["string", "number"]})
 _LIKE = _mapping(of={"type": "string", "pattern": "^.+@.+$"}, play=_LENGTH)
+_BLADE = _mapping(
+    ("sweep", "friction", "contour"),
+    clearance=_LENGTH,
+    sweep=_quantity("angle"),
+    friction=_quantity("number", "0"),
+    contour=_POLYGON | {"minItems": 1},
+)
 _DEVICES = {  # what is written after 'kind:', by the dimension of the kind
     "length": _LENGTH,
     "span": _mapping(from_=_LENGTH, to=_LENGTH),
+    "blade": {"anyOf": [_LENGTH, _BLADE]},
     "polygon": {"anyOf": [_POLYGON, _DRAWN]},
     "opening": {"anyOf": [_POLYGON, _LIKE]},
     "shares": {"type": "object", "minProperties": 1, "additionalProperties": _quantity("number", "0", "1")},

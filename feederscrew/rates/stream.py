@@ -7,6 +7,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.rates.tipping import TrackTipping, marked
 from feederscrew.tooling import orientations as tooling
+from feederscrew.tooling.clearing import seconds
 from feederscrew.tooling.fates import course
 from feederscrew.tooling.orientations import Orientation
 
@@ -25,6 +26,9 @@ class Orientations:
     rules: dict[str, np.ndarray]  # (M,) probability of aspect and heading by each rule
     interval: np.ndarray  # (M, 2) lowest and highest probability by the recommended rule
     decided: np.ndarray  # (M,) bool, whether statics tells what the devices do; momentum may where they turn
+    fates: tuple[str, ...]  # (M,) what becomes of most: carried, returned or stopped
+    stops: np.ndarray  # (M, stations) share of each that stands before each station
+    clearing: np.ndarray  # (M,) [s] how long what devices return blocks the track, in the mean of the row
     tipping: TrackTipping | None = None  # on the track of a bowl; None where no drive is known
 
     @property
@@ -128,8 +132,20 @@ def along(lying, aspects, chain=(), sigma=0.0, bowl=None):
         rules={rule: check.frozen(chance) for rule, chance in rules.items()},
         interval=check.frozen(_interval(aspects, lying)),
         decided=found.decided,
+        fates=found.fates,
+        stops=found.stops,
+        clearing=check.frozen(_clearing(found, lying, chain, bowl)),
         tipping=tips,
     )
+
+
+def _clearing(found, lying, chain, bowl):
+    """Time [s] for which each orientation blocks the track on its way off it, in the mean."""
+    times = np.zeros(len(lying))
+    for step, device in enumerate(chain if bowl is not None else ()):
+        for row in np.flatnonzero(found.ends[:, 0, 1 + step] > 0.0):
+            times[row] += found.ends[row, 0, 1 + step] * seconds(device, lying[row], bowl)
+    return times
 
 
 def _interval(aspects, lying):

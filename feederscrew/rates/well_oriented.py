@@ -54,6 +54,13 @@ class Rate:
     purity: float  # share of what leaves the bowl that is well oriented; NaN where nothing leaves
     row: int  # of the wanted orientation
     orientations: Orientations
+    jams: float = 0.0  # [1/s] parts that come to stand before a device
+    clearing: float = 0.0  # [s] in the mean, of those that a blade sweeps off the track
+
+    @property
+    def jammed(self):
+        """Whether parts come to stand: efficiency and rate hold between jams only."""
+        return self.jams > 0.0
 
 
 def wanted(part, aspects, track, name, heading=None):
@@ -136,7 +143,9 @@ def rate(found, speed, target, rule, *, gap=0.0, fill=1.0):
     _check_rule(found, rule)
     density, share = _queued(found, row, rule, gap, fill), efficiency(found, row, rule)
     probability = _probability(found, row, rule)
-    offered, most = speed * density, speed * (1.0 / fed(found, row).length)
+    blocked, swept = _blocked(found, rule)
+    offered = Range(*(_offered(one * density, blocked) for one in speed.all))
+    most = speed * (1.0 / fed(found, row).length)
     made = offered * Range(share, *_efficiency_ends(found, row, rule))
     chance, enters = _entering(found, rule)
     leaving = float((chance * found.through).sum() / enters) if enters > 0.0 else 0.0
@@ -154,7 +163,28 @@ def rate(found, speed, target, rule, *, gap=0.0, fill=1.0):
         purity=share / leaving if leaving else np.nan,
         row=row,
         orientations=found,
+        jams=offered.value * _standing(found, rule),
+        clearing=swept,
     )
+
+
+def _offered(freely, blocked):
+    """Parts a second that come to the devices, each of which blocks the track for a time [s] in the mean."""
+    return 1.0 / (1.0 / freely + blocked) if freely > 0.0 else 0.0
+
+
+def _standing(found, rule):
+    """Share of the parts offered that come to stand before a device."""
+    chance, enters = _entering(found, rule)
+    return float((chance * found.stops.sum(axis=1)).sum() / enters) if enters > 0.0 else 0.0
+
+
+def _blocked(found, rule):
+    """Mean time [s] for which a part that is offered blocks the track, and the same of those that do."""
+    chance, enters = _entering(found, rule)
+    does = chance * (found.clearing > 0.0)
+    times = float((chance * found.clearing).sum())
+    return (times / enters, times / float(does.sum())) if does.sum() > 0.0 else (0.0, 0.0)
 
 
 def mean_length(found, rule):

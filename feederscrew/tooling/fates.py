@@ -8,9 +8,10 @@ import numpy as np
 from feederscrew import check
 from feederscrew.bowl.devices import beyond_rails
 from feederscrew.tooling import touching
+from feederscrew.tooling.devices.base import CARRIED, RETURNED, STOPPED, Device, Verdict
 from feederscrew.tooling.hanging import Hanging, hung
 from feederscrew.tooling.orientations import Orientation
-from feederscrew.tooling.verdicts import Verdict, verdict
+from feederscrew.tooling.verdicts import Meeting, verdict
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,6 +22,8 @@ class DeviceFlow:
     verdicts: tuple[tuple[Verdict | None, ...], ...]  # (D, S) None for a state that none is in yet
     matrices: np.ndarray  # (D, S, S) [1] share that goes on from a row's state in a column's
     starts: np.ndarray  # (M,) [1] share that the bare track carries
+    devices: tuple[Device, ...]  # (D,) in the order parts meet them
+    came: tuple[tuple[Orientation, ...], ...]  # (D,) the states as they are at each device
 
     @cached_property
     def leaving(self):
@@ -55,6 +58,32 @@ class DeviceFlow:
             moved = np.array([one is not None and not one.decided for one in told])
             found &= ~(reached[:, moved] > 0.0).any(axis=1)
         return check.frozen(found)
+
+    @cached_property
+    def ends(self):
+        """(M, 2, 1 + D) [1] share that the track and each device return, and that they stop."""
+        count, reached = len(self.starts), self._reached
+        found = np.zeros((count, 2, 1 + len(self.devices)))
+        found[:, 0, 0] = 1.0 - self.starts
+        for step, device in enumerate(self.devices):
+            lost = reached[step] * np.array(
+                [0.0 if k is None else 1.0 - k.passes for k in self.verdicts[step]]
+            )
+            for state in np.flatnonzero((lost > 0.0).any(axis=0)):
+                met = Meeting(self.came[step][state], self.came[0][:count])
+                found[:, int(device.fate(met) == STOPPED), 1 + step] += lost[:, state]
+        return check.frozen(found)
+
+    @property
+    def stops(self):
+        """(M, 1 + D) [1] share of each orientation that stands before each device."""
+        return self.ends[:, 1]
+
+    @cached_property
+    def fates(self):
+        """(M,) str, what becomes of most of each orientation: carried, returned or stopped."""
+        shares = np.column_stack([self.leaving.sum(axis=1), self.ends.sum(axis=2)])
+        return tuple((CARRIED, RETURNED, STOPPED)[k] for k in np.round(shares, 9).argmax(axis=1))
 
     def leaves_as(self, row):
         """Return the state in which an orientation is fed: its own, or how it hangs if none leaves lying."""
@@ -95,8 +124,9 @@ def course(devices, every, sigma=0.0):
         raise fault
     every = tuple(every)
     states, here = list(every), list(every)  # `here`: as they are at this device, a slot below them or not
-    verdicts, ways = [], []
+    verdicts, ways, came = [], [], []
     for device in devices:
+        came.append(tuple(here))
         told = [verdict(device, one, every, sigma) for one in here]
         ways.append([_way(device, k, one, found, states) for k, (one, found) in enumerate(zip(here, told))])
         verdicts.append(told)
@@ -107,6 +137,8 @@ def course(devices, every, sigma=0.0):
         states=tuple(states),
         verdicts=tuple(tuple(told + [None] * (len(states) - len(told))) for told in verdicts),
         matrices=check.frozen(_matrices(ways, len(states))),
+        devices=tuple(devices),
+        came=tuple(came),
         starts=check.frozen(np.array([0.0 if one.returned else 1.0 for one in every])),
     )
 

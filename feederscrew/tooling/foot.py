@@ -9,6 +9,7 @@ import numpy as np
 from feederscrew.geometry import polygons
 from feederscrew.tooling.devices.hole_shapes import BEHIND, gap
 
+SPOT = 1e-7  # [m] half the length of a single point of contact
 BESIDE = 1e-9  # [1] of an angle or a distance: what is beyond by more is so for certain
 
 
@@ -45,7 +46,7 @@ def standing(foot, distance, radius, shift=0.0):
     """
     from feederscrew.tooling.kernel.passage import Foot
 
-    middle = radius - distance
+    foot, middle = _spots(foot), radius - distance
     starts = [*foot.rings, foot.edges[:, 0]]
     ends = [*(np.roll(ring, -1, axis=0) for ring in foot.rings), foot.edges[:, 1]]
     start, end = np.concatenate(starts), np.concatenate(ends)
@@ -67,6 +68,15 @@ def standing(foot, distance, radius, shift=0.0):
         every=np.arange(len(corners)),
         sector=_sector(start[closed], end[closed], middle),
     )
+
+
+def _spots(foot):
+    """A foot whose single points are short lines along the track: an edge that comes is noticed there."""
+    if not len(foot.points):
+        return foot
+    lines = foot.points[:, None] + np.array([[-SPOT, 0.0], [SPOT, 0.0]])
+    edges = np.concatenate([foot.edges.reshape(-1, 2, 2), lines])
+    return Footprint(rings=foot.rings, edges=edges, points=np.empty((0, 2)))
 
 
 def _sector(start, end, middle):

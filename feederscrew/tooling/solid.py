@@ -124,18 +124,19 @@ def _gate(station, section):
         [affinity.translate(free, *by) for by in ((0, 0), (-2 * INTO, 0), (0, -2 * INTO))]
     )
     frame = shapely.box(-INTO, -INTO, section.width - INTO, station.top)
-    thick = np.ptp(station.blade[:, 0])
+    thick = station.blade[1, 0] - station.blade[0, 0]
+    lean = (station.blade[3, 0] - station.blade[0, 0]) / section.width
     blade = _extruded(frame.difference(free), 0.0, thick)
     angle = station.blade[0, 0] / section.track.radius
-    return blade.transform(_across(angle, section.track.radius / MM))
+    return blade.transform(_across(angle, section.track.radius / MM, lean))
 
 
-def _across(angle, radius):
-    """The 3 x 4 matrix that stands a plate (from the wall, height, thickness) [mm] across the track."""
+def _across(angle, radius, lean):
+    """The 3 x 4 matrix that stands a plate (off the wall, height, thickness) [mm] across the track."""
     ahead = np.array([np.cos(angle), np.sin(angle), 0.0])
     inwards = np.array([-np.sin(angle), np.cos(angle), 0.0])
     place = np.array([radius * np.sin(angle), radius - radius * np.cos(angle), 0.0])
-    return np.column_stack([inwards, [0.0, 0.0, 1.0], ahead, place])
+    return np.column_stack([inwards + lean * ahead, [0.0, 0.0, 1.0], ahead, place])
 
 
 def _in_order(corners):

@@ -80,7 +80,7 @@ def strip(track, devices, every, lead=0.5):
     bare = TrackSection(track, 0.0, _width(track, made, every), tallest, ())
     stations, start = [], lead * room
     for device in made:
-        length = room + device.reach
+        length = room + device.goes_on(bare.width)
         stations.append(_station(device, start, length, bare, every))
         start += length + 0.5 * room
     return replace(bare, length=start, stations=tuple(stations))
@@ -125,8 +125,8 @@ def _station(device, start, length, section, every):
     lower = device.lower(every)
     middle, blade = start + 0.5 * length, None
     if gate is not None:
-        blade = np.array([[0.0, 0.0], [BLADE, 0.0], [BLADE, section.width], [0.0, section.width]])
-        blade += np.array([middle, 0.0])
+        middle -= 0.5 * device.goes_on(section.width)
+        blade = device.footprint(middle, section.width, BLADE)
     return Station(
         device=device,
         start=start,

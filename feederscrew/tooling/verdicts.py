@@ -6,10 +6,12 @@ import shapely
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling import turning
 from feederscrew.tooling.devices.base import UNSURE, Verdict, share
+from feederscrew.tooling.falling_through import falls_through
 from feederscrew.tooling.hanging import Hanging, hanging_margin, head_first
 from feederscrew.tooling.holding import leans, may_lay_over, may_wedge, rides, widest
 
 WORN = 2.5e-4  # [m] what an opening holds by less does not hold a part up
+GRIP = 0.6  # [1] of a dry steel track
 FAR = 10.0  # [m] an opening goes on so far below the track and behind the wall
 
 
@@ -43,6 +45,20 @@ class Meeting:
 
     def __init__(self, one, every=(), sigma=0.0):
         self.one, self.every, self.sigma = one, tuple(every), sigma
+
+    @property
+    def size(self):
+        """Its greatest length [m] in the plane of the track or across it."""
+        return float(np.hypot(self.one.length, max(self.one.width, self.one.height)))
+
+    @property
+    def grip(self):
+        """Friction [1] of the track: of one that is only placed, that of a bowl of the defaults."""
+        return self.one.grip if self.one.grip > 0.0 else GRIP
+
+    def falls_through(self, cut):
+        """Return whether a hole (K, 2) [m] that does not carry it lets it through."""
+        return falls_through(self.one, cut)
 
     @property
     def hanging(self):

@@ -15,7 +15,7 @@ def document(study):
     found, rule = study.rate, study.rule
     known, row = found.orientations, found.row
     return {
-        **columns.part(study.part, study.aspects.warnings),
+        **columns.part(study.part, (*study.aspects.warnings, *stopping(found))),
         **_range("parts_per_minute", found.parts, PER_MINUTE),
         "aspect": known.aspects[row],
         "heading_deg": known.headings[row] / DEG,
@@ -34,6 +34,8 @@ def document(study):
         "passes_devices": found.through,
         "fill": found.fill,
         "well_oriented_of_leaving": found.purity,
+        "jams_per_hour": 3600.0 * found.jams,
+        "clearing_s": found.clearing,
         "quasi_static": [device.kind for device in study.devices if device.turns],
         "orientations": orientations(known, rule),
     }
@@ -56,6 +58,7 @@ def orientations(known, rule):
             "width_mm": known.widths / MM,
             f"p_{rule}": known.rules[rule],
             "margin_mm": known.margin / MM,
+            "fate": known.fates,
             "leaves_as": [_becomes(known, row) for row in range(len(known.aspects))],
             **stations,
             "passes": known.through,
@@ -84,6 +87,10 @@ def summary(document):
         ("share that passes the devices [%]", f"{100.0 * d['passes_devices']:.4g}"),
         ("fill of the track [%]", f"{100.0 * d['fill']:.4g}"),
     ]
+    rows += [("jams an hour", f"{d['jams_per_hour']:.4g}")] if d["jams_per_hour"] > 0.0 else []
+    rows += (
+        [("time a part swept off blocks the track [s]", f"{d['clearing_s']:.3g}")] if d["clearing_s"] else []
+    )
     return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
 
 
@@ -92,7 +99,7 @@ def remarks(study):
     found = study.rate
     if found.velocity.value <= 0.0:
         return ["the part does not travel up the track: see feeder convey"]
-    turned = [*_tipping(found), *_rolling(found), *_turned(study.devices)]
+    turned = [*stopping(found), *_tipping(found), *_rolling(found), *_turned(study.devices)]
     if found.orientations.lying[found.row].turns_over:
         return turned
     if found.through == 0.0 and found.efficiency > 0.0:
@@ -106,6 +113,20 @@ def remarks(study):
         verb = "reject" if len(names) > 1 else "rejects"
         return [f"{' and '.join(names)} {verb} the orientation you want; rate is 0"]
     return turned
+
+
+def stopping(found):
+    """Return what comes to stand before which device, a sentence each."""
+    known, said = found.orientations, []
+    for place, name in enumerate(known.names):
+        stands = [one.name for one, share in zip(known.lying, known.stops[:, place]) if share > 0.0]
+        if stands and found.jams > 0.0:
+            verb = "stops" if len(stands) == 1 else "stop"
+            said.append(
+                f"{units.listed(stands)} {verb} before {name} and nothing behind gets through: a jam; "
+                "efficiency and rate hold between jams only"
+            )
+    return said
 
 
 def _tipping(found):

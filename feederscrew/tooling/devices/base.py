@@ -13,6 +13,8 @@ from feederscrew.tooling.devices.pieces import Blade, Hole, Standing
 CLOSE = 1e-9  # [m] a part this much over a limit still passes
 UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
 MM = units.factor("mm", "length")
+RETURNED, STOPPED, CARRIED = "returned", "stopped", "carried"  # what becomes of a part at a device
+LONG = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
 ROOM = 1.3  # a device has so many lengths of the longest part to itself
 FRAME = 5e-3  # [m] of a gate above its opening
 
@@ -104,10 +106,18 @@ class Device:
         low, high = span
         return np.array([[0.0, low], [length, low], [length, high], [0.0, high]])
 
-    @property
-    def reach(self):
-        """How far along the track it goes beyond the room that every device has [m]."""
+    def goes_on(self, width):
+        """Return how far along a track of some width it goes beyond the room every device has [m]."""
         return 0.0
+
+    def footprint(self, place, width, thick):
+        """Return where a blade of some thickness stands, unrolled, (4, 2) [m]: straight across the track."""
+        return np.array([[place, 0.0], [place + thick, 0.0], [place + thick, width], [place, width]])
+
+    @property
+    def face(self):
+        """Sweep [rad] and friction [1] of a blade's face that may clear itself; None of any other device."""
+        return None
 
     @property
     def across(self):
@@ -140,6 +150,16 @@ class Device:
     def edge(self, start, length, width):
         """Return the edge over which parts turn, unrolled, two corners (2, 2) [m], or None."""
         return None
+
+    def fate(self, met):
+        """Return what becomes of an orientation that it does not let pass: RETURNED, or STOPPED before it.
+
+        Parameters
+        ----------
+        met : Meeting
+        """
+        cut = self.outline_on(met.one.track, LONG * met.size)
+        return RETURNED if cut is None or met.falls_through(cut) else STOPPED
 
     def judged(self, met):
         """Return what it does with an orientation, a Verdict.

@@ -1,11 +1,22 @@
 """Blades over the track: wiper, height bar and hold-down."""
 
+import itertools
+import math
+from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
+from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.devices.base import FRAME, STOPPED, Device, room_of
+from feederscrew.tooling.devices.pieces import Blade, Standing
+
+SQUARE = 0.5 * math.pi  # [rad] of the face to the direction of travel: straight across the track
+FAR = 10.0  # [m] beyond any track
 
 
+@dataclass(frozen=True)
 class _Overhead(Device):
     dimension: ClassVar[str] = ""
     bound: ClassVar[str] = "upper"
@@ -26,34 +37,118 @@ class _Overhead(Device):
     def needed(cls, one):
         return one.height
 
+    def fate(self, met):
+        return STOPPED
+
     def judged(self, met):
         return met.verdict(met.unless_laid_over(self.limit - met.one.height, self.limit))
 
 
+@dataclass(frozen=True)
 class Wiper(_Overhead):
-    """A blade over the track."""
+    """A blade over the track, which clears itself where its face sweeps parts off the free edge."""
+
+    sweep: float = SQUARE  # [rad] of the face to the direction of travel
+    friction: float = math.nan  # [1] of the face; NaN: that of the track
+    contour: tuple[tuple[float, float], ...] = ()  # [m] distance from the wall and clearance there
 
     kind = "wiper"
-    dimension = "length"
+    dimension = "blade"
     example = "6 mm"
-    meaning = "blade at a clearance over the track; returns orientations that stand higher"
+    meaning = (
+        "blade at a clearance over the track that holds up orientations that stand higher; straight across "
+        "it stops them, {clearance: 6 mm, sweep: 30 deg, friction: 0.2} sweeps them off the free edge: below "
+        "90 deg - atan(friction); contour: [[0 mm, 6 mm], [9 mm, 4 mm]] gives it a lower edge of its own"
+    )
     proposed = True
     rank = 1
 
+    @classmethod
+    def read(cls, entry):
+        return values.blade(entry)
 
+    def misfits(self, width):
+        heights = [height for _, height in self.contour]
+        if all(later <= before for before, later in itertools.pairwise(heights)):
+            return []
+        what = "the contour of wiper rises towards the free edge: parts slip below it as they are swept"
+        return [ConfigError(self.where, what, "let it stay level or fall")]
+
+    @property
+    def face(self):
+        """Its sweep [rad] and friction [1], NaN that of the track; None of one straight across."""
+        return (self.sweep, self.friction) if self.sweep < SQUARE else None
+
+    def clear_of(self, grip):
+        """Return whether its face sweeps parts off a track of some friction."""
+        friction = grip if math.isnan(self.friction) else self.friction
+        return self.face is not None and self.sweep < SQUARE - math.atan(friction)
+
+    def fate(self, met):
+        return super().fate(met) if not self.clear_of(met.grip) else "returned"
+
+    def opening(self, every, width):
+        if not self.contour:
+            return super().opening(every, width)
+        import shapely
+
+        return shapely.Polygon([(0.0, 0.0), *self._edge(width), (width, 0.0)])
+
+    def judged(self, met):
+        if not self.contour:
+            return super().judged(met)
+        return met.verdict(met.through(self.opening(met.every, FAR)))
+
+    def standing(self, track, every):
+        """Return its blade, which goes on over the free edge."""
+        import shapely
+
+        room, lean = room_of(every), math.sin(self.sweep)
+        edge = np.array(self._edge(track.extent))
+        tall = 2.0 * max(max(one.height for one in every), edge[:, 1].max()) + FRAME
+        ring = [*((y / lean, z) for y, z in edge), (edge[-1, 0] / lean, tall), (0.0, tall)]
+        friction = None if math.isnan(self.friction) else self.friction
+        long = track.extent / math.tan(self.sweep) if self.sweep < SQUARE else 0.0
+        blade = Blade(shapely.Polygon(ring), (0.5 * room, 0.0), self.sweep, friction=friction)
+        return Standing(0.5 * room + long, blades=(blade,))
+
+    def goes_on(self, width):
+        return 0.0 if self.face is None else width / math.tan(self.sweep)
+
+    def footprint(self, place, width, thick):
+        """Return where it stands, unrolled, (4, 2) [m]: leaning ahead towards the free edge."""
+        lean = width / math.tan(self.sweep) if self.face else 0.0
+        near, far = [place, 0.0], [place + lean, width]
+        return np.array([near, [place + thick, 0.0], [place + lean + thick, width], far])
+
+    def told(self):
+        own = {"sweep_deg": math.degrees(self.sweep)}
+        own |= {} if math.isnan(self.friction) else {"friction": self.friction}
+        return super().told() | (own if self.face else {})
+
+    def _edge(self, width):
+        """Its lower edge from the wall to the free edge: distances and heights [m]."""
+        if not self.contour:
+            return [(0.0, self.limit), (width, self.limit)]
+        inner = [(y, z) for y, z in self.contour if 0.0 < y < width]
+        return [(0.0, self.contour[0][1]), *inner, (width, self.contour[-1][1])]
+
+
+@dataclass(frozen=True)
 class HeightBar(_Overhead):
     """A bar across the track."""
 
     kind = "height_bar"
     dimension = "length"
     example = "6 mm"
-    meaning = "bar across the track at a clearance; returns orientations that stand higher"
+    meaning = "bar across the track at a clearance: orientations that stand higher stop before it"
 
 
+@dataclass(frozen=True)
 class HoldDown(_Overhead):
     """A bar above the queue."""
 
     kind = "hold_down"
     dimension = "length"
     example = "6 mm"
-    meaning = "bar above the queue that keeps parts down; returns orientations that do not fit below"
+    meaning = "bar above the queue that keeps parts down; orientations that do not fit below stop before it"

@@ -3,7 +3,7 @@
 import numpy as np
 
 from feederscrew.tooling.devices import named, values
-from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.devices.base import STOPPED, Device
 
 HIGH = 1.0  # [m] no opening is higher
 
@@ -16,7 +16,7 @@ class Profile(Device):
     example = "{of: A@90, play: 0.2 mm}"
     meaning = (
         "gate with an opening: a polygon of distances from the wall and heights, or an orientation's own "
-        "outline with play"
+        "outline with play; what does not fit stops before it: for parts that come one by one"
     )
     proposed = True
     feature = "outline seen along the track"
@@ -55,6 +55,9 @@ class Profile(Device):
         aspect, heading, _ = self.like
         written = f"{{of: {aspect}@{np.degrees(heading):.6g}, play: {text}}}"
         return type(self)(self.where, like=(aspect, heading, float(play)), text=written)
+
+    def fate(self, met):
+        return STOPPED
 
     def judged(self, met):
         return met.verdict(met.through(self.free(met.every)))

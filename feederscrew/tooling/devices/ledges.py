@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import UNSURE, Device, carried
+from feederscrew.tooling.devices.base import RETURNED, UNSURE, Device, carried
 
 DISTANCE = "distance from the wall to the centre of mass"
 
@@ -39,6 +39,9 @@ class NarrowedTrack(_OneNumber):
     def acts(self, track):
         return self.limit < track.width
 
+    def fate(self, met):
+        return RETURNED
+
     def span_on(self, track):
         return (self.limit, track.extent) if self.limit < track.extent else None
 
@@ -67,6 +70,9 @@ class PressureBreak(_OneNumber):
 
     def span_on(self, track):
         return (self.limit, track.extent) if self.limit < track.extent else None
+
+    def fate(self, met):
+        return RETURNED
 
     @classmethod
     def needed(cls, one):

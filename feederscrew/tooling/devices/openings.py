@@ -73,8 +73,7 @@ class CutOut(Device):
     def outline_on(self, track, length):
         return np.array(self.corners)
 
-    @property
-    def reach(self):
+    def goes_on(self, width):
         return max(x for x, _ in self.corners)
 
     def judged(self, met):

@@ -1,5 +1,6 @@
 """How the values of devices are written in a bowl file, and their faults."""
 
+import math
 from pathlib import Path
 
 from feederscrew import units
@@ -19,9 +20,36 @@ def length(entry):
     return {"limit": limit}
 
 
+def blade(entry):
+    """Read a clearance, or {clearance: 6 mm, sweep: 30 deg, friction: 0.2, contour: [[0 mm, 6 mm], ...]}."""
+    if entry.value.kind != "mapping":
+        return length(entry)
+    names = ("clearance", "sweep", "friction", "contour")
+    given = mapping(entry, names, "write {clearance: 6 mm, sweep: 30 deg}", ("sweep", "friction", "contour"))
+    found = {"limit": within(given, "clearance", "length", 1e-9, FARTHEST)} if "clearance" in given else {}
+    if "sweep" in given:
+        found["sweep"] = within(given, "sweep", "angle", math.radians(1.0), math.radians(90.0))
+    if "friction" in given:
+        found["friction"] = within(given, "friction", "number", 0.0, 5.0)
+    if "contour" in given:
+        found["contour"] = tuple(_corners(given["contour"].value, "contour"))
+    return found
+
+
+def within(given, name, dimension, low, high):
+    """Read one value of a mapping, from ``low`` to ``high`` in SI units."""
+    node = given[name].value
+    value = _quantity(node, name, dimension)
+    if low <= value <= high:
+        return value
+    unit, size = next(iter(units.UNITS[dimension].items()))
+    what = f"{name} is {units.one_line(node.text)}"
+    raise ConfigError(node.where, what, f"give {low / size:.4g} to {high / size:.4g} {unit}".rstrip())
+
+
 def span(entry):
     """Read {from: 2 mm, to: 5 mm}, as {'span': (m, m)}."""
-    given = _mapping(entry, ("from", "to"), "write {from: 2 mm, to: 5 mm}")
+    given = mapping(entry, ("from", "to"), "write {from: 2 mm, to: 5 mm}")
     first, last = (_quantity(given[name].value, f"{entry.key} {name}", "length") for name in ("from", "to"))
     if not 0.0 <= first < last:
         what = f"{entry.key} runs from {given['from'].value.text} to {given['to'].value.text}"
@@ -49,7 +77,7 @@ def opening(entry):
     """Read a polygon of the opening, or {of: A@90, play: 0.2 mm}, as {'corners': ...} or {'like': ...}."""
     if entry.value.kind != "mapping":
         return polygon(entry)
-    given = _mapping(entry, ("of", "play"), "write {of: A@90, play: 0.2 mm}")
+    given = mapping(entry, ("of", "play"), "write {of: A@90, play: 0.2 mm}")
     name, at, turn = given["of"].value.text.partition("@")
     if not at or not name.strip():
         what = f"{units.shown(given['of'].value.text)} is not an orientation"
@@ -101,14 +129,15 @@ def written(node):
     return " ".join(node.text.split())
 
 
-def _mapping(entry, names, mend):
+def mapping(entry, names, mend, optional=()):
+    """Return the entries of a mapping by key; a ConfigError for keys unknown or missing."""
     found = {one.key: one for one in entry.value.entries} if entry.value.kind == "mapping" else {}
     for one in found.values():
         if one.key not in names:
             raise ConfigError(
                 one.where, f"unknown key {units.shown(one.key)}", f"known are {', '.join(names)}"
             )
-    missing = [name for name in names if name not in found]
+    missing = [name for name in names if name not in found and name not in optional]
     if missing:
         raise ConfigError(entry.where, f"{entry.key} has no {missing[0]}", mend)
     return found
@@ -127,7 +156,7 @@ def _corners(node, kind):
 
 def _drawn(entry):
     """The one closed polyline of a layer of a DXF file in millimetres."""
-    given = _mapping(entry, ("dxf", "layer"), "write {dxf: tooling.dxf, layer: CUT}")
+    given = mapping(entry, ("dxf", "layer"), "write {dxf: tooling.dxf, layer: CUT}")
     node, layer = given["dxf"].value, given["layer"].value.text
     path = Path(node.text)
     if not path.is_absolute():
