@@ -193,7 +193,7 @@ _BLADE = _mapping(
     ("sweep", "friction", "contour"),
     clearance=_LENGTH,
     sweep=_quantity("angle"),
-    friction=_quantity("number", "0"),
+    friction=_quantity("number", "0", "5"),
     contour=_POLYGON | {"minItems": 1},
 )
 _DEVICES = {  # what is written after 'kind:', by the dimension of the kind
