@@ -20,6 +20,7 @@ from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.tumbling.by_class import Transition
 from feederscrew.studies import convey as convey_study
+from feederscrew.studies.aspects import aspects as aspects_study
 from feederscrew.studies.floor import floor
 from feederscrew.studies.headings import headings
 from feederscrew.studies.track import track
@@ -48,7 +49,7 @@ def test_labels_of_the_tipping_graph_stand_apart(count):
     names = [chr(65 + k) for k in range(count)]
     figure = graph.graph("nut", names, ways(count), np.full(count, 1.0 / count))
     texts = [text for text in figure.axes[0].texts if text.get_text()]
-    assert len(texts) == count + count * (count - 1)
+    assert len(texts) == count + count * (count - 1) + 1  # and the note below
     assert not any(a.overlaps(b) for a, b in combinations(boxes(figure, texts), 2))
 
 
@@ -159,3 +160,13 @@ def test_the_strokes_of_plates_stand_within_their_axes():
     frame = axes.get_window_extent()
     for box in boxes(axes.figure, axes.texts):
         assert frame.x0 <= box.x0 and box.x1 <= frame.x1
+
+
+def test_the_tipping_graph_of_a_part_shows_it_on_each_aspect():
+    study = aspects_study(NUT)
+    figure = graph.of_part(study, study.transitions, study.aspects.probabilities["quasistatic"])
+    shown = [image.get_array() for image in figure.axes[0].images]
+    assert len(shown) == len(study.aspects.names)
+    assert all((one[..., :3] < 0.9).any() for one in shown) and not np.array_equal(shown[0], shown[1])
+    said = " ".join(text.get_text() for text in figure.axes[0].texts)
+    assert all(f"{name}  " in said for name in study.aspects.names)

@@ -2,17 +2,14 @@
 
 import io
 
-import numpy as np
 from matplotlib import image
 
 from feederscrew.output import style
 from feederscrew.output.batch import ACROSS
-from feederscrew.output.solid import render, shading
-from feederscrew.output.solid.shading import Shot
-from feederscrew.output.solid.stance import outermost, stance
+from feederscrew.output.solid import render
+from feederscrew.output.solid import thumbnail as small
 
 WIDTH, HEIGHT = 240, 180  # [px] of a thumbnail
-ROOM = 1.08  # of a thumbnail over the part in it
 TEXT, EDGE = 52, 20  # [px] under each thumbnail, round the sheet
 LETTERS = 26  # of a line of text
 
@@ -35,12 +32,7 @@ def thumbnail(part, found, aspect=None):
     """
     solid = render.Rays(part.vertices, part.faces, part.centre_of_mass)
     row = found.names.index(aspect or found.likeliest)
-    standing = stance(outermost(solid.points), found.normals[row], found.heights[row] / solid.size)
-    lowest, highest = standing.framed
-    pixel = ROOM * max((highest - lowest) / (WIDTH, HEIGHT))
-    left, bottom = 0.5 * (lowest + highest) - 0.5 * pixel * np.array([WIDTH, HEIGHT])
-    drawn = shading.picture(solid, standing, Shot(left, bottom, pixel, WIDTH, HEIGHT))
-    return _png(np.clip(drawn, 0.0, 1.0))
+    return _png(small.pixels(solid, found, row, (WIDTH, HEIGHT)))
 
 
 def sheet(tiles):

@@ -1,5 +1,7 @@
 """The tipping graph drawn: what a part tips into, and how high it must be lifted for it."""
 
+from functools import partial
+
 import numpy as np
 
 from feederscrew.output import style
@@ -10,14 +12,17 @@ CLEAR = 4.0  # [pt] between an arrow and a disc
 BEND = 0.12  # of an arrow, so that there and back lie apart
 SPOTS = (0.36, 0.3, 0.42, 0.24, 0.48, 0.54, 0.6, 0.66, 0.72)  # of the way: where the lift may be written
 LETTER = (0.032, 0.085)  # width and height of one, over the ring's radius
-DISC = (0.14, 0.14)  # half a disc, over the ring's radius
+DISC = (0.22, 0.22)  # half a disc, over the ring's radius
+FRAMED = 4200.0  # [pt2] square about the disc behind a drawn aspect
+HALF = 0.15  # width of a drawn aspect, over the ring's diameter
+PICTURE = (160, 120)  # [px] of it
 LETTERS = 2  # of a name that fits into a disc
 PALE = "#9ba3aa"  # of ways that are not the easiest
 REACH = 1.45  # of the picture, where the ring of discs has radius 1
 
 
-def graph(title, names, ways, shares):
-    """Draw discs on a ring, one an aspect, joined by arrows that carry the lift in mm.
+def graph(title, names, ways, shares, drawn=None):
+    """Draw the aspects on a ring, joined by arrows that carry the lift in mm.
 
     Parameters
     ----------
@@ -26,7 +31,10 @@ def graph(title, names, ways, shares):
         Of the A aspects.
     ways : sequence of Transition
     shares : (A,) float [1]
-        Quasi-static probability; the area of a disc grows with it. An aspect where it is NaN is left out.
+        Quasi-static probability; an aspect where it is NaN is left out.
+    drawn : function, optional
+        Gives the picture (H, W, C) of an aspect by its row; without it a disc stands for each aspect, whose
+        area grows with its share.
 
     Returns
     -------
@@ -39,15 +47,56 @@ def graph(title, names, ways, shares):
     turn = np.pi / 2 - 2.0 * np.pi * np.arange(len(shown)) / max(len(shown), 1)
     places = {k: np.array([np.cos(a), np.sin(a)]) for k, a in zip(shown, turn)}
     sizes = 500.0 + 2500.0 * np.nan_to_num(shares)  # [pt2] squares about the discs
+    sizes = sizes if drawn is None else np.full(len(names), FRAMED)
     _arrows(axes, ways, places, sizes, names)
     for k, place in places.items():
-        axes.scatter(*place, s=sizes[k], color="white", edgecolor=style.INK, zorder=3)
-        _name(axes, names[k], place)
+        if drawn is None:
+            axes.scatter(*place, s=sizes[k], color="white", edgecolor=style.INK, zorder=3)
+            _name(axes, names[k], place)
+        else:
+            axes.scatter(*place, s=sizes[k], color="white", edgecolor=style.FAINT, zorder=3)
+            _framed(axes, drawn(k), f"{names[k]}  {100.0 * shares[k]:.3g} %", place)
+    note = (
+        "below each aspect: the share of all attitudes from which the part, let go without speed, ends on it"
+    )
+    axes.text(0.0, -REACH, note, ha="center", va="bottom", fontsize=7, color=style.INK)
     axes.set_xlim(-REACH, REACH)
     axes.set_ylim(-REACH, REACH)
     axes.set_aspect("equal")
     axes.axis("off")
     return figure
+
+
+def of_part(study, ways, shares):
+    """Draw the graph of an AspectsStudy or report case with the part in each aspect, where it has a shape.
+
+    Parameters
+    ----------
+    study : AspectsStudy
+    ways : sequence of Transition
+    shares : (A,) float [1]
+
+    Returns
+    -------
+    Figure
+    """
+    part, found = study.part, study.aspects
+    if part.vertices is None:
+        return graph(part.name, found.names, ways, shares)
+    from feederscrew.output.solid import render, thumbnail
+
+    solid = render.Rays(part.vertices, part.faces, part.centre_of_mass)
+    drawn = partial(thumbnail.pixels, solid, found, size=PICTURE)
+    return graph(part.name, found.names, ways, shares, drawn)
+
+
+def _framed(axes, picture, text, place):
+    """The part as it rests on an aspect, its name and its share below."""
+    half = HALF * np.array([1.0, picture.shape[0] / picture.shape[1]])
+    low, high = place - half + [0.0, 0.03], place + half + [0.0, 0.03]
+    axes.imshow(picture, extent=(low[0], high[0], low[1], high[1]), zorder=4, interpolation="antialiased")
+    look = {"ha": "center", "va": "top", "color": style.INK, "fontsize": 8, "fontweight": "bold", "zorder": 5}
+    axes.annotate(text, place - [0.0, half[1] - 0.02], **look)
 
 
 def _name(axes, name, place):

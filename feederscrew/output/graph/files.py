@@ -26,4 +26,4 @@ def _graph(study):
     from feederscrew.output.graph import figures
 
     shares = study.aspects.probabilities["quasistatic"]
-    return figures.graph(study.part.name, study.aspects.names, study.transitions, shares)
+    return figures.of_part(study, study.transitions, shares)

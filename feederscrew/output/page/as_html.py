@@ -16,6 +16,7 @@ from feederscrew.output.page.numbers import cells
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
 CSS_DPI = 96  # pixels of a page to the inch
 HALF = 700  # [px] a broader picture is not put beside another
+NARROW = 8  # columns of a table that is put beside something else
 SCRIPTS = ("three.js", "viewer.js")
 HINT = (
     "Drag a view to turn it, or use the arrow keys; double-click sets it back. "
@@ -90,20 +91,23 @@ def _head(page):
 
 
 def _section(section):
-    body = "\n".join(_run(*run) for run in groupby(section.blocks, _side_by_side))
+    body = "\n".join(_run(*run) for run in groupby(section.blocks, _beside))
     anchor = f' id="{section.anchor}"' if section.anchor else ""
     title = f"<h2>{escape(section.title)}</h2>\n" if section.title else ""
     return f"<section{anchor}>\n{title}{body}\n</section>"
 
 
-def _side_by_side(block):
+def _beside(block):
+    """Whether a block may stand beside another in a wide window: a picture or a small table."""
+    if isinstance(block, kinds.Table):
+        return len(block.frame) <= NARROW
     return isinstance(block, kinds.Picture) and not block.printed
 
 
-def _run(pictures, blocks):
-    """Blocks that follow each other; pictures side by side where the window is wide enough."""
+def _run(beside, blocks):
+    """Blocks that follow each other, in two columns if they may be."""
     body = "\n".join(_block(block) for block in blocks)
-    return f'<div class="pictures">\n{body}\n</div>' if pictures else body
+    return f'<div class="beside">\n{body}\n</div>' if beside else body
 
 
 def _block(block):

@@ -72,7 +72,7 @@ def tips(case):
     ways, found = case.resting.transitions, case.resting.aspects
     shown = np.flatnonzero(found.stable)[: figures.MOST]
     shares = np.where(found.stable, found.probabilities["quasistatic"], np.nan)
-    drawn = figures.graph(case.part.name, found.names, ways, shares)
+    drawn = figures.of_part(case.resting, ways, shares)
     table = tables.frame(
         {
             "aspect": [found.names[row] for row in shown],

@@ -1,0 +1,33 @@
+"""A part on one of its aspects, small and in the middle of its picture."""
+
+import numpy as np
+
+from feederscrew.output.solid import shading
+from feederscrew.output.solid.shading import Shot
+from feederscrew.output.solid.stance import outermost, stance
+
+ROOM = 1.08  # of the picture over the part in it
+
+
+def pixels(solid, found, row, size):
+    """Return the picture of a solid on one aspect.
+
+    Parameters
+    ----------
+    solid : Rays
+    found : Aspects
+        Of the same part.
+    row : int
+        Of the aspect.
+    size : (2,) int [px]
+        Width and height.
+
+    Returns
+    -------
+    (height, width, C) float [1]
+    """
+    standing = stance(outermost(solid.points), found.normals[row], found.heights[row] / solid.size)
+    lowest, highest = standing.framed
+    pixel = ROOM * max((highest - lowest) / size)
+    left, bottom = 0.5 * (lowest + highest) - 0.5 * pixel * np.array(size)
+    return np.clip(shading.picture(solid, standing, Shot(left, bottom, pixel, *size)), 0.0, 1.0)
