@@ -5,6 +5,8 @@ N samples; other letters are explained where they stand. SI units and radians th
 unit.
 """
 
+import sys
+from types import ModuleType
 from typing import TYPE_CHECKING
 
 __version__ = "0.2.0"
@@ -21,23 +23,50 @@ if TYPE_CHECKING:
         Part,
         Posture,
         Rate,
+        Shares,
         aspects,
+        calibrate,
+        compare,
         convey,
         drop,
         find_aspects,
+        floor,
+        headings,
+        inertia,
         load,
         posture,
         rate,
         read_bowl,
+        report,
+        reproduce,
         shake,
+        shares,
+        size_bowl,
+        slide,
+        tooling,
+        track,
+        trial,
+        tune,
         write_names,
-    )  # fmt: skip
+    )
 
 __all__ = [
     "Answer", "Aspects", "Bowl", "ConfigError", "Faults", "FeederError", "MeshError", "Part", "Posture",
-    "Rate", "aspects", "convey", "drop", "find_aspects", "load", "posture", "rate", "read_bowl", "shake",
-    "write_names",
+    "Rate", "Shares", "aspects", "calibrate", "compare", "convey", "drop", "find_aspects", "floor",
+    "headings", "inertia", "load", "posture", "rate", "read_bowl", "report", "reproduce", "shake", "shares",
+    "size_bowl", "slide", "tooling", "track", "trial", "tune", "write_names",
 ]  # fmt: skip
+
+
+class _Library(ModuleType):
+    """The package: ``tooling`` and ``trial`` are functions of it, though rooms of those names are in it."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if not (name in __all__ and isinstance(value, ModuleType)):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Library
 
 
 def __getattr__(name: str) -> object:

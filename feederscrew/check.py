@@ -45,6 +45,24 @@ def positive(name, value):
     return number
 
 
+def kind(name, value, wanted, mend):
+    """Raise an ArgumentError that names the argument where a value is not of a class.
+
+    Parameters
+    ----------
+    name : str
+        The argument, as the caller of the library knows it.
+    value : object
+    wanted : type or tuple of type
+    mend : str
+        What to give: 'give a part, as load returns it'.
+    """
+    if not isinstance(value, wanted):
+        has_article = isinstance(value, (int, float, str, type(None), list))
+        said = f"{value!r:.40}" if has_article else f"a {type(value).__name__}"
+        raise ArgumentError(name, f"is {said}", mend)
+
+
 def frozen(array):
     """Return the same array, closed to writing: what a record holds must not change under it."""
     array = np.ascontiguousarray(array)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from feederscrew.records import Shown
 from feederscrew.tooling.devices.base import Device
 
 WIDEST = 0.95  # of the wall's radius: about the axis there is no track
@@ -121,7 +122,7 @@ class Sizing:
 
 
 @dataclass(frozen=True)
-class Bowl:
+class Bowl(Shown):
     """Drive, surface, track and devices of one bowl."""
 
     drive: Drive

@@ -9,6 +9,7 @@ from feederscrew import check
 from feederscrew.dropping.kernel import one_drop as kernel
 from feederscrew.dropping.launches import sample
 from feederscrew.dropping.pool import gather
+from feederscrew.records import Shown
 
 BATCH = 250  # drops a core takes at a time
 ROUND = 8 * BATCH  # drops between two looks at the intervals, whatever the number of jobs
@@ -28,7 +29,7 @@ class Drops:
 
 
 @dataclass(frozen=True, eq=False)
-class Tally:
+class Tally(Shown):
     """Drops counted by class; A classes."""
 
     counts: np.ndarray  # (A,) int

@@ -7,6 +7,7 @@ thesis page take from it what they show.
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 from feederscrew.output import tables
 
@@ -18,6 +19,7 @@ class Offer:
     name: str
     make: Callable[[], str | bytes]
     alt: str = ""
+    view: Callable[[], Any] | None = None  # the frame, the document or the figure itself
 
     @property
     def is_picture(self):
@@ -37,12 +39,17 @@ def table(name, make, *arguments, **keywords):
     *arguments, **keywords
         Handed to ``make``.
     """
-    return Offer(name, lambda: tables.text(_framed(make(*arguments, **keywords)), "csv"))
+
+    def view():
+        return _framed(make(*arguments, **keywords))
+
+    return Offer(name, lambda: tables.text(view(), "csv"), view=view)
 
 
 def document(name, make, *arguments, **keywords):
     """Offer a JSON file; ``make`` returns the document."""
-    return Offer(name, lambda: tables.json_text(make(*arguments, **keywords)))
+    view = partial(make, *arguments, **keywords)
+    return Offer(name, lambda: tables.json_text(view()), view=view)
 
 
 def text(name, make, *arguments, **keywords):
@@ -65,12 +72,14 @@ def picture(name, alt, draw, *arguments, **keywords):
         Handed to ``draw``.
     """
 
+    view = partial(draw, *arguments, **keywords)
+
     def make():
         from feederscrew.output import style
 
-        return style.png(draw(*arguments, **keywords))
+        return style.png(view())
 
-    return Offer(name, make, alt)
+    return Offer(name, make, alt, view)
 
 
 def write(folder, offered, *, pictures=True):

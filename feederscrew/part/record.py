@@ -6,6 +6,7 @@ import numpy as np
 
 from feederscrew.part.aspect_names import AspectNames
 from feederscrew.part.hull import Hull
+from feederscrew.records import Shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +25,7 @@ class CardAspect:
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class Part(Shown):
     """A solid to be fed: its surface (none for a part card) and its mass properties."""
 
     name: str  # file stem

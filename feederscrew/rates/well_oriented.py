@@ -9,6 +9,7 @@ from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.mechanics.wall.stable_headings import headings, laid
 from feederscrew.rates.stream import Orientations, orientations
+from feederscrew.records import Shown
 from feederscrew.resting.posture import posture
 
 __all__ = ["Orientations", "Range", "Rate", "orientations", "parts_per_metre", "rate", "velocity", "wanted"]
@@ -39,7 +40,7 @@ class Range:
 
 
 @dataclass(frozen=True, eq=False)
-class Rate:
+class Rate(Shown):
     """Well-oriented parts leaving the bowl, and each factor of the chain."""
 
     parts: Range  # [1/s] delivered: offered times efficiency, at most what fits behind the devices

@@ -8,6 +8,7 @@ from feederscrew import check
 from feederscrew.geometry import compiled, vectors
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.moments import Moments
+from feederscrew.records import Shown
 from feederscrew.resting import naming
 from feederscrew.resting.basins.landscape import landscape
 from feederscrew.resting.classes import body_frame, classes
@@ -23,7 +24,7 @@ TIE = 1e-4  # probabilities that differ by less of themselves are equal but for 
 
 
 @dataclass(frozen=True, eq=False)
-class Aspects:
+class Aspects(Shown):
     """One row a class, the most likely first; A rows."""
 
     names: tuple[str, ...]

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from feederscrew.part.record import Part
+from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules import recommended
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
@@ -17,7 +18,7 @@ NEEDED = 2000  # drops of a test that nobody asked for: 0.011 of standard error 
 
 
 @dataclass(frozen=True, eq=False)
-class AspectsStudy:
+class AspectsStudy(Shown):
     """The resting aspects of one part, with a drop test of it where one was asked for or needed."""
 
     part: Part

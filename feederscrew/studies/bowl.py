@@ -19,18 +19,18 @@ from feederscrew.machine.stroke import Stroke, angles, greatest_amplitude, strok
 from feederscrew.part.record import Part
 from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.tipping import remark
+from feederscrew.records import Shown
 from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.studies import solidbowl
 from feederscrew.studies.aspects import answered
 from feederscrew.tooling.orientations import orientations
 
-STEEL = 7850.0  # [kg/m3] of a fill without a part
-FULL_WAVE = 2.0
+STEEL, FULL_WAVE = 7850.0, 2.0  # [kg/m3] of a fill without a part; drive over supply
 EVEN = 1e-9  # [1] flows closer than this are equal
 
 
 @dataclass(frozen=True, eq=False)
-class Order:
+class Order(Shown):
     """The part, what is wanted of it, and the bowl for it."""
 
     part: Part
@@ -49,7 +49,7 @@ class Order:
 
 
 @dataclass(frozen=True, eq=False)
-class MachineSheet:
+class MachineSheet(Shown):
     """A machine and what it does; with an order, that of the sized bowl."""
 
     bowl: Bowl

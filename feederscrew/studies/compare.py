@@ -8,6 +8,7 @@ from pathlib import Path
 from feederscrew.errors import Faults, FeederError
 from feederscrew.part import load
 from feederscrew.part.record import Part
+from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import count_rows, deviation, passed, profiles
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
@@ -18,7 +19,7 @@ MOST = 500  # files of one comparison
 
 
 @dataclass(frozen=True, eq=False)
-class CompareStudy:
+class CompareStudy(Shown):
     """Profiles of one part, measured and by rule, and how far every two of them are apart."""
 
     part: Part
@@ -44,7 +45,7 @@ class CompareStudy:
 
 
 @dataclass(frozen=True, eq=False)
-class SetStudy:
+class SetStudy(Shown):
     """One measured profile and every answer for its part."""
 
     part: Part
@@ -77,7 +78,7 @@ class SetStudy:
 
 
 @dataclass(frozen=True, eq=False)
-class SetsStudy:
+class SetsStudy(Shown):
     """Many measured profiles, each against every answer for its part, and feeding tests."""
 
     sets: tuple[SetStudy, ...]

@@ -13,12 +13,13 @@ from feederscrew.conveying import answer, phase, radius, sensitivity, trace
 from feederscrew.conveying.steady import STATUSES
 from feederscrew.geometry import grids
 from feederscrew.machine import speeds
+from feederscrew.records import Shown
 
 MM, DEG = units.factor("mm", "length"), units.factor("deg", "angle")
 
 
 @dataclass(frozen=True, eq=False)
-class ConveyStudy:
+class ConveyStudy(Shown):
     """One operating point of a bowl, and its neighbours."""
 
     bowl: Bowl
@@ -50,7 +51,7 @@ class ConveyStudy:
 
 
 @dataclass(frozen=True, eq=False)
-class ConveyCurve:
+class ConveyCurve(Shown):
     """What a part does along one quantity of the bowl; N points."""
 
     kind: str  # 'curve' over a key, or 'radius'
@@ -71,7 +72,7 @@ class ConveyCurve:
 
 
 @dataclass(frozen=True, eq=False)
-class ConveyPhase:
+class ConveyPhase(Shown):
     """What the phase of an elliptical drive does for a bowl."""
 
     best: phase.BestPhase
@@ -84,7 +85,7 @@ class ConveyPhase:
 
 
 @dataclass(frozen=True, eq=False)
-class ConveyMap:
+class ConveyMap(Shown):
     """What a part does over two keys of the bowl."""
 
     ranges: tuple[KeyRange, KeyRange]

@@ -5,7 +5,9 @@ from dataclasses import dataclass
 
 from feederscrew import check
 from feederscrew.dropping import drop_test, traces
+from feederscrew.dropping.ensemble import Tally
 from feederscrew.part.record import Part
+from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules.recommended import launch_named
 
@@ -13,12 +15,17 @@ BESIDE = ("csa", "surface")  # rules that the drops are shown with
 
 
 @dataclass(frozen=True, eq=False)
-class DropStudy:
+class DropStudy(Shown):
     """How often one part came to rest on each of its aspects."""
 
     part: Part
     aspects: Aspects
     result: drop_test.Result
+
+    @property
+    def tally(self) -> Tally:
+        """Counts, shares and intervals by class, in the order of the aspects."""
+        return self.result.tally
 
     @property
     def drops(self) -> int:

@@ -11,6 +11,7 @@ from feederscrew.mechanics.cycle import Cycle
 from feederscrew.mechanics.floor import balance, cells
 from feederscrew.mechanics.standing import standing
 from feederscrew.part.record import Part
+from feederscrew.records import Shown
 from feederscrew.resting.posture import Posture
 from feederscrew.studies.aspects import answered
 
@@ -20,7 +21,7 @@ ROOM = 1.25  # a map reaches at least so far beyond the bowl's own point
 
 
 @dataclass(frozen=True, eq=False)
-class FloorStudy:
+class FloorStudy(Shown):
     """What the part does at the upper reversal and over a cycle; maps on request."""
 
     part: Part

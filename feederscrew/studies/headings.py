@@ -5,13 +5,14 @@ from dataclasses import dataclass, replace
 from feederscrew.bowl.record import Track
 from feederscrew.mechanics.wall import stable_headings as wall
 from feederscrew.part.record import Part
+from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture, posture
 from feederscrew.studies.aspects import answered
 
 
 @dataclass(frozen=True, eq=False)
-class HeadingsStudy:
+class HeadingsStudy(Shown):
     """The stable headings of a part on one or more aspects."""
 
     part: Part

@@ -4,10 +4,11 @@ from dataclasses import dataclass
 
 from feederscrew.part.mass_balance import Balance, balance
 from feederscrew.part.record import Part
+from feederscrew.records import Shown
 
 
 @dataclass(frozen=True, eq=False)
-class InertiaStudy:
+class InertiaStudy(Shown):
     """A part, and what follows from its volume, mass and inertia."""
 
     part: Part

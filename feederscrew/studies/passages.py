@@ -13,6 +13,7 @@ from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
 from feederscrew.rates import passing, stream
 from feederscrew.rates.tipping import marked
+from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts.passed import DeviceCounts
 from feederscrew.studies.rate import shares
@@ -22,7 +23,7 @@ from feederscrew.tooling.tightest import Passage, until_returned
 
 
 @dataclass(frozen=True, eq=False)
-class PassagesStudy:
+class PassagesStudy(Shown):
     """Each orientation at the worst place of each device that it meets; M orientations."""
 
     devices: tuple[Device, ...]  # without measured yields
@@ -67,7 +68,7 @@ def passages(part: Part, bowl: Bowl, aspects: Aspects, rule: str) -> PassagesStu
 
 
 @dataclass(frozen=True, eq=False)
-class FeedingStudy:
+class FeedingStudy(Shown):
     """A feeding test of one part in one bowl; D devices that were counted."""
 
     part: Part

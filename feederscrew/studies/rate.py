@@ -13,6 +13,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.machine import speeds
 from feederscrew.part.record import Part
 from feederscrew.rates import arrivals, well_oriented
+from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH, launch_named
@@ -25,7 +26,7 @@ SEED = 1  # of the parts that are fed onto the moving floor
 
 
 @dataclass(frozen=True, eq=False)
-class Shares:
+class Shares(Shown):
     """The aspects of a part with the one answer that is taken for their shares."""
 
     aspects: Aspects  # their ``recommended`` is that answer
@@ -97,7 +98,7 @@ def shares(
 
 
 @dataclass(frozen=True, eq=False)
-class RateStudy:
+class RateStudy(Shown):
     """The rate of one orientation, and the chain of factors behind it."""
 
     part: Part
@@ -107,6 +108,11 @@ class RateStudy:
     rule: str  # whose probabilities are taken
     rate: well_oriented.Rate
     measured: profiles.Measured | None = None  # the counts that are taken, if they are
+
+    @property
+    def parts(self) -> well_oriented.Range:
+        """Well-oriented parts per second [1/s]."""
+        return self.rate.parts
 
     @property
     def answer(self) -> str:

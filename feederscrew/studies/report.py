@@ -9,6 +9,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.settings import Setting, has_machine
 from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
+from feederscrew.records import Shown
 from feederscrew.resting.posture import posture
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import convey
@@ -29,7 +30,7 @@ ROOM = 2.5  # and to so many times the bowl's own stroke
 
 
 @dataclass(frozen=True, eq=False)
-class ReportStudy:
+class ReportStudy(Shown):
     """A part, the aspect wanted of it, and a bowl, checked; every chapter's study when it is asked for."""
 
     resting: AspectsStudy

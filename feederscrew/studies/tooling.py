@@ -10,6 +10,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.part.record import Part
 from feederscrew.rates.steadiness import steady
 from feederscrew.rates.tipping import marked, remark
+from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.aspects import answered
 from feederscrew.tooling.design import MARGIN, design, place
@@ -29,7 +30,7 @@ LATE = "the search stopped at the time limit: another machine may find more - ra
 
 
 @dataclass(frozen=True, eq=False)
-class ToolingStudy:
+class ToolingStudy(Shown):
     """Every orientation of a part on a track, and what isolates it behind the bowl's devices; M of them."""
 
     part: Part

@@ -10,6 +10,7 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.dropping.launch_file import FACES, LaunchFile
 from feederscrew.dropping.shape import principal_axes, shape_of_part
 from feederscrew.part.record import Part
+from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.tumbling.by_class import ground
 from feederscrew.studies.drop import check_run
@@ -18,7 +19,7 @@ SURE = 0.95  # [1] from here on an answer is called sure
 
 
 @dataclass(frozen=True, eq=False)
-class Agreement:
+class Agreement(Shown):
     """What was told of measured tosses, beside what happened."""
 
     tosses: int  # with an answer
@@ -33,7 +34,7 @@ class Agreement:
 
 
 @dataclass(frozen=True, eq=False)
-class TossStudy:
+class TossStudy(Shown):
     """Where each launch of a file leads."""
 
     part: Part

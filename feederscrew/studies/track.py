@@ -16,6 +16,7 @@ from feederscrew.mechanics.track.frame import Seat, bank_without_radial_friction
 from feederscrew.mechanics.track.opening import Opening, first_to_open
 from feederscrew.mechanics.wall.stable_headings import Headings
 from feederscrew.part.record import Part
+from feederscrew.records import Shown
 from feederscrew.resting.posture import Posture
 from feederscrew.studies.aspects import answered
 
@@ -23,7 +24,7 @@ USUAL = ("track.bank=0deg:30deg:41", "track.climb=0deg:8deg:41")  # of a map
 
 
 @dataclass(frozen=True, eq=False)
-class TrackStudy:
+class TrackStudy(Shown):
     """What acts on the part at the upper reversal and over a cycle; maps on request."""
 
     part: Part

@@ -15,6 +15,7 @@ from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.part.record import Part
 from feederscrew.rates import arrivals, stream
 from feederscrew.rates.well_oriented import RECOMMENDED
+from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH
@@ -31,7 +32,7 @@ PARTS, FEW = 200, 60  # parts one at a time; fewer where they only tell what a q
 
 
 @dataclass(frozen=True, eq=False)
-class TrialStudy:
+class TrialStudy(Shown):
     """Parts of one kind on the tracks of one bowl at one or several amplitudes."""
 
     part: Part

@@ -12,6 +12,7 @@ from feederscrew.part.record import Part
 from feederscrew.rates import arrivals, well_oriented
 from feederscrew.rates import drive_settings as knobs
 from feederscrew.rates.stream import along
+from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.rate import LEAST, Shares, checked, shares
 from feederscrew.tooling.devices.base import Device
@@ -19,7 +20,7 @@ from feederscrew.tooling.orientations import orientations
 
 
 @dataclass(frozen=True, eq=False)
-class Tuned:
+class Tuned(Shown):
     """One setting that gives the rate, with what it gives."""
 
     solution: knobs.Solution
@@ -29,7 +30,7 @@ class Tuned:
 
 
 @dataclass(frozen=True, eq=False)
-class TuneStudy:
+class TuneStudy(Shown):
     """Every setting of one key of the drive that gives a rate, the recommended one first."""
 
     part: Part

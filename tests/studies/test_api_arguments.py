@@ -52,5 +52,5 @@ def test_a_bowl_keeps_what_its_file_lists(part, tmp_path):
     (tmp_path / "b.yaml").write_text("track: {width: 40 mm}\ndevices:\n  - wiper: 10 mm\n")
     bowl = fs.read_bowl(tmp_path / "b.yaml")
     found = fs.rate(part, bowl, "A")
-    assert found.orientations.stations == ("track", "wiper")
-    assert fs.rate(part, bowl, "A", devices=()).orientations.stations == ("track",)
+    assert found.rate.orientations.stations == ("track", "wiper")
+    assert fs.rate(part, bowl, "A", devices=()).rate.orientations.stations == ("track",)

@@ -12,6 +12,7 @@ from feederscrew.dropping.plate import drive
 from feederscrew.dropping.plate.occupancy import Occupancy, occupancy
 from feederscrew.dropping.plate.rides import ride
 from feederscrew.dropping.shape import shape_of_part
+from feederscrew.records import Shown
 from feederscrew.resting.tumbling.by_class import ground
 
 USUAL, SECONDS = 400, 5.0  # parts, and how long each is followed [s]
@@ -30,7 +31,7 @@ EXACT = Pace()
 
 
 @dataclass(frozen=True, eq=False)
-class Shaken:
+class Shaken(Shown):
     """What parts did on one plate."""
 
     bowl: Bowl

@@ -13,6 +13,7 @@ from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import sides, turned
 from feederscrew.mechanics.wall import sameness, support
 from feederscrew.mechanics.wall.outline import rests
+from feederscrew.records import Shown
 
 ALIKE = 1e-5  # of the outline's size: outlines that differ by less are the same
 NO_TURN = 1e-5  # [rad] files in single precision turn a part by a hundredth of it
@@ -20,7 +21,7 @@ TIE = 1e-4  # shares that differ by less of themselves are equal but for roundin
 
 
 @dataclass(frozen=True, eq=False)
-class Headings:
+class Headings(Shown):
     """Every stable heading of one posture on one track, the most frequent first, equals from 0 on; M rows."""
 
     aspect: str

@@ -42,6 +42,15 @@ def offers(study, settings, grid):
     ]  # fmt: skip
 
 
+def at_one_point(study):
+    """Offer what needs no map, as a list of Offer."""
+    return [
+        offer.table("track_cycle.csv", tables.over_cycle, study.cycle, study.course),
+        offer.picture("track_part.png", "The part on the track, with the forces on it", _part, study),
+        offer.picture("track_cycle.png", "Reactions over one cycle", _cycle, study),
+    ]
+
+
 def _part(study):
     from feederscrew.output.track import figures
 

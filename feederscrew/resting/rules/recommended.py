@@ -6,6 +6,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.errors import ArgumentError
+from feederscrew.records import Shown
 from feederscrew.resting.rules import registry
 
 LAUNCHES = ("place", "drop", "flip", "roll", "feed")
@@ -36,7 +37,7 @@ FLOOR = 0.1  # [1] of that width that does not fall towards shares of 0 and 1
 
 
 @dataclass(frozen=True, eq=False)
-class Recommended:
+class Recommended(Shown):
     """Probability of each class by the recommended rule, for one launch; A rows."""
 
     rule: str  # 'CSA, launch drop', 'drop test, launch flip'

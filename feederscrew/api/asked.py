@@ -1,0 +1,152 @@
+"""What a caller of the library may hand over, and the one line that names an argument it may not."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from os import PathLike
+from typing import Any, TypeAlias, TypedDict, cast
+
+from feederscrew import bowl as bowls
+from feederscrew import check
+from feederscrew.bowl import Bowl
+from feederscrew.dropping.conditions import KEYS
+from feederscrew.errors import ArgumentError
+from feederscrew.part import Part
+from feederscrew.rates.well_oriented import RECOMMENDED
+from feederscrew.studies.rate import Shares, shares
+from feederscrew.units import QuantityError, listed, quantity
+
+Path: TypeAlias = str | PathLike[str]
+Quantity: TypeAlias = str | float  # '2 mm', or a number in SI units
+Condition: TypeAlias = Quantity | tuple[Quantity, Quantity] | None  # or the smaller and the larger
+SI = {"length": "m", "angular velocity": "rad/s", "velocity": "m/s", "number": ""}
+PART = "give a Part, as load returns it"
+BOWL = "give a Bowl, as read_bowl returns it"
+
+
+class Answer(TypedDict, total=False):
+    """Whose probabilities are taken: the keywords of every function that needs them."""
+
+    rule: str  # 'recommended' without it
+    launch: str  # 'place', 'drop', 'flip', 'roll' or 'feed', which is usual
+    probabilities: Path  # a file of counts in place of an answer of ours
+    fed: bool  # what arrives at the track's entry from the moving floor of the bowl
+    known: Shares  # as ``shares`` returned it: nothing is computed again
+
+
+class BowlFile(TypedDict, total=False):
+    """The bowl of a function that sizes what the file leaves open: the keywords of ``read_bowl``."""
+
+    path: Path | None
+    overrides: Iterable[str]
+
+
+def a_part(part: object, *, mesh: bool = False) -> Part:
+    """Return the part; raises ArgumentError where it is none, or a card where a mesh is needed."""
+    check.kind("part", part, Part, PART)
+    found = cast(Part, part)
+    if mesh and found.vertices is None:
+        raise ArgumentError("part", "is a part card, which has no shape", "load a mesh")
+    return found
+
+
+def a_bowl(bowl: object, name: str = "bowl") -> Bowl:
+    """Return the bowl; raises ArgumentError where it is none."""
+    check.kind(name, bowl, Bowl, BOWL)
+    return cast(Bowl, bowl)
+
+
+def some_bowls(given: object) -> tuple[Bowl, ...]:
+    """Return one bowl, or several, as a tuple."""
+    if isinstance(given, Bowl):
+        return (given,)
+    check.kind("bowls", given, (tuple, list), f"{BOWL}, or several in a list")
+    return tuple(a_bowl(one, "bowls") for one in cast(list[object], given))
+
+
+def a_file(name: str, path: object) -> Path:
+    """Return the path of a file; raises ArgumentError where it is none."""
+    check.kind(name, path, (str, PathLike), "give the path of a file")
+    return cast(Path, path)
+
+
+def amount(name: str, value: Quantity, dimension: str) -> float:
+    """Return a quantity in SI units.
+
+    Parameters
+    ----------
+    name : str
+        The argument.
+    value : str or float
+        '2 mm', or a number in SI units.
+    dimension : str
+        A key of ``units.UNITS``.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    ArgumentError
+        If it is neither; the line names the argument.
+    """
+    if not isinstance(value, str):
+        return check.argument(name, value)
+    try:
+        return quantity(value, dimension)
+    except QuantityError as fault:
+        raise ArgumentError(name, fault.what, fault.mend) from None
+
+
+def angle(name: str, value: Quantity | None) -> float | None:
+    """Return an angle [rad] of '90 deg' or of radians; None stays None."""
+    return None if value is None else amount(name, value, "angle")
+
+
+def conditions(given: Mapping[str, Condition]) -> dict[str, str | None]:
+    """Return the conditions of a launch as typed: '20 mm:50 mm'.
+
+    Parameters
+    ----------
+    given : dict
+        By name: a text, a number in SI units, or the smaller and the larger of either.
+
+    Raises
+    ------
+    ArgumentError
+        If there is no such condition.
+    """
+    if strange := sorted(set(given) - set(KEYS)):
+        raise ArgumentError(strange[0], "is not a condition of a launch", f"give {listed(list(KEYS))}")
+    return {name: _typed(name, value) for name, value in given.items()}
+
+
+def rule(asked: Answer) -> str:
+    """Return whose probabilities are asked for."""
+    return asked.get("rule", RECOMMENDED)
+
+
+def answered(part: Part, bowl: Bowl, asked: Answer) -> Shares:
+    """Return the aspects of a part with the answer that was asked for."""
+    own: dict[str, Any] = dict(asked)
+    known, _ = own.pop("known", None), own.pop("rule", None)
+    if strange := sorted(set(own) - {"launch", "probabilities", "fed"}):
+        raise TypeError(f"unexpected keyword argument {strange[0]!r}")
+    if known is None:
+        return shares(part, bowl, **own)
+    check.kind("known", known, Shares, "give what shares returned")
+    return known
+
+
+def settings(asked: BowlFile) -> tuple[Any, ...]:
+    """Return the settings of a bowl file with overrides."""
+    return bowls.settings(asked.get("path"), tuple(asked.get("overrides", ())))
+
+
+def _typed(name: str, value: Condition) -> str | None:
+    if value is None or isinstance(value, str):
+        return value
+    unit = SI[KEYS[name][0]]
+    ends: Sequence[Quantity] = value if isinstance(value, (tuple, list)) else (value,)
+    return ":".join(
+        end if isinstance(end, str) else f"{check.argument(name, end)!r} {unit}".strip() for end in ends
+    )

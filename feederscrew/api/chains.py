@@ -1,0 +1,158 @@
+"""Devices along the track: what isolates an orientation, a trial of a chain of them, and all on one page."""
+
+from collections.abc import Sequence
+from typing import Any, Unpack
+
+from feederscrew.api import asked
+from feederscrew.api.asked import Answer, BowlFile, Quantity
+from feederscrew.bowl import Bowl
+from feederscrew.part import Part
+from feederscrew.studies.report import ReportStudy
+from feederscrew.studies.tooling import ToolingStudy
+from feederscrew.studies.trial import TrialStudy
+from feederscrew.thesis.reproduced import Reproduction
+
+
+def tooling(
+    part: Part,
+    bowl: Bowl,
+    aspect: str | None = None,
+    *,
+    heading: Quantity | None = None,
+    margin: Quantity | None = None,
+    known: asked.Shares | None = None,
+    **search: Any,
+) -> ToolingStudy:
+    """Find cuts that isolate an orientation of a part, as ``feeder tooling``.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    bowl : Bowl
+    aspect : str, optional
+        The one wanted; every orientation without it.
+    heading : str or float [rad], optional
+        Of that aspect.
+    margin : str or float [m], optional
+        By which the wanted orientation passes and the others fail, at least.
+    known : Shares, optional
+        Of ``shares``.
+    **search
+        rule, purity, efficiency, turn, seed, verdicts, seconds: as for ``feeder tooling``.
+
+    Returns
+    -------
+    ToolingStudy
+    """
+    from feederscrew.studies.tooling import tooling as study
+
+    own = search if margin is None else search | {"margin": asked.amount("margin", margin, "length")}
+    solid, lies = asked.a_part(part, mesh=True), asked.angle("heading", heading)
+    found = None if known is None else known.aspects
+    return study(solid, asked.a_bowl(bowl), aspect, heading=lies, known=found, **own)
+
+
+def trial(
+    part: Part,
+    bowls: Bowl | Sequence[Bowl],
+    aspect: str | None = None,
+    *,
+    parts: int | None = None,
+    queue: int | None = None,
+    seed: int = 1,
+    jobs: int = 1,
+    **others: Any,
+) -> TrialStudy:
+    """Send parts along the vibrating, tooled track of one or several bowls, as ``feeder trial``.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    bowls : Bowl or sequence of Bowl
+        With their devices.
+    aspect : str, optional
+        Only its orientations.
+    parts : int, optional
+        One at a time; 200 without it, 60 beside a queue.
+    queue : int, optional
+        So many at once, which push each other.
+    seed : int
+        Of play and phase.
+    jobs : int
+        Cores to use; nothing else depends on it.
+    **others
+        rule, known, landing, poured, seconds: as for ``feeder trial``.
+
+    Returns
+    -------
+    TrialStudy
+        With a run for each bowl.
+    """
+    from feederscrew.studies.trial import trial as study
+
+    solid, driven = asked.a_part(part, mesh=True), asked.some_bowls(bowls)
+    return study(solid, driven, aspect, parts=parts, queue=queue, seed=seed, jobs=jobs, **others)
+
+
+def report(
+    part: Part,
+    aspect: str | None = None,
+    *,
+    heading: Quantity | None = None,
+    target: Quantity | None = None,
+    bowl: BowlFile | None = None,
+    gap: Quantity = 0.0,
+    fill: float = 1.0,
+    **answer: Unpack[Answer],
+) -> ReportStudy:
+    """Gather all that is known of a part in a bowl, as ``feeder report``: each chapter when it is asked for.
+
+    Parameters
+    ----------
+    part : Part
+    aspect : str, optional
+        The one wanted; the likeliest without it.
+    heading : str or float [rad], optional
+    target : str or float [1/s], optional
+        Rate that a bowl is sized for.
+    bowl : dict, optional
+        path, overrides: as for ``read_bowl``.
+    gap, fill, **answer
+        As for ``rate``.
+
+    Returns
+    -------
+    ReportStudy
+        ``rate``, ``convey``, ``slide``, ``track``, ``machine`` ... are the records of those commands.
+    """
+    from feederscrew.studies.report import report as study
+
+    own = {name: value for name, value in answer.items() if name not in ("rule", "known")}
+    file = bowl or {}
+    return study(
+        asked.a_part(part),
+        file.get("path"),
+        tuple(file.get("overrides", ())),
+        aspect=aspect,
+        heading=asked.angle("heading", heading),
+        rule=asked.rule(answer),
+        gap=asked.amount("gap", gap, "length"),
+        fill=fill,
+        target=None if target is None else asked.amount("target", target, "rate"),
+        **own,
+    )
+
+
+def reproduce() -> Reproduction:
+    """Compute every table and figure of the thesis again, as ``feeder reproduce``.
+
+    Returns
+    -------
+    Reproduction
+        Its ``items``, a table or a figure each, have a verdict for every cell.
+    """
+    from feederscrew.thesis.reproduced import reproduced
+
+    return reproduced()

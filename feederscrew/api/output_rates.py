@@ -1,0 +1,171 @@
+"""How many well-oriented parts leave a bowl, and what drive or what bowl reaches a rate."""
+
+from collections.abc import Sequence
+from typing import Unpack
+
+from feederscrew.api import asked
+from feederscrew.api.asked import Answer, BowlFile, Quantity
+from feederscrew.bowl import Bowl
+from feederscrew.part import Part
+from feederscrew.studies.bowl import MachineSheet
+from feederscrew.studies.rate import RateStudy, Shares
+from feederscrew.studies.tune import TuneStudy
+from feederscrew.tooling.devices.base import Device
+
+
+def shares(part: Part, bowl: Bowl, **answer: Unpack[Answer]) -> Shares:
+    """Return the aspects of a part with the answer that ``rate``, ``tune`` and others take.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+    **answer
+        launch, probabilities, fed: whose probabilities are taken, see ``rate``.
+
+    Returns
+    -------
+    Shares
+        To be handed on as ``known``: what takes long is computed once.
+    """
+    return asked.answered(asked.a_part(part), asked.a_bowl(bowl), answer)
+
+
+def rate(
+    part: Part,
+    bowl: Bowl,
+    aspect: str | None = None,
+    *,
+    heading: Quantity | None = None,
+    devices: Sequence[Device] | None = None,
+    gap: Quantity = 0.0,
+    fill: float = 1.0,
+    **answer: Unpack[Answer],
+) -> RateStudy:
+    """Compute the well-oriented parts per second, with each factor, as ``feeder rate``.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    bowl : Bowl
+    aspect : str, optional
+        The one wanted, as ``aspects`` names it; without it the orientation that leaves most often.
+    heading : str or float [rad], optional
+        Without one, the most frequent that stays on the track.
+    devices : sequence of Device
+        From ``feederscrew.tooling.devices``; those of the bowl without it.
+    gap : str or float [m]
+        Between one part and the next.
+    fill : float [1]
+        Share of the track that is occupied.
+    **answer
+        rule : whose probabilities are taken, 'recommended' without it.
+        launch : what is done to the part: 'place', 'drop', 'flip', 'roll' or 'feed', which is usual.
+        probabilities : file of counts whose shares are taken.
+        fed : take what arrives at the track's entry from the moving floor of the bowl.
+        known : what ``shares`` returned, in place of all of them.
+
+    Returns
+    -------
+    RateStudy
+        Its ``parts`` are parts per second with an interval.
+    """
+    from feederscrew.studies.rate import rate as study
+
+    solid, bowl = asked.a_part(part, mesh=True), asked.a_bowl(bowl)
+    return study(
+        solid,
+        bowl,
+        aspect,
+        heading=asked.angle("heading", heading),
+        rule=asked.rule(answer),
+        devices=devices,
+        gap=asked.amount("gap", gap, "length"),
+        fill=fill,
+        known=asked.answered(solid, bowl, answer),
+    )
+
+
+def tune(
+    part: Part,
+    bowl: Bowl,
+    aspect: str,
+    target: Quantity,
+    *,
+    heading: Quantity | None = None,
+    gap: Quantity = 0.0,
+    fill: float = 1.0,
+    **answer: Unpack[Answer],
+) -> TuneStudy:
+    """Find settings of the drive that reach a rate, as ``feeder tune``.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    bowl : Bowl
+    aspect : str
+        The one wanted.
+    target : str or float [1/s]
+        '60/min' of it.
+    heading, gap, fill, **answer
+        As for ``rate``.
+
+    Returns
+    -------
+    TuneStudy
+    """
+    from feederscrew.studies.tune import tune as study
+
+    solid, bowl = asked.a_part(part, mesh=True), asked.a_bowl(bowl)
+    return study(
+        solid,
+        bowl,
+        aspect,
+        asked.amount("target", target, "rate"),
+        heading=asked.angle("heading", heading),
+        rule=asked.rule(answer),
+        gap=asked.amount("gap", gap, "length"),
+        fill=fill,
+        known=asked.answered(solid, bowl, answer),
+    )
+
+
+def size_bowl(
+    part: Part,
+    target: Quantity,
+    aspect: str | None = None,
+    *,
+    heading: Quantity | None = None,
+    rule: str = "recommended",
+    gap: Quantity = 0.0,
+    fill: float = 1.0,
+    **bowl: Unpack[BowlFile],
+) -> MachineSheet:
+    """Size the bowl for a part and a rate, with its springs, tuning and drift, as ``feeder bowl``.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    target : str or float [1/s]
+        '60/min' of parts that count.
+    aspect : str, optional
+        That counts; whatever passes the devices without it.
+    heading, rule, gap, fill
+        As for ``rate``.
+    **bowl
+        path, overrides : as for ``read_bowl``: what they give is kept, the rest is sized.
+
+    Returns
+    -------
+    MachineSheet
+    """
+    from feederscrew.studies.bowl import bowl as study
+
+    own = {"rule": rule, "gap": asked.amount("gap", gap, "length"), "fill": fill}
+    wanted = asked.amount("target", target, "rate")
+    lies = asked.angle("heading", heading)
+    solid = asked.a_part(part, mesh=True)
+    return study(asked.settings(bowl), solid, wanted, aspect=aspect, heading=lies, **own)

@@ -1,0 +1,104 @@
+"""What a person sees of a record: a short text, a table, a picture; made outside of the room it is from.
+
+Tables and pictures are views: `output.record_views` makes them, and is imported when one is asked for. No
+room but the output knows what they are made of.
+"""
+
+from collections.abc import Callable
+from dataclasses import fields, is_dataclass
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
+
+LONGEST = 360  # characters of a text in all,
+LONG = 44  # and of one field
+VIEWS = "feederscrew.output.record_views"
+
+
+class Shown:
+    """A record whose text is short, and that has a table and, where its command draws, pictures."""
+
+    def __init_subclass__(cls, **keywords: Any) -> None:
+        super().__init_subclass__(**keywords)
+        cls.__repr__ = Shown.__repr__  # type: ignore[method-assign]  # or a dataclass makes its own
+
+    def __repr__(self) -> str:
+        return text(self)
+
+    def to_frame(self, name: str | None = None) -> "DataFrame":
+        """Return the table that the command of this record writes.
+
+        Parameters
+        ----------
+        name : str, optional
+            Of a table where there are several, 'convey_map'; the first without it.
+
+        Returns
+        -------
+        DataFrame
+            Its columns name their units.
+
+        Raises
+        ------
+        ArgumentError
+            If there is no such table; the line names those there are.
+        """
+        return _view("frame")(self, name)
+
+    def plot(self, name: str | None = None) -> "Figure":
+        """Draw the picture that the command of this record writes.
+
+        Parameters
+        ----------
+        name : str, optional
+            Of a picture where there are several, 'aspects'; the first without it.
+
+        Returns
+        -------
+        matplotlib Figure
+
+        Raises
+        ------
+        ArgumentError
+            If there is no such picture, or none at all; the line names those there are.
+        """
+        return _view("plot")(self, name)
+
+
+def text(record: Any) -> str:
+    """Return a record in a line: its fields, arrays by their shape, long ones cut."""
+    parts: list[str] = []
+    for field in fields(record):
+        value = getattr(record, field.name)
+        if value is not None and field.repr:
+            parts.append(f"{field.name}={_field(value)}")
+        if sum(map(len, parts)) + 2 * len(parts) > LONGEST:
+            parts[-1] = "..."
+            break
+    return f"{type(record).__name__}({', '.join(parts)})"
+
+
+def _field(value: Any) -> str:
+    """A field's value, or what kind of thing it is."""
+    if getattr(value, "shape", ()):
+        return f"<{' x '.join(map(str, value.shape))} array>"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if is_dataclass(value):
+        if isinstance(name := getattr(value, "name", None), str):
+            return f"{type(value).__name__} {name!r}"
+        within = text(value)
+        return within if len(within) <= LONG else f"{type(value).__name__}(...)"
+    if isinstance(value, (tuple, list)) and not all(isinstance(one, (str, int, float)) for one in value):
+        return f"<{len(value)} {type(value[0]).__name__}>"
+    if isinstance(value, dict):
+        return f"<{len(value)} by name>"
+    said = repr(value)
+    return said if len(said) <= LONG else f"{said[: LONG - 3]}..."
+
+
+def _view(kind: str) -> Callable[[Any, str | None], Any]:
+    return getattr(import_module(VIEWS), kind)
