@@ -8,7 +8,16 @@ in SI units; shares are fractions.
 from feederscrew.api.asked import Shares
 from feederscrew.api.chains import report, reproduce, tooling, trial
 from feederscrew.api.drives import convey, floor, headings, read_bowl, slide, track
-from feederscrew.api.lying import aspects, calibrate, compare, find_aspects, inertia, load
+from feederscrew.api.lying import (
+    aspects,
+    calibrate,
+    compare,
+    find_aspects,
+    inertia,
+    load,
+    posture,
+    write_names,
+)
 from feederscrew.api.output_rates import rate, shares, size_bowl, tune
 from feederscrew.api.tosses import drop, shake
 from feederscrew.bowl import Bowl
@@ -17,8 +26,7 @@ from feederscrew.errors import ConfigError, Faults, FeederError, MeshError
 from feederscrew.part import Part
 from feederscrew.rates.well_oriented import Rate
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.names_file import write_names
-from feederscrew.resting.posture import Posture, posture
+from feederscrew.resting.posture import Posture
 
 __all__ = [
     "Answer", "Aspects", "Bowl", "ConfigError", "Faults", "FeederError", "MeshError", "Part", "Posture",

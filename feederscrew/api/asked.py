@@ -1,6 +1,7 @@
 """What a caller of the library may hand over, and the one line that names an argument it may not."""
 
-from collections.abc import Iterable, Mapping, Sequence
+import math
+from collections.abc import Mapping, Sequence
 from os import PathLike
 from typing import Any, TypeAlias, TypedDict, cast
 
@@ -11,6 +12,7 @@ from feederscrew.dropping.conditions import KEYS
 from feederscrew.errors import ArgumentError
 from feederscrew.part import Part
 from feederscrew.rates.well_oriented import RECOMMENDED
+from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.rate import Shares, shares
 from feederscrew.units import QuantityError, listed, quantity
 
@@ -36,7 +38,7 @@ class BowlFile(TypedDict, total=False):
     """The bowl of a function that sizes what the file leaves open: the keywords of ``read_bowl``."""
 
     path: Path | None
-    overrides: Iterable[str]
+    overrides: str | Sequence[str]
 
 
 def a_part(part: object, *, mesh: bool = False) -> Part:
@@ -48,9 +50,9 @@ def a_part(part: object, *, mesh: bool = False) -> Part:
     return found
 
 
-def a_bowl(bowl: object, name: str = "bowl") -> Bowl:
+def a_bowl(bowl: object) -> Bowl:
     """Return the bowl; raises ArgumentError where it is none."""
-    check.kind(name, bowl, Bowl, BOWL)
+    check.kind("bowl", bowl, Bowl, BOWL)
     return cast(Bowl, bowl)
 
 
@@ -58,8 +60,16 @@ def some_bowls(given: object) -> tuple[Bowl, ...]:
     """Return one bowl, or several, as a tuple."""
     if isinstance(given, Bowl):
         return (given,)
-    check.kind("bowls", given, (tuple, list), f"{BOWL}, or several in a list")
-    return tuple(a_bowl(one, "bowls") for one in cast(list[object], given))
+    found = several("bowls", given, Bowl, f"{BOWL}, or several in a list")
+    if not found:
+        raise ArgumentError("bowls", "is empty", BOWL)
+    return found
+
+
+def the_aspects(found: object) -> Aspects:
+    """Return the aspects; raises ArgumentError where they are none."""
+    check.kind("found", found, Aspects, "give Aspects, as find_aspects returns them")
+    return cast(Aspects, found)
 
 
 def a_file(name: str, path: object) -> Path:
@@ -68,7 +78,24 @@ def a_file(name: str, path: object) -> Path:
     return cast(Path, path)
 
 
-def amount(name: str, value: Quantity, dimension: str) -> float:
+def count(name: str, value: int | None, low: int = 1) -> int | None:
+    """Return a whole number from a lowest one; None stays None."""
+    if value is None:
+        return None
+    if not float(check.argument(name, value, low)).is_integer():
+        raise ArgumentError(name, f"is {value}", "give a whole number")
+    return int(value)
+
+
+def several(name: str, given: object, wanted: type, mend: str) -> tuple[Any, ...]:
+    """Return what is given in a list as a tuple; raises ArgumentError where one is of another class."""
+    check.kind(name, given, (tuple, list), mend)
+    for one in (found := tuple(cast(list[object], given))):
+        check.kind(name, one, wanted, mend)
+    return found
+
+
+def amount(name: str, value: Quantity, dimension: str, low: float = -math.inf) -> float:
     """Return a quantity in SI units.
 
     Parameters
@@ -79,6 +106,8 @@ def amount(name: str, value: Quantity, dimension: str) -> float:
         '2 mm', or a number in SI units.
     dimension : str
         A key of ``units.UNITS``.
+    low : float [SI]
+        The least that can be used.
 
     Returns
     -------
@@ -89,12 +118,11 @@ def amount(name: str, value: Quantity, dimension: str) -> float:
     ArgumentError
         If it is neither; the line names the argument.
     """
-    if not isinstance(value, str):
-        return check.argument(name, value)
     try:
-        return quantity(value, dimension)
+        number = quantity(value, dimension) if isinstance(value, str) else value
     except QuantityError as fault:
         raise ArgumentError(name, fault.what, fault.mend) from None
+    return check.argument(name, number, low)
 
 
 def angle(name: str, value: Quantity | None) -> float | None:
@@ -131,6 +159,9 @@ def answered(part: Part, bowl: Bowl, asked: Answer) -> Shares:
     known, _ = own.pop("known", None), own.pop("rule", None)
     if strange := sorted(set(own) - {"launch", "probabilities", "fed"}):
         raise TypeError(f"unexpected keyword argument {strange[0]!r}")
+    if own.get("probabilities") is not None:
+        a_file("probabilities", own["probabilities"])
+    check.kind("fed", own.get("fed", False), bool, "give True or False")
     if known is None:
         return shares(part, bowl, **own)
     check.kind("known", known, Shares, "give what shares returned")
@@ -139,7 +170,18 @@ def answered(part: Part, bowl: Bowl, asked: Answer) -> Shares:
 
 def settings(asked: BowlFile) -> tuple[Any, ...]:
     """Return the settings of a bowl file with overrides."""
-    return bowls.settings(asked.get("path"), tuple(asked.get("overrides", ())))
+    if strange := sorted(set(asked) - {"path", "overrides"}):
+        raise TypeError(f"unexpected keyword argument {strange[0]!r}")
+    path = asked.get("path")
+    path = None if path is None else a_file("path", path)
+    return bowls.settings(path, overrides(asked.get("overrides", ())))
+
+
+def overrides(given: object) -> tuple[str, ...]:
+    """Return the settings that go before a file's, of one text or of several."""
+    if isinstance(given, str):
+        return (given,)
+    return several("overrides", given, str, "give texts, 'drive.frequency=50 Hz'")
 
 
 def _typed(name: str, value: Condition) -> str | None:

@@ -47,7 +47,7 @@ def tooling(
     """
     from feederscrew.studies.tooling import tooling as study
 
-    own = search if margin is None else search | {"margin": asked.amount("margin", margin, "length")}
+    own = search if margin is None else search | {"margin": asked.amount("margin", margin, "length", 0.0)}
     solid, lies = asked.a_part(part, mesh=True), asked.angle("heading", heading)
     found = None if known is None else known.aspects
     return study(solid, asked.a_bowl(bowl), aspect, heading=lies, known=found, **own)
@@ -93,7 +93,8 @@ def trial(
     from feederscrew.studies.trial import trial as study
 
     solid, driven = asked.a_part(part, mesh=True), asked.some_bowls(bowls)
-    return study(solid, driven, aspect, parts=parts, queue=queue, seed=seed, jobs=jobs, **others)
+    sent = {"parts": asked.count("parts", parts), "queue": asked.count("queue", queue)}
+    return study(solid, driven, aspect, **sent, seed=seed, jobs=jobs, **others)
 
 
 def report(
@@ -131,14 +132,15 @@ def report(
 
     own = {name: value for name, value in answer.items() if name not in ("rule", "known")}
     file = bowl or {}
+    path = file.get("path")
     return study(
         asked.a_part(part),
-        file.get("path"),
-        tuple(file.get("overrides", ())),
+        None if path is None else asked.a_file("path", path),
+        asked.overrides(file.get("overrides", ())),
         aspect=aspect,
         heading=asked.angle("heading", heading),
         rule=asked.rule(answer),
-        gap=asked.amount("gap", gap, "length"),
+        gap=asked.amount("gap", gap, "length", 0.0),
         fill=fill,
         target=None if target is None else asked.amount("target", target, "rate"),
         **own,

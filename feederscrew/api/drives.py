@@ -1,6 +1,6 @@
 """A bowl, and how a part slips, lies and travels in it."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from feederscrew import bowl as bowls
 from feederscrew.api import asked
@@ -14,14 +14,14 @@ from feederscrew.studies.slide import SlideStudy
 from feederscrew.studies.track import TrackStudy
 
 
-def read_bowl(path: Path | None = None, overrides: Iterable[str] = ()) -> Bowl:
+def read_bowl(path: Path | None = None, overrides: str | Sequence[str] = ()) -> Bowl:
     """Read a bowl from its file, from 'drive.frequency=50 Hz', or take the defaults.
 
     Parameters
     ----------
     path : str or Path, optional
         Bowl file (YAML).
-    overrides : iterable of str
+    overrides : str or sequence of str
         Such as 'drive.frequency=50 Hz'; the last of one key holds.
 
     Returns
@@ -33,7 +33,7 @@ def read_bowl(path: Path | None = None, overrides: Iterable[str] = ()) -> Bowl:
     Faults
         Every fault of the file and of the overrides.
     """
-    return bowls.read(None if path is None else asked.a_file("path", path), tuple(overrides))
+    return bowls.read(None if path is None else asked.a_file("path", path), asked.overrides(overrides))
 
 
 def slide(bowl: Bowl, angles: Iterable[Quantity] = (), *, as_published: bool = False) -> SlideStudy:

@@ -1,6 +1,9 @@
 """A part, its mass and how it comes to rest."""
 
+from collections.abc import Sequence
 from typing import IO
+
+import numpy as np
 
 from feederscrew import check
 from feederscrew import part as parts
@@ -9,7 +12,10 @@ from feederscrew.api.asked import Path
 from feederscrew.errors import ArgumentError
 from feederscrew.part import Part
 from feederscrew.part.density import HEAVIEST, LIGHTEST
+from feederscrew.resting import names_file
+from feederscrew.resting import posture as postures
 from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.posture import Posture
 from feederscrew.studies import aspects as resting
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.calibrate import CalibrateStudy
@@ -22,7 +28,7 @@ def load(
     *,
     units: str | None = None,
     density: str | float | None = None,
-    centre_of_mass: str | None = None,
+    centre_of_mass: str | Sequence[float] | None = None,
     names: Path | None = None,
     allow_open: bool = False,
     stdin: IO[bytes] | None = None,
@@ -37,7 +43,7 @@ def load(
         'mm', 'cm', 'm' or 'in', of a file that does not state it.
     density : str or float [kg/m3], optional
         A material or a value, '7.85 g/cm3'; steel without it.
-    centre_of_mass : str, optional
+    centre_of_mass : str or (3,) float, optional
         'x,y,z' in the file's axes and units, if the part is not homogeneous.
     names : str or Path, optional
         File of names of its aspects, as ``write_names`` writes it; letters without it.
@@ -59,8 +65,8 @@ def load(
         asked.a_file("source", source),
         units=units,
         density=_density(density),
-        centre_of_mass=centre_of_mass,
-        names=names,
+        centre_of_mass=_point(centre_of_mass),
+        names=None if names is None else asked.a_file("names", names),
         allow_open=allow_open,
         stdin=stdin,
     )
@@ -174,6 +180,53 @@ def calibrate(part: Part, counts: Path) -> CalibrateStudy:
     from feederscrew.studies.calibrate import calibrate as study
 
     return study(asked.a_part(part), asked.a_file("counts", counts))
+
+
+def posture(part: Part, found: Aspects, aspect: str) -> Posture:
+    """Return how a part stands on one aspect: its contact, its outline and the height of its centre of mass.
+
+    Parameters
+    ----------
+    part : Part
+    found : Aspects
+        Of that part.
+    aspect : str
+        Its name.
+
+    Returns
+    -------
+    Posture
+    """
+    return postures.posture(asked.a_part(part), asked.the_aspects(found), aspect)
+
+
+def write_names(part: Part, found: Aspects, path: Path) -> None:
+    """Write the names of a part's aspects to a file that ``load`` takes as ``names``.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    found : Aspects
+        Of that part.
+    path : str or Path
+        Of the file, written anew: change a name there and leave its direction.
+
+    Raises
+    ------
+    FeederError
+        If the part is a card, which has its own names, or the file cannot be written.
+    """
+    names_file.write_names(asked.a_part(part), asked.the_aspects(found), asked.a_file("path", path))
+
+
+def _point(given: str | Sequence[float] | None) -> str | None:
+    """A point as the text of one, 'x,y,z'."""
+    if given is None or isinstance(given, str):
+        return given
+    mend = "give 'x,y,z', or three numbers in the file's unit"
+    check.kind("centre_of_mass", given, (tuple, list, np.ndarray), mend)
+    return ",".join(repr(check.argument("centre_of_mass", one)) for one in given)
 
 
 def _density(given: str | float | None) -> str | None:

@@ -12,6 +12,8 @@ from feederscrew.studies.rate import RateStudy, Shares
 from feederscrew.studies.tune import TuneStudy
 from feederscrew.tooling.devices.base import Device
 
+DEVICES = "give devices in a list, as a bowl's devices are"
+
 
 def shares(part: Part, bowl: Bowl, **answer: Unpack[Answer]) -> Shares:
     """Return the aspects of a part with the answer that ``rate``, ``tune`` and others take.
@@ -80,8 +82,8 @@ def rate(
         aspect,
         heading=asked.angle("heading", heading),
         rule=asked.rule(answer),
-        devices=devices,
-        gap=asked.amount("gap", gap, "length"),
+        devices=None if devices is None else asked.several("devices", devices, Device, DEVICES),
+        gap=asked.amount("gap", gap, "length", 0.0),
         fill=fill,
         known=asked.answered(solid, bowl, answer),
     )
@@ -126,7 +128,7 @@ def tune(
         asked.amount("target", target, "rate"),
         heading=asked.angle("heading", heading),
         rule=asked.rule(answer),
-        gap=asked.amount("gap", gap, "length"),
+        gap=asked.amount("gap", gap, "length", 0.0),
         fill=fill,
         known=asked.answered(solid, bowl, answer),
     )
@@ -164,7 +166,7 @@ def size_bowl(
     """
     from feederscrew.studies.bowl import bowl as study
 
-    own = {"rule": rule, "gap": asked.amount("gap", gap, "length"), "fill": fill}
+    own = {"rule": rule, "gap": asked.amount("gap", gap, "length", 0.0), "fill": fill}
     wanted = asked.amount("target", target, "rate")
     lies = asked.angle("heading", heading)
     solid = asked.a_part(part, mesh=True)

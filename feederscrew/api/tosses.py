@@ -53,9 +53,9 @@ def drop(
     from feederscrew.studies.drop import drop as study
 
     given = asked.conditions(conditions)
-    return study(
-        asked.a_part(part, mesh=True), launch, given, drops=drops, seed=seed, jobs=jobs, traced=traced
-    )
+    many = asked.count("drops", drops)
+    solid = asked.a_part(part, mesh=True)
+    return study(solid, launch, given, drops=many, seed=seed, jobs=jobs, traced=traced)
 
 
 def shake(
@@ -98,6 +98,6 @@ def shake(
     """
     from feederscrew.studies.plate import plate as study
 
-    own = {"drops": drops, "seconds": seconds, "seed": seed, "jobs": jobs}
+    own = {"drops": asked.count("drops", drops), "seconds": seconds, "seed": seed, "jobs": jobs}
     given, plates = asked.conditions(conditions), asked.some_bowls(bowls)
     return study(asked.a_part(part, mesh=True), plates, launch, given, **own)  # type: ignore[arg-type]

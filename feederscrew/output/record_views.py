@@ -90,7 +90,7 @@ def _chosen(record, found, name, what):
         return found[name]
     mend = f"give one of {listed(list(found))}" if found else "ask the record that a command gives"
     kind = type(record).__name__
-    raise ArgumentError("name", f"a {kind} has no {what}{f' {name!r}' if name else ''}", mend)
+    raise ArgumentError("name", f"{kind} has no {what}{f' {name!r}' if name else ''}", mend)
 
 
 def _document(record):
@@ -117,7 +117,7 @@ def _row(value):
     """Whether a value is one number or word for each of several."""
     if isinstance(value, np.ndarray):
         return value.ndim == 1
-    return isinstance(value, tuple) and all(map(_single, value))
+    return isinstance(value, tuple) and len(value) > 0 and all(map(_single, value))
 
 
 def _single(value):
