@@ -34,6 +34,13 @@ class Answer(TypedDict, total=False):
     known: Shares  # as ``shares`` returned it: nothing is computed again
 
 
+class AlongTrack(Answer, total=False):
+    """And how parts stand on the track."""
+
+    gap: Quantity  # [m] between one part and the next
+    fill: float  # [1] share of the track that is occupied
+
+
 class BowlFile(TypedDict, total=False):
     """The bowl of a function that sizes what the file leaves open: the keywords of ``read_bowl``."""
 
@@ -156,7 +163,9 @@ def rule(asked: Answer) -> str:
 def answered(part: Part, bowl: Bowl, asked: Answer) -> Shares:
     """Return the aspects of a part with the answer that was asked for."""
     own: dict[str, Any] = dict(asked)
-    known, _ = own.pop("known", None), own.pop("rule", None)
+    for name in ("rule", "gap", "fill"):
+        own.pop(name, None)
+    known = own.pop("known", None)
     if strange := sorted(set(own) - {"launch", "probabilities", "fed"}):
         raise TypeError(f"unexpected keyword argument {strange[0]!r}")
     if own.get("probabilities") is not None:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Unpack
 
 from feederscrew.api import asked
-from feederscrew.api.asked import Answer, BowlFile, Quantity
+from feederscrew.api.asked import AlongTrack, Answer, BowlFile, Quantity
 from feederscrew.bowl import Bowl
 from feederscrew.part import Part
 from feederscrew.studies.bowl import MachineSheet
@@ -96,9 +96,8 @@ def tune(
     target: Quantity,
     *,
     heading: Quantity | None = None,
-    gap: Quantity = 0.0,
-    fill: float = 1.0,
-    **answer: Unpack[Answer],
+    worst: bool = False,
+    **answer: Unpack[AlongTrack],
 ) -> TuneStudy:
     """Find settings of the drive that reach a rate, as ``feeder tune``.
 
@@ -111,8 +110,12 @@ def tune(
         The one wanted.
     target : str or float [1/s]
         '60/min' of it.
-    heading, gap, fill, **answer
+    heading
         As for ``rate``.
+    worst : bool
+        Meet the target at the worst of friction a fifth lower and higher and of every start.
+    **answer
+        gap, fill, rule, launch, probabilities, fed, known: as for ``rate``.
 
     Returns
     -------
@@ -128,9 +131,10 @@ def tune(
         asked.amount("target", target, "rate"),
         heading=asked.angle("heading", heading),
         rule=asked.rule(answer),
-        gap=asked.amount("gap", gap, "length", 0.0),
-        fill=fill,
-        known=asked.answered(solid, bowl, answer),
+        gap=asked.amount("gap", answer.get("gap", 0.0), "length", 0.0),
+        fill=answer.get("fill", 1.0),
+        worst=worst,
+        arriving=lambda driven: asked.answered(solid, driven, answer),
     )
 
 
