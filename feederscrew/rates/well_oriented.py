@@ -291,9 +291,8 @@ def leaving_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
 
 def _check_rule(found, rule):
     if rule not in found.rules:
-        raise ArgumentError(
-            f"rule {rule}", "has no probabilities of this part", hint(rule, list(found.rules))
-        )
+        mend = hint(rule, list(found.rules))
+        raise ArgumentError(f"rule {rule}", "has no probabilities of this part", mend)
 
 
 def _row(found, target):
