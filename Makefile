@@ -72,7 +72,7 @@ bench: $(READY_TO_TEST) ## what people wait for and the kernels, under ten minut
 	for name in $(BENCHES); do $(BIN)/python benchmarks/$$name.py || exit 1; done
 	$(BIN)/python benchmarks/aspects.py --repeats 1
 
-PICTURES := aspects regimes drop bowl tooling trial report conveying_map
+PICTURES := aspects regimes drop bowl bowl_solid tooling trial report conveying_map
 
 docs: $(PICTURES:%=docs/%.png) $(READY) ## pictures, outputs and tables of the pages
 	$(BIN)/python docs/readme.py
@@ -95,6 +95,10 @@ docs/drop.png: parts/$(BOLT).stl | $(READY)
 docs/bowl.png: parts/$(DEMO).stl | $(READY)
 	$(FEEDER) bowl $< --target 60/min -o results --quiet > /dev/null
 	cp results/$(DEMO)/bowl.png $@
+
+docs/bowl_solid.png: parts/$(BOLT).stl docs/bowl_solid.yaml | $(READY)
+	$(FEEDER) bowl $< --target 60/min --config docs/bowl_solid.yaml --solid -o results --quiet > /dev/null
+	cp results/$(BOLT)/bowl_solid.png $@
 
 mutants: $(READY_TO_TEST) ## small changes to the physics that no test notices, ten minutes
 	$(BIN)/python benchmarks/mutants.py

@@ -69,8 +69,8 @@ def bowl(part, target, made, bowl, pictures, out, **wanted):
     What the bowl file says of track, drive and machine is kept; section 'sizing' has the rules of thumb.
     With -o: bowl.json, bowl.csv, bowl_angles.csv, bowl_leaves.csv, bowl_leaf_changes.csv,
     bowl_emptying.csv and bowl.png. With --solid also bowl.stl and bowl.3mf, the bowl as one closed body
-    with its track, cuts, blades and outlet, and bowl.pdf, a drawing sheet; its mass and inertia then take
-    the place of the estimate.
+    with its track, cuts, blades and outlet, bowl.pdf, a drawing sheet, and bowl_solid.png; its mass and
+    inertia then take the place of the estimate.
     """
     from feederscrew import bowl as bowls
     from feederscrew.output import columns, machine, offers

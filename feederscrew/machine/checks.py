@@ -24,10 +24,18 @@ def remarks(sheet):
     """
     found = [*_tuning(sheet), *_stress(sheet), *_stroke(sheet), *_angle(sheet), *_fill(sheet), *_drift(sheet)]
     if sheet.order is not None:
-        found += _size(sheet)
+        found += [*_size(sheet), *_hand(sheet)]
     lines = [str(one) for one in found]
     tipping = () if sheet.order is None else sheet.order.tipping
     return (*lines, *tipping, *speeds.remark(sheet.answer.velocity, sheet.bowl.sizing))
+
+
+def _hand(sheet):
+    if sheet.bowl.sizing.hand == "left":
+        what = (
+            "orientations and devices are judged for a right-handed track, of which this is the mirror image"
+        )
+        yield FeederError("track.hand", what, "mirror the part's file too, unless it is its own mirror image")
 
 
 def _tuning(sheet):

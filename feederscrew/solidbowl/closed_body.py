@@ -30,6 +30,7 @@ class BowlSolid:
     mass: float  # [kg] gates included
     inertia: float  # [kg m2] about the axis
     centre: np.ndarray  # (3,) [m]
+    riders: tuple = ()  # (Orientation, s [m]) of parts along its track, to draw
 
 
 def body(plan):

@@ -197,8 +197,9 @@ def _way(size, track, tooled, asked):
     drops = () if tooled is None else tooled.drops
     rise = np.tan(track.climb)
     round_once = TURN * track.radius
+    free = round_once - track.width * np.sin(track.bank) / rise  # of track below, from where it rises
     falls = None if tooled is None else tooled.falls
-    most = np.inf if falls is None else round_once + needed - falls
+    most = np.inf if falls is None else free + needed - falls
     end = min(size.turns * round_once, most)
     if asked.outlet_height > 0.0:
         end = (asked.outlet_height + sum(drop for _, drop in drops)) / rise

@@ -3,6 +3,7 @@
 import itertools
 
 import numpy as np
+import shapely
 
 from feederscrew.solidbowl import facets
 from feederscrew.solidbowl.plan import DIP
@@ -30,7 +31,7 @@ def slab(plan):
     Manifold [mm]
     """
     runs, way = [], plan.way
-    borders = [-DIP * way.radius, *(at for at, _ in way.drops), way.end + plan.outlet]
+    borders = [way.rises(plan.width) - DIP * way.radius, *(at for at, _ in way.drops), way.end + plan.outlet]
     for start, end in itertools.pairwise(borders):
         s = _steps(plan, start, end)
         inside = np.clip(s, start + 1e-9, end - 1e-9)
@@ -104,11 +105,11 @@ def sides(plan):
     low, top = height - plan.material.plate - fillet(plan), height + plan.headroom
     lift = plan.width * np.sin(way.bank)
     outer = np.array([[way.end + 2e-3, -wall], [end, -wall], [end, 0.0], [way.end + 2e-3, 0.0]])
-    crossing = np.sqrt((way.radius + 0.5 * wall) ** 2 - (way.radius - plan.across) ** 2)
     y = plan.width
-    inner = np.array([[way.end + crossing, y], [end, y], [end, y + wall], [way.end + crossing, y + wall]])
+    inner = np.array([[way.end, y], [end, y], [end, y + wall], [way.end, y + wall]])
+    inside = shapely.Point(0.0, 0.0).buffer(way.radius + 0.4 * wall, quad_segs=90)
     made = [facets.prism(way.laid(outer, plan.chord), low, max(top, height + plan.headroom))]
-    made.append(facets.prism(way.laid(inner, plan.chord), low + lift, top + lift))
+    made.append(facets.prism(way.laid(inner, plan.chord).difference(inside), low + lift, top + lift))
     return made
 
 

@@ -30,6 +30,13 @@ class Way:
         """Return the angle [rad] about the axis at lengths s; it stays at 0 along the outlet."""
         return (np.minimum(s, self.end) - self.end) / self.radius
 
+    def rises(self, width):
+        """Return the length s [m], at most 0, at which a track of a width first comes out of the floor.
+
+        Its free edge is the first on a banked track, and does so before the wall's side.
+        """
+        return -width * np.sin(self.bank) / np.tan(self.climb)
+
     def plan(self, s, y):
         """Return the places (..., 2) [m] from above at lengths s and distances y."""
         s, y = np.broadcast_arrays(np.asarray(s, float), np.asarray(y, float))

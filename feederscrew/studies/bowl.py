@@ -145,7 +145,7 @@ def bowl(
     ways = _ways(part, found, track, plain.devices)
     counted = {"rule": rule, "target": wanted, "gap": gap, "fill": fill}
     plain = replace(plain, track=track)
-    size, made = solidbowl.solid(plain, size, part, ways(None).lying, solid)
+    size, made = solidbowl.solid(plain, size, part, ways(None), solid, counted)
     driven, flow = _brought(plain, size, settings, target, ways, counted)
     order = Order(
         part=part,

@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew.solidbowl import cuts
+from feederscrew.solidbowl import cuts, riding
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.materials import material
 from feederscrew.solidbowl.plan import Asked, plan
 from feederscrew.solidbowl.ways_down import check_ways_down
+from feederscrew.tooling.hanging import hung, neck
 
 
 def asked(settings, *, solid, material, chord):
@@ -66,7 +67,7 @@ def in_material(bowl, asked):
     return replace(bowl, sizing=rules)
 
 
-def solid(bowl, size, part, every, asked):
+def solid(bowl, size, part, coming, asked, counted):
     """Return the size of a bowl and its solid.
 
     Parameters
@@ -75,9 +76,11 @@ def solid(bowl, size, part, every, asked):
         Its track and devices.
     size : Size
     part : Part
-    every : sequence of Orientation
-        Of the part on that track.
+    coming : rates.stream.Orientations
+        Of the part along that track and its devices.
     asked : Asked or None
+    counted : dict
+        ``rule`` whose probabilities are taken and ``target``, aspect and heading that are wanted, or None.
 
     Returns
     -------
@@ -94,11 +97,24 @@ def solid(bowl, size, part, every, asked):
     if asked is None:
         return size, None
     made_of = material(asked.material, bowl.sizing)
-    tooled = cuts.stretch(bowl.track, bowl.devices, every) if _tooled(bowl.devices) else None
+    tooled = cuts.stretch(bowl.track, bowl.devices, coming.lying) if _tooled(bowl.devices) else None
     made = body(plan(size, bowl.track, made_of, tooled, asked, extents=np.ptp(part.vertices, axis=0)))
     check_ways_down(made)
     own = {"depth": made.plan.outlet_height, "turns": made.plan.turns}
-    return replace(size, **own, mass=made.mass, inertia=made.inertia), made
+    return replace(size, **own, mass=made.mass, inertia=made.inertia), replace(
+        made, riders=_riders(made.plan, bowl.devices, coming, counted)
+    )
+
+
+def _riders(plan, devices, coming, counted):
+    """Parts to draw: as they come along most often among those that leave, and as they hang."""
+    often = np.nan_to_num(coming.rules[counted["rule"]]) * coming.stays
+    if counted["target"] is not None:
+        often = often * (np.array(coming.aspects) == counted["target"][0])
+    leaving = often * coming.through
+    one = coming.lying[int(np.argmax(leaving if leaving.any() else often))]
+    spans = [device.span for device in devices if device.hangs]
+    return tuple(riding.riders(plan, one, hung(one, spans[-1]) if spans and neck(one) else None))
 
 
 def _tooled(devices):

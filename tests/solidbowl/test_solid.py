@@ -13,7 +13,7 @@ from feederscrew.bowl.settings import effective, record
 from feederscrew.errors import FeederError
 from feederscrew.machine.sizing import Size
 from feederscrew.output.solidbowl import printing
-from feederscrew.solidbowl import cuts, facets
+from feederscrew.solidbowl import cuts, facets, riding
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.materials import material
 from feederscrew.solidbowl.measuring import heights, measures, track_width
@@ -150,6 +150,22 @@ def test_rails_are_open_at_their_end():
         place = made.way.places(s, 5e-3)
         met = facets.below(whole, place)
         assert met is None or met < place[2] - made.material.plate - made.hanging + 1e-9
+
+
+def test_a_part_on_the_track_has_its_foot_on_it_and_its_side_on_the_wall(rng):
+    """A box of 14 x 8 x 6 mm: its ends touch the wall, 0.16 mm of sagitta before its middle."""
+    made = planned()
+    whole, half = facets.unplaced(body(made)), np.array([7e-3, 4e-3, 3e-3])
+    corners = half * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    middle = TRACK.radius - np.sqrt(TRACK.radius**2 - half[0] ** 2) + half[1]
+    box = SimpleNamespace(axes=np.eye(3), distance=middle, posture=SimpleNamespace(height=half[2]))
+    for s in rng.uniform(0.05, made.way.end - 0.02, 50):
+        points = riding.laid(made, box, corners, s)
+        to_wall = TRACK.radius - np.hypot(*points[:, :2].T)
+        assert -6e-5 < to_wall.min() < 1.2e-4
+        feet = points[points[:, 2].argsort()[:4]] * [0.998, 0.998, 1.0]  # not into the wall
+        gaps = [one[2] - facets.below(whole, one + [0, 0, 4e-3]) for one in feet]
+        assert max(np.abs(gaps)) < 6e-5
 
 
 def test_the_same_bytes_twice():

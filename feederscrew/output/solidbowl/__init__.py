@@ -15,11 +15,12 @@ def offers(study):
     -------
     tuple of Offer
     """
-    from feederscrew.output.solidbowl import drawing_sheet, printing
+    from feederscrew.output.solidbowl import bowl_picture, drawing_sheet, printing
 
     name = study.order.part.name
     return (
         offer.text("bowl.stl", printing.stl, study.solid),
         offer.text("bowl.3mf", printing.threemf, study.solid, f"bowl for {name}"),
         offer.text("bowl.pdf", drawing_sheet.pdf, study),
+        offer.picture("bowl_solid.png", "The bowl, parts on its track", bowl_picture.figure, study),
     )

@@ -10,7 +10,7 @@ from feederscrew.units import factor
 
 MM = factor("mm", "length")
 SCALES = (1.0, 0.5, 0.4, 0.2, 0.1, 0.05, 0.02)  # ISO 5455, with 1 : 2.5
-ROOM = 128.0  # [mm] of paper for the bowl across
+ROOM = 134.0  # [mm] of paper for the bowl across
 STRIP = 205.0, 26.0  # [mm] of paper for the unrolled track
 FRAME = 20.0, 10.0, 410.0, 287.0
 
@@ -68,7 +68,7 @@ def _above(paper, solid, found, scale):
     ring = 0.5 * plan.bolt_circle / MM * scale * np.column_stack([np.cos(circle), np.sin(circle)]) + at
     paper.lines([ring], THIN, linestyles="dashdot")
     told = f"{plan.bolts} x Ø{plan.bolt / MM:.4g} on Ø{plan.bolt_circle / MM:.4g}, and one in the middle"
-    paper.text(at[0], at[1] - 5.0, told, size=2.0, ha="center", va="top")
+    paper.text(at[0], at[1] + 0.5 * plan.bolt_circle / MM * scale + 4.0, told, size=2.2, ha="center")
     paper.lines([[at - [r + 6, 0], at + [r + 6, 0]]], THIN, linestyles="dashdot")
     for side in (-1, 1):
         paper.text(at[0] + side * (r + 9.0), at[1] + 1.0, "A", size=3.5, ha="center", fontweight="bold")

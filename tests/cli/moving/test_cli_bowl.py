@@ -215,6 +215,15 @@ def test_the_bowl_as_a_solid(run, tmp_path):
     assert sheet.startswith(b"%PDF-") and b"/Subtype /Image" not in sheet and b"CreationDate" not in sheet
 
 
+def test_a_left_hand_is_said(run):
+    found = run("bowl", PART, "--target", "60/min", "--set", "track.hand=left")
+    assert found.exit_code == 0 and (
+        "track.hand: orientations and devices are judged for a right-handed track, of which this is the "
+        "mirror image - mirror the part's file too, unless it is its own mirror image"
+        in " ".join(found.stderr.split())
+    )
+
+
 def test_a_solid_needs_a_part(run):
     found = run("bowl", "--solid")
     assert found.exit_code == 2 and "--solid is given without PART - name the part's file" in found.stderr
