@@ -32,7 +32,7 @@ def page(store, rows):
     failed = sum(row["status"] != DONE for row in rows)
     told = counted(len(rows), "part") + (f", {failed} of them failed" if failed else "")
     lines = tuple(_row(store, row) for row in rows)
-    return Page(told, "", (Section((Matrix(HEADINGS, lines), NUMBERS)),))
+    return Page(told, "", (Section((Matrix(HEADINGS, lines, sortable=True), NUMBERS)),))
 
 
 def _row(store, row):

@@ -72,7 +72,7 @@ def sheets(store, rows):
     Yields
     ------
     list of (bytes or None, str, str)
-        A part's picture, or None, and two lines of text.
+        A part's picture, or None, its name, and what is to say of it: its rate, or why it failed.
     """
     for first in range(0, len(rows), TILES):
         tiles = [_tile(store, row) for row in rows[first : first + TILES]]
@@ -81,5 +81,14 @@ def sheets(store, rows):
 
 
 def _tile(store, row):
-    said = f"{row['orientation'] or '-'}: {rate(row)}" if row["status"] == DONE else "failed"
+    said = (
+        f"{row['orientation'] or '-'}: {rate(row)}" if row["status"] == DONE else f"failed: {row['reason']}"
+    )
     return store.file(row["folder"], THUMBNAIL), row["folder"], said
+
+
+def _reason(row):
+    """Why a part failed, without the path of its file in front."""
+    reason = row["reason"] or ""
+    place, colon, rest = reason.partition(": ")
+    return f"failed: {rest if colon and Path(place.split(':')[0]).name == row['part'] else reason}"

@@ -16,6 +16,8 @@ from feederscrew.output.floor import figures as floor_figures
 from feederscrew.output.floor import map_figures
 from feederscrew.output.graph import figures as graph
 from feederscrew.output.headings import figures as headings_figures
+from feederscrew.output.page.as_html import html
+from feederscrew.output.page.blocks import MarkedCell, Matrix, Page, Section
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.tumbling.by_class import Transition
@@ -170,3 +172,18 @@ def test_the_tipping_graph_of_a_part_shows_it_on_each_aspect():
     assert all((one[..., :3] < 0.9).any() for one in shown) and not np.array_equal(shown[0], shown[1])
     said = " ".join(text.get_text() for text in figure.axes[0].texts)
     assert all(f"{name}  " in said for name in study.aspects.names)
+
+
+def test_a_contact_sheet_says_why_a_part_failed():
+    figure = contact_sheet._sheet(
+        [(None, "bolt", "failed: is cut short: 476 facets announced, 316 are there")]
+    )
+    said = " ".join(" ".join(text.get_text() for text in figure.axes[0].texts).split())
+    assert "failed: is cut short: 476 facets announced, 316 are there" in said
+
+
+def test_a_matrix_can_be_sorted_where_it_says_so():
+    cells = ((MarkedCell("b"),), (MarkedCell("a"),))
+    for sortable in (False, True):
+        page = html(Page("all", "", (Section((Matrix(("part",), cells, sortable),)),)))
+        assert ('class="matrix sortable"' in page) == ("aria-sort" in page.split("</style>")[1]) == sortable

@@ -1,6 +1,7 @@
 """Many parts on one sheet, each on the aspect that leaves the bowl."""
 
 import io
+import textwrap
 
 from matplotlib import image
 
@@ -12,6 +13,7 @@ from feederscrew.output.solid import thumbnail as small
 WIDTH, HEIGHT = 240, 180  # [px] of a thumbnail
 TEXT, EDGE = 52, 20  # [px] under each thumbnail, round the sheet
 LETTERS = 26  # of a line of text
+LINES = 8  # of the reason why a part failed
 
 
 def thumbnail(part, found, aspect=None):
@@ -41,7 +43,7 @@ def sheet(tiles):
     Parameters
     ----------
     tiles : sequence of (bytes or None, str, str)
-        A thumbnail, or None, and two lines of text.
+        A thumbnail, or None where the part failed, its name, and its rate or the reason.
 
     Returns
     -------
@@ -69,12 +71,24 @@ def _tile(figure, axes, left, bottom, tile):
     picture, name, said = tile
     if picture is not None:
         figure.figimage(image.imread(io.BytesIO(picture)), left, bottom + TEXT)
-    middle, colour = left + WIDTH / 2, style.INK if picture is not None else style.ACCENT
-    for line, weight, y in ((name, "bold", 38), (said, "normal", 16)):
-        text = line if len(line) <= LETTERS else f"{line[: LETTERS - 3]}..."
-        axes.text(
-            middle, bottom + y, text, fontsize=7, fontweight=weight, color=colour, ha="center", va="center"
+    failed = picture is None
+    middle, colour = left + WIDTH / 2, style.ACCENT if failed else style.INK
+    look = {"fontsize": 7, "color": colour, "ha": "center"}
+    axes.text(middle, bottom + 38, _shortened(name, LETTERS), fontweight="bold", va="center", **look)
+    if failed:  # the reason has the place of the picture
+        lines = textwrap.wrap(said, LETTERS + 2)
+        lines = (
+            lines
+            if len(lines) <= LINES
+            else [*lines[: LINES - 1], _shortened(lines[LINES - 1] + " ...", LETTERS)]
         )
+        axes.text(middle, bottom + TEXT + HEIGHT / 2, "\n".join(lines), va="center", **look)
+    else:
+        axes.text(middle, bottom + 16, _shortened(said, LETTERS), va="center", **look)
+
+
+def _shortened(text, most):
+    return text if len(text) <= most else f"{text[: most - 3]}..."
 
 
 def _png(pixels):

@@ -45,7 +45,9 @@ def html(page):
     -------
     str
     """
-    views = any(isinstance(block, kinds.Views) for section in page.sections for block in section.blocks)
+    every = [block for section in page.sections for block in section.blocks]
+    views = any(isinstance(block, kinds.Views) for block in every)
+    sortable = any(isinstance(block, kinds.Matrix) and block.sortable for block in every)
     return "\n".join(
         [
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
@@ -56,6 +58,7 @@ def html(page):
             _head(page),
             *(_section(section) for section in page.sections),
             *(_scripts() if views else ()),
+            *((f"<script>\n{_asset('sorting.js')}</script>",) if sortable else ()),
             "</body>\n</html>\n",
         ]
     )
@@ -131,8 +134,8 @@ def _block(block):
             return f'<h3 id="{escape(anchor)}">{escape(text)}</h3>' if anchor else f"<h3>{escape(text)}</h3>"
         case kinds.Links(entries):
             return _links(entries)
-        case kinds.Matrix(heads, rows):
-            return _matrix(heads, rows)
+        case kinds.Matrix(heads, rows, sortable):
+            return _matrix(heads, rows, sortable)
     raise ValueError(f"{type(block).__name__} is not a block of a page")
 
 
@@ -188,9 +191,10 @@ def _links(entries):
     return '<ul class="notes">\n' + "\n".join(lines) + "\n</ul>"
 
 
-def _matrix(heads, rows):
+def _matrix(heads, rows, sortable):
+    kind = "matrix sortable" if sortable else "matrix"
     head = "".join(f"<th>{escape(text)}</th>" for text in heads)
-    return _grid(' class="matrix"', head, [f"<tr>{''.join(map(_entry, row))}</tr>" for row in rows])
+    return _grid(f' class="{kind}"', head, [f"<tr>{''.join(map(_entry, row))}</tr>" for row in rows])
 
 
 def _entry(entry):

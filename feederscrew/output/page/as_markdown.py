@@ -50,7 +50,7 @@ def _block(block, beside):
             return (f'<a id="{anchor}"></a>\n\n' if anchor else "") + f"### {text}"
         case kinds.Links(entries):
             return "\n".join(f"- [{label}](#{anchor}): {text}" for anchor, label, text in entries)
-        case kinds.Matrix(heads, rows):
+        case kinds.Matrix(heads, rows, _):
             lines = [heads, ["---"] * len(heads), *([_entry(entry) for entry in row] for row in rows)]
             return "\n".join(f"| {' | '.join(line)} |" for line in lines)
     raise ValueError(f"{type(block).__name__} is not a block of a page")

@@ -106,6 +106,7 @@ class Matrix:
 
     heads: tuple[str, ...]
     rows: tuple[tuple[MarkedCell, ...], ...]
+    sortable: bool = False  # a click on a heading sorts it, words that are typed choose rows
 
 
 @dataclass(frozen=True)
