@@ -175,9 +175,8 @@ def test_the_tipping_graph_of_a_part_shows_it_on_each_aspect():
 
 
 def test_a_contact_sheet_says_why_a_part_failed():
-    figure = contact_sheet._sheet(
-        [(None, "bolt", "failed: is cut short: 476 facets announced, 316 are there")]
-    )
+    why = "failed: is cut short: 476 facets announced, 316 are there"
+    figure = contact_sheet._sheet([(None, "bolt", why)])
     said = " ".join(" ".join(text.get_text() for text in figure.axes[0].texts).split())
     assert why in said
 
