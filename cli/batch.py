@@ -60,7 +60,7 @@ def batch(ctx, sources, configs, overrides, rule, launch, drops, jobs, scheduler
     Compute every part in every bowl: its aspects, how it travels, and the rate of the orientation
     that leaves the bowl most often, or of the aspect that a list asks for. How often parts lie on each
     aspect is, with a bowl file, what arrives from its moving floor, as for `feeder rate`: one to three
-    seconds a part. A part that fails is told, and the others go on; exit status 1 says that some failed.
+    seconds a part. A part that fails is reported, and the others go on; exit status 1 says that some failed.
 
     PARTS are part files, folders of them, patterns ("parts/**/*.stl") and lists: a CSV whose first
     line names its columns, out of part, units, density, centre_of_mass, names, aspect and config. -o DIR

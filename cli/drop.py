@@ -51,7 +51,7 @@ def drop(part, launch, drops, until, seed, jobs, trace, launches, plate, picture
     as a coin; roll: cast or poured, tumble is its former name; feed: from a hopper into a bowl), or from
     your own ranges, and count the aspects it comes to rest on.
 
-    p_drop is the share of the drops that settled: unsettled tells of the others. p_drop_low and
+    p_drop is the share of the drops that settled: unsettled counts the others. p_drop_low and
     p_drop_high are the 95 % interval of the sampling and the numerical error; p_gentle and p_violent the
     shares among the third of the launches with the least and with the most energy. The same seed gives
     the same counts whatever the number of jobs. Ctrl-C ends the test early: what is counted so far is

@@ -19,7 +19,8 @@ class Grouped(click.Command):
 
     def format_options(self, ctx, formatter):
         """Write the options, in groups if there are many."""
-        records = [(OF.get(one.name, OWN), one.get_help_record(ctx)) for one in self.get_params(ctx)]
+        shown = [one for one in self.get_params(ctx) if isinstance(one, click.Option)]
+        records = [(OF.get(one.name, OWN), one.get_help_record(ctx)) for one in shown]
         records = [(heading, record) for heading, record in records if record is not None]
         if len(records) < LONG:
             super().format_options(ctx, formatter)

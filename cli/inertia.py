@@ -13,7 +13,7 @@ def inertia(part, out):
     principal moments and axes, convex hull and bounding box of PART.
 
     PART is a mesh (STL, OBJ, PLY, OFF, GLB, 3MF, STEP), a part card (YAML), or - for standard
-    input; what a card does not tell stays empty. With -o: inertia.csv, or inertia.json with
+    input; what a card does not give stays empty. With -o: inertia.csv, or inertia.json with
     --format json, and run.json.
     """
     from feederscrew.output import columns, offers

@@ -63,7 +63,7 @@ def _all(decorators):
 def report(part, bowl, taken, directory, format, quiet, verbose, **wanted):
     """Example: feeder report parts/lbracket_30x20x15.stl --config bowl.yaml -o results
 
-    Everything the other commands tell of PART in a bowl: its aspects in 3-D views that can be turned, how
+    Everything the other commands say of PART in a bowl: its aspects in 3-D views that can be turned, how
     often it lands on each, how it tips, slides and travels, the reactions on the track and the rate, with
     what the methods leave out and what it takes to get the numbers again. How often it lands on each aspect
     is, with --config, what arrives from the bowl's own moving floor, as for `feeder rate`.

@@ -60,7 +60,7 @@ def _commands():
     rows = "".join(
         f"| `feeder {name}` | {command.short_help} |\n" for name, command in feeder.commands.items()
     )
-    return f"| Command | What it tells |\n|---|---|\n{rows}"
+    return f"| Command | What it answers |\n|---|---|\n{rows}"
 
 
 def _between(text, name, content):

@@ -97,5 +97,6 @@ def test_the_help_of_a_command_lists_each_option_once_in_groups(run, name):
     for option in shown:
         longest = max(option.opts, key=len)
         assert len(re.findall(rf"^  (?:-\w, )?{longest}(?=[ \n])", said, re.MULTILINE)) == 1, longest
+    assert "\n  PART" not in said and "\n  [PART]" not in said, "an argument is no option"
     long = isinstance(command, grouped.Grouped) and len(shown) >= grouped.LONG
     assert "\nOutput:\n" in said or not long
