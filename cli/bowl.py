@@ -28,6 +28,11 @@ SOLID = (
         help="What the solid is made of: thickness of wall and floor.",
     ),
     click.option(
+        "--bed",
+        metavar="XxYxZ",
+        help="Cut it into segments that fit a printer: 220x220x250mm; with holes for dowels at the seams.",
+    ),
+    click.option(
         "--chord",
         type=Quantity("length", positive=True),
         default="0.05 mm",
@@ -47,7 +52,7 @@ def _wanted(command):
 
 def _of_the_solid(command):
     """The options of SOLID, packed as ``made``."""
-    return options.stacked(options.packed(command, "made", ("solid", "material", "chord")), *SOLID)
+    return options.stacked(options.packed(command, "made", ("solid", "material", "chord", "bed")), *SOLID)
 
 
 @grouped.command(short_help="Size the bowl for a part and a rate; its springs, tuning and drift.")

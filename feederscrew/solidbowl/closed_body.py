@@ -8,6 +8,7 @@ import shapely
 from feederscrew.part import mass
 from feederscrew.solidbowl import facets, track
 from feederscrew.solidbowl.plan import TURN, BowlPlan
+from feederscrew.solidbowl.segments import Segments
 from feederscrew.units import factor
 
 MM = factor("mm", "length")
@@ -31,6 +32,7 @@ class BowlSolid:
     inertia: float  # [kg m2] about the axis
     centre: np.ndarray  # (3,) [m]
     riders: tuple = ()  # (Orientation, s [m]) of parts along its track, to draw
+    segments: Segments | None = None  # where it is cut to fit a printer
 
 
 def body(plan):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import shapely
+from shapely import affinity
 
 from feederscrew import check
 from feederscrew.errors import FeederError
@@ -228,3 +229,37 @@ def placed(made):
     from manifold3d import Manifold, Mesh64
 
     return Manifold(Mesh64(made.vertices / MM, made.faces.astype(np.uint64)))
+
+
+def rod(axis, middle, size, deep):
+    """Return a round rod along an axis (0, 1, 2) about a place (3,) [m], ``deep`` [m] to either side."""
+    from manifold3d import Manifold
+
+    made = Manifold.cylinder(2.0 * deep / MM, 0.5 * size / MM, circular_segments=24, center=True)
+    made = (made.rotate((0.0, 90.0, 0.0)), made.rotate((90.0, 0.0, 0.0)), made)[axis]
+    return made.translate(tuple(np.asarray(middle) / MM))
+
+
+def cut_by(body, planes):
+    """Return a Manifold in cells, cut by planes (axis, place [m]) square to the axes."""
+    cells = [body]
+    for axis, at in planes:
+        normal = tuple(float(k == axis) for k in range(3))
+        cells = [half for cell in cells for half in cell.split_by_plane(normal, at / MM)]
+    return [cell for cell in cells if not cell.is_empty()]
+
+
+def parts_of(body):
+    """Return the pieces of a Manifold that hang together, crumbs left out."""
+    return [one for one in body.decompose() if one.volume() * MM**3 > CRUMB]
+
+
+def cut_face(body, axis, at):
+    """Return what a plane square to an axis cuts of a Manifold, as a shapely area [m] of the other two."""
+    turn = ((0.0, -90.0, 0.0), (90.0, 0.0, 0.0), (0.0, 0.0, 0.0))[axis]  # x' y' z': -z y x, x -z y, x y z
+    rings = [np.asarray(ring) * MM for ring in body.rotate(turn).slice(at / MM).to_polygons()]
+    area = shapely.Polygon()
+    for ring in rings:
+        area = area.symmetric_difference(shapely.Polygon(ring).buffer(0.0))
+    back = ((0.0, 1.0, -1.0, 0.0), (1.0, 0.0, 0.0, -1.0), (1.0, 0.0, 0.0, 1.0))[axis]
+    return affinity.affine_transform(area, (*back, 0.0, 0.0))

@@ -99,6 +99,7 @@ class Asked:
     bolt_share: float = 0.4  # [1] the rule: of the bowl's diameter
     drains: int = 0
     drain: float = 4e-3  # [m]
+    bed: tuple[float, ...] | None = None  # (x, y, z) [m] of the printer; None leaves the bowl whole
 
 
 def plan(size, track, made_of, tooled, asked, *, extents):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew.solidbowl import cuts, riding
+from feederscrew.solidbowl import cuts, riding, segments
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.materials import material
 from feederscrew.solidbowl.plan import Asked, plan
@@ -13,7 +13,7 @@ from feederscrew.solidbowl.ways_down import check_ways_down
 from feederscrew.tooling.hanging import hung, neck
 
 
-def asked(settings, *, solid, material, chord):
+def asked(settings, *, solid, material, chord, bed=None):
     """Return what is asked of the solid, None where none is.
 
     Parameters
@@ -23,10 +23,17 @@ def asked(settings, *, solid, material, chord):
     material : str
         Of ``materials.NAMES``.
     chord : float [m]
+    bed : str, optional
+        Size of the printer's bed, '220x220x250mm'.
 
     Returns
     -------
     Asked or None
+
+    Raises
+    ------
+    ArgumentError
+        If the bed is not three lengths.
     """
     if not solid:
         return None
@@ -44,6 +51,7 @@ def asked(settings, *, solid, material, chord):
         bolt_share=rules.bolt_share,
         drains=int(rules.drains),
         drain=rules.drain_hole,
+        bed=None if bed is None else segments.bed(bed),
     )
 
 
@@ -100,6 +108,8 @@ def solid(bowl, size, part, coming, asked, counted):
     tooled = cuts.stretch(bowl.track, bowl.devices, coming.lying) if _tooled(bowl.devices) else None
     made = body(plan(size, bowl.track, made_of, tooled, asked, extents=np.ptp(part.vertices, axis=0)))
     check_ways_down(made)
+    if asked.bed is not None:
+        made = replace(made, segments=segments.segments(made, asked.bed))
     own = {"depth": made.plan.outlet_height, "turns": made.plan.turns}
     return replace(size, **own, mass=made.mass, inertia=made.inertia), replace(
         made, riders=_riders(made.plan, bowl.devices, coming, counted)

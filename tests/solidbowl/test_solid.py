@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import shapely
 from scipy.spatial import cKDTree
 
 from feederscrew.bowl.record import Track
@@ -13,7 +14,7 @@ from feederscrew.bowl.settings import effective, record
 from feederscrew.errors import FeederError
 from feederscrew.machine.sizing import Size
 from feederscrew.output.solidbowl import printing
-from feederscrew.solidbowl import cuts, facets, riding
+from feederscrew.solidbowl import cuts, facets, riding, segments
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.materials import material
 from feederscrew.solidbowl.measuring import heights, measures, track_width
@@ -47,7 +48,7 @@ def planned(devices=(), track=TRACK, asked=None, name="steel", turns=1.5):
     return plan(size, track, material(name, RULES), tooled, asked, extents=(18e-3, 14e-3, 12e-3))
 
 
-def closed(solid):
+def closed(solid, near=1e-4):
     """The volume of a surface in which each edge has two facets that run opposite ways, and one piece."""
     faces = solid.faces
     sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
@@ -57,7 +58,7 @@ def closed(solid):
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     assert across.any(axis=1).all()
     points = np.unique((solid.vertices * 1e3).astype(np.float32), axis=0)
-    assert not cKDTree(points).query_pairs(1e-4)  # [mm] readers unite what lies nearer than 1e-5
+    assert not cKDTree(points).query_pairs(near)  # [mm] readers unite what lies nearer than 1e-5
     return float((corners[:, 0] * across).sum()) / 6.0
 
 
@@ -180,6 +181,53 @@ def test_gates_are_parts_of_their_own():
     gate = facets.placed(SimpleNamespace(vertices=solid.gates[0][1], faces=solid.gates[0][2]))
     assert (gate ^ facets.placed(solid)).volume() < 20.0  # [mm3] it stands on the track and in its notch
     assert b"gate_1" in model_of(printing.threemf(solid, "bowl"))
+
+
+@pytest.mark.parametrize(
+    ("bed", "least"), [("220x220x250mm", 4), ("220 mm x 220 mm x 60 mm", 8), ("1x1x1m", 1)]
+)
+def test_segments_fit_the_bed_and_make_up_the_bowl(bed, least):
+    solid = body(planned(CHAINS["gap"], asked=Asked(left=True, outlet_angle=0.4), name="pla"))
+    size, found = segments.bed(bed), segments.segments(solid, segments.bed(bed))
+    assert len(found.pieces) >= least
+    for one in found.pieces:
+        assert all(np.array(one.size) <= np.array(size) + 1e-6)
+        assert closed(one, near=1e-5) == pytest.approx(one.volume * 1e9, rel=1e-4)
+    drilled = found.dowels * np.pi * (0.5 * found.dowel) ** 2 * found.dowel_length
+    whole = sum(one.volume for one in found.pieces)
+    assert whole == pytest.approx(solid.volume - drilled, rel=1e-4)
+    assert (found.dowels > 0) == (least > 1)
+
+
+def test_no_dowel_lies_below_a_cut():
+    solid = body(planned(CHAINS["gap"], name="pla"))
+    found, made = segments.segments(solid, (0.09, 0.09, 0.25)), solid.plan
+    ring = np.array(made.stretch.cuts[0].ring) + [made.first, 0.0]
+    cut = made.way.laid(ring, made.chord)
+    c, s = np.cos(found.turned), np.sin(found.turned)
+    x, y = found.places[:, 0], found.places[:, 1]
+    there = shapely.points(np.column_stack([c * x - s * y, s * x + c * y]))
+    assert found.dowels > 50 and cut.distance(there).min() > found.dowel
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("220x220mm", "bed: '220x220mm' is not three lengths - write 220x220x250mm"),
+        ("0x220x250mm", "bed: '0x220x250mm' has a side of 0 or less - write 220x220x250mm"),
+        ("220x220x250", "bed: '220' has no unit - write 220 mm"),
+    ],
+)
+def test_beds_that_are_none(text, line):
+    with pytest.raises(FeederError) as fault:
+        segments.bed(text)
+    assert str(fault.value) == line
+
+
+def test_a_bed_that_is_too_small():
+    with pytest.raises(FeederError) as fault:
+        segments.segments(body(planned()), (0.04, 0.2, 0.2))
+    assert str(fault.value).startswith("bed: 40 x 200 x 200 mm takes more than 6 segments in one direction")
 
 
 def model_of(data):

@@ -17,8 +17,22 @@ def offers(study):
     """
     from feederscrew.output.solidbowl import bowl_picture, drawing_sheet, printing
 
-    name = study.order.part.name
+    name, cut = study.order.part.name, study.solid.segments
+    pieces = (
+        ()
+        if cut is None
+        else (
+            *(
+                offer.text(f"bowl_{one.name}.stl", printing.binary, one.vertices, one.faces)
+                for one in cut.pieces
+            ),
+            offer.text(
+                "bowl_segments.3mf", printing.side_by_side, cut.pieces, f"bowl for {name}, in segments"
+            ),
+        )
+    )
     return (
+        *pieces,
         offer.text("bowl.stl", printing.stl, study.solid),
         offer.text("bowl.3mf", printing.threemf, study.solid, f"bowl for {name}"),
         offer.text("bowl.pdf", drawing_sheet.pdf, study),

@@ -47,6 +47,11 @@ def parts(paper, study, at):
     rows.append(["1", "1", f"bowl, {plan.material.name}, {study.solid.mass:.4g} kg"])
     for name, _, _ in study.solid.gates:
         rows.append([str(len(rows)), "1", f"{name.replace('_', ' ')}, in its notch of the wall"])
+    cut = study.solid.segments
+    if cut is not None and cut.dowels:
+        size = f"{cut.dowel / MM:.3g} x {cut.dowel_length / MM:.3g} mm"
+        told = f"dowels {size}, between {len(cut.pieces)} segments"
+        rows.append([str(len(rows)), str(cut.dowels), told])
     rows.append([str(len(rows)), str(plan.bolts + 1), f"bolts for holes of {plan.bolt / MM:.4g} mm"])
     rows.append([str(len(rows)), f"{under.leaves:.0f}", f"leaves {leaf} mm"])
     rows.append(

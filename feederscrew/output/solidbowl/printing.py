@@ -10,6 +10,7 @@ from feederscrew.units import factor
 
 MM = factor("mm", "length")
 HEADER = b"feeder bowl: the bowl as a solid, in mm"
+BETWEEN = 10e-3  # [m] from segment to segment
 WHEN = (1980, 1, 1, 0, 0, 0)  # of each file in the archive: the same bytes twice
 TYPES = (
     '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -71,6 +72,13 @@ def threemf(solid, title):
     """
     objects = [("bowl", solid.vertices, solid.faces), *solid.gates]
     return packed(objects, title)
+
+
+def side_by_side(pieces, title):
+    """Return segments of a bowl as the bytes of a 3MF file, one object each, beside each other."""
+    across = np.cumsum([0.0, *(one.size[0] + BETWEEN for one in pieces)])
+    moved = zip(across, pieces)
+    return packed([(one.name, one.vertices + [x, 0.0, 0.0], one.faces) for x, one in moved], title)
 
 
 def packed(objects, title):

@@ -1,5 +1,6 @@
 """The bowl as a solid as a document."""
 
+from feederscrew.solidbowl.segments import overhangs
 from feederscrew.units import factor
 
 MM, DEG = factor("mm", "length"), factor("deg", "angle")
@@ -40,4 +41,19 @@ def document(solid):
         "bolt_circle_mm": plan.bolt_circle / MM,
         "chord_mm": plan.chord / MM,
         "separate_parts": [name for name, _, _ in solid.gates],
+        "overhangs_mm2": {name: area / MM**2 for name, area in overhangs(solid).items()},
+        **({} if solid.segments is None else _segments(solid.segments)),
+    }
+
+
+def _segments(cut):
+    return {
+        "segments": [
+            {"name": one.name, "size_mm": [x / MM for x in one.size], "volume_mm3": one.volume / MM**3}
+            for one in cut.pieces
+        ],
+        "dowels": cut.dowels,
+        "dowel_mm": cut.dowel / MM,
+        "dowel_length_mm": cut.dowel_length / MM,
+        "seams_deg": cut.turned / DEG,
     }

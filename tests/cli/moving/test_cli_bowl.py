@@ -201,14 +201,17 @@ def test_the_bowl_as_a_solid(run, tmp_path):
     config = tmp_path / "gap.yaml"
     config.write_text("devices:\n  - gap: 9 mm\n")
     line = ["bowl", PART, "--target", "40/min", "--config", config, "--solid"]
+    line += ["--print", "pla", "--bed", "220x220x250mm"]
     found = document(run(*line, "-o", tmp_path, "--no-pictures", "--format", "json"))
     made = tmp_path / "lbracket_30x20x15"
-    assert {path.name for path in made.iterdir()} >= {"bowl.stl", "bowl.3mf", "bowl.pdf"}
+    assert {path.name for path in made.iterdir()} >= {"bowl.stl", "bowl.3mf", "bowl.pdf", "bowl_segments.3mf"}
     shape = trimesh.load(made / "bowl.stl")
     assert shape.is_watertight and shape.body_count == 1
     assert shape.volume == pytest.approx(found["solid_volume_mm3"], rel=1e-5)
-    assert found["bowl_mass_kg"] == pytest.approx(7900e-9 * shape.volume, rel=1e-5)
+    assert found["bowl_mass_kg"] == pytest.approx(1240e-9 * shape.volume, rel=1e-5)
     assert found["bowl_depth_mm"] == found["outlet_height_mm"]
+    pieces = [trimesh.load(made / f"bowl_{one['name']}.stl") for one in found["segments"]]
+    assert len(pieces) == 4 and max(max(one.extents) for one in pieces) <= 220.0
     again = part.load(made / "bowl.3mf")
     assert again.volume * 1e9 == pytest.approx(shape.volume, rel=1e-6)
     sheet = (made / "bowl.pdf").read_bytes()

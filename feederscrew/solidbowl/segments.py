@@ -1,0 +1,224 @@
+"""A bowl cut into segments that fit a printer, with holes for dowels across the seams."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from feederscrew import units
+from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.solidbowl import facets
+
+MOST = 6  # segments in one direction
+TURNS = 36  # positions of the seams that are tried, over a quarter turn
+DEEP = 6e-3  # [m] of a dowel's hole in each segment
+SHARE = 0.5  # of the wall: diameter of a dowel
+LAND = 0.8  # of its diameter: solid round a dowel
+APART = 25e-3  # [m] between dowels
+GRID = 1.5e-3  # [m] at which places for dowels are looked for
+MM = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Segment:
+    """One piece to print, as it stands on the bed."""
+
+    name: str
+    vertices: np.ndarray  # (V, 3) [m] from the corner of its box
+    faces: np.ndarray  # (F, 3)
+    size: tuple[float, float, float]  # [m] of its box
+    volume: float  # [m3]
+
+
+@dataclass(frozen=True, eq=False)
+class Segments:
+    """A bowl in pieces."""
+
+    pieces: tuple[Segment, ...]
+    places: np.ndarray  # (N, 3) [m] the middle of each dowel, in axes turned with the seams
+    dowel: float  # [m] diameter
+    dowel_length: float  # [m]
+    turned: float  # [rad] of the seams against the bowl's axes
+
+    @property
+    def dowels(self):
+        """How many."""
+        return len(self.places)
+
+
+def bed(text):
+    """Return the size (x, y, z) [m] of a printer's bed as typed, '220x220x250mm'.
+
+    Raises
+    ------
+    ArgumentError
+    """
+    sides, size = text.replace("×", "x").lower().split("x"), []
+    unit = sides[-1].lstrip(" 0123456789.+-")
+    try:
+        if len(sides) != 3:
+            raise units.QuantityError(f"{units.shown(text)} is not three lengths", "write 220x220x250mm")
+        for side in sides:
+            has_unit = side.strip().lstrip("0123456789.+-")
+            size.append(units.quantity(side if has_unit else f"{side}{unit}", "length"))
+    except units.QuantityError as fault:
+        raise ArgumentError("bed", fault.what, fault.mend) from None
+    if min(size) <= 0.0:
+        raise ArgumentError("bed", f"{units.shown(text)} has a side of 0 or less", "write 220x220x250mm")
+    return tuple(size)
+
+
+def segments(made, size):
+    """Return a bowl in pieces that fit a bed, whole where it fits as it is.
+
+    Parameters
+    ----------
+    made : BowlSolid
+    size : (float, float, float) [m]
+        Of the bed, and of the height that is printed.
+
+    Returns
+    -------
+    Segments
+
+    Raises
+    ------
+    FeederError
+        If it takes more than six segments in one direction.
+    """
+    counts, turn, extents = _seams(made, size)
+    body = facets.placed(made).rotate((0.0, 0.0, -float(np.degrees(turn))))
+    planes = [
+        (axis, low + (high - low) * k / count)
+        for axis, (count, (low, high)) in enumerate(zip(counts, extents))
+        for k in range(1, count)
+    ]
+    dowel = SHARE * min(made.plan.material.wall, made.plan.material.floor)
+    holes = [one for plane in planes for one in _dowels(made, body, turn, plane, dowel)]
+    body = facets.without(body, [facets.rod(*one, dowel, DEEP) for one in holes])
+    cells = facets.cut_by(body, planes)
+    found = sorted(
+        (piece for cell in cells for piece in facets.parts_of(cell)), key=lambda one: one.bounding_box()
+    )
+    pieces = tuple(_piece(f"segment_{k}", one) for k, one in enumerate(found, start=1))
+    places = np.array([middle for _, middle in holes]).reshape(-1, 3)
+    return Segments(pieces, places, dowel, 2.0 * DEEP, turn)
+
+
+def _piece(name, body):
+    low = body.bounding_box()[:3]
+    vertices, faces = facets.mesh(body.translate(tuple(-x for x in low)))
+    size = tuple(float(x) for x in vertices.max(axis=0))
+    return Segment(name, vertices, faces, size, body.volume() * MM**3)
+
+
+def _seams(made, size):
+    """Segments along each axis, the turn of the seams, and the box (3, 2) [m] of the bowl turned back by it.
+
+    Of the turns with fewest segments the one whose seams keep farthest from the devices.
+    """
+    best = None
+    for turn in 0.5 * np.pi * np.arange(TURNS) / TURNS:
+        extents = _box(made.vertices, turn)
+        room = extents[:, 1] - extents[:, 0]
+        counts = tuple(int(np.ceil(one / side - 1e-9)) for one, side in zip(room, size))
+        rank = np.prod(counts), -round(_clear(made, turn, counts, extents), 9), float(turn)
+        if best is None or rank < best[0]:
+            best = rank, counts, float(turn), extents
+    _, counts, turn, extents = best
+    if max(counts) > MOST:
+        least = " x ".join(f"{1e3 * (high - low) / MOST:.4g}" for low, high in extents)
+        told = " x ".join(f"{1e3 * side:.4g}" for side in size)
+        what = f"{told} mm takes more than {MOST} segments in one direction"
+        raise FeederError("bed", what, f"give at least {least} mm, or a smaller bowl")
+    return counts, turn, extents
+
+
+def _box(vertices, turn):
+    c, s = np.cos(turn), np.sin(turn)
+    points = np.column_stack(
+        [c * vertices[:, 0] + s * vertices[:, 1], c * vertices[:, 1] - s * vertices[:, 0]]
+    )
+    points = np.column_stack([points, vertices[:, 2]])
+    return np.column_stack([points.min(axis=0), points.max(axis=0)])
+
+
+def _clear(made, turn, counts, extents):
+    """Least distance [m] from an upright seam to the tooled stretch."""
+    corners = _box_points(made, turn)
+    found = [1.0]
+    for axis in (0, 1):
+        low, high = extents[axis]
+        for k in range(1, counts[axis]):
+            offset = corners[:, axis] - (low + (high - low) * k / counts[axis])
+            crossed = offset.min() < 0.0 < offset.max()
+            found.append(0.0 if crossed else float(np.abs(offset).min()))
+    return min(found)
+
+
+def _box_points(made, turn):
+    """Places (N, 2) [m] along the devices, in the axes of the seams."""
+    plan = made.plan
+    ends = _tooled(plan)
+    s, y = np.meshgrid(np.linspace(*ends, 30), [0.0, plan.width])
+    x, y = _filed(plan, plan.way.plan(s.ravel(), y.ravel())).T
+    c, sn = np.cos(turn), np.sin(turn)
+    return np.column_stack([c * x + sn * y, c * y - sn * x])
+
+
+def _tooled(plan):
+    """From and to [m] along the wall where no dowel and, if it can be, no seam shall be."""
+    return (plan.first, plan.way.end) if plan.stretch is not None else (plan.way.end - 1e-3, plan.way.end)
+
+
+def _filed(plan, flat):
+    x, y = flat.T
+    y = -y if plan.left else y
+    c, s = np.cos(plan.turned), np.sin(plan.turned)
+    return np.column_stack([c * x - s * y, s * x + c * y])
+
+
+def _dowels(made, body, turn, plane, size):
+    """Places (axis, middle (3,) [m]) of dowels across a seam: in solid, apart, and none below a cut."""
+    axis, at = plane
+    areas = [facets.cut_face(body, axis, at + off).buffer(-LAND * size) for off in (-DEEP, 0.0, DEEP)]
+    area = areas[0].intersection(areas[1]).intersection(areas[2])
+    if area.is_empty:
+        return []
+    low_u, low_v, high_u, high_v = area.bounds
+    u, v = np.meshgrid(np.arange(low_u, high_u + GRID, GRID), np.arange(low_v, high_v + GRID, GRID))
+    places = np.column_stack([u.ravel(), v.ravel()])
+    places = places[shapely.contains_xy(area, *places.T)]
+    ring = shapely.MultiPoint(_box_points(made, turn)).convex_hull.buffer(2.0 * size)
+    kept = []
+    for place in places:
+        middle = np.insert(place, axis, at)
+        if shapely.contains_xy(ring, *middle[:2]):
+            continue
+        if all(np.sum((middle - other) ** 2) > APART**2 for _, other in kept):
+            kept.append((axis, middle))
+    return kept
+
+
+def overhangs(made):
+    """Return what hangs over by more than 45 deg, printed as the bowl stands.
+
+    Parameters
+    ----------
+    made : BowlSolid
+
+    Returns
+    -------
+    dict of str to float [m2]
+        Area by what it belongs to; nothing of less than a square centimetre.
+    """
+    plan, corners = made.plan, made.vertices[made.faces]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = 0.5 * np.sqrt((across**2).sum(axis=1))
+    down = -across[:, 2] > (np.sqrt(0.5) + 1e-6) * 2.0 * area
+    high = corners[..., 2].min(axis=1) > made.vertices[:, 2].min() + 1e-4
+    r = np.hypot(*corners.mean(axis=1)[:, :2].T)
+    inner, outer = plan.way.radius - plan.across - 1e-4, plan.way.radius + plan.material.wall
+    where = {"floor": r < inner, "track": (r >= inner) & (r < outer), "outlet": r >= outer}
+    found = {name: float(area[down & high & at].sum()) for name, at in where.items()}
+    return {name: one for name, one in found.items() if one > 1e-4}
