@@ -59,7 +59,8 @@ def _of_part(part, counts, launch, as_published, pictures, out):
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
         out.say(*study.measured.notes)
         offers.write(folder, files.offers(study), pictures=pictures)
-    out.show(tables.comparisons(study), tables.document(study), hidden=tables.hidden(study))
+    shown = tables.shown(study, out.format)
+    out.show(shown, tables.document(study), hidden=tables.hidden(study))
 
 
 def _over_files(sources, launch, as_published, pictures, out):

@@ -28,6 +28,11 @@ def comparisons(study):
     return frame([study])
 
 
+def shown(study, _):
+    """Return what is printed in any format: ``comparisons``."""
+    return comparisons(study)
+
+
 def frame(studies):
     """Return the same of several feeding tests; the answer of a rule that a test does not have is empty."""
     rows = [row for study in studies for row in _rows(study)]

@@ -17,7 +17,32 @@ def comparisons(study):
     Frame
         The columns of ``compare.csv``; those of the test are empty where neither profile holds counts.
     """
-    compared = study.comparisons
+    return _frame(study.comparisons)
+
+
+def shown(study, format):
+    """Return what is printed: for people each measured profile with the rules, the nearest one first.
+
+    Parameters
+    ----------
+    study : CompareStudy
+    format : str
+        Of what is printed; the table leaves out how far rules are from each other, which the files hold.
+
+    Returns
+    -------
+    Frame
+    """
+    if format != "table":
+        return comparisons(study)
+    order = [one.name for one in study.measured.profiles]
+    own = [each for each in study.comparisons if each.first.name in order]
+    beside = [each for each in own if each.second.name not in order]
+    beside.sort(key=lambda each: (order.index(each.first.name), each.total_variation))
+    return _frame([*beside, *(each for each in own if each.second.name in order)])
+
+
+def _frame(compared):
     tests = [each.chi_square for each in compared]
     return tables.frame(
         {

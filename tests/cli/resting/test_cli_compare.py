@@ -76,6 +76,18 @@ def test_the_table_leaves_out_empty_columns(run, card, measured, counts):
     assert "p value" in run("compare", card, "--with", counts).stdout
 
 
+def test_the_table_is_about_what_was_measured_the_nearest_rule_first(run, card, measured):
+    rows = [line.split() for line in run("compare", card, "--with", measured).stdout.splitlines()[1:]]
+    whole = list(
+        csv.DictReader(io.StringIO(run("compare", card, "--with", measured, "--format", "csv").stdout))
+    )
+    rules = {"PMI", "CSA", "STABILITY"}
+    assert not [row for row in rows if {row[0], row[1]} <= rules]
+    assert len(rows) == len(whole) - 3
+    first = [float(row[3]) for row in rows if row[0] == rows[0][0] and row[1] in rules]
+    assert len(first) == 3 and first == sorted(first)
+
+
 def test_files(run, card, counts, tmp_path):
     result = run("compare", card, "--with", counts, "-o", "out", "--format", "csv")
     folder = tmp_path / "out" / "arc_chute"
