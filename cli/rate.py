@@ -35,7 +35,7 @@ def rate(part, aspect, heading, rule, gap, fill, taken, play, tolerance, bowl, o
     from feederscrew.output.rate import files, tables
     from feederscrew.studies.rate import rate as study
 
-    solid, settings = out.part(part), bowls.settings(**bowl)
+    solid, settings = out.part(part), out.settings(bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
     record = bowls.record(settings)
     known = orientation.shares(out, solid, record, taken, bowl["path"])

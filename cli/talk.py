@@ -78,6 +78,14 @@ class Output:
         self.warn(*solid.warnings)
         return solid
 
+    def settings(self, bowl):
+        """Read the bowl file of ``options.bowl`` and tell what a machine makes of its drive; the settings."""
+        from feederscrew import bowl as bowls
+
+        found = bowls.settings(**bowl)
+        self.warn(*bowls.by_machine(found))
+        return found
+
     @contextlib.contextmanager
     def step(self, name):
         """Time what happens inside; told with ``-v``."""

@@ -88,7 +88,7 @@ def tooling(
         from feederscrew.output.tooling import written_step as steps
 
         steps.check()
-    solid, settings = out.part(part), bowls.settings(**bowl)
+    solid, settings = out.part(part), out.settings(bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
     record = bowls.record(settings)
     known = orientation.shares(out, solid, record, taken, bowl["path"])

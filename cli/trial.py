@@ -94,7 +94,7 @@ def trial(part, aspect, rule, taken, parts, landing, queued, amplitudes, seed, j
         from feederscrew.output.trial import files, tables
         from feederscrew.studies import trial as studies
 
-    solid, settings = out.part(part), bowls.settings(**bowl)
+    solid, settings = out.part(part), out.settings(bowl)
     driven = bowls.strokes(bowls.record(settings), amplitudes)
     effective = columns.conditions(solid) | bowls.texts(settings)
     known = orientation.shares(out, solid, driven[0], taken, bowl["path"])

@@ -36,7 +36,7 @@ def tune(part, target, aspect, heading, rule, gap, fill, taken, worst, bowl, out
     from feederscrew.output.tune import files, tables
     from feederscrew.studies.tune import tune as study
 
-    solid, settings = out.part(part), bowls.settings(**bowl)
+    solid, settings = out.part(part), out.settings(bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
     waiting.conveying(out)
     record = bowls.record(settings)

@@ -5,14 +5,14 @@ from pathlib import Path
 
 from feederscrew.bowl.reading import settings
 from feederscrew.bowl.record import Bowl, Drive, Friction, Track
-from feederscrew.bowl.settings import effective, record, swept, texts
+from feederscrew.bowl.settings import by_machine, effective, record, swept, texts
 from feederscrew.bowl.strokes import named, strokes
 from feederscrew.bowl.vary import ranges
 
 __all__ = [
     "Bowl", "Drive", "Friction", "Track",
-    "default", "identity", "name", "named", "ranges", "read", "record", "settings", "strokes", "swept",
-    "texts",
+    "by_machine", "default", "identity", "name", "named", "ranges", "read", "record", "settings", "strokes",
+    "swept", "texts",
 ]  # fmt: skip
 
 

@@ -104,6 +104,7 @@ SIZING = (
     ),
     _rule("greatest_stroke", "length", "0.01 mm", "40 mm", "3 mm", "peak to peak", "Eriez: never above"),
     _rule("leaves", "count", "1", "500", "9", "usual number of leaves: three banks of three", ASSUMED),
+    _rule("banks", "count", "1", "24", "3", "banks that share the leaves, as many in each", ASSUMED),
     _rule(
         "fatigue_stress", "stress", "1 MPa", "2000 MPa", "250 MPa",
         "amplitude of bending stress that a clamped leaf bears without end",

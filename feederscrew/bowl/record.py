@@ -98,6 +98,7 @@ class Sizing:
     greatest_acceleration: float  # [1] of gravity
     greatest_stroke: float  # [m] peak to peak
     leaves: float  # of a usual set
+    banks: float  # that share them
     fatigue_stress: float  # [Pa]
     half_wave_diameter: float  # [m]
     spring_radius: float  # [1] of the bowl's radius

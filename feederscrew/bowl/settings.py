@@ -132,6 +132,25 @@ def has_machine(given):
     return any(name in BY_NAME and BY_NAME[name].field.startswith("machine.") for name in given)
 
 
+def by_machine(settings):
+    """Return what a machine of which little is given makes of the drive, a tuple of at most one sentence.
+
+    As soon as one key of the machine is given, its springs and its supply set the drive: whoever gives
+    neither may not expect that.
+    """
+    given = {s.key.name for s in settings if s.given}
+    kept = {"drive.frequency": "machine.supply", "drive.vibration_angle": "machine.spring_angle"}
+    moved = [
+        f"{s.key.name} is {s.text} by the machine, not {default(s.key).text}"
+        for s in settings
+        if has_machine(given) and s.where.startswith("from machine") and kept.get(s.key.name) not in given
+    ]
+    if not moved:
+        return ()
+    one = next(name for name in BY_NAME if name in given and has_machine({name}))
+    return (f"{one}: is given, so {' and '.join(moved)} - write drive.frequency and drive.vibration_angle",)
+
+
 def default(key):
     """Return the Setting of a key while the user gives nothing."""
     return _effective(key, {})

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from feederscrew import units
 from feederscrew.bowl.direction import vibration_angle
 from feederscrew.errors import FeederError
 from feederscrew.machine import speeds
@@ -22,9 +23,10 @@ def remarks(sheet):
     -------
     tuple of str
     """
-    found = [*_tuning(sheet), *_stress(sheet), *_stroke(sheet), *_angle(sheet), *_fill(sheet), *_drift(sheet)]
+    found = [*_tuning(sheet), *_banks(sheet), *_stress(sheet), *_stroke(sheet), *_angle(sheet)]
+    found += [*_throw(sheet), *_fill(sheet), *_drift(sheet)]
     if sheet.order is not None:
-        found += [*_size(sheet), *_hand(sheet)]
+        found += [*_lowest(sheet), *_size(sheet), *_hand(sheet)]
     lines = [str(one) for one in found]
     tipping = () if sheet.order is None else sheet.order.tipping
     return (*lines, *tipping, *speeds.remark(sheet.answer.velocity, sheet.bowl.sizing))
@@ -60,6 +62,34 @@ def _named(sets):
     for one in sets:
         first.setdefault(one.thickness, f"{one.leaves} of {one.thickness / MM:g} mm")
     return " or ".join(list(first.values())[:3])
+
+
+def _banks(sheet):
+    leaves, banks = int(sheet.bowl.machine.leaves), int(sheet.bowl.sizing.banks)
+    if sheet.has_machine and leaves % banks:
+        near = leaves - leaves % banks
+        some = f"{near} or {near + banks}" if near else f"{banks}"
+        what = f"{leaves} leaves do not share into {banks} banks"
+        yield FeederError("machine.leaves", what, f"take {some}, or give sizing.banks")
+
+
+def _throw(sheet):
+    """Tooling that cuts the track tells parts apart by how they lie: not those that fly over it."""
+    over = [one.kind for one in sheet.bowl.devices if one.placed and not one.overhead]
+    throw = sheet.answer.throw_number
+    if over and throw > 1.0:
+        kinds = units.listed(list(dict.fromkeys(over)))
+        what = f"the throw number {throw:.3g} is above 1, so parts hop over the {kinds}"
+        mend = "take a smaller stroke or a flatter angle: that tooling tells parts apart as they lie"
+        yield FeederError("drive.amplitude", what, mend)
+
+
+def _lowest(sheet):
+    low, wanted = sheet.lowest, sheet.order.target
+    if low.rate < wanted * (1.0 - 1e-6):
+        there = f"{60.0 * low.rate:.3g}/min at {100.0 * low.level:.3g} % of the fill, {low.way}"
+        what = f"{60.0 * wanted:.3g}/min are not kept as the bowl empties: {there}"
+        yield FeederError("target", what, "hold the level with a hopper, or lower the target")
 
 
 def _stress(sheet):

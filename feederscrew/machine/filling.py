@@ -31,15 +31,15 @@ class Emptying:
     controlled: np.ndarray  # (N,) [1] the same under amplitude control, as far as the controller reaches
 
 
-def full(radius, depth, density, rules):
+def full(radius, depth, bulk, rules):
     """Compute the fill of a full bowl.
 
     Parameters
     ----------
     radius, depth : float [m]
         Of the bowl.
-    density : float [kg/m3]
-        Of one part.
+    bulk : float [kg/m3]
+        Mass of a part over the volume of its hull: neighbours keep out of its hollows.
     rules : Sizing
 
     Returns
@@ -47,7 +47,7 @@ def full(radius, depth, density, rules):
     Fill
     """
     volume = np.pi * radius**2 * depth * rules.fill_height
-    mass = volume * rules.packing * density
+    mass = volume * rules.packing * bulk
     return Fill(volume, mass, 0.5 * mass * radius**2)
 
 

@@ -75,6 +75,23 @@ def leaf_stress(machine, amplitude):
     return 3.0 * machine.leaf_modulus * machine.leaf_thickness * amplitude / machine.leaf_length**2
 
 
+def upright_pull(force, machine):
+    """Return the amplitude of the pull of an upright magnet that does what a force along the motion does [N].
+
+    Parameters
+    ----------
+    force : float [N]
+        Amplitude along the springs' motion, which rises at their angle: an upright pull works by its sine.
+    machine : Machine
+
+    Notes
+    -----
+    A magnet only pulls. On the full wave its pull goes with 1 + cos(w t): the mean is as large as the
+    amplitude, and the peak twice that; on the half wave the mean is three quarters of it.
+    """
+    return float(force / np.sin(machine.spring_angle))
+
+
 def twist(machine):
     """Return by how much the twist of its leaves stiffens a bank, 1 + (G / 3 E) (L / r_s)^2 cos^2 psi [1].
 

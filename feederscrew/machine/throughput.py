@@ -11,6 +11,7 @@ from feederscrew.machine.stroke import greatest_amplitude
 from feederscrew.rates import well_oriented
 
 STEPS = 120  # strokes that are looked at
+ALONE = (1.0,)  # of a bowl that does not change
 HALVINGS = 40
 CLIMBS = 30  # halvings of the search for the steepest climb
 STEEPEST = np.radians(45.0)
@@ -63,7 +64,7 @@ def flow(found, rule, *, target=None, gap=0.0, fill=1.0):
     return Flow(fill * share / (length + gap), share, length)
 
 
-def amplitude_for(bowl, velocity):
+def amplitude_for(bowl, velocity, strokes=ALONE):
     """Return the smallest stroke from which on a part travels at least so fast.
 
     Parameters
@@ -71,6 +72,8 @@ def amplitude_for(bowl, velocity):
     bowl : Bowl
         Its amplitude is not used.
     velocity : float [m/s]
+    strokes : (N,) float [1]
+        Over that stroke, as the bowl empties: at the slowest of them it shall travel so fast.
 
     Returns
     -------
@@ -86,7 +89,7 @@ def amplitude_for(bowl, velocity):
     that is fast enough is taken.
     """
     amplitudes = greatest_amplitude(bowl) * np.arange(1, STEPS + 1) / STEPS
-    speeds = _speeds(bowl, amplitudes)
+    speeds = _speeds(bowl, amplitudes, strokes)
     best = int(np.argmax(speeds))
     fastest = float(speeds[best]), float(amplitudes[best])
     first = _first(amplitudes, speeds >= velocity, 1.0 + bowl.sizing.retune)
@@ -95,8 +98,8 @@ def amplitude_for(bowl, velocity):
     low, high = (amplitudes[first - 1] if first else 0.0), amplitudes[first]
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if _speeds(bowl, middle) >= velocity else (middle, high)
-    return (float(high), float(_speeds(bowl, high))), fastest
+        low, high = (low, middle) if _speeds(bowl, middle, strokes) >= velocity else (middle, high)
+    return (float(high), float(_speeds(bowl, high, strokes))), fastest
 
 
 def _first(amplitudes, fast, reach):
@@ -138,8 +141,12 @@ def unreachable(target, parts_per_metre, fastest):
     )
 
 
-def _speeds(bowl, amplitudes):
-    """Velocities at strokes [m/s]; minus infinity where there is none."""
-    drive = replace(bowl.drive, amplitude=np.asarray(amplitudes))
+def _speeds(bowl, amplitudes, strokes):
+    """Slowest velocities of strokes as the bowl empties [m/s]; minus infinity where there is none.
+
+    No stroke is beyond what drives are built for: there the magnet strikes.
+    """
+    each = np.minimum(np.multiply.outer(amplitudes, strokes), greatest_amplitude(bowl))
+    drive = replace(bowl.drive, amplitude=each)
     found = answer.cells(replace(bowl, drive=drive))["velocity"]
-    return np.where(np.isfinite(found), found, -np.inf)
+    return np.where(np.isfinite(found), found, -np.inf).min(axis=-1)

@@ -6,7 +6,7 @@ from feederscrew.machine.springs import gain, leaf_stress, natural_frequency, sp
 
 THICKNESSES = (1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3, 5e-3, 6e-3)  # [m] that makers stock
 THICKER = 0.5e-3  # [m] step of the same
-FEWEST, MOST = 3, 60  # leaves of one set: a bowl stands on three banks at least
+MOST = 60  # leaves of one set
 
 
 @dataclass(frozen=True)
@@ -56,21 +56,23 @@ def leaf_set(machine, frequency, amplitude, *, leaves, thickness, name=""):
     )
 
 
-def changes(machine, frequency, amplitude):
-    """Return the set in use beside one leaf more, one less and leaves 0.5 mm thicker.
+def changes(machine, frequency, amplitude, banks):
+    """Return the set in use beside a leaf more and less in each bank, and leaves 0.5 mm thicker.
 
     Parameters
     ----------
     machine : Machine
     frequency, amplitude
         As for ``leaf_set``.
+    banks : int
+        That share the leaves.
 
     Returns
     -------
     tuple of LeafSet
     """
     n, t = int(machine.leaves), machine.leaf_thickness
-    rows = [("as it is", n, t), ("one leaf more", n + 1, t), ("one leaf less", n - 1, t)]
+    rows = [("as it is", n, t), ("a leaf more a bank", n + banks, t), ("a leaf less a bank", n - banks, t)]
     rows.append(("leaves 0.5 mm thicker", n, t + THICKER))
     return tuple(
         leaf_set(machine, frequency, amplitude, leaves=leaves, thickness=thickness, name=name)
@@ -88,7 +90,7 @@ def sets(machine, frequency, amplitude, rules):
     frequency, amplitude
         As for ``leaf_set``.
     rules : Sizing
-        Its least and greatest detuning.
+        Its least and greatest detuning, and its banks: each has as many leaves.
 
     Returns
     -------
@@ -99,7 +101,7 @@ def sets(machine, frequency, amplitude, rules):
     found = (
         leaf_set(machine, frequency, amplitude, leaves=n, thickness=t)
         for t in stocked
-        for n in range(FEWEST, MOST + 1)
+        for n in range(int(rules.banks), MOST + 1, int(rules.banks))
     )
     return tuple(one for one in found if rules.least_detuning <= one.detuning <= rules.greatest_detuning)
 

@@ -9,12 +9,11 @@ from feederscrew import bowl as bowls
 from feederscrew import check
 from feederscrew.bowl.direction import vibration_angle
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.schema import BY_NAME
-from feederscrew.bowl.settings import default, has_machine
+from feederscrew.bowl.settings import has_machine
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError
-from feederscrew.machine import building, checks, filling, sizing, throughput, tuning
-from feederscrew.machine.springs import Springs, gain, leaf_stress, springs
+from feederscrew.machine import checks, drive_sought, filling, sizing, throughput, tuning
+from feederscrew.machine.springs import Springs, gain, leaf_stress, springs, upright_pull
 from feederscrew.machine.stroke import Stroke, angles, greatest_amplitude, stroke
 from feederscrew.part.record import Part
 from feederscrew.rates import stream, well_oriented
@@ -25,8 +24,8 @@ from feederscrew.studies import solidbowl
 from feederscrew.studies.aspects import answered
 from feederscrew.tooling.orientations import orientations
 
-STEEL, FULL_WAVE = 7850.0, 2.0  # [kg/m3] of a fill without a part; drive over supply
-EVEN = 1e-9  # [1] flows closer than this are equal
+STEEL = 7850.0  # [kg/m3] of a fill without a part
+ENOUGH = 1.0 - 1e-6  # of a target
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +47,15 @@ class Order(Shown):
     shape: sizing.SizedShape  # one part on the track, to draw
 
 
+@dataclass(frozen=True)
+class Lowest:
+    """The lowest rate of a bowl that empties."""
+
+    rate: float  # [1/s]
+    level: float  # [1] of the full bowl, there
+    way: str  # how the amplitude is held meanwhile, of ``drive_sought.WAYS``
+
+
 @dataclass(frozen=True, eq=False)
 class MachineSheet(Shown):
     """A machine and what it does; with an order, that of the sized bowl."""
@@ -61,6 +69,7 @@ class MachineSheet(Shown):
     gain: float  # [1]
     stress: float  # [Pa] amplitude in a leaf
     force: float  # [N] amplitude along the springs' motion that keeps the stroke
+    magnet: float  # [N] amplitude of a magnet that pulls upright; its mean is as much
     radii: np.ndarray  # (N,) [m]
     angles: np.ndarray  # (N,) [rad] of the motion to the horizontal
     changes: tuple[tuning.LeafSet, ...]
@@ -78,9 +87,18 @@ class MachineSheet(Shown):
         """What must not be overlooked, a tuple of str."""
         return checks.remarks(self)
 
+    @property
+    def lowest(self):
+        """The Lowest rate from the full bowl to the empty one; of a sheet with an order."""
+        alone, controlled = (self.rates(v) for v in (self.velocities, self.controlled))
+        enough = alone.min() >= ENOUGH * self.order.target or alone.min() >= controlled.min()
+        rates, way = (alone, drive_sought.ALONE) if enough else (controlled, drive_sought.CONTROLLED)
+        row = int(np.argmin(rates))
+        return Lowest(float(rates[row]), float(self.emptying.levels[row]), drive_sought.WAYS[way])
+
     def rates(self, velocities):
         """Return counted parts [1/s] at velocities; of a sheet with an order."""
-        return np.maximum(velocities, 0.0) * self.order.flow.parts
+        return np.nan_to_num(np.maximum(velocities, 0.0)) * self.order.flow.parts
 
 
 def machine(settings):
@@ -146,7 +164,8 @@ def bowl(
     counted = {"rule": rule, "target": wanted, "gap": gap, "fill": fill}
     plain = replace(plain, track=track)
     size, made = solidbowl.solid(plain, size, part, ways(None), solid, counted)
-    driven, flow = _brought(plain, size, settings, target, ways, counted)
+    sought = drive_sought.Sought(plain, size, settings, target, part.mass / part.hull.volume)
+    driven, flow = drive_sought.brought(sought, lambda bowl: throughput.flow(ways(bowl), **counted))
     order = Order(
         part=part,
         target=target,
@@ -158,11 +177,11 @@ def bowl(
         size=size,
         steepest=throughput.steepest(driven),
         flow=flow,
-        hopper=target * plain.sizing.hopper_interval * part.volume / plain.sizing.packing,
+        hopper=target * plain.sizing.hopper_interval * part.hull.volume / plain.sizing.packing,
         handbook=plain.sizing.handbook_speed * flow.share / flow.length,
         shape=sizing.shape(part, found, track, wanted),
     )
-    return replace(_sheet(driven, settings, size.depth, part.mass / part.volume, order), solid=made)
+    return replace(_sheet(driven, settings, size.depth, sought.bulk, order), solid=made)
 
 
 def _on_its_springs(bowl, settings):
@@ -171,7 +190,7 @@ def _on_its_springs(bowl, settings):
         "frequency": bowl.machine.supply,
         "vibration_angle": float(vibration_angle(bowl.machine, bowl.track.radius, bowl.track.climb)),
     }
-    said = _given(settings, "drive")
+    said = drive_sought.given(settings, "drive")
     return replace(bowl, drive=replace(bowl.drive, **{k: v for k, v in made.items() if k not in said}))
 
 
@@ -181,14 +200,9 @@ def _check_rule(rule, found):
         raise ArgumentError(f"rule {rule}", "has no probabilities of this part", f"choose one of {known}")
 
 
-def _given(settings, section=""):
-    """Words of the keys of a section that the user gave."""
-    return {s.key.word for s in settings if s.given and s.key.section == section}
-
-
 def _size(lying, part, plain, settings, *, sorts):
     """The size of the bowl; what the file says of its track is kept."""
-    said, track = _given(settings, "track"), plain.track
+    said, track = drive_sought.given(settings, "track"), plain.track
     return sizing.size(
         lying,
         part.source,
@@ -206,70 +220,15 @@ def _ways(part, aspects, track, devices):
     return cache(lambda driven: stream.along(every, aspects, devices, bowl=driven))
 
 
-def _brought(plain, size, settings, target, ways, counted):
-    """The bowl whose drive brings the target, without the parts that this drive turns over, and the flow."""
-    flow, tried = throughput.flow(ways(None), **counted), set()
-    while True:
-        driven = _driven(plain, size, settings, target, flow)
-        own = throughput.flow(ways(driven), **counted)
-        enough = own.parts >= flow.parts * (1.0 - EVEN)
-        if enough and (own.parts <= flow.parts * (1.0 + EVEN) or flow.parts in tried):
-            return driven, own
-        tried.add(flow.parts)
-        flow = own  # there are only so many orientations to turn over
-
-
-def _driven(plain, size, settings, target, flow):
-    """The bowl with machine, frequency and the smallest stroke that reaches the target."""
-    angle_given = "vibration_angle" in _given(settings, "drive")
-    angle = plain.drive.vibration_angle if angle_given else default(BY_NAME["drive.vibration_angle"]).value
-    wanted = replace(plain, drive=replace(plain.drive, vibration_angle=angle))
-    under = building.machine_for(wanted, size, _given(settings, "machine"))
-    if not angle_given:
-        angle = float(vibration_angle(under, plain.track.radius, plain.track.climb))
-    fastest = []
-    for frequency in _frequencies(plain, settings):
-        drive = replace(plain.drive, vibration_angle=angle, frequency=frequency)
-        made = replace(plain, drive=drive, machine=replace(under, supply=frequency))
-        found, best = throughput.amplitude_for(made, target / flow.parts)
-        if found is not None:
-            made = replace(made, drive=replace(drive, amplitude=found[0]))
-            return replace(made, machine=_tuned(made, settings))
-        fastest.append(best)
-    raise throughput.unreachable(target, flow.parts, max(fastest))
-
-
-def _frequencies(bowl, settings):
-    """The drive's frequency as given; else that of the size, then the other wave of the mains."""
-    if "frequency" in _given(settings, "drive") or "supply" in _given(settings, "machine"):
-        return (bowl.drive.frequency,)
-    mains = bowl.machine.supply / FULL_WAVE
-    large = 2.0 * bowl.track.radius > bowl.sizing.half_wave_diameter
-    return (mains, FULL_WAVE * mains) if large else (FULL_WAVE * mains, mains)
-
-
-def _tuned(bowl, settings):
-    """The machine with the leaves that tune it, unless the user gave their number."""
-    if "leaves" in _given(settings, "machine"):
-        return bowl.machine
-    at_springs, rules = stroke(bowl).springs, bowl.sizing
-    found = tuning.sets(bowl.machine, bowl.drive.frequency, at_springs, rules)
-    if "leaf_thickness" in _given(settings, "machine"):
-        found = tuple(one for one in found if one.thickness == bowl.machine.leaf_thickness)
-    best = tuning.chosen(found, rules) or min(found, key=lambda one: one.stress, default=None)
-    if best is None:
-        return bowl.machine
-    return replace(bowl.machine, leaves=float(best.leaves), leaf_thickness=best.thickness)
-
-
-def _sheet(bowl, settings, depth, density, order):
+def _sheet(bowl, settings, depth, bulk, order):
     """Everything of a bowl with its machine."""
     under, rules, moved = bowl.machine, bowl.sizing, stroke(bowl)
     made = springs(under)
     magnified = float(gain(moved.frequency, made.natural_frequency, under.damping))
-    fill = filling.full(bowl.track.radius, depth, density, rules)
+    fill = filling.full(bowl.track.radius, depth, bulk, rules)
     emptied = filling.emptying(under, moved.frequency, fill, rules)
     radii, turned = angles(under, bowl.track)
+    force = float(made.stiffness * moved.springs / magnified)
     return MachineSheet(
         bowl=bowl,
         has_machine=has_machine({s.key.name for s in settings if s.given}),
@@ -279,10 +238,11 @@ def _sheet(bowl, settings, depth, density, order):
         detuning=made.natural_frequency / moved.frequency - 1.0,
         gain=magnified,
         stress=float(leaf_stress(under, moved.springs)),
-        force=float(made.stiffness * moved.springs / magnified),
+        force=force,
+        magnet=upright_pull(force, under),
         radii=check.frozen(radii),
         angles=check.frozen(turned),
-        changes=tuning.changes(under, moved.frequency, moved.springs),
+        changes=tuning.changes(under, moved.frequency, moved.springs, int(rules.banks)),
         sets=tuning.sets(under, moved.frequency, moved.springs, rules),
         depth=depth,
         fill=fill,

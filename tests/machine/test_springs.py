@@ -11,7 +11,15 @@ from two_masses import amplitude, driven
 from feederscrew import bowl as bowls
 from feederscrew.bowl.direction import direction
 from feederscrew.machine import filling, stroke, tuning
-from feederscrew.machine.springs import gain, held_fast, leaf_stiffness, leaf_stress, springs, twist
+from feederscrew.machine.springs import (
+    gain,
+    held_fast,
+    leaf_stiffness,
+    leaf_stress,
+    springs,
+    twist,
+    upright_pull,
+)
 
 GIVEN = (
     "machine.bowl_mass=6 kg", "machine.bowl_inertia=0.06 kg m2", "machine.base_mass=25 kg",
@@ -149,9 +157,26 @@ def test_the_sets_that_tune():
     found = tuning.sets(MACHINE, 100.0, 1e-4, BOWL.sizing)
     assert all(0.03 <= one.detuning <= 0.08 for one in found)
     assert (2.5e-3, 9) in {(one.thickness, one.leaves) for one in found}
-    names = [one.name for one in tuning.changes(MACHINE, 100.0, 1e-4)]
-    assert names == ["as it is", "one leaf more", "one leaf less", "leaves 0.5 mm thicker"]
-    assert len(tuning.changes(replace(MACHINE, leaves=1), 100.0, 1e-4)) == 3
+    assert {one.leaves % 3 for one in found} == {0}
+    fours = tuning.sets(MACHINE, 100.0, 1e-4, replace(BOWL.sizing, banks=4.0))
+    assert fours and {one.leaves % 4 for one in fours} == {0}
+    rows = tuning.changes(MACHINE, 100.0, 1e-4, 3)
+    assert [(one.name, one.leaves) for one in rows] == [
+        ("as it is", 10), ("a leaf more a bank", 13), ("a leaf less a bank", 7), ("leaves 0.5 mm thicker", 10)
+    ]  # fmt: skip
+    assert len(tuning.changes(replace(MACHINE, leaves=3), 100.0, 1e-4, 3)) == 3
+
+
+def test_an_upright_magnet_works_by_the_sine_of_the_springs_angle():
+    """Its power is pull times rise: as much as damping takes from the way along the springs."""
+    found, drive, at = springs(MACHINE), 100.0, 0.2e-3
+    force = found.stiffness * at / gain(drive, found.natural_frequency, MACHINE.damping)
+    pull = upright_pull(force, MACHINE)
+    assert pull == pytest.approx(2.9238 * force, rel=1e-4)
+    phase = 2.0 * np.pi * np.arange(720) / 720
+    along = np.cos(phase)  # velocity along the springs, of any amplitude
+    rise = along * np.sin(np.radians(20))
+    assert np.mean(pull * np.cos(phase) * rise) == pytest.approx(np.mean(force * np.cos(phase) * along))
 
 
 def test_a_weak_set_is_not_chosen():

@@ -11,7 +11,7 @@ SHEET, TRACK, FLOOR, FILL, BASE = "#22303c", "#b9cbd8", "#eef2f5", "#e9d9b6", "#
 STEEL, FREE, HELD = "#7d8b97", "#d55e00", "#0072b2"
 ROOM = 1.34  # of the bowl's radius, shown to each side
 SMALL, TINY = 8.5, 7.5  # [pt]
-BANKS = 3  # of leaves, as drawn
+PITCH = 2.2  # thicknesses from leaf to leaf: one between them as a spacer
 DIMENSION = {"arrowstyle": "<->", "color": style.INK, "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
 LEADER = {"arrowstyle": "-", "color": style.INK, "linewidth": 0.7, "shrinkA": 1, "shrinkB": 0}
 
@@ -69,8 +69,8 @@ def _from_above(axes, study, half):
     axes.add_patch(Wedge((0, 0), radius, 0, 360, width=width, facecolor=TRACK, edgecolor="none"))
     axes.add_patch(Circle((0, 0), radius, fill=False, edgecolor=SHEET, linewidth=2.2))
     axes.add_patch(Circle((0, 0), at, fill=False, edgecolor=STEEL, linewidth=0.9, linestyle=(0, (5, 3))))
-    for place in np.radians(90 + 360 / BANKS * np.arange(BANKS)):
-        _bank(axes, at, place, machine.leaf_width / MM)
+    for place, leaves in zip(*_banks(study)):
+        _bank(axes, at, place, leaves, machine)
     _parts(axes, study, radius)
     _way(axes, radius - 0.5 * width)
     _across(axes, -radius, radius, -radius - 0.10 * half, f"D {2 * radius:.4g}", radius)
@@ -84,14 +84,23 @@ def _from_above(axes, study, half):
     axes.text(-ROOM * radius, half, "from above", fontsize=10, fontweight="bold", color=style.INK, va="top")
 
 
-def _bank(axes, radius, place, width):
-    """One bank of leaves, seen from above: its width lies along the radius."""
+def _banks(study):
+    """Places of the banks round the springs' circle [rad], and the leaves in each."""
+    leaves, banks = int(study.bowl.machine.leaves), int(study.bowl.sizing.banks)
+    here = np.arange(banks)
+    return np.radians(90.0) + 2.0 * np.pi / banks * here, leaves // banks + (here < leaves % banks)
+
+
+def _bank(axes, radius, place, leaves, machine):
+    """One bank, leaf by leaf from above, each as thick as it is: its width lies along the radius."""
     outward, along = np.array([np.cos(place), np.sin(place)]), np.array([-np.sin(place), np.cos(place)])
-    corners = [
-        radius * outward + x * 0.5 * width * outward + y * 0.1 * width * along
-        for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))
-    ]
-    axes.add_patch(Polygon(corners, closed=True, facecolor=STEEL, edgecolor=SHEET, linewidth=0.7))
+    width, thick = machine.leaf_width / MM, machine.leaf_thickness / MM
+    for step in PITCH * thick * (np.arange(leaves) - 0.5 * (leaves - 1)):
+        corners = [
+            radius * outward + x * 0.5 * width * outward + (step + y * 0.5 * thick) * along
+            for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+        ]
+        axes.add_patch(Polygon(corners, closed=True, facecolor=STEEL, edgecolor=SHEET, linewidth=0.5))
 
 
 def _parts(axes, study, radius):
@@ -140,7 +149,7 @@ def _in_section(axes, study, half):
         axes.add_patch(
             Rectangle((side * radius - (side < 0) * sheet, foot - sheet), sheet, depth + sheet, color=SHEET)
         )
-        _leaves(axes, side * machine.spring_radius / MM, foot - sheet, machine)
+        _leaves(axes, side * machine.spring_radius / MM, foot - sheet, machine, _banks(study)[1][0])
     reach = 1.25 * machine.spring_radius / MM
     axes.add_patch(Rectangle((-reach, foot - leaf - base), 2 * reach, base, facecolor=BASE, edgecolor=STEEL))
     axes.text(
@@ -176,12 +185,12 @@ def _turns(axes, study, radius, width, foot, depth, sheet):
             )
 
 
-def _leaves(axes, place, top, machine):
-    """A bank of leaves at its tilt, drawn three leaves thick."""
+def _leaves(axes, place, top, machine, count):
+    """A bank of leaves at its tilt, as many as there are."""
     tilt, length = machine.spring_angle, machine.leaf_length / MM
     lean = 0.5 * length * np.sin(tilt)
-    for step in (-1, 0, 1):
-        x = place + 2.2 * step * machine.leaf_thickness / MM
+    for step in np.arange(count) - 0.5 * (count - 1):
+        x = place + PITCH * step * machine.leaf_thickness / MM
         axes.plot([x - lean, x + lean], [top - length * np.cos(tilt), top], color=SHEET, linewidth=1.4)
 
 

@@ -50,8 +50,11 @@ def _rates(study):
     asked = study.order
     rates = study.rates(study.velocities) / PER_MINUTE
     yield "rate asked for [1/min]", f"{asked.target / PER_MINUTE:.6g}"
-    yield "rate at this stroke [1/min]", f"{study.rates(study.answer.velocity) / PER_MINUTE:.4g}"
-    yield "rate from full to empty [1/min]", f"{rates[0]:.4g} to {rates[-1]:.4g}, amplitude left alone"
+    low = study.lowest
+    at = f"at {100 * low.level:.3g} % of the fill, {low.way}"
+    yield "lowest rate, full to empty [1/min]", f"{low.rate / PER_MINUTE:.4g} {at}"
+    at_this = study.rates(study.answer.velocity) / PER_MINUTE
+    yield "rate at this stroke [1/min]", f"{at_this:.4g}; {rates[0]:.4g} of a full bowl left alone"
     yield "handbook, 1500 E / l [1/min]", f"{asked.handbook / PER_MINUTE:.4g}"
     yield "orientation that counts", _orientation(asked)
     yield "whose probabilities", asked.answer
@@ -138,7 +141,8 @@ def _springs(study):
     leaf = " x ".join(
         f"{side / MM:.3g}" for side in (under.leaf_width, under.leaf_thickness, under.leaf_length)
     )
-    yield "leaves", f"{under.leaves:.0f} of {leaf} mm, {made.leaf_stiffness / N_MM:.5g} N/mm each"
+    each = f"{made.leaf_stiffness / N_MM:.5g} N/mm each"
+    yield "leaves", f"{under.leaves:.0f} of {leaf} mm, {shared(study)}, {each}"
     place = f"radius {under.spring_radius / MM:.4g} mm, {under.spring_angle / DEG:.3g} deg"
     yield "springs", f"{place}, {made.stiffness / N_MM:.5g} N/mm with twist"
     held = f"base held {made.effective_mass_held:.4g}"
@@ -149,7 +153,15 @@ def _springs(study):
     most = study.bowl.sizing.fatigue_stress / MPA
     yield from _other_leaves(study)
     yield "leaf stress [MPa]", f"{study.stress / MPA:.3g} (bears {most:.4g})"
-    yield "force of the magnet [N]", f"{study.force:.3g}"
+    pull = f"{study.magnet:.3g} upright about a mean of {study.magnet:.3g}"
+    yield "force of the magnet [N]", f"{pull}; {study.force:.3g} along the motion"
+
+
+def shared(study):
+    """Return how the leaves share into banks, as text: '3 banks of 6'."""
+    leaves, banks = int(study.bowl.machine.leaves), int(study.bowl.sizing.banks)
+    less, more = leaves // banks, -(-leaves // banks)
+    return f"{banks} banks of {less}" if less == more else f"{banks} banks of {less} or {more}"
 
 
 def _other_leaves(study):

@@ -49,7 +49,12 @@ def order(study):
     rates, held = (study.rates(v) / PER_MINUTE for v in (study.velocities, study.controlled))
     return {
         "target_per_minute": asked.target / PER_MINUTE,
-        "parts_per_minute": float(study.rates(study.answer.velocity)) / PER_MINUTE,
+        "parts_per_minute": study.lowest.rate / PER_MINUTE,
+        "lowest_at_fill_percent": 100.0 * study.lowest.level,
+        "lowest_with": study.lowest.way,
+        "rate_at_this_stroke": float(study.rates(study.answer.velocity)) / PER_MINUTE,
+        "rate_lowest_left_alone": rates.min(),
+        "rate_lowest_controlled": held.min(),
         "rate_full_bowl": rates[0],
         "rate_empty_bowl": rates[-1],
         "rate_full_bowl_controlled": held[0],
@@ -106,6 +111,9 @@ def _springs(study):
         "leaf_stress_mpa": study.stress / MPA,
         "fatigue_stress_mpa": study.bowl.sizing.fatigue_stress / MPA,
         "drive_force_n": study.force,
+        "magnet_force_n": study.magnet,
+        "magnet_force_mean_n": study.magnet,
+        "magnet_angle_deg": 90.0,
     }
 
 

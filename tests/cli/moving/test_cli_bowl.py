@@ -57,7 +57,9 @@ def test_the_bowl_of_a_part_reaches_its_rate(run):
     result = run("bowl", PART, "--target", "60/min", "-o", "results", "--format", "json")
     found = document(result)
     assert found["parts_per_minute"] == pytest.approx(60.0, rel=1e-6) and found["parts_per_minute"] >= 60.0
-    assert found["rate_empty_bowl"] == pytest.approx(found["parts_per_minute"])
+    assert found["rate_empty_bowl"] == pytest.approx(found["rate_at_this_stroke"])
+    assert found["parts_per_minute"] == found["rate_lowest_left_alone"]
+    assert found["leaves"] % 3 == 0 and all(row["leaves"] % 3 == 0 for row in found["leaf_sets"])
     assert found["bowl_diameter_mm"] == max(300.0, found["bowl_diameter_mm"])
     assert all(least <= found["bowl_diameter_mm"] for least in found["least_diameters_mm"].values())
     parts = found["part_width_mm"] + found["clearance_mm"] + found["bend_mm"]
@@ -70,6 +72,72 @@ def test_the_bowl_of_a_part_reaches_its_rate(run):
     sheet = list(csv.DictReader((folder / "bowl.csv").read_text().splitlines()))
     assert sheet == [{key: row[key] for key in ("quantity", "value")} for row in found["sheet"]]
     assert len((folder / "bowl_emptying.csv").read_text().splitlines()) == 22
+
+
+WEAK = ("--set", "machine.leaves=9", "--set", "machine.leaf_thickness=2 mm")  # driven above its own frequency
+
+
+def test_the_headline_is_the_lowest_rate_from_full_to_empty(run):
+    found = document(run("bowl", PART, "--target", "60/min", *WEAK, "--format", "json"))
+    rates = [row["rate_per_minute"] for row in found["emptying"]]
+    assert found["lowest_with"] == "amplitude left alone"
+    assert found["parts_per_minute"] == pytest.approx(min(rates)) and min(rates) >= 60.0 * (1.0 - 1e-6)
+    assert (rates.index(min(rates)), found["lowest_at_fill_percent"]) == (0, 100.0)
+    assert found["rate_at_this_stroke"] == pytest.approx(rates[-1]) and rates[-1] > 70.0
+    (line,) = (row["value"] for row in found["sheet"] if row["quantity"].startswith("lowest rate"))
+    assert line == "60 at 100 % of the fill, amplitude left alone"
+
+
+def test_a_rate_that_does_not_last_is_told(run):
+    """A full bowl that runs far below its drive brings less, whatever the controller does."""
+    heavy = ("--set", "machine.leaves=15", "--set", "machine.leaf_thickness=2.5 mm")
+    result = run("bowl", PART, "--target", "60/min", *heavy, "--set", "sizing.carried=100 %")
+    (line,) = (line for line in result.stderr.splitlines() if line.startswith("Warning: target: "))
+    assert line.startswith("Warning: target: 60/min are not kept as the bowl empties: 10.2/min at 100 % of")
+    assert "10.24 at 100 % of the fill, amplitude controlled" in result.stdout
+
+
+def test_parts_fill_a_bowl_and_a_hopper_by_their_hulls(run):
+    found = document(run("bowl", PART, "--target", "60/min", "--format", "json"))
+    hull = document(run("inertia", PART, "--format", "json"))["hull_volume_mm3"]
+    assert found["hopper_l"] == pytest.approx(60 * 30 * hull * 1e-6 / 0.5, rel=1e-9)
+    grams = 10.827344
+    full = found["full_bowl"]
+    assert full["mass_kg"] == pytest.approx(full["volume_l"] * 1e6 * 0.5 / hull * grams * 1e-3, rel=1e-6)
+
+
+def test_the_magnet_is_told_with_its_angle_and_its_mean(run):
+    found = document(run("bowl", *machine(), "--format", "json"))
+    assert found["magnet_force_n"] == pytest.approx(2.9238 * found["drive_force_n"], rel=1e-4)
+    assert (found["magnet_force_mean_n"], found["magnet_angle_deg"]) == (found["magnet_force_n"], 90.0)
+
+
+def test_leaves_that_do_not_share_into_the_banks_are_told(run):
+    line = "machine.leaves: 10 leaves do not share into 3 banks - take 9 or 12, or give sizing.banks"
+    assert f"Warning: {line}" in run("bowl", *machine()).stderr.splitlines()
+    five = run("bowl", *machine(), "--set", "sizing.banks=5")
+    assert "banks" not in five.stderr and "5 banks of 2" in five.stdout
+
+
+def test_a_throw_over_tooling_that_tells_parts_apart_as_they_lie(run):
+    Path("cut.yaml").write_text("devices:\n  - narrowed_track: 18 mm\n  - wiper: 40 mm\n")
+    asked = ("bowl", "--config", "cut.yaml", "--set", "drive.frequency=50 Hz", "--set")
+    line = "parts hop over the narrowed_track - take a smaller stroke or a flatter angle"
+    assert line in run(*asked, "drive.amplitude=0.4 mm").stderr
+    assert "parts hop" not in run(*asked, "drive.amplitude=0.1 mm").stderr
+
+
+def test_one_key_of_the_machine_says_what_it_makes_of_the_drive(run):
+    result = run("convey", "--set", "machine.leaves=10")
+    assert (
+        "Warning: machine.leaves: is given, so drive.frequency is 100 Hz by the machine, not 50 Hz and"
+        " drive.vibration_angle is 16.1066 deg by the machine, not 25 deg"
+        " - write drive.frequency and drive.vibration_angle"
+    ) in result.stderr.splitlines()
+    kept = ("--set", "drive.frequency=50 Hz", "--set", "drive.vibration_angle=25 deg")
+    assert "by the machine" not in run("convey", "--set", "machine.leaves=10", *kept).stderr
+    told = ("--set", "machine.supply=50 Hz half wave", "--set", "machine.spring_angle=20 deg")
+    assert "by the machine" not in run("convey", *told).stderr
 
 
 def test_the_sized_bowl_gives_the_same_rate_by_feeder_rate(run):

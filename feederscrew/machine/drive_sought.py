@@ -1,0 +1,130 @@
+"""The drive and the leaves of a bowl that bring a rate from the full bowl to the empty one."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feederscrew.bowl.direction import vibration_angle
+from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.schema import BY_NAME
+from feederscrew.bowl.settings import default
+from feederscrew.machine import building, filling, throughput, tuning
+from feederscrew.machine.stroke import stroke
+
+FULL_WAVE = 2.0
+EVEN = 1e-9  # [1] flows closer than this are equal
+ROUNDS = 4  # of strokes and leaves that follow from each other
+ALONE, CONTROLLED = "strokes", "controlled"  # fields of an Emptying
+WAYS = {ALONE: "amplitude left alone", CONTROLLED: "amplitude controlled"}
+
+
+@dataclass(frozen=True, eq=False)
+class Sought:
+    """A bowl whose drive is sought."""
+
+    bowl: Bowl  # with its track
+    size: object  # Size of it
+    settings: tuple  # that say what the user gave
+    target: float  # [1/s] counted parts
+    bulk: float  # [kg/m3] of the parts' hulls
+
+    @property
+    def fill(self):
+        """A full bowl."""
+        return filling.full(self.bowl.track.radius, self.size.depth, self.bulk, self.bowl.sizing)
+
+
+def given(settings, section=""):
+    """Return the words of the keys of a section that the user gave, a set."""
+    return {s.key.word for s in settings if s.given and s.key.section == section}
+
+
+def brought(sought, flow):
+    """Find the bowl whose drive brings the target, without the parts that this drive turns over.
+
+    Parameters
+    ----------
+    sought : Sought
+    flow : callable
+        From a bowl, or from None for no drive at all, to the Flow along its track.
+
+    Returns
+    -------
+    Bowl, Flow
+
+    Raises
+    ------
+    ArgumentError
+        If no stroke that drives are built for brings so many.
+    """
+    now, tried = flow(None), set()
+    while True:
+        driven = _driven(sought, now)
+        own = flow(driven)
+        enough = own.parts >= now.parts * (1.0 - EVEN)
+        if enough and (own.parts <= now.parts * (1.0 + EVEN) or now.parts in tried):
+            return driven, own
+        tried.add(now.parts)
+        now = own  # there are only so many orientations to turn over
+
+
+def _driven(sought, flow):
+    """The bowl with machine, frequency and the smallest stroke that reaches the target."""
+    plain, settings = sought.bowl, sought.settings
+    angle_given = "vibration_angle" in given(settings, "drive")
+    angle = plain.drive.vibration_angle if angle_given else default(BY_NAME["drive.vibration_angle"]).value
+    wanted = replace(plain, drive=replace(plain.drive, vibration_angle=angle))
+    under = building.machine_for(wanted, sought.size, given(settings, "machine"))
+    if not angle_given:
+        angle = float(vibration_angle(under, plain.track.radius, plain.track.climb))
+    fastest = []
+    for frequency in _frequencies(plain, settings):
+        drive = replace(plain.drive, vibration_angle=angle, frequency=frequency)
+        made = replace(plain, drive=drive, machine=replace(under, supply=frequency))
+        found, best = throughput.amplitude_for(made, sought.target / flow.parts)
+        if found is not None:
+            empty = _with(made, found[0], settings)
+            held = (_held(empty, sought, sought.target / flow.parts, way) for way in WAYS)
+            return next((one for one in held if one is not None), empty)
+        fastest.append(best)
+    raise throughput.unreachable(sought.target, flow.parts, max(fastest))
+
+
+def _held(empty, sought, velocity, way):
+    """The bowl with the smallest stroke whose lowest velocity, from full to empty, is enough, or None."""
+    made, strokes = empty, np.ones(1)
+    for _ in range(ROUNDS):
+        emptied = filling.emptying(made.machine, made.drive.frequency, sought.fill, made.sizing)
+        if np.array_equal(getattr(emptied, way), strokes):
+            return made
+        strokes = getattr(emptied, way)
+        found, _ = throughput.amplitude_for(made, velocity, strokes)
+        if found is None:
+            return None
+        made = _with(made, found[0], sought.settings)
+    return made
+
+
+def _with(bowl, amplitude, settings):
+    """The bowl at a stroke, on the leaves that tune it then, unless the user gave their number."""
+    bowl = replace(bowl, drive=replace(bowl.drive, amplitude=amplitude))
+    if "leaves" in given(settings, "machine"):
+        return bowl
+    at_springs, rules = stroke(bowl).springs, bowl.sizing
+    found = tuning.sets(bowl.machine, bowl.drive.frequency, at_springs, rules)
+    if "leaf_thickness" in given(settings, "machine"):
+        found = tuple(one for one in found if one.thickness == bowl.machine.leaf_thickness)
+    best = tuning.chosen(found, rules) or min(found, key=lambda one: one.stress, default=None)
+    if best is None:
+        return bowl
+    machine = replace(bowl.machine, leaves=float(best.leaves), leaf_thickness=best.thickness)
+    return replace(bowl, machine=machine)
+
+
+def _frequencies(bowl, settings):
+    """The drive's frequency as given; else that of the size, then the other wave of the mains."""
+    if "frequency" in given(settings, "drive") or "supply" in given(settings, "machine"):
+        return (bowl.drive.frequency,)
+    mains = bowl.machine.supply / FULL_WAVE
+    large = 2.0 * bowl.track.radius > bowl.sizing.half_wave_diameter
+    return (mains, FULL_WAVE * mains) if large else (FULL_WAVE * mains, mains)
