@@ -5,14 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew import check
-from feederscrew.dropping.kernel import body
 from feederscrew.geometry.compiled import on_disk
 from feederscrew.trial import runs, staging, stations, whereabouts
-from feederscrew.trial.kernel import contact
-from feederscrew.trial.kernel import crowd as kernel
-from feederscrew.trial.kernel.pairs import Crowd
+from feederscrew.trial.arrays import crowd_of
+from feederscrew.trial.kernel import travel
 
-PAIRS = 400  # contacts between parts at a time, at most
 TAIL = 0.7  # of the part's size: track that is drawn behind the outlet
 
 
@@ -63,35 +60,6 @@ def crowded(bowl, every, devices, room):
     return CrowdedTrack(stage, -room, check.frozen(places[:, :2]), check.frozen(levels), place)
 
 
-def arrays(solid, count):
-    """Return the arrays of the kernel for so many parts."""
-    ways = np.vstack([solid.edges, solid.edges[:, ::-1]])
-    ways = ways[np.lexsort((ways[:, 1], ways[:, 0]))]
-    size = len(solid.corners)
-    first = np.searchsorted(ways[:, 0], np.arange(size + 1)) + size + 1
-    return Crowd(
-        states=np.zeros((count, body.STATE)),
-        before=np.zeros((count, body.STATE)),
-        turns=np.zeros((count, 9)),
-        rows=np.zeros((count, runs.CONTACTS, contact.WIDTH)),
-        counts=np.zeros(count, np.int64),
-        pairs=np.zeros((2 * PAIRS, contact.WIDTH)),
-        owners=np.zeros(2 * PAIRS, np.int64),
-        strains=np.zeros((count, 2)),
-        links=np.concatenate([first, ways[:, 1]]).astype(np.int64),
-        low=np.array(solid.vertices.min(axis=0)),
-        high=np.array(solid.vertices.max(axis=0)),
-        move=np.zeros(12),
-        spots=np.zeros((size, 3)),
-        near=np.zeros(len(solid.edges), np.int64),
-        far=np.zeros(len(solid.edges), np.int64),
-        corners=np.zeros(size, np.int64),
-        faces=np.zeros(len(solid.triangles), np.int64),
-        box=np.zeros(6),
-        tangent=np.array([1.0, 0.0]),
-    )
-
-
 class PartsOnTrack:
     """N parts on a track, moved period by period; lengths in units of the part's, along the wall.
 
@@ -105,14 +73,14 @@ class PartsOnTrack:
 
     def __init__(self, known, track, count):
         self.known, self.solid = known, known.solid
-        self.surface = runs.surface_of(known, track.stage, (np.inf, np.inf, 0.0, np.inf))
-        self.arrays, self.on = arrays(known.solid, count), np.zeros(count, bool)
-        self.work = runs.scratch(known.solid, len(self.surface.borders))
+        self.surface = runs.surface_of(known, track.stage)
+        self.arrays, self.on = crowd_of(known.solid, self.surface, count), np.zeros(count, bool)
         self.period = 2.0 * np.pi / known.floor.rate
 
     def lay(self, n, state):
         """Put part n onto the track."""
         self.arrays.states[n] = state
+        self.arrays.made[n, -1] = self.arrays.lasted[n] = -1.0  # no list of it holds, no impulse is known
         self.on[n] = True
 
     def take(self, n):
@@ -121,10 +89,12 @@ class PartsOnTrack:
 
     def ride(self, turn):
         """Move all through one period of the drive, the ``turn``-th; how deep anything was in anything."""
-        return kernel.follow(
-            self.surface, self.solid, self.known.floor, self.arrays, self.work, self.on,
-            turn * self.period, round(self.period / self.known.floor.step),
+        notes = np.zeros(travel.NOTES + 2)
+        travel.follow(
+            self.surface, self.solid, self.known.floor, self.arrays, self.on,
+            turn * self.period, round(self.period / self.known.floor.step), notes,
         )  # fmt: skip
+        return notes[travel.SUNK]
 
     @property
     def forces(self):
@@ -138,4 +108,4 @@ class PartsOnTrack:
 
 def compiled():
     """Say whether the kernel of the queue is on disk already."""
-    return on_disk(kernel.follow)
+    return on_disk(travel.follow)

@@ -9,7 +9,7 @@ from feederscrew import check
 from feederscrew.dropping.kernel import body
 from feederscrew.tooling.hanging import Hanging
 from feederscrew.trial import course, crowd, runs, starts, whereabouts
-from feederscrew.trial.kernel.crowd import BEHIND, BELOW
+from feederscrew.trial.kernel.motion import BEHIND, BELOW
 from feederscrew.trial.looks import OTHER, AspectsBelow, Looks
 from feederscrew.trial.rounding import rounded
 from feederscrew.trial.shape import solid_of

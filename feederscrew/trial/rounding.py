@@ -4,6 +4,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.geometry import vectors
+from feederscrew.trial.shape import on_hull
 
 FINE = np.radians(2.0)  # between two points of a circle that touches
 COARSEST = np.radians(45.0)  # corners further apart belong to a polygon, as of a hexagon's head
@@ -39,6 +40,7 @@ def rounded(solid, axes):
         corners=check.frozen(vertices[: count + more]),
         firsts=check.frozen(np.concatenate([solid.firsts, solid.firsts[-1] + 3 * (1 + np.arange(more))])),
         beside=check.frozen(np.concatenate([solid.beside, own.ravel()])),
+        outer=check.frozen(on_hull(vertices[: count + more])),
         triangles=check.frozen(solid.triangles + more * (solid.triangles >= count)),
         radius=float(vectors.length(vertices).max()),
     )

@@ -2,46 +2,24 @@
 
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 
 from feederscrew import check
-from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.floor_motion import Floor
 from feederscrew.dropping.plate import drive
 from feederscrew.dropping.pool import in_batches
 from feederscrew.geometry.compiled import on_disk
-from feederscrew.trial import staging
-from feederscrew.trial.kernel import contact, motion, travel
+from feederscrew.trial.arrays import crowd_of
+from feederscrew.trial.kernel import crowd_records, travel
 
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = (
     travel.RUNNING, travel.PASSED, travel.RETURNED, travel.STANDS, travel.ROLLED,
 )  # fmt: skip
 PERIOD, HOPPING = 80, 160  # steps of a period of the drive, and where parts hop
 SWEEPS, CONVERGED = 60, 1e-4  # of the contact solver: at most, and what a sweep may still change
-CONTACTS = 96  # of a part at a time
+ONWARDS = 5e-3  # of the unit of length: a border goes on so far where its corner is not convex
 BATCH = 5  # parts a core takes at a time
-
-
-class WorkingArrays(NamedTuple):
-    """Arrays the kernel works in."""
-
-    state: np.ndarray
-    saved: np.ndarray
-    push: np.ndarray
-    turn: np.ndarray  # (9,)
-    tangent: np.ndarray  # (2,)
-    spots: np.ndarray  # (C, 3)
-    shown: np.ndarray  # (C, 3)
-    near: np.ndarray  # (B,) int
-    low: np.ndarray  # (C,) int
-    edges: np.ndarray  # (E,) int
-    faces: np.ndarray  # (T,) int
-    box: np.ndarray  # (4,)
-    vectors: np.ndarray  # (3, 3)
-    contacts: np.ndarray  # (CONTACTS, WIDTH)
-    memory: np.ndarray  # (2,) how many of them the step before had, and how long it was
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,9 +118,9 @@ def ride(known, station, states, times, *, limits, every, places, jobs=1, progre
     KeyboardInterrupt
         If no batch was finished.
     """
-    surface = surface_of(known, station, limits)
+    surface, limits = surface_of(known, station), limits_of(known, station, limits)
     stride = max(round(every / known.unit / known.floor.step), 1)
-    batch = partial(_batch, known, surface, stride, places, states, times)
+    batch = partial(_batch, known, surface, limits, stride, places, states, times)
     batch(slice(0, 0))  # compiled here, if need be
     columns, stopped = in_batches(batch, len(states), BATCH, jobs, progress)
     outcomes, ends, notes, paths = columns
@@ -155,22 +133,47 @@ def ride(known, station, states, times, *, limits, every, places, jobs=1, progre
     return Runs(**{name: check.frozen(value) for name, value in found.items()}, partial=stopped)
 
 
-def surface_of(known, station, limits):
-    """Return a station as the kernel takes it, with the limits of ``ride``."""
-    plates, borders = staging.with_backs(station.plates), np.array(station.borders)
+def surface_of(known, station):
+    """Return a station as the kernel takes it."""
+    plates, borders = np.array(station.plates), np.array(station.borders)
     plates[:, [0, 1, 2, 12, 13]] /= known.length
     borders[:, :4] /= known.length
-    return motion.StageSurface(
+    spans = [slice(int(row[crowd_records.FIRST]), int(row[crowd_records.LAST])) for row in plates]
+    boxes = [[f(borders[own, k:4:2]) for k in (0, 1) for f in (np.min, np.max)] for own in spans]
+    return crowd_records.Surface(
         radius=known.radius,
         gravity=known.gravity,
         upright=known.upright,
-        plates=plates,
-        borders=borders,
+        plates=np.hstack([plates, boxes]),
+        borders=np.hstack([borders, onwards(borders, spans)]),
+        jets=np.zeros((0, 12)),
         friction=known.friction,
         restitution=known.restitution,
         threshold=known.threshold,
         sweeps=SWEEPS,
         converged=CONVERGED,
+    )
+
+
+def onwards(borders, spans):
+    """Return how far (B, 2) [1] borders go on within the solid before their starts and behind their ends.
+
+    At a corner that is not convex the solid goes on behind either border: a part's edge that comes
+    down into it meets the one or the other.
+    """
+    found = np.zeros((len(borders), 2))
+    length = np.hypot(*(borders[:, 2:4] - borders[:, :2]).T)
+    found[:, 0] = np.where(borders[:, crowd_records.BEND] > 0.5, 0.0, ONWARDS / length)
+    for own in spans:
+        starts, ends = borders[own, :2], borders[own, 2:4]
+        after = own.start + np.array([np.argmin(((starts - end) ** 2).sum(axis=1)) for end in ends])
+        found[own, 1] = np.where(borders[after, crowd_records.BEND] > 0.5, 0.0, ONWARDS / length[own])
+    return found
+
+
+def limits_of(known, station, limits):
+    """Return when a part is done with a station as the kernel takes it, with the limits of ``ride``."""
+    return crowd_records.Limits(
         exit=station.exit / known.length,
         drop=station.drop / known.length,
         under=-np.inf if station.below else -station.drop / known.length,
@@ -181,31 +184,19 @@ def surface_of(known, station, limits):
     )
 
 
-def scratch(solid, borders):
-    """Return the arrays the kernel works in."""
-    count = len(solid.corners)
-    return WorkingArrays(
-        state=np.zeros(body.STATE), saved=np.zeros(body.STATE), push=np.zeros(body.STATE), turn=np.zeros(9),
-        tangent=np.zeros(2), spots=np.zeros((count, 3)), shown=np.zeros((count, 3)),
-        near=np.zeros(max(borders, 1), np.int64), vectors=np.zeros((3, 3)), low=np.zeros(count, np.int64),
-        edges=np.zeros(len(solid.edges), np.int64), faces=np.zeros(len(solid.triangles), np.int64),
-        box=np.zeros(4), contacts=np.zeros((CONTACTS, contact.WIDTH)), memory=np.zeros(2),
-    )  # fmt: skip
-
-
 def compiled():
     """Say whether the kernel of the trial is on disk already."""
     return on_disk(travel.travel_all)
 
 
-def _batch(known, surface, stride, places, states, times, cut):
+def _batch(known, surface, limits, stride, places, states, times, cut):
     """Outcomes, ends, notes and paths of some parts."""
     ends = np.array(states[cut], float)
     count = len(ends)
-    outcomes, notes = np.zeros(count, np.int64), np.zeros((count, travel.NOTES))
+    outcomes, notes = np.zeros(count, np.int64), np.zeros((count, travel.NOTES + 2))
     paths = np.full((count, places, 8), np.nan)
     travel.travel_all(
-        surface, known.solid, known.floor, scratch(known.solid, len(surface.borders)), ends,
+        surface, limits, known.solid, known.floor, crowd_of(known.solid, surface, 1), ends,
         np.asarray(times)[cut] / known.unit, stride, paths, notes, outcomes,
     )  # fmt: skip
     return outcomes, ends, notes, paths

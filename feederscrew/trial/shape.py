@@ -3,14 +3,17 @@
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from feederscrew import check
 from feederscrew.dropping.shape import principal_axes
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
 from feederscrew.part.hull import convex_hull
+from feederscrew.trial.kernel.near import BLOCK
 
 FLAT = 2e-3  # [rad] facets that meet at a smaller angle are one face
+ONWARDS = 3e-3  # of the unit of length: an edge goes on so far where a hollow edge meets its end
 MOST = 20000  # facets of a part
 
 
@@ -21,10 +24,14 @@ class TrueSolid(NamedTuple):
     corners: np.ndarray  # (C, 3) the first of them, in which convex edges end: no other can touch
     edges: np.ndarray  # (E, 2) int, convex edges, both ends
     sides: np.ndarray  # (E, 6) in both faces of an edge, unit vectors away from it
+    onwards: np.ndarray  # (E, 2) [1] how far an edge goes on within the body before its start, behind its end
     firsts: np.ndarray  # (C + 1,) int, where the neighbours of each corner begin in ``beside``
     beside: np.ndarray  # (N,) int, corners joined to a corner by an edge of the surface
     triangles: np.ndarray  # (T, 3) int, counter-clockwise from outside
     normals: np.ndarray  # (T, 3)
+    outer: np.ndarray  # (C,) bool, corners of the hull: of a plane no other can touch
+    edge_blocks: np.ndarray  # (ceil(E / BLOCK), 6) least and greatest place of so many edges
+    face_blocks: np.ndarray  # (ceil(T / BLOCK), 6) the same of triangles
     inertia: np.ndarray  # (3,) principal moments at mass 1
     radius: float  # largest distance of a corner
 
@@ -60,13 +67,16 @@ def solid_of(part):
     moments, principal = principal_axes(part.inertia)
     corners = vectors.product(part.vertices - part.centre_of_mass, principal) / length
     normals = _normals(corners, part.faces)
-    ends, sides = convex_edges(corners, part.faces, normals)
+    ends, sides, hollow = convex_edges(corners, part.faces, normals)
+    order = together(corners[ends].mean(axis=1))
+    ends, sides = ends[order], sides[order]
     touches = np.zeros(len(corners), bool)
     touches[ends] = True
     order = np.argsort(~touches, kind="stable")
     place = np.argsort(order, kind="stable")
     corners = check.frozen(corners[order])
-    triangles = place[part.faces]
+    order = together(corners[place[part.faces]].mean(axis=1))
+    triangles, normals = place[part.faces][order], normals[order]
     firsts, beside = neighbours(triangles, int(touches.sum()))
     return (
         TrueSolid(
@@ -74,16 +84,68 @@ def solid_of(part):
             corners=corners[: touches.sum()],
             edges=check.frozen(place[ends]),
             sides=check.frozen(sides),
+            onwards=check.frozen(onwards(corners, place, ends, hollow)),
             firsts=check.frozen(firsts),
             beside=check.frozen(beside),
             triangles=check.frozen(triangles),
             normals=check.frozen(normals),
+            outer=check.frozen(on_hull(corners[: touches.sum()])),
+            edge_blocks=check.frozen(boxes(corners[place[ends]])),
+            face_blocks=check.frozen(boxes(corners[triangles])),
             inertia=check.frozen(moments / (part.mass * length**2)),
             radius=float(vectors.length(corners).max()),
         ),
         length,
         principal,
     )
+
+
+def onwards(corners, place, ends, hollow):
+    """Return how far (E, 2) [1] edges go on within the body: a little where a hollow edge meets their end.
+
+    Parameters
+    ----------
+    corners : (V, 3) float
+    place : (V,) int
+        Where each corner of the file is among them.
+    ends : (E, 2) int
+        As in the file.
+    hollow : (H,) int
+        The same.
+    """
+    length = vectors.length(corners[place[ends[:, 1]]] - corners[place[ends[:, 0]]])
+    return np.where(np.isin(ends, hollow), ONWARDS / length[:, None], 0.0)
+
+
+def on_hull(corners):
+    """Return which corners (C, 3) are corners of their hull, (C,) bool."""
+    found = np.zeros(len(corners), bool)
+    found[ConvexHull(corners).vertices] = True
+    return found
+
+
+def together(points):
+    """Return an order of points (N, 3) in which each so many, a block, lie together.
+
+    They are halved across where they lie furthest apart, by whole blocks, over and over.
+    """
+    found, waiting = [], [np.arange(len(points))]
+    while waiting:
+        own = waiting.pop()
+        if len(own) <= BLOCK:
+            found.append(own)
+            continue
+        axis = int(np.argmax(np.ptp(points[own], axis=0)))
+        own = own[np.argsort(points[own, axis], kind="stable")]
+        half = BLOCK * ((len(own) // BLOCK + 1) // 2)
+        waiting += [own[half:], own[:half]]
+    return np.concatenate(found)
+
+
+def boxes(features):
+    """Return the box (B, 6), least places and greatest, around each block of features (N, K, 3)."""
+    made = [features[k : k + BLOCK] for k in range(0, len(features), BLOCK)]
+    return np.array([[*one.min(axis=(0, 1)), *one.max(axis=(0, 1))] for one in made]).reshape(-1, 6)
 
 
 def _normals(corners, faces):
@@ -116,7 +178,7 @@ def neighbours(triangles, count):
 
 
 def convex_edges(corners, faces, normals):
-    """Return the edges at which a surface turns outwards.
+    """Return the edges at which a surface turns outwards, and the corners of those at which it turns inwards.
 
     Parameters
     ----------
@@ -130,6 +192,7 @@ def convex_edges(corners, faces, normals):
     ends : (E, 2) int
     sides : (E, 6) float [1]
         In both faces, unit vectors square to the edge and away from it.
+    hollow : (H,) int
     """
     pairs = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     owners = np.tile(np.arange(len(faces)), 3)
@@ -145,4 +208,4 @@ def convex_edges(corners, faces, normals):
     one, other = one / size, other / size
     bend = np.arctan2(-vectors.dot(other, normals[first]), vectors.dot(normals[first], normals[second]))
     keep = bend > FLAT
-    return ends[keep], np.hstack([one, other])[keep]
+    return ends[keep], np.hstack([one, other])[keep], np.unique(ends[bend < -FLAT])

@@ -8,7 +8,6 @@ import shapely
 from feederscrew import check
 from feederscrew.tooling.orientations import ROUNDED
 from feederscrew.tooling.strip import bent
-from feederscrew.trial.kernel import search
 
 BEHIND = 0.5  # of the part's size: how far the track is drawn behind the wall
 CHORD = 5e-6  # [m] by which an arc may be seen too flat
@@ -26,7 +25,7 @@ class Stage:
     """One device, or a stretch of the bare track, as solid geometry in the bowl's frame."""
 
     device: object  # tooling.devices.base.Device
-    plates: np.ndarray  # (P, 17) [m], [1] as `trial.kernel.search` names the columns
+    plates: np.ndarray  # (P, 17) [m], [1] as `trial.kernel.crowd_records` names the columns
     borders: np.ndarray  # (B, 10) [m], [1]
     begin: float  # [m] along the wall, where the part's centre of mass starts
     exit: float  # [m] where it has passed
@@ -213,13 +212,3 @@ def stacked(plates):
         first = last
     borders = np.concatenate([borders for *_, borders in plates])
     return check.frozen(np.array(rows, float)), check.frozen(borders)
-
-
-def with_backs(plates):
-    """Return rows (2 P, 18) of plates (P, 17), each with that of its back, seen from behind, after it."""
-    backs = np.array(plates)
-    front = backs[:, search.FRONT : search.DEPTH]
-    backs[:, search.ORIGIN : search.ACROSS] -= backs[:, [search.DEPTH]] * front
-    front *= -1.0
-    both = np.stack([plates, backs], axis=1).reshape(-1, plates.shape[1])
-    return np.column_stack([both, np.resize([0.0, 1.0], len(both))])

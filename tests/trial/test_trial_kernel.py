@@ -1,7 +1,6 @@
 """One part on the moving track against closed forms."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,7 +16,6 @@ from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import looks, runs, shape, stations, whereabouts
-from feederscrew.trial.kernel import edges
 
 BOWL = bowls.read(
     None,
@@ -57,29 +55,6 @@ def rode(block, one, bowl, state, seconds, every=None):
 def laid(block, one, bowl, **own):
     _, length, principal = shape.solid_of(block[0])
     return whereabouts.laid(one, principal, length, bowl.track, place=0.0, aside=1e-3, **own)
-
-
-@pytest.mark.parametrize(
-    ("end", "beyond", "level", "gap", "touches"),
-    [
-        ((-0.001, -0.02), (0.5, -0.02), 1.0, -0.02, True),  # sank beside the cut: its end touches the side
-        ((-0.100, -0.02), (0.5, -0.02), 1.0, -0.02, False),  # comes down on the border
-        ((-0.001, -0.02), (-0.5, -0.02), 1.0, -0.02, False),  # the part goes on there: no end
-        ((-0.007, -0.008), (-0.3, 0.3), 0.5, -0.01, True),  # a corner on the surface
-        ((-0.007, -0.008), (0.05, -0.3), 0.5, -0.01, False),  # the part is lower over the hole: on the border
-        ((-0.007, -0.002), (0.05, -0.3), 0.5, -0.01, True),  # the border's round does not catch it
-    ],
-)
-def test_an_end_of_an_edge_touches_a_surface_or_a_side_if_nothing_lies_beyond_it(
-    end, beyond, level, gap, touches
-):
-    """Ends of places across the border and heights, units of the part's length; the hole is at x > 0."""
-    border = np.array([0.0, 0.0, 0.0, 2.0, 1.0, 0.0])  # start, end, normal away from the side
-    shown = np.array([(end[0], 1.0, end[1]), (1.0, 1.0, 0.5), (beyond[0], 1.0, beyond[1])])
-    if level == 1.0:
-        shown[1, 2] = end[1]
-    solid = SimpleNamespace(firsts=np.array([0, 2, 3, 4]), beside=np.array([1, 2, 0, 0]))
-    assert edges.end_touches(solid, shown, 0, 1, border, level, gap, 0.003) == touches
 
 
 def test_a_flat_part_slides_as_the_point_mass(block):

@@ -13,7 +13,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.resting.counts import profiles
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import crowd, looks, outlet, queue, runs, shape, whereabouts
-from feederscrew.trial.kernel.crowd import BEHIND, BELOW
+from feederscrew.trial.kernel.motion import BEHIND, BELOW
 
 OWN = [
     "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",

@@ -6,7 +6,7 @@ import shapely
 from feederscrew.output.trial.figures import solids, unrolled
 from feederscrew.tooling import solid
 from feederscrew.tooling.strip import bent
-from feederscrew.trial.kernel import search
+from feederscrew.trial.kernel import crowd_records
 
 WALL = 3e-3  # [m] thickness of the wall that is drawn
 
@@ -41,8 +41,8 @@ def _plate(station, k, track):
         area = area.symmetric_difference(shapely.make_valid(shapely.Polygon(ring)))
     if k == 0:
         area = area.intersection(shapely.Point(0.0, track.radius).buffer(track.radius, quad_segs=256))
-    vertices, faces = solid.prism(area, -row[search.DEPTH], 0.0)
-    axes = row[search.ACROSS : search.ACROSS + 9].reshape(3, 3)
+    vertices, faces = solid.prism(area, -row[crowd_records.DEPTH], 0.0)
+    axes = row[crowd_records.ACROSS : crowd_records.ACROSS + 9].reshape(3, 3)
     return row[:3] + np.einsum("vi,ij->vj", vertices, axes), faces
 
 
@@ -52,4 +52,4 @@ def _wall(station, track, height):
     way, _ = unrolled(np.column_stack([np.zeros(len(corners)), corners]), track.radius)
     low, high = way.min(), way.max()
     ring = bent(np.array([[low, -WALL], [high, -WALL], [high, 0.0], [low, 0.0]]), track.radius)
-    return solid.prism(shapely.Polygon(ring), -station.plates[0, search.DEPTH], height)
+    return solid.prism(shapely.Polygon(ring), -station.plates[0, crowd_records.DEPTH], height)

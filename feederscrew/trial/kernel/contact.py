@@ -1,29 +1,30 @@
 """Compiled contacts of a part with anything: rows of WIDTH numbers, and the impulses at them.
 
-A row begins as one of `floor_contacts`: along each of its axes the lever in body axes and the rates
-that one unit of impulse gives; the effective masses; the speed along the normal wanted after the impulse; the
-impulse. Here the axes are its own, in the bowl's frame, two along the contact and its normal, towards the
-part; then come the friction against sliding ahead and back, the gap, and whether it is with the wall.
+A row begins as one of `dropping.kernel.floor_contacts`: along each of its axes the lever in body axes and
+the rates that one unit of impulse gives; the effective masses; the speed along the normal wanted after the
+impulse; the impulse. Here the axes are its own, in the bowl's frame, two along the contact and its normal,
+towards the part; then come the friction against sliding ahead and back, the gap, the friction of what is
+touched where that is its own, which contact it is, and where it is, in body axes.
 """
 
 import math
 
 from feederscrew.dropping.kernel.body import VX, VZ, W
 from feederscrew.dropping.kernel.floor_contacts import IMPULSE, LEVER, MASS, RATE, WANTED, masses, rates
-from feederscrew.geometry.compiled import compiled
+from feederscrew.geometry.compiled import apart, compiled
 
 AXES = IMPULSE + 3
-AHEAD, BACK, GAP, WALL, WIDTH = (AXES + 9 + k for k in range(5))
+AHEAD, BACK, GAP, RUB, KEY, SPOT = (AXES + 9 + k for k in range(6))
+WIDTH = SPOT + 3
+KINDS = 8.0  # [1] of a contact's key: its kind, then what touches
 NORMAL = 2  # which of the axes
 TOWARDS = AXES + 3 * NORMAL  # where it is
 
 
 @compiled
-def add(contacts, count, turn, inertia, tangent, x, y, z, nx, ny, nz, gap, wall):
-    """Write a contact at (x, y, z) from the centre of mass with its normal; how many there are now."""
-    if count >= len(contacts):
-        return count
-    row = contacts[count]
+def axes(row, tangent, normal):
+    """Write the axes of a contact with a normal, the first along the track where it can be."""
+    nx, ny, nz = normal
     u, v, w = tangent[0], tangent[1], 0.0
     across = u * nx + v * ny
     if abs(across) > 0.9:
@@ -31,23 +32,38 @@ def add(contacts, count, turn, inertia, tangent, x, y, z, nx, ny, nz, gap, wall)
     u, v, w = u - across * nx, v - across * ny, w - across * nz
     size = 1.0 / math.sqrt(u * u + v * v + w * w)
     u, v, w = u * size, v * size, w * size
-    p, q, r = ny * w - nz * v, nz * u - nx * w, nx * v - ny * u
-    _arm(row, 0, turn, x, y, z, u, v, w)
-    _arm(row, 1, turn, x, y, z, p, q, r)
-    _arm(row, NORMAL, turn, x, y, z, nx, ny, nz)
-    rates(inertia, row)
-    masses(row)
-    row[GAP], row[WALL] = gap, wall
-    return count + 1
+    row[AXES], row[AXES + 1], row[AXES + 2] = u, v, w
+    row[AXES + 3], row[AXES + 4], row[AXES + 5] = ny * w - nz * v, nz * u - nx * w, nx * v - ny * u
+    row[AXES + 6], row[AXES + 7], row[AXES + 8] = nx, ny, nz
 
 
 @compiled
-def _arm(row, e, turn, x, y, z, a, b, c):
-    """Write an axis and its lever, (x, y, z) x (a, b, c) in body axes."""
-    row[AXES + 3 * e], row[AXES + 3 * e + 1], row[AXES + 3 * e + 2] = a, b, c
-    p, q, r = y * c - z * b, z * a - x * c, x * b - y * a
-    for k in range(3):
-        row[LEVER + 3 * e + k] = turn[k] * p + turn[3 + k] * q + turn[6 + k] * r
+def levers(row, turn, inertia, spot):
+    """Write the levers of a contact at a spot in body axes, the rates and the masses."""
+    x, y, z = spot
+    for e in range(3):
+        u, v, w = row[AXES + 3 * e], row[AXES + 3 * e + 1], row[AXES + 3 * e + 2]
+        a = turn[0] * u + turn[3] * v + turn[6] * w
+        b = turn[1] * u + turn[4] * v + turn[7] * w
+        c = turn[2] * u + turn[5] * v + turn[8] * w
+        k = LEVER + 3 * e
+        row[k], row[k + 1], row[k + 2] = y * c - z * b, z * a - x * c, x * b - y * a
+    rates(inertia, row)
+    masses(row)
+
+
+@apart
+def put(crowd, n, solid, spot, normal, gap, rub, key):
+    """Add a contact of part n at a spot in its axes, with a normal in the bowl's frame."""
+    count = crowd.counts[n]
+    if count >= crowd.rows.shape[1]:
+        return
+    row = crowd.rows[n, count]
+    axes(row, crowd.tangents[n], normal)
+    levers(row, crowd.turns[n], solid.inertia, spot)
+    row[GAP], row[RUB], row[KEY] = gap, rub, key
+    row[SPOT], row[SPOT + 1], row[SPOT + 2] = spot
+    crowd.counts[n] = count + 1
 
 
 @compiled
@@ -56,6 +72,13 @@ def speed(state, row, e):
     a, k = AXES + 3 * e, LEVER + 3 * e
     found = row[a] * state[VX] + row[a + 1] * state[VX + 1] + row[a + 2] * state[VZ]
     return found + row[k] * state[W] + row[k + 1] * state[W + 1] + row[k + 2] * state[W + 2]
+
+
+@compiled
+def apart_by(states, crowd, k, e):
+    """Return the velocity of the first part of a pair's contact against the second, along one of its axes."""
+    first, second = states[crowd.owners[k]], states[crowd.owners[k + 1]]
+    return speed(first, crowd.pairs[k], e) - speed(second, crowd.pairs[k + 1], e)
 
 
 @compiled
@@ -71,8 +94,8 @@ def _pushed(row, a, k, impulse, u, v, w, p, q, r):
 
 
 @compiled
-def rubbing(ahead, aside, most):
-    """Return impulses along a contact, of the size that friction allows at most."""
+def _rubbing(ahead, aside, most):
+    """Impulses along a contact, of the size that friction allows at most."""
     size = ahead * ahead + aside * aside
     scale = most / math.sqrt(size) if size > most * most else 1.0
     return scale * ahead, scale * aside
@@ -88,7 +111,7 @@ def _relax(row, rough, u, v, w, p, q, r):
     if rough and (up > 0.0 or z > 0.0):
         ahead = x - row[MASS] * _speed(row, AXES, LEVER, u, v, w, p, q, r)
         aside = y - row[MASS + 1] * _speed(row, AXES + 3, LEVER + 3, u, v, w, p, q, r)
-        ahead, aside = rubbing(ahead, aside, up * (row[BACK] if ahead > 0.0 else row[AHEAD]))
+        ahead, aside = _rubbing(ahead, aside, up * (row[BACK] if ahead > 0.0 else row[AHEAD]))
         u, v, w, p, q, r = _pushed(row, AXES, RATE, ahead - x, u, v, w, p, q, r)
         u, v, w, p, q, r = _pushed(row, AXES + 3, RATE + 3, aside - y, u, v, w, p, q, r)
         row[IMPULSE], row[IMPULSE + 1] = ahead, aside
@@ -98,31 +121,122 @@ def _relax(row, rough, u, v, w, p, q, r):
 
 
 @compiled
-def solve(state, contacts, count, rough, sweeps, converged, warm):
-    """Find impulses that let each contact leave at its wanted speed or faster; with friction if rough.
+def _begun(state, rows, count, warm):
+    """Begin with a share of the impulses that are in the rows."""
+    for m in range(count):
+        row = rows[m]
+        for e in range(3):
+            row[IMPULSE + e] *= warm
+            impulse = row[IMPULSE + e]
+            if impulse != 0.0:
+                for k in range(3):
+                    state[VX + k] += row[AXES + 3 * e + k] * impulse
+                    state[W + k] += row[RATE + 3 * e + k] * impulse
 
-    Begun with ``warm`` times the impulses in the rows.
-    Swept until a whole sweep changes the impulses by no more than ``converged`` of their sum.
-    """
+
+@compiled
+def _relax_part(state, rows, count, rough):
+    """One step on all contacts of one part with the track; change and sum of their impulses."""
+    change = size = 0.0
     u, v, w = state[VX], state[VX + 1], state[VZ]
     p, q, r = state[W], state[W + 1], state[W + 2]
-    for n in range(count):
-        row = contacts[n]
-        if warm > 0.0:
-            for e in range(3):
-                row[IMPULSE + e] *= warm
-                u, v, w, p, q, r = _pushed(
-                    row, AXES + 3 * e, RATE + 3 * e, row[IMPULSE + e], u, v, w, p, q, r
-                )
-        else:
-            row[IMPULSE] = row[IMPULSE + 1] = row[IMPULSE + 2] = 0.0
-    for _ in range(sweeps):
-        change = size = 0.0
-        for n in range(count):
-            u, v, w, p, q, r, more = _relax(contacts[n], rough, u, v, w, p, q, r)
-            change += more
-            size += contacts[n, IMPULSE + 2]
-        if change <= converged * size:
-            break
+    for m in range(count):
+        u, v, w, p, q, r, more = _relax(rows[m], rough, u, v, w, p, q, r)
+        change += more
+        size += rows[m, IMPULSE + 2]
     state[VX], state[VX + 1], state[VZ] = u, v, w
     state[W], state[W + 1], state[W + 2] = p, q, r
+    return change, size
+
+
+@compiled
+def _both(states, crowd, k, e, impulse):
+    """Give both parts of a pair's contact an impulse along one of its axes, against each other."""
+    for side in range(2):
+        state, row = states[crowd.owners[k + side]], crowd.pairs[k + side]
+        for m in range(3):
+            state[VX + m] += impulse * row[AXES + 3 * e + m]
+            state[W + m] += impulse * row[RATE + 3 * e + m]
+        impulse = -impulse
+
+
+@compiled
+def _relax_pair(states, crowd, k, rough):
+    """One step on a contact of two parts; the change of its impulse."""
+    row = crowd.pairs[k]
+    x, y, z = row[IMPULSE], row[IMPULSE + 1], row[IMPULSE + 2]
+    up = max(z + row[MASS + 2] * (row[WANTED] - apart_by(states, crowd, k, NORMAL)), 0.0)
+    _both(states, crowd, k, NORMAL, up - z)
+    row[IMPULSE + 2] = up
+    if not rough or (up == 0.0 and z == 0.0):
+        return abs(up - z)
+    ahead = x - row[MASS] * apart_by(states, crowd, k, 0)
+    aside = y - row[MASS + 1] * apart_by(states, crowd, k, 1)
+    ahead, aside = _rubbing(ahead, aside, row[AHEAD] * up)
+    _both(states, crowd, k, 0, ahead - x)
+    _both(states, crowd, k, 1, aside - y)
+    row[IMPULSE], row[IMPULSE + 1] = ahead, aside
+    return abs(up - z) + abs(ahead - x) + abs(aside - y)
+
+
+@apart
+def solve(surface, crowd, states, island, rough, warm):
+    """Find impulses that let each contact of some parts leave at its wanted speed or faster.
+
+    Parameters
+    ----------
+    surface : Surface
+    crowd : Crowd
+    states : (N, 13) float
+        Whose velocities are changed.
+    island : (int, int)
+        From where to where in ``crowd.order`` those parts are.
+    rough : bool
+        With friction.
+    warm : float [1]
+        Times the impulses in the rows is begun with.
+    """
+    for m in range(island[0], island[1]):
+        n = crowd.order[m]
+        _begun(states[n], crowd.rows[n], crowd.counts[n], warm)
+    pairs = crowd.paired[0]
+    for k in range(0, pairs, 2):
+        for e in range(3):
+            crowd.pairs[k, IMPULSE + e] *= warm
+            _both(states, crowd, k, e, crowd.pairs[k, IMPULSE + e])
+    for _ in range(surface.sweeps):
+        change = size = 0.0
+        for m in range(island[0], island[1]):
+            n = crowd.order[m]
+            more, part = _relax_part(states[n], crowd.rows[n], crowd.counts[n], rough)
+            change, size = change + more, size + part
+        for k in range(0, pairs, 2):
+            change += _relax_pair(states, crowd, k, rough)
+            size += crowd.pairs[k, IMPULSE + 2]
+        if change <= surface.converged * size:
+            break
+
+
+@compiled
+def remembered(crowd, n):
+    """Begin the contacts of a part with the impulses that they had a step before."""
+    start = 0
+    for m in range(crowd.counts[n]):
+        row = crowd.rows[n, m]
+        row[IMPULSE] = row[IMPULSE + 1] = row[IMPULSE + 2] = 0.0
+        for k in range(start, crowd.knowns[n]):  # they come in nearly the same order
+            if crowd.known[n, k, 0] == row[KEY]:
+                for e in range(3):
+                    row[IMPULSE + e] = crowd.known[n, k, 1 + e]
+                start = k + 1
+                break
+
+
+@compiled
+def remember(crowd, n):
+    """Keep the impulses of a part's contacts for the next step."""
+    crowd.knowns[n] = crowd.counts[n]
+    for m in range(crowd.counts[n]):
+        crowd.known[n, m, 0] = crowd.rows[n, m, KEY]
+        for e in range(3):
+            crowd.known[n, m, 1 + e] = crowd.rows[n, m, IMPULSE + e]

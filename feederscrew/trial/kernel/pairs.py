@@ -5,48 +5,60 @@ Everything is looked for in the body axes of the part that is touched, the secon
 """
 
 import math
-from typing import NamedTuple
-
-import numpy as np
 
 from feederscrew.dropping.kernel.body import X
-from feederscrew.geometry.compiled import compiled
-from feederscrew.trial.kernel.contact import MASS, add
-from feederscrew.trial.kernel.edges import within
-from feederscrew.trial.kernel.search import PARALLEL, SLANT
+from feederscrew.geometry.compiled import apart, compiled
+from feederscrew.trial.kernel.contact import GAP, IMPULSE, MASS, axes, levers
+from feederscrew.trial.kernel.plate_views import PARALLEL, SLANT, within
 
 DEEP = 0.04  # how deep in each other parts are looked for, in units of their length
 BESIDE = 2e-3  # by which a corner may lie beside the face it touches
 
 
-class Crowd(NamedTuple):
-    """Arrays for N parts of one shape with C corners and E convex edges, and room for P contacts."""
+@apart
+def met(solid, crowd, i, j, reach):
+    """Add contacts of two parts with each other, if they come so near."""
+    _relative(crowd, i, j)
+    if not _meet(crowd, reach):
+        return
+    count = corners_on(crowd, solid, i, j, reach, crowd.paired[0])
+    count = edges_on(crowd, solid, i, j, reach, count)
+    crowd.paired[0] = corners_on(crowd, solid, j, i, reach, count)
 
-    states: np.ndarray  # (N, 13)
-    before: np.ndarray  # (N, 13) at the start of a step
-    turns: np.ndarray  # (N, 9)
-    rows: np.ndarray  # (N, CONTACTS, WIDTH) contacts with the track
-    counts: np.ndarray  # (N,) int, of them
-    pairs: np.ndarray  # (2 P, WIDTH) contacts with each other, two rows each
-    owners: np.ndarray  # (2 P,) int, which part a row is of
-    strains: np.ndarray  # (N, 2) impulse from behind along the track, and from below, of other parts
-    links: np.ndarray  # (C + 1 + 2 E,) int: where each corner's neighbours are listed, then the neighbours
-    low: np.ndarray  # (3,) box of the part in its own axes
-    high: np.ndarray  # (3,)
-    move: np.ndarray  # (12,) rotation and place of one part in the axes of another
-    spots: np.ndarray  # (C, 3) corners of one in the axes of the other
-    near: np.ndarray  # (E,) int, edges of the first part
-    far: np.ndarray  # (E,) int, edges of the second
-    corners: np.ndarray  # (C,) int, corners of the first part
-    faces: np.ndarray  # (T,) int, faces of the second
-    box: np.ndarray  # (6,) what of the first part is near the second: least and greatest place
-    tangent: np.ndarray  # (2,)
+
+@compiled
+def may_meet(solid, crowd, i, j, reach):
+    """Say whether two parts come so near to each other, by balls and boxes around them."""
+    square = 0.0
+    for e in range(3):
+        square += (crowd.states[i, X + e] - crowd.states[j, X + e]) ** 2
+    if square > (2.0 * solid.radius + reach) ** 2:
+        return False
+    _relative(crowd, i, j)
+    if not _meet(crowd, reach):
+        return False
+    _relative(crowd, j, i)
+    return _meet(crowd, reach)
+
+
+@compiled
+def _meet(crowd, reach):
+    """Whether the box of one part comes to that of the other, along the other's axes, as ``crowd.frame``."""
+    move = crowd.frame
+    for p in range(3):
+        middle, half = move[9 + p], reach
+        for q in range(3):
+            middle += move[3 * p + q] * 0.5 * (crowd.least[q] + crowd.most[q])
+            half += abs(move[3 * p + q]) * 0.5 * (crowd.most[q] - crowd.least[q])
+        if middle + half < crowd.least[p] or middle - half > crowd.most[p]:
+            return False
+    return True
 
 
 @compiled
 def _relative(crowd, i, j):
     """Write rotation and place of part i in the body axes of part j."""
-    a, b, move = crowd.turns[i], crowd.turns[j], crowd.move
+    a, b, move = crowd.turns[i], crowd.turns[j], crowd.frame
     for p in range(3):
         move[9 + p] = 0.0
         for q in range(3):
@@ -64,39 +76,44 @@ def _shifted(points, move, spots):
 
 
 @compiled
-def _touch(crowd, solid, i, j, x, y, z, u, v, w, gap, count):
-    """Add a contact at a point and with a normal in the axes of part j; how many rows there are now."""
+def _touch(crowd, solid, parts, spot, normal, gap, count):
+    """Add a contact at a spot and with a normal in the second part's axes; how many rows there are now."""
     if count + 2 > len(crowd.pairs):
         return count
-    b = crowd.turns[j]
-    nx, ny, nz = (
+    i, j = parts
+    b, rows, move = crowd.turns[j], crowd.pairs, crowd.frame
+    x, y, z = spot
+    u, v, w = normal
+    n = (
         b[0] * u + b[1] * v + b[2] * w,
         b[3] * u + b[4] * v + b[5] * w,
         b[6] * u + b[7] * v + b[8] * w,
     )
-    px, py, pz = (
-        b[0] * x + b[1] * y + b[2] * z,
-        b[3] * x + b[4] * y + b[5] * z,
-        b[6] * x + b[7] * y + b[8] * z,
+    axes(rows[count], crowd.tangents[i], n)
+    axes(rows[count + 1], crowd.tangents[i], n)
+    x, y, z = x - move[9], y - move[10], z - move[11]
+    own = (
+        move[0] * x + move[3] * y + move[6] * z,
+        move[1] * x + move[4] * y + move[7] * z,
+        move[2] * x + move[5] * y + move[8] * z,
     )
-    first, second = crowd.states[i], crowd.states[j]
-    ax, ay, az = px + second[0] - first[0], py + second[1] - first[1], pz + second[2] - first[2]
-    rows, inertia, tangent = crowd.pairs, solid.inertia, crowd.tangent
-    add(rows, count, crowd.turns[i], inertia, tangent, ax, ay, az, nx, ny, nz, gap, 0.0)
-    add(rows, count + 1, b, inertia, tangent, px, py, pz, nx, ny, nz, gap, 0.0)
+    levers(rows[count], crowd.turns[i], solid.inertia, own)
+    levers(rows[count + 1], b, solid.inertia, spot)
     for k in range(3):
         both = 1.0 / (1.0 / rows[count, MASS + k] + 1.0 / rows[count + 1, MASS + k])
         rows[count, MASS + k] = rows[count + 1, MASS + k] = both
+        rows[count, IMPULSE + k] = 0.0
+    rows[count, GAP] = gap
     crowd.owners[count], crowd.owners[count + 1] = i, j
     return count + 2
 
 
 @compiled
-def _rests(crowd, k, n):
+def _rests(crowd, solid, k, n):
     """Whether a corner is the lowest of its surroundings over a face."""
-    links, spots = crowd.links, crowd.spots
-    for m in range(links[k], links[k + 1]):
-        q = links[m]
+    spots = crowd.shown
+    for m in range(solid.firsts[k], solid.firsts[k + 1]):
+        q = solid.beside[m]
         a, b, c = spots[q, 0] - spots[k, 0], spots[q, 1] - spots[k, 1], spots[q, 2] - spots[k, 2]
         if a * n[0] + b * n[1] + c * n[2] < -SLANT * math.sqrt(a * a + b * b + c * c):
             return False
@@ -106,13 +123,13 @@ def _rests(crowd, k, n):
 @compiled
 def _face(crowd, solid, faces, k, reach):
     """Triangle that a corner touches, the least deep of those it may, and the gap; -1 for none."""
-    a, b, c = crowd.spots[k, 0], crowd.spots[k, 1], crowd.spots[k, 2]
+    a, b, c = crowd.shown[k, 0], crowd.shown[k, 1], crowd.shown[k, 2]
     best, found = -DEEP, -1
     for f in range(faces):
         m = crowd.faces[f]
         n, first = solid.normals[m], solid.vertices[solid.triangles[m, 0]]
         off = (a - first[0]) * n[0] + (b - first[1]) * n[1] + (c - first[2]) * n[2]
-        if best < off < reach and within(solid, m, a, b, c, BESIDE) and _rests(crowd, k, n):
+        if best < off < reach and within(solid, m, a, b, c, BESIDE) and _rests(crowd, solid, k, n):
             best, found = off, m
     return found, best
 
@@ -132,15 +149,15 @@ def _taken_in(box, p):
 @compiled
 def _near_corners(crowd, solid, reach):
     """Write which corners of the first part come into the box of the second, and their own box; how many."""
-    low, high, count = crowd.low, crowd.high, 0
+    low, high, count = crowd.least, crowd.most, 0
     _emptied(crowd.box)
     for k in range(len(solid.corners)):
-        p = crowd.spots[k]
+        p = crowd.shown[k]
         if p[0] < low[0] - reach or p[1] < low[1] - reach or p[2] < low[2] - reach:
             continue
         if p[0] > high[0] + reach or p[1] > high[1] + reach or p[2] > high[2] + reach:
             continue
-        crowd.corners[count] = k
+        crowd.low[count] = k
         count += 1
         _taken_in(crowd.box, p)
     return count
@@ -165,19 +182,19 @@ def _near_faces(crowd, solid, reach):
 
 @compiled
 def corners_on(crowd, solid, i, j, reach, count):
-    """Add contacts of the corners of part i with faces of part j; leaves the corners in ``crowd.spots``."""
+    """Add contacts of the corners of part i with faces of part j; leaves the corners in ``crowd.shown``."""
     _relative(crowd, i, j)
-    _shifted(solid.corners, crowd.move, crowd.spots)
+    _shifted(solid.corners, crowd.frame, crowd.shown)
     nears = _near_corners(crowd, solid, reach)
     if nears == 0:
         return count
     faces = _near_faces(crowd, solid, reach + DEEP)
     for c in range(nears):
-        k = crowd.corners[c]
+        k = crowd.low[c]
         m, gap = _face(crowd, solid, faces, k, reach)
         if m >= 0:
-            n, p = solid.normals[m], crowd.spots[k]
-            count = _touch(crowd, solid, i, j, p[0], p[1], p[2], n[0], n[1], n[2], gap, count)
+            n, p = solid.normals[m], crowd.shown[k]
+            count = _touch(crowd, solid, (i, j), (p[0], p[1], p[2]), (n[0], n[1], n[2]), gap, count)
     return count
 
 
@@ -208,20 +225,20 @@ def _beside(p, q, r, s, reach):
 
 @compiled
 def edges_on(crowd, solid, i, j, reach, count):
-    """Add contacts of the convex edges of part i, its corners in ``crowd.spots``, with those of part j."""
-    nears = _near_edges(solid, crowd.spots, crowd.low, crowd.high, reach, crowd.near)
+    """Add contacts of the convex edges of part i, its corners in ``crowd.shown``, with those of part j."""
+    nears = _near_edges(solid, crowd.shown, crowd.least, crowd.most, reach, crowd.ours)
     _emptied(crowd.box)
     for m in range(nears):
-        _taken_in(crowd.box, crowd.spots[solid.edges[crowd.near[m], 0]])
-        _taken_in(crowd.box, crowd.spots[solid.edges[crowd.near[m], 1]])
+        _taken_in(crowd.box, crowd.shown[solid.edges[crowd.ours[m], 0]])
+        _taken_in(crowd.box, crowd.shown[solid.edges[crowd.ours[m], 1]])
     fars = 0
     if nears:
-        fars = _near_edges(solid, solid.corners, crowd.box[:3], crowd.box[3:], reach, crowd.far)
+        fars = _near_edges(solid, solid.corners, crowd.box[:3], crowd.box[3:], reach, crowd.theirs)
     for m in range(nears):
-        k = crowd.near[m]
-        p, q = crowd.spots[solid.edges[k, 0]], crowd.spots[solid.edges[k, 1]]
+        k = crowd.ours[m]
+        p, q = crowd.shown[solid.edges[k, 0]], crowd.shown[solid.edges[k, 1]]
         for f in range(fars):
-            n = crowd.far[f]
+            n = crowd.theirs[f]
             r, s = solid.corners[solid.edges[n, 0]], solid.corners[solid.edges[n, 1]]
             if not _beside(p, q, r, s, reach):
                 count = _cross(crowd, solid, i, j, k, n, p, q, r, s, reach, count)
@@ -248,10 +265,10 @@ def _cross(crowd, solid, i, j, k, n, p, q, r, s, reach, count):
     size = -size if lean > 0.0 else size  # away from the second part
     nx, ny, nz = nx / size, ny / size, nz / size
     gap = -(x * nx + y * ny + z * nz)
-    if not -DEEP < gap < reach or not _wedged(crowd.move, solid.sides[k], side, nx, ny, nz):
+    if not -DEEP < gap < reach or not _wedged(crowd.frame, solid.sides[k], side, nx, ny, nz):
         return count
-    at = place
-    return _touch(crowd, solid, i, j, r[0] + at * u, r[1] + at * v, r[2] + at * w, nx, ny, nz, gap, count)
+    spot = (r[0] + place * u, r[1] + place * v, r[2] + place * w)
+    return _touch(crowd, solid, (i, j), spot, (nx, ny, nz), gap, count)
 
 
 @compiled

@@ -1,12 +1,11 @@
-"""Compiled way of one part past one station, until it has passed, has dropped out or is given up."""
+"""Compiled way of parts along a stretch of track: one until it is done with it, or many for some time."""
 
 import math
 
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import X, Y, Z
-from feederscrew.geometry.compiled import compiled, entry
-from feederscrew.trial.kernel.balance import unpaid
-from feederscrew.trial.kernel.motion import step
+from feederscrew.geometry.compiled import apart, compiled, entry
+from feederscrew.trial.kernel import motion, pairs
 
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = range(5)  # STANDS gets on no more, ROLLED went back
 TIME, MOVED, SUNK, WON, NOTES = 0, 1, 2, 3, 4  # what a run notes: time, way, depth, energy; how many
@@ -19,43 +18,33 @@ def way(surface, state):
     return surface.radius * math.atan2(state[X], surface.radius - state[Y])
 
 
+@apart
+def over(surface, solid, floor, crowd, island, time, notes):
+    """Move an island's parts through a step of the floor; ``notes`` gets depth and energy."""
+    rest = floor.step
+    while rest > LEFT * floor.step:
+        now = time + floor.step - rest
+        deepest, taken = motion.step(surface, solid, floor, crowd, island, now, rest)
+        notes[SUNK] = max(notes[SUNK], -deepest)
+        rest -= taken
+        notes[NOTES] += motion.unpaid(solid, crowd, island, taken)
+        notes[NOTES + 1] = min(notes[NOTES + 1], notes[NOTES])
+        notes[WON] = max(notes[WON], notes[NOTES] - notes[NOTES + 1])
+
+
 @compiled
-def travel(surface, solid, floor, work, time, every, path, notes):
-    """Follow a part until it has passed, has dropped out or its time is up.
-
-    Parameters
-    ----------
-    surface : StageSurface
-    solid : TrueSolid
-    floor : Floor
-        Its ``step`` is the time step.
-    work : WorkingArrays
-        Its ``state`` holds the start, and the end afterwards.
-    time : float
-        At the start: the phase of the drive.
-    every : int
-        Steps between two places noted.
-    path : (K, 8) float
-        Filled with time, position and attitude, from the first row on; nothing more once it is full.
-    notes : (NOTES,) float
-        Filled with the time taken, the way along the wall, the greatest depth and the greatest rise of the
-        energy over what gravity and the drive gave.
-
-    Returns
-    -------
-    int
-        PASSED, RETURNED, STANDS, ROLLED or, where its time was up, RUNNING.
-    """
-    state, dt, begun, start = work.state, floor.step, time, way(surface, work.state)
-    work.memory[0] = -1.0
-    steps, noted, sunk, outcome = math.ceil(surface.longest / dt), 0, 0.0, RUNNING
-    excess = lowest = won = 0.0
-    apart, mark, level = math.ceil(surface.patience / dt), start, state[Z]
+def travel(surface, limits, solid, floor, crowd, time, every, path, notes):
+    """Follow the one part of a crowd until it has passed, has dropped out or its time is up; its outcome."""
+    state, dt, begun, start = crowd.states[0], floor.step, time, way(surface, crowd.states[0])
+    crowd.lasted[0] = crowd.made[0, 7] = -1.0
+    crowd.knowns[0] = 0
+    steps, noted, outcome = math.ceil(limits.longest / dt), 0, RUNNING
+    often, mark, level = math.ceil(limits.patience / dt), start, state[Z]
     for k in range(steps):
-        if k % apart == apart - 1:
+        if k % often == often - 1:
             place = way(surface, state)
-            if place - mark < surface.progress and level - state[Z] < surface.progress:
-                outcome = STANDS if place - mark > -surface.progress else ROLLED
+            if place - mark < limits.progress and level - state[Z] < limits.progress:
+                outcome = STANDS if place - mark > -limits.progress else ROLLED
                 break
             mark, level = place, state[Z]
         if k % every == 0 and noted < len(path):
@@ -65,36 +54,92 @@ def travel(surface, solid, floor, work, time, every, path, notes):
             for e in range(4):
                 path[noted, 4 + e] = state[body.Q + e]
             noted += 1
-        rest = dt
-        while rest > LEFT * dt:
-            now = begun + (k + 1) * dt - rest
-            deepest, taken = step(surface, solid, floor, work, now, rest)
-            sunk, rest = min(sunk, deepest), rest - taken
-            excess += unpaid(surface, solid, floor, work, now, taken)
-            lowest = min(lowest, excess)
-            won = max(won, excess - lowest)
+        over(surface, solid, floor, crowd, (0, 1), time, notes)
         time = begun + (k + 1) * dt
-        if state[Z] < -solid.radius - surface.drop:
+        if state[Z] < -solid.radius - limits.drop:
             outcome = RETURNED
             break
         place = way(surface, state)
-        if place > surface.exit:
-            outcome = PASSED if state[Z] > surface.under else RETURNED
+        if place > limits.exit:
+            outcome = PASSED if state[Z] > limits.under else RETURNED
             break
-        if place < surface.back:
+        if place < limits.back:
             outcome = ROLLED
             break
     notes[TIME], notes[MOVED] = time - begun, way(surface, state) - start
-    notes[SUNK], notes[WON] = -sunk, won
     return outcome
 
 
 @entry
-def travel_all(surface, solid, floor, work, starts, times, every, paths, notes, outcomes):
-    """Follow every row of (N, 13) starts, which hold the ends afterwards; fills paths, notes and outcomes."""
+def travel_all(surface, limits, solid, floor, crowd, starts, times, every, paths, notes, outcomes):
+    """Follow every part from its start, one at a time.
+
+    Parameters
+    ----------
+    surface : Surface
+    limits : Limits
+    solid : TrueSolid
+    floor : Floor
+        Its ``step`` is the time step.
+    crowd : Crowd
+        Of one part.
+    starts : (N, 13) float
+        Hold the ends afterwards.
+    times : (N,) float
+        At the start: the phase of the drive.
+    every : int
+        Steps between two places noted.
+    paths : (N, K, 8) float
+        Filled with time, position and attitude, from the first row on; nothing more once it is full.
+    notes : (N, NOTES + 2) float
+        Filled with the time taken, the way along the wall, the greatest depth and the greatest rise of the
+        energy over what gravity and the drive gave; then what the last is reckoned with.
+    outcomes : (N,) int
+        Filled with PASSED, RETURNED, STANDS, ROLLED or, where its time was up, RUNNING.
+    """
+    crowd.order[0] = 0
     for n in range(len(starts)):
         for k in range(body.STATE):
-            work.state[k] = starts[n, k]
-        outcomes[n] = travel(surface, solid, floor, work, times[n], every, paths[n], notes[n])
+            crowd.states[0, k] = starts[n, k]
+        outcomes[n] = travel(surface, limits, solid, floor, crowd, times[n], every, paths[n], notes[n])
         for k in range(body.STATE):
-            starts[n, k] = work.state[k]
+            starts[n, k] = crowd.states[0, k]
+
+
+@compiled
+def _islands(solid, crowd, active, dt):
+    """Write which parts may touch each other in a step, by islands; how many islands there are."""
+    count, found = 0, 0
+    for n in range(len(crowd.states)):
+        if active[n]:
+            body.rotation(crowd.states[n], crowd.turns[n])
+            crowd.order[count] = n
+            count += 1
+    first = 0
+    while first < count:
+        crowd.islands[found] = first
+        found += 1
+        last = first + 1
+        while first < last:
+            n = crowd.order[first]
+            for m in range(last, count):
+                k = crowd.order[m]
+                reach = motion.ahead(solid, crowd.states[n], dt) + motion.ahead(solid, crowd.states[k], dt)
+                if pairs.may_meet(solid, crowd, n, k, reach):
+                    crowd.order[m], crowd.order[last] = crowd.order[last], k
+                    last += 1
+            first += 1
+    crowd.islands[found] = count
+    return found
+
+
+@entry
+def follow(surface, solid, floor, crowd, active, time, steps, notes):
+    """Move all active parts for so many steps of the floor; fills ``crowd.strains`` and ``notes``."""
+    for n in range(len(crowd.states)):
+        crowd.strains[n, motion.BEHIND] = crowd.strains[n, motion.BELOW] = 0.0
+    for k in range(steps):
+        found = _islands(solid, crowd, active, floor.step)
+        for m in range(found):
+            island = (crowd.islands[m], crowd.islands[m + 1])
+            over(surface, solid, floor, crowd, island, time + k * floor.step, notes)

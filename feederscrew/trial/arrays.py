@@ -1,0 +1,56 @@
+"""Arrays for the parts on a stretch of track, which the kernel works in."""
+
+import numpy as np
+
+from feederscrew.dropping.kernel import body
+from feederscrew.trial.kernel import contact
+from feederscrew.trial.kernel.crowd_records import Crowd
+
+CONTACTS = 96  # of a part with the track at a time
+PAIRS = 400  # contacts between parts at a time
+NEAR = 4000  # edges near borders at a time, and faces near their corners
+SIDES = 12  # borders near a corner, in the mean
+
+
+def crowd_of(solid, surface, count):
+    """Return arrays for so many parts.
+
+    Parameters
+    ----------
+    solid : TrueSolid
+    surface : Surface
+    count : int
+
+    Returns
+    -------
+    Crowd
+    """
+    corners, edges, plates = len(solid.corners), len(solid.edges), len(surface.plates)
+    pairs = 2 * PAIRS if count > 1 else 0
+
+    def numbers(*shape):
+        return np.zeros((count, *shape))
+
+    def places(*shape):
+        return np.zeros((count, *shape), np.int64)
+
+    return Crowd(
+        states=numbers(body.STATE), before=numbers(body.STATE), push=numbers(body.STATE), turns=numbers(9),
+        tangents=numbers(2), given=numbers(6), blown=numbers(6),
+        rows=numbers(CONTACTS, contact.WIDTH), counts=places(),
+        known=numbers(CONTACTS, 4), knowns=places(), lasted=np.full(count, -1.0),
+        made=np.full((count, 8), -1.0),
+        ends=places(plates, 4), verts=places(3, 2 * corners), sides=places(SIDES * corners + 100),
+        edges=places(NEAR, 3), posts=places(NEAR, 2), corners=places(NEAR, 3), walled=places(corners + 1),
+        frame=np.zeros(12), shown=np.zeros((corners, 3)),
+        low=np.zeros(max(corners, CONTACTS), np.int64),
+        heights=np.zeros((corners, 3)), near=np.zeros(max(len(surface.borders), 1), np.int64),
+        box=np.zeros(6),
+        dips=np.zeros(len(surface.borders)),
+        pairs=np.zeros((pairs, contact.WIDTH)), owners=np.zeros(pairs, np.int64),
+        paired=np.zeros(1, np.int64),
+        strains=numbers(2), order=places(), islands=np.zeros(count + 1, np.int64),
+        least=np.array(solid.vertices.min(axis=0)), most=np.array(solid.vertices.max(axis=0)),
+        ours=np.zeros(edges, np.int64), theirs=np.zeros(edges, np.int64),
+        faces=np.zeros(len(solid.triangles), np.int64),
+    )  # fmt: skip
