@@ -39,7 +39,7 @@ def shared(function):
 
     As ``compiled``, it has no way in from Python.
     """
-    return _marked(_named(function), whole=True, cache=True)
+    return _marked(_named(function), cache=True)
 
 
 def entry(function, arrays=False):
@@ -47,7 +47,7 @@ def entry(function, arrays=False):
     from numba import njit
 
     _register()
-    return njit(cache=True, nogil=True, **_options(arrays, whole=True))(_named(function))
+    return njit(cache=True, nogil=True, **_options(arrays))(_named(function))
 
 
 def fitting(function, half_edges, plain=None):
@@ -96,23 +96,23 @@ def _register():
         register_jitable(**{"forceinline": True} | _options(**how))(function)
 
 
-def _options(arrays=False, whole=False, **others):
+def _options(arrays=False, **others):
     """Without arrays no reference counting, which costs more than the arithmetic; and no way in from C."""
     from numba.core.options import DefaultOptions
 
     counting = {} if arrays or not hasattr(DefaultOptions, "_nrt") else {"_nrt": False}
-    return {"error_model": "numpy", "no_cfunc_wrapper": True, **counting, **_compiler(whole), **others}
+    return {"error_model": "numpy", "no_cfunc_wrapper": True, **counting, **_compiler(), **others}
 
 
-def _compiler(whole):
-    """Option that names our compiler, of an entry or a part of one; none where this numba is untried."""
+def _compiler():
+    """Option that names our compiler; none where this numba is untried."""
     from numba import version_info
 
     if not TRIED[0] <= version_info.short <= TRIED[1]:
         return {}
     from feederscrew.geometry import compiler
 
-    return {"pipeline_class": compiler.WholeKernel if whole else compiler.KernelPart}
+    return {"pipeline_class": compiler.Kernel}
 
 
 @functools.cache

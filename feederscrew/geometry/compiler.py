@@ -1,14 +1,9 @@
-"""How numba compiles the kernels: in the passes that they need, and only their entries to machine code.
+"""How numba compiles the kernels: in the passes that they need, and no others.
 
-By itself numba optimises every function with all that it calls, and makes machine code of it. Of a kernel
-only the entries are ever run: what they reach is optimised once, as a part of them. No step of the
-arithmetic changes, and other users of numba in the same process keep its own compiler.
+A pipeline of one's own is numba's documented way to choose them (developer manual, "Customizing the
+compiler"). No step of the arithmetic changes, and other users of numba in the same process keep its own.
 """
 
-import contextlib
-import gc
-
-from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
 from numba.core.compiler_machinery import PassManager
 from numba.core.typed_passes import (
@@ -33,8 +28,8 @@ PASSES = (  # those for closures, generators, array expressions and parallel loo
 )
 
 
-class WholeKernel(CompilerBase):
-    """Compiler of an entry, or of what several entries share."""
+class Kernel(CompilerBase):
+    """Compiler of an entry and of all that it calls."""
 
     def define_pipelines(self):
         """Return the one row of passes."""
@@ -43,49 +38,3 @@ class WholeKernel(CompilerBase):
             passes.add_pass(one, one.__name__)
         passes.finalize()
         return [passes]
-
-    def compile_extra(self, func):
-        """Compile a function with all that it calls."""
-        with _uncollected():
-            return super().compile_extra(func)
-
-
-class KernelPart(WholeKernel):
-    """Compiler of a function that only compiled ones call."""
-
-    def define_pipelines(self):
-        """Return the passes; their code goes to a library that is not made machine code of."""
-        state = self.state
-        state.library = _LinkedLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
-        return super().define_pipelines()
-
-
-class _LinkedLibrary(JITCodeLibrary):
-    """Code of a function and of all that it calls, to be linked into those that call it."""
-
-    @property
-    def codegen(self):
-        """Return this library, which takes the environments of Python objects too: there are none."""
-        return self
-
-    def set_env(self, name, env):
-        """Ignore an environment: the function has no Python objects."""
-
-    def _optimize_final_module(self):
-        """Optimise nothing here: the entry is optimised with all that it calls."""
-
-    def _finalize_final_module(self):
-        """Mark the library as finished without making machine code."""
-        self._finalized = True
-
-
-@contextlib.contextmanager
-def _uncollected():
-    """Switch garbage collection off: in the compiler's many objects it takes a fifteenth of the time."""
-    collects = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if collects:
-            gc.enable()
