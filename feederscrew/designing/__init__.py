@@ -1,0 +1,1 @@
+"""The loop from a part and a rate to a bowl that its own trial confirms."""

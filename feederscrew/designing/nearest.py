@@ -1,0 +1,36 @@
+"""What would hold where a design does not: a lower rate, a larger bowl, another way up, another part."""
+
+from feederscrew.designing.record import HOLDS, PURE, RATE_KEPT
+
+MINUTE = 60.0
+
+
+def nearest(study, search):
+    """Return the nearest that would hold, a sentence each.
+
+    Parameters
+    ----------
+    study : DesignStudy
+    search : loop.Search
+
+    Returns
+    -------
+    tuple of str
+        None of a design that holds.
+    """
+    return () if study.status == HOLDS else tuple(_sentences(study, search))
+
+
+def _sentences(study, search):
+    low, (purity, _) = study.delivered[1], study.purity
+    if study.bowl is not None and low > 0.0 and purity >= PURE and not study.jams:
+        yield f"{MINUTE * low / RATE_KEPT:.3g}/min would hold with this bowl"
+    others = {one.attempt.wanted: one.attempt for one in search.passed}
+    for name, attempt in others.items():
+        if name != study.wanted:
+            yield f"{name} got through its trial at {MINUTE * attempt.rate:.3g}/min"
+    if study.bowl is None and search.attempts:
+        best = max(search.attempts, key=lambda one: one.efficiency)
+        yield f"nearest came {best.wanted}: {', '.join(best.faults[:2]) or 'too slow'}"
+    elif study.bowl is None:
+        yield "no chain isolates an orientation that was asked for: see feeder tooling"

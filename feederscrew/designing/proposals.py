@@ -1,0 +1,151 @@
+"""Chains to be tried for an orientation, and how a value is moved that a trial denies."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feederscrew.designing import trying
+from feederscrew.rates import stream
+from feederscrew.studies.tooling import tooling
+from feederscrew.tooling.chain import LOWER, UPPER, judged, millimetres
+
+MARGINS = (5e-4, 2.5e-4)  # [m] asked for to either side: the wider first
+STEP = 5e-5  # [m] to which a shop makes a value
+DROPS = ("narrowed_track", "canyon", "gap", "slot", "cut_out", "rails", "pressure_break")
+
+
+@dataclass(frozen=True, eq=False)
+class Proposal:
+    """An orientation with a chain that isolates it, as the static rule says."""
+
+    row: int
+    cuts: tuple  # of Cut
+    before: tuple  # of Device
+    step: str  # why it is tried
+
+    @property
+    def devices(self):
+        """Every device along the track."""
+        return (*self.before, *(cut.device for cut in self.cuts))
+
+    @property
+    def hangs(self):
+        """Whether parts leave hanging."""
+        return any(cut.device.kind == "rails" for cut in self.cuts)
+
+    @property
+    def chain(self):
+        """The devices as a bowl file has them."""
+        return tuple(f"{one.kind}: {one.text}" for one in self.devices)
+
+
+def promising(known, shares, request):
+    """Return rows (R,) of the orientations worth a try: those asked for, the most frequent first."""
+    rows = [k for k in trying.often(shares) if not known.lying[k].returned]
+    if request.aspect is not None:
+        own = [k for k in rows if known.lying[k].aspect.casefold() == request.aspect.strip().casefold()]
+        rows = own or [k for k, one in enumerate(known.lying) if one.aspect == request.aspect.strip()]
+    if request.heading is not None and rows:
+        away = [abs(np.angle(np.exp(1j * (known.lying[k].heading - request.heading)))) for k in rows]
+        rows = [rows[int(np.argmin(away))]]
+    return rows
+
+
+def bare(known, shares, request, devices):
+    """Return the proposal of no further device, where nearly all that comes is one way up; else None."""
+    rows = promising(known, shares, request)
+    if not rows or request.outcome == "hanging":
+        return None
+    leaving = (shares[:, None] * known.leaving).sum(axis=0)
+    best = max(rows, key=lambda k: leaving[known.leaves_as[k]])
+    pure = leaving[known.leaves_as[best]] / max(leaving.sum(), 1e-300)
+    return Proposal(best, (), tuple(devices), "no device") if pure >= 0.97 else None
+
+
+def proposed(part, bowl, aspects, row, known, request, margin):
+    """Return the static rule's chain for a row, or None where it isolates nothing or is not what was asked.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        With the devices of the user.
+    aspects : Aspects
+        With the answer to take.
+    row : int
+    known : Orientations
+    request : DesignRequest
+    margin : float [m]
+
+    Returns
+    -------
+    Proposal or None
+    """
+    one = known.lying[row]
+    found = tooling(
+        part, bowl, one.aspect, heading=one.heading, rule=request.rule, margin=margin, known=aspects,
+        seed=request.seed, verdicts=8000,
+    ).design  # fmt: skip
+    if found is None or not found.efficiency > 0.0 or not found.isolated:
+        return None
+    cuts = tuple(rounded(cut, known.lying, row) for cut in found.cuts)
+    made = Proposal(row, cuts, tuple(found.before), f"proposed with margins of {millimetres(margin)}")
+    hangs = any(cut.device.kind == "rails" for cut in cuts)
+    if request.outcome != "any" and hangs != (request.outcome == "hanging"):
+        return None
+    if any(device.kind in request.without for device in made.devices):
+        return None
+    return made
+
+
+def rounded(cut, every, row):
+    """Return a cut whose value a shop can make, where that keeps what it returns."""
+    if not np.isfinite(cut.device.limit):
+        return cut
+    return moved(cut, float(np.round(cut.device.limit / STEP) * STEP), every, row)
+
+
+def moved(cut, limit, every, row):
+    """Return a cut of one number at another value, with its margins there."""
+    limit = float(np.round(limit / STEP) * STEP)
+    device = replace(cut.device, limit=limit, text=millimetres(limit))
+    must = np.array([one.name in cut.returns for one in every])
+    return judged(every, row, device, must, cut.smallest, cut.largest)
+
+
+def mended(proposal, tried, every):
+    """Return the proposal with the value moved that its trial denies; None where none can be moved.
+
+    What is lost though wanted moves its device towards the least cut; what leaves though rejected moves the
+    device that should have returned it towards the greatest.
+    """
+    for place, cut in enumerate(proposal.cuts):
+        if cut.device.kind not in (*UPPER, *LOWER):
+            continue
+        kind = cut.device.kind
+        lost = _lost_at(tried, kind)
+        slipped = [k for n, k in enumerate(tried.rows) if tried.wrong[n] and every[k].name in cut.returns]
+        if lost == bool(slipped):
+            continue
+        end = cut.smallest.limit if lost else cut.largest.limit
+        limit = 0.5 * (cut.device.limit + end)
+        if not np.isfinite(limit) or abs(limit - cut.device.limit) < STEP:
+            continue
+        other = moved(cut, limit, every, proposal.row)
+        if other.device.limit == cut.device.limit or not other.margin_pass > 0.0:
+            continue
+        cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
+        return replace(proposal, cuts=cuts, step=f"{kind} moved to {other.device.text}")
+    return None
+
+
+def _lost_at(tried, kind):
+    """Whether the wanted orientation ends at a device of a kind."""
+    right = set(trying.wanted_rows(tried.known, tried.state))
+    ends = [tried.places[n] for n, k in enumerate(tried.rows) if k in right]
+    return any(name.endswith(f"at {kind}") for one in ends for name in one)
+
+
+def known_through(part, aspects, bowl):
+    """Return what becomes of every orientation on the track and through the devices of a bowl."""
+    return stream.orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)

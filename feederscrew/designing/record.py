@@ -1,0 +1,213 @@
+"""What is asked of a design, and what it stands on."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from feederscrew.bowl.devices import Device
+from feederscrew.bowl.record import Bowl
+from feederscrew.dropping.ensemble import wilson
+from feederscrew.part.record import Part
+
+OUTCOMES = ("any", "lying", "hanging")
+HOLDS, FALLS_SHORT, NONE = "holds", "falls short", "none"
+RATE_KEPT, PURE, DRAWS_HELD = 0.9, 0.98, 0.95  # [1] of the target, of what leaves, of the draws
+NORMAL = "normal"  # the fill whose rate counts
+
+
+@dataclass(frozen=True)
+class DesignRequest:
+    """What shall leave a bowl, and what the search for it may use."""
+
+    target: float  # [1/s]
+    aspect: str | None = None
+    heading: float | None = None  # [rad]
+    outcome: str = "any"  # of OUTCOMES
+    without: tuple[str, ...] = ()  # kinds of device that shall not be used
+    diameter: tuple[float, float] | None = None  # [m] least and greatest
+    rule: str = "recommended"
+    tolerance: float = 1e-4  # [m] of the part's size, to either side
+    budget: int = 16  # short trials
+    draws: int = 20
+    seed: int = 1
+    jobs: int = 1
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """One short trial of the loop: what was tried, and what came of it."""
+
+    wanted: str  # 'A@2'
+    chain: tuple[str, ...]  # 'gap: 9.5 mm'
+    step: str  # why it was tried: 'proposed', 'gap nearer to A@2', 'margin 0.5 mm'
+    bank: float  # [rad]
+    velocity: float  # [m/s]
+    parts: int
+    efficiency: float  # [1]
+    purity: float  # [1] NaN where nothing leaves
+    stopped: float  # [1] share of the parts offered that stay at a device
+    rate: float  # [1/s] that it would deliver
+    faults: tuple[str, ...]  # 'C@66 is stopped at profile'
+
+    @property
+    def clean(self):
+        """Whether only what is wanted leaves and nothing stays."""
+        return self.efficiency > 0.0 and not self.faults
+
+
+@dataclass(frozen=True)
+class RobustRun:
+    """Draws of part, friction, drive and cuts; each tried with some parts."""
+
+    draws: int
+    held: int
+    worst: str  # what went wrong most often; '' where nothing did
+    slowest: float = np.nan  # [m/s] velocity of the slowest draw
+    partial: bool = False
+
+    @property
+    def share(self):
+        """Share of the draws that sort [1]; 0 of none."""
+        return self.held / self.draws if self.draws else 0.0
+
+
+@dataclass(frozen=True)
+class FilledQueue:
+    """What a queue did at one fill."""
+
+    fill: str  # 'low', 'normal', 'high'
+    parts: int
+    seconds: float  # [s] followed
+    counted: float  # [s] of them since the first part came to the outlet
+    delivered: float  # parts that left
+    right: int  # of the whole ones those in the wanted orientation
+    left: int  # whole ones that left
+    returned: int
+    jams: int
+    climbs: int
+
+    @property
+    def rate(self):
+        """Wanted parts [1/s]."""
+        if not self.counted > 0.0 or not self.left:
+            return 0.0
+        return self.delivered / self.counted * self.right / self.left
+
+    @property
+    def ends(self):
+        """95 % interval of that rate [1/s]: what is offered times the interval of the share that leaves right."""
+        offered = self.left + self.returned
+        if not offered or not self.rate > 0.0:
+            return 0.0, self.rate
+        low, high = (float(end[0]) for end in wilson([self.right], offered))
+        share = self.right / offered
+        return self.rate * low / share, self.rate * high / share
+
+
+@dataclass(frozen=True, eq=False)
+class DesignStudy:
+    """A bowl for a part and a rate, with everything that was tried on the way."""
+
+    part: Part
+    request: DesignRequest
+    bowl: Bowl | None  # None where there is none
+    wanted: str | None  # orientation that leaves: 'A@2', 'hanging'
+    turn: int | None  # its place among the orientations
+    cuts: tuple = ()  # of Cut: the chain with the values it may have
+    before: tuple[Device, ...] = ()
+    attempts: tuple[Attempt, ...] = ()
+    robust: RobustRun = field(default_factory=lambda: RobustRun(0, 0, ""))
+    queues: tuple[FilledQueue, ...] = ()
+    risks: tuple[str, ...] = ()
+    nearest: tuple[str, ...] = ()  # what would hold instead
+    partial: bool = False
+    source: str = ""  # whose shares were taken
+    static_rate: float = 0.0  # [1/s] that the static rule promises
+
+    @property
+    def devices(self):
+        """Every device along the track."""
+        return () if self.bowl is None else self.bowl.devices
+
+    @property
+    def normal(self):
+        """The queue at normal fill, or None."""
+        return next((one for one in self.queues if one.fill == NORMAL), None)
+
+    @property
+    def delivered(self):
+        """Wanted parts [1/s] at normal fill: value, low and high end."""
+        if self.normal is None:
+            return 0.0, 0.0, 0.0
+        return (self.normal.rate, *self.normal.ends)
+
+    @property
+    def purity(self):
+        """Share of the wanted orientation in what left all queues [1], and its lower end; NaN of nothing."""
+        right, left = (sum(getattr(one, name) for one in self.queues) for name in ("right", "left"))
+        if not left:
+            return np.nan, 0.0
+        return right / left, float(wilson([right], left)[0][0])
+
+    @property
+    def jams(self):
+        """Parts that had to be taken out of the queues."""
+        return sum(one.jams for one in self.queues)
+
+    @property
+    def queue_seconds(self):
+        """Time that queues were followed [s]."""
+        return float(sum(one.seconds for one in self.queues))
+
+    @property
+    def jams_per_hour_high(self):
+        """Upper end of the jams an hour: three more than were seen, in the time they were looked for."""
+        return 3600.0 * (self.jams + 3.0) / self.queue_seconds if self.queue_seconds else np.inf
+
+    @property
+    def trial_parts(self):
+        """How many parts were tried one at a time."""
+        return sum(one.parts for one in self.attempts)
+
+    @property
+    def status(self):
+        """One of three words."""
+        if self.bowl is None or not self.delivered[0] > 0.0:
+            return NONE if self.bowl is None or not self.queues else FALLS_SHORT
+        return HOLDS if not self.shortfalls else FALLS_SHORT
+
+    @property
+    def shortfalls(self):
+        """Where it does not do what was asked, a sentence each."""
+        return tuple(_shortfalls(self))
+
+    @property
+    def why(self):
+        """Why it does not hold: where it falls short and the nearest that would hold; '' where it holds."""
+        if self.status == HOLDS:
+            return ""
+        return "; ".join((*self.shortfalls, *self.nearest)) or "no orientation gets through its own trial"
+
+
+def _shortfalls(study):
+    minute, (purity, _) = 60.0, study.purity
+    low = study.delivered[1]
+    if study.bowl is None:
+        for one in study.attempts[:3]:
+            yield f"{one.wanted}: {', '.join(one.faults[:3]) or 'nothing leaves'}"
+        return
+    if low < RATE_KEPT * study.request.target:
+        yield (
+            f"delivers {minute * study.delivered[0]:.3g}/min (at least {minute * low:.3g}) of the "
+            f"{minute * study.request.target:.3g}/min asked for"
+        )
+    if not purity >= PURE:
+        told = "nothing left the queue" if np.isnan(purity) else f"purity {100.0 * purity:.3g} %"
+        yield f"{told}, {100.0 * PURE:.3g} % are asked for"
+    if study.jams:
+        yield f"{study.jams} jams in {study.queue_seconds:.3g} s of queue"
+    if study.robust.share < DRAWS_HELD:
+        worst = f": {study.robust.worst}" if study.robust.worst else ""
+        yield f"{study.robust.held} of {study.robust.draws} draws of part, friction and drive sort{worst}"
+    if study.partial:
+        yield "stopped before all was tried"

@@ -1,0 +1,222 @@
+"""Draws of what differs from one part, one day and one workshop to the next, and whether a chain still sorts."""
+
+import math
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import shapely
+
+from feederscrew import check
+from feederscrew.designing import trying
+from feederscrew.designing.record import RobustRun
+from feederscrew.errors import FeederError
+from feederscrew.geometry import vectors
+from feederscrew.part.hull import convex_hull
+from feederscrew.rates import stream
+from feederscrew.resting.aspects import find
+from feederscrew.tooling.verdicts import seen
+
+FRICTION, DRIVE, CUT = (0.6, 1.4), (0.9, 1.1), 1e-4  # [1], [1], [m] to either side
+ALIKE = 1e-4  # of the greatest: principal moments that a part of revolution has in common
+OTHERS = 2  # orientations tried in each draw beside the wanted one
+
+
+def drawn_bowl(bowl, every, rng):
+    """Return a bowl with other friction, drive and cuts.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    every : sequence of Orientation
+        Of the part as drawn, which a profile may name: its opening is that of the nominal part.
+    rng : numpy Generator
+
+    Returns
+    -------
+    Bowl
+    """
+    rubbed, driven = rng.uniform(*FRICTION), rng.uniform(*DRIVE)
+    friction = bowl.friction
+    values = {name: getattr(friction, name) for name in vars(friction)}
+    friction = replace(friction, **{k: None if v is None else v * rubbed for k, v in values.items()})
+    drive = replace(bowl.drive, amplitude=bowl.drive.amplitude * driven)
+    devices = tuple(_drawn_device(one, every, rng) for one in bowl.devices)
+    return replace(bowl, friction=friction, drive=drive, devices=devices)
+
+
+def _drawn_device(device, every, rng):
+    """A device whose every length is off by up to CUT."""
+    if device.like:
+        device = replace(device, corners=opening(device, every), like=())
+    more = {}
+    if math.isfinite(device.limit):
+        more["limit"] = max(device.limit + rng.uniform(-CUT, CUT), CUT)
+    if device.span:
+        ends = sorted(end + rng.uniform(-CUT, CUT) if end > 0.0 else end for end in device.span)
+        more["span"] = (max(ends[0], 0.0), ends[1])
+    if device.corners:
+        grown = shapely.Polygon(device.corners).buffer(rng.uniform(-CUT, CUT), join_style="mitre")
+        more["corners"] = tuple(map(tuple, shapely.get_coordinates(grown.exterior)[:-1].tolist()))
+    return replace(device, **more)
+
+
+def opening(device, every):
+    """Return the corners (K, 2) [m] of a gate that is given by an orientation and its play."""
+    aspect, heading, play = device.like
+    own = [one for one in every if one.aspect.casefold() == aspect.casefold()]
+    one = min(own, key=lambda one: abs(math.remainder(one.heading - heading, 2.0 * math.pi)))
+    grown = seen(one).buffer(play)
+    return tuple(map(tuple, shapely.get_coordinates(grown.exterior)[:-1].tolist()))
+
+
+def drawn_part(part, tolerance, rng):
+    """Return a part whose size along each principal axis is off by up to a tolerance.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    tolerance : float [m]
+    rng : numpy Generator
+
+    Returns
+    -------
+    Part
+        Axes about which it is round stay so.
+    """
+    moments, axes = vectors.eigen(part.inertia)
+    axes = axes.T
+    size = [float(np.ptp(_along(part.vertices, axis))) for axis in axes]
+    scales = 1.0 + rng.uniform(-tolerance, tolerance, 3) / size
+    for a, b in ((0, 1), (1, 2)):
+        if abs(moments[b] - moments[a]) < ALIKE * moments.max():
+            scales[b] = scales[a]
+    return _scaled(part, axes, scales)
+
+
+def _along(points, axis):
+    return points[:, 0] * axis[0] + points[:, 1] * axis[1] + points[:, 2] * axis[2]
+
+
+def _scaled(part, axes, scales):
+    """The part stretched along three axes about its centre of mass."""
+    stretch = sum(s * np.outer(axis, axis) for s, axis in zip(scales, axes))
+    moved = part.vertices - part.centre_of_mass
+    vertices = part.centre_of_mass + np.stack([_along(moved, row) for row in stretch], axis=1)
+    grown = float(np.prod(scales))
+    moments = [float(vectors.dot(_along(part.inertia, axis), axis)) for axis in axes]
+    second = [0.5 * sum(moments) - one for one in moments]  # integral of the square along each axis
+    second = [s * s * one * grown for s, one in zip(scales, second)]
+    inertia = sum((sum(second) - own) * np.outer(axis, axis) for own, axis in zip(second, axes))
+    return replace(
+        part,
+        vertices=check.frozen(vertices),
+        hull=convex_hull(vertices, part.centre_of_mass, part.source),
+        inertia=check.frozen(inertia),
+        mass=part.mass * grown,
+        volume=part.volume * grown,
+        names=None,
+    )
+
+
+def matched(one, every):
+    """Return the place of the orientation of a part that is nearest to one of a part a little different."""
+    size = max(one.length, one.height)
+
+    def away(other):
+        values = ((getattr(one, name), getattr(other, name)) for name in ("length", "width", "height", "distance"))
+        turned = sum(vectors.dot(a, b) for a, b in zip(one.axes, other.axes))  # 3 where nothing is turned
+        return sum(abs(a - b) for a, b in values) / size + 0.02 * (3.0 - float(turned))
+
+    return min(range(len(every)), key=lambda k: away(every[k]))
+
+
+def robust_run(part, bowl, known, shares, row, *, draws, tolerance, seed, jobs=1, told=None):
+    """Try draws of part, friction, drive and cuts.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        With its devices.
+    known : Orientations
+        Of the nominal part in that bowl; M of them.
+    shares : (M,) float [1]
+    row : int
+        The wanted orientation.
+    draws : int
+    tolerance : float [m]
+        Of the part.
+    seed, jobs : int
+    told : callable, optional
+        Called with how many draws are done of how many.
+
+    Returns
+    -------
+    RobustRun
+        A draw holds where what is wanted leaves as wanted, and nothing of the others leaves or stays. Each
+        draw tries the wanted orientation and some others, drawn by their shares.
+    """
+    held, wrong, speeds, done = 0, Counter(), [], 0
+    try:
+        for draw in range(draws):
+            faults, speed = _draw(part, bowl, known, shares, row, tolerance, seed, draw, jobs)
+            held, done = held + (not faults), draw + 1
+            wrong.update(set(faults))
+            speeds.append(speed)
+            if told:
+                told(done, draws)
+    except KeyboardInterrupt:
+        if not done:
+            raise
+    worst = "" if not wrong else f"{wrong.most_common(1)[0][0]} in {wrong.most_common(1)[0][1]} of {done}"
+    return RobustRun(done, held, worst, float(min(speeds, default=np.nan)), partial=done < draws)
+
+
+def _draw(part, bowl, known, shares, row, tolerance, seed, draw, jobs):
+    """What goes wrong in one draw, and the velocity there."""
+    rng = np.random.default_rng((seed, draw))
+    other = drawn_part(part, tolerance, rng)
+    driven = drawn_bowl(bowl, known.lying, rng)
+    chosen = _rows(known, shares, row, rng)
+    try:
+        ways = stream.orientations(other, find(other), bowl.track, driven.devices, bowl=driven)
+        rows = [matched(known.lying[k], ways.lying) for k in chosen]
+        even = np.full(len(ways.lying), 1.0 / len(ways.lying))
+        tried = trying.single(
+            other, driven, ways, even, rows[0], rows=list(dict.fromkeys(rows)), each=1, jobs=jobs,
+            seed=seed + draw,
+        )  # fmt: skip
+    except FeederError as fault:  # the drawn bowl does not convey, or the part does not fit
+        return [fault.what], 0.0
+    return faults(tried), tried.velocity
+
+
+def _rows(known, shares, row, rng):
+    """The wanted orientation, and others drawn by their shares."""
+    state = int(known.leaves_as[row])
+    wanted = trying.wanted_rows(known, state) or [row]
+    likely = np.where([k in wanted for k in range(len(shares))], shares + 1e-12, 0.0)
+    first = int(rng.choice(len(shares), p=likely / likely.sum()))
+    rest = np.where([k in wanted for k in range(len(shares))], 0.0, shares)
+    rest[rest < trying.SELDOM] = 0.0
+    count = min(OTHERS, int(np.count_nonzero(rest)))
+    more = rng.choice(len(shares), count, replace=False, p=rest / rest.sum()) if count else []
+    return [first, *(int(k) for k in more)]
+
+
+def faults(tried):
+    """Return what goes wrong in a short trial, a sentence each: (what is lost, stopped or carried, where)."""
+    found, right = [], set(trying.wanted_rows(tried.known, tried.state))
+    for place, k in enumerate(tried.rows):
+        name = tried.known.lying[k].name
+        if k in right or tried.right[place]:
+            if tried.right[place] < tried.parts[place]:
+                where = ", ".join(tried.places[place]) or "turned"
+                found.append(f"{name} is lost ({where})")
+        elif tried.wrong[place]:
+            found.append(f"{name} is carried through")
+        if tried.held[place] and k not in right:
+            found.append(f"{name} stays ({', '.join(tried.places[place])})")
+    return found

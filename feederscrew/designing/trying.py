@@ -1,0 +1,137 @@
+"""Short trials of a chain: what of each orientation leaves, how, and what names its device."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew.rates import stream
+from feederscrew.resting.aspects import Aspects
+from feederscrew.trial import course
+from feederscrew.trial.queue import queue_of
+
+SELDOM = 5e-3  # [1] orientations that come less often are left out
+HELD = (course.HANGING, course.STOPPED, course.STUCK)
+GAP = 1.2  # pitch of parts that come in a row, over their length
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """What single parts did in one bowl; M orientations."""
+
+    known: stream.Orientations
+    shares: np.ndarray  # (M,) [1] in which they come; sums to 1
+    rows: np.ndarray  # (R,) int, the orientations tried
+    parts: np.ndarray  # (R,) int, of each
+    right: np.ndarray  # (R,) int, left in the wanted state
+    wrong: np.ndarray  # (R,) int, left in another
+    held: np.ndarray  # (R,) int, stay at a device or hang
+    places: tuple[dict[str, int], ...]  # (R,) of those that did not leave: 'returned at gap' and how many
+    velocity: float  # [m/s] mean of those that travel
+    state: int  # the wanted one
+    deepest: float  # [m]
+
+    @property
+    def weights(self):
+        """(R,) [1] shares of those tried, over their number of parts."""
+        own = self.shares[self.rows]
+        return own / max(own.sum(), 1e-300) / np.maximum(self.parts, 1)
+
+    @property
+    def efficiency(self):
+        """Share of the parts offered that leaves as wanted [1]."""
+        return float((self.weights * self.right).sum())
+
+    @property
+    def carried(self):
+        """Share of the parts offered that leaves otherwise [1]."""
+        return float((self.weights * self.wrong).sum())
+
+    @property
+    def stopped(self):
+        """Share of the parts offered that stays [1]."""
+        return float((self.weights * self.held).sum())
+
+    @property
+    def purity(self):
+        """Share of the wanted in what leaves [1]; NaN where nothing does."""
+        total = self.efficiency + self.carried
+        return self.efficiency / total if total > 0.0 else np.nan
+
+    @property
+    def rate(self):
+        """Wanted parts [1/s] that such a bowl delivers, from a row with the usual gaps."""
+        pitch = GAP * float((self.shares * self.known.lengths).sum())
+        longest = GAP * float(self.known.states[self.state].length)
+        return float(min(max(self.velocity, 0.0) / pitch * self.efficiency, max(self.velocity, 0.0) / longest))
+
+
+def wanted_rows(known, state):
+    """Return the rows that leave in a state as the static rule says."""
+    return [k for k in range(len(known.lying)) if known.leaving[k, state] > 0.5]
+
+
+def often(shares, rows=()):
+    """Return the rows (R,) that come often enough to matter, the most frequent first; some in any case."""
+    order = np.argsort(-shares, kind="stable")
+    return [int(k) for k in order if shares[k] >= SELDOM or k in rows]
+
+
+def single(part, bowl, known, shares, row, *, rows, each, seed, jobs=1, before=None):
+    """Try parts one at a time.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        With its devices.
+    known : Orientations
+        On its track, through its devices; M of them.
+    shares : (M,) float [1]
+    row : int
+        The wanted orientation.
+    rows : sequence of int
+        Those to be tried.
+    each : int
+        Parts of each.
+    seed, jobs : int
+    before : callable, optional
+        Called before anything is compiled.
+
+    Returns
+    -------
+    Tried
+    """
+    rows, state = np.asarray(rows, int), int(known.leaves_as[row])
+    seen = course.course(
+        part, bowl, known.lying, rows, bowl.devices, parts=each * len(rows), poses=known.states,
+        leaves=course.rightly(known.leaving), seed=seed, jobs=jobs, before=before,
+    )  # fmt: skip
+    out, whole = seen.orientations[-1], np.isin(seen.fates, (course.PASSED, course.TURNED))
+    own = [seen.entered == k for k in rows]
+    count = [[int((one & some).sum()) for one in own] for some in (
+        np.ones(len(whole), bool), whole & (out == state), whole & (out != state), np.isin(seen.fates, HELD),
+    )]  # fmt: skip
+    moving = seen.velocities[np.isfinite(seen.velocities) & (seen.velocities > 0.0)]
+    return Tried(
+        known, shares, rows, *(np.array(one) for one in count),
+        places=tuple(_places(seen, one) for one in own),
+        velocity=float(moving.mean()) if len(moving) else 0.0,
+        state=state, deepest=float(seen.depths.max(initial=0.0)),
+    )  # fmt: skip
+
+
+def _places(seen, own):
+    """Where parts ended that did not leave, and how: {'returned at gap': 2}."""
+    found = {}
+    for n in np.flatnonzero(own & ~np.isin(seen.fates, (course.PASSED, course.TURNED))):
+        name = f"{course.FATES[seen.fates[n]].replace('_', ' ')} at {seen.stations[seen.ended[n]].device.kind}"
+        found[name] = found.get(name, 0) + 1
+    return found
+
+
+def queue(part, bowl, aspects: Aspects, known, shares, *, parts, seconds, seed, progress=None):
+    """Follow a queue; as ``trial.queue.queue_of``."""
+    return queue_of(
+        part, bowl, aspects, known.lying, known.states, shares, parts=parts, seconds=seconds, seed=seed,
+        progress=progress,
+    )  # fmt: skip
