@@ -78,7 +78,7 @@ def bowl(part, target, made, bowl, pictures, out, **wanted):
     inertia then take the place of the estimate.
     """
     from feederscrew import bowl as bowls
-    from feederscrew.output import columns, machine, offers
+    from feederscrew.output import columns, machine, offers, proof
     from feederscrew.output.machine import tables
     from feederscrew.studies import bowl as study
     from feederscrew.studies import solidbowl as solids
@@ -95,7 +95,7 @@ def bowl(part, target, made, bowl, pictures, out, **wanted):
         found = (
             study.bowl(settings, solid, target, **wanted, solid=shape) if solid else study.machine(settings)
         )
-        out.warn(*found.remarks)
+        out.warn(*found.remarks, *proof.warnings(bowls.verified(path), solid, bowls.record(settings)))
         offers.write(folder, machine.offers(found), pictures=pictures)
         out.show(tables.summary(found), tables.document(found))
 

@@ -29,6 +29,7 @@ COMMANDS = {
     "bowl": "feederscrew_cli.bowl",
     "tooling": "feederscrew_cli.tooling",
     "trial": "feederscrew_cli.trial",
+    "design": "feederscrew_cli.design",
     "floor": "feederscrew_cli.floor",
     "track": "feederscrew_cli.track",
     "headings": "feederscrew_cli.headings",

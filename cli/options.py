@@ -149,6 +149,11 @@ def launch(command):
     )(command)
 
 
+def listed(text):
+    """Return the names of a list that is typed with commas, as a tuple."""
+    return tuple(name.strip() for name in text.split(",") if name.strip())
+
+
 def pictures(command):
     """``--no-pictures``; the command receives ``pictures``, true unless it is given."""
     return click.option(

@@ -45,6 +45,20 @@ def chain(command):
     return command
 
 
+LEAVES_MOST = click.option(
+    "--aspect",
+    metavar="NAME",
+    help="Aspect the part shall leave the bowl on.  [default: the one that leaves most often]",
+)
+
+
+def any_chain(command):
+    """As ``chain``, but ``aspect`` may be left out."""
+    for option in reversed((LEAVES_MOST, *CHAIN[1:])):
+        command = option(command)
+    return command
+
+
 FED = click.option(
     "--launch",
     type=options.LAUNCHES,

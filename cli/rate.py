@@ -7,7 +7,7 @@ from feederscrew_cli import grouped, options, orientation
 
 @grouped.command(short_help="Correctly oriented parts per minute, with each factor of the chain.")
 @options.part
-@orientation.chain
+@orientation.any_chain
 @orientation.taken
 @orientation.doubt
 @options.bowl
@@ -31,7 +31,7 @@ def rate(part, aspect, heading, rule, gap, fill, taken, play, tolerance, bowl, o
     With -o: rate.json and orientations.csv, what each device does with each orientation.
     """
     from feederscrew import bowl as bowls
-    from feederscrew.output import columns, offers
+    from feederscrew.output import columns, offers, proof
     from feederscrew.output.rate import files, tables
     from feederscrew.studies.rate import rate as study
 
@@ -44,7 +44,8 @@ def rate(part, aspect, heading, rule, gap, fill, taken, play, tolerance, bowl, o
             solid, record, aspect, known=known,
             heading=heading, rule=rule, gap=gap, fill=fill, sigma=math.hypot(play, tolerance),
         )  # fmt: skip
-        document = tables.document(found)
-        out.warn(*found.warnings, *tables.remarks(found))
+        tried = bowls.verified(bowl["path"])
+        document = proof.beside(tables.document(found), tried, solid, record)
+        out.warn(*found.warnings, *tables.remarks(found), *proof.warnings(tried, solid, record))
         offers.write(folder, files.offers(found))
         out.show(tables.summary(document), document)

@@ -71,8 +71,8 @@ def report(part, bowl, taken, directory, format, quiet, verbose, **wanted):
     PART is a mesh or a part card. report.html needs no other file and no network; --format md writes
     report.md with its pictures beside it. A chapter that cannot be computed says why.
     """
-    from feederscrew.bowl import texts
-    from feederscrew.output import columns
+    from feederscrew.bowl import record, texts, verified
+    from feederscrew.output import columns, proof
     from feederscrew.output.report import page, write
     from feederscrew.studies.report import report as study
 
@@ -86,6 +86,7 @@ def report(part, bowl, taken, directory, format, quiet, verbose, **wanted):
     with out.folder(solid.name, found.inputs, effective) as folder:
         made = page(found, out.step)
         out.warn(*(line for line in made.warnings if line not in solid.warnings))
+        out.warn(*proof.warnings(verified(bowl["path"]), solid, record(found.settings)))
         write(folder, made, format)
 
 

@@ -32,7 +32,7 @@ def tune(part, target, aspect, heading, rule, gap, fill, taken, worst, bowl, out
     With -o: tune.csv and tune.json.
     """
     from feederscrew import bowl as bowls
-    from feederscrew.output import columns, offers
+    from feederscrew.output import columns, offers, proof
     from feederscrew.output.tune import files, tables
     from feederscrew.studies.tune import tune as study
 
@@ -46,6 +46,7 @@ def tune(part, target, aspect, heading, rule, gap, fill, taken, worst, bowl, out
             solid, record, aspect, target, arriving=arriving, progress=waiting.told(out, "settings"),
             heading=heading, rule=rule, gap=gap, fill=fill, worst=worst,
         )  # fmt: skip
-        out.warn(*found.warnings, *tables.remarks(found))
+        tried = proof.warnings(bowls.verified(bowl["path"]), solid, record)
+        out.warn(*found.warnings, *tables.remarks(found), *tried)
         offers.write(folder, files.offers(found))
         out.show(tables.shown(found, out.format), tables.document(found))

@@ -8,11 +8,12 @@ from feederscrew.bowl.record import Bowl, Drive, Friction, Track
 from feederscrew.bowl.settings import by_machine, effective, record, swept, texts
 from feederscrew.bowl.strokes import named, strokes
 from feederscrew.bowl.vary import ranges
+from feederscrew.bowl.verified import verified
 
 __all__ = [
     "Bowl", "Drive", "Friction", "Track",
     "by_machine", "default", "identity", "name", "named", "ranges", "read", "record", "settings", "strokes",
-    "swept", "texts",
+    "swept", "texts", "verified",
 ]  # fmt: skip
 
 

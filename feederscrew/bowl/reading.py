@@ -3,12 +3,12 @@
 import itertools
 
 from feederscrew import documents, units
-from feederscrew.bowl import devices
+from feederscrew.bowl import devices, verified
 from feederscrew.bowl.schema import BY_NAME, KEYS, SECTIONS, rival
 from feederscrew.bowl.settings import OVERRIDES, Setting, chain, default, effective, of_device, replaced
 from feederscrew.errors import ArgumentError, ConfigError
 
-TOP_LEVEL = (*SECTIONS, devices.SECTION, *(key.name for key in KEYS if not key.section))
+TOP_LEVEL = (*SECTIONS, devices.SECTION, verified.SECTION, *(key.name for key in KEYS if not key.section))
 
 
 def settings(path=None, overrides=()):
@@ -103,7 +103,7 @@ def _from_file(path):
             given |= {
                 s.key.name: s for s in map(of_device, itertools.count(1), devices.listed(entry, faults))
             }
-        else:
+        elif entry.key != verified.SECTION:
             faults.append(_unknown(entry, "", TOP_LEVEL))
     return given, faults
 

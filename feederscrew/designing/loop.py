@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from feederscrew.designing import nearest, proposals, queues, section, trying
+from feederscrew.designing import beside, calm_drive, nearest, proposals, queues, trying
 from feederscrew.designing.record import Attempt, DesignStudy
 from feederscrew.designing.robust import faults, robust_run
 from feederscrew.rates import arrivals
@@ -108,10 +108,9 @@ def _ranked(search):
 def _explore(search):
     """Try proposals until one is clean and brings the target, or the budget is used up."""
     for bank in _banks(search):
-        made = section.section(
-            search.part, _aspects(search), search.plain, search.given, diameter=search.request.diameter, bank=bank,
-        )  # fmt: skip
-        start = section.driven(made, 0.0 if made.given & {"drive.amplitude"} else np.inf)
+        own = {"diameter": search.request.diameter, "bank": bank}
+        made = calm_drive.section(search.part, _aspects(search), search.plain, search.given, **own)
+        start = calm_drive.driven(made, 0.0 if made.given & {"drive.amplitude"} else np.inf)
         start = replace(start, devices=search.plain.devices)
         if search.known is None:
             search.known = shares(search.part, start, fed=True, jobs=search.request.jobs)
@@ -126,7 +125,7 @@ def _explore(search):
 def _banks(search):
     """Banks of the track that are tried, in turn."""
     given = search.plain.track.bank
-    return (given,) if "track.bank" in search.given else (section.BANK, 0.0)
+    return (given,) if "track.bank" in search.given else (calm_drive.BANK, 0.0)
 
 
 def _aspects(search):
@@ -159,7 +158,9 @@ def _proposals(search, bowl, ways, weights):
             )
             if found is None:
                 continue
-            through = proposals.known_through(search.part, search.known.aspects, replace(bowl, devices=found.devices))
+            through = proposals.known_through(
+                search.part, search.known.aspects, replace(bowl, devices=found.devices)
+            )
             gain = float((weights * through.leaving[:, through.leaves_as[row]]).sum())
             best = max(best, gain)
             promise.append((gain, -len(found.cuts), -len(promise), found))
@@ -194,7 +195,7 @@ def _attempt(search, made, proposal, weights):
     gain = float((weights * ways.leaving[:, ways.leaves_as[proposal.row]]).sum())
     pitch = trying.GAP * float((weights * ways.lengths).sum())
     asked = RESERVE * request.target * pitch / max(gain, 1e-3)
-    bowl = replace(section.driven(made, asked, hops=not proposal.devices), devices=proposal.devices)
+    bowl = replace(calm_drive.driven(made, asked, hops=not proposal.devices), devices=proposal.devices)
     ways = arrivals.oriented(proposals.known_through(part, search.known.aspects, bowl), search.known.measured)
     name = ways.lying[proposal.row].name
     search.told(f"trial {len(search.attempts) + 1}: {name}, {proposal.step}")
@@ -249,6 +250,16 @@ def _proved(search, candidate):
         attempts=tuple(search.attempts),
         source=search.known.aspects.source(request.rule),
         static_rate=_static(search, candidate),
+        tooling=beside.tooled(
+            part,
+            bowl,
+            search.known.aspects,
+            ways,
+            weights,
+            candidate.proposal,
+            request.rule,
+            proposals.MARGINS[-1],
+        ),
     )
     found = queues.filled(
         part, bowl, search.known.aspects, ways, weights, candidate.tried.state, seed=request.seed
@@ -268,7 +279,7 @@ def _static(search, candidate):
     """Wanted parts [1/s] that the static rule promises."""
     ways, weights = candidate.ways, candidate.weights
     gain = float((weights * ways.leaving[:, candidate.tried.state]).sum())
-    return section.speed(candidate.bowl) * gain / float((weights * ways.lengths).sum())
+    return calm_drive.speed(candidate.bowl) * gain / float((weights * ways.lengths).sum())
 
 
 def _without(search):

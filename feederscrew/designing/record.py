@@ -8,6 +8,7 @@ from feederscrew.bowl.devices import Device
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
+from feederscrew.studies.tooling import ToolingStudy
 
 OUTCOMES = ("any", "lying", "hanging")
 HOLDS, FALLS_SHORT, NONE = "holds", "falls short", "none"
@@ -95,7 +96,7 @@ class FilledQueue:
 
     @property
     def ends(self):
-        """95 % interval of that rate [1/s]: what is offered times the interval of the share that leaves right."""
+        """95 % interval of that rate [1/s]: of the share of what is offered that leaves right."""
         offered = self.left + self.returned
         if not offered or not self.rate > 0.0:
             return 0.0, self.rate
@@ -121,6 +122,7 @@ class DesignStudy:
     risks: tuple[str, ...] = ()
     nearest: tuple[str, ...] = ()  # what would hold instead
     partial: bool = False
+    tooling: ToolingStudy | None = None  # the chain as `feeder tooling` knows it; None without one
     source: str = ""  # whose shares were taken
     static_rate: float = 0.0  # [1/s] that the static rule promises
 
@@ -128,6 +130,17 @@ class DesignStudy:
     def devices(self):
         """Every device along the track."""
         return () if self.bowl is None else self.bowl.devices
+
+    @property
+    def outcome(self):
+        """Whether what leaves lies on the track or hangs by its head."""
+        hangs = any(one.kind == "rails" for one in self.devices)
+        return self.request.outcome if self.bowl is None else "hanging" if hangs else "lying"
+
+    @property
+    def warnings(self):
+        """What a user must not overlook, a sentence each."""
+        return self.part.warnings
 
     @property
     def normal(self):

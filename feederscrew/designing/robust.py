@@ -1,4 +1,4 @@
-"""Draws of what differs from one part, one day and one workshop to the next, and whether a chain still sorts."""
+"""Draws of what differs from part to part, day to day and shop to shop, and whether a chain still sorts."""
 
 import math
 from collections import Counter
@@ -125,7 +125,9 @@ def matched(one, every):
     size = max(one.length, one.height)
 
     def away(other):
-        values = ((getattr(one, name), getattr(other, name)) for name in ("length", "width", "height", "distance"))
+        values = (
+            (getattr(one, name), getattr(other, name)) for name in ("length", "width", "height", "distance")
+        )
         turned = sum(vectors.dot(a, b) for a, b in zip(one.axes, other.axes))  # 3 where nothing is turned
         return sum(abs(a - b) for a, b in values) / size + 0.02 * (3.0 - float(turned))
 

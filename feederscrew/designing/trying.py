@@ -62,7 +62,9 @@ class Tried:
         """Wanted parts [1/s] that such a bowl delivers, from a row with the usual gaps."""
         pitch = GAP * float((self.shares * self.known.lengths).sum())
         longest = GAP * float(self.known.states[self.state].length)
-        return float(min(max(self.velocity, 0.0) / pitch * self.efficiency, max(self.velocity, 0.0) / longest))
+        return float(
+            min(max(self.velocity, 0.0) / pitch * self.efficiency, max(self.velocity, 0.0) / longest)
+        )
 
 
 def wanted_rows(known, state):
@@ -124,7 +126,9 @@ def _places(seen, own):
     """Where parts ended that did not leave, and how: {'returned at gap': 2}."""
     found = {}
     for n in np.flatnonzero(own & ~np.isin(seen.fates, (course.PASSED, course.TURNED))):
-        name = f"{course.FATES[seen.fates[n]].replace('_', ' ')} at {seen.stations[seen.ended[n]].device.kind}"
+        name = (
+            f"{course.FATES[seen.fates[n]].replace('_', ' ')} at {seen.stations[seen.ended[n]].device.kind}"
+        )
         found[name] = found.get(name, 0) + 1
     return found
 

@@ -10,7 +10,7 @@ from feederscrew.trial import runs, staging, stations, whereabouts
 from feederscrew.trial.arrays import crowd_of
 from feederscrew.trial.kernel import travel
 
-TAIL = 0.7  # of the part's size: track that is drawn behind the outlet
+TAIL = 1.2  # of the part's size: track behind the outlet, on which a whole part still lies as it leaves
 
 
 @dataclass(frozen=True, eq=False)

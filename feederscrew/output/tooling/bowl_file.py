@@ -24,13 +24,13 @@ def bowl_file(study, settings):
         lines += [f"{section}:"]
         lines += [f"  {s.key.word}: {s.text}" for s in given if s.key.section == section]
     lines += [f"{SECTION}:  # along the track, in the order parts meet them"]
-    lines += [f"  - {device.kind}: {_value(device)}" for device in study.design.before]
+    lines += [f"  - {device.kind}: {device_value(device)}" for device in study.design.before]
     lines += [f"  - {cut.device.kind}: {cut.device.text}{_mark(cut)}" for cut in study.design.cuts]
     return "\n".join(lines) + "\n"
 
 
-def _value(device):
-    """The value of one of the bowl's own devices; a hole from a drawing with its corners, as files move."""
+def device_value(device):
+    """Return the value of a device as a bowl file has it; a hole with its corners, as files move."""
     if not device.corners:
         return device.text
     return f"[{', '.join(f'[{millimetres(x)}, {millimetres(y)}]' for x, y in device.corners)}]"

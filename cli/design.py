@@ -1,0 +1,125 @@
+"""``feeder design``."""
+
+import os
+
+import click
+
+from feederscrew_cli import options, orientation, waiting
+from feederscrew_cli.angle import Angle
+from feederscrew_cli.interrupt import held_back
+from feederscrew_cli.quantity import Quantity
+from feederscrew_cli.span import Span
+
+
+def _asked(command):
+    """What shall leave, and what may be used; the command receives ``asked``."""
+    names = (
+        "target",
+        "aspect",
+        "heading",
+        "outcome",
+        "without",
+        "diameter",
+        "tolerance",
+        "budget",
+        "draws",
+        "seed",
+    )
+    return options.stacked(
+        options.packed(command, "asked", names),
+        click.option(
+            "--target",
+            type=Quantity("rate", positive=True),
+            required=True,
+            metavar="RATE",
+            help="Parts that shall leave: 60/min.",
+        ),
+        click.option(
+            "--aspect", metavar="NAME", help="Aspect they shall leave on.  [default: whichever delivers most]"
+        ),
+        click.option("--heading", type=Angle(), metavar="DEG", help="Heading of it.  [default: whichever]"),
+        click.option(
+            "--outcome",
+            type=click.Choice(["any", "lying", "hanging"]),
+            default="any",
+            show_default=True,
+            help="Lying on the track, or hanging by the head between rails.",
+        ),
+        click.option(
+            "--without", metavar="KINDS", default="", help="Devices not to be used: 'profile,wiper'."
+        ),
+        click.option("--diameter", type=Span(), metavar="LOW:HIGH", help="Of the bowl: 200mm:400mm."),
+        click.option(
+            "--tolerance",
+            type=Quantity("length"),
+            default="0.1 mm",
+            show_default=True,
+            metavar="LENGTH",
+            help="Of the part's size, to either side.",
+        ),
+        click.option(
+            "--budget", type=click.IntRange(1, 1000), default=16, show_default=True, help="Short trials."
+        ),
+        click.option(
+            "--draws",
+            type=click.IntRange(1, 1000),
+            default=20,
+            show_default=True,
+            help="Of part, friction, drive and cuts.",
+        ),
+        click.option(
+            "--seed", type=click.IntRange(0), default=1, show_default=True, help="Of everything drawn."
+        ),
+    )
+
+
+@click.command(short_help="From a part and a rate to a bowl that its own trial confirms.")
+@options.part
+@_asked
+@options.rule
+@orientation.taken
+@click.option("--jobs", type=click.IntRange(1, 256), metavar="N", help="Cores to use.  [default: all]")
+@options.bowl
+@options.pictures
+@options.output
+def design(part, asked, rule, taken, jobs, bowl, pictures, out):
+    """Example: feeder design parts/washer_m6.stl --target 40/min -o results
+
+    Which way up to feed PART, the chain of devices, the track and the drive: each proposal is tried, what
+    its trial denies is changed, and what gets through goes through a queue at low, normal and high fill and
+    through draws of part, friction, drive and cuts. The answer is one word, holds, falls short or none, with
+    what it stands on; what falls short says where, with the nearest that would hold.
+
+    What --config says of track, drive and friction is kept, and its devices stay before those of the design.
+    The same seed gives the same answer whatever the number of jobs. Ctrl-C gives the best so far, marked
+    partial.
+
+    With -o: design.yaml, a bowl file that says what its trial showed, design.html, the page to hand on,
+    acceptance.csv, design_trials.csv, and the files of feeder tooling and feeder bowl.
+    """
+    with held_back():
+        from feederscrew import bowl as bowls
+        from feederscrew.designing import beside, loop
+        from feederscrew.designing.record import DesignRequest
+        from feederscrew.output import columns, offers
+        from feederscrew.output.designs import files, tables
+
+    solid, settings = out.part(part), bowls.settings(**bowl)
+    record, effective = bowls.record(settings), columns.conditions(solid) | bowls.texts(settings)
+    request = DesignRequest(
+        **asked | {"without": options.listed(asked["without"])}, rule=rule, jobs=jobs or os.cpu_count()
+    )
+    named = any(value is not None for value in taken.values())
+    known = orientation.shares(out, solid, record, taken) if named else None
+    inputs = solid.inputs | (known.inputs if known else {}) | bowls.identity(bowl["path"])
+    with out.folder(solid.name, inputs, effective) as folder:
+        found = loop.design(
+            solid, record, {s.key.name for s in settings if s.given}, request, known=known,
+            told=out.say, before=lambda: waiting.trial(out),
+        )  # fmt: skip
+        document = tables.document(found)
+        out.warn(*found.warnings)
+        offers.write(
+            folder, files.offers(found, settings, beside.machine_sheet(found, settings)), pictures=pictures
+        )
+        out.show(tables.summary(found), document)

@@ -1,0 +1,118 @@
+"""The ``verified`` block of a bowl file: what a trial of exactly this bowl with this part has shown."""
+
+import hashlib
+import math
+from dataclasses import dataclass
+
+from feederscrew import documents, units
+
+SECTION = "verified"
+WORDS = (
+    "status", "wanted", "outcome", "target", "delivered", "delivered_low", "delivered_high", "purity", "jams",
+    "queue_seconds", "trial_parts", "draws", "draws_held", "seed", "version", "tried", "part", "bowl",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Verified:
+    """What was tried of a bowl, and what came of it."""
+
+    status: str  # 'holds', 'falls short'
+    wanted: str  # 'A@2', 'hanging'
+    target: float  # [1/s]
+    delivered: float  # [1/s] that the queue of the trial delivered
+    low: float  # [1/s]
+    high: float  # [1/s]
+    purity: float  # [1]
+    jams: int
+    queue_seconds: float  # [s]
+    draws: int
+    held: int
+    version: str
+    part: str  # sha256 of its file
+    bowl: str  # of ``fingerprint``
+
+    def void(self, part, bowl, version):
+        """Say what has changed since, a sentence each; nothing where the block still holds.
+
+        Parameters
+        ----------
+        part : Part
+        bowl : Bowl
+        version : str
+            Of this program.
+        """
+        if part is not None and part.sha256[: len(self.part)] != self.part:
+            yield "the part is another one than was tried"
+        if fingerprint(bowl) != self.bowl:
+            yield "the bowl has been changed since it was tried"
+        if self.version != version:
+            yield f"version {self.version} tried it, this is {version}"
+
+    @property
+    def sentence(self):
+        """What the trial showed, in a sentence."""
+        minute = units.factor("/min", "rate")
+        return (
+            f"its trial delivers {self.delivered / minute:.4g}/min ({self.low / minute:.3g} "
+            f"to {self.high / minute:.3g}) of {self.wanted}, purity {100.0 * self.purity:.3g} %, "
+            f"{self.jams} jams in {self.queue_seconds:.3g} s of queue, "
+            f"{self.held} of {self.draws} draws sort: {self.status}"
+        )
+
+
+def fingerprint(bowl):
+    """Return a short text that another drive, friction, track or device changes.
+
+    Parameters
+    ----------
+    bowl : Bowl
+
+    Returns
+    -------
+    str
+        Sixteen digits; the last digits of numbers do not count.
+    """
+    told = [_told(getattr(bowl, name)) for name in ("drive", "friction", "track")]
+    told += [f"{bowl.restitution:.5g}", f"{bowl.gravity:.5g}"]
+    told += [_device(one) for one in bowl.devices]
+    return hashlib.sha256("\n".join(told).encode()).hexdigest()[:16]
+
+
+def _told(record):
+    return " ".join("-" if value is None else f"{value:.5g}" for value in vars(record).values())
+
+
+def _device(one):
+    limit = f"{one.limit:.5g}" if math.isfinite(one.limit) else "-"
+    flat = [end for pair in one.corners for end in pair]
+    numbers = " ".join(f"{end:.5g}" for end in (*one.span, *flat, *one.like[1:]))
+    return f"{one.kind} {limit} {one.like[:1]} {numbers}"
+
+
+def verified(path):
+    """Return the ``verified`` block of a bowl file, or None where it has none that can be read.
+
+    Parameters
+    ----------
+    path : str or Path or None
+    """
+    if path is None or str(path) == "-":
+        return None
+    root, _ = documents.read(path)
+    entry = root.find(SECTION) if root.kind == "mapping" else None
+    if entry is None or entry.value.kind != "mapping":
+        return None
+    text = {one.key: one.value.text for one in entry.value.entries}
+    try:
+        rates = [
+            units.quantity(text[k], "rate")
+            for k in ("target", "delivered", "delivered_low", "delivered_high")
+        ]
+        return Verified(
+            text["status"], text["wanted"], *rates, float(text["purity"]), int(text["jams"]),
+            units.quantity(text["queue_seconds"], "time"), int(text["draws"]), int(text["draws_held"]),
+            text["version"], text["part"], text["bowl"],
+        )  # fmt: skip
+    except (KeyError, ValueError, units.QuantityError):
+        return None

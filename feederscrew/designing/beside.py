@@ -1,0 +1,93 @@
+"""What other commands make of a design: the chain as a study of tooling, the machine below the bowl."""
+
+import numpy as np
+
+from feederscrew import bowl as bowls
+from feederscrew.bowl.settings import of_device
+from feederscrew.errors import FeederError
+from feederscrew.studies import bowl as machines
+from feederscrew.studies.tooling import ToolingStudy
+from feederscrew.tooling import result
+
+DRIVE = (("frequency", 1.0, "Hz"), ("vibration_angle", np.radians(1.0), "deg"))
+TRACK = (
+    ("climb", np.radians(1.0), "deg"),
+    ("bank", np.radians(1.0), "deg"),
+    ("radius", 1e-3, "mm"),
+    ("width", 1e-3, "mm"),
+)
+
+
+def tooled(part, bowl, aspects, ways, weights, proposal, rule, margin):
+    """Return a chain as `feeder tooling` would have found it; None without one.
+
+    Parameters
+    ----------
+    part : Part
+    bowl : Bowl
+        With its devices.
+    aspects : Aspects
+    ways : Orientations
+        Through the devices; M of them.
+    weights : (M,) float [1]
+        In which they come.
+    proposal : Proposal
+    rule : str
+    margin : float [m]
+
+    Returns
+    -------
+    ToolingStudy or None
+    """
+    if not proposal.cuts:
+        return None
+    given = result.task(ways.lying, weights, proposal.row, margin, 1.0, proposal.before)
+    same = np.array([ways.leaves_as[k] == ways.leaves_as[proposal.row] for k in range(len(weights))])
+    found = result.told(given, proposal.cuts, ways.through < 0.5, same)
+    designs = tuple(found if k == proposal.row else None for k in range(len(weights)))
+    return ToolingStudy(part, bowl, aspects, rule, margin, ways.lying, weights, designs, proposal.row)
+
+
+def machine_sheet(study, settings):
+    """Return the machine below the bowl of a design, sized for it; None where no machine can be.
+
+    Parameters
+    ----------
+    study : DesignStudy
+    settings : sequence of Setting
+        As the user gave them.
+
+    Returns
+    -------
+    MachineSheet or None
+    """
+    if study.bowl is None:
+        return None
+    given = [f"{s.key.name}={s.text}" for s in settings if s.given and not s.key.name.startswith("devices")]
+    own = [*_texts("drive", study.bowl.drive, DRIVE), *_texts("track", study.bowl.track, TRACK)]
+    words = {line.partition("=")[0] for line in own} | {"drive.amplitude", "drive.peak_to_peak"}
+    kept = [line for line in given if line.partition("=")[0] not in words]
+    devices = tuple(of_device(k, one) for k, one in enumerate(study.devices, start=1))
+    try:
+        made = bowls.settings(None, (*kept, *own))
+        sized = machines.bowl((*made, *devices), study.part, study.request.target)
+        under = [f"machine.{name}={text}" for name, text in _machine(sized.bowl.machine)]
+        stroke = f"drive.amplitude={1e3 * study.bowl.drive.amplitude:.9g} mm"
+        return machines.machine(bowls.settings(None, (*kept, *own, stroke, *under)))
+    except FeederError:
+        return None
+
+
+def _texts(section, record, rows):
+    return [f"{section}.{name}={getattr(record, name) / unit:.9g} {text}" for name, unit, text in rows]
+
+
+def _machine(machine):
+    yield "bowl_mass", f"{machine.bowl_mass:.6g} kg"
+    yield "bowl_inertia", f"{machine.bowl_inertia:.6g} kg m2"
+    yield "base_mass", f"{machine.base_mass:.6g} kg"
+    yield "base_inertia", f"{machine.base_inertia:.6g} kg m2"
+    yield "spring_radius", f"{1e3 * machine.spring_radius:.6g} mm"
+    yield "spring_angle", f"{np.degrees(machine.spring_angle):.6g} deg"
+    yield "leaf_thickness", f"{1e3 * machine.leaf_thickness:.6g} mm"
+    yield "leaves", f"{machine.leaves:.0f}"

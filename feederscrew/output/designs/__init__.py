@@ -1,0 +1,1 @@
+"""A design of a bowl as document, table, bowl file, page and acceptance sheet."""

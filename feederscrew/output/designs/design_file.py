@@ -1,0 +1,87 @@
+"""A design as a bowl file that every command reads back, with what its trial showed."""
+
+import datetime
+
+from feederscrew import __version__, units
+from feederscrew.bowl.devices import SECTION
+from feederscrew.bowl.verified import fingerprint
+from feederscrew.output.tooling.bowl_file import device_value
+
+PER_MINUTE = units.factor("/min", "rate")
+DRIVE = (
+    ("amplitude", "mm", "length"), ("frequency", "Hz", "frequency"), ("vibration_angle", "deg", "angle"),
+)  # fmt: skip
+TRACK = (
+    ("climb", "deg", "angle"),
+    ("bank", "deg", "angle"),
+    ("radius", "mm", "length"),
+    ("width", "mm", "length"),
+)
+MACHINE = (
+    ("bowl_mass", "kg", "mass"), ("bowl_inertia", "kg m2", "inertia"), ("base_mass", "kg", "mass"),
+    ("base_inertia", "kg m2", "inertia"), ("spring_radius", "mm", "length"), ("spring_angle", "deg", "angle"),
+    ("leaf_thickness", "mm", "length"), ("leaves", "", "count"),
+)  # fmt: skip
+OWN = {"drive": DRIVE, "track": TRACK, "machine": MACHINE}
+
+
+def bowl_file(study, settings, sheet=None):
+    """Return the design as a bowl file.
+
+    Parameters
+    ----------
+    study : DesignStudy
+        With a bowl.
+    settings : sequence of Setting
+        As given: what the design does not set is kept.
+    sheet : MachineSheet, optional
+        Of the machine below the bowl.
+
+    Returns
+    -------
+    str
+    """
+    own = {"drive": study.bowl.drive, "track": study.bowl.track}
+    own |= {} if sheet is None else {"machine": sheet.bowl.machine}
+    set_here = {f"{section}.{row[0]}" for section in own for row in OWN[section]} | {"drive.peak_to_peak"}
+    given = [s for s in settings if s.given and s.key.field != SECTION and s.key.name not in set_here]
+    lines = [f"# {study.status}: {study.wanted} of {study.part.name}, from feeder design."]
+    lines += [f"{s.key.word}: {s.text}" for s in given if not s.key.section]
+    for section in dict.fromkeys((*own, *(s.key.section for s in given if s.key.section))):
+        lines += [f"{section}:"]
+        lines += [f"  {s.key.word}: {s.text}" for s in given if s.key.section == section]
+        if section in own:
+            lines += [f"  {word}: {_text(own[section], word, *unit)}" for word, *unit in OWN[section]]
+    if study.bowl.devices:
+        lines += [f"{SECTION}:  # along the track, in the order parts meet them"]
+        lines += [f"  - {one.kind}: {device_value(one)}" for one in study.bowl.devices]
+    lines += ["verified:  # void as soon as part, bowl or version is another"]
+    lines += [f"  {word}: {value}" for word, value in _verified(study)]
+    return "\n".join(lines) + "\n"
+
+
+def _text(record, word, unit, dimension):
+    scale = units.factor(unit, dimension) if unit else 1.0
+    return f"{getattr(record, word) / scale:.9g} {unit}".strip()
+
+
+def _verified(study):
+    value, low, high = (f"{rate / PER_MINUTE:.4g}/min" for rate in study.delivered)
+    yield "status", study.status
+    yield "wanted", study.wanted
+    yield "outcome", study.outcome
+    yield "target", f"{study.request.target / PER_MINUTE:.6g}/min"
+    yield "delivered", value
+    yield "delivered_low", low
+    yield "delivered_high", high
+    yield "purity", f"{study.purity[0]:.4g}"
+    yield "jams", study.jams
+    yield "queue_seconds", f"{study.queue_seconds:.6g} s"
+    yield "trial_parts", study.trial_parts
+    yield "draws", study.robust.draws
+    yield "draws_held", study.robust.held
+    yield "seed", study.request.seed
+    yield "version", f'"{__version__}"'
+    yield "tried", f'"{datetime.datetime.now(datetime.UTC):%Y-%m-%d}"'
+    yield "part", f'"{study.part.sha256[:16]}"'
+    yield "bowl", f'"{fingerprint(study.bowl)}"'

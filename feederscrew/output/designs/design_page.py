@@ -1,0 +1,84 @@
+"""A design on one page to hand on: the answer first, then what it stands on."""
+
+from feederscrew.output.designs import figures, tables
+from feederscrew.output.page.as_html import html
+from feederscrew.output.page.blocks import CsvSheet, Heading, Notes, Page, Picture, Section, Table, Text, Tile
+from feederscrew.output.style import png
+from feederscrew.output.tables import text
+
+MEASURE = (
+    "Stroke: the sticker on the rim shows it peak to peak; below the computed one, raise the controller, and "
+    "look for a part that touches the frame.",
+    "Acceleration: an accelerometer on the bowl, along the vibration; where the stroke is right and the "
+    "acceleration is not, the frequency is another one.",
+    "Natural frequency: tap the bowl with the drive off and read the decay; it shall lie 3 to 8 % above the "
+    "drive: add a leaf or take one off.",
+    "Friction: lay a part on a strip of the track's sheet and tilt it until it slides; oil brings it down, "
+    "and the rate with it.",
+)
+
+
+def page(study):
+    """Return the page of a DesignStudy as HTML that needs no other file."""
+    return html(
+        Page(study.part.name, f"design of a bowl: {study.status}", tuple(_sections(study)), kind="design")
+    )
+
+
+def _sections(study):
+    d = tables.document(study)
+    yield Section(_answer(study, d), tiles=_tiles(d), warnings=study.warnings, title="The answer")
+    history = tables.attempts(study)
+    picture = Picture("design_history.png", png(figures.history(study)), "Each short trial of the loop")
+    lead = Text(
+        "Each line is one short trial: a chain on its bowl, every orientation that comes often enough. What "
+        "the trial denies is changed in the next."
+    )
+    yield Section((lead, Table(history), picture) if study.attempts else (lead,), title="The loop")
+    if study.queues:
+        yield Section(_proof(study, d), title="The proof")
+    sheet = tables.acceptance(study)
+    told = Text("Computed values in, and empty cells for what is measured at the machine.")
+    blocks = (
+        told,
+        Table(sheet),
+        CsvSheet("acceptance.csv", text(sheet, "csv")),
+        Heading("What to measure"),
+        Notes(MEASURE),
+    )
+    yield Section(blocks, title="Acceptance sheet")
+
+
+def _answer(study, d):
+    yield Text(f"Status: {study.status}." + (f" {study.why}." if study.why else ""))
+    yield Table(tables.summary(study))
+    if study.risks:
+        yield Notes(tuple(study.risks), loud=True)
+
+
+def _tiles(d):
+    return (
+        Tile("status", d["status"], d["wanted"] or "no orientation"),
+        Tile(
+            "parts per minute",
+            f"{d['delivered_per_minute']:.3g}",
+            f"{d['delivered_low']:.3g} to {d['delivered_high']:.3g}, asked {d['target_per_minute']:.3g}",
+        ),
+        Tile(
+            "purity", "-" if d["purity"] is None else f"{100.0 * d['purity']:.3g} %", "of what left the queue"
+        ),
+        Tile("jams", f"{d['jams']}", f"in {d['queue_seconds']:.3g} s of queue"),
+    )
+
+
+def _proof(study, d):
+    yield Text(
+        "A queue of parts that push each other, at three fills, and draws of part, friction, drive and cuts, "
+        "each tried with parts of its own."
+    )
+    from feederscrew.output.tables import frame
+
+    rows = d["queues"]
+    yield Table(frame({name: [row[name] for row in rows] for name in rows[0]}))
+    worst = f"; most often: {study.robust.worst}" if study.robust.worst else ""
+    yield Text(f"{study.robust.held} of {study.robust.draws} draws sort{worst}.")

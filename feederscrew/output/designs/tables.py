@@ -1,0 +1,192 @@
+"""Designs as documents and tables, in the units of the shop."""
+
+import numpy as np
+
+from feederscrew import units
+from feederscrew.dropping.plate.drive import throw_number
+from feederscrew.output import columns, tables
+
+PER_MINUTE = units.factor("/min", "rate")
+MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
+
+
+def document(study):
+    """Return a DesignStudy as the JSON document."""
+    rates, (purity, purity_low) = study.delivered, study.purity
+    return {
+        **columns.part(study.part, study.warnings),
+        "status": study.status,
+        "wanted": study.wanted,
+        "outcome": study.outcome,
+        "target_per_minute": study.request.target / PER_MINUTE,
+        "delivered_per_minute": rates[0] / PER_MINUTE,
+        "delivered_low": rates[1] / PER_MINUTE,
+        "delivered_high": rates[2] / PER_MINUTE,
+        "static_per_minute": study.static_rate / PER_MINUTE,
+        "purity": None if np.isnan(purity) else purity,
+        "purity_low": purity_low,
+        "jams": study.jams,
+        "jams_per_hour_high": study.jams_per_hour_high if np.isfinite(study.jams_per_hour_high) else None,
+        "queue_seconds": study.queue_seconds,
+        "robust": {
+            "draws": study.robust.draws,
+            "held": study.robust.held,
+            "worst": study.robust.worst,
+            "tolerance_mm": study.request.tolerance / MM,
+        },
+        "chain": [{"device": one.kind, "value": one.text} for one in study.devices],
+        "why": study.why,
+        "risks": list(study.risks),
+        "trial_parts": study.trial_parts,
+        "answer": study.source,
+        "seed": study.request.seed,
+        "partial": study.partial,
+        "bowl": bowl(study),
+        "queues": [queue(one) for one in study.queues],
+        "attempts": attempts(study).rows(),
+    }
+
+
+def bowl(study):
+    """Return the bowl of a design as a dict; None where there is none."""
+    if study.bowl is None:
+        return None
+    drive, track = study.bowl.drive, study.bowl.track
+    return {
+        "diameter_mm": 2.0 * track.radius / MM,
+        "track_width_mm": track.width / MM,
+        "bank_deg": track.bank / DEG,
+        "climb_deg": track.climb / DEG,
+        "frequency_hz": drive.frequency,
+        "peak_to_peak_mm": 2.0 * drive.amplitude / MM,
+        "vibration_angle_deg": drive.vibration_angle / DEG,
+        "throw_number": float(throw_number(study.bowl)),
+    }
+
+
+def queue(one):
+    """Return a FilledQueue as a dict."""
+    return {
+        "fill": one.fill,
+        "parts": one.parts,
+        "seconds": one.seconds,
+        "delivered_per_minute": one.rate / PER_MINUTE,
+        "left": one.left,
+        "right": one.right,
+        "returned": one.returned,
+        "jams": one.jams,
+        "climbs": one.climbs,
+    }
+
+
+def attempts(study):
+    """Return the history of the loop: one short trial a row."""
+    rows = [
+        {
+            "trial": place,
+            "wanted": one.wanted,
+            "chain": ", ".join(one.chain) or "none",
+            "why": one.step,
+            "bank_deg": one.bank / DEG,
+            "velocity_mm_s": one.velocity / MM_S,
+            "parts": one.parts,
+            "efficiency": one.efficiency,
+            "purity": one.purity,
+            "stopped": one.stopped,
+            "rate_per_minute": one.rate / PER_MINUTE,
+            "denied": "; ".join(one.faults),
+        }
+        for place, one in enumerate(study.attempts, start=1)
+    ]
+    names = (
+        "trial", "wanted", "chain", "why", "bank_deg", "velocity_mm_s", "parts", "efficiency", "purity",
+        "stopped", "rate_per_minute", "denied",
+    )  # fmt: skip
+    return tables.frame({name: [row[name] for row in rows] for name in names})
+
+
+def summary(study):
+    """Return what is printed: the answer first, then what it stands on."""
+    d = document(study)
+    rows = [("status", d["status"])]
+    if d["why"]:
+        rows.append(("why", d["why"]))
+    rows += [
+        ("leaves as", d["wanted"] or "-"),
+        ("asked for [1/min]", f"{d['target_per_minute']:.4g}"),
+        (
+            "delivered in the queue [1/min]",
+            f"{d['delivered_per_minute']:.4g} ({d['delivered_low']:.4g} to {d['delivered_high']:.4g})",
+        ),
+        ("promised by the static rule [1/min]", f"{d['static_per_minute']:.4g}"),
+        (
+            "purity [%]",
+            "-"
+            if d["purity"] is None
+            else f"{100.0 * d['purity']:.4g} (at least {100.0 * d['purity_low']:.4g})",
+        ),
+        ("jams", f"{d['jams']} in {d['queue_seconds']:.4g} s of queue" + _hourly(d)),
+        ("draws that sort", f"{d['robust']['held']} of {d['robust']['draws']}"),
+        ("devices", ", ".join(f"{one['device']}: {one['value']}" for one in d["chain"]) or "none"),
+    ]
+    if d["bowl"]:
+        rows += [(name.replace("_", " "), f"{value:.4g}") for name, value in d["bowl"].items()]
+    rows += [("risk", one) for one in d["risks"]]
+    rows.append(("trials, parts", f"{len(d['attempts'])}, {d['trial_parts']}"))
+    return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
+
+
+def _hourly(d):
+    high = d["jams_per_hour_high"]
+    return "" if high is None else f", at most {high:.3g} an hour"
+
+
+def acceptance(study):
+    """Return the acceptance sheet: what a buyer measures, the computed values beside empty cells."""
+    rows = [*_sheet(study)]
+    names = ("quantity", "fill", "computed", "low", "high", "unit", "measured", "sample")
+    return tables.frame({name: [row[k] for row in rows] for k, name in enumerate(names)})
+
+
+def _sheet(study):
+    for one in study.queues:
+        low, high = one.ends
+        values = (f"{end / PER_MINUTE:.4g}" for end in (one.rate, low, high))
+        yield ("good parts at the discharge", one.fill, *values, "1/min", "", "")
+        yield ("yield, good of what leaves", one.fill, _share(one.right, one.left), "", "", "%", "", "")
+        yield (
+            "jams",
+            one.fill,
+            f"{one.jams}",
+            "",
+            f"{3600.0 * (one.jams + 3) / one.seconds:.3g}",
+            "1/h",
+            "",
+            "",
+        )
+    known = bowl(study)
+    if known is None:
+        return
+    drive = study.bowl.drive
+    peak = (2.0 * np.pi * drive.frequency) ** 2 * drive.amplitude
+    yield ("stroke on the sticker, peak to peak", "", f"{known['peak_to_peak_mm']:.4g}", "", "", "mm", "", "")
+    yield ("acceleration, peak", "", f"{peak:.4g}", "", "", "m/s2", "", "")
+    yield ("frequency of the drive", "", f"{drive.frequency:.4g}", "", "", "Hz", "", "")
+    yield ("vibration angle", "", f"{known['vibration_angle_deg']:.4g}", "", "", "deg", "", "")
+    yield ("drive setting", "", f"{100.0 * study.bowl.sizing.controller:.4g}", "", "", "%", "", "")
+    yield (
+        "reserve of the drive",
+        "",
+        f"{100.0 * (1.0 / study.bowl.sizing.controller - 1.0):.3g}",
+        "",
+        "",
+        "%",
+        "",
+        "",
+    )
+    friction = np.degrees(np.arctan(study.bowl.friction.static))
+    yield ("angle at which a part slides down a tilted strip", "", f"{friction:.3g}", "", "", "deg", "", "")
+
+
+def _share(part, whole):
+    return f"{100.0 * part / whole:.4g}" if whole else ""

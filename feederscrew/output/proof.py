@@ -1,0 +1,69 @@
+"""What the trial of a design has shown, beside what other commands compute of it."""
+
+from feederscrew import __version__, units
+
+PER_MINUTE = units.factor("/min", "rate")
+
+
+def warnings(verified, part, bowl):
+    """Say what the trial of a bowl file has shown, or why that holds no more: a list of str.
+
+    Parameters
+    ----------
+    verified : Verified or None
+        Of the bowl file; None where it has none.
+    part : Part or None
+    bowl : Bowl
+    """
+    if verified is None:
+        return []
+    void = list(verified.void(part, bowl, __version__))
+    if void:
+        return [f"the trial of this bowl file is void: {'; '.join(void)} - run feeder design again"]
+    return [verified.sentence]
+
+
+def holds(verified, part, bowl):
+    """Return whether a bowl file has a trial that is still of this part and this bowl."""
+    return verified is not None and not any(verified.void(part, bowl, __version__))
+
+
+def beside(document, verified, part, bowl):
+    """Return a document with the trial's figures beside its own; the lower rate leads.
+
+    Parameters
+    ----------
+    document : dict
+        With ``parts_per_minute`` and its ends.
+    verified : Verified or None
+    part : Part
+    bowl : Bowl
+
+    Returns
+    -------
+    dict
+        As given where there is no trial that holds.
+    """
+    if not holds(verified, part, bowl):
+        return document if verified is None else document | {"verified": None}
+    known = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
+    tried = dict(zip(known, (end / PER_MINUTE for end in (verified.delivered, verified.low, verified.high))))
+    own = {name: document[name] for name in known if name in document}
+    lead = tried if tried["parts_per_minute"] <= own["parts_per_minute"] else own
+    return (
+        document
+        | {name: lead[name] for name in own}
+        | {
+            "parts_per_minute_static": own["parts_per_minute"],
+            "verified": {
+                "status": verified.status,
+                "wanted": verified.wanted,
+                **tried,
+                "purity": verified.purity,
+                "jams": verified.jams,
+                "queue_seconds": verified.queue_seconds,
+                "draws": verified.draws,
+                "draws_held": verified.held,
+            },
+        }
+    )
