@@ -11,7 +11,8 @@ ROOT = Path(__file__).parent.parent
 ORDER = [
     "errors", "check", "units", "records", "documents", "dxf",
     "geometry", "part", "resting", "tooling.devices", "bowl", "screw", "mechanics", "conveying", "dropping",
-    "tooling", "rates", "trial", "machine", "solidbowl", "studies", "designing", "output", "thesis", "batch", "api",
+    "tooling", "rates", "trial", "machine", "solidbowl", "studies", "designing", "output", "thesis", "batch",
+    "api",
 ]  # fmt: skip
 DOORS = {
     "trimesh": {"feederscrew/part"},

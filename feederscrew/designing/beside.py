@@ -7,7 +7,7 @@ from feederscrew.bowl.settings import of_device
 from feederscrew.errors import FeederError
 from feederscrew.studies import bowl as machines
 from feederscrew.studies.tooling import ToolingStudy
-from feederscrew.tooling import result
+from feederscrew.tooling import proposal as static
 
 DRIVE = (("frequency", 1.0, "Hz"), ("vibration_angle", np.radians(1.0), "deg"))
 TRACK = (
@@ -41,9 +41,9 @@ def tooled(part, bowl, aspects, ways, weights, proposal, rule, margin):
     """
     if not proposal.cuts:
         return None
-    given = result.task(ways.lying, weights, proposal.row, margin, 1.0, proposal.before)
+    given = static.task(ways.lying, weights, proposal.row, margin, 1.0, proposal.before)
     same = np.array([ways.leaves_as[k] == ways.leaves_as[proposal.row] for k in range(len(weights))])
-    found = result.told(given, proposal.cuts, ways.through < 0.5, same)
+    found = static.told(given, proposal.cuts, ways.through < 0.5, same)
     designs = tuple(found if k == proposal.row else None for k in range(len(weights)))
     return ToolingStudy(part, bowl, aspects, rule, margin, ways.lying, weights, designs, proposal.row)
 

@@ -7,11 +7,10 @@ import numpy as np
 from feederscrew.designing import trying
 from feederscrew.rates import stream
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling.chain import LOWER, UPPER, judged, millimetres
+from feederscrew.tooling.chain import judged, millimetres
 
 MARGINS = (5e-4, 2.5e-4)  # [m] asked for to either side: the wider first
 STEP = 5e-5  # [m] to which a shop makes a value
-DROPS = ("narrowed_track", "canyon", "gap", "slot", "cut_out", "rails", "pressure_break")
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +30,7 @@ class Proposal:
     @property
     def hangs(self):
         """Whether parts leave hanging."""
-        return any(cut.device.kind == "rails" for cut in self.cuts)
+        return any(cut.device.hangs for cut in self.cuts)
 
     @property
     def chain(self):
@@ -90,7 +89,7 @@ def proposed(part, bowl, aspects, row, known, request, margin):
         return None
     cuts = tuple(rounded(cut, known.lying, row) for cut in found.cuts)
     made = Proposal(row, cuts, tuple(found.before), f"proposed with margins of {millimetres(margin)}")
-    hangs = any(cut.device.kind == "rails" for cut in cuts)
+    hangs = any(cut.device.hangs for cut in cuts)
     if request.outcome != "any" and hangs != (request.outcome == "hanging"):
         return None
     if any(device.kind in request.without for device in made.devices):
@@ -120,7 +119,7 @@ def mended(proposal, tried, every):
     device that should have returned it towards the greatest.
     """
     for place, cut in enumerate(proposal.cuts):
-        if cut.device.kind not in (*UPPER, *LOWER):
+        if not cut.device.bound:
             continue
         kind = cut.device.kind
         lost = _lost_at(tried, kind)

@@ -4,11 +4,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from feederscrew.bowl.devices import Device
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
 from feederscrew.studies.tooling import ToolingStudy
+from feederscrew.tooling.devices.base import Device
 
 OUTCOMES = ("any", "lying", "hanging")
 HOLDS, FALLS_SHORT, NONE = "holds", "falls short", "none"
@@ -134,7 +134,7 @@ class DesignStudy:
     @property
     def outcome(self):
         """Whether what leaves lies on the track or hangs by its head."""
-        hangs = any(one.kind == "rails" for one in self.devices)
+        hangs = any(one.hangs for one in self.devices)
         return self.request.outcome if self.bowl is None else "hanging" if hangs else "lying"
 
     @property

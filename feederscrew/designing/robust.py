@@ -15,7 +15,6 @@ from feederscrew.geometry import vectors
 from feederscrew.part.hull import convex_hull
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.verdicts import seen
 
 FRICTION, DRIVE, CUT = (0.6, 1.4), (0.9, 1.1), 1e-4  # [1], [1], [m] to either side
 ALIKE = 1e-4  # of the greatest: principal moments that a part of revolution has in common
@@ -66,7 +65,7 @@ def opening(device, every):
     aspect, heading, play = device.like
     own = [one for one in every if one.aspect.casefold() == aspect.casefold()]
     one = min(own, key=lambda one: abs(math.remainder(one.heading - heading, 2.0 * math.pi)))
-    grown = seen(one).buffer(play)
+    grown = one.seen.buffer(play)
     return tuple(map(tuple, shapely.get_coordinates(grown.exterior)[:-1].tolist()))
 
 

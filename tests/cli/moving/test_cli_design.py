@@ -1,0 +1,77 @@
+"""``feeder design`` from the command line, and what other commands make of its bowl file."""
+
+import json
+from pathlib import Path
+
+import pytest
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.designing import queues
+
+FIELDS = {
+    "status", "wanted", "outcome", "target_per_minute", "delivered_per_minute", "delivered_low",
+    "delivered_high", "purity", "purity_low", "jams", "jams_per_hour_high", "queue_seconds", "robust",
+    "chain", "why", "trial_parts", "bowl", "warnings",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def designed(tmp_path_factory):
+    """The design of a cube with short queues: its document and its folder."""
+    from click.testing import CliRunner
+
+    from feederscrew_cli.main import feeder
+
+    folder = tmp_path_factory.mktemp("design")
+    shapes.box(10, 10, 10).export(folder / "cube.stl")
+    patch = pytest.MonkeyPatch()
+    patch.setattr(queues, "FILLS", (("low", 2, 0.5), ("normal", 4, 2.0)))
+    line = ["design", folder / "cube.stl", "--target", "40/min", "--draws", "2", "--jobs", "1", "-o", folder]
+    try:
+        done = CliRunner().invoke(feeder, [*map(str, line), "--format", "json", "--no-pictures"])
+    finally:
+        patch.undo()
+    assert done.exit_code == 0, done.output
+    return json.loads(done.stdout), folder / "cube"
+
+
+def test_a_cube_needs_no_device_and_the_contract_is_kept(designed):
+    document, _ = designed
+    assert set(document) >= FIELDS
+    assert document["chain"] == [] and document["wanted"] == "A@0"
+    assert document["status"] == "falls short"  # two seconds of queue prove no rate
+    assert document["why"].startswith("delivers ") and document["why"].count(";") == 1
+    assert "would hold with this bowl" in document["why"]
+    assert document["robust"]["draws"] == document["robust"]["held"] == 2
+    assert document["jams"] == 0 and document["purity"] == 1.0
+    assert document["delivered_low"] <= document["delivered_per_minute"] <= document["delivered_high"]
+    assert document["jams_per_hour_high"] == pytest.approx(3.0 * 3600.0 / document["queue_seconds"])
+
+
+def test_the_bowl_file_reads_back_as_what_was_tried(designed):
+    document, folder = designed
+    bowl, tried = bowls.read(folder / "design.yaml"), bowls.verified(folder / "design.yaml")
+    assert 2e3 * bowl.drive.amplitude == pytest.approx(document["bowl"]["peak_to_peak_mm"], rel=1e-9)
+    assert 2e3 * bowl.track.radius == pytest.approx(document["bowl"]["diameter_mm"], rel=1e-9)
+    assert 60.0 * tried.delivered == pytest.approx(document["delivered_per_minute"], rel=1e-3)
+    assert document["status"] in (folder / "design.html").read_text()
+    assert (folder / "acceptance.csv").read_text().startswith("quantity,fill,computed,low,high,unit,measured")
+
+
+def test_rate_leads_with_the_lower_of_trial_and_rule_until_something_changes(designed, run):
+    document, folder = designed
+    line = ("rate", folder.parent / "cube.stl", "--config", folder / "design.yaml", "--format", "json")
+    told = run(*line)
+    rate = json.loads(told.stdout)
+    own, tried = rate["parts_per_minute_static"], rate["verified"]["parts_per_minute"]
+    assert rate["parts_per_minute"] == min(own, tried)
+    assert tried == pytest.approx(document["delivered_per_minute"], rel=1e-3)
+    assert "its trial delivers" in told.stderr
+    changed = run(*line, "--set", "friction.static=0.4")
+    assert json.loads(changed.stdout)["verified"] is None
+    assert "void: the bowl has been changed since it was tried - run feeder design again" in changed.stderr
+    text = (folder / "design.yaml").read_text().replace('version: "', 'version: "9')
+    Path("other.yaml").write_text(text)
+    other = run("rate", folder.parent / "cube.stl", "--config", "other.yaml")
+    assert "void: version 9" in other.stderr
