@@ -52,8 +52,9 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Answer", "Aspects", "Bowl", "ConfigError", "Faults", "FeederError", "MeshError", "Part", "Posture",
-    "Rate", "Shares", "aspects", "calibrate", "compare", "convey", "drop", "find_aspects", "floor",
-    "headings", "inertia", "load", "posture", "rate", "read_bowl", "report", "reproduce", "shake", "shares",
+    "Rate", "Shares", "aspects", "calibrate", "compare", "convey", "design", "drop", "find_aspects",
+    "floor", "headings", "inertia", "load", "posture", "rate", "read_bowl", "report", "reproduce", "shake",
+    "shares",
     "size_bowl", "slide", "tooling", "track", "trial", "tune", "write_names",
 ]  # fmt: skip
 

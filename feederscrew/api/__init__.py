@@ -7,6 +7,7 @@ in SI units; shares are fractions.
 
 from feederscrew.api.asked import Shares
 from feederscrew.api.chains import report, reproduce, tooling, trial
+from feederscrew.api.designs import design
 from feederscrew.api.drives import convey, floor, headings, read_bowl, slide, track
 from feederscrew.api.lying import (
     aspects,
@@ -30,7 +31,8 @@ from feederscrew.resting.posture import Posture
 
 __all__ = [
     "Answer", "Aspects", "Bowl", "ConfigError", "Faults", "FeederError", "MeshError", "Part", "Posture",
-    "Rate", "Shares", "aspects", "calibrate", "compare", "convey", "drop", "find_aspects", "floor",
-    "headings", "inertia", "load", "posture", "rate", "read_bowl", "report", "reproduce", "shake", "shares",
+    "Rate", "Shares", "aspects", "calibrate", "compare", "convey", "design", "drop", "find_aspects",
+    "floor", "headings", "inertia", "load", "posture", "rate", "read_bowl", "report", "reproduce", "shake",
+    "shares",
     "size_bowl", "slide", "tooling", "track", "trial", "tune", "write_names",
 ]  # fmt: skip

@@ -1,0 +1,59 @@
+"""From a part and a rate to a bowl that its own trial confirms."""
+
+from typing import Any
+
+from feederscrew.api import asked
+from feederscrew.api.asked import Quantity
+from feederscrew.bowl import Bowl
+from feederscrew.designing.record import DesignStudy
+from feederscrew.part import Part
+
+
+def design(
+    part: Part,
+    target: Quantity,
+    bowl: Bowl | None = None,
+    *,
+    given: frozenset[str] = frozenset(),
+    known: asked.Shares | None = None,
+    heading: Quantity | None = None,
+    tolerance: Quantity = "0.1 mm",
+    **search: Any,
+) -> DesignStudy:
+    """Design a bowl for a part and a rate and try it, as ``feeder design``.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    target : str or float [1/s]
+        Parts that shall leave, '60/min'.
+    bowl : Bowl, optional
+        What is given of it; the defaults without it.
+    given : set of str
+        Names of the keys of that bowl that are kept, 'track.width'.
+    known : Shares, optional
+        Of ``shares``; what lies on the moving floor of the designed bowl without it.
+    heading : str or float [rad], optional
+    tolerance : str or float [m]
+        Of the part's size, to either side.
+    **search
+        aspect, outcome, without, diameter, rule, budget, draws, seed, jobs: as for ``feeder design``.
+
+    Returns
+    -------
+    DesignStudy
+        Its ``status`` is one of three words; its ``bowl`` has the devices.
+    """
+    from feederscrew import bowl as bowls
+    from feederscrew.designing.loop import design as study
+    from feederscrew.designing.record import DesignRequest
+
+    request = DesignRequest(
+        target=asked.amount("target", target, "rate", 0.0),
+        heading=asked.angle("heading", heading),
+        tolerance=asked.amount("tolerance", tolerance, "length", 0.0),
+        **search,
+    )
+    plain = bowls.default() if bowl is None else asked.a_bowl(bowl)
+    return study(asked.a_part(part, mesh=True), plain, given, request, known=known)
