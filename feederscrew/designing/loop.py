@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from feederscrew.designing import beside, calm_drive, nearest, proposals, queues, trying
+from feederscrew.designing import beside, calm_drive, nearest, proposals, queues, risks, trying
 from feederscrew.designing.record import Attempt, DesignStudy
 from feederscrew.designing.robust import faults, robust_run
 from feederscrew.rates import arrivals
@@ -264,7 +264,8 @@ def _proved(search, candidate):
     found = queues.filled(
         part, bowl, search.known.aspects, ways, weights, candidate.tried.state, seed=request.seed
     )
-    study = replace(study, queues=found, partial=len(found) < len(queues.FILLS))
+    said = risks.risks(ways.lying[row], bowl.friction.kinetic, found)
+    study = replace(study, queues=found, risks=said, partial=len(found) < len(queues.FILLS))
     if study.partial:
         return study
     search.told(f"draws: {candidate.attempt.wanted}, {request.draws} of part, friction, drive and cuts")
