@@ -7,6 +7,7 @@ READY := .venv/.ready
 READY_TO_TEST := .venv/.ready-to-test
 DEMO := lbracket_30x20x15
 BOLT := hexbolt_m8x25
+SCREW := shcs_m3x8_simple
 
 PARTS := $(wildcard parts/*.stl)
 CARDS := $(wildcard parts/*.yaml)
@@ -72,7 +73,7 @@ bench: $(READY_TO_TEST) ## what people wait for and the kernels, under ten minut
 	for name in $(BENCHES); do $(BIN)/python benchmarks/$$name.py || exit 1; done
 	$(BIN)/python benchmarks/aspects.py --repeats 1
 
-PICTURES := aspects regimes drop bowl bowl_solid tooling trial report conveying_map
+PICTURES := aspects regimes drop bowl bowl_solid design tooling trial report conveying_map
 
 docs: $(PICTURES:%=docs/%.png) $(READY) ## pictures, outputs and tables of the pages
 	$(BIN)/python docs/readme.py
@@ -103,13 +104,17 @@ docs/bowl_solid.png: parts/$(BOLT).stl docs/bowl_solid.yaml | $(READY)
 mutants: $(READY_TO_TEST) ## small changes to the physics that no test notices, ten minutes
 	$(BIN)/python benchmarks/mutants.py
 
-docs/tooling.png: parts/$(BOLT).stl | $(READY)
-	$(FEEDER) tooling $< --aspect A -o results --quiet > /dev/null
-	cp results/$(BOLT)/tooling.png $@
+docs/tooling.png: parts/$(SCREW).stl | $(READY)
+	$(FEEDER) tooling $< --aspect B -o results --quiet > /dev/null
+	cp results/$(SCREW)/tooling.png $@
 
-docs/trial.png: docs/tooling.png | $(READY)
-	$(FEEDER) trial parts/$(BOLT).stl --config results/$(BOLT)/tooling.yaml --parts 12 -o results --quiet > /dev/null
-	cp results/$(BOLT)/trial.png $@
+docs/trial.png: parts/$(DEMO).stl docs/measured/example/bowl.yaml | $(READY)
+	$(FEEDER) trial $< --config docs/measured/example/bowl.yaml --parts 24 -o results --quiet > /dev/null
+	cp results/$(DEMO)/trial_stills.png $@
+
+docs/design.png: parts/$(BOLT).stl | $(READY)
+	$(FEEDER) tooling $< --aspect A -o results --quiet > /dev/null
+	cp results/$(BOLT)/tooling_3d.png $@
 
 docs/report.png: parts/$(DEMO).stl docs/screenshot.py | $(READY)
 	$(FEEDER) report $< --config configs/bowl.yaml -o results --quiet > /dev/null

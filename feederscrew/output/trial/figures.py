@@ -7,14 +7,14 @@ from feederscrew.output import style
 from feederscrew.output.columns import MM
 from feederscrew.trial import course
 
-COLOURS = {
-    "passed": "#0072b2",
-    "turned": "#56b4e9",
-    "returned": "#d55e00",
-    "hanging": "#cc79a7",
-    "stopped": "#e69f00",
-    "rolled_back": "#009e73",
-    "stuck": "#7a5c3e",
+LOOKS = {  # of each fate: colour, told apart by colour-blind eyes, line, and mark where the path ends
+    "passed": ("#0072b2", "-", ""),
+    "turned": ("#009e73", "--", ""),
+    "returned": ("#d55e00", "-", "x"),
+    "hanging": ("#cc79a7", "-", "v"),
+    "stopped": ("#e69f00", "-", "s"),
+    "rolled_back": ("#7a5c3e", ":", "<"),
+    "stuck": ("#000000", "-", "*"),
 }
 TRACK = "#e3e8ec"
 MOST = 24  # orientations that come most often have a row
@@ -74,6 +74,7 @@ def paths(run):
     found, radius = run.course, run.bowl.track.radius
     figure = style.figure(7.2, 0.6 + 2.6 * len(found.rides))
     panels = figure.subplots(len(found.rides), 1, squeeze=False)[:, 0]
+    met = {}  # fates in the picture
     for axes, station, ride, riders in zip(panels, found.stations, found.rides, found.riders):
         _track(axes, station, radius)
         widest = 0.0
@@ -81,20 +82,23 @@ def paths(run):
             way, off = unrolled(path, radius)
             ended = ride.outcomes[list(riders).index(one)] != 1
             fate = course.FATES[found.fates[one]] if ended else "passed"
-            axes.plot(way / MM, off / MM, color=COLOURS[fate], linewidth=0.7, alpha=0.7)
+            colour, line, mark = LOOKS[fate]
+            axes.plot(way / MM, off / MM, line, color=colour, linewidth=0.7, alpha=0.7)
             if ended and len(way):
-                axes.plot(way[-1] / MM, off[-1] / MM, "x", color=COLOURS[fate], markersize=4)
+                axes.plot(way[-1] / MM, off[-1] / MM, mark or "x", color=colour, markersize=4)
+            met.setdefault(fate, None)
             widest = max(widest, off.max(initial=0.0))
         title = f"{station.device.kind.replace('_', ' ')} {station.device.text}".strip()
         style.tidy(axes, title=title, x="along the wall [mm]", y="from the wall [mm]", grid="none")
         axes.axhline(0.0, color=style.INK, linewidth=3.0)  # the wall
         axes.set(
             xlim=(station.begin / MM - 2.0, station.exit / MM + 2.0),
-            ylim=(1.25 * widest / MM + 4.0, -1.0),
+            ylim=(-1.0, 1.25 * widest / MM + 4.0),  # the wall below, as in the pictures of tooling
         )
-    for fate, colour in COLOURS.items():
-        panels[0].plot([], [], color=colour, label=fate.replace("_", " "))
-    panels[0].legend(fontsize=7, frameon=False, ncols=4, loc="lower right")
+    for fate in (fate for fate in LOOKS if fate in met):
+        colour, line, mark = LOOKS[fate]
+        panels[0].plot([], [], line, color=colour, marker=mark, markersize=4, label=fate.replace("_", " "))
+    figure.legend(fontsize=7, frameon=False, ncols=len(LOOKS), loc="outside lower center")
     return figure
 
 
