@@ -1,8 +1,15 @@
 """What would hold where a design does not: a lower rate, a larger bowl, another way up, another part."""
 
-from feederscrew.designing.record import HOLDS, PURE, RATE_KEPT
+from feederscrew.designing.record import DRAWS_HELD, HOLDS, PURE, RATE_KEPT
 
 MINUTE = 60.0
+
+
+def only_slow(study):
+    """Return whether a design lacks nothing but parts per minute."""
+    low, (purity, _) = study.delivered[1], study.purity
+    sorts = study.robust.share >= DRAWS_HELD and purity >= PURE and not study.jams and not study.partial
+    return sorts and 0.0 < low < RATE_KEPT * study.request.target
 
 
 def nearest(study, search):

@@ -150,9 +150,14 @@ class DesignStudy:
     @property
     def delivered(self):
         """Wanted parts [1/s] at normal fill: value, low and high end."""
-        if self.normal is None:
+        if self.normal is None or not self.normal.rate > 0.0:
             return 0.0, 0.0, 0.0
-        return (self.normal.rate, *self.normal.ends)
+        right, left, back = (
+            sum(getattr(one, k) for one in self.queues) for k in ("right", "left", "returned")
+        )
+        low, high = (float(end[0]) for end in wilson([right], left + back))  # of all fills: one share
+        share, rate = right / (left + back), self.normal.rate
+        return rate, rate * low / share, rate * high / share
 
     @property
     def purity(self):

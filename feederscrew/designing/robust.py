@@ -221,3 +221,16 @@ def faults(tried):
         if tried.held[place] and k not in right:
             found.append(f"{name} stays ({', '.join(tried.places[place])})")
     return found
+
+
+def denied(tried):
+    """Say what a short trial denies: what leaves or stays though rejected, and what is lost in the main."""
+    if not tried.efficiency > 0.0:
+        yield "nothing leaves as wanted"
+    right = set(trying.wanted_rows(tried.known, tried.state))
+    for one in faults(tried):
+        name = one.split(" ", 1)[0]
+        place = next(n for n, k in enumerate(tried.rows) if tried.known.lying[k].name == name)
+        mostly = tried.rows[place] in right and 2 * tried.right[place] > tried.parts[place]
+        if not (mostly and not tried.held[place]):
+            yield one

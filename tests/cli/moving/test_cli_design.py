@@ -39,10 +39,8 @@ def designed(tmp_path_factory):
 def test_a_cube_needs_no_device_and_the_contract_is_kept(designed):
     document, _ = designed
     assert set(document) >= FIELDS
-    assert document["chain"] == [] and document["wanted"] == "A@0"
-    assert document["status"] == "falls short"  # two seconds of queue prove no rate
-    assert document["why"].startswith("delivers ") and document["why"].count(";") == 1
-    assert "would hold with this bowl" in document["why"]
+    assert (document["status"], document["chain"], document["why"]) == ("holds", [], "")
+    assert document["wanted"] == "A@0" and document["delivered_low"] >= 0.9 * 40.0
     assert document["robust"]["draws"] == document["robust"]["held"] == 2
     assert document["jams"] == 0 and document["purity"] == 1.0
     assert document["delivered_low"] <= document["delivered_per_minute"] <= document["delivered_high"]
