@@ -39,7 +39,28 @@ from feederscrew_cli.quantity import Quantity
     metavar="SHARE",
     help="Of what is offered, that is asked for: the search goes on for it, or says what is missing.",
 )
-@click.option("--step", is_flag=True, help="Write tooling.step as well; needs feederscrew[cad].")
+@click.option(
+    "--outcome",
+    type=click.Choice(["lying", "hanging", "any"]),
+    default="any",
+    show_default=True,
+    help="How parts shall leave: as they lie, hanging between rails, or either.",
+)
+@click.option(
+    "--without",
+    default="",
+    metavar="KIND,...",
+    help="Kinds of devices that are not used: wiper,cut_out.",
+)
+@click.option(
+    "--step",
+    type=Quantity("length", positive=True),
+    default="0.05 mm",
+    show_default=True,
+    metavar="LENGTH",
+    help="What a shop makes: values are whole multiples of it.",
+)
+@click.option("--cad", is_flag=True, help="Write tooling.step as well; needs feederscrew[cad].")
 @click.option("--turn", is_flag=True, help="Allow steps and ledges that turn parts over, before the cuts.")
 @click.option(
     "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the search for holes."
@@ -64,8 +85,8 @@ from feederscrew_cli.quantity import Quantity
 @options.pictures
 @options.output
 def tooling(
-    part, aspect, heading, rule, margin, purity, efficiency, turn, step, seed, verdicts, limit, taken,
-    bowl, pictures, out,
+    part, aspect, heading, rule, margin, purity, efficiency, outcome, without, step, cad, turn, seed,
+    verdicts, limit, taken, bowl, pictures, out,
 ):  # fmt: skip
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
@@ -84,7 +105,7 @@ def tooling(
     from feederscrew.output.tooling import files, tables
     from feederscrew.studies.tooling import tooling as study
 
-    if step:
+    if cad:
         from feederscrew.output.tooling import written_step as steps
 
         steps.check()
@@ -97,10 +118,11 @@ def tooling(
             found = study(
                 solid, record, aspect, known=known.aspects,
                 heading=heading, rule=rule, margin=margin, purity=purity, efficiency=efficiency, turn=turn,
-                seed=seed, verdicts=verdicts, seconds=limit, told=bar.reach,
+                outcome=outcome, without=without, step=step, seed=seed, verdicts=verdicts, seconds=limit,
+                told=bar.reach,
             )  # fmt: skip
         document = tables.document(found)
         out.warn(*found.warnings)
         out.say(*tables.remarks(found, efficiency))
-        offers.write(folder, files.offers(found, settings, step), pictures=pictures)
+        offers.write(folder, files.offers(found, settings, cad), pictures=pictures)
         out.show(tables.summary(found), document, hidden=tables.HIDDEN)

@@ -9,6 +9,7 @@ from feederscrew.part import mass
 from feederscrew.solidbowl import facets, track
 from feederscrew.solidbowl.plan import TURN, BowlPlan
 from feederscrew.solidbowl.segments import Segments
+from feederscrew.tooling import whole_surface
 from feederscrew.units import factor
 
 MM = factor("mm", "length")
@@ -52,9 +53,9 @@ def body(plan):
         If cuts leave a piece loose.
     """
     whole, gates = pieces(plan)
-    vertices, faces = facets.mesh(_placed(whole, plan))
+    vertices, faces = whole_surface.mesh(_placed(whole, plan))
     found = mass.solid(vertices[faces])
-    extra = tuple((name, *facets.mesh(_placed(one, plan))) for name, one in gates)
+    extra = tuple((name, *whole_surface.mesh(_placed(one, plan))) for name, one in gates)
     parts = [found, *(mass.solid(v[f]) for _, v, f in extra)]
     weights = np.array([plan.material.density * one.volume for one in parts])
     total = float(weights.sum())

@@ -1,22 +1,28 @@
 """The study of ``feeder tooling``: which orientation can be isolated, and by which cuts."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feederscrew import check
 from feederscrew.bowl.record import Bowl
+from feederscrew.documents import hint
+from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
 from feederscrew.rates.steadiness import steady
 from feederscrew.rates.tipping import marked, remark
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.aspects import answered
+from feederscrew.tooling.chain import FINE, STEP, Wishes
 from feederscrew.tooling.design import MARGIN, design, place
+from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.hole_search import VERDICTS, Search
 from feederscrew.tooling.orientations import Orientation, named, orientations, placed
 from feederscrew.tooling.proposal import Design
+from feederscrew.units import shown
 
 CARRIED = (
     "quasi-static: at the bowl's speed a part may be carried over a cut that returns it, laid over by a "
@@ -26,6 +32,7 @@ ROCKS = (
     "{} may rock on what these cuts leave of its foot, and nothing surer lies between the limits - try it "
     "with feeder trial"
 )
+OUTCOMES = ("lying", "hanging", "any")
 LATE = "the search stopped at the time limit: another machine may find more - raise the limit"
 
 
@@ -71,6 +78,9 @@ def tooling(
     purity: float = 1.0,
     efficiency: float = 0.0,
     turn: bool = False,
+    outcome: str = "any",
+    without: str | Sequence[str] = (),
+    step: float = STEP,
     seed: int = 1,
     verdicts: int = VERDICTS,
     seconds: float = 600.0,
@@ -98,6 +108,12 @@ def tooling(
         Of what is offered, that is asked for.
     turn : bool
         Whether devices that turn parts over may be used, where returning them wastes too much.
+    outcome : str
+        How parts shall leave: 'lying', 'hanging' or 'any'.
+    without : str or sequence of str
+        Kinds of devices that are not used, 'wiper,cut_out'.
+    step : float [m]
+        Values are whole multiples of it.
     seed : int
         Of the search for holes.
     verdicts : int
@@ -121,16 +137,15 @@ def tooling(
     found = answered(part) if known is None else known
     every, _ = marked(named(orientations(part, found, bowl.track)), bowl)
     if rule not in found.chances:
-        from feederscrew.documents import hint
-        from feederscrew.errors import ArgumentError
-
         raise ArgumentError(
             f"rule {rule}", "has no probabilities of this part", hint(rule, list(found.chances))
         )
     shares = np.nan_to_num([one.chances[rule] for one in every])
     wanted = None if aspect is None else place(every, aspect, heading, part.source)
     search = Search(seed=seed, verdicts=verdicts, until=time.monotonic() + seconds)
+    wishes = asked_for(outcome, without, step)
     asked_of_each = {"purity": purity, "efficiency": efficiency, "turn": turn, "before": bowl.devices}
+    asked_of_each |= {"wishes": wishes}
     asked = range(len(every)) if wanted is None else [wanted]
     designs = [None] * len(every)
     if told is not None:
@@ -150,6 +165,19 @@ def tooling(
         designs=tuple(designs),
         wanted=wanted,
     )
+
+
+def asked_for(outcome, without, step):
+    """Return what a design may use, checked, as Wishes."""
+    if outcome not in OUTCOMES:
+        raise ArgumentError("outcome", f"{outcome!r} is unknown", f"choose {', '.join(OUTCOMES)}")
+    check.argument("step", step, FINE)
+    names = without.split(",") if isinstance(without, str) else without
+    kinds = tuple(name.strip() for name in names if name.strip())
+    for kind in kinds:
+        if kind not in KINDS:
+            raise ArgumentError("without", f"unknown device {shown(kind)}", hint(kind, list(KINDS)))
+    return Wishes(outcome, kinds, float(step))
 
 
 def _designed(every, shares, wanted, bowl, **asked):

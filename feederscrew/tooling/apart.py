@@ -6,7 +6,8 @@ import numpy as np
 import shapely
 
 from feederscrew.mechanics.wall import sameness
-from feederscrew.tooling.chain import around, limits, numbered
+from feederscrew.tooling.chain import limits, numbered
+from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.verdicts import opening_margin
 
 ROUNDS = 4  # of the fit of one hull over the other
@@ -110,7 +111,11 @@ def difference(wanted, other):
 
 def _nearest(wanted, other):
     """What some device measures in which two orientations are farthest apart, and by how much [m]."""
-    found = [(-opening_margin(wanted.seen, other), kind.kind, kind.feature) for kind in around()]
+    found = [
+        (-opening_margin(wanted.seen, other), kind.kind, kind.feature)
+        for kind in KINDS.values()
+        if hasattr(kind, "around")
+    ]
     for kind in numbered():
         first, second = limits(kind, (wanted, other))
         step = second - first if kind.bound == "upper" else first - second

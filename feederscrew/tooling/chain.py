@@ -1,16 +1,17 @@
 """The fewest devices of one number that let one orientation pass and return the others."""
 
 import itertools
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.tooling.devices.base import UNSURE, Device
+from feederscrew.tooling.devices.base import STOPPED, UNSURE, Device
 from feederscrew.tooling.devices.kinds import KINDS
-from feederscrew.tooling.verdicts import Meeting, gate_margin, opening_margin, verdict
+from feederscrew.tooling.verdicts import Meeting, verdict
 
 WHERE = "design"
 HALVINGS = 10  # of the way from the value nearest to the wanted orientation to the middle
+STEP = 5e-5  # [m] of values that a shop makes
 FINE = 1e-7  # [m] to which a value is rounded
 
 
@@ -25,9 +26,23 @@ class Cut:
     largest: Device  # the greatest cut that the wanted orientation still passes
     returns: tuple[str, ...]  # names of the orientations it returns
     turns: tuple[tuple[str, str, float], ...] = ()  # name, name it turns over into, share
+    stops: tuple[str, ...] = ()  # names of the orientations that come to stand at it
 
 
-def candidates(every, wanted, margin):
+@dataclass(frozen=True)
+class Wishes:
+    """What a design may use, and how finely it is made."""
+
+    outcome: str = "any"  # how parts leave: 'lying', 'hanging' or 'any'
+    without: tuple[str, ...] = ()  # kinds of devices that are not used
+    step: float = STEP  # [m] a shop makes: values are whole multiples
+
+    def allows(self, kind):
+        """Return whether a kind of device may be used."""
+        return kind not in self.without
+
+
+def candidates(every, wanted, margin, wishes=None):
     """Return every device of one number that the wanted orientation passes by a margin.
 
     Parameters
@@ -36,37 +51,45 @@ def candidates(every, wanted, margin):
     wanted : int
         Its place among them.
     margin : float [m]
+    wishes : Wishes, optional
 
     Returns
     -------
     dict of Device to (M,) float [m]
-        The device at which it returns the most, with the margin of each orientation at it.
+        The device at which it returns the most, with the margin of each orientation at it; NaN of one that
+        would come to stand there. What drops parts comes first, then what clears itself.
     """
-    found = {}
+    found, wishes = {}, wishes or Wishes()
     for kind in numbered():
         values, lower = limits(kind, every), kind.bound == "lower"
-        if not np.isfinite(values[wanted]) or (lower and values[wanted] <= 2.0 * margin):
+        if not wishes.allows(kind.kind) or not np.isfinite(values[wanted]):
             continue
-        limit = float(values[wanted] + (-margin if lower else margin))
-        device = kind(WHERE, limit=limit)
+        if lower and values[wanted] <= 2.0 * margin:
+            continue
+        limit = snapped(values[wanted] + (-margin if lower else margin), wishes.step, up=not lower)
+        device = kind.proposal(WHERE, limit)
         if limit > 0.0 and device.acts(every[wanted].track):
-            found[device] = np.array([verdict(device, one, every).margin for one in every])
-    for kind in around():
-        gate = kind.around(every[wanted], margin, WHERE)
-        opening = gate.free(every)
-        found[gate] = np.array([gate_margin(opening, one) for one in every])
+            found[device] = np.array([_margin(device, one, every) for one in every])
     return found
 
 
+def _margin(device, one, every):
+    """The margin [m] of an orientation at a device; NaN of one that comes to stand there."""
+    told = verdict(device, one, every)
+    stands = told.margin < 0.0 and device.fate(Meeting(one, every)) == STOPPED
+    return np.nan if stands else told.margin
+
+
+def snapped(value, step, up):
+    """Return the nearest multiple of a step [m] that is not below a value, or not above it."""
+    count = value / step
+    return float((np.ceil(count - 1e-6) if up else np.floor(count + 1e-6)) * step)
+
+
 def numbered():
-    """Return the kinds of one number that a design tries, what a greater cut makes of them last."""
+    """Return the kinds of one number that a design tries, in the order of their ranks: drops first."""
     kinds = [kind for kind in KINDS.values() if kind.proposed and kind.bound]
-    return sorted(kinds, key=lambda kind: (kind.bound == "lower", kind.rank))
-
-
-def around():
-    """Return the kinds of gates that a design tries, with the wanted orientation's own outline."""
-    return [kind for kind in KINDS.values() if kind.proposed and hasattr(kind, "around")]
+    return sorted(kinds, key=lambda kind: kind.rank)
 
 
 def limits(kind, every):
@@ -99,13 +122,25 @@ def fewest(found, others, margin, enough=0.0):
             break
         for chosen in itertools.combinations(devices, count):
             returned = np.any([found[device] <= -margin for device in chosen], axis=0)
+            if jams(found, chosen, others, margin):
+                continue
             held = float(others[returned].sum())
             if held > weight + 1e-12:
                 best, weight = chosen, held
     return best
 
 
-def placed(every, wanted, devices, must, least=np.inf):
+def jams(found, chosen, others, margin):
+    """Return whether an orientation that weighs comes to stand at a device, not returned before it."""
+    gone = np.asarray(others) <= 0.0
+    for device in chosen:
+        if np.any(np.isnan(found[device]) & ~gone):
+            return True
+        gone = gone | (found[device] <= -margin)
+    return False
+
+
+def placed(every, wanted, devices, must, least=np.inf, step=FINE):
     """Return the cuts of a chain, each value in the middle of what it may be.
 
     Parameters
@@ -117,12 +152,14 @@ def placed(every, wanted, devices, must, least=np.inf):
         Which orientations each device has to return.
     least : float [m]
         What leaves less of a foot returns them by no more than this: the wanted orientation has the rest.
+    step : float [m]
+        Values are whole multiples of it.
 
     Returns
     -------
     tuple of Cut
     """
-    return tuple(_cut(every, wanted, device, some, least) for device, some in zip(devices, must))
+    return tuple(_cut(every, wanted, device, some, least, step) for device, some in zip(devices, must))
 
 
 def shared_out(found, devices, margin):
@@ -134,43 +171,27 @@ def shared_out(found, devices, margin):
     return out
 
 
-def _cut(every, wanted, device, must, least):
-    if not device.bound:
-        return _gate(every, wanted, device, must)
+def _cut(every, wanted, device, must, least, step):
     values, upper = limits(type(device), every), device.bound == "upper"
     values = values + np.where(np.arange(len(every)) == wanted, 0.0, _more(device, every))
     nearest = (values[must].min() if upper else values[must].max()) if must.any() else values[wanted]
     middle = float(0.5 * (values[wanted] + nearest))
 
     def at(value):
-        return replace(device, limit=fine(value), text=millimetres(fine(value)))
+        value = fine(snapped(value, step, up=not upper)) if step > FINE else fine(value)
+        return device.valued(value, millimetres(value))
 
     chosen = _surest(every, must, at, middle if np.isfinite(nearest) else device.limit, device.limit)
     if device.carries and least < np.inf:
         eased = max(chosen.limit, nearest - least) if upper else min(chosen.limit, nearest + least)
         chosen = _surest(every, must, at, float(eased), chosen.limit, least - 2.0 * FINE)
-    ends = [replace(device, limit=float(end), text=millimetres(end)) for end in (nearest, values[wanted])]
+    ends = [device.valued(float(end), millimetres(end)) for end in (nearest, values[wanted])]
     return judged(every, wanted, chosen, must, *ends)
 
 
 def _more(device, every):
     """By how much more [m] than placed each orientation passes a device as it travels, (M,)."""
     return np.array([device.more(Meeting(one)) for one in every])
-
-
-def _gate(every, wanted, device, must):
-    least = device.like[2]
-    outside = [-opening_margin(every[wanted].seen, one) for one, some in zip(every, must) if some]
-    widest = min(outside, default=2.0 * least)
-
-    def at(play):
-        return device.with_play(play, millimetres(play))
-
-    def rounded(play):
-        return at(fine(play) if np.isfinite(widest) else play)
-
-    chosen = _surest(every, must, rounded, 0.5 * widest if np.isfinite(widest) else least, least)
-    return judged(every, wanted, chosen, must, at(widest), at(0.0))
 
 
 def _surest(every, must, at, middle, near, by=UNSURE):

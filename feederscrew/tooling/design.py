@@ -17,7 +17,7 @@ GAIN = 1.25  # turning devices are taken where they bring so many times the part
 
 def design(
     every, shares, wanted, *, margin=MARGIN, search=None, holes=True, purity=1.0, efficiency=0.0,
-    turn=False, before=(), gentle=False,
+    turn=False, before=(), gentle=False, wishes=None,
 ):  # fmt: skip
     """Return the chain of fewest devices that isolates an orientation.
 
@@ -45,13 +45,15 @@ def design(
         Of the bowl itself: the design is found behind them.
     gentle : bool
         Whether cuts leave as much of the wanted orientation's foot as returning the others allows.
+    wishes : chain.Wishes, optional
+        How parts leave, which devices may be used, and the step of values.
 
     Returns
     -------
     Design
     """
     search = search or hole_search.Search()
-    given = asked_for(every, shares, wanted, margin, purity, before, gentle=gentle)
+    given = asked_for(every, shares, wanted, margin, purity, before, gentle=gentle, wishes=wishes)
     found = _returning(given, search.started(), holes)
     if turn and not (found.isolated and found.efficiency >= efficiency > 0.0):
         found = _with_turning(given, found, search, holes, efficiency)
@@ -63,8 +65,11 @@ def _returning(given, search, holes):
     """The best chain of devices that only return parts: they leave lying, or hanging."""
     if any(device.hangs for device in given.before):
         return told(given, (), np.zeros(len(given.every), dtype=bool))
-    found = _plain(given, search, holes)
-    hung = rails.design(given)
+    outcome = given.wishes.outcome
+    hung = rails.design(given) if outcome != "lying" and given.wishes.allows("rails") else None
+    if outcome == "hanging":
+        return without(given, "hangs between no rails") if hung is None else hung
+    found = _plain(given, search, holes and given.wishes.allows("cut_out"))
     if hung is None or (hung.isolated, hung.efficiency) <= (found.isolated, found.efficiency):
         return found
     return hung
@@ -83,6 +88,7 @@ def _with_turning(given, found, search, holes, efficiency):
             given.before,
             cuts,
             given.gentle,
+            given.wishes,
         )
         other = _returning(behind, search.started(), holes)
         more = other.efficiency > enough * found.efficiency + 1e-12
@@ -125,12 +131,13 @@ def _plain(given, search, holes):
         return without(given, "does not come past the devices of the bowl file")
     weight = weights(given)
     weight[wanted] = 0.0
-    found = chain.candidates(every, wanted, given.margin)
+    found = chain.candidates(every, wanted, given.margin, given.wishes)
     counted = np.where(weight > 0.0, given.coming, 0.0) if given.purity < 1.0 else weight
     devices = chain.fewest(found, counted, given.margin, given.allowed)
     gone = ~given.stays | ((given.coming <= 0.0) & (given.shares > 0.0))
     must = [some & ~gone for some in chain.shared_out(found, devices, given.margin)]
-    cuts = chain.placed(every, wanted, devices, must, given.margin if given.gentle else np.inf)
+    least = given.margin if given.gentle else np.inf
+    cuts = chain.placed(every, wanted, devices, must, least, given.wishes.step)
     returned = np.any([gone, *must], axis=0)
     if holes:
         cuts, returned = _with_holes(given, cuts, returned, search)

@@ -1,5 +1,7 @@
 """Whether a part that a hole does not carry goes down through it: its shadow, in the ways it can tip."""
 
+import functools
+
 import numpy as np
 import shapely
 
@@ -8,6 +10,7 @@ from feederscrew.geometry.polygons import outline
 AZIMUTHS, TILTS = 8, 10  # ways it can tip: about level axes all round, by steps up to a right angle
 CLEAR = 2.5e-4  # [m] a hole is larger than the shadow that goes through it, all round
 BEYOND = 0.1  # [m] a hole that is open at the track's free edge goes on so far
+SQUARE = 1e-9  # of its own box: what less a hole covers, it is still a rectangle
 PLAIN = 2e-4  # of the part's size: corners of a shadow that stand out by less are left out
 
 
@@ -27,8 +30,9 @@ def falls_through(one, cut):
         ``CLEAR`` around it. Where it is tipped by less than that way, it is still on its way down over the
         edge that it leaves. What goes over the track's free edge is gone.
     """
-    hole = _open(np.asarray(cut, float), one.track.width)
-    hole = shapely.make_valid(hole).buffer(-CLEAR)
+    hole = shapely.make_valid(_open(np.asarray(cut, float), one.track.width)).buffer(
+        -CLEAR, join_style="mitre"
+    )
     if hole.is_empty:
         return False
     return any(_fits(shadow, hole) for shadow in _shadows(one))
@@ -40,8 +44,13 @@ def _open(cut, width):
     return shapely.Polygon(np.column_stack([cut[:, 0], np.where(free, cut[:, 1] + BEYOND, cut[:, 1])]))
 
 
+@functools.lru_cache(maxsize=512)
 def _shadows(one):
     """Convex outlines (K, 2) [m] from above, as it lies and as it tips."""
+    return list(_tipped(one))
+
+
+def _tipped(one):
     points = one.posture.corners
     size = np.ptp(points, axis=0).max()
     c, s = np.cos(one.heading), np.sin(one.heading)
@@ -61,6 +70,8 @@ def _fits(shadow, hole):
     extent = np.subtract(hole.bounds[2:], hole.bounds[:2])
     if (high - low > extent).any():
         return False
+    if hole.area > (1.0 - SQUARE) * extent.prod():  # it is a rectangle
+        return True
     shadow = shadow - shadow.mean(axis=0)
     for part in shapely.get_parts(hole):
         rings = [part.exterior, *part.interiors]

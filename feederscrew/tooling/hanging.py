@@ -93,12 +93,26 @@ def neck(one):
             if along[k] > 0.0:  # the head must end before the centre of mass
                 break
             head, shank = across[:k].max(), across[k:].max()
-            found.append((head - shank, shank, head, sign))
-    step, shank, head, sign = max(found, default=(0.0, 0.0, 0.0, 1.0))
-    if not step > 0.0:
+            found.append((head - shank, shank, head, sign, float(along[k])))
+    step, shank, head, sign, end = max(found, default=(0.0, 0.0, 0.0, 1.0, 0.0))
+    head = min(head, _narrowest(one, sign * axis, end))
+    if not step > 0.0 or head <= shank:
         return None
     down = np.einsum("ij,i->j", one.axes, sign * axis)
     return Neck(float(shank), float(head), check.frozen(down))
+
+
+def _narrowest(one, axis, end):
+    """Least width [m] of a head in any way it can turn about its axis: one that is flat turns edge on."""
+    solid = one.posture.solid
+    points = vectors.product(solid.vertices - solid.centre_of_mass, one.axes.T)
+    points = points[vectors.product(points, axis) <= end]
+    across = vectors.unit(np.array([-axis[1], axis[0], 0.0]))
+    flat = np.column_stack([vectors.product(points, across), vectors.product(points, np.cross(axis, across))])
+    ring = outline(flat)
+    along = sides(ring)
+    along = along / np.hypot(*along.T)[:, None]
+    return min(float(np.ptp(cross(unit, ring))) for unit in along)
 
 
 def head_first(one):

@@ -1,11 +1,11 @@
 """What a design of tooling says, from what the whole chain does with every orientation."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from feederscrew.tooling import apart
-from feederscrew.tooling.chain import Cut
+from feederscrew.tooling.chain import Cut, Wishes
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.fates import course
 
@@ -47,6 +47,7 @@ class DesignTask:
     coming: np.ndarray  # (M,) [1] share that comes to the design lying so
     turners: tuple[Cut, ...] = ()  # turning devices of the design, before all that return
     gentle: bool = False  # cuts take no more of the wanted orientation's foot than they must
+    wishes: Wishes = field(default_factory=Wishes)  # what it may use
 
     @property
     def stays(self):
@@ -64,12 +65,13 @@ class DesignTask:
         return float(self.coming[self.wanted] * (1.0 / self.purity - 1.0))
 
 
-def task(every, shares, wanted, margin, purity, before, turners=(), gentle=False):
+def task(every, shares, wanted, margin, purity, before, turners=(), gentle=False, wishes=None):
     """Return what a design has to do behind the devices of the bowl and its own turning devices."""
     every = tuple(every)
     flow = course((*before, *(cut.device for cut in turners)), every)
     coming = (shares[:, None] * flow.leaving).sum(axis=0)[: len(every)]
-    return DesignTask(every, shares, wanted, margin, purity, tuple(before), coming, tuple(turners), gentle)
+    own = tuple(turners), gentle, wishes or Wishes()
+    return DesignTask(every, shares, wanted, margin, purity, tuple(before), coming, *own)
 
 
 def weights(given):
@@ -104,19 +106,34 @@ def told(given, cuts, returned, same=None, late=False):
     state = flow.leaves_as(wanted)
     out = (shares[:, None] * flow.leaving).sum(axis=0)
     total, leaving = shares.sum(), out.sum()
+    cuts = _with_stops(given, flow, cuts)
+    stands = any(cut.stops for cut in cuts)
     left = [k for k in np.flatnonzero(~returned & ~same) if given.often[k]]
     margins = [end for cut in cuts for end in (cut.margin_pass, cut.margin_reject) if np.isfinite(end)]
     return Design(
         wanted=wanted,
-        isolated=not left or bool(given.coming[left].sum() <= given.allowed),
+        isolated=not stands and (not left or bool(given.coming[left].sum() <= given.allowed)),
         before=given.before,
         cuts=cuts,
         margin=float(min(margins, default=np.nan)),
         efficiency=float(out[state] / total) if total > 0.0 else 0.0,
         purity=float(out[state] / leaving) if leaving > 0.0 else np.nan,
         left_over=tuple(one.name for k, one in enumerate(flow.states) if out[k] > 0.0 and k != state),
-        reasons=tuple(apart.reason(every[wanted], every[k], given.margin) for k in left),
+        reasons=(
+            *(f"{' '.join(cut.stops)} come to stand at the {cut.device.kind}" for cut in cuts if cut.stops),
+            *(apart.reason(every[wanted], every[k], given.margin) for k in left),
+        ),
         late=late,
+    )
+
+
+def _with_stops(given, flow, cuts):
+    """Cuts with the names of those that come to stand at each."""
+    first, names = 1 + len(given.before), [one.name for one in given.every]
+    stands = flow.stops * (given.shares > 0.0)[:, None]
+    return tuple(
+        replace(cut, stops=tuple(name for name, share in zip(names, stands[:, first + k]) if share > 0.0))
+        for k, cut in enumerate(cuts)
     )
 
 

@@ -8,6 +8,10 @@ from feederscrew.tooling.hanging import neck
 from feederscrew.tooling.proposal import told, weights
 from feederscrew.tooling.verdicts import verdict
 
+PLAY, MOST = 4e-4, 6e-4  # [m] by which a slot is wider than the shank: 0.2 to 0.6 mm
+CLEAR = 2e-4  # [m] between a hanging head and the wall
+RAIL = 1e-3  # [m] least width of a rail, and of the sheet it is cut from
+
 
 def design(given):
     """Return the chain that ends in rails in which an orientation hangs.
@@ -23,7 +27,7 @@ def design(given):
         None where the part has no head, lies elsewhere than over the slot, or others are left over.
     """
     every, wanted, margin = given.every, given.wanted, given.margin
-    device = _between(every[wanted], margin)
+    device = _between(every[wanted], margin, given.wishes.step)
     if device is None or every[wanted].returned:
         return None
     found = [verdict(device, one, every) for one in every]
@@ -32,38 +36,44 @@ def design(given):
         return None
     margins = np.array([one.margin for one in found])
     gone = (margins <= -margin) | ~given.stays | (given.coming <= 0.0)
-    before = chain.candidates(every, wanted, margin)
+    before = chain.candidates(every, wanted, margin, given.wishes)
     devices = chain.fewest(before, np.where(gone | same, 0.0, weights(given)), margin)
     must = [some & ~gone & ~same for some in chain.shared_out(before, devices, margin)]
-    cuts = chain.placed(every, wanted, devices, must)
+    cuts = chain.placed(every, wanted, devices, must, step=given.wishes.step)
     returned = np.any([gone, *must], axis=0)
     if np.any(~returned & ~same & given.often):
         return None
-    last = chain.judged(every, wanted, device, margins <= -margin, *_ends(every[wanted], device))
+    last = chain.judged(
+        every, wanted, device, margins <= -margin, *_ends(every[wanted], device, given.wishes.step)
+    )
     return told(given, (*cuts, last), returned, same)
 
 
-def _between(one, margin):
-    """Rails about the foot of the centre of mass, midway between shank and head; None without a head.
+def _between(one, margin, step):
+    """Rails about the foot of the centre of mass, as practice has them; None without a head.
 
-    None either where the slot would leave no rail by the wall, or none at the free edge of the track.
+    The slot is a little wider than the shank, the head clear of the wall, and the rail at the wall at least
+    as wide as its sheet is thick. None where that leaves the weight beside the slot, or no rail at the free
+    edge of the track.
     """
     found = neck(one)
     if found is None or found.head - found.shank < 2.0 * margin:
         return None
-    return _rails(one, 0.5 * (found.shank + found.head))
+    play = min(max(PLAY, margin), 0.5 * (found.head - found.shank), MOST)
+    return _rails(one, found, found.shank + play, step)
 
 
-def _ends(one, device):
+def _ends(one, device, step):
     found = neck(one)
-    return tuple(_rails(one, width) or device for width in (found.shank, found.head))
+    return tuple(_rails(one, found, width, step) or device for width in (found.shank, found.head))
 
 
-def _rails(one, width):
-    middle = one.distance - one.shift
-    first = chain.fine(middle - 0.5 * width)
-    span = first, first + chain.fine(width)
-    if first <= 0.0 or span[1] >= one.track.width:
+def _rails(one, found, width, step):
+    width = chain.snapped(width, step, up=True)
+    middle = max(one.distance - one.shift, 0.5 * found.head + CLEAR, 0.5 * width + RAIL)
+    first = chain.snapped(middle - 0.5 * width, step, up=True)
+    span = chain.fine(first), chain.fine(first + width)
+    if span[1] >= one.track.width - RAIL or not span[0] < one.distance - one.shift < span[1]:
         return None
     text = f"{{from: {chain.millimetres(span[0])}, to: {chain.millimetres(span[1])}}}"
     return Rails(chain.WHERE, span=span, text=text)

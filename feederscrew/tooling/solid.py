@@ -7,6 +7,7 @@ import shapely
 from shapely import affinity
 
 from feederscrew import check
+from feederscrew.tooling import whole_surface
 from feederscrew.tooling.strip import bent
 from feederscrew.units import factor
 
@@ -56,9 +57,8 @@ def triangles(section):
     for station in section.stations:
         if station.blade is not None:
             body += _gate(station, section).translate((0.0, 0.0, _level(levels, station) / MM))
-    mesh = body.to_mesh64()
-    corners = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts)]
-    return _in_order(corners * MM)
+    points, faces = whole_surface.mesh(body)
+    return _in_order(points[faces])
 
 
 def prism(area, low, high):

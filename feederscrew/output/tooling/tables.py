@@ -174,7 +174,8 @@ def _cut(cut):
         "margin_reject_mm": cut.margin_reject / MM,
         "smallest": cut.smallest.told(),
         "largest": cut.largest.told(),
-        "returns": list(cut.returns),
+        "returns": [name for name in cut.returns if name not in cut.stops],
+        "stops": list(cut.stops),
         "text": cut.device.text,
         **_turned(cut),
     }

@@ -1,7 +1,7 @@
 """What every device along the track offers to those who read, judge, draw, make and try it."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -191,6 +191,15 @@ class Device:
     def needed(cls, one):
         """Return the value [m] of a device of this kind that an orientation just passes."""
         raise NotImplementedError(f"{cls.kind} is not one number")
+
+    @classmethod
+    def proposal(cls, where, limit):
+        """Return the device of a value [m] that a design tries."""
+        return cls(where, limit=limit)
+
+    def valued(self, limit, text):
+        """Return it with another value [m], written as some text."""
+        return replace(self, limit=limit, text=text)
 
     def acts(self, track):
         """Return whether it does anything at all on a track."""

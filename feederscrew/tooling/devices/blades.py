@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -13,6 +13,7 @@ from feederscrew.tooling.devices.base import FRAME, STOPPED, Device, room_of
 from feederscrew.tooling.devices.pieces import Blade, Standing
 
 SQUARE = 0.5 * math.pi  # [rad] of the face to the direction of travel: straight across the track
+PROPOSED = math.radians(30.0)  # [rad] sweep of a blade that a design tries: 20 to 35 deg clear fastest
 FAR = 10.0  # [m] beyond any track
 
 
@@ -61,7 +62,7 @@ class Wiper(_Overhead):
         "90 deg - atan(friction); contour: [[0 mm, 6 mm], [9 mm, 4 mm]] gives it a lower edge of its own"
     )
     proposed = True
-    rank = 1
+    rank = 5
 
     @classmethod
     def read(cls, entry):
@@ -73,6 +74,14 @@ class Wiper(_Overhead):
             return []
         what = "the contour of wiper rises towards the free edge: parts slip below it as they are swept"
         return [ConfigError(self.where, what, "let it stay level or fall")]
+
+    @classmethod
+    def proposal(cls, where, limit):
+        return cls(where, limit=limit, sweep=PROPOSED)
+
+    def valued(self, limit, text):
+        own = f"{{clearance: {text}, sweep: {math.degrees(self.sweep):.6g} deg}}"
+        return replace(self, limit=limit, text=own if self.face else text)
 
     @property
     def face(self):

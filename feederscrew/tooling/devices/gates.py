@@ -18,7 +18,6 @@ class Profile(Device):
         "gate with an opening: a polygon of distances from the wall and heights, or an orientation's own "
         "outline with play; what does not fit stops before it: for parts that come one by one"
     )
-    proposed = True
     feature = "outline seen along the track"
     picture = "ahead"
 

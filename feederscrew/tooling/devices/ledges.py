@@ -32,7 +32,7 @@ class NarrowedTrack(_OneNumber):
     )
     bound = "upper"
     proposed = True
-    rank = 2
+    rank = 3
     carries = True
     feature = DISTANCE
 
@@ -65,7 +65,7 @@ class PressureBreak(_OneNumber):
     queued = True
     bound = "upper"
     proposed = True
-    rank = 3
+    rank = 4
     feature = "width"
 
     def span_on(self, track):
