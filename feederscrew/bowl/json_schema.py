@@ -196,9 +196,18 @@ _BLADE = _mapping(
     friction=_quantity("number", "0", "5"),
     contour=_POLYGON | {"minItems": 1},
 )
+_SENSOR = _mapping(
+    ("sees", "resolution", "pulse"),
+    of={"type": "string", "pattern": "^.+@.+$"},
+    play=_LENGTH,
+    sees={"enum": ["outline", "side", "height"]},
+    resolution=_LENGTH,
+    pulse=_quantity("number", "0", "100"),
+)
 _DEVICES = {  # what is written after 'kind:', by the dimension of the kind
     "length": _LENGTH,
     "span": _mapping(from_=_LENGTH, to=_LENGTH),
+    "sensor": _SENSOR,
     "blade": {"anyOf": [_LENGTH, _BLADE]},
     "polygon": {"anyOf": [_POLYGON, _DRAWN]},
     "opening": {"anyOf": [_POLYGON, _LIKE]},

@@ -114,7 +114,7 @@ def _nearest(wanted, other):
     found = [
         (-opening_margin(wanted.seen, other), kind.kind, kind.feature)
         for kind in KINDS.values()
-        if hasattr(kind, "around")
+        if hasattr(kind, "free")
     ]
     for kind in numbered():
         first, second = limits(kind, (wanted, other))

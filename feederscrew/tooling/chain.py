@@ -42,7 +42,7 @@ class Wishes:
         return kind not in self.without
 
 
-def candidates(every, wanted, margin, wishes=None):
+def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=False):
     """Return every device of one number that the wanted orientation passes by a margin.
 
     Parameters
@@ -52,6 +52,8 @@ def candidates(every, wanted, margin, wishes=None):
         Its place among them.
     margin : float [m]
     wishes : Wishes, optional
+    clearing, sensed : bool
+        Whether what has to clear itself, and what sees, is tried beside what drops parts.
 
     Returns
     -------
@@ -62,7 +64,11 @@ def candidates(every, wanted, margin, wishes=None):
     found, wishes = {}, wishes or Wishes()
     for kind in numbered():
         values, lower = limits(kind, every), kind.bound == "lower"
-        if not wishes.allows(kind.kind) or not np.isfinite(values[wanted]):
+        if (
+            not wishes.allows(kind.kind)
+            or not np.isfinite(values[wanted])
+            or (kind.overhead and not clearing)
+        ):
             continue
         if lower and values[wanted] <= 2.0 * margin:
             continue
@@ -70,7 +76,16 @@ def candidates(every, wanted, margin, wishes=None):
         device = kind.proposal(WHERE, limit)
         if limit > 0.0 and device.acts(every[wanted].track):
             found[device] = np.array([_margin(device, one, every) for one in every])
+    for kind in around() if sensed else ():
+        if wishes.allows(kind.kind):
+            device = kind.around(every[wanted], margin, WHERE)
+            found[device] = np.array([_margin(device, one, every) for one in every])
     return found
+
+
+def around():
+    """Return the kinds that a design tries with the wanted orientation's own outline."""
+    return [kind for kind in KINDS.values() if kind.proposed and hasattr(kind, "around")]
 
 
 def _margin(device, one, every):
@@ -172,6 +187,8 @@ def shared_out(found, devices, margin):
 
 
 def _cut(every, wanted, device, must, least, step):
+    if not device.bound:
+        return _sensor(every, wanted, device, must, step)
     values, upper = limits(type(device), every), device.bound == "upper"
     values = values + np.where(np.arange(len(every)) == wanted, 0.0, _more(device, every))
     nearest = (values[must].min() if upper else values[must].max()) if must.any() else values[wanted]
@@ -189,6 +206,19 @@ def _cut(every, wanted, device, must, least, step):
     return judged(every, wanted, chosen, must, *ends)
 
 
+def _sensor(every, wanted, device, must, step):
+    least = device.like[2]
+    outside = [device.differs(Meeting(one, every)) for one, some in zip(every, must) if some]
+    widest = min(outside, default=2.0 * least)
+
+    def at(play):
+        play = fine(max(snapped(play, step, up=False), least))
+        return device.with_play(play, millimetres(play))
+
+    chosen = _surest(every, must, at, 0.5 * widest, least)
+    return judged(every, wanted, chosen, must, at(widest), at(least))
+
+
 def _more(device, every):
     """By how much more [m] than placed each orientation passes a device as it travels, (M,)."""
     return np.array([device.more(Meeting(one)) for one in every])
@@ -198,7 +228,7 @@ def _surest(every, must, at, middle, near, by=UNSURE):
     """The device of a value midway, or as near to that as it still returns what it has to, by a margin."""
 
     def returns(device):
-        return all(verdict(device, one, every).margin < -by for one, some in zip(every, must) if some)
+        return all(_margin(device, one, every) < -by for one, some in zip(every, must) if some)
 
     if returns(at(middle)):
         return at(middle)

@@ -131,17 +131,38 @@ def _plain(given, search, holes):
         return without(given, "does not come past the devices of the bowl file")
     weight = weights(given)
     weight[wanted] = 0.0
-    found = chain.candidates(every, wanted, given.margin, given.wishes)
+    stages = ({"clearing": False}, {}) if given.wishes.allows("wiper") else ({"clearing": False},)
+    for stage in stages:
+        cuts, returned = _chosen(given, weight, stage)
+        if not _left(given, returned):
+            break
+    if holes:
+        cuts, returned = _with_holes(given, cuts, returned, search)
+    found = told(given, cuts, returned, late=search.late)
+    if found.isolated or not given.wishes.allows("sorter"):
+        return found
+    seen = told(given, *_chosen(given, weight, {"sensed": True}), late=search.late)
+    return seen if seen.isolated else found
+
+
+def _chosen(given, weight, stage):
+    """Cuts of the fewest devices of a stage, and which orientations are returned."""
+    every, wanted = given.every, given.wanted
+    found = chain.candidates(every, wanted, given.margin, given.wishes, **stage)
     counted = np.where(weight > 0.0, given.coming, 0.0) if given.purity < 1.0 else weight
     devices = chain.fewest(found, counted, given.margin, given.allowed)
     gone = ~given.stays | ((given.coming <= 0.0) & (given.shares > 0.0))
-    must = [some & ~gone for some in chain.shared_out(found, devices, given.margin)]
+    must = [some & ~gone for some in chain.shared_out(found, devices, given.margin)] if devices else []
     least = given.margin if given.gentle else np.inf
     cuts = chain.placed(every, wanted, devices, must, least, given.wishes.step)
-    returned = np.any([gone, *must], axis=0)
-    if holes:
-        cuts, returned = _with_holes(given, cuts, returned, search)
-    return told(given, cuts, returned, late=search.late)
+    return cuts, np.any([gone, *must], axis=0)
+
+
+def _left(given, returned):
+    """Whether others that come often enough are left over."""
+    left = ~returned & given.often
+    left[given.wanted] = False
+    return bool(given.coming[left].sum() > given.allowed) if left.any() else False
 
 
 def _with_holes(given, cuts, returned, search):

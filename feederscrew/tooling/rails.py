@@ -10,6 +10,7 @@ from feederscrew.tooling.verdicts import verdict
 
 PLAY, MOST = 4e-4, 6e-4  # [m] by which a slot is wider than the shank: 0.2 to 0.6 mm
 CLEAR = 2e-4  # [m] between a hanging head and the wall
+STAGES = ({"clearing": False}, {}, {"sensed": True})  # drops first, then what clears itself, then what sees
 RAIL = 1e-3  # [m] least width of a rail, and of the sheet it is cut from
 
 
@@ -36,17 +37,28 @@ def design(given):
         return None
     margins = np.array([one.margin for one in found])
     gone = (margins <= -margin) | ~given.stays | (given.coming <= 0.0)
-    before = chain.candidates(every, wanted, margin, given.wishes)
-    devices = chain.fewest(before, np.where(gone | same, 0.0, weights(given)), margin)
-    must = [some & ~gone & ~same for some in chain.shared_out(before, devices, margin)]
-    cuts = chain.placed(every, wanted, devices, must, step=given.wishes.step)
-    returned = np.any([gone, *must], axis=0)
-    if np.any(~returned & ~same & given.often):
+    passed = gone | same
+    for stage in STAGES:
+        if not stage.get("sensed") or given.wishes.allows("sorter"):
+            cuts, returned = _before(given, passed, stage)
+        if not np.any(~returned & ~passed & given.often):
+            break
+    else:
         return None
+    returned |= gone
     last = chain.judged(
         every, wanted, device, margins <= -margin, *_ends(every[wanted], device, given.wishes.step)
     )
     return told(given, (*cuts, last), returned, same)
+
+
+def _before(given, passed, stage):
+    """Cuts before the rails that return what they neither let hang nor return, and which those return."""
+    found = chain.candidates(given.every, given.wanted, given.margin, given.wishes, **stage)
+    devices = chain.fewest(found, np.where(passed, 0.0, weights(given)), given.margin)
+    must = [some & ~passed for some in chain.shared_out(found, devices, given.margin)]
+    cuts = chain.placed(given.every, given.wanted, devices, must, step=given.wishes.step)
+    return cuts, np.any([np.zeros(len(passed), bool), *must], axis=0)
 
 
 def _between(one, margin, step):

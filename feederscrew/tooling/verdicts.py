@@ -4,13 +4,14 @@ import numpy as np
 import shapely
 
 from feederscrew.tooling import foot as feet
-from feederscrew.tooling import turning
+from feederscrew.tooling import sensor_views, turning
 from feederscrew.tooling.devices.base import UNSURE, Verdict, share
 from feederscrew.tooling.falling_through import falls_through
 from feederscrew.tooling.hanging import Hanging, hanging_margin, head_first
 from feederscrew.tooling.holding import leans, may_lay_over, may_wedge, rides, widest
 
 WORN = 2.5e-4  # [m] what an opening holds by less does not hold a part up
+STANDARD_GRAVITY = 9.80665  # [m/s2]
 GRIP = 0.6  # [1] of a dry steel track
 FAR = 10.0  # [m] an opening goes on so far below the track and behind the wall
 
@@ -59,6 +60,16 @@ class Meeting:
     def falls_through(self, cut):
         """Return whether a hole (K, 2) [m] that does not carry it lets it through."""
         return falls_through(self.one, cut)
+
+    def differs(self, other, sees):
+        """Return by how much [m] a sensor sees it differ from another orientation."""
+        return sensor_views.difference(self.one, other, sees)
+
+    def blown_off(self, pulse):
+        """Return whether a pulse of air [N s] carries it over the free edge of a track that stands still."""
+        speed = pulse / self.one.posture.mass
+        way = speed * speed / (2.0 * STANDARD_GRAVITY * self.grip)
+        return bool(way >= self.one.track.width - self.one.distance)
 
     @property
     def hanging(self):

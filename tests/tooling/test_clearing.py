@@ -6,14 +6,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
+import shapes
 
 from feederscrew import bowl as bowls
+from feederscrew.errors import ArgumentError
+from feederscrew.resting.aspects import find
+from feederscrew.studies.rate import rate
+from feederscrew.studies.tooling import tooling
 from feederscrew.tooling import clearing
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling.devices import hole_shapes
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.falling_through import falls_through
 from feederscrew.tooling.foot import Footprint
+from feederscrew.tooling.orientations import orientations
+from feederscrew.tooling.verdicts import verdict
 
 BOWL = bowls.read(None, ("track.climb=0 deg", "track.bank=0 deg"))
 
@@ -78,3 +85,40 @@ def test_three_points_do_not_carry_a_part_over_a_hole_larger_than_itself():
     small = hole_shapes.polygon(1e-3 * np.array([[0, 30], [5, 30], [5, 39], [0, 39]]), 0.15)
     whole = feet.least(feet.standing(foot, 6e-3, 0.15), small)[0]
     assert whole == pytest.approx(shapely.Polygon(points).exterior.distance(shapely.Point(0, 0)), abs=1e-6)
+
+
+def test_a_design_stops_nothing_and_its_values_are_on_the_step():
+    """A block whose tall ways up only a blade or a sensor tells apart: neither holds anything up."""
+    part = shapes.part(shapes.box(22, 13, 6))
+    for without, step in (("", 5e-5), ("sorter", 2e-4), ("wiper,cut_out", 1e-4)):
+        study = tooling(part, BOWL, "A", without=without, step=step, verdicts=200)
+        for cut in study.design.cuts:
+            assert cut.device.kind not in without.split(",")
+            value = cut.device.like[2] if cut.device.like else cut.device.limit
+            assert value / step == pytest.approx(round(value / step), abs=1e-6) or cut.device.corners
+            assert not cut.stops or not study.design.isolated
+        if study.design.isolated:
+            again = rate(part, replace(BOWL, devices=study.design.devices), "A", rule="csa").rate
+            assert again.jams == 0.0
+
+
+def test_a_shop_makes_no_device_of_an_unknown_name():
+    part = shapes.part(shapes.box(22, 13, 6))
+    with pytest.raises(ArgumentError, match=r"without: unknown device 'wipper' - did you mean wiper\?"):
+        tooling(part, BOWL, "A", without="wipper")
+    with pytest.raises(ArgumentError, match=r"outcome: 'up' is unknown - choose lying, hanging, any"):
+        tooling(part, BOWL, "A", outcome="up")
+
+
+def test_a_sorter_blows_off_what_looks_other_than_its_own_by_more_than_its_play():
+    part = shapes.part(shapes.box(20, 12, 5))
+    every = orientations(part, find(part), replace(BOWL.track, width=0.04))
+    along, across = (next(one for one in every if abs(one.length - size) < 1e-6) for size in (0.02, 0.012))
+    own = {"like": (along.aspect, along.heading, 5e-4)}
+    sorter = made("sorter", "here", **own)
+    assert verdict(sorter, along, every).margin == pytest.approx(4e-4)  # its play without the blur
+    assert verdict(sorter, across, every).margin == pytest.approx(5e-4 - 8e-3 + 1e-4, abs=2e-4)
+    weak = made("sorter", "here", **own, pulse=1e-4)
+    assert verdict(weak, across, every).passes == 1.0 and not verdict(weak, across, every).sure
+    blind = made("sorter", "here", **own, sees="height")
+    assert verdict(blind, across, every).passes == verdict(blind, along, every).passes == 1.0

@@ -19,6 +19,7 @@ COLOURS = {
     "OPENING": 4,
     "GHOST": 9,
     "TEXT": 8,
+    "SENSOR": 3,
     "STEP": 6,
     "LEDGE": 6,
 }
@@ -28,6 +29,7 @@ PENS = {  # of the SVG: stroke, fill, dashes
     "CUT": ("#d55e00", "#ffffff", ""),
     "GATE": ("#0072b2", "#0072b2", ""),
     "OPENING": ("#0072b2", "#ffffff", ""),
+    "SENSOR": ("#009e73", "none", "2 1"),
     "STEP": ("#cc79a7", "#cc79a7", ""),
     "LEDGE": ("#cc79a7", "#cc79a7", ""),
     "GHOST": ("#7a8793", "none", "1.5 1"),
@@ -164,7 +166,7 @@ def _texts(strip):
 
 def _label(station):
     return (
-        station.label if station.edge is None else f"{station.label}: quasi-static, until a trial confirms it"
+        f"{station.label}: quasi-static, until a trial confirms it" if station.device.turns else station.label
     )
 
 

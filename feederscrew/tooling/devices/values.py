@@ -36,6 +36,25 @@ def blade(entry):
     return found
 
 
+def sensor(entry, views):
+    """Read {of: A@90, play: 0.5 mm, sees: outline, resolution: 0.1 mm, pulse: 0.05}."""
+    names, more = ("of", "play", "sees", "resolution", "pulse"), ("sees", "resolution", "pulse")
+    given = mapping(entry, names, "write {of: A@90, play: 0.5 mm, sees: outline}", more)
+    found = {"like": _like(given)}
+    if "sees" in given:
+        node = given["sees"].value
+        found["sees"] = node.text.strip()
+        if found["sees"] not in views:
+            raise ConfigError(
+                node.where, f"sees is {units.shown(node.text)}", f"known are {', '.join(views)}"
+            )
+    if "resolution" in given:
+        found["resolution"] = within(given, "resolution", "length", 0.0, FARTHEST)
+    if "pulse" in given:
+        found["pulse"] = within(given, "pulse", "number", 0.0, 100.0)
+    return found
+
+
 def within(given, name, dimension, low, high):
     """Read one value of a mapping, from ``low`` to ``high`` in SI units."""
     node = given[name].value
@@ -78,6 +97,11 @@ def opening(entry):
     if entry.value.kind != "mapping":
         return polygon(entry)
     given = mapping(entry, ("of", "play"), "write {of: A@90, play: 0.2 mm}")
+    return {"like": _like(given)}
+
+
+def _like(given):
+    """Aspect, heading [rad] and play [m] of an orientation that is named."""
     name, at, turn = given["of"].value.text.partition("@")
     if not at or not name.strip():
         what = f"{units.shown(given['of'].value.text)} is not an orientation"
@@ -86,7 +110,7 @@ def opening(entry):
     play = _quantity(given["play"].value, "play", "length")
     if play < 0.0:
         raise ConfigError(given["play"].value.where, "play is negative", "give 0 mm or more")
-    return {"like": (name.strip(), heading, play)}
+    return name.strip(), heading, play
 
 
 def simple(corners, where, kind):

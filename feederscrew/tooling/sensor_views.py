@@ -1,0 +1,60 @@
+"""What a sensor sees of an orientation, and by how much two differ."""
+
+import functools
+
+import numpy as np
+import shapely
+
+from feederscrew.geometry.polygons import turned
+
+FINE = 1e-4  # [m] between places of a border at which two are compared
+PLAIN = 1e-4  # of the part's size: corners that stand out by less are left out
+GRID = 1e-8  # [m] of corners
+
+
+def difference(one, other, sees):
+    """Return by how much [m] two orientations differ for a sensor.
+
+    Parameters
+    ----------
+    one, other : Orientation
+    sees : str
+        'outline' from above, 'side' from the bowl's axis, or 'height'.
+
+    Returns
+    -------
+    float
+        Greatest distance from a place of either to the other one, both with their front at the same place.
+    """
+    if sees == "height":
+        return abs(one.height - other.height)
+    first, second = outline(one, sees), outline(other, sees)
+    if one is other:
+        return 0.0
+    return max(_reach(first, second), _reach(second, first))
+
+
+def _reach(area, other):
+    """Greatest distance [m] of the places of an area's border from another area's, and of holes alike."""
+    places = shapely.get_coordinates(shapely.segmentize(area.boundary, 10.0 * FINE))
+    return float(shapely.distance(shapely.points(places), other.boundary).max())
+
+
+@functools.lru_cache(maxsize=512)
+def outline(one, sees):
+    """Return the area that a sensor sees of an orientation [m]: ahead from its front, and from wall or track.
+
+    Parameters
+    ----------
+    one : Orientation
+    sees : str
+        'outline' from above, or 'side' from the bowl's axis.
+    """
+    points, faces = one.posture.surface, one.posture.solid.faces
+    plan = turned(points[:, :2], one.heading)
+    across = plan[:, 1] + one.distance if sees == "outline" else points[:, 2]
+    corners = np.column_stack([plan[:, 0] - plan[:, 0].max(), across])[faces]
+    a, b, c = corners.transpose(1, 0, 2)
+    twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+    whole = shapely.union_all(shapely.polygons(corners[np.abs(twice) > 1e-14]), grid_size=GRID)
+    return whole.simplify(PLAIN * np.ptp(points, axis=0).max())
