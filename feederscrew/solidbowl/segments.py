@@ -8,6 +8,7 @@ import shapely
 from feederscrew import units
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.solidbowl import facets
+from feederscrew.tooling import whole_surface
 
 MOST = 6  # segments in one direction
 TURNS = 36  # positions of the seams that are tried, over a quarter turn
@@ -107,7 +108,7 @@ def segments(made, size):
 
 def _piece(name, body):
     low = body.bounding_box()[:3]
-    vertices, faces = facets.mesh(body.translate(tuple(-x for x in low)))
+    vertices, faces = whole_surface.mesh(body.translate(tuple(-x for x in low)))
     size = tuple(float(x) for x in vertices.max(axis=0))
     return Segment(name, vertices, faces, size, body.volume() * MM**3)
 

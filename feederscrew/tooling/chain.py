@@ -78,8 +78,8 @@ def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=Fals
             found[device] = np.array([_margin(device, one, every) for one in every])
     for kind in around() if sensed else ():
         if wishes.allows(kind.kind):
-            device = kind.around(every[wanted], margin, WHERE)
-            found[device] = np.array([_margin(device, one, every) for one in every])
+            for device in kind.around(every[wanted], margin, WHERE):
+                found[device] = np.array([_margin(device, one, every) for one in every])
     return found
 
 

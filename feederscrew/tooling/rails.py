@@ -40,7 +40,7 @@ def design(given):
     passed = gone | same
     for stage in STAGES:
         if not stage.get("sensed") or given.wishes.allows("sorter"):
-            cuts, returned = _before(given, passed, stage)
+            cuts, returned = _before(given, passed, same, stage)
         if not np.any(~returned & ~passed & given.often):
             break
     else:
@@ -52,10 +52,15 @@ def design(given):
     return told(given, (*cuts, last), returned, same)
 
 
-def _before(given, passed, stage):
+def _before(given, passed, same, stage):
     """Cuts before the rails that return what they neither let hang nor return, and which those return."""
     found = chain.candidates(given.every, given.wanted, given.margin, given.wishes, **stage)
+    found = {
+        device: some for device, some in found.items() if (some[same & given.often] >= given.margin).all()
+    }
     devices = chain.fewest(found, np.where(passed, 0.0, weights(given)), given.margin)
+    if not devices:
+        return (), passed & ~same
     must = [some & ~passed for some in chain.shared_out(found, devices, given.margin)]
     cuts = chain.placed(given.every, given.wanted, devices, must, step=given.wishes.step)
     return cuts, np.any([np.zeros(len(passed), bool), *must], axis=0)

@@ -1,7 +1,5 @@
 """Gates with an opening: profile."""
 
-import numpy as np
-
 from feederscrew.tooling.devices import named, values
 from feederscrew.tooling.devices.base import STOPPED, Device
 
@@ -43,17 +41,6 @@ class Profile(Device):
             return shapely.Polygon(self.corners)
         aspect, heading, play = self.like
         return every[named.place_of(every, aspect, heading, self.where, "profile names")].seen.buffer(play)
-
-    @classmethod
-    def around(cls, one, margin, where, text=""):
-        """Return the gate with the outline of an orientation, and play [m] around it."""
-        return cls(where, like=(one.aspect, one.heading, float(margin)), text=text)
-
-    def with_play(self, play, text):
-        """Return the same gate with other play [m], written as some text."""
-        aspect, heading, _ = self.like
-        written = f"{{of: {aspect}@{np.degrees(heading):.6g}, play: {text}}}"
-        return type(self)(self.where, like=(aspect, heading, float(play)), text=written)
 
     def fate(self, met):
         return STOPPED

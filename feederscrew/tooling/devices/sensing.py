@@ -44,9 +44,11 @@ class Sorter(Device):
         return RESOLUTION[self.sees] if math.isnan(self.resolution) else self.resolution
 
     @classmethod
-    def around(cls, one, margin, where, text=""):
-        """Return the sorter of an orientation, with play [m] by which what it passes may differ."""
-        return cls(where, like=(one.aspect, one.heading, float(margin) + RESOLUTION["outline"]), text=text)
+    def around(cls, one, margin, where):
+        """Return the sorters of an orientation, with the play [m] by which what they pass may differ."""
+        views = [view for view in VIEWS if view != "side"]
+        like = {view: (one.aspect, one.heading, float(margin) + RESOLUTION[view]) for view in views}
+        return [cls(where, like=like[view], sees=view) for view in views]
 
     def with_play(self, play, text):
         """Return the same sorter with other play [m], written as some text."""
