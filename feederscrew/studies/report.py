@@ -12,7 +12,7 @@ from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.posture import posture
 from feederscrew.studies import bowl as machines
-from feederscrew.studies import convey
+from feederscrew.studies import convey, solidbowl
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.floor import floor
 from feederscrew.studies.headings import headings
@@ -122,6 +122,13 @@ class ReportStudy(Shown):
             )  # fmt: skip
         given = has_machine({s.key.name for s in self.settings if s.given})
         return machines.machine(self.settings) if given else None
+
+    @cached_property
+    def solid(self):
+        """The bowl for the target as a BowlSolid; None without a target, or of a part without a mesh."""
+        if self.target is None or self.part.vertices is None:
+            return None
+        return solidbowl.of_sheet(self.machine, self.settings, self.resting.aspects)
 
     @cached_property
     def track(self):

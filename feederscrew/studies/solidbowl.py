@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.rates import stream
 from feederscrew.solidbowl import cuts, riding, segments
 from feederscrew.solidbowl.closed_body import body
-from feederscrew.solidbowl.materials import material
-from feederscrew.solidbowl.plan import Asked, plan
+from feederscrew.solidbowl.materials import STEEL, material
+from feederscrew.solidbowl.plan import CHORD, Asked, plan
 from feederscrew.solidbowl.ways_down import check_ways_down
 from feederscrew.tooling.hanging import hung, neck
 
@@ -114,6 +115,29 @@ def solid(bowl, size, part, coming, asked, counted):
     return replace(size, **own, mass=made.mass, inertia=made.inertia), replace(
         made, riders=_riders(made.plan, bowl.devices, coming, counted)
     )
+
+
+def of_sheet(sheet, settings, aspects):
+    """Return the solid, in steel, of a bowl that was sized without one.
+
+    Parameters
+    ----------
+    sheet : MachineSheet
+        With its order; it stays as it is.
+    settings : tuple of Setting
+        It was sized from.
+    aspects : Aspects
+        Of its part.
+
+    Returns
+    -------
+    BowlSolid
+    """
+    order, bowl = sheet.order, sheet.bowl
+    coming = stream.orientations(order.part, aspects, bowl.track, bowl.devices)
+    wanted = asked(settings, solid=True, material=STEEL, chord=CHORD)
+    counted = {"rule": order.rule, "target": order.wanted}
+    return solid(bowl, order.size, order.part, coming, wanted, counted)[1]
 
 
 def _riders(plan, devices, coming, counted):

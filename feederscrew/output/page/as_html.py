@@ -211,7 +211,7 @@ def _views(views):
     player = PLAYER if views.plays else ""
     figures = "\n".join(_view(views.of, place, *told, player) for place, told in enumerate(views.captions))
     scene = json.dumps(views.scene, separators=(",", ":")).replace("<", "\\u003c")
-    hint = PLAYED if views.plays else HINT
+    hint = views.hint or (PLAYED if views.plays else HINT)
     return (
         f'<div id="{views.name}" hidden class="turnable">\n<p class="quiet">{hint}</p>\n'
         f'<div class="{"views played" if views.plays else "views"}">\n{figures}\n</div>\n</div>\n'

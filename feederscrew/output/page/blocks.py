@@ -73,6 +73,7 @@ class Views:
     name: str = "views"  # of the block; no two of a page have the same
     of: str = "Aspect"  # what the captions name
     plays: bool = False  # each has a path that the part moves along
+    hint: str = ""  # what one can do with it, where it is not the part on a face
 
 
 @dataclass(frozen=True)

@@ -76,7 +76,7 @@
     const contact = contactLines(), lamp = new THREE.DirectionalLight(0xffffff, 2.1), fill = new THREE.DirectionalLight(0xffffff, 0.7);
     const paths = (data.paths || []).map((path) => decoded(path, Float32Array));
     const tracks = (data.tracks || []).map(trackOf), floor = floorDisc(data);
-    part.add(...surfaceOf(data, COLOURS.steel), ...contact, centreMark(data));
+    part.add(...surfaceOf(data, COLOURS.steel), ...contact, ...(data.unmarked ? [] : [centreMark(data)]));
     scene.add(part, floor, ...tracks, new THREE.HemisphereLight(0xffffff, 0xd8dee5, 1.9), lamp, fill);
     const tall = REACH * (data.reach || 1) * data.radius, wide = (tall * WIDTH) / HEIGHT;
     const camera = new THREE.OrthographicCamera(-wide, wide, tall, -tall, 0.1 * data.radius, 20 * data.radius);

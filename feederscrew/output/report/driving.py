@@ -1,16 +1,19 @@
 """The bowl that a part needs, or the machine of the bowl file."""
 
+from feederscrew.errors import FeederError
 from feederscrew.output import offers
 from feederscrew.output import tables as plain
 from feederscrew.output.machine import offers as machine_files
 from feederscrew.output.machine import tables
-from feederscrew.output.page.blocks import Notes, Picture, Section, Table, Text, Tile
+from feederscrew.output.page.blocks import Notes, Picture, Section, Table, Text, Tile, Views
 from feederscrew.output.page.numbers import SHORT, number
+from feederscrew.output.solidbowl import turnable
 
 SIZED = (
     "The bowl that brings the rate asked for, by the rules of thumb of the section sizing: what the bowl "
     "file says of track, drive and machine is kept. The lines are those that a maker asks for in a quotation."
 )
+TURN = "The bowl as one closed body, parts on its track. Drag it to turn it, or use the arrow keys."
 GIVEN = "The springs, the tuning and the drift of the machine of the bowl file."
 
 
@@ -23,6 +26,7 @@ def bowl(case):
     sized = found.order is not None
     blocks = (
         Text(SIZED if sized else GIVEN),
+        *_turned(case),
         *((Notes(found.remarks),) if found.remarks else ()),
         Picture(drawn.name, drawn.make(), drawn.alt),
         Table(tables.summary(found)),
@@ -31,6 +35,18 @@ def bowl(case):
         Table(_renamed(tables.emptying(found))),
     )
     return Section(blocks, tiles=(_tile(found),), warnings=found.remarks)
+
+
+def _turned(case):
+    """The bowl as a solid with parts on its track, to be turned, or why there is none."""
+    try:
+        made = case.solid
+    except FeederError as fault:
+        yield Notes(tuple(f"the bowl as a solid: {line}" for line in fault.lines))
+        return
+    if made is not None:
+        told = f"{1e3 * made.plan.way.radius * 2.0:.4g} mm, {made.mass:.3g} kg as {made.plan.material.name}"
+        yield Views(turnable.scene(made, case.part), (("bowl", told, ()),), "solid-bowl", "The", hint=TURN)
 
 
 def _renamed(frame):

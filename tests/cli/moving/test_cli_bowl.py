@@ -8,7 +8,7 @@ import pytest
 import trimesh
 
 from feederscrew import part
-from feederscrew.output.page.blocks import Picture, Table
+from feederscrew.output.page.blocks import Picture, Table, Views
 from feederscrew.output.report.chapters import CHAPTERS, page
 from feederscrew.studies.report import report
 
@@ -261,6 +261,8 @@ def test_the_chapter_of_a_report(target):
     (picture,) = [block for block in chapter.blocks if isinstance(block, Picture)]
     tables = [block for block in chapter.blocks if isinstance(block, Table)]
     assert picture.content.startswith(b"\x89PNG") and len(tables) == 4
+    turned = [block.scene for block in chapter.blocks if isinstance(block, Views)]
+    assert [len(scene["tracks"]) for scene in turned] == ([1] if target else [])
     assert ("rate asked for [1/min]" in list(tables[0].frame["quantity"])) == bool(target)
     assert page(report(part.load(PART)), chapters=[row]).sections == ()
 
