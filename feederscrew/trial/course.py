@@ -6,8 +6,9 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.conveying import answer
+from feederscrew.dropping.pool import gather
 from feederscrew.geometry import vectors
-from feederscrew.trial import groups, runs, starts, stations, whereabouts
+from feederscrew.trial import runs, starts, stations, whereabouts
 from feederscrew.trial.looks import Looks
 from feederscrew.trial.rounding import rounded
 from feederscrew.trial.shape import solid_of
@@ -16,9 +17,9 @@ PASSED, TURNED, RETURNED, HANGING, STOPPED, ROLLED_BACK, STUCK = range(7)
 FATES = ("passed", "turned", "returned", "hanging", "stopped", "rolled_back", "stuck")
 RUN_UP = 1.0  # of the part's size: how far it travels before the first device
 LOOKS = 300  # places noted of a part at a station
-SPARE = 3.0  # times what it should take is given to a part
+SPARE = 3.0  # times what it should take: so long its places are noted
 SLOWEST = 1e-3  # [m/s] a slower bowl is given up after the time this takes
-GETS_ON = 0.08  # of the way it should come in the time it has to get on
+GETS_ON = 0.03  # of the way it should come: a slower part does not get on
 BELOW = 1e-4  # [m] under the track: a part that reaches so deep hangs
 AT = 5e-4  # [m] from a device: a part that near is at it
 
@@ -74,7 +75,7 @@ def course(
     jobs : int
         Cores to use; the outcome does not depend on it.
     progress : function, optional
-        Told how many parts are done with a station, of how many.
+        Told how many parts are through, of how many.
     before : function, optional
         Called before anything is compiled.
 
@@ -98,35 +99,38 @@ def course(
     states, times, entered = begun
     looks = Looks(every if poses is None else poses, solid, length, principal, bowl.track.radius)
     leaves = np.eye(len(every), len(looks.known), dtype=bool) if leaves is None else leaves
-    found = _Found(chain, parts, looks, entered)
-    for first in range(0, parts, groups.SIZE):
-        group = slice(first, min(first + groups.SIZE, parts))
-        told = groups.Told(progress, first, parts, len(chain), group.stop - first)
-        try:
-            _through(known, bowl, every, chain, states[group], times[group], first, found, told, jobs)
-        except KeyboardInterrupt:
-            if not first:
-                raise
-            found.stopped(first)
-            break
-    return found.course(chain, length, principal, leaves)
+    rides = [runs.past(known, station, **_limits(bowl, station, every)) for station in chain]
+    rides[0](states[:0], times[:0])  # compiled here, if need be
+
+    def through(n):
+        return _through(known, chain, rides, states[[n]], times[[n]])
+
+    def work(begin):
+        for done, task in enumerate([begin(through, n) for n in range(parts)]):
+            task.result()
+            if progress:
+                progress(done + 1, parts)
+
+    made, stopped = gather(work, jobs)
+    found = _Found(chain, entered[: len(made)], looks)
+    for place in range(len(chain)):
+        riders = np.flatnonzero([len(one) > place for one in made])
+        if len(riders):
+            found.add(place, runs.joined([made[n][place] for n in riders]), riders, bowl)
+    return found.course(length, principal, leaves, stopped)
 
 
-def _through(known, bowl, every, chain, states, times, first, found, told, jobs):
-    """Send one group of parts through the chain; an interrupt is passed on, whatever is finished by then."""
-    riders = first + np.arange(len(states))
+def _through(known, chain, rides, state, time):
+    """Send one part through the chain; what it did at each station that it came to."""
+    made = []
     for place, station in enumerate(chain):
-        if not len(riders):
+        ride = rides[place](state, time)
+        made.append(ride)
+        if ride.outcomes[0] != runs.PASSED or place + 1 == len(chain):
             break
-        ride = runs.ride(
-            known, station, states, times, jobs=jobs, progress=told.of(place), **_limits(bowl, station, every)
-        )
-        if ride.partial:
-            raise KeyboardInterrupt
-        stays = found.add(place, ride, riders, bowl)
-        riders, times = riders[stays], (times + ride.seconds)[stays]
-        if place + 1 < len(chain):
-            states = _led_on(ride.states[stays], station, chain[place + 1].begin, known)
+        state = _led_on(ride.states, station, chain[place + 1].begin, known)
+        time = time + ride.seconds
+    return made
 
 
 def _led_on(states, station, begin, known):
@@ -187,9 +191,9 @@ def _limits(bowl, station, every):
     way = station.exit - station.begin
     size = max(one.length for one in every)
     patience = max(0.5 * size / speed, 0.5)
-    seconds = SPARE * way / speed + 1.0
+    seconds = way / (GETS_ON * speed) + 1.0  # what creeps is followed to the end
     period = 1.0 / bowl.drive.frequency
-    every_s = max(np.ceil(seconds / SPARE / LOOKS / period), 1.0) * period
+    every_s = max(np.ceil(way / speed / LOOKS / period), 1.0) * period
     return {
         "limits": (seconds, patience, GETS_ON * patience * speed, 0.5 * size),
         "every": every_s, "places": int(LOOKS * SPARE) + 60,
@@ -199,24 +203,19 @@ def _limits(bowl, station, every):
 class _Found:
     """Collects what became of the parts, station by station."""
 
-    def __init__(self, chain, parts, looks, entered):
-        self.looks, self.chain, count = looks, chain, len(chain)
+    def __init__(self, chain, entered, looks):
+        self.looks, self.chain, count, parts = looks, chain, len(chain), len(entered)
         self.entered, self.orientations = entered, np.full((count + 1, parts), -2)
         self.orientations[0] = entered
         self.fates, self.ended = np.full(parts, STUCK), np.full(parts, -1)
         self.velocities, self.fell = np.full(parts, np.nan), np.full(parts, np.nan)
         self.seconds, self.depths, self.gains = np.zeros(parts), np.zeros(parts), np.zeros(parts)
-        self.rides, self.riders = [[] for _ in range(count)], [[] for _ in range(count)]
-        self.partial, self.known = False, parts
-
-    def stopped(self, known):
-        """Keep the first parts only: what was to come is not known."""
-        self.partial, self.known = True, known
+        self.rides, self.riders = [], []
 
     def add(self, place, ride, riders, bowl):
-        """Note what one station did; which of its parts go on."""
-        self.rides[place].append(ride)
-        self.riders[place].append(riders)
+        """Note what one station did."""
+        self.rides.append(ride)
+        self.riders.append(riders)
         self.seconds[riders] += ride.seconds
         self.depths[riders] = np.maximum(self.depths[riders], ride.depths)
         self.gains[riders] = np.maximum(self.gains[riders], ride.gains)
@@ -233,7 +232,6 @@ class _Found:
         ]
         self.fates[riders] = np.where(passed, PASSED, fates)
         self.orientations[place + 1][riders[passed]] = self.looks.of(ride.states[passed])
-        return passed
 
     def _fate(self, station, outcome, state, length):
         """What became of a part that has not passed a station."""
@@ -247,36 +245,22 @@ class _Found:
         first, last = station.cut
         return STOPPED if front > first - AT and rear < last + AT else STUCK
 
-    def course(self, chain, length, principal, leaves):
+    def course(self, length, principal, leaves, partial):
         """All of it as a record; what leaves as it should has passed, what else leaves was turned."""
-        first, out = slice(0, self.known), self.orientations[-1]
+        out = self.orientations[-1]
         whole = self.fates == PASSED
         right = (out >= 0) & leaves[self.entered, np.maximum(out, 0)]
         self.fates[whole & ~right] = TURNED
         arrays = {
             "entered": self.entered, "fates": self.fates, "ended": self.ended, "fell": self.fell,
             "velocities": self.velocities, "seconds": self.seconds, "depths": self.depths,
-            "gains": self.gains,
+            "gains": self.gains, "orientations": self.orientations, "principal": principal,
         }  # fmt: skip
-        riders, rides = self._of_all()
         return Course(
-            **{name: check.frozen(array[first]) for name, array in arrays.items()},
-            orientations=check.frozen(self.orientations[:, first]),
-            rides=rides, riders=riders, stations=tuple(chain),
-            length=length, principal=check.frozen(principal), partial=self.partial,
+            **{name: check.frozen(array) for name, array in arrays.items()},
+            rides=tuple(self.rides), riders=tuple(check.frozen(riders) for riders in self.riders),
+            stations=tuple(self.chain), length=length, partial=partial,
         )  # fmt: skip
-
-    def _of_all(self):
-        """Riders and rides of each station, of all groups that are known whole."""
-        for riders, rides in zip(self.riders, self.rides):
-            while riders and riders[-1][0] >= self.known:
-                riders.pop()
-                rides.pop()
-        met = [k for k, riders in enumerate(self.riders) if riders]
-        return (
-            tuple(check.frozen(np.concatenate(self.riders[k])) for k in met),
-            tuple(groups.joined(self.rides[k]) for k in met),
-        )
 
 
 def velocities(ride, radius):

@@ -1,6 +1,6 @@
 """Parts one at a time past one station: starts, runs on several cores, and what became of them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import partial
 
 import numpy as np
@@ -34,6 +34,9 @@ class Runs:
     gains: np.ndarray  # (N,) [m] largest rise of the energy over what gravity and the drive gave, as a height
     paths: np.ndarray  # (N, K, 8) time [s], position [m], attitude; NaN after the end
     partial: bool  # stopped by the user before all parts were done
+
+
+COLUMNS = tuple(one.name for one in fields(Runs) if one.name != "partial")
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,19 +121,30 @@ def ride(known, station, states, times, *, limits, every, places, jobs=1, progre
     KeyboardInterrupt
         If no batch was finished.
     """
+    one = past(known, station, limits=limits, every=every, places=places)
+    one(states[:0], times[:0])  # compiled here, if need be
+    columns, stopped = in_batches(
+        lambda cut: [getattr(one(states[cut], times[cut]), name) for name in COLUMNS],
+        len(states), BATCH, jobs, progress,
+    )  # fmt: skip
+    return Runs(**{name: check.frozen(value) for name, value in zip(COLUMNS, columns)}, partial=stopped)
+
+
+def past(known, station, *, limits, every, places):
+    """Return the function that follows parts past one station, one after the other; as ``ride``.
+
+    It takes states (N, 13) and times (N,) [s] and gives Runs.
+    """
     surface, limits = surface_of(known, station), limits_of(known, station, limits)
-    stride = max(round(every / known.unit / known.floor.step), 1)
-    batch = partial(_batch, known, surface, limits, stride, places, states, times)
-    batch(slice(0, 0))  # compiled here, if need be
-    columns, stopped = in_batches(batch, len(states), BATCH, jobs, progress)
-    outcomes, ends, notes, paths = columns
-    paths *= np.array([known.unit, *[known.length] * 3, 1.0, 1.0, 1.0, 1.0])
-    found = {
-        "outcomes": outcomes, "states": ends, "seconds": notes[:, travel.TIME] * known.unit,
-        "ways": notes[:, travel.MOVED] * known.length, "depths": notes[:, travel.SUNK] * known.length,
-        "gains": notes[:, travel.WON] * known.length, "paths": paths,
-    }  # fmt: skip
-    return Runs(**{name: check.frozen(value) for name, value in found.items()}, partial=stopped)
+    return partial(
+        _followed, known, surface, limits, (max(round(every / known.unit / known.floor.step), 1), places)
+    )
+
+
+def joined(rides):
+    """Return the Runs of several parts at one station as one."""
+    columns = {name: np.concatenate([getattr(ride, name) for ride in rides]) for name in COLUMNS}
+    return Runs(**{name: check.frozen(value) for name, value in columns.items()}, partial=False)
 
 
 def surface_of(known, station):
@@ -189,14 +203,19 @@ def compiled():
     return on_disk(travel.travel_all)
 
 
-def _batch(known, surface, limits, stride, places, states, times, cut):
-    """Outcomes, ends, notes and paths of some parts."""
-    ends = np.array(states[cut], float)
-    count = len(ends)
+def _followed(known, surface, limits, looks, states, times):
+    """What became of some parts, looked at each so many steps, so often at most."""
+    stride, places = looks
+    ends, count = np.array(states, float), len(states)
     outcomes, notes = np.zeros(count, np.int64), np.zeros((count, travel.NOTES + 2))
     paths = np.full((count, places, 8), np.nan)
     travel.travel_all(
         surface, limits, known.solid, known.floor, crowd_of(known.solid, surface, 1), ends,
-        np.asarray(times)[cut] / known.unit, stride, paths, notes, outcomes,
+        np.asarray(times) / known.unit, stride, paths, notes, outcomes,
     )  # fmt: skip
-    return outcomes, ends, notes, paths
+    paths *= np.array([known.unit, *[known.length] * 3, 1.0, 1.0, 1.0, 1.0])
+    return Runs(
+        outcomes=outcomes, states=ends, seconds=notes[:, travel.TIME] * known.unit,
+        ways=notes[:, travel.MOVED] * known.length, depths=notes[:, travel.SUNK] * known.length,
+        gains=notes[:, travel.WON] * known.length, paths=paths, partial=False,
+    )  # fmt: skip

@@ -9,6 +9,7 @@ from feederscrew.trial.kernel import motion, pairs
 
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = range(5)  # STANDS gets on no more, ROLLED went back
 TIME, MOVED, SUNK, WON, NOTES = 0, 1, 2, 3, 4  # what a run notes: time, way, depth, energy; how many
+BACKWARDS = 5.0  # times as far as a part must get on: so far back in that time it rolls back
 LEFT = 1e-6  # of a step: less is nothing
 
 
@@ -43,8 +44,9 @@ def travel(surface, limits, solid, floor, crowd, time, every, path, notes):
     for k in range(steps):
         if k % often == often - 1:
             place = way(surface, state)
-            if place - mark < limits.progress and level - state[Z] < limits.progress:
-                outcome = STANDS if place - mark > -limits.progress else ROLLED
+            on = -BACKWARDS * limits.progress < place - mark < limits.progress
+            if on and level - state[Z] < limits.progress:
+                outcome = STANDS
                 break
             mark, level = place, state[Z]
         if k % every == 0 and noted < len(path):
