@@ -4,7 +4,7 @@ import os
 
 import click
 
-from feederscrew_cli import options, orientation, waiting
+from feederscrew_cli import grouped, options, orientation, waiting
 from feederscrew_cli.angle import Angle
 from feederscrew_cli.interrupt import held_back
 from feederscrew_cli.quantity import Quantity
@@ -73,7 +73,7 @@ def _asked(command):
     )
 
 
-@click.command(short_help="From a part and a rate to a bowl that its own trial confirms.")
+@grouped.command(short_help="From a part and a rate to a bowl that its own trial confirms.")
 @options.part
 @_asked
 @options.rule
