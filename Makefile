@@ -31,14 +31,15 @@ demo: $(READY) ## resting table and picture of a bracket, sliding map of a bowl
 	@echo "Pictures:"
 	@ls results/$(DEMO)/*.png results/bowl/*.png
 
-test: lint ## format, lint and every test, warnings as errors
+test: lint ## format, lint, types and every test, warnings as errors
 	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 check: test ## the same: all that CI runs
 
-lint: $(READY_TO_TEST) ## format and lint, nothing changed
+lint: $(READY_TO_TEST) ## format, lint and types, nothing changed
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
+	$(BIN)/python -m mypy
 
 format: $(READY_TO_TEST) ## put the code into the house format
 	$(BIN)/ruff format .
@@ -131,7 +132,7 @@ fuzz: $(READY_TO_TEST) ## 2,000 round bodies, then ten minutes of damaged files
 	PYTHONPATH=tests $(BIN)/python -m fuzz 600
 
 clean: ## remove results and caches
-	rm -rf results build .pytest_cache .ruff_cache .hypothesis
+	rm -rf results build .pytest_cache .ruff_cache .mypy_cache .hypothesis
 
 distclean: clean ## remove .venv as well
 	rm -rf .venv *.egg-info

@@ -106,7 +106,7 @@ def test_the_environment_follows_pyproject(tree):
 
 def test_test_formats_lints_and_tests(tree):
     steps = make(tree, "-n", "test")
-    for step in ("ruff format --check .", "ruff check .", "pytest -n 2"):
+    for step in ("ruff format --check .", "ruff check .", "-m mypy", "pytest -n 2"):
         assert step in steps
 
 

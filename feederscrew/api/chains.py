@@ -93,8 +93,8 @@ def trial(
     from feederscrew.studies.trial import trial as study
 
     solid, driven = asked.a_part(part, mesh=True), asked.some_bowls(bowls)
-    sent = {"parts": asked.count("parts", parts), "queue": asked.count("queue", queue)}
-    return study(solid, driven, aspect, **sent, seed=seed, jobs=jobs, **others)
+    parts, queue = asked.count("parts", parts), asked.count("queue", queue)
+    return study(solid, driven, aspect, parts=parts, queue=queue, seed=seed, jobs=jobs, **others)
 
 
 def report(

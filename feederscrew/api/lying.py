@@ -21,6 +21,7 @@ from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.calibrate import CalibrateStudy
 from feederscrew.studies.compare import CompareStudy
 from feederscrew.studies.inertia import InertiaStudy
+from feederscrew.studies.passages import FeedingStudy
 
 
 def load(
@@ -141,7 +142,7 @@ def inertia(part: Part) -> InertiaStudy:
 
 def compare(
     part: Part, counts: Path, *, launch: str | None = None, as_published: bool = False
-) -> CompareStudy:
+) -> CompareStudy | FeedingStudy:
     """Set the rules' probabilities beside counts of a test, as ``feeder compare PART --with COUNTS``.
 
     Parameters
@@ -156,7 +157,8 @@ def compare(
 
     Returns
     -------
-    CompareStudy
+    CompareStudy or FeedingStudy
+        The second of a file that counts by device.
     """
     from feederscrew.studies.compare import compare as study
 

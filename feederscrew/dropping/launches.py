@@ -1,6 +1,7 @@
 """How parts arrive on the plane: presets, each an ensemble from which every drop draws its own conditions."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -34,7 +35,10 @@ class Launch:
         return replace(self, name="own", **given) if given else self
 
 
-SURFACE = {"restitution": (0.2, 0.6), "friction": (0.2, 0.5)}  # hard on hard: one range for every launch
+SURFACE: dict[str, Any] = {
+    "restitution": (0.2, 0.6),
+    "friction": (0.2, 0.5),
+}  # hard on hard: for every launch
 PRESETS = {
     launch.name: launch
     for launch in (

@@ -3,9 +3,12 @@
 import functools
 import hashlib
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
-PENDING = []  # functions that compiled ones may call, not yet registered, and how each is compiled
+# functions that compiled ones may call, not yet registered, and how each is compiled
+PENDING: list[tuple[Callable[..., Any], dict[str, Any]]] = []
 TRIED = (0, 60), (0, 68)  # versions of numba, from and to, that `compiler` was tried with
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
 SOURCES = (

@@ -2,6 +2,7 @@
 
 from dataclasses import fields, is_dataclass
 from importlib import import_module
+from typing import Any
 
 import numpy as np
 
@@ -9,7 +10,8 @@ from feederscrew.errors import ArgumentError
 from feederscrew.output import offers, tables
 from feederscrew.units import listed
 
-OF = {  # record: module and function that offer the files of its command, and what else that is handed
+# record: module and function that offer the files of its command, and what else that is handed
+OF: dict[str, tuple[Any, ...]] = {
     "AspectsStudy": ("aspects.files", "offers"),
     "CalibrateStudy": ("calibrate.files", "offers"),
     "CompareStudy": ("compare.files", "offers"),
@@ -19,6 +21,7 @@ OF = {  # record: module and function that offer the files of its command, and w
     "ConveyPhase": ("convey.files", "phase_offers", {}),
     "ConveyMap": ("convey.files", "map_offers"),
     "DropStudy": ("drop.files", "offers"),
+    "FeedingStudy": ("compare.feeding", "offers"),
     "FloorStudy": ("floor.files", "offers", {}),
     "HeadingsStudy": ("headings.files", "offers", {}),
     "InertiaStudy": ("inertia.files", "offers"),

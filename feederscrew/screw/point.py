@@ -78,4 +78,4 @@ class Point:
         return self.coordinates - other.coordinates
 
 
-ORIGIN = Point("O", (0.0, 0.0, 0.0))
+ORIGIN = Point("O", np.zeros(3))

@@ -93,7 +93,7 @@ class SetsStudy(Shown):
     @property
     def series(self) -> dict[str, tuple[SetStudy, ...]]:
         """The sets by the series they say they belong to, else by their file."""
-        found = {}
+        found: dict[str, list[SetStudy]] = {}
         for one in self.sets:
             name = one.measured.head.series or Path(one.measured.source).stem
             found.setdefault(name, []).append(one)
@@ -104,7 +104,7 @@ class SetsStudy(Shown):
         """What a user must not overlook, a sentence each."""
         told = [line for one in self.sets for line in one.measured.warnings(one.part)]
         told += [line for one in self.feedings for line in one.measured.warnings(one.part)]
-        every = (*self.sets, *self.feedings)
+        every: tuple[SetStudy | FeedingStudy, ...] = (*self.sets, *self.feedings)
         told += [f"{one.part.source}: {line}" for one in every for line in one.aspects.warnings]
         return tuple(dict.fromkeys(told))
 
@@ -185,7 +185,9 @@ def compare_sets(
     files = [str(path) for path in files]
     if not 0 < len(files) <= MOST:
         raise FeederError("files", f"are {len(files)}", f"name 1 to {MOST} files of counts")
-    studies, faults, inputs = [], [], {}
+    faults: list[FeederError] = []
+    studies: list[SetStudy | FeedingStudy] = []
+    inputs: dict[str, str] = {}
     for done, path in enumerate(files, 1):
         try:
             studies += _studies(path, launch, as_published, inputs)

@@ -1,6 +1,7 @@
 """The study of ``feeder floor``: a part on one aspect in one heading on the floor of one bowl."""
 
 from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -32,7 +33,7 @@ class FloorStudy(Shown):
     cycle: balance.FloorMotion  # over one settled period
     course: Cycle
     why: str | None = None  # this aspect; None where it was asked for
-    printed = None  # the upper reversal by print, in `thesis.motion.as_published`
+    printed: ClassVar[Any] = None  # the upper reversal by print, in `thesis.motion.as_published`
 
     @property
     def stable_heading(self):

@@ -9,7 +9,7 @@ from feederscrew import bowl as bowls
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping.ensemble import wilson
-from feederscrew.errors import FeederError
+from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.part.record import Part
 from feederscrew.rates import passing, stream
 from feederscrew.rates.tipping import marked
@@ -84,7 +84,7 @@ class FeedingStudy(Shown):
     @property
     def answer(self) -> str:
         """Say whose shares of the aspects the prediction takes."""
-        return self.aspects.recommended.rule
+        return self.aspects.source("recommended")
 
     @property
     def ends(self):
@@ -136,7 +136,8 @@ def feeding(part: Part, counts: DeviceCounts, *, launch=None, progress=None, bef
     launch = launch or counts.head.launch or None
     found = shares(part, bowl, launch=launch, fed=launch is None, progress=progress, before=before).aspects
     flow, stations = counted_ways(part, found, bowl, counts)
-    known = found.recommended
+    if (known := found.recommended) is None:
+        raise ArgumentError("part", "is a part card, which meets no device", "give a mesh")
     low, high = passing.passing_ends(flow, known.low, known.high)
     return FeedingStudy(
         part=part,

@@ -1,6 +1,7 @@
 """The study of ``feeder track``: a part on one aspect against the wall of one bowl."""
 
 from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -41,7 +42,7 @@ class TrackStudy(Shown):
     held_across: bool  # at rest, by friction that the reactions of ``now`` do not show
     laid: float | None  # [rad] heading as laid down; None for the most frequent that stays on the track
     why: str | None = None  # this aspect; None where it was asked for
-    printed = None  # the upper reversal by print, in `thesis.motion.as_published`
+    printed: ClassVar[Any] = None  # the upper reversal by print, in `thesis.motion.as_published`
 
     def over(self, settings, ranges=()):
         """Compute the upper reversal at every pair of two values of the bowl.

@@ -162,7 +162,8 @@ def trial(
     launch = LAUNCH if found.recommended is None else found.recommended.launch
     fall = None if landing is None else {"launch": launch, "parts": landing, "jobs": jobs}
     crowd = None if queue is None else {"parts": queue, "seconds": seconds, "poured": poured}
-    made, stopped = [], False
+    made: list[TrialRun] = []
+    stopped = False
     for bowl in bowls:
         answer.answer(bowl)  # refuses a drive that cannot convey
         ways = stream.orientations(part, found, bowl.track, bowl.devices, bowl=bowl)

@@ -32,9 +32,9 @@ class Neck:
 class Hanging(Orientation):
     """A part that hangs by its head between rails: its foot is what of the head rests on them."""
 
-    neck: Neck = None
-    span: tuple[float, float] = ()  # [m] of the slot, from the wall
-    lies_on: tuple[float, float] = ()  # [m] shank's and head's middle from the foot of the centre of mass
+    neck: Neck | None = None
+    span: tuple[float, ...] = ()  # [m] of the slot, from the wall
+    lies_on: tuple[float, ...] = ()  # [m] shank's and head's middle from the foot of the centre of mass
 
     @property
     def name(self):

@@ -14,7 +14,7 @@ from feederscrew.thesis.motion.comparison import FLOOR_TERMS, TRACK_TERMS, Term,
 class FloorAsPublished(on_floor.FloorStudy):
     """A FloorStudy whose upper reversal, and each cell of its maps, is solved by print as well."""
 
-    printed: printed_floor.PrintedFloor
+    printed: printed_floor.PrintedFloor  # type: ignore[misc]
     terms = FLOOR_TERMS
 
     def cells(self, bowl, heading):
@@ -30,7 +30,7 @@ class FloorAsPublished(on_floor.FloorStudy):
 class TrackAsPublished(on_track.TrackStudy):
     """A TrackStudy whose upper reversal is solved by print as well."""
 
-    printed: printed_track.PrintedTrack
+    printed: printed_track.PrintedTrack  # type: ignore[misc]
     omitted: tuple[Term, ...]  # what these leave out
     terms = TRACK_TERMS
 

@@ -51,9 +51,9 @@ class Device:
     where: str  # 'bowl.yaml:20:5'
     limit: float = np.nan  # [m] clearance, width or length
     shares: tuple[tuple[str, float], ...] = ()  # measured: share that passes, by aspect
-    span: tuple[float, float] = ()  # [m] from the wall
+    span: tuple[float, ...] = ()  # [m] from the wall
     corners: tuple[tuple[float, float], ...] = ()  # [m] of a hole unrolled, of an opening (y, z)
-    like: tuple[str, float, float] = ()  # of an opening: aspect, heading [rad], play [m]
+    like: tuple[str, float, float] | tuple[()] = ()  # of an opening: aspect, heading [rad], play [m]
     text: str = ""  # its value as written
 
     kind: ClassVar[str] = "track"  # what it is called in a bowl file

@@ -6,7 +6,8 @@ import pkgutil
 from feederscrew.tooling import devices
 from feederscrew.tooling.devices.base import Device
 
-KINDS = {}  # class by kind, in the order of the modules; rails, which end a chain, and what has no place last
+# class by kind, in the order of the modules; rails, which end a chain, and what has no place last
+KINDS: dict[str, type[Device]] = {}
 
 
 def found():
