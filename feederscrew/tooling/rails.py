@@ -10,7 +10,8 @@ from feederscrew.tooling.verdicts import verdict
 
 PLAY, MOST = 4e-4, 6e-4  # [m] by which a slot is wider than the shank: 0.2 to 0.6 mm
 CLEAR = 2e-4  # [m] between a hanging head and the wall
-STAGES = ({"clearing": False}, {}, {"sensed": True})  # drops first, then what clears itself, then what sees
+# drops first, then what clears itself, then what sees
+STAGES: tuple[dict[str, bool], ...] = ({"clearing": False}, {}, {"sensed": True})
 RAIL = 1e-3  # [m] least width of a rail, and of the sheet it is cut from
 
 
