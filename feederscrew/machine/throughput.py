@@ -57,7 +57,9 @@ def flow(found, rule, *, target=None, gap=0.0, fill=1.0):
             parts, well_oriented.efficiency(found, row, rule), float(well_oriented.fed(found, row).length)
         )
     chances = np.nan_to_num(found.rules[rule])
-    leaving = float((chances * found.through).sum())
+    leaving = float((chances * found.leaves).sum())
+    if not leaving > 0.0 and float((chances * found.through).sum()) > 0.0:
+        raise FeederError("track.climb", f"the part {well_oriented.ROLLS}", well_oriented.HOLD)
     if not leaving > 0.0:
         raise FeederError("devices", "let no part pass", "see what each returns in feeder rate")
     share, length = leaving / float((chances * found.stays).sum()), well_oriented.mean_length(found, rule)

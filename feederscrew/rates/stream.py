@@ -1,6 +1,6 @@
 """Every orientation of a part in the queue, and what becomes of it at each device."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -62,9 +62,24 @@ class Orientations:
         return np.array([one.width for one in self.lying])
 
     @property
+    def rolls_back(self):
+        """(M,) bool, whether it lies on its round side, not along the track, and rolls down the climb."""
+        return np.array([one.may_roll_back for one in self.lying], dtype=bool)
+
+    @property
     def stays(self):
-        """(M,) share that the bare track carries: what falls off it or turns over on it does not queue."""
-        return self.passes[:, 0]
+        """(M,) share that the bare track carries: what falls off, turns over or rolls back does not queue."""
+        return np.where(self.rolls_back, 0.0, self.passes[:, 0])
+
+    @property
+    def leaves(self):
+        """(M,) share that leaves the bowl, in any state."""
+        return np.where(self.rolls_back, 0.0, self.through)
+
+    @property
+    def carried(self):
+        """The same orientations, were those that roll back carried as what slides."""
+        return replace(self, lying=tuple(replace(one, may_roll_back=False) for one in self.lying))
 
     @property
     def through(self):
@@ -90,7 +105,7 @@ class Orientations:
         On the track it shall neither rock nor roll.
         """
         rocks = False if self.tipping is None else self.tipping.tips & ~self.tipping.over
-        return self.decided & ~(np.array([one.may_roll_back for one in self.lying]) | rocks)
+        return self.decided & ~(self.rolls_back | rocks)
 
 
 def orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None):

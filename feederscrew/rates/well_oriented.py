@@ -1,6 +1,6 @@
 """From velocity to well-oriented parts: pitch, probability of the orientation, devices, fill."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -8,12 +8,25 @@ from feederscrew.conveying import answer, sensitivity
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.mechanics.wall.stable_headings import headings, laid
+from feederscrew.rates.shares_on_track import (
+    RECOMMENDED,
+    efficiency,
+    efficiency_ends,
+    entering,
+    fed,
+    mean_length,
+    queued,
+)
 from feederscrew.rates.stream import Orientations, orientations
 from feederscrew.records import Shown
 from feederscrew.resting.posture import posture
 
-__all__ = ["Orientations", "Range", "Rate", "orientations", "parts_per_metre", "rate", "velocity", "wanted"]
-RECOMMENDED = "recommended"  # the rule that has an interval of its own
+__all__ = [
+    "Orientations", "Range", "Rate", "efficiency", "fed", "mean_length", "orientations",
+    "parts_per_metre", "rate", "velocity", "wanted",
+]  # fmt: skip
+ROLLS = "lies on its round side and rolls back down the climb"
+HOLD = "bank the track, so that friction.wall tan(bank) is above tan(climb), or take another aspect"
 
 
 @dataclass(frozen=True)
@@ -134,22 +147,34 @@ def rate(found, speed, target, rule, *, gap=0.0, fill=1.0):
     Returns
     -------
     Rate
+        What lies on its round side across the track rolls back and is not offered; in the highest rate it is
+        carried as what slides, since a drive that throws it or a wall may do so.
 
     Raises
     ------
     FeederError
         If no such rule has probabilities of this part.
     """
+    made = _rate(found, speed, target, rule, gap, fill)
+    if not found.rolls_back.any():
+        return made
+    most = _rate(found.carried, speed, target, rule, gap, fill).parts
+    parts = Range(made.parts.value, made.parts.low, max(made.parts.high, most.high))
+    return replace(made, parts=parts)
+
+
+def _rate(found, speed, target, rule, gap, fill):
+    """The rate of what does not roll back."""
     row = _row(found, target)
     _check_rule(found, rule)
-    density, share = _queued(found, row, rule, gap, fill), efficiency(found, row, rule)
+    density, share = queued(found, row, rule, gap, fill), efficiency(found, row, rule)
     probability = _probability(found, row, rule)
     blocked, swept = _blocked(found, rule)
     offered = Range(*(_offered(one * density, blocked) for one in speed.all))
     most = speed * (1.0 / fed(found, row).length)
-    made = offered * Range(share, *_efficiency_ends(found, row, rule))
-    chance, enters = _entering(found, rule)
-    leaving = float((chance * found.through).sum() / enters) if enters > 0.0 else 0.0
+    made = offered * Range(share, *efficiency_ends(found, row, rule))
+    chance, enters = entering(found, rule)
+    leaving = float((chance * found.leaves).sum() / enters) if enters > 0.0 else 0.0
     through = float(found.through[row])
     return Rate(
         parts=Range(*(min(one, cap) for one, cap in zip(made.all, most.all))),
@@ -176,76 +201,16 @@ def _offered(freely, blocked):
 
 def _standing(found, rule):
     """Share of the parts offered that come to stand before a device."""
-    chance, enters = _entering(found, rule)
+    chance, enters = entering(found, rule)
     return float((chance * found.stops.sum(axis=1)).sum() / enters) if enters > 0.0 else 0.0
 
 
 def _blocked(found, rule):
     """Mean time [s] for which a part that is offered blocks the track, and the same of those that do."""
-    chance, enters = _entering(found, rule)
+    chance, enters = entering(found, rule)
     does = chance * (found.clearing > 0.0)
     times = float((chance * found.clearing).sum())
     return (times / enters, times / float(does.sum())) if does.sum() > 0.0 else (0.0, 0.0)
-
-
-def mean_length(found, rule):
-    """Return the mean length along the track of the parts that stay on it [m]; NaN where none does.
-
-    What falls off at the entry, or is turned over on the track, goes back at once: it is in nobody's way.
-    """
-    chance, enters = _entering(found, rule)
-    weights = chance * found.stays
-    return float((weights * found.lengths).sum() / enters) if enters > 0.0 else np.nan
-
-
-def _entering(found, rule):
-    """(M,) chance of each orientation by a rule, and the share of all parts that stay on the track."""
-    chance = np.nan_to_num(found.rules[rule])
-    return chance, float((chance * found.stays).sum())
-
-
-def _queued(found, row, rule, gap, fill):
-    """Parts on a length of track before the devices [1/m], all orientations that stay on it end to end."""
-    length = mean_length(found, rule)
-    return float(fill / ((found.lengths[row] if np.isnan(length) else length) + gap))
-
-
-def efficiency(found, row, rule):
-    """Return the share of the parts offered, which are on the track, that leave in the orientation of a row.
-
-    Parameters
-    ----------
-    found : Orientations
-    row : int
-    rule : str
-
-    Returns
-    -------
-    float [1]
-    """
-    chance, enters = _entering(found, rule)
-    return float((chance * _fed_share(found, row)).sum() / enters) if enters > 0.0 else 0.0
-
-
-def _efficiency_ends(found, row, rule):
-    """The least and the greatest efficiency, by the rule's own interval or over all rules."""
-    fed, (_, enters) = _fed_share(found, row), _entering(found, rule)
-    if not enters > 0.0:
-        return 0.0, 0.0
-    if rule == RECOMMENDED and not np.isnan(found.interval).any():
-        return tuple(min(float((end * fed).sum()) / enters, 1.0) for end in found.interval.T)
-    all_rules = [efficiency(found, row, one) for one in found.rules]
-    return min(all_rules), max(all_rules)
-
-
-def fed(found, row):
-    """Return the Orientation in which parts wanted as a row leave: as they lie, or hanging."""
-    return found.states[found.leaves_as[row]]
-
-
-def _fed_share(found, row):
-    """(M,) share of each orientation that leaves in the state of a wanted row."""
-    return found.leaving[:, found.leaves_as[row]]
 
 
 def _probability(found, row, rule):
@@ -276,9 +241,19 @@ def parts_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
     """
     parts = leaving_per_metre(found, target, rule, gap=gap, fill=fill)
     if not parts > 0.0:
-        where = f"aspect {target[0]}, heading {np.degrees(target[1]):.4g} deg"
-        raise FeederError(where, "never leaves the bowl", "see the devices in feeder rate")
+        holds(found, target)
+        raise FeederError(_where(target), "never leaves the bowl", "see the devices in feeder rate")
     return parts
+
+
+def holds(found, target):
+    """Raise a FeederError where a wanted orientation rolls back down the climb."""
+    if found.rolls_back[_row(found, target)]:
+        raise FeederError(_where(target), ROLLS, HOLD)
+
+
+def _where(target):
+    return f"aspect {target[0]}, heading {np.degrees(target[1]):.4g} deg"
 
 
 def leaving_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
@@ -286,7 +261,7 @@ def leaving_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
     _check_rule(found, rule)
     row = _row(found, target)
     share = efficiency(found, row, rule)
-    return min(share * _queued(found, row, rule, gap, fill), 1.0 / float(fed(found, row).length))
+    return min(share * queued(found, row, rule, gap, fill), 1.0 / float(fed(found, row).length))
 
 
 def _check_rule(found, rule):

@@ -164,7 +164,8 @@ def bowl(
     counted = {"rule": rule, "target": wanted, "gap": gap, "fill": fill}
     plain = replace(plain, track=track)
     size, made = solidbowl.solid(plain, size, part, ways(None), solid, counted)
-    sought = drive_sought.Sought(plain, size, settings, target, part.mass / part.hull.volume)
+    room = part.volume if part.hull is None else part.hull.volume
+    sought = drive_sought.Sought(plain, size, settings, target, part.mass / room)
     driven, flow = drive_sought.brought(sought, lambda bowl: throughput.flow(ways(bowl), **counted))
     order = Order(
         part=part,
@@ -177,7 +178,7 @@ def bowl(
         size=size,
         steepest=throughput.steepest(driven),
         flow=flow,
-        hopper=target * plain.sizing.hopper_interval * part.hull.volume / plain.sizing.packing,
+        hopper=target * plain.sizing.hopper_interval * room / plain.sizing.packing,
         handbook=plain.sizing.handbook_speed * flow.share / flow.length,
         shape=sizing.shape(part, found, track, wanted),
     )

@@ -100,6 +100,7 @@ def tune(
     wanted = well_oriented.wanted(part, found, bowl.track, aspect, heading)
     # raises where none ever leaves so
     well_oriented.parts_per_metre(ways.along(None), wanted, rule, gap=gap, fill=fill)
+    well_oriented.holds(ways.along(bowl), wanted)
 
     def density(driven):
         return well_oriented.leaving_per_metre(ways.along(driven), wanted, rule, gap=gap, fill=fill)

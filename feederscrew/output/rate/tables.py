@@ -37,6 +37,7 @@ def document(study):
         "jams_per_hour": 3600.0 * found.jams,
         "clearing_s": found.clearing,
         "quasi_static": [device.kind for device in study.devices if device.turns],
+        "rolls_back": [one.name for one in known.lying if one.may_roll_back],
         "orientations": orientations(known, rule),
     }
 
@@ -152,9 +153,12 @@ def _rolling(found):
     back = [one.name for one in known if one.may_roll_back]
     if not back:
         return []
-    verb = "lies" if len(back) == 1 else "lie"
-    said = f"{units.listed(back)} {verb} on the round side, not along the track, and can roll back"
-    return [f"{said}: see feeder trial"]
+    lies, rolls, counts = ("lies", "rolls", "counts") if len(back) == 1 else ("lie", "roll", "count")
+    said = (
+        f"{units.listed(back)} {lies} on the round side, not along the track, and {rolls} back down the climb"
+    )
+    lost = "; rate is 0" if known[found.row].may_roll_back else ""
+    return [f"{said}: {counts} as returned, but as carried in the highest rate{lost}; see feeder trial"]
 
 
 def _turned(devices):

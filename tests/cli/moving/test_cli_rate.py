@@ -36,7 +36,9 @@ def test_json(run, config):
     document = json.loads(result.stdout)
     assert result.exit_code == 0
     assert set(document) >= FACTORS
-    chain = document["velocity_mm_s"] / document["pitch_mm"] * document["p_orientation"] * 0.9 * 0.5
+    stay = sum(row["p_recommended"] * row["track"] for row in document["orientations"])
+    chain = document["velocity_mm_s"] / document["pitch_mm"] * document["p_orientation"] / stay * 0.9 * 0.5
+    assert 0.5 < stay < 1.0
     assert document["parts_per_minute"] == pytest.approx(60.0 * chain)
     assert document["p_aspect"] * document["p_heading"] == pytest.approx(document["p_orientation"])
     assert (

@@ -1,0 +1,65 @@
+"""What of the queue on the track stays there and leaves as it is wanted."""
+
+import numpy as np
+
+RECOMMENDED = "recommended"  # the rule that has an interval of its own
+
+
+def mean_length(found, rule):
+    """Return the mean length along the track of the parts that stay on it [m]; NaN where none does.
+
+    What falls off at the entry, or is turned over on the track, goes back at once: it is in nobody's way.
+    """
+    chance, enters = entering(found, rule)
+    weights = chance * found.stays
+    return float((weights * found.lengths).sum() / enters) if enters > 0.0 else np.nan
+
+
+def entering(found, rule):
+    """Return (M,) chance of each orientation by a rule, and the share of all parts that stay on the track."""
+    chance = np.nan_to_num(found.rules[rule])
+    return chance, float((chance * found.stays).sum())
+
+
+def queued(found, row, rule, gap, fill):
+    """Return parts on a length of track before the devices [1/m]: all that stay on it, end to end."""
+    length = mean_length(found, rule)
+    return float(fill / ((found.lengths[row] if np.isnan(length) else length) + gap))
+
+
+def efficiency(found, row, rule):
+    """Return the share of the parts offered, which are on the track, that leave in the orientation of a row.
+
+    Parameters
+    ----------
+    found : Orientations
+    row : int
+    rule : str
+
+    Returns
+    -------
+    float [1]
+    """
+    chance, enters = entering(found, rule)
+    return float((chance * fed_share(found, row)).sum() / enters) if enters > 0.0 else 0.0
+
+
+def efficiency_ends(found, row, rule):
+    """Return the least and the greatest efficiency, by the rule's own interval or over all rules."""
+    fed, (_, enters) = fed_share(found, row), entering(found, rule)
+    if not enters > 0.0:
+        return 0.0, 0.0
+    if rule == RECOMMENDED and not np.isnan(found.interval).any():
+        return tuple(min(float((end * fed).sum()) / enters, 1.0) for end in found.interval.T)
+    all_rules = [efficiency(found, row, one) for one in found.rules]
+    return min(all_rules), max(all_rules)
+
+
+def fed(found, row):
+    """Return the Orientation in which parts wanted as a row leave: as they lie, or hanging."""
+    return found.states[found.leaves_as[row]]
+
+
+def fed_share(found, row):
+    """Return (M,) share of each orientation that leaves in the state of a wanted row."""
+    return np.where(found.rolls_back, 0.0, found.leaving[:, found.leaves_as[row]])
