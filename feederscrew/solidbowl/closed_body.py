@@ -159,23 +159,21 @@ def _plate(plan, blade):
         x0, _, _, x3 = area.bounds
         ear = shapely.box(-plan.material.wall - EARS, 0.0, x0 + INTO, x3)
         area = shapely.union_all([area, ear])
-    return _standing(plan, s, blade.thickness, area)
+    return _standing(plan, s, blade.thickness, area, blade.lean)
 
 
-def _standing(plan, s, thickness, area):
-    """An area of distances from the wall and heights over the track, as a plate across the track."""
+def _standing(plan, s, thickness, area, lean=0.0):
+    """An area of distances from the wall and heights over the track, as a plate across the track.
+
+    A swept one leans ahead with the distance; its edge keeps its height over the track at both ends.
+    """
+    from_wall, theta = s + thickness, plan.way.angle(s)
+    far = plan.way.places(from_wall + lean * plan.width, plan.width)
+    across = (far - plan.way.places(from_wall, 0.0)) / plan.width
+    ahead, upright = np.array([-np.sin(theta), np.cos(theta), 0.0]), np.array([0.0, 0.0, 1.0])
+    foot = np.array([*plan.way.plan(s, 0.0), float(plan.way.height(from_wall))]) / MM
     plate = facets.prism(area, 0.0, thickness)
-    theta, z = plan.way.angle(s), float(plan.way.height(s + thickness))
-    ahead, inward = (
-        np.array([-np.sin(theta), np.cos(theta), 0.0]),
-        -np.array([np.cos(theta), np.sin(theta), 0.0]),
-    )
-    bank = plan.way.bank
-    across = np.cos(bank) * inward + [0.0, 0.0, np.sin(bank)]
-    upright = np.array([0.0, 0.0, 1.0])
-    foot = np.array([*plan.way.plan(s, 0.0), z]) / MM
-    turned = plate.transform(np.column_stack([across, upright, ahead, foot]))
-    return turned
+    return plate.transform(np.column_stack([across, upright, ahead, foot]))
 
 
 def _notch(plan, blade):

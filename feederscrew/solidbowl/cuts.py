@@ -6,7 +6,6 @@ import numpy as np
 import shapely
 from shapely import affinity
 
-from feederscrew.tooling.devices.pieces import BLADE
 from feederscrew.tooling.strip import strip
 
 BEYOND = 2e-3  # [m] by which what reaches an edge of the track is cut over it
@@ -34,7 +33,8 @@ class Blade:
     label: str
     kind: str
     start: float  # [m] s
-    thickness: float  # [m]
+    thickness: float  # [m] along the wall
+    lean: float  # [1] ahead over inwards: a swept blade
     area: object  # shapely geometry [m]: distance from the wall, height over the track
     alone: bool  # a gate that is a part of its own, and stands in a notch of the wall
 
@@ -100,8 +100,9 @@ def _blade(station, width):
     return Blade(
         label=station.label,
         kind=station.device.kind,
-        start=float(station.blade[:, 0].min()),
-        thickness=BLADE,
+        start=float(station.blade[0, 0]),
+        thickness=float(station.blade[1, 0] - station.blade[0, 0]),
+        lean=float(station.blade[3, 0] - station.blade[0, 0]) / width,
         area=frame.difference(free),
         alone=not station.device.overhead,
     )

@@ -144,6 +144,17 @@ def test_blades_leave_the_clearance_free():
     assert hits[0] + 1e-3 == pytest.approx(6e-3, abs=0.1e-3)
 
 
+def test_a_swept_blade_leans_ahead_and_keeps_its_clearance():
+    made = planned((device_of("wiper", "b", limit=6e-3, sweep=np.radians(50.0)),))
+    solid, blade = body(made), made.stretch.blades[0]
+    assert closed(solid) > 0.0
+    assert blade.lean == pytest.approx(1.0 / np.tan(np.radians(50.0)), rel=1e-6)
+    for y in (2e-3, 18e-3):
+        at = made.way.places(made.first + blade.start + blade.lean * y + 0.5 * blade.thickness, y)
+        hits = facets.first_met(facets.unplaced(solid), at + [0, 0, 1e-3], at + [0, 0, 0.05])
+        assert hits[0] + 1e-3 == pytest.approx(6e-3, abs=0.25e-3)
+
+
 def test_rails_are_open_at_their_end():
     made = planned((RAILS,))
     whole = facets.unplaced(body(made))
