@@ -16,6 +16,7 @@ from feederscrew.output.headings import tables as heading_tables
 from feederscrew.output.page.blocks import Notes, Picture, Section, Table, Text, Tile
 from feederscrew.output.page.numbers import NOTHING, SHORT, number, percent
 from feederscrew.output.rate import tables as rate_tables
+from feederscrew.output.report.on_the_track import on_track
 from feederscrew.output.slide import files as slide_files
 from feederscrew.output.slide import tables as slide_tables
 from feederscrew.output.track import files as track_files
@@ -105,7 +106,7 @@ def track(case):
     pictures = _taken(offered, "track_part", "track_map", "track_cycle")
     lines = _notes(track_tables.remarks(found) + map_tables.remarks(grid))
     return Section(
-        (*lines, Table(track_tables.summary(document)), *pictures),
+        (Text(on_track(case, WORDS)), *lines, Table(track_tables.summary(document)), *pictures),
         tiles=_heading_tiles(found),
     )
 
