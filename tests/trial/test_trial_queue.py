@@ -58,6 +58,16 @@ def test_a_part_that_strikes_another_shares_its_momentum(restitution):
     assert (on.extents(1)[0] - on.extents(0)[1] > 1e-2) == (restitution > 0.0)
 
 
+def test_parts_in_each_other_are_pushed_apart():
+    on = parts_on(STILL, -0.10, -0.0801)
+    before = np.array(on.arrays.states[:, body.X]) * LENGTH
+    for turn in range(4):
+        on.ride(turn)
+    moved = on.arrays.states[:, body.X] * LENGTH - before
+    assert moved[0] < -2e-5 and moved[1] > 2e-5
+    assert np.diff(moved)[0] == pytest.approx(1e-4, abs=2e-5)
+
+
 def test_a_part_on_another_bears_on_it_with_its_weight():
     on = parts_on(STILL, -0.10, -0.097, heights=(0.0, 5e-3))
     for turn in range(40):

@@ -11,6 +11,8 @@ from feederscrew.trial.kernel.contact import GAP
 from feederscrew.trial.kernel.pushes import give, reversal, wanted, wanted_of_pairs
 
 REACH = 2e-3  # how far ahead contacts are looked for, beside the way of two steps
+FREE = 1e-9  # work against gravity and the drive that is rounding, of one part alone, and ...
+APART = 2e-6  # ... of parts that are pushed apart, by impulses that are not wholly converged
 SLOP = 2e-4  # depth that is left alone
 LIFT, MOST = 0.1, 0.01  # of a greater depth, taken back in a step; of so much at most
 AT_ONCE = 0.02  # of a step: what happens sooner happens at its start
@@ -119,7 +121,8 @@ def lift(surface, solid, crowd, island, dt):
         for k in range(3):
             cost -= crowd.given[n, k] * push[n, VX + k] / dt
     moving, cost = _moving(solid, crowd, island), max(cost, 0.0)
-    share = moving / cost if cost > moving else 1.0
+    free = APART if crowd.paired[0] else FREE
+    share = moving / cost if cost > moving + free else 1.0
     for m in range(island[0], island[1]):
         n = crowd.order[m]
         for k in range(3):

@@ -1,0 +1,93 @@
+"""Each sign and each coefficient of the trial's mechanics, where a straight, level, even fixture hides it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.dropping.kernel import body
+from feederscrew.resting.aspects import find
+from feederscrew.tooling.orientations import orientations
+from feederscrew.trial import runs, shape, starts, stations, whereabouts
+
+OWN = [
+    "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",
+    "friction.static=0.4", "friction.static_backward=0.25", "friction.kinetic_backward=0.2",
+    "friction.wall=0.7", "track.radius=150 mm", "track.width=40 mm", "track.climb=2 deg", "track.bank=3 deg",
+]  # fmt: skip
+PART = shapes.part(shapes.prism([(0, 0), (17, 0), (17, 6), (6, 9), (0, 9)], 4))  # without a symmetry
+BOWL = bowls.read(None, OWN)
+SOLID, LENGTH, PRINCIPAL = shape.solid_of(PART)
+
+
+def still(**track):
+    """The bowl at rest, its track changed."""
+    return replace(BOWL, drive=replace(BOWL.drive, amplitude=0.0), track=replace(BOWL.track, **track))
+
+
+def gone(bowl, state, seconds):
+    """What becomes of one part from a state on the bare track."""
+    every = orientations(PART, find(PART), bowl.track)
+    known, stage = runs.setting(SOLID, LENGTH, bowl), stations.plain(bowl.track, every, 0.5)
+    limits = (seconds, 2.0 * seconds, 0.0, 10.0)
+    return known, runs.ride(known, stage, state[None], np.zeros(1), limits=limits, every=1.0, places=1)
+
+
+def lying(bowl, aside=None):
+    """The part flat on the track at the wall, or that far off it."""
+    every = orientations(PART, find(PART), bowl.track)
+    one = min(every, key=lambda one: one.height)
+    state = whereabouts.laid(one, PRINCIPAL, LENGTH, bowl.track, place=0.1, aside=aside or 0.0)
+    return state if aside else starts.clear(state, SOLID, bowl.track, LENGTH, 0.0)
+
+
+@pytest.mark.parametrize(("ahead", "friction"), [(1.0, 0.4), (-1.0, 0.2)])
+def test_a_part_slides_as_far_as_the_friction_of_its_direction_lets_it(ahead, friction):
+    bowl = still(climb=0.0, bank=0.0, radius=50.0)
+    state = lying(bowl, aside=5e-3)
+    state[body.VX] = ahead
+    known, ride = gone(bowl, state, 0.3)
+    assert ride.ways[0] == pytest.approx(ahead * known.length * 0.5 / friction, rel=0.01)
+
+
+@pytest.mark.parametrize("wall", [0.0, 0.7])
+def test_floor_and_upright_wall_brake_on_a_bank(wall):
+    """The friction of a level track of mu / cos(bank) + mu_w tan(bank)."""
+    bank = np.radians(12.0)
+    bowl = still(climb=0.0, bank=bank, radius=50.0)
+    bowl = replace(bowl, friction=replace(bowl.friction, wall=wall))
+    state = lying(bowl)
+    state[body.VX] = 0.8
+    known, ride = gone(bowl, state, 0.3)
+    friction = 0.4 / np.cos(bank) + wall * np.tan(bank)
+    assert ride.ways[0] == pytest.approx(known.length * 0.5 * 0.64 / friction, rel=0.03)
+
+
+@pytest.mark.parametrize("bank", [-10.0, 0.0, 10.0])
+def test_the_wall_stands_upright(bank):
+    """A part touches it with its upper edge where the track falls towards it, else with its lower."""
+    bowl = still(bank=np.radians(bank))
+    spots = lying(bowl)[:3] + SOLID.corners @ whereabouts.matrix(lying(bowl)).T
+    off = BOWL.track.radius - LENGTH * np.hypot(spots[:, 0], BOWL.track.radius / LENGTH - spots[:, 1])
+    height = LENGTH * spots[:, 2]
+    gap = off - height * np.tan(np.radians(bank))
+    assert gap.min() == pytest.approx(0.0, abs=3e-6)
+    assert (height[np.argmin(gap)] > 2e-3) == (bank > 0.0) or bank == 0.0
+
+
+def test_a_part_in_the_air_keeps_its_attitude_while_the_bowl_turns():
+    """In the bowl's frame it turns back: by the change of the bowl's own rate, about the bowl's axis."""
+    state = lying(BOWL, aside=5e-3)
+    state[body.Z] += 5.0
+    quarter = 0.25 / BOWL.drive.frequency
+    known, ride = gone(BOWL, state, quarter)
+    end = ride.states[0]
+    rates = whereabouts.matrix(end) @ end[body.W : body.W + 3] / known.unit
+    drive, track = BOWL.drive, BOWL.track
+    speed = drive.amplitude * 2.0 * np.pi * drive.frequency * np.cos(drive.vibration_angle)
+    theta = np.arctan2(state[0], track.radius / LENGTH - state[1])
+    inwards = np.array([-np.sin(theta), np.cos(theta), 0.0])
+    axis = np.sin(track.bank) * inwards + np.array([0.0, 0.0, np.cos(track.bank)])
+    np.testing.assert_allclose(rates, speed / track.radius * axis, rtol=0.01, atol=2e-3)
