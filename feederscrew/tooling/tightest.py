@@ -13,7 +13,7 @@ from feederscrew.tooling.fates import astride
 from feederscrew.tooling.hanging import hung
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.tooling.strip import bent
-from feederscrew.tooling.verdicts import verdict
+from feederscrew.tooling.verdicts import Meeting, verdict
 
 CHORD = 1e-7  # [m] by which an arc may be seen too flat
 BESIDE = 3e-6  # [rad] to either side of a place where an edge of the hole meets a corner of the foot
@@ -27,6 +27,7 @@ class Passage:
     device: Device
     orientation: Orientation
     verdict: Verdict
+    fate: str  # what becomes of what it does not let pass: 'returned' or 'stopped'
     after: Orientation  # that most parts go on in
     picture: str  # 'above', 'ahead', 'side', 'turned' or '': from where it is seen
     outline: np.ndarray  # (J, 2) [m] of the part from above
@@ -79,6 +80,7 @@ def passage(device, one, every, known=()):
         device=device,
         orientation=one,
         verdict=found,
+        fate=device.fate(Meeting(one, every)),
         after=_after(device, one, found, every, known),
         picture=device.picture,
         outline=np.add(one.outline, [0.0, one.distance]),

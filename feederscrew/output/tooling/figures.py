@@ -112,15 +112,7 @@ def _cell(page, box, found, size):
         _above(axes, found.orientation, found.hole, found, colour)
     else:
         _ahead(axes, found.orientation, found.opening, colour)
-    word = (
-        "hangs"
-        if found.verdict.hangs
-        else "passes"
-        if good
-        else "falls"
-        if found.picture == "above"
-        else "is stopped"
-    )
+    word = "hangs" if found.verdict.hangs else "passes" if good else f"is {found.fate}"
     ink.text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, {ink.margin(found.verdict)}", colour=colour)
 
 
@@ -226,7 +218,7 @@ def _told(page, top, one, share, found, is_wanted):
         word = tightest.fate(one, found)
         colour = PASSES if word.startswith("leaves") else FALLS
     else:
-        word, colour = f"returned by {found[-1].device.kind.replace('_', ' ')}", FALLS
+        word, colour = f"{found[-1].fate} by {found[-1].device.kind.replace('_', ' ')}", FALLS
     ink.text(page, 16, top + 30, one.name, size=12, weight="bold", colour=colour)
     ink.text(page, 16, top + 52, f"{100.0 * share:.3g} % of the parts")
     lines = textwrap.wrap(word, NARROW)

@@ -129,7 +129,7 @@ def passages(study):
 
 def _outcome(one, met):
     if met and met[-1].verdict.passes <= 0.0:
-        return f"returned by {met[-1].device.kind}"
+        return f"{met[-1].fate} by {met[-1].device.kind}"
     return passages_of.fate(one, met)
 
 
