@@ -1,54 +1,20 @@
 """The loop: an orientation and its chain, a short trial, what the trial denies changed, and the proof."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 
 from feederscrew.designing import beside, calm_drive, nearest, proposals, queues, risks, trying
 from feederscrew.designing.record import RATE_KEPT, Attempt, DesignStudy
 from feederscrew.designing.robust import denied, robust_run
+from feederscrew.designing.searching import Candidate, Search
 from feederscrew.rates import arrivals
-from feederscrew.studies.rate import Shares, shares
+from feederscrew.studies.rate import shares
 
-RESERVE = 1.7  # of the target, for which a bowl is driven: queues bring less than rows, counts scatter
 EACH = 3  # parts of each orientation in a short trial
 MENDED = 2  # times that one proposal is mended
 PROVED = 2  # designs that go through draws and queue
 LEAST_USE = 0.25  # of the best static rate: an orientation that promises less is not tried
-
-
-@dataclass(eq=False)
-class Search:
-    """What the loop knows while it runs."""
-
-    part: object
-    request: object
-    plain: object  # Bowl as given
-    given: frozenset
-    told: object  # callable of a sentence
-    known: Shares | None = None
-    attempts: list = field(default_factory=list)
-    passed: list = field(default_factory=list)  # (rate, Candidate) of clean attempts
-    failed: list = field(default_factory=list)  # the same of others that deliver
-    before: object = None
-    reserve: float = RESERVE
-
-    @property
-    def spent(self):
-        """Whether the budget of trials is used up."""
-        return len(self.attempts) >= self.request.budget
-
-
-@dataclass(frozen=True, eq=False)
-class Candidate:
-    """A chain on its bowl, as it was tried."""
-
-    proposal: proposals.Proposal
-    bowl: object
-    ways: object  # Orientations
-    weights: np.ndarray  # (M,)
-    tried: trying.Tried
-    attempt: Attempt
 
 
 def design(part, plain, given, request, *, known=None, told=None, before=None):
@@ -196,21 +162,35 @@ def _tried_out(search, made, start, proposal, ways, weights):
         clean = candidate.attempt.clean
         (search.passed if clean else search.failed).append(candidate)
         if clean:
-            return candidate.attempt.rate >= search.request.target
-        proposal = proposals.mended(proposal, candidate.tried, candidate.ways.lying)
+            return _fast_enough(search, made, candidate)
+        seen = candidate.tried, candidate.ways.lying
+        proposal = proposals.mended(proposal, *seen) or proposals.guarded(proposal, *seen)
         if proposal is None or search.spent:
             return False
     return False
 
 
-def _attempt(search, made, proposal, weights):
+def _fast_enough(search, made, candidate):
+    """Whether a clean candidate brings the target, calmly or, where its trial stays clean, hopping."""
+    if candidate.attempt.rate >= search.request.target or search.spent or not candidate.proposal.devices:
+        return candidate.attempt.rate >= search.request.target
+    step = f"{candidate.proposal.step}, faster: parts hop"
+    other = _attempt(search, made, replace(candidate.proposal, step=step), candidate.weights, hops=True)
+    if other.attempt.clean:
+        search.passed.append(other)
+    return other.attempt.clean and other.attempt.rate >= search.request.target
+
+
+def _attempt(search, made, proposal, weights, hops=False):
     """One short trial at the drive that the target asks for."""
     request, part = search.request, search.part
     ways = proposals.known_through(part, search.known.aspects, replace(made.bowl, devices=proposal.devices))
     gain = float((weights * ways.leaving[:, ways.leaves_as[proposal.row]]).sum())
     pitch = trying.GAP * float((weights * ways.lengths).sum())
     asked = search.reserve * request.target * pitch / max(gain, 1e-3)
-    bowl = replace(calm_drive.driven(made, asked, hops=not proposal.devices), devices=proposal.devices)
+    bowl = replace(
+        calm_drive.driven(made, asked, hops=hops or not proposal.devices), devices=proposal.devices
+    )
     ways = arrivals.oriented(proposals.known_through(part, search.known.aspects, bowl), search.known.measured)
     name = ways.lying[proposal.row].name
     search.told(f"trial {len(search.attempts) + 1}: {name}, {proposal.step}")

@@ -7,9 +7,12 @@ import numpy as np
 from feederscrew.designing import trying
 from feederscrew.rates import stream
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling.chain import judged, millimetres
+from feederscrew.tooling.chain import judged, limits, millimetres
+from feederscrew.tooling.devices.kinds import KINDS
 
 MARGINS = (5e-4, 2.5e-4)  # [m] asked for to either side: the wider first
+GUARDS = tuple(KINDS[name] for name in ("gap", "canyon", "narrowed_track"))
+LEAST_WINDOW = 1e-3  # [m] between what passes such a drop and what it rejects
 STEP = 5e-5  # [m] to which a shop makes a value
 
 
@@ -136,6 +139,35 @@ def mended(proposal, tried, every):
         cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
         return replace(proposal, cuts=cuts, step=f"{kind} moved to {other.device.text}")
     return None
+
+
+def guarded(proposal, tried, every):
+    """Return the proposal with a drop before it for what is carried through; None where none tells it.
+
+    Only devices through which what they reject falls are taken: a queue hardly notices them.
+    """
+    carried = [k for n, k in enumerate(tried.rows) if tried.wrong[n]]
+    wanted = trying.wanted_rows(tried.known, tried.state)
+    if not carried or not wanted:
+        return None
+    best, chosen = LEAST_WINDOW, None
+    for kind in GUARDS:
+        values = limits(kind, every)
+        sign = 1.0 if kind.bound == "lower" else -1.0
+        room = (sign * values[wanted]).min() - (sign * values[carried]).max()
+        if np.isfinite(room) and room > best:
+            middle = 0.5 * ((sign * values[wanted]).min() + (sign * values[carried]).max())
+            best, chosen = room, (kind, sign * middle)
+    if chosen is None or any(cut.device.kind == chosen[0].kind for cut in proposal.cuts):
+        return None
+    kind, limit = chosen[0], float(np.round(chosen[1] / STEP) * STEP)
+    device = kind("design", limit=limit, text=millimetres(limit))
+    must = np.array([k in carried for k in range(len(every))])
+    ends = [
+        kind("design", limit=limit + way, text=millimetres(limit + way)) for way in (-0.5 * best, 0.5 * best)
+    ]
+    cut = judged(every, proposal.row, device, must, *ends)
+    return replace(proposal, cuts=(cut, *proposal.cuts), step=f"{kind.kind} of {device.text} before it")
 
 
 def _lost_at(tried, kind):

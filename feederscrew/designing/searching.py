@@ -1,0 +1,45 @@
+"""What the loop knows while it runs."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from feederscrew.designing import proposals, trying
+from feederscrew.designing.record import Attempt
+from feederscrew.studies.rate import Shares
+
+RESERVE = 1.7  # of the target, for which a bowl is driven: queues bring less than rows, counts scatter
+
+
+@dataclass(eq=False)
+class Search:
+    """What the loop knows while it runs."""
+
+    part: object
+    request: object
+    plain: object  # Bowl as given
+    given: frozenset
+    told: object  # callable of a sentence
+    known: Shares | None = None
+    attempts: list = field(default_factory=list)
+    passed: list = field(default_factory=list)  # (rate, Candidate) of clean attempts
+    failed: list = field(default_factory=list)  # the same of others that deliver
+    before: object = None
+    reserve: float = RESERVE
+
+    @property
+    def spent(self):
+        """Whether the budget of trials is used up."""
+        return len(self.attempts) >= self.request.budget
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A chain on its bowl, as it was tried."""
+
+    proposal: proposals.Proposal
+    bowl: object
+    ways: object  # Orientations
+    weights: np.ndarray  # (M,)
+    tried: trying.Tried
+    attempt: Attempt
