@@ -87,13 +87,12 @@ class Body:
         return self.answers[launch]
 
     def answer(self, launch):
-        """The recommended answer for a launch: the closed form's where it is good enough."""
-        found = self.closed(launch)
-        return self.dropped(launch) if found.wants_drops else found
+        """The recommended answer for a launch: that of the drop test."""
+        return self.dropped(launch)
 
     def dropped(self, launch):
         """The answer of a drop test."""
-        return recommended.dropped(self.tally(launch), self.aspects.stable, launch)
+        return recommended.dropped(self.tally(launch), launch)
 
     def _keep(self):
         if self.file:

@@ -35,7 +35,7 @@ class Jobs(click.ParamType):
 )
 @options.overrides
 @options.rule
-@orientation.FED
+@orientation.LAUNCHED
 @click.option(
     "--drops",
     metavar="N",
@@ -59,8 +59,8 @@ def batch(ctx, sources, configs, overrides, rule, launch, drops, jobs, scheduler
 
     Compute every part in every bowl: its aspects, how it travels, and the rate of the orientation
     that leaves the bowl most often, or of the aspect that a list asks for. How often parts lie on each
-    aspect is, with a bowl file, what arrives from its moving floor, as for `feeder rate`: one to three
-    seconds a part. A part that fails is reported, and the others go on; exit status 1 says that some failed.
+    aspect is what arrives from the bowl's moving floor, as for `feeder rate`: one to five seconds a part.
+    A part that fails is reported, and the others go on; exit status 1 says that some failed.
 
     PARTS are part files, folders of them, patterns ("parts/**/*.stl") and lists: a CSV whose first
     line names its columns, out of part, units, density, centre_of_mass, names, aspect and config. -o DIR
@@ -73,8 +73,7 @@ def batch(ctx, sources, configs, overrides, rule, launch, drops, jobs, scheduler
         raise click.UsageError("Missing option '-o' - say where the results go")
     requests = batches.gather(sources, configs, overrides)
     workers = batches.crew(jobs, None if _typed(ctx, "jobs") else scheduler)
-    fed = orientation.choice({"launch": launch, "probabilities": None}, configs)["fed"]
-    choices = batches.Choices(rule=rule, drops=drops, launch=launch, fed=fed, pictures=pictures)
+    choices = batches.Choices(rule=rule, drops=drops, launch=launch, pictures=pictures)
     with Progress(len(requests), not out.quiet) as progress:
         found = batches.run(
             requests, out.directory, workers=workers, choices=choices, resume=resume, tell=progress.tell

@@ -26,11 +26,12 @@ def headings(part, aspect, bowl, pictures, out):
     from feederscrew.output import columns, offers
     from feederscrew.output.headings import files, tables
     from feederscrew.studies.headings import headings as study
+    from feederscrew.studies.rate import arriving
 
     solid, given = out.part(part), settings(**bowl)
     conditions = columns.conditions(solid) | texts(given)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
-        found = study(solid, record(given).track, aspect)
+        found = study(solid, record(given).track, aspect, arriving(solid, record(given)))
         out.say(tables.answer(found), *tables.remarks(found))
         offers.write(folder, files.offers(found, texts(given)), pictures=pictures)
     out.show(tables.frame(found), tables.document(found, texts(given)), hidden=tables.HIDDEN)

@@ -59,11 +59,16 @@ def any_chain(command):
     return command
 
 
-FED = click.option(
+LAUNCHED = click.option(
     "--launch",
     type=options.LAUNCHES,
-    help="What is done to the part.  [default: fed onto the moving floor of --config, else feed]",
+    help="What is done to the part, on a floor at rest.  [default: fed onto the bowl's moving floor]",
 )
+FED = click.option(
+    "--fed", metavar="N", type=click.IntRange(1, 10**6),
+    help="Feed N parts onto the moving floor.  [default: until every share is known to 2 %]",
+)  # fmt: skip
+SEED = click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of these parts.")
 PROBABILITIES = click.option(
     "--probabilities",
     metavar="CSV",
@@ -74,21 +79,27 @@ PROBABILITIES = click.option(
 
 def taken(command):
     """Add the options that say whose shares of the aspects are taken; the command receives ``taken``."""
-    return options.stacked(options.packed(command, "taken", ("launch", "probabilities")), FED, PROBABILITIES)
+    names = ("launch", "probabilities", "fed")
+    return options.stacked(options.packed(command, "taken", names), LAUNCHED, PROBABILITIES, FED)
 
 
-def shares(out, part, bowl, taken, path=None):
+def taken_of_a_seed(command):
+    """Add the same with ``--seed``, for a command that has no seed of its own."""
+    names = ("launch", "probabilities", "fed", "seed")
+    return options.stacked(options.packed(command, "taken", names), LAUNCHED, PROBABILITIES, FED, SEED)
+
+
+def shares(out, part, bowl, taken, rule):
     """Return the aspects of a part with the answer that the options name, a ``studies.rate.Shares``.
 
-    Without any, parts are fed onto the moving floor of the bowl of ``path``; where that is None, the
-    recommended answer is taken.
+    Without any, parts are fed onto the moving floor of the bowl.
     """
     from feederscrew.studies import rate as study
 
-    return study.shares(part, bowl, **choice(taken, path), **telling(out))
+    return study.shares(part, bowl, **choice(taken), rule=rule, **telling(out))
 
 
-def arriving(out, part, taken, path=None):
+def arriving(out, part, taken, rule):
     """Return a function from a bowl to what ``shares`` returns of it; it shows how far the first one is."""
     from feederscrew.studies import rate as study
 
@@ -97,20 +108,22 @@ def arriving(out, part, taken, path=None):
     def found(bowl):
         if bowl not in known:
             told = {} if known else telling(out)
-            known[bowl] = study.shares(part, bowl, **choice(taken, path), **told)
+            known[bowl] = study.shares(part, bowl, **choice(taken), rule=rule, **told)
         return known[bowl]
 
     return found
 
 
-def choice(taken, path=None):
+def choice(taken):
     """Return the keywords of ``studies.rate.shares`` that the options name; a wrong call if two clash."""
     asked = click.get_current_context().get_parameter_source("rule") is click.core.ParameterSource.COMMANDLINE
-    others = [name for name, given in (("--launch", taken["launch"]), ("--rule", asked)) if given]
+    others = [("--launch", taken["launch"]), ("--rule", asked), ("--fed", taken["fed"])]
+    others = [name for name, given in others if given]
     if taken["probabilities"] is not None and others:
         raise click.UsageError(f"--probabilities takes the place of {others[0]} - leave one of them out")
-    named = asked or any(value is not None for value in taken.values())
-    return {**taken, "fed": path is not None and not named}
+    if taken["launch"] is not None and taken["fed"] is not None:
+        raise click.UsageError("--fed is for parts on the moving floor - leave it or --launch out")
+    return taken
 
 
 def telling(out):

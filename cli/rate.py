@@ -8,7 +8,7 @@ from feederscrew_cli import grouped, options, orientation
 @grouped.command(short_help="Correctly oriented parts per minute, with each factor of the chain.")
 @options.part
 @orientation.any_chain
-@orientation.taken
+@orientation.taken_of_a_seed
 @orientation.doubt
 @options.bowl
 @options.output
@@ -38,7 +38,7 @@ def rate(part, aspect, heading, rule, gap, fill, taken, play, tolerance, bowl, o
     solid, settings = out.part(part), out.settings(bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
     record = bowls.record(settings)
-    known = orientation.shares(out, solid, record, taken, bowl["path"])
+    known = orientation.shares(out, solid, record, taken, rule)
     with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
         found = study(
             solid, record, aspect, known=known,

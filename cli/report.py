@@ -57,7 +57,7 @@ def _all(decorators):
 @grouped.command(short_help="All that is known of a part in a bowl, on one page to turn, print and keep.")
 @options.part
 @_all(WANTED)
-@orientation.taken
+@orientation.taken_of_a_seed
 @options.bowl
 @_all(PLACE)
 def report(part, bowl, taken, directory, format, quiet, verbose, **wanted):
@@ -79,7 +79,7 @@ def report(part, bowl, taken, directory, format, quiet, verbose, **wanted):
     out = talk.Output.of(format=format, directory=directory, quiet=quiet, verbose=verbose)
     solid = out.part(part)
     waiting.conveying(out)
-    chosen = orientation.choice(taken, bowl["path"]) | orientation.telling(out)
+    chosen = orientation.choice(taken) | orientation.telling(out)
     found = study(solid, **bowl, **wanted, **chosen, command=repeated(out.arguments))
     effective = columns.conditions(solid) | texts(found.settings)
     gc.freeze()  # what is loaded stays: it need not be looked through after every chapter

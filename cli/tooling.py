@@ -112,7 +112,7 @@ def tooling(
     solid, settings = out.part(part), out.settings(bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
     record = bowls.record(settings)
-    known = orientation.shares(out, solid, record, taken, bowl["path"])
+    known = orientation.shares(out, solid, record, taken, rule)
     with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
         with Progress(None, not out.quiet, "orientations") as bar:
             found = study(

@@ -97,7 +97,7 @@ def trial(part, aspect, rule, taken, parts, landing, queued, amplitudes, seed, j
     solid, settings = out.part(part), out.settings(bowl)
     driven = bowls.strokes(bowls.record(settings), amplitudes)
     effective = columns.conditions(solid) | bowls.texts(settings)
-    known = orientation.shares(out, solid, driven[0], taken, bowl["path"])
+    known = orientation.shares(out, solid, driven[0], taken, rule)
     measured = queued.pop("measured")
     beside = studies.at_outlet(measured, known) if measured else None
     inputs = solid.inputs | known.inputs | ({measured: beside.sha256} if beside else {})

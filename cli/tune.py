@@ -16,7 +16,7 @@ from feederscrew_cli.quantity import Quantity
     help="Correctly oriented parts: 120/min.",
 )
 @orientation.chain
-@orientation.taken
+@orientation.taken_of_a_seed
 @click.option("--worst", is_flag=True, help="Give the rate at the worst friction, a fifth lower or higher.")
 @options.bowl
 @options.output
@@ -40,7 +40,7 @@ def tune(part, target, aspect, heading, rule, gap, fill, taken, worst, bowl, out
     effective = columns.conditions(solid) | bowls.texts(settings)
     waiting.conveying(out)
     record = bowls.record(settings)
-    arriving = orientation.arriving(out, solid, taken, bowl["path"])
+    arriving = orientation.arriving(out, solid, taken, rule)
     with out.folder(solid.name, solid.inputs | arriving(record).inputs, effective) as folder:
         found = study(
             solid, record, aspect, target, arriving=arriving, progress=waiting.told(out, "settings"),

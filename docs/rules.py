@@ -20,8 +20,8 @@ MEASURED = PAGE.parent / "measured"
 HEAD = "| Column | What it is | When to trust it | Source |\n|---|---|---|---|\n"
 ANSWERS = (
     "| `p_drop` | a simulated drop test | any launch onto a hard surface | own: see below |\n"
-    "| `p_recommended`, `_low`, `_high` | the answer for `--launch`: a closed form where one is good enough, "
-    "else `p_drop` | one answer; not for part cards | own: see below |\n"
+    "| `p_recommended`, `_low`, `_high` | the answer for `--launch`: `p_drop`; with `--rule closed` "
+    "the closed form nearest to it | one answer; not for part cards | own: see below |\n"
 )
 
 

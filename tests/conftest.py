@@ -5,6 +5,8 @@ import pytest
 from click.testing import CliRunner
 from hypothesis import settings
 
+from feederscrew.dropping.plate import arrival
+from feederscrew.studies import aspects, memory
 from feederscrew_cli.main import feeder
 
 settings.register_profile("same", derandomize=True, deadline=None)
@@ -14,6 +16,20 @@ settings.load_profile("same")  # the same examples everywhere: new ones are for 
 def pytest_collection_modifyitems(items):
     """Begin with what takes longest, so that no process is left with it when the others are done."""
     items.sort(key=lambda item: item.get_closest_marker("long") is None)
+
+
+@pytest.fixture(autouse=True)
+def few(request, monkeypatch):
+    """Drop and feed few parts where a test does not ask how many, unless it is marked ``thorough``."""
+    if request.node.get_closest_marker("thorough"):
+        memory.forget()
+        yield
+        memory.forget()
+        return
+    monkeypatch.setattr(aspects, "MOST", 500)
+    for name in ("FIRST", "MOST", "LONGEST"):
+        monkeypatch.setattr(arrival, name, 60)
+    yield
 
 
 @pytest.fixture

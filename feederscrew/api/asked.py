@@ -28,9 +28,10 @@ class Answer(TypedDict, total=False):
     """Whose probabilities are taken: the keywords of every function that needs them."""
 
     rule: str  # 'recommended' without it
-    launch: str  # 'place', 'drop', 'flip', 'roll' or 'feed', which is usual
+    launch: str  # on a floor at rest: 'place', 'drop', 'flip', 'roll' or 'feed'
     probabilities: Path  # a file of counts in place of an answer of ours
-    fed: bool  # what arrives at the track's entry from the moving floor of the bowl
+    fed: int  # parts onto the moving floor of the bowl; until the shares are known to 2 % without it
+    fed_seed: int  # of these parts, 1 without it
     known: Shares  # as ``shares`` returned it: nothing is computed again
 
 
@@ -163,14 +164,16 @@ def rule(asked: Answer) -> str:
 def answered(part: Part, bowl: Bowl, asked: Answer) -> Shares:
     """Return the aspects of a part with the answer that was asked for."""
     own: dict[str, Any] = dict(asked)
-    for name in ("rule", "gap", "fill"):
+    for name in ("gap", "fill"):
         own.pop(name, None)
+    own["rule"] = rule(asked)
     known = own.pop("known", None)
-    if strange := sorted(set(own) - {"launch", "probabilities", "fed"}):
+    if strange := sorted(set(own) - {"rule", "launch", "probabilities", "fed", "fed_seed"}):
         raise TypeError(f"unexpected keyword argument {strange[0]!r}")
     if own.get("probabilities") is not None:
         a_file("probabilities", own["probabilities"])
-    check.kind("fed", own.get("fed", False), bool, "give True or False")
+    own["fed"] = count("fed", own.get("fed"))
+    own["seed"] = count("fed_seed", own.pop("fed_seed", 1), 0)
     if known is None:
         return shares(part, bowl, **own)
     check.kind("known", known, Shares, "give what shares returned")

@@ -23,7 +23,7 @@ def shares(part: Part, bowl: Bowl, **answer: Unpack[Answer]) -> Shares:
     part : Part
     bowl : Bowl
     **answer
-        launch, probabilities, fed: whose probabilities are taken, see ``rate``.
+        rule, launch, probabilities, fed, fed_seed: whose probabilities are taken, see ``rate``.
 
     Returns
     -------
@@ -63,9 +63,10 @@ def rate(
         Share of the track that is occupied.
     **answer
         rule : whose probabilities are taken, 'recommended' without it.
-        launch : what is done to the part: 'place', 'drop', 'flip', 'roll' or 'feed', which is usual.
+        launch : what is done to the part on a floor at rest: 'place', 'drop', 'flip', 'roll' or 'feed';
+            without it parts are fed onto the moving floor of the bowl.
         probabilities : file of counts whose shares are taken.
-        fed : take what arrives at the track's entry from the moving floor of the bowl.
+        fed, fed_seed : how many are fed; without it as many as make every share known to 2 %.
         known : what ``shares`` returned, in place of all of them.
 
     Returns

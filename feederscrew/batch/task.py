@@ -33,8 +33,7 @@ class Choices:
 
     rule: str = "recommended"  # whose probabilities the rate takes
     drops: int = 0  # simulated drops of each part
-    launch: str | None = None  # what is done to it; None: the usual one
-    fed: bool = False  # onto the moving floor of a bowl file that was named, where no launch is
+    launch: str | None = None  # what is done to it; None: fed onto the bowl's moving floor
     pictures: bool = True
 
     @property

@@ -84,7 +84,7 @@ def _results(task):
         row=row,
         effective=columns.conditions(part)
         | dict(request.conditions.texts)
-        | {"rule": choices.rule, "drops": choices.drops, "launch": choices.launched, "fed": _fed(task)}
+        | {"rule": choices.rule, "drops": choices.drops, "launch": choices.launch or "fed"}
         | ({"names": request.names.source} if request.names else {}),
         warnings=(*part.warnings, *found.warnings),
         files=dict(files),  # who takes it need not import this module
@@ -122,7 +122,7 @@ def _answered(part, task, files):
     choices = task.choices
     if not choices.drops or part.vertices is None:
         bowl = task.request.conditions.bowl
-        known = shares(part, bowl, launch=choices.launched, fed=_fed(task), jobs=1)
+        known = shares(part, bowl, launch=choices.launch, rule=choices.rule, jobs=1)
         return AspectsStudy(part, known.aspects), {}
     from feederscrew.output.drop import files as drop_files
     from feederscrew.studies.drop import drop
@@ -133,10 +133,4 @@ def _answered(part, task, files):
     tally = study.result.tally
     first = int(np.argmax(tally.p))
     told = {"drops": choices.drops, "drop_aspect": found.names[first], "p_drop": tally.p[first]}
-    return with_drops(part, found, study, launch_named(choices.launched)), told
-
-
-def _fed(task):
-    """Return whether parts are fed onto the moving floor of the bowl that was named."""
-    choices = task.choices
-    return choices.fed and task.request.conditions.given and not (choices.drops or choices.launch)
+    return with_drops(found, study, launch_named(choices.launched)), told

@@ -10,6 +10,7 @@ from feederscrew.dropping.kernel import one_drop as kernel
 from feederscrew.dropping.launches import sample
 from feederscrew.dropping.pool import gather
 from feederscrew.records import Shown
+from feederscrew.resting.rules.recommended import launched
 
 BATCH = 250  # drops a core takes at a time
 ROUND = 8 * BATCH  # drops between two looks at the intervals, whatever the number of jobs
@@ -36,7 +37,7 @@ class Tally(Shown):
     unsettled: int
     unsettled_share: float  # [1] of all drops
     p: np.ndarray  # (A,) [1] of the drops that settled; NaN where none did
-    low: np.ndarray  # (A,) [1] ends of the 95 % interval: Wilson's, and NUMERICAL beside it
+    low: np.ndarray  # (A,) [1] ends of the 95 % interval: sampling, steps, and what a launch leaves open
     high: np.ndarray
     widest: float  # [1] half the longest of Wilson's intervals: the sampling alone
     gentle: np.ndarray  # (A,) [1] among the third of the drops launched with the least energy
@@ -124,14 +125,16 @@ def tally(drops, rows, count):
     low, high = wilson(counts, settled)
     order, third = np.argsort(drops.energies, kind="stable"), max(total // 3, 1)
     ends = [shares(counted(drops.faces[part], rows, count)) for part in (order[:third], order[-third:])]
-    ends = [np.nan_to_num(end) for end in ends]
+    ends, p = [np.nan_to_num(end) for end in ends], shares(counts)
+    possible = np.bincount(rows, minlength=count) > 0
+    known = launched(p, _wider(counts, low, -1.0), _wider(counts, high, 1.0), possible & bool(settled))
     return Tally(
         counts=check.frozen(counts),
         unsettled=total - settled,
         unsettled_share=(total - settled) / max(total, 1),
-        p=check.frozen(shares(counts)),
-        low=check.frozen(_wider(counts, low, -1.0)),
-        high=check.frozen(_wider(counts, high, 1.0)),
+        p=check.frozen(p),
+        low=check.frozen(known[0] if settled else low),
+        high=check.frozen(known[1] if settled else high),
         widest=half_width(low, high),
         gentle=check.frozen(ends[0]),
         violent=check.frozen(ends[1]),

@@ -68,6 +68,10 @@ class Starts:
     frictions: np.ndarray  # (N,)
     energies: np.ndarray  # (N,) fall and kinetic energy, in units of m g L: how violent the launch is
 
+    def some(self, part):
+        """Return those of a slice."""
+        return Starts(self.states[part], self.restitutions[part], self.frictions[part], self.energies[part])
+
 
 def sample(launch, shape, count, rng):
     """Draw the starting conditions of some drops.

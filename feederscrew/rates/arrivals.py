@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
-from feederscrew.resting.rules.recommended import LAUNCH, Recommended
+from feederscrew.resting.rules.recommended import LAUNCH, Recommended, launched
 from feederscrew.tooling.devices.named import place
 
 UNDECIDED = "the shares at the track's entry are undecided: {}"
@@ -36,7 +36,8 @@ def arrived(aspects, found, seed):
     said = () if found.settled else (UNDECIDED.format(found.reason),)
     said += (STOPPED.format(parts),) if found.shaken.partial else ()
     rule = f"fed onto the moving floor, {parts} parts, seed {seed}"
-    answer = Recommended(rule=rule, launch=LAUNCH, p=found.p, low=found.low, high=found.high)
+    low, high = launched(found.p, found.low, found.high, aspects.stable)
+    answer = Recommended(rule, LAUNCH, found.p, check.frozen(low), check.frozen(high))
     return replace(aspects, recommended=answer, warnings=(*aspects.warnings, *said))
 
 

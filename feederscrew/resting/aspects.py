@@ -44,14 +44,15 @@ class Aspects(Shown):
     barrier_energies: np.ndarray | None = None  # (A,) [J]
     tip_angles: np.ndarray | None = None  # (A,) [rad] of a floor that tips a part that does not slide
     recommended: Recommended | None = None  # the one answer to take; None for a card
+    closed: Recommended | None = None  # the quick look: the closed form nearest to it
     ground: by_class.Ground | None = None  # faces, basins and barriers behind the rows
     warnings: tuple[str, ...] = ()
 
     @property
     def chances(self):
-        """Probability of each aspect by every name a user may ask for: the rules, and 'recommended'."""
-        answer = {} if self.recommended is None else {"recommended": self.recommended.p}
-        return self.probabilities | answer
+        """Probability of each aspect by every name a user may ask for: the rules, 'closed', 'recommended'."""
+        answers = {"closed": self.closed, "recommended": self.recommended}
+        return self.probabilities | {name: one.p for name, one in answers.items() if one is not None}
 
     @property
     def rolling_circles(self):
@@ -69,8 +70,9 @@ class Aspects(Shown):
         return self.names[int(np.argmax(np.nan_to_num(self.chances[self.ranking])))]
 
     def source(self, rule):
-        """Say whose the probabilities of a rule are: 'csa', of the recommended one 'hops, launch feed'."""
-        return self.recommended.rule if rule == "recommended" and self.recommended is not None else rule
+        """Say whose the probabilities of a rule are: 'csa', of an answer 'drop test, launch feed'."""
+        answer = {"closed": self.closed, "recommended": self.recommended}.get(rule)
+        return rule if answer is None else answer.rule
 
     @property
     def ranking(self):
@@ -151,7 +153,7 @@ def _answered(known, launch, exponent):
     """The record with the closed form that is recommended for a launch, or for the user's own surface."""
     own = None if exponent is None else surface.named(exponent)
     answer = recommended.closed_form(known.probabilities, known.stable, known.kinds, launch, own)
-    return replace(known, recommended=answer)
+    return replace(known, recommended=answer, closed=answer)
 
 
 def _moments(part, hull):

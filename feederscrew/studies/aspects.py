@@ -1,7 +1,10 @@
 """The study of ``feeder aspects``: how one part rests, how often, and what tips it."""
 
+import os
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from feederscrew.part.record import Part
 from feederscrew.records import Shown
@@ -10,11 +13,15 @@ from feederscrew.resting.rules import recommended
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
 from feederscrew.resting.rules.surface import EXPONENTS
 from feederscrew.resting.tumbling.by_class import Transition, ground, transitions
+from feederscrew.studies import memory
 
 if TYPE_CHECKING:
     from feederscrew.dropping.ensemble import Tally
+    from feederscrew.studies.drop import DropStudy
 
-NEEDED = 2000  # drops of a test that nobody asked for: 0.011 of standard error on a share of a half
+AIM = "1%"  # half the widest 95 % interval of the sampling at which a part is dropped no further
+MOST = 20_000  # drops: a share of a half takes half of them
+NOTHING = "none of {} drops came to rest: the closed form is taken"
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +62,7 @@ def aspects(
     surface: str | float | None = None,
     launch: str = LAUNCH,
     drops: int | None = None,
+    jobs: int | None = None,
     progress=None,
     before=None,
 ) -> AspectsStudy:
@@ -70,16 +78,18 @@ def aspects(
         Count each class once in the PMI rule, as the thesis's tables do.
     surface : str or float [1], optional
         What it lands on, 'soft', 'medium', 'hard', or the exponent: the surface-weighted rule is then the
-        recommended closed form.
+        answer, and the part is not dropped.
     launch : str
         What is done to the part: 'place', 'drop', 'flip', 'roll', 'feed'.
     drops : int, optional
-        Drop it so often; the answer is then that of the drop test. Without it the part is dropped NEEDED
-        times where no closed form is good enough; with 0 never.
+        Drop it so often; with 0 never: the answer is then the closed form. Without it the part is dropped
+        until every share is known to AIM.
+    jobs : int, optional
+        Cores to use; all there are without it. Nothing else depends on it.
     progress : function, optional
         As in ``ensemble.drop``.
     before : function, optional
-        Called before a drop test begins, with the number of drops.
+        Called before a drop test begins, with the number of drops, None where that is not known.
 
     Returns
     -------
@@ -92,13 +102,11 @@ def aspects(
     """
     exponent = EXPONENTS[surface] if isinstance(surface, str) else surface
     found = find(part, unstable=unstable, as_published=as_published, exponent=exponent, launch=launch)
-    if drops is None and found.recommended is not None and found.recommended.wants_drops:
-        drops = NEEDED
-    if not drops:
+    wanted = part.vertices is not None and np.count_nonzero(found.stable) > 1 and exponent is None
+    if drops == 0 or (drops is None and not wanted):
         return AspectsStudy(part, found)
-    if before:
-        before(drops)
-    return _dropped(part, found, recommended.launch_named(launch), drops, progress)
+    launch = recommended.launch_named(launch)
+    return with_drops(found, _dropped(part, found, launch, drops, jobs, progress, before), launch)
 
 
 def answered(part: Part) -> Aspects:
@@ -106,19 +114,26 @@ def answered(part: Part) -> Aspects:
     return aspects(part).aspects
 
 
-def _dropped(part, found, launch, drops, progress):
-    """The study with a drop test."""
+def _dropped(part, found, launch, drops, jobs, progress, before):
+    """The drop test, made once in a run."""
     from feederscrew.studies.drop import drop
 
-    return with_drops(part, found, drop(part, launch, drops=drops, progress=progress, aspects=found), launch)
+    def make():
+        if before:
+            before(drops)
+        return drop(part, launch, **many, jobs=cores, progress=progress, aspects=found)
+
+    many = {"drops": MOST, "until": AIM} if drops is None else {"drops": drops}
+    cores = jobs or os.cpu_count() or 1
+    test = memory.once(part, found, (launch, drops), make, lambda test: not test.result.drops.partial)
+    return replace(test, part=part, aspects=found)
 
 
-def with_drops(part: Part, found: Aspects, test, launch: str) -> AspectsStudy:
+def with_drops(found: Aspects, test: "DropStudy", launch: str) -> AspectsStudy:
     """Return the study with a drop test, whose answer takes the place of the closed form's.
 
     Parameters
     ----------
-    part : Part
     found : Aspects
         With the closed form's answer for the launch.
     test : DropStudy
@@ -129,25 +144,12 @@ def with_drops(part: Part, found: Aspects, test, launch: str) -> AspectsStudy:
     Returns
     -------
     AspectsStudy
-        Where the two answers have nothing in common, with wider intervals and a warning.
+        With a warning where the user stopped the test, or nothing came to rest.
     """
-    tally = test.result.tally
-    answer, apart = recommended.reconciled(
-        recommended.dropped(tally, found.stable, launch), found.recommended
-    )
-    said = _apart(found, tally, apart)
-    return AspectsStudy(part, replace(found, recommended=answer, warnings=found.warnings + said), tally)
-
-
-def _apart(found, tally, apart):
-    """What a user must know where drop test and closed form disagree by more than both their intervals."""
-    shares = [
-        f"{found.names[k]} {tally.p[k]:.1%} and {found.recommended.p[k]:.1%}" for k in apart.nonzero()[0]
-    ]
-    if not shares:
-        return ()
-    rule = found.recommended.rule.partition(",")[0]
-    return (
-        f"the drop test and the closed form ({rule}) disagree beyond their intervals: {', '.join(shares)} - "
-        "the interval is widened to hold both",
-    )
+    tally, said = test.result.tally, ()
+    answer = recommended.dropped(tally, launch)
+    if test.result.drops.partial:
+        said = (f"partial: stopped after {test.drops} drops",)
+    if not tally.counts.any():
+        answer, said = found.recommended, (*said, NOTHING.format(test.drops))
+    return AspectsStudy(test.part, replace(found, recommended=answer, warnings=found.warnings + said), tally)

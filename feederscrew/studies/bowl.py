@@ -21,7 +21,7 @@ from feederscrew.rates.tipping import remark
 from feederscrew.records import Shown
 from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.studies import solidbowl
-from feederscrew.studies.aspects import answered
+from feederscrew.studies.rate import arriving
 from feederscrew.tooling.orientations import orientations
 
 STEEL = 7850.0  # [kg/m3] of a fill without a part
@@ -152,7 +152,7 @@ def bowl(
         If no bowl is so large, or none reaches the target.
     """
     plain = solidbowl.in_material(answer.conveying(bowls.record(settings)), solid)
-    found = answered(part) if known is None else known
+    found = arriving(part, plain, rule) if known is None else known
     straight = replace(sizing.STRAIGHT, climb=plain.track.climb)
     wanted = None if aspect is None else well_oriented.wanted(part, found, straight, aspect, heading)
     lying = sizing.lying(part, found, wanted)

@@ -1,6 +1,7 @@
 """The study of ``feeder floor``: a part on one aspect in one heading on the floor of one bowl."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,7 +15,7 @@ from feederscrew.mechanics.standing import standing
 from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.posture import Posture
-from feederscrew.studies.aspects import answered
+from feederscrew.studies.rate import arriving
 
 TOP_ANGLE, TOP_FRICTION = np.pi / 2.0, 1.0  # [rad], [1] as Figure 5-6
 LEAST_FREQUENCY, TOP_FREQUENCY, TOP_AMPLITUDE = 10.0, 120.0, 0.5e-3  # [Hz], [Hz], [m] as Figure 5-7, or more
@@ -137,7 +138,7 @@ def floor(part, bowl, aspect=None, heading=0.0):
         If the part has no such aspect, or the drive is not ``limits.plain``.
     """
     limits.plain(bowl)
-    stand, why = standing(part, aspect, "floor", answered)
+    stand, why = standing(part, aspect, "floor", partial(arriving, bowl=bowl))
     cycle, course = balance.over_cycle(stand, bowl, heading)
     return FloorStudy(
         part=part,

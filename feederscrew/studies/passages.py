@@ -134,7 +134,7 @@ def feeding(part: Part, counts: DeviceCounts, *, launch=None, progress=None, bef
     """
     config, bowl = bowl_of(counts)
     launch = launch or counts.head.launch or None
-    found = shares(part, bowl, launch=launch, fed=launch is None, progress=progress, before=before).aspects
+    found = shares(part, bowl, launch=launch, progress=progress, before=before).aspects
     flow, stations = counted_ways(part, found, bowl, counts)
     if (known := found.recommended) is None:
         raise ArgumentError("part", "is a part card, which meets no device", "give a mesh")

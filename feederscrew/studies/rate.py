@@ -10,6 +10,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.bowl.devices import strangers
 from feederscrew.bowl.record import Bowl
+from feederscrew.conveying.answer import conveying
 from feederscrew.machine import speeds
 from feederscrew.part.record import Part
 from feederscrew.rates import arrivals, well_oriented
@@ -17,6 +18,8 @@ from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH, launch_named
+from feederscrew.resting.rules.registry import RECOMMENDED
+from feederscrew.studies import memory
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.tooling.devices.base import Device
 
@@ -45,24 +48,33 @@ def shares(
     *,
     launch: str | None = None,
     probabilities: str | PathLike[str] | None = None,
-    fed: bool = False,
+    rule: str = RECOMMENDED,
+    fed: int | None = None,
+    seed: int = SEED,
     jobs: int | None = None,
     progress=None,
     before=None,
 ) -> Shares:
     """Return the aspects of a part with the answer that rate, report, tune, batch and tooling take.
 
+    Without a launch, a file or a rule of its own that is what lies at the track's entry: parts fed from a
+    hopper onto the moving floor of the bowl.
+
     Parameters
     ----------
     part : Part
     bowl : Bowl
-        Its floor, for ``fed``.
+        Its drive and surface move the floor.
     launch : str, optional
-        What is done to the part; 'feed' without it.
+        What is done to the part, on a floor at rest.
     probabilities : str or Path, optional
         File of counts in place of an answer of ours, by aspect or by orientation.
-    fed : bool
-        Feed parts onto the moving floor of the bowl: what lies at the track's entry then.
+    rule : str
+        Whose probabilities will be taken: with another one than the recommended answer nothing is simulated.
+    fed : int, optional
+        Parts that are fed onto the floor; without it as many as make every share known to 2 %.
+    seed : int
+        Of the parts on the floor.
     jobs : int, optional
         Cores for that; all there are without it. Nothing else depends on it.
     progress, before : function, optional
@@ -77,24 +89,43 @@ def shares(
     FeederError
         Every fault of the file; if the part has no shape to drop.
     """
-    launch = LAUNCH if launch is None else launch_named(launch)
-    own = {"progress": progress, "before": before}
+    own = {"progress": progress, "before": before, "jobs": jobs}
+    check.argument("seed", seed, 0)
+    if fed is not None:
+        check.argument("fed", fed, 1)
     if probabilities is not None:
         found = resting(part, drops=0).aspects
         measured = profiles.read(probabilities, found.names)
         return Shares(arrivals.counted(found, measured), measured)
-    if not fed or part.vertices is None:
-        return Shares(resting(part, launch=launch, **own).aspects)
-    from feederscrew.dropping.plate.arrival import arrival
-
+    if launch is not None or rule != RECOMMENDED or part.vertices is None:
+        drops = None if rule == RECOMMENDED else 0
+        return Shares(resting(part, launch=launch_named(launch or LAUNCH), drops=drops, **own).aspects)
     found = resting(part, drops=0).aspects
+    if not bowl.gravity > 0.0:
+        conveying(bowl)  # says so
     if np.count_nonzero(found.stable) < 2:
         return Shares(found)
-    if before:
-        before(None)
-    floor = arrival(part, found, bowl, seed=SEED, jobs=jobs or os.cpu_count() or 1, progress=progress)
-    arrived = arrivals.arrived(found, floor, SEED)
+    arrived = arrivals.arrived(found, _on_the_floor(part, found, bowl, fed, seed, own), seed)
     return Shares(arrived, fed=arrived.recommended is not found.recommended)
+
+
+def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED) -> Aspects:
+    """Return the aspects of a part with what arrives at the entry of a bowl's track as their answer."""
+    return shares(part, bowl, rule=rule).aspects
+
+
+def _on_the_floor(part, found, bowl, fed, seed, own):
+    """What lies at the track's entry, followed once in a run."""
+    from feederscrew.dropping.plate.arrival import arrival
+
+    def make():
+        if own["before"]:
+            own["before"](None)
+        cores = own["jobs"] or os.cpu_count() or 1
+        return arrival(part, found, bowl, drops=fed, seed=seed, jobs=cores, progress=own["progress"])
+
+    floor = (bowl.drive, bowl.restitution, bowl.friction.kinetic, bowl.gravity)
+    return memory.once(part, found, (floor, fed, seed), make, lambda arrived: not arrived.shaken.partial)
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +164,7 @@ def rate(
     aspect: str | None = None,
     *,
     heading: float | None = None,
-    rule: str = "recommended",
+    rule: str = RECOMMENDED,
     devices: Sequence[Device] | None = None,
     gap: float = 0.0,
     fill: float = 1.0,
@@ -163,7 +194,7 @@ def rate(
     sigma : float [m]
         Standard deviation of play and tolerance together, of every device.
     known : Shares, optional
-        Of the part; without them those of the launch 'feed'.
+        Of the part; without them those that arrive from the bowl's moving floor.
 
     Returns
     -------
@@ -177,7 +208,7 @@ def rate(
     """
     checked(bowl, heading, gap, fill, sigma)
     chain = bowl.devices if devices is None else tuple(devices)
-    known = shares(part, bowl) if known is None else known
+    known = shares(part, bowl, rule=rule) if known is None else known
     found = known.aspects
     target = None if aspect is None else well_oriented.wanted(part, found, bowl.track, aspect, heading)
     ways = well_oriented.orientations(part, found, bowl.track, chain, sigma, bowl)

@@ -18,7 +18,7 @@ from feederscrew.studies.floor import floor
 from feederscrew.studies.headings import headings
 from feederscrew.studies.inertia import inertia
 from feederscrew.studies.passages import passages
-from feederscrew.studies.rate import Shares, rate, shares
+from feederscrew.studies.rate import SEED, Shares, rate, shares
 from feederscrew.studies.slide import slide
 from feederscrew.studies.track import track
 from feederscrew.studies.trial import trial
@@ -159,7 +159,8 @@ def report(
     target=None,
     launch=None,
     probabilities=None,
-    fed=False,
+    fed=None,
+    seed=SEED,
     command="",
     sent=None,
     progress=None,
@@ -181,7 +182,7 @@ def report(
     fill : float [1]
     target : float [1/s], optional
         Rate that a bowl is sized for.
-    launch, probabilities, fed, progress, before
+    launch, probabilities, fed, seed, progress, before
         As for ``studies.rate.shares``.
     command : str
         That repeats the report.
@@ -199,7 +200,7 @@ def report(
     """
     settings = bowls.settings(path, overrides)
     bowl = bowls.record(settings)
-    taken = {"launch": launch, "probabilities": probabilities, "fed": fed}
+    taken = {"launch": launch, "probabilities": probabilities, "fed": fed, "seed": seed, "rule": rule}
     known = shares(part, bowl, **taken, progress=progress, before=before)
     found = known.aspects
     rule = found.ranking if rule == RECOMMENDED else rule  # a card has no such answer

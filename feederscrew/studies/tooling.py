@@ -15,7 +15,7 @@ from feederscrew.rates.steadiness import steady
 from feederscrew.rates.tipping import marked, remark
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
-from feederscrew.studies.aspects import answered
+from feederscrew.studies.rate import arriving
 from feederscrew.tooling.chain import FINE, STEP, Wishes
 from feederscrew.tooling.design import MARGIN, design, place
 from feederscrew.tooling.devices.kinds import KINDS
@@ -134,7 +134,7 @@ def tooling(
     FeederError
         If the part has no mesh, is too large for the bowl, or has no such orientation or rule.
     """
-    found = answered(part) if known is None else known
+    found = arriving(part, bowl, rule) if known is None else known
     every, _ = marked(named(orientations(part, found, bowl.track)), bowl)
     if rule not in found.chances:
         raise ArgumentError(

@@ -1,6 +1,7 @@
 """The study of ``feeder track``: a part on one aspect against the wall of one bowl."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -19,7 +20,7 @@ from feederscrew.mechanics.wall.stable_headings import Headings
 from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.posture import Posture
-from feederscrew.studies.aspects import answered
+from feederscrew.studies.rate import arriving
 
 USUAL = ("track.bank=0deg:30deg:41", "track.climb=0deg:8deg:41")  # of a map
 
@@ -93,7 +94,7 @@ def track(part, bowl, aspect=None, heading=None):
         the drive is not ``limits.plain``.
     """
     limits.plain(bowl)
-    posture, why = standing(part, aspect, "track", answered)
+    posture, why = standing(part, aspect, "track", partial(arriving, bowl=bowl))
     seat, found, row = cells.seated(posture, bowl, heading)
     now, held_across = _from_rest(seat, bowl)
     cycle, course = balance.over_cycle(seat, bowl)

@@ -119,7 +119,7 @@ def trial(
     rule : str
         Whose probabilities say in which shares orientations are offered.
     known : Shares, optional
-        What arrives; without them what the launch 'feed' gives.
+        What arrives; without them what the first bowl's moving floor gives.
     measured : Measured, optional
         From ``at_outlet``: what left a bowl, to stand beside the profile of the queue.
     parts : int, optional
@@ -152,7 +152,7 @@ def trial(
         If nothing was finished.
     """
     solid_of(part)  # refuses a part without a surface before anything else
-    known = arriving(part, bowls[0]) if known is None else known
+    known = arriving(part, bowls[0], rule=rule) if known is None else known
     found = known.aspects
     if rule not in found.chances:
         raise ArgumentError(

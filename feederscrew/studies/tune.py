@@ -95,7 +95,7 @@ def tune(
     check.argument("target", target, LEAST)
     checked(bowl, heading, gap, fill)
     chain = bowl.devices if devices is None else tuple(devices)
-    ways = _Ways(part, bowl, chain, arriving or partial(shares, part))
+    ways = _Ways(part, bowl, chain, arriving or partial(shares, part, rule=rule))
     found = ways.shares(bowl).aspects
     wanted = well_oriented.wanted(part, found, bowl.track, aspect, heading)
     # raises where none ever leaves so

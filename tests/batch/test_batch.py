@@ -22,7 +22,7 @@ from feederscrew.errors import FeederError
 ROOT = Path(__file__).parents[2]
 PARTS = ROOT / "parts"
 NUT = PARTS / "squarenut_m5.stl"
-TABLES_ONLY = batch.Choices(pictures=False)
+TABLES_ONLY = batch.Choices(rule="closed", pictures=False)  # nothing is simulated
 
 
 def block(path, x, y, z):
@@ -199,9 +199,12 @@ def test_the_key_hangs_on_everything_that_the_results_hang_on():
 def test_the_row_is_what_the_commands_say(run):
     outcome = works.work(of(asked(NUT)[0]))
     said = ["--aspect", outcome.row["aspect"], "--heading", f"{outcome.row['heading_deg']:.12f}deg"]
-    rates = json.loads(run("rate", NUT, *said, "--format", "json", "-q").stdout)
+    rates = json.loads(run("rate", NUT, *said, "--rule", "closed", "--format", "json", "-q").stdout)
     assert outcome.row["parts_per_minute"] == pytest.approx(rates["parts_per_minute"], rel=1e-9)
-    assert outcome.files["aspects.csv"].decode() == run("aspects", NUT, "--format", "csv", "-q").stdout
+    assert (
+        outcome.files["aspects.csv"].decode()
+        == run("aspects", NUT, "--rule", "closed", "--format", "csv", "-q").stdout
+    )
 
 
 def test_a_bug_on_one_part_is_a_reason_and_no_more(monkeypatch):
@@ -214,8 +217,8 @@ def test_a_bug_on_one_part_is_a_reason_and_no_more(monkeypatch):
 @pytest.mark.long
 def test_one_process_and_two_write_the_same_bytes(tmp_path, three):
     one, two, parts = tmp_path / "one", tmp_path / "two", three[:2]
-    ran(parts, one, jobs=1, choices=batch.Choices())
-    ran(parts, two, jobs=2, choices=batch.Choices())
+    ran(parts, one, jobs=1, choices=batch.Choices(rule="closed"))
+    ran(parts, two, jobs=2, choices=batch.Choices(rule="closed"))
     assert tree(one) == tree(two)
     assert {"summary.csv", "index.html", "contact_sheet.png", "parts/a/thumbnail.png"} <= set(tree(one))
     page = (one / "index.html").read_text()
@@ -347,7 +350,7 @@ def test_killed_at_any_moment_and_resumed_it_ends_with_the_same_bytes(tmp_path):
     folder.mkdir()
     for number in range(8):
         block(folder / f"block_{number}.stl", 4.0 + 0.5 * number, 6.0, 3.0)
-    rest = [str(folder), "--no-pictures", "-q", "-o"]
+    rest = [str(folder), "--rule", "closed", "--no-pictures", "-q", "-o"]
     subprocess.run(
         [*call, *rest, str(tmp_path / "whole"), "--jobs", "1"], check=True, cwd=ROOT, capture_output=True
     )
@@ -375,7 +378,7 @@ def test_stopped_at_any_moment_it_ends_soon_and_resumes_to_the_same_bytes(tmp_pa
     folder.mkdir()
     for number in range(8):
         block(folder / f"block_{number}.stl", 4.0 + 0.5 * number, 6.0, 3.0)
-    call += ["batch", str(folder), "--no-pictures", "-q", "--jobs", "2", "--resume", "-o"]
+    call += ["batch", str(folder), "--rule", "closed", "--no-pictures", "-q", "--jobs", "2", "--resume", "-o"]
     for moment in rng.permutation(np.linspace(0.05, 2.3, 6)):  # Python itself, imports, workers, parts
         child = subprocess.Popen(
             [*call, str(tmp_path / "cut")],

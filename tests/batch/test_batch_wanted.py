@@ -21,7 +21,8 @@ def block(tmp_path, monkeypatch):
     return tmp_path / "block.stl"
 
 
-def row(request, **choices):
+def row(request, rule="closed", **choices):
+    choices["rule"] = rule
     made = work.work(task.Task.of(request, batch.Choices(**choices), Path(request.source).read_bytes()))
     assert made.status == task.DONE, made.reason
     return made
@@ -42,10 +43,10 @@ def test_a_list_asks_for_an_aspect(block, tmp_path):
 
 def test_the_launch_and_the_drops_are_the_answer(block):
     (asked,) = batch.gather([str(block)])
-    placed, fed = (row(asked, launch=launch, pictures=False) for launch in ("place", "feed"))
+    placed, fed = (row(asked, "recommended", launch=launch, pictures=False) for launch in ("place", "feed"))
     assert placed.row["answer"].endswith("launch place") and fed.row["answer"].endswith("launch feed")
     assert placed.key != fed.key and placed.effective["launch"] == "place"
-    dropped = row(asked, drops=200, pictures=False)
+    dropped = row(asked, "recommended", drops=200, pictures=False)
     assert dropped.row["answer"] == "drop test, launch feed"
     assert dropped.row["aspect"] == dropped.row["drop_aspect"]
     assert dropped.row["p_orientation"] <= dropped.row["p_drop"]

@@ -14,6 +14,7 @@ from feederscrew.dropping.kernel.one_drop import UNSETTLED
 from feederscrew.dropping.launches import PRESETS, named, sample
 from feederscrew.dropping.pool import gather
 from feederscrew.errors import ArgumentError, ConfigError
+from feederscrew.resting.rules import recommended
 
 BOX, LENGTH = drop_bodies.box((1.0, 1.3, 1.7))
 ROWS = np.array([0, 0, 1, 1, 2, 2])
@@ -141,8 +142,10 @@ def test_a_tally_of_drops_that_never_settle_knows_nothing():
 def test_the_interval_holds_the_numerical_error_beside_the_sampling():
     faces = np.tile([0, 2], 200_000)
     counted = tally(Drops(faces, np.zeros(len(faces)), np.zeros(len(faces)), False), ROWS, 3)
-    assert counted.high[0] - 0.5 == pytest.approx(np.hypot(ensemble.NUMERICAL, counted.widest), rel=1e-3)
-    assert counted.low[2] == 0.0 and counted.high[2] == pytest.approx(0.0, abs=1e-4)
+    known = np.hypot(ensemble.NUMERICAL, counted.widest)
+    assert counted.high[0] - 0.5 == pytest.approx(np.hypot(known, recommended.LAUNCHED), rel=1e-3)
+    rare = recommended.LAUNCHED * recommended.shape(0.0)
+    assert counted.low[2] == 0.0 and counted.high[2] == pytest.approx(rare, abs=1e-4)
 
 
 def test_the_wilson_interval():

@@ -85,7 +85,7 @@ def test_a_floor_that_does_not_move_is_the_floor_of_a_drop_test():
     seen, places = np.full((150, 1), -1), np.zeros((150, 1, 2))
     shaken.ride_all(
         BOX, falling.scratch(BOX), at_rest(), *given, one_drop.Steps(), np.array([60.0]), seen, places,
-        np.zeros(150, int),
+        np.zeros(150, int), np.inf,
     )  # fmt: skip
     assert (seen[:, 0] == faces).mean() >= 0.985
 

@@ -46,13 +46,15 @@ def test_rates_that_lead_elsewhere_are_undecided_and_in_the_interval(shaken):
     run = changed(
         shaken[2], start=[0.5, 0.3, 0.2], plate=[0.5, 0.3, 0.2], plate_low=[0.4, 0.2, 0.1],
         plate_high=[0.6, 0.4, 0.3], limit=[0.9, 0.1, 0.0], limit_low=[0.8, 0.05, 0.0],
-        limit_high=[0.95, 0.15, 0.05], changing=[False] * 3,
+        limit_high=[0.95, 0.15, 0.05], changing=[False] * 3, counts=[[0, 0, 0], [9, 0, 0], [0, 0, 0]],
     )  # fmt: skip
     found = arrival.judged(run)
     assert not found.settled and found.low == pytest.approx([0.4, 0.05, 0.0])
     assert found.high == pytest.approx([0.95, 0.4, 0.3])
     near = arrival.judged(changed(run, limit=[0.53, 0.28, 0.19]))
     assert near.settled and near.low == pytest.approx([0.4, 0.2, 0.1])
+    few = arrival.judged(changed(run, counts=[[0, 0, 0], [0, 0, 0], [0, 0, 0]]))
+    assert few.settled and few.low == pytest.approx([0.4, 0.2, 0.1])
 
 
 def test_parts_that_lie_on_nothing_are_told(shaken):

@@ -92,7 +92,7 @@ def test_what_arrives_is_named_and_what_is_undecided_is_said(part):
 
 def test_a_bowl_of_its_own_feeds_parts_onto_its_floor(part, plain):
     gentle = replace(plain, drive=replace(plain.drive, amplitude=0.02e-3))
-    known = study.shares(part, gentle, fed=True)
+    known = study.shares(part, gentle, fed=100)
     answer = known.aspects.recommended
     assert answer.rule.startswith("fed onto the moving floor, 100 parts")
     assert answer.p.sum() == pytest.approx(1.0) and (answer.low <= answer.p).all()

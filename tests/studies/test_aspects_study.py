@@ -8,8 +8,8 @@ from feederscrew.errors import FeederError
 from feederscrew.output import offers
 from feederscrew.output.aspects import files, tables
 from feederscrew.part import load
-from feederscrew.resting.rules import recommended
-from feederscrew.studies.aspects import NEEDED, aspects
+from feederscrew.studies.aspects import aspects
+from feederscrew.studies.drop import drop
 
 CARD = "parts/arc_chute.yaml"
 
@@ -22,35 +22,52 @@ def test_without_a_drop_test_the_closed_form_is_recommended():
     assert not study.doubtful
 
 
-def test_a_drop_test_is_made_where_no_closed_form_is_good_enough():
+@pytest.mark.thorough
+def test_a_drop_test_is_the_answer_and_made_once_in_a_run():
     begun = []
-    part = shapes.part(shapes.box(10.0, 20.0, 30.0))
-    study = aspects(part, launch="flip", before=begun.append)
-    assert begun == [NEEDED] == [study.tally.counts.sum()]
-    assert study.recommended.rule == "drop test, launch flip"
+    part = shapes.part(shapes.box(10.0, 20.0, 31.0))
+    study, again = (aspects(part, before=begun.append, jobs=jobs) for jobs in (1, 2))
+    assert begun == [None] and again.tally is study.tally
+    assert study.tally.widest <= 0.01 and study.tally.unsettled == 0
+    assert study.recommended.rule == "drop test, launch feed"
     np.testing.assert_array_equal(study.aspects.chances["recommended"], study.tally.p)
-    assert aspects(part, launch="flip", drops=0).tally is None
+    np.testing.assert_array_equal(study.recommended.low, study.tally.low)
+    assert aspects(part, drops=0).recommended.rule == "tempered hops, launch feed"
 
 
-def test_a_launch_chooses_the_rule_and_a_surface_given_wins():
+@pytest.mark.thorough
+def test_the_answer_is_that_of_a_drop_test_of_another_seed():
+    """A nut rolls over its sides without a rolling class: closed forms are 0.09 off."""
+    part = load("parts/squarenut_m5.stl")
+    study = aspects(part)
+    test = drop(part, "feed", drops=4000, seed=11).result.tally
+    assert np.abs(study.recommended.p - test.p).max() < 0.03
+    assert np.abs(study.aspects.closed.p - test.p).max() > 0.05
+    assert (study.recommended.low < test.p).all() and (test.p < study.recommended.high).all()
+
+
+def test_another_part_or_launch_is_another_answer():
+    part = shapes.part(shapes.box(10.0, 20.0, 31.0))
+    few = [aspects(part, drops=250), aspects(part, drops=250, launch="place")]
+    few += [aspects(shapes.part(shapes.box(10.0, 20.0, 32.0)), drops=250)]
+    assert len({tuple(study.tally.counts) for study in few}) == 3
+
+
+def test_a_test_that_was_stopped_is_not_kept():
+    part = shapes.part(shapes.box(10.0, 20.0, 33.0))
+
+    def stop(done, total, widest):
+        raise KeyboardInterrupt
+
+    stopped = aspects(part, drops=500, jobs=1, progress=stop)
+    assert stopped.aspects.warnings == (f"partial: stopped after {stopped.tally.counts.sum()} drops",)
+    assert aspects(part, drops=500, jobs=1).tally.counts.sum() == 500
+
+
+def test_a_surface_given_is_the_answer_whatever_the_launch():
     part = shapes.part(shapes.box(10.0, 20.0, 30.0))
-    fed, soft = aspects(part, launch="feed"), aspects(part, launch="feed", surface="soft")
-    assert fed.recommended.rule == "tempered hops, launch feed"
-    assert soft.recommended.rule == "surface, soft, launch feed"
-    placed = aspects(part, launch="place")
-    assert placed.recommended.p.tolist() == placed.aspects.chances["quasistatic"].tolist()
-
-
-def test_a_drop_test_that_disagrees_with_the_closed_form_says_so(monkeypatch):
-    monkeypatch.setitem(recommended.WIDTHS, ("feed", False), 0.001)
-    monkeypatch.setattr(recommended, "LAUNCHED", 0.001)
-    study = aspects(shapes.part(shapes.box(10.0, 20.0, 30.0)), drops=2000)
-    (said,) = study.aspects.warnings
-    assert said.startswith(
-        "the drop test and the closed form (tempered hops) disagree beyond their intervals: A "
-    )
-    assert said.endswith("% - the interval is widened to hold both")
-    assert study.recommended.high[0] - study.recommended.low[0] > 0.01
+    soft = aspects(part, launch="feed", surface="soft")
+    assert soft.recommended.rule == "surface, soft, launch feed" and soft.tally is None
 
 
 def test_a_surface_may_be_named_or_a_number():

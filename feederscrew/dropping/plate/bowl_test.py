@@ -7,24 +7,28 @@ import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping import conditions
+from feederscrew.dropping.ensemble import Aim
 from feederscrew.dropping.launches import sample
 from feederscrew.dropping.plate import drive
-from feederscrew.dropping.plate.occupancy import Occupancy, occupancy
-from feederscrew.dropping.plate.rides import ride
+from feederscrew.dropping.plate.occupancy import Occupancy, lasting, occupancy
+from feederscrew.dropping.plate.rides import joined, ride
 from feederscrew.dropping.shape import shape_of_part
 from feederscrew.records import Shown
 from feederscrew.resting.tumbling.by_class import ground
 
 USUAL, SECONDS = 400, 5.0  # parts, and how long each is followed [s]
+ROUND = 400  # parts between two looks at the intervals
 LEAST, MOST = 8, 600  # looks at a part, one a period or one in so many
 
 
 @dataclass(frozen=True)
 class Pace:
-    """How finely and how long a part is followed before it counts."""
+    """How finely and how long a part is followed before it counts, and how many are."""
 
     coarse: float = 1.0  # [1] by how much steps are longer than those that velocities need
     settling: float = 30.0  # [sqrt(L / g)] before the count begins: the launch has died away
+    kick: float = np.inf  # [1] times the floor's own energy: a part that this does not tip stays
+    width: float | None = None  # [1] of the widest 95 % interval to either side: then enough parts are known
 
 
 EXACT = Pace()
@@ -148,9 +152,9 @@ def _plate(found, aspects, shape, length, seconds, pace, bowl, launch, count, se
     number = max(round(seconds / period), LEAST)
     looks = (np.ceil(pace.settling * unit / period) + np.arange(number + 1)) * period / unit
     starts = sample(launch, shape, count, np.random.default_rng(seed))
-    rides = ride(
-        shape, floor, starts, looks, drive.steps_of(floor, pace.coarse), jobs=jobs, progress=progress
-    )
+    steps, kick = drive.steps_of(floor, pace.coarse), drive.kick_of(floor, pace.kick)
+    follow = partial(ride, shape, floor, looks=looks, steps=steps, kick=kick, jobs=jobs)
+    rides = _enough(follow, starts, pace.width, found.rows, len(aspects.names), progress)
     rng = np.random.default_rng((seed, len(rides.faces)))
     seen = occupancy(rides.faces, length * rides.places[:, :, 0], found.rows, len(aspects.names), period, rng)
     return Shaken(
@@ -163,6 +167,28 @@ def _plate(found, aspects, shape, length, seconds, pace, bowl, launch, count, se
         lost=rides.lost,
         partial=rides.partial,
     )
+
+
+def _enough(follow, starts, width, rows, classes, progress):
+    """Rides of all parts or, with a width, of as many as make no share's interval wider."""
+    count, done = len(starts.energies), []
+    size = count if width is None else ROUND
+    for first in range(0, count, size):
+        tell = progress and (lambda parts, before=first: progress(before + parts))
+        try:
+            done.append(follow(starts.some(slice(first, first + size)), progress=tell))
+        except KeyboardInterrupt:
+            if not done:
+                raise
+            return replace(joined(done), partial=True)
+        if done[-1].partial or (width and Aim(width, rows, classes).widest(_last(done)) <= width):
+            break
+    return joined(done)
+
+
+def _last(done):
+    """(N,) face that each part lies on at its last look."""
+    return np.concatenate([lasting(rides.faces)[:, -1] for rides in done])
 
 
 def looks_apart(frequency, seconds):

@@ -57,3 +57,9 @@ def throw_number(bowl):
     if bowl.drive.amplitude == 0.0:
         return 0.0
     return float(answer.throw_number(replace(bowl, track=replace(bowl.track, climb=0.0, bank=0.0))))
+
+
+def kick_of(floor, times):
+    """Return the energy [m g L] of a point at so many ``times`` that of the floor's quickest motion."""
+    quickest = floor.rate * math.hypot(floor.along, floor.up) * (1.0 + 2.0 * abs(floor.second))
+    return times * 0.5 * quickest**2

@@ -1,5 +1,6 @@
 """Many parts on one vibrating plate, on several cores."""
 
+import math
 from dataclasses import dataclass
 from functools import partial
 
@@ -25,7 +26,7 @@ class Rides:
     partial: bool  # stopped by the user before all were done
 
 
-def ride(shape, floor, starts, looks, steps, *, jobs=1, progress=None):
+def ride(shape, floor, starts, looks, steps, *, kick=math.inf, jobs=1, progress=None):
     """Follow parts on a plate.
 
     Parameters
@@ -37,6 +38,9 @@ def ride(shape, floor, starts, looks, steps, *, jobs=1, progress=None):
     looks : (K,) float
         Times in units of sqrt(L / g), ascending.
     steps : Steps
+    kick : float [m g L]
+        Energy that the floor gives a part at most: one whose face it does not tip it off is followed no
+        further. Infinite, all parts are followed to the end.
     jobs : int
         Cores to use; the outcome does not depend on it.
     progress : function, optional
@@ -53,11 +57,21 @@ def ride(shape, floor, starts, looks, steps, *, jobs=1, progress=None):
     KeyboardInterrupt
         If no batch was finished.
     """
-    batch = partial(_batch, shape, floor, starts, looks, steps)
+    batch = partial(_batch, shape, floor, starts, looks, steps, kick)
     batch(slice(0, 0))  # compiled here, if need be
     columns, stopped = in_batches(batch, len(starts.energies), BATCH, jobs, progress)
     faces, places, whole = columns
     return Rides(check.frozen(faces[whole]), check.frozen(places[whole]), int((~whole).sum()), stopped)
+
+
+def joined(rides):
+    """Return several rides, one after the other, as one."""
+    return Rides(
+        faces=check.frozen(np.concatenate([one.faces for one in rides])),
+        places=check.frozen(np.concatenate([one.places for one in rides])),
+        lost=sum(one.lost for one in rides),
+        partial=any(one.partial for one in rides),
+    )
 
 
 def compiled():
@@ -65,13 +79,13 @@ def compiled():
     return on_disk(shaken.ride_all)
 
 
-def _batch(shape, floor, starts, looks, steps, part):
+def _batch(shape, floor, starts, looks, steps, kick, part):
     """Faces and places of some parts, and whether every look was taken."""
     states = starts.states[part]
     faces = np.full((len(states), len(looks)), UNSETTLED)
     places, taken = np.full((*faces.shape, 2), np.nan), np.zeros(len(states), int)
     shaken.ride_all(
         shape, falling.scratch(shape), floor, states, starts.restitutions[part], starts.frictions[part],
-        steps, looks, faces, places, taken,
+        steps, looks, faces, places, taken, kick,
     )  # fmt: skip
     return faces, places, taken == len(looks)

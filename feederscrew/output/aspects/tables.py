@@ -13,7 +13,7 @@ MOST = 24  # rows that a picture shows
 NORMALS = ("normal_x", "normal_y", "normal_z")
 RECOMMENDED = ("p_recommended", "p_recommended_low", "p_recommended_high")
 PRINTED = (  # the table for people, unless they ask for more
-    "aspect", "kind", "faces", "stable", "height_mm", *RECOMMENDED, "p_drop", "p_drop_low", "p_drop_high",
+    "aspect", "kind", "faces", "stable", "height_mm", *RECOMMENDED,
     "p_pmi", "p_csa", "p_stability", "surface", "tumbling",
 )  # fmt: skip
 

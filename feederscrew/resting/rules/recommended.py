@@ -1,6 +1,6 @@
 """The one answer we stand for: it names its rule and its launch, and has an interval."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,9 +15,6 @@ FORMER = {"tumble": "roll"}  # what launches were called before
 SHARES = {"place": 0.0, "drop": 0.4, "flip": 1.0, "roll": 1.0, "feed": 0.5}
 """[1] By launch, how far parts come from where they fall dead (0) to where hops leave them (1); chosen on
 drop tests of made bodies, and for drop and feed with measured sets in view: docs/resting.md."""
-CLOSED = {"place": (True, True), "drop": (True, False), "feed": (True, False)}
-"""By launch, whether a closed form is good enough: for parts without a rolling class, and with one. Its mean
-total variation from drop tests is at most 0.07 then, on made bodies and on real parts."""
 ROLLING = {"drop": "csa"}  # the closed form nearest to drop tests of parts with a rolling class
 ROLL = "quasistatic"  # ... under the other launches
 WIDTHS = {
@@ -45,7 +42,6 @@ class Recommended(Shown):
     p: np.ndarray  # (A,) [1]
     low: np.ndarray  # (A,) [1]
     high: np.ndarray  # (A,) [1]
-    wants_drops: bool = False  # whether no closed form is good enough: drop the part
 
 
 def launch_named(name):
@@ -60,23 +56,6 @@ def launch_named(name):
     if launch not in LAUNCHES:
         raise ArgumentError("launch", f"is {name!r:.30}", f"give one of {', '.join(LAUNCHES)}")
     return launch
-
-
-def good_enough(launch, rolling):
-    """Return whether a closed form is good enough for a launch; else a drop test is needed.
-
-    Parameters
-    ----------
-    launch : str
-        One of LAUNCHES.
-    rolling : bool
-        Whether the part has a rolling class.
-
-    Returns
-    -------
-    bool
-    """
-    return CLOSED.get(launch, (False, False))[rolling]
 
 
 def closed_form(chances, stable, kinds, launch, own=None):
@@ -97,7 +76,7 @@ def closed_form(chances, stable, kinds, launch, own=None):
     Returns
     -------
     Recommended
-        Where no closed form is good enough, the one nearest to it, and ``wants_drops`` is true.
+        The quick look: of the closed forms the one nearest to drop tests of that launch.
     """
     rolling = bool((np.array(kinds)[stable] == "rolling").any())
     if own:
@@ -107,8 +86,7 @@ def closed_form(chances, stable, kinds, launch, own=None):
     else:
         label, p = tempered(chances, SHARES[launch])
     half = WIDTHS[launch, rolling] * shape(p)
-    wants_drops = not own and not good_enough(launch, rolling)
-    return _within(f"{label}, launch {launch}", launch, p, half, stable, wants_drops)
+    return _within(f"{label}, launch {launch}", launch, p, half, stable)
 
 
 def tempered(chances, share):
@@ -143,46 +121,41 @@ def _labelled(rule, chances):
     return registry.BY_NAME[rule].label, chances[rule]
 
 
-def dropped(tally, stable, launch):
-    """Return the answer of a drop test: with its sampling, and what the name of a launch leaves open.
+def dropped(tally, launch):
+    """Return the answer of a drop test, with its interval.
 
     Parameters
     ----------
     tally : Tally
         Of that launch.
-    stable : (A,) bool
     launch : str
         One of LAUNCHES.
 
     Returns
     -------
     Recommended
-        The ends of its interval are those of both errors, taken as independent.
     """
-    model = LAUNCHED * shape(tally.p)
-    half = np.hypot(model, [tally.p - tally.low, tally.high - tally.p])
-    return _within(f"drop test, launch {launch}", launch, tally.p, half, stable)
+    return Recommended(f"drop test, launch {launch}", launch, tally.p, tally.low, tally.high)
 
 
-def reconciled(answer, other):
-    """Return an answer widened to another one's shares where their intervals have nothing in common.
+def launched(p, low, high, possible):
+    """Return the ends of an interval of simulated shares with what the name of a launch leaves open.
 
     Parameters
     ----------
-    answer, other : Recommended
-        Of the same classes.
+    p : (A,) float [1]
+    low, high : (A,) float [1]
+        Ends of the interval of what is known of the simulation: its sampling and its numerical error.
+    possible : (A,) bool
+        Classes that a part can rest on; of a single one nothing is in doubt.
 
     Returns
     -------
-    Recommended
-        The first, with wider intervals.
-    apart : (A,) bool
-        Where that was.
+    low, high : (A,) float [1]
+        Both errors taken as independent, within 0 and 1.
     """
-    apart = (answer.low > other.high) | (answer.high < other.low)
-    low = np.where(apart, np.minimum(answer.low, other.p), answer.low)
-    high = np.where(apart, np.maximum(answer.high, other.p), answer.high)
-    return replace(answer, low=check.frozen(low), high=check.frozen(high)), apart
+    open_ = np.where(possible & (np.count_nonzero(possible) > 1), LAUNCHED * shape(p), 0.0)
+    return np.clip(p - np.hypot(open_, p - low), 0.0, 1.0), np.clip(p + np.hypot(open_, high - p), 0.0, 1.0)
 
 
 def shape(p):
@@ -193,7 +166,7 @@ def shape(p):
     return (2.0 * np.sqrt(np.clip(p * (1.0 - p), 0.0, None)) + FLOOR) / (1.0 + FLOOR)
 
 
-def _within(rule, launch, p, half, stable, wants_drops=False):
+def _within(rule, launch, p, half, stable):
     """The answer with ends so far out, within 0 and 1; nothing is in doubt where only one class can be."""
     several = np.count_nonzero(stable) > 1
     down, up = np.broadcast_to(np.where(stable & several, half, 0.0), (2, len(p)))
@@ -203,5 +176,4 @@ def _within(rule, launch, p, half, stable, wants_drops=False):
         p=check.frozen(p),
         low=check.frozen(np.clip(p - down, 0.0, 1.0)),
         high=check.frozen(np.clip(p + up, 0.0, 1.0)),
-        wants_drops=wants_drops and several,
     )

@@ -101,7 +101,8 @@ RULES = (
 )  # fmt: skip
 BY_NAME = {rule.name: rule for rule in RULES}
 NAMES = tuple(BY_NAME)
-CHOICES = (*NAMES, RECOMMENDED)  # what a user may ask for
+CLOSED = "closed"  # of the rules the one that is nearest to the recommended answer: the quick look
+CHOICES = (*NAMES, CLOSED, RECOMMENDED)  # what a user may ask for
 
 
 def weights(quantities):

@@ -3,10 +3,14 @@
 import csv
 import io
 import json
+import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 import shapes
+
+import feederscrew
 
 PARTS = Path(__file__).parents[3] / "parts"
 CAP = PARTS / "cap_14x10.stl"  # CSA and PMI rank B first or second, the recommended answer A
@@ -31,13 +35,34 @@ def told(run, *call):
 
 
 def test_a_bowl_file_feeds_its_own_floor_and_names_it(run, block, config):
-    shown = run("rate", block, "--aspect", "A", "--config", config).stdout
-    assert "whose probabilities" in shown and "fed onto the moving floor, 100 parts, seed 1" in shown
+    shown = run("rate", block, "--aspect", "A", "--config", config, "--fed", "30", "--seed", "3").stdout
+    assert "whose probabilities" in shown and "fed onto the moving floor, 30 parts, seed 3" in shown
+    usual = [told(run, "rate", block, "--aspect", "A", *own) for own in ((), ("--config", config))]
+    assert all(one["answer"].startswith("fed onto the moving floor, ") for one in usual)
     for answer, option in (("launch drop", ("--launch", "drop")), ("csa", ("--rule", "csa"))):
         for bowl in ((), ("--config", config)):
             made = told(run, "rate", block, "--aspect", "A", *bowl, *option)
             assert made["answer"].endswith(answer)
-    assert told(run, "rate", block, "--aspect", "A")["answer"].endswith("launch feed")
+
+
+def test_a_file_of_the_defaults_is_the_defaults(run, block, tmp_path):
+    """In the command with it and without, in the library, and in a batch."""
+    run("config", "init", "defaults.yaml")
+    call = ("rate", block, "--aspect", "A", "--fed", "60")
+    rates = [told(run, *call, *own)["parts_per_minute"] for own in ((), ("--config", "defaults.yaml"))]
+    found = feederscrew.rate(feederscrew.load(block), feederscrew.read_bowl("defaults.yaml"), "A", fed=60)
+    assert rates[0] == rates[1] == pytest.approx(60.0 * found.parts.value, rel=1e-9)
+
+
+@pytest.mark.thorough
+def test_parts_are_fed_onto_the_floor_until_the_shares_are_known(run, block):
+    shares = [told(run, "rate", block, "--aspect", "A", "--seed", seed) for seed in ("1", "2")]
+    assert shares[0]["p_aspect"] == pytest.approx(shares[1]["p_aspect"], abs=0.05)
+    parts = int(re.search(r"([0-9]+) parts, seed 1", shares[0]["answer"])[1])
+    p = shares[0]["p_aspect"]
+    assert 1.96 * np.sqrt(p * (1.0 - p) / parts) <= 0.021
+    refused = run("rate", block, "--aspect", "A", "--fed", "9", "--launch", "drop")
+    assert refused.exit_code == 2 and "--fed is for parts on the moving floor" in refused.stderr
 
 
 def test_tune_says_that_it_keeps_the_shares_of_the_drive_it_was_given(run, block, config):
@@ -72,21 +97,18 @@ def test_a_drop_test_that_was_written_is_read(run, block):
 
 
 def test_likeliest_is_one_aspect_everywhere(run):
-    """Of this cap CSA, PMI and the recommended answer each rank another aspect first, or another second."""
-    table = told(run, "aspects", CAP)["aspects"]
-    first = max(table, key=lambda row: row["p_recommended"])["aspect"]
-    said = f"Aspect {first}, the likeliest (drop test, launch feed)"
+    """In a bowl: what arrives from its moving floor, in every command."""
+    known = told(run, "rate", CAP, "--aspect", "A")
+    answer = known["answer"]
+    said = f"Aspect A, the likeliest ({answer})"
     for command in ("floor", "track"):
         assert said in run(command, CAP).stderr.splitlines()
-    shares = {row["aspect"]: row["p_recommended"] for row in table}
     laid = run("headings", CAP, "--format", "csv", "--set", "track.width=40 mm")
-    assert "Aspect share: drop test, launch feed" in laid.stderr.splitlines()
-    total = dict.fromkeys(shares, 0.0)
+    assert f"Aspect share: {answer}" in laid.stderr.splitlines()
+    total = dict.fromkeys("ABC", 0.0)
     for row in csv.DictReader(io.StringIO(laid.stdout)):
         total[row["aspect"]] += float(row["aspect_share"])
-    assert total == pytest.approx(shares, abs=1e-4)
-    known = told(run, "rate", CAP, "--aspect", first)
-    assert known["p_aspect"] == pytest.approx(shares[first], abs=1e-9)
+    assert total["A"] == max(total.values()) == pytest.approx(known["p_aspect"], abs=1e-4)
 
 
 def test_compare_holds_the_answer_for_the_launch_of_the_file(run, block, tmp_path):
@@ -101,11 +123,10 @@ def test_compare_holds_the_answer_for_the_launch_of_the_file(run, block, tmp_pat
 def test_rate_tune_and_batch_take_the_same_answer(run, block, config):
     given = ("--config", config, "--set", "drive.peak_to_peak=0.3 mm")
     rate = told(run, "rate", block, "--aspect", "A", *given)
-    fed = "fed onto the moving floor, 100 parts, seed 1"
     (row,) = told(run, "batch", block, *given, "-o", "all", "--no-pictures", "--jobs", "1")["parts"]
     names = ("aspect", "p_orientation", "parts_per_minute", "parts_per_minute_low", "answer")
     assert {name: row[name] for name in names} == {name: rate[name] for name in names}
-    assert rate["answer"] == fed
+    assert rate["answer"].startswith("fed onto the moving floor, ")
     setting = told(run, "tune", block, "--aspect", "A", "--target", "5/min", *given)["settings"][0]
     densities = [one["parts_per_minute"] / one["velocity_mm_s"] for one in (setting, rate)]
     assert densities[0] == pytest.approx(densities[1], rel=1e-9)
