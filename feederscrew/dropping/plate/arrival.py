@@ -14,12 +14,9 @@ SPELLS = (0.5, 2.0)  # [s] on the floor: the longer one where the shorter decide
 FIRST, MOST, LONGEST = 400, 4000, 800  # parts that choose the spell; that are followed for each, at most
 WIDTH = 0.02  # [1] half the widest 95 % interval of a share at which enough parts are followed
 PACE = bowl_test.Pace(coarse=3.0, settling=40.0, kick=4.0)
-THROWN = 15.0  # [sqrt(L / g)] of settling on a floor that throws parts up: there nothing comes to lie still
 """For shares alone, not velocities. Of 2,400 parts of eight real kinds on the default floor 8 that were
 followed no further lay on another side half a second later, at four times the floor's energy."""
 THROWN = 15.0  # [sqrt(L / g)] of settling on a floor that throws parts up: there nothing comes to lie still
-"""For shares alone, not velocities. Of 2,400 parts of eight kinds 4 that a kick of 4 times the floor's energy
-did not tip lay on another side half a second later, 60 of those that one of half of it did not."""
 NEAR = 0.05  # [1] of a share: so near to where the rates lead it has arrived
 MOVING = "the shares still change after {:g} s on the floor - how long the parts stay in the bowl decides"
 UNSEEN = "{} of {} parts lie on no aspect while the floor moves - the drive may be too strong for this part"
