@@ -114,6 +114,16 @@ def arriving(out, part, taken, rule):
     return found
 
 
+def few(part, taken, rule):
+    """Return the same function of few parts, sooner; None where nothing is fed, or as many as are named."""
+    from feederscrew.studies import rate as study
+    from feederscrew.studies.tune import FEW
+
+    if rule != "recommended" or any(taken[name] is not None for name in ("launch", "probabilities", "fed")):
+        return None
+    return lambda bowl: study.shares(part, bowl, seed=taken["seed"], fed=FEW)
+
+
 def choice(taken):
     """Return the keywords of ``studies.rate.shares`` that the options name; a wrong call if two clash."""
     asked = click.get_current_context().get_parameter_source("rule") is click.core.ParameterSource.COMMANDLINE

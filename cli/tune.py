@@ -40,10 +40,11 @@ def tune(part, target, aspect, heading, rule, gap, fill, taken, worst, bowl, out
     effective = columns.conditions(solid) | bowls.texts(settings)
     waiting.conveying(out)
     record = bowls.record(settings)
-    arriving = orientation.arriving(out, solid, taken, rule)
+    arriving, rough = orientation.arriving(out, solid, taken, rule), orientation.few(solid, taken, rule)
     with out.folder(solid.name, solid.inputs | arriving(record).inputs, effective) as folder:
         found = study(
-            solid, record, aspect, target, arriving=arriving, progress=waiting.told(out, "settings"),
+            solid, record, aspect, target, arriving=arriving, rough=rough,
+            progress=waiting.told(out, "settings"),
             heading=heading, rule=rule, gap=gap, fill=fill, worst=worst,
         )  # fmt: skip
         tried = proof.warnings(bowls.verified(bowl["path"]), solid, record)

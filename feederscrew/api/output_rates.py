@@ -1,12 +1,13 @@
 """How many well-oriented parts leave a bowl, and what drive or what bowl reaches a rate."""
 
 from collections.abc import Sequence
-from typing import Unpack
+from typing import Unpack, cast
 
 from feederscrew.api import asked
 from feederscrew.api.asked import AlongTrack, Answer, BowlFile, Quantity
 from feederscrew.bowl import Bowl
 from feederscrew.part import Part
+from feederscrew.rates.well_oriented import RECOMMENDED
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.rate import RateStudy, Shares
 from feederscrew.studies.tune import TuneStudy
@@ -122,8 +123,11 @@ def tune(
     -------
     TuneStudy
     """
+    from feederscrew.studies.tune import FEW
     from feederscrew.studies.tune import tune as study
 
+    own = {"launch", "probabilities", "fed", "known"} & set(answer) or asked.rule(answer) != RECOMMENDED
+    few = cast(AlongTrack, {**answer, "fed": FEW})
     solid, bowl = asked.a_part(part, mesh=True), asked.a_bowl(bowl)
     return study(
         solid,
@@ -136,6 +140,7 @@ def tune(
         fill=answer.get("fill", 1.0),
         worst=worst,
         arriving=lambda driven: asked.answered(solid, driven, answer),
+        rough=None if own else lambda driven: asked.answered(solid, driven, few),
     )
 
 

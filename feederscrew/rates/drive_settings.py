@@ -52,7 +52,7 @@ class Solution:
         return GENTLE.index(found.regime), several, found.hardest_impact
 
 
-def solutions(bowl, target, density, *, worst=False, progress=None):
+def solutions(bowl, target, density, *, rough=None, worst=False, progress=None):
     """Find every setting of amplitude, angle or frequency alone that gives a rate, with what it lets arrive.
 
     Parameters
@@ -63,6 +63,8 @@ def solutions(bowl, target, density, *, worst=False, progress=None):
     density : callable
         From a bowl to the well-oriented parts on a length of its track [1/m], with what arrives at its drive
         and without what that turns over; of None, at the bowl's own drive as if it turned over none.
+    rough : callable, optional
+        The same of fewer parts, sooner: it leads to a setting that ``density`` then decides on.
     worst : bool
         Reach the target at the slowest of every start, here and for friction a fifth lower and higher.
     progress : function, optional
@@ -85,7 +87,9 @@ def solutions(bowl, target, density, *, worst=False, progress=None):
     starts = [(look, value) for look in looks for value in look.starts(target / density(None))]
     found = []
     for count, (look, value) in enumerate(starts):
-        found.append(_settled(look, value, target, density))
+        if rough is not None:
+            value = _settled(look, value, target, rough).value
+        found.append(_settled(look, value, target, density, CLOSE if rough is None else 0.5 * WITHIN))
         if progress:
             progress(count + 1, len(starts))
     several = _apart(found, target)
@@ -96,7 +100,7 @@ def solutions(bowl, target, density, *, worst=False, progress=None):
     return sorted(near or beyond, key=lambda one: one.order)
 
 
-def _settled(look, value, target, density):
+def _settled(look, value, target, density, close=CLOSE):
     """The setting near a start that gives the target with what arrives there, or comes nearest to it.
 
     Each step takes the parts that arrived at the step before it, since another drive brings others; they are
@@ -106,7 +110,7 @@ def _settled(look, value, target, density):
     for _ in range(ROUNDS):
         jumps = value == last
         seen.append(look.solution(value if jumps else look.readable(value), density))
-        if abs(seen[-1].rate - target) <= CLOSE * target or jumps or not seen[-1].parts_per_metre > 0.0:
+        if abs(seen[-1].rate - target) <= close * target or jumps or not seen[-1].parts_per_metre > 0.0:
             break
         led = seen[-REMEMBERED:] if len(seen) > REMEMBERED else seen[-1:]
         there = look.crossings(target / np.mean([one.parts_per_metre for one in led]))

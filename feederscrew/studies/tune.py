@@ -18,6 +18,8 @@ from feederscrew.studies.rate import LEAST, Shares, checked, shares
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
 
+FEW = 200  # parts that lead to a setting; as many as `rate` feeds decide on it
+
 
 @dataclass(frozen=True, eq=False)
 class Tuned(Shown):
@@ -60,6 +62,7 @@ def tune(
     fill: float = 1.0,
     worst: bool = False,
     arriving: Callable[[Bowl], Shares] | None = None,
+    rough: Callable[[Bowl], Shares] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> TuneStudy:
     """Study which amplitude, angle or frequency alone gives a rate.
@@ -79,6 +82,8 @@ def tune(
         Meet the target at the slowest of every start, here and for friction a fifth lower and higher.
     arriving : function, optional
         From a bowl to the Shares that arrive at its drive; ``studies.rate.shares`` without it.
+    rough : function, optional
+        The same of FEW parts, which leads to a setting.
     progress : function, optional
         Told how many settings are found out, and of how many.
 
@@ -95,17 +100,21 @@ def tune(
     check.argument("target", target, LEAST)
     checked(bowl, heading, gap, fill)
     chain = bowl.devices if devices is None else tuple(devices)
-    ways = _Ways(part, bowl, chain, arriving or partial(shares, part, rule=rule))
+    if arriving is None:
+        arriving, rough = (partial(shares, part, rule=rule, fed=fed) for fed in (None, FEW))
+    ways = _Ways(part, bowl, chain, arriving)
+    lead = None if rough is None else _Ways(part, bowl, chain, rough)
     found = ways.shares(bowl).aspects
     wanted = well_oriented.wanted(part, found, bowl.track, aspect, heading)
     # raises where none ever leaves so
     well_oriented.parts_per_metre(ways.along(None), wanted, rule, gap=gap, fill=fill)
     well_oriented.holds(ways.along(bowl), wanted)
 
-    def density(driven):
+    def density(ways, driven):
         return well_oriented.leaving_per_metre(ways.along(driven), wanted, rule, gap=gap, fill=fill)
 
-    made = knobs.solutions(bowl, target, density, worst=worst, progress=progress)
+    led = None if lead is None else partial(density, lead)
+    made = knobs.solutions(bowl, target, partial(density, ways), rough=led, worst=worst, progress=progress)
     return TuneStudy(
         part=part,
         bowl=bowl,

@@ -265,6 +265,7 @@ Fence("feeder", commands=[click.Command("nap", callback=nap)])(["nap"])
 
 
 @pytest.mark.long
+@pytest.mark.thorough
 def test_the_readme_says_what_the_program_says(monkeypatch, capsys):
     monkeypatch.chdir(ROOT)
     monkeypatch.syspath_prepend(ROOT / "docs")

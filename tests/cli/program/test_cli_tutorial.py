@@ -15,6 +15,7 @@ FILES = {"tooling.dxf", "tooling.svg", "tooling.stl", "tooling.yaml", "tooling.p
 
 
 @pytest.mark.long
+@pytest.mark.thorough
 def test_the_jobs_of_the_tutorial(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "docs").symlink_to(PAGE.parent)
