@@ -110,7 +110,7 @@ def design(part, asked, rule, taken, jobs, bowl, pictures, out):
         **asked | {"without": options.listed(asked["without"])}, rule=rule, jobs=jobs or os.cpu_count()
     )
     named = any(value is not None for value in taken.values())
-    known = orientation.shares(out, solid, record, taken) if named else None
+    known = orientation.shares(out, solid, record, taken, rule) if named else None
     inputs = solid.inputs | (known.inputs if known else {}) | bowls.identity(bowl["path"])
     with out.folder(solid.name, inputs, effective) as folder:
         found = loop.design(

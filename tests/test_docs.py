@@ -13,6 +13,7 @@ ROOT = Path(__file__).parent.parent
 EXAMPLE = re.compile(r"```python\n(.*?)```\n(?:\n```\n(.*?)```)?", re.DOTALL)
 
 
+@pytest.mark.thorough
 def test_the_examples_of_the_library_page_print_what_it_shows(monkeypatch):
     monkeypatch.chdir(ROOT)
     names = {"__name__": "library"}

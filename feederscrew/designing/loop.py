@@ -94,7 +94,7 @@ def _explore(search):
         start = calm_drive.driven(made, 0.0 if made.given & {"drive.amplitude"} else np.inf)
         start = replace(start, devices=search.plain.devices)
         if search.known is None:
-            search.known = shares(search.part, start, fed=True, jobs=search.request.jobs)
+            search.known = shares(search.part, start, rule=search.request.rule, jobs=search.request.jobs)
         ways, weights = _offered(search, start)
         for proposal in _proposals(search, start, ways, weights):
             if search.spent:

@@ -44,7 +44,7 @@ class Aspects(Shown):
     barrier_energies: np.ndarray | None = None  # (A,) [J]
     tip_angles: np.ndarray | None = None  # (A,) [rad] of a floor that tips a part that does not slide
     recommended: Recommended | None = None  # the one answer to take; None for a card
-    closed: Recommended | None = None  # the quick look: the closed form nearest to it
+    closed: Recommended | None = None  # the closed form nearest to it
     ground: by_class.Ground | None = None  # faces, basins and barriers behind the rows
     warnings: tuple[str, ...] = ()
 
@@ -71,8 +71,7 @@ class Aspects(Shown):
 
     def source(self, rule):
         """Say whose the probabilities of a rule are: 'csa', of an answer 'drop test, launch feed'."""
-        answer = {"closed": self.closed, "recommended": self.recommended}.get(rule)
-        return rule if answer is None else answer.rule
+        return getattr({"closed": self.closed, "recommended": self.recommended}.get(rule), "rule", rule)
 
     @property
     def ranking(self):
@@ -152,8 +151,8 @@ def _tumbled(named, ground, part, exponent):
 def _answered(known, launch, exponent):
     """The record with the closed form that is recommended for a launch, or for the user's own surface."""
     own = None if exponent is None else surface.named(exponent)
-    answer = recommended.closed_form(known.probabilities, known.stable, known.kinds, launch, own)
-    return replace(known, recommended=answer, closed=answer)
+    form = recommended.closed_form(known.probabilities, known.stable, known.kinds, launch, own)
+    return replace(known, recommended=form, closed=form)
 
 
 def _moments(part, hull):
