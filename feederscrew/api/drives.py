@@ -135,5 +135,7 @@ def headings(part: Part, bowl: Bowl, aspect: str | None = None) -> HeadingsStudy
     HeadingsStudy
     """
     from feederscrew.studies.headings import headings as study
+    from feederscrew.studies.rate import arriving
 
-    return study(asked.a_part(part, mesh=True), asked.a_bowl(bowl).track, aspect)
+    solid, bowl = asked.a_part(part, mesh=True), asked.a_bowl(bowl)
+    return study(solid, bowl.track, aspect, arriving(solid, bowl))

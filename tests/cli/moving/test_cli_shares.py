@@ -65,14 +65,6 @@ def test_parts_are_fed_onto_the_floor_until_the_shares_are_known(run, block):
     assert refused.exit_code == 2 and "--fed is for parts on the moving floor" in refused.stderr
 
 
-def test_tune_says_that_it_keeps_the_shares_of_the_drive_it_was_given(run, block, config):
-    drive = ("--aspect", "A", "--target", "1/min", "--set", "drive.peak_to_peak=0.2 mm")
-    said = "Warning: the shares of the aspects are those on the floor at the bowl's own drive"
-    for answer, says in (((), True), (("--launch", "feed"), False)):
-        lines = run("tune", block, *drive, "--config", config, *answer).stderr.splitlines()
-        assert any(line.startswith(said) for line in lines) == says
-
-
 def test_probabilities_take_the_place_of_an_answer(run, block, tmp_path):
     (tmp_path / "c.csv").write_text("aspect,tray\nA,10\nB,30\nC,60\n")
     made = told(run, "rate", block, "--aspect", "C", "--probabilities", "c.csv")
@@ -120,6 +112,7 @@ def test_compare_holds_the_answer_for_the_launch_of_the_file(run, block, tmp_pat
     assert found[0] == found[1] != found[2]
 
 
+@pytest.mark.thorough
 def test_rate_tune_and_batch_take_the_same_answer(run, block, config):
     given = ("--config", config, "--set", "drive.peak_to_peak=0.3 mm")
     rate = told(run, "rate", block, "--aspect", "A", *given)

@@ -44,7 +44,7 @@ def test_the_chain_of_one_orientation(run, block):
 
 
 def test_rate_reads_the_chain(run, block, tmp_path):
-    document = told(run, "tooling", block, "--aspect", "A", "--heading", "90deg", *WIDE)
+    document = told(run, "tooling", block, "--aspect", "A", "--heading", "90deg", "--launch", "feed", *WIDE)
     lines = "".join(f"  - {cut['device']}: {cut['text']}\n" for cut in document["chain"])
     (tmp_path / "tooling.yaml").write_text(f"track: {{width: 200 mm}}\ndevices:\n{lines}")
     wanted = ("--aspect", "A", "--heading", "90deg", "--config", "tooling.yaml")

@@ -248,7 +248,7 @@ def test_a_drop_test_joins_the_columns(run, stl):
 
 def test_one_answer_with_an_interval_comes_last(run, stl):
     told = document(run("aspects", stl, "--format", "json"))
-    assert told["recommended"] == "tempered hops, launch feed"
+    assert told["recommended"] == "drop test, launch feed"
     last = ["p_recommended", "p_recommended_low", "p_recommended_high"]
     for row in told["aspects"]:
         assert list(row)[-3:] == last
