@@ -56,7 +56,8 @@ def test_records_within_are_short_and_have_a_table(part):
 def test_a_table_is_the_file_of_its_command(run, tmp_path):
     shapes_file = tmp_path / "box.stl"
     shapes.box(8.0, 12.0, 20.0).export(shapes_file)
-    said = run("headings", shapes_file, "--set", "track.width=40 mm", "--format", "csv", "-q").stdout
+    drive = ("--set", "track.width=40 mm", "--set", "drive.amplitude=0.05 mm")
+    said = run("headings", shapes_file, *drive, "--format", "csv", "-q").stdout
     table = fs.headings(fs.load(shapes_file), BOWL).to_frame()
     assert tables.text(tables.frame(dict(table)), "csv") == said
     told = json.loads(run("inertia", shapes_file, "--format", "json", "-q").stdout)
