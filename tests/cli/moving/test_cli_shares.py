@@ -120,6 +120,8 @@ def test_rate_tune_and_batch_take_the_same_answer(run, block, config):
     names = ("aspect", "p_orientation", "parts_per_minute", "parts_per_minute_low", "answer")
     assert {name: row[name] for name in names} == {name: rate[name] for name in names}
     assert rate["answer"].startswith("fed onto the moving floor, ")
+    given += ("--launch", "feed")  # another drive lets others arrive from its floor
+    rate = told(run, "rate", block, "--aspect", "A", *given)
     setting = told(run, "tune", block, "--aspect", "A", "--target", "5/min", *given)["settings"][0]
     densities = [one["parts_per_minute"] / one["velocity_mm_s"] for one in (setting, rate)]
     assert densities[0] == pytest.approx(densities[1], rel=1e-9)
