@@ -140,8 +140,8 @@ def telling(out):
     """Return the keywords of ``studies.rate.shares`` that tell how far it is."""
     bar = waiting.bar(out, "parts")
 
-    def before(_):
-        waiting.drops(out)
+    def before(drops):
+        (waiting.plate if drops is None else waiting.drops)(out)
         click.get_current_context().with_resource(bar)
 
     return {"before": before, "progress": bar.reach}

@@ -120,7 +120,7 @@ def _dropped(part, found, launch, drops, jobs, progress, before):
 
     def make():
         if before:
-            before(drops)
+            before(many["drops"])
         return drop(part, launch, **many, jobs=cores, progress=progress, aspects=found)
 
     many = {"drops": MOST, "until": AIM} if drops is None else {"drops": drops}

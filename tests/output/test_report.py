@@ -200,7 +200,7 @@ def test_same_input_same_bytes(bracket, light):
         (
             {"rule": "guess"},
             "rule guess: has no probabilities of this part - choose one of pmi, csa, stability, "
-            "quasistatic, crsa, barrier, surface, hops, recommended",
+            "quasistatic, crsa, barrier, surface, hops, closed, recommended",
         ),
     ],
 )

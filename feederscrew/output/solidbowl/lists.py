@@ -116,5 +116,5 @@ def _fields(study, solid, found, scale):
         ("size", f"{extent} mm"),
         ("general tolerance", f"{GENERAL}; cuts {CUT} mm"),
         ("scale, sheet", f"1 : {1.0 / scale:g}, A3, sizes in mm"),
-        ("drawn by", "feeder bowl --solid"),
+        ("drawn by", "feeder bowl"),
     ]

@@ -28,7 +28,7 @@ def completed(*words):
         (["batch", "--set", "grav"], ["gravity="]),
         (["convey", "--vary", "track.b"], ["track.bank="]),
         (["track", "--vary", "friction.wa"], ["friction.wall="]),
-        (["rate", "--rule", "c"], ["csa", "crsa"]),
+        (["rate", "--rule", "c"], ["csa", "crsa", "closed"]),
         (["batch", "--rule", "q"], ["quasistatic"]),
         (["aspects", "--density", "stainl"], ["stainless_steel", "stainless_steel_1.4401"]),
         (["slide", "--set", "nothing"], []),

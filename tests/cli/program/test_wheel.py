@@ -21,25 +21,27 @@ COUNTS = "aspect,counted\nA,40\nB,30\nC,20\nD,10\nE,10\n"
 DEAD = ("--set", "restitution=0")  # one start and a short way to its period: quick where nothing is compiled
 STEEP = (*DEAD, "--set", "track.climb=20 deg")  # few settings convey
 GENTLE = (*DEAD, "--set", "drive.amplitude=0.02 mm")  # nor does this, on most of a report's map
+EXACT = ("--rule", "quasistatic")  # nothing is dropped or fed: minutes without a compiler
 CALLS = {
     "config": ["init", "bowl.yaml"],
-    "aspects": [PART, "-o", "results"],
+    "aspects": [PART, "--rule", "closed", "-o", "results"],
     "inertia": [PART, "-o", "results"],
-    "compare": [PART, "--with", "counts.csv"],
+    "compare": ["--help"],  # drops the part
     "drop": [PART, "--drops", "1", "--jobs", "1"],
     "calibrate": [PART, "--with", "counts.csv"],
     "slide": ["--config", "bowl.yaml"],
     "convey": ["--config", "bowl.yaml"],
-    "rate": [PART, "--aspect", "A"],
-    "tune": [PART, "--aspect", "A", "--target", "20/min", *STEEP],
-    "floor": [PART, "--config", "bowl.yaml"],
-    "track": [PART, "--config", "bowl.yaml"],
-    "headings": [PART],
+    "rate": [PART, "--aspect", "A", *EXACT],
+    "tune": [PART, "--aspect", "A", "--target", "20/min", *STEEP, *EXACT],
+    "floor": [PART, "--aspect", "A", "--config", "bowl.yaml"],
+    "track": [PART, "--aspect", "A", "--config", "bowl.yaml"],
+    "headings": ["--help"],  # feeds parts onto the floor
     "bowl": ["--help"],  # minutes without a compiler
     "tooling": ["--help"],
     "trial": ["--help"],
-    "batch": [PART, "-o", "results/all", "--no-pictures", "--jobs", "1"],
-    "report": [PART, "-o", "results", *GENTLE],
+    "design": ["--help"],
+    "batch": [PART, "-o", "results/all", "--no-pictures", "--jobs", "1", *EXACT],
+    "report": [PART, "-o", "results", *GENTLE, *EXACT],
     "reproduce": ["-o", "results"],
     "doctor": [],
 }
