@@ -146,7 +146,8 @@ def with_drops(found: Aspects, test: "DropStudy", launch: str) -> AspectsStudy:
     AspectsStudy
         With a warning where the user stopped the test, or nothing came to rest.
     """
-    tally, said = test.result.tally, ()
+    tally = test.result.tally
+    said: tuple[str, ...] = ()
     answer = recommended.dropped(tally, launch)
     if test.result.drops.partial:
         said = (f"partial: stopped after {test.drops} drops",)
