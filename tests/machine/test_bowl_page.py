@@ -5,6 +5,7 @@ import shlex
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 ROOT = Path(__file__).parents[2]
 BLOCK = re.compile(r"```console\n\$ feeder (.*)\n((?:(?!```).*\n)*)```")
@@ -12,6 +13,7 @@ NUMBER = re.compile(r"(?<![\w^])-?\d+(?:\.\d+)?(?!\w)")
 NEAR = 0.02  # relative; the rate of a bowl left alone hangs on hops, and on the processor
 
 
+@pytest.mark.thorough
 def test_the_page_is_true(run, monkeypatch):
     examples = BLOCK.findall((ROOT / "docs/bowl.md").read_text())
     assert len(examples) == 2
