@@ -1,5 +1,7 @@
 """What several test files share."""
 
+import signal
+
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -8,6 +10,10 @@ from hypothesis import settings
 from feederscrew.dropping.plate import arrival
 from feederscrew.studies import aspects, memory
 from feederscrew_cli.main import feeder
+
+# A shell that starts the tests in the background ignores these, and so would every command they start.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.load_profile("same")  # the same examples everywhere: new ones are for `make fuzz` to look for
