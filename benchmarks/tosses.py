@@ -14,7 +14,7 @@ import trimesh
 from feederscrew.dropping import launch_file
 from feederscrew.dropping.launch_file import FACES
 from feederscrew.part import load
-from feederscrew.studies.tosses import follow
+from feederscrew.studies.simulated.tosses import follow
 
 FILMED = Path(__file__).parents[1] / "docs/measured/filmed/cube_tosses.csv"
 SIDE, MASS, FRICTION, RESTITUTION = 0.1048, 0.37, 0.18, 0.125

@@ -10,67 +10,55 @@ from feederscrew_cli.interrupt import held_back
 from feederscrew_cli.quantity import Quantity
 from feederscrew_cli.span import Span
 
+REQUEST = (  # what shall leave, and what may be used
+    click.option(
+        "--target",
+        type=Quantity("rate", positive=True),
+        required=True,
+        metavar="RATE",
+        help="Parts that shall leave: 60/min.",
+    ),
+    click.option(
+        "--aspect", metavar="NAME", help="Aspect they shall leave on.  [default: whichever delivers most]"
+    ),
+    click.option("--heading", type=Angle(), metavar="DEG", help="Heading of it.  [default: whichever]"),
+    click.option(
+        "--outcome",
+        type=click.Choice(["any", "lying", "hanging"]),
+        default="any",
+        show_default=True,
+        help="Lying on the track, or hanging by the head between rails.",
+    ),
+    click.option("--without", metavar="KINDS", default="", help="Devices not to be used: 'profile,wiper'."),
+    click.option("--diameter", type=Span(), metavar="LOW:HIGH", help="Of the bowl: 200mm:400mm."),
+    click.option(
+        "--tolerance",
+        type=Quantity("length"),
+        default="0.1 mm",
+        show_default=True,
+        metavar="LENGTH",
+        help="Of the part's size, to either side.",
+    ),
+    click.option(
+        "--budget", type=click.IntRange(1, 1000), default=16, show_default=True, help="Short trials."
+    ),
+    click.option(
+        "--draws",
+        type=click.IntRange(1, 1000),
+        default=20,
+        show_default=True,
+        help="Of part, friction, drive and cuts.",
+    ),
+    click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of everything drawn."),
+)
+REQUESTED = (
+    "target", "aspect", "heading", "outcome", "without", "diameter", "tolerance", "budget", "draws", "seed",
+)  # fmt: skip
+
 
 def _asked(command):
     """What shall leave, and what may be used; the command receives ``asked``."""
-    names = (
-        "target",
-        "aspect",
-        "heading",
-        "outcome",
-        "without",
-        "diameter",
-        "tolerance",
-        "budget",
-        "draws",
-        "seed",
-    )
-    return options.stacked(
-        options.packed(command, "asked", names),
-        click.option(
-            "--target",
-            type=Quantity("rate", positive=True),
-            required=True,
-            metavar="RATE",
-            help="Parts that shall leave: 60/min.",
-        ),
-        click.option(
-            "--aspect", metavar="NAME", help="Aspect they shall leave on.  [default: whichever delivers most]"
-        ),
-        click.option("--heading", type=Angle(), metavar="DEG", help="Heading of it.  [default: whichever]"),
-        click.option(
-            "--outcome",
-            type=click.Choice(["any", "lying", "hanging"]),
-            default="any",
-            show_default=True,
-            help="Lying on the track, or hanging by the head between rails.",
-        ),
-        click.option(
-            "--without", metavar="KINDS", default="", help="Devices not to be used: 'profile,wiper'."
-        ),
-        click.option("--diameter", type=Span(), metavar="LOW:HIGH", help="Of the bowl: 200mm:400mm."),
-        click.option(
-            "--tolerance",
-            type=Quantity("length"),
-            default="0.1 mm",
-            show_default=True,
-            metavar="LENGTH",
-            help="Of the part's size, to either side.",
-        ),
-        click.option(
-            "--budget", type=click.IntRange(1, 1000), default=16, show_default=True, help="Short trials."
-        ),
-        click.option(
-            "--draws",
-            type=click.IntRange(1, 1000),
-            default=20,
-            show_default=True,
-            help="Of part, friction, drive and cuts.",
-        ),
-        click.option(
-            "--seed", type=click.IntRange(0), default=1, show_default=True, help="Of everything drawn."
-        ),
-    )
+    return options.stacked(options.packed(command, "asked", REQUESTED), *REQUEST)
 
 
 @grouped.command(short_help="From a part and a rate to a bowl that its own trial confirms.")

@@ -99,7 +99,7 @@ def _on_floor(part, launch, own, test, pictures, out):
     with held_back():
         from feederscrew.output import columns, offers
         from feederscrew.output.drop import files, tables
-        from feederscrew.studies.drop import drop as drop_study
+        from feederscrew.studies.simulated.drop import drop as drop_study
 
     solid = out.part(part)
     with out.folder(solid.name, solid.inputs, columns.conditions(solid)) as folder:

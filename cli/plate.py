@@ -44,7 +44,7 @@ def run(part, plate, launch, own, test, pictures, out):
     with held_back():
         from feederscrew.output import columns, offers
         from feederscrew.output.plate import files, tables
-        from feederscrew.studies.plate import plate as plate_study
+        from feederscrew.studies.simulated.plate import plate as plate_study
 
     bowls, names, inputs, values = _bowls(plate)
     out = replace(out, command="drop plate")

@@ -26,7 +26,7 @@ def run(part, path, own, test, pictures, out):
     with held_back():
         from feederscrew.output import columns, offers
         from feederscrew.output.drop import toss_files, toss_tables
-        from feederscrew.studies import tosses
+        from feederscrew.studies.simulated import tosses
 
     out = replace(out, command="drop launches")
     solid = out.part(part)

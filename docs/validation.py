@@ -14,7 +14,7 @@ import numpy as np
 
 from feederscrew.part import load
 from feederscrew.studies.compare import compare_sets
-from feederscrew.studies.tosses import follow
+from feederscrew.studies.simulated.tosses import follow
 
 PAGE = Path(__file__).resolve().parent / "validation.md"
 MEASURED = PAGE.parent / "measured"

@@ -8,7 +8,8 @@ from click.testing import CliRunner
 from hypothesis import settings
 
 from feederscrew.dropping.plate import arrival
-from feederscrew.studies import aspects, memory
+from feederscrew.studies import aspects
+from feederscrew.studies.simulated import memory
 from feederscrew_cli.main import feeder
 
 # A shell that starts the tests in the background ignores these, and so would every command they start.

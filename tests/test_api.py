@@ -36,7 +36,7 @@ def test_every_public_name_is_there_and_no_other():
 
 def test_a_public_name_is_never_the_room_of_that_name():
     """Importing a room would put it in the place of the function."""
-    code = "import feederscrew.tooling.chain, feederscrew.trial.course, feederscrew as fs; "
+    code = "import feederscrew.tooling.isolating.chain, feederscrew.trial.course, feederscrew as fs; "
     code += "from feederscrew import tooling; print(tooling is fs.tooling, callable(fs.trial))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
     assert (done.stdout.strip(), done.stderr) == ("True True", "")

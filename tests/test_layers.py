@@ -109,3 +109,42 @@ AGAIN = {
 def test_modules_of_one_name_are_of_one_kind():
     names = Counter(path.stem for path in FILES if path.stem != "__init__")
     assert {name for name, count in names.items() if count > 1} <= ALIKE | AGAIN
+
+
+CROWD = 18  # modules of a folder that are still seen at a glance
+BODY = 40  # lines of a function, its docstring aside
+
+
+def test_no_folder_is_a_crowd():
+    tests = ROOT.glob("tests/**/*.py")
+    modules = (path for path in [*FILES, *tests] if path.stem != "__init__" and path.parent.name != "cli")
+    crowded = {
+        str(folder): count for folder, count in Counter(p.parent for p in modules).items() if count > CROWD
+    }
+    assert not crowded
+
+
+TREES = {path: ast.parse(path.read_text()) for path in FILES}
+
+
+def test_no_class_name_occurs_twice():
+    names = Counter(
+        node.name for tree in TREES.values() for node in tree.body if isinstance(node, ast.ClassDef)
+    )
+    assert not [name for name, count in names.items() if count > 1]
+
+
+def lines_of(function):
+    """The lines of a function's body without its docstring."""
+    begin = 1 if ast.get_docstring(function) and len(function.body) > 1 else 0
+    return function.body[-1].end_lineno - function.body[begin].lineno + 1
+
+
+def test_no_function_is_long():
+    functions = (
+        (path, node)
+        for path, tree in TREES.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef)
+    )
+    assert not [f"{path.name} {node.name}" for path, node in functions if lines_of(node) > BODY]

@@ -24,7 +24,7 @@ PART = "give a Part, as load returns it"
 BOWL = "give a Bowl, as read_bowl returns it"
 
 
-class Answer(TypedDict, total=False):
+class ProbabilitySource(TypedDict, total=False):
     """Whose probabilities are taken: the keywords of every function that needs them."""
 
     rule: str  # 'recommended' without it
@@ -35,7 +35,7 @@ class Answer(TypedDict, total=False):
     known: Shares  # as ``shares`` returned it: nothing is computed again
 
 
-class AlongTrack(Answer, total=False):
+class AlongTrack(ProbabilitySource, total=False):
     """And how parts stand on the track."""
 
     gap: Quantity  # [m] between one part and the next
@@ -156,12 +156,12 @@ def conditions(given: Mapping[str, Condition]) -> dict[str, str | None]:
     return {name: _typed(name, value) for name, value in given.items()}
 
 
-def rule(asked: Answer) -> str:
+def rule(asked: ProbabilitySource) -> str:
     """Return whose probabilities are asked for."""
     return asked.get("rule", RECOMMENDED)
 
 
-def answered(part: Part, bowl: Bowl, asked: Answer) -> Shares:
+def answered(part: Part, bowl: Bowl, asked: ProbabilitySource) -> Shares:
     """Return the aspects of a part with the answer that was asked for."""
     own: dict[str, Any] = dict(asked)
     for name in ("gap", "fill"):

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any, Unpack
 
 from feederscrew.api import asked
-from feederscrew.api.asked import Answer, BowlFile, Quantity
+from feederscrew.api.asked import BowlFile, ProbabilitySource, Quantity
 from feederscrew.bowl import Bowl
 from feederscrew.part import Part
 from feederscrew.studies.report import ReportStudy
@@ -106,7 +106,7 @@ def report(
     bowl: BowlFile | None = None,
     gap: Quantity = 0.0,
     fill: float = 1.0,
-    **answer: Unpack[Answer],
+    **answer: Unpack[ProbabilitySource],
 ) -> ReportStudy:
     """Gather all that is known of a part in a bowl, as ``feeder report``: each chapter when it is asked for.
 

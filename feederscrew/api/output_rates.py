@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Unpack, cast
 
 from feederscrew.api import asked
-from feederscrew.api.asked import AlongTrack, Answer, BowlFile, Quantity
+from feederscrew.api.asked import AlongTrack, BowlFile, ProbabilitySource, Quantity
 from feederscrew.bowl import Bowl
 from feederscrew.part import Part
 from feederscrew.rates.well_oriented import RECOMMENDED
@@ -16,7 +16,7 @@ from feederscrew.tooling.devices.base import Device
 DEVICES = "give devices in a list, as a bowl's devices are"
 
 
-def shares(part: Part, bowl: Bowl, **answer: Unpack[Answer]) -> Shares:
+def shares(part: Part, bowl: Bowl, **answer: Unpack[ProbabilitySource]) -> Shares:
     """Return the aspects of a part with the answer that ``rate``, ``tune`` and others take.
 
     Parameters
@@ -43,7 +43,7 @@ def rate(
     devices: Sequence[Device] | None = None,
     gap: Quantity = 0.0,
     fill: float = 1.0,
-    **answer: Unpack[Answer],
+    **answer: Unpack[ProbabilitySource],
 ) -> RateStudy:
     """Compute the well-oriented parts per second, with each factor, as ``feeder rate``.
 

@@ -6,8 +6,8 @@ from feederscrew.api import asked
 from feederscrew.api.asked import Condition
 from feederscrew.bowl import Bowl
 from feederscrew.part import Part
-from feederscrew.studies.drop import DropStudy
-from feederscrew.studies.plate import PlateStudy
+from feederscrew.studies.simulated.drop import DropStudy
+from feederscrew.studies.simulated.plate import PlateStudy
 
 
 def drop(
@@ -50,7 +50,7 @@ def drop(
     FeederError
         If the part has no shape, or an argument is of the wrong kind or out of range.
     """
-    from feederscrew.studies.drop import drop as study
+    from feederscrew.studies.simulated.drop import drop as study
 
     given = asked.conditions(conditions)
     many = asked.count("drops", drops)
@@ -96,7 +96,7 @@ def shake(
     FeederError
         As for ``drop``.
     """
-    from feederscrew.studies.plate import plate as study
+    from feederscrew.studies.simulated.plate import plate as study
 
     own = {"drops": asked.count("drops", drops), "seconds": seconds, "seed": seed, "jobs": jobs}
     given, plates = asked.conditions(conditions), asked.some_bowls(bowls)

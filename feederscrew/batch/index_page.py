@@ -5,7 +5,7 @@ from urllib.parse import quote
 from feederscrew.batch import summary
 from feederscrew.batch.store import PARTS
 from feederscrew.batch.task import DONE, THUMBNAIL
-from feederscrew.output.page.blocks import MarkedCell, Matrix, Page, Picture, Section
+from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Picture
 from feederscrew.units import counted
 
 NAME = "index.html"
@@ -32,7 +32,7 @@ def page(store, rows):
     failed = sum(row["status"] != DONE for row in rows)
     told = counted(len(rows), "part") + (f", {failed} of them failed" if failed else "")
     lines = tuple(_row(store, row) for row in rows)
-    return Page(told, "", (Section((Matrix(HEADINGS, lines, sortable=True), NUMBERS)),))
+    return Page(told, "", (Chapter((Matrix(HEADINGS, lines, sortable=True), NUMBERS)),))
 
 
 def _row(store, row):

@@ -7,7 +7,7 @@ from feederscrew.bowl.settings import of_device
 from feederscrew.errors import FeederError
 from feederscrew.studies import bowl as machines
 from feederscrew.studies.tooling import ToolingStudy
-from feederscrew.tooling import proposal as static
+from feederscrew.tooling.isolating import proposal as static
 
 DRIVE = (("frequency", 1.0, "Hz"), ("vibration_angle", np.radians(1.0), "deg"))
 TRACK = (

@@ -18,7 +18,7 @@ BANK = np.radians(3.0)  # brings back to the wall what leaves it, and holds ther
 
 
 @dataclass(frozen=True)
-class Section:
+class PlainBowl:
     """A bowl without devices, and which of its keys the user gave."""
 
     bowl: Bowl
@@ -44,7 +44,7 @@ def section(part, aspects, plain, given, *, diameter=None, bank=BANK):
 
     Returns
     -------
-    Section
+    PlainBowl
     """
     rules = plain.sizing
     if diameter is not None:
@@ -59,7 +59,7 @@ def section(part, aspects, plain, given, *, diameter=None, bank=BANK):
         radius=0.5 * size.diameter,
         width=size.track_width if "width" in own else _tenths(size.track_width, 1e-4),
     )
-    return Section(replace(plain, track=track, devices=()), frozenset(given), size)
+    return PlainBowl(replace(plain, track=track, devices=()), frozenset(given), size)
 
 
 def _tenths(value, step):
@@ -71,7 +71,7 @@ def driven(made, velocity, *, hops=False):
 
     Parameters
     ----------
-    made : Section
+    made : PlainBowl
     velocity : float [m/s]
     hops : bool
         Whether parts may hop: there is no tooling.

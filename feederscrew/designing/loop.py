@@ -69,7 +69,7 @@ def _faster(search, candidate, study):
     """The same design proved at a faster drive, where that is calm; none where it is not to be had."""
     short = RATE_KEPT * search.request.target / study.delivered[1]
     search.reserve *= 1.1 * short
-    made = calm_drive.Section(replace(candidate.bowl, devices=()), search.given, None)
+    made = calm_drive.PlainBowl(replace(candidate.bowl, devices=()), search.given, None)
     other = _attempt(search, made, candidate.proposal, candidate.weights)
     faster = other.bowl.drive != candidate.bowl.drive and other.attempt.clean
     return [_proved(search, other)] if faster else []

@@ -7,8 +7,8 @@ import numpy as np
 from feederscrew.designing import trying
 from feederscrew.rates import stream
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling.chain import judged, limits, millimetres
 from feederscrew.tooling.devices.kinds import KINDS
+from feederscrew.tooling.isolating.chain import judged, limits, millimetres
 
 MARGINS = (5e-4, 2.5e-4)  # [m] asked for to either side: the wider first
 GUARDS = tuple(KINDS[name] for name in ("gap", "canyon", "narrowed_track"))

@@ -24,7 +24,7 @@ FRICTION = 0.2  # relative standard deviation of a coefficient of friction (assu
 
 
 @dataclass(frozen=True)
-class Surface:
+class SurfaceRanges:
     """Restitution and friction of a run: a value that scatters, or the ends of a range."""
 
     restitution: tuple[float, float]
@@ -60,7 +60,7 @@ def follow(shape, length, principal, rows, launches, surface, rng, *, runs=USUAL
     rows : (F,) int
         Class of each face.
     launches : LaunchFile
-    surface : Surface
+    surface : SurfaceRanges
     rng : numpy.random.Generator
         A launch gets the same numbers whatever the number of jobs.
     runs : int

@@ -12,7 +12,7 @@ BEYOND = 2e-3  # [m] by which what reaches an edge of the track is cut over it
 
 
 @dataclass(frozen=True, eq=False)
-class Cut:
+class TrackHole:
     """A hole in the track; s along the wall from where the stretch begins."""
 
     label: str  # 'gap 9 mm'
@@ -27,7 +27,7 @@ class Cut:
 
 
 @dataclass(frozen=True, eq=False)
-class Blade:
+class TrackBlade:
     """A plate across the track."""
 
     label: str
@@ -46,8 +46,8 @@ class Stretch:
     length: float  # [m] along the wall
     tallest: float  # [m] of all orientations
     longest: float  # [m] of all orientations, along the track
-    cuts: tuple[Cut, ...]
-    blades: tuple[Blade, ...]
+    cuts: tuple[TrackHole, ...]
+    blades: tuple[TrackBlade, ...]
     drops: tuple[tuple[float, float], ...]  # s and height [m] of each step down
     labels: tuple[tuple[float, float, str], ...]  # from, to [m] and label of each device
 
@@ -88,7 +88,7 @@ def _cut(station, drawn, width):
     """A hole, carried a little over the edge of the track that it reaches, and into the wall."""
     s, y = station.hole.T
     y = np.where(y >= drawn - 1e-9, width + BEYOND, np.where(y <= 1e-9, -BEYOND, y))
-    return Cut(station.label, station.device.kind, np.column_stack([s, y]), station.device.hangs)
+    return TrackHole(station.label, station.device.kind, np.column_stack([s, y]), station.device.hangs)
 
 
 def _blade(station, width):
@@ -97,7 +97,7 @@ def _blade(station, width):
     ways = ((0.0, 0.0), (-2.0 * BEYOND, 0.0), (0.0, -2.0 * BEYOND))
     free = shapely.union_all([affinity.translate(free, *by) for by in ways])
     frame = shapely.box(-BEYOND, 0.0, width, station.top)
-    return Blade(
+    return TrackBlade(
         label=station.label,
         kind=station.device.kind,
         start=float(station.blade[0, 0]),

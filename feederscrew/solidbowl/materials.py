@@ -6,7 +6,7 @@ STEEL = "steel"
 
 
 @dataclass(frozen=True)
-class Material:
+class BowlMaterial:
     """Thicknesses and density of one way to make a bowl."""
 
     name: str
@@ -19,8 +19,8 @@ class Material:
 
 
 PRINTED = (
-    Material("pla", 4e-3, 5e-3, 4e-3, 1240.0, supported=False, flat=True),
-    Material("pa12", 3e-3, 4e-3, 3e-3, 1010.0, supported=True, flat=False),
+    BowlMaterial("pla", 4e-3, 5e-3, 4e-3, 1240.0, supported=False, flat=True),
+    BowlMaterial("pa12", 3e-3, 4e-3, 3e-3, 1010.0, supported=True, flat=False),
 )
 NAMES = (*(one.name for one in PRINTED), STEEL)
 
@@ -37,9 +37,9 @@ def material(name, rules):
 
     Returns
     -------
-    Material
+    BowlMaterial
     """
     if name == STEEL:
         sheet = rules.sheet
-        return Material(STEEL, sheet, sheet, sheet, rules.sheet_density, supported=True, flat=False)
+        return BowlMaterial(STEEL, sheet, sheet, sheet, rules.sheet_density, supported=True, flat=False)
     return next(one for one in PRINTED if one.name == name)

@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew.errors import FeederError
 from feederscrew.solidbowl.cuts import Stretch
-from feederscrew.solidbowl.materials import Material
+from feederscrew.solidbowl.materials import BowlMaterial
 from feederscrew.solidbowl.way import Way
 
 CHORD = 5e-5  # [m] by which an arc may be seen too flat
@@ -27,7 +27,7 @@ class BowlPlan:
 
     way: Way
     width: float  # of the track, along its surface
-    material: Material
+    material: BowlMaterial
     stretch: Stretch | None  # None without devices
     first: float  # s where the stretch begins
     outlet: float  # length of the outlet
@@ -110,7 +110,7 @@ def plan(size, track, made_of, tooled, asked, *, extents):
     size : machine.sizing.Size
     track : Track
         Of that size.
-    made_of : Material
+    made_of : BowlMaterial
     tooled : Stretch or None
     asked : Asked
     extents : (3,) float [m]

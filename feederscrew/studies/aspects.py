@@ -13,11 +13,11 @@ from feederscrew.resting.rules import recommended
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
 from feederscrew.resting.rules.surface import EXPONENTS
 from feederscrew.resting.tumbling.by_class import Transition, ground, transitions
-from feederscrew.studies import memory
+from feederscrew.studies.simulated import memory
 
 if TYPE_CHECKING:
     from feederscrew.dropping.ensemble import Tally
-    from feederscrew.studies.drop import DropStudy
+    from feederscrew.studies.simulated.drop import DropStudy
 
 AIM = "1%"  # half the widest 95 % interval of the sampling at which a part is dropped no further
 MOST = 20_000  # drops: a share of a half takes half of them
@@ -116,7 +116,7 @@ def answered(part: Part) -> Aspects:
 
 def _dropped(part, found, launch, drops, jobs, progress, before):
     """The drop test, made once in a run."""
-    from feederscrew.studies.drop import drop
+    from feederscrew.studies.simulated.drop import drop
 
     def make():
         if before:

@@ -25,11 +25,11 @@ class CompareStudy(Shown):
     part: Part
     aspects: Aspects
     measured: profiles.Measured
-    rules: tuple[profiles.Profile, ...]
+    rules: tuple[profiles.AspectProfile, ...]
     comparisons: tuple[deviation.Comparison, ...]  # of every two, in the order of the profiles
 
     @property
-    def profiles(self) -> tuple[profiles.Profile, ...]:
+    def profiles(self) -> tuple[profiles.AspectProfile, ...]:
         """What was measured, then the rules."""
         return (*self.measured.profiles, *self.rules)
 
@@ -51,8 +51,8 @@ class SetStudy(Shown):
     part: Part
     aspects: Aspects
     measured: profiles.Measured
-    profile: profiles.Profile
-    answers: dict[str, profiles.Profile]  # by rule, and the recommended one where there is one
+    profile: profiles.AspectProfile
+    answers: dict[str, profiles.AspectProfile]  # by rule, and the recommended one where there is one
 
     @property
     def recommended(self) -> Recommended | None:

@@ -19,8 +19,8 @@ from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH, launch_named
 from feederscrew.resting.rules.registry import RECOMMENDED
-from feederscrew.studies import memory
 from feederscrew.studies.aspects import aspects as resting
+from feederscrew.studies.simulated import memory
 from feederscrew.tooling.devices.base import Device
 
 ALIKE = 1.0 - 1e-9  # of the most frequent orientation: as frequent

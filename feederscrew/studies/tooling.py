@@ -16,12 +16,12 @@ from feederscrew.rates.tipping import marked, remark
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.rate import arriving
-from feederscrew.tooling.chain import FINE, STEP, Wishes
-from feederscrew.tooling.design import MARGIN, design, place
 from feederscrew.tooling.devices.kinds import KINDS
-from feederscrew.tooling.hole_search import VERDICTS, Search
+from feederscrew.tooling.isolating.chain import FINE, STEP, Wishes
+from feederscrew.tooling.isolating.design import MARGIN, design, place
+from feederscrew.tooling.isolating.hole_search import VERDICTS, HoleSearch
+from feederscrew.tooling.isolating.proposal import Design
 from feederscrew.tooling.orientations import Orientation, named, orientations, placed
-from feederscrew.tooling.proposal import Design
 from feederscrew.units import shown
 
 CARRIED = (
@@ -142,7 +142,7 @@ def tooling(
         )
     shares = np.nan_to_num([one.chances[rule] for one in every])
     wanted = None if aspect is None else place(every, aspect, heading, part.source)
-    search = Search(seed=seed, verdicts=verdicts, until=time.monotonic() + seconds)
+    search = HoleSearch(seed=seed, verdicts=verdicts, until=time.monotonic() + seconds)
     wishes = asked_for(outcome, without, step)
     asked_of_each = {"purity": purity, "efficiency": efficiency, "turn": turn, "before": bowl.devices}
     asked_of_each |= {"wishes": wishes}

@@ -102,8 +102,8 @@ def tune(
     chain = bowl.devices if devices is None else tuple(devices)
     if arriving is None:
         arriving, rough = (partial(shares, part, rule=rule, fed=fed) for fed in (None, FEW))
-    ways = _Ways(part, bowl, chain, arriving)
-    lead = None if rough is None else _Ways(part, bowl, chain, rough)
+    ways = _DriveWays(part, bowl, chain, arriving)
+    lead = None if rough is None else _DriveWays(part, bowl, chain, rough)
     found = ways.shares(bowl).aspects
     wanted = well_oriented.wanted(part, found, bowl.track, aspect, heading)
     # raises where none ever leaves so
@@ -126,7 +126,7 @@ def tune(
     )
 
 
-class _Ways:
+class _DriveWays:
     """The orientations along the track of a bowl at other drives, with what arrives at each of them."""
 
     def __init__(self, part, bowl, chain, arriving):

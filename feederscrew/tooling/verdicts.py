@@ -108,11 +108,11 @@ class Meeting:
         return max(margin, -UNSURE) if self.rides(span[1] - span[0], np.inf) else margin
 
     def over_hole(self, hole):
-        """Return its least margin [m] over a Hole's passage, and the shift [rad] where it is."""
+        """Return its least margin [m] over the passage of HoleEdges, and the shift [rad] where it is."""
         return feet.least(self.one.standing, hole)
 
     def unheld(self, hole):
-        """Return the longest way [m] over which a Hole leaves it without support."""
+        """Return the longest way [m] over which HoleEdges leave it without support."""
         return feet.unheld(self.one.standing, hole)
 
     def leans(self, width):

@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.resting.counts import deviation
-from feederscrew.resting.counts.profiles import Profile
+from feederscrew.resting.counts.profiles import AspectProfile
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,7 +18,7 @@ class Outlet:
     offered: np.ndarray  # (A,) [1] shares in which parts come, 0 of an aspect that is not tried
     counts: np.ndarray  # (A,) int, whole parts that left, against the wall or away from it
     other: int  # further ones: hanging, or on no aspect
-    columns: tuple[Profile, ...]  # what was measured, over the same aspects
+    columns: tuple[AspectProfile, ...]  # what was measured, over the same aspects
 
     @property
     def shares(self):
@@ -54,7 +54,7 @@ def outlet(queue, lying, shares, aspects, columns=()):
     shares : (M,) float [1]
     aspects : sequence of str
         Names, A of them.
-    columns : sequence of Profile
+    columns : sequence of AspectProfile
         Over those aspects.
 
     Returns

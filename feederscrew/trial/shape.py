@@ -57,11 +57,7 @@ def solid_of(part):
     FeederError
         If the part has no surface, or one of very many facets.
     """
-    if part.vertices is None:
-        raise FeederError(part.source, "has no surface, as a part card", "give the part as a mesh")
-    if len(part.faces) > MOST:
-        what = f"has {len(part.faces)} facets, too many to follow on the track"
-        raise FeederError(part.source, what, f"export it more coarsely, with {MOST} facets at most")
+    _check_surface(part)
     hull = convex_hull(part.vertices, part.centre_of_mass, part.source)
     length = float(np.cbrt(hull.volume))
     moments, principal = principal_axes(part.inertia)
@@ -98,6 +94,15 @@ def solid_of(part):
         length,
         principal,
     )
+
+
+def _check_surface(part):
+    """Raise FeederError for a part without a surface, or with one of very many facets."""
+    if part.vertices is None:
+        raise FeederError(part.source, "has no surface, as a part card", "give the part as a mesh")
+    if len(part.faces) > MOST:
+        what = f"has {len(part.faces)} facets, too many to follow on the track"
+        raise FeederError(part.source, what, f"export it more coarsely, with {MOST} facets at most")
 
 
 def onwards(corners, place, ends, hollow):

@@ -15,7 +15,7 @@ from feederscrew.output.drop import trace_curve, trace_strip, trace_tables
 from feederscrew.output.tables import data_frame
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
-from feederscrew.studies.drop import DropStudy
+from feederscrew.studies.simulated.drop import DropStudy
 
 PARTS = Path(__file__).parents[2] / "parts"
 MM = 1e-3

@@ -17,7 +17,7 @@ from feederscrew.output.floor import map_figures
 from feederscrew.output.graph import figures as graph
 from feederscrew.output.headings import figures as headings_figures
 from feederscrew.output.page.as_html import html
-from feederscrew.output.page.blocks import MarkedCell, Matrix, Page, Section
+from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.tumbling.by_class import Transition
@@ -184,5 +184,5 @@ def test_a_contact_sheet_says_why_a_part_failed():
 def test_a_matrix_can_be_sorted_where_it_says_so():
     cells = ((MarkedCell("b"),), (MarkedCell("a"),))
     for sortable in (False, True):
-        page = html(Page("all", "", (Section((Matrix(("part",), cells, sortable),)),)))
+        page = html(Page("all", "", (Chapter((Matrix(("part",), cells, sortable),)),)))
         assert ('class="matrix sortable"' in page) == ("aria-sort" in page.split("</style>")[1]) == sortable

@@ -18,7 +18,7 @@ from feederscrew import bowl as bowls
 from feederscrew.output import tables
 from feederscrew.output.aspects import tables as aspects_tables
 from feederscrew.output.page.as_html import html
-from feederscrew.output.page.blocks import Page, Section, Views
+from feederscrew.output.page.blocks import Chapter, Page, Views
 from feederscrew.output.report import page
 from feederscrew.output.report.chapters import CHAPTERS
 from feederscrew.output.report.scene import over_cuts
@@ -179,7 +179,7 @@ def test_the_part_turns_over_the_cut(visit, case):
         over_cuts(case.part, [met for met, _ in shown], every),
         tuple((met.orientation.name, told, ()) for met, told in shown), "cuts", "Orientation",
     )  # fmt: skip
-    text = html(Page("part", "", (Section((views,), anchor="cuts-chapter", title="Tooling"),), "report"))
+    text = html(Page("part", "", (Chapter((views,), anchor="cuts-chapter", title="Tooling"),), "report"))
     probe = PROBE.replace('[...document.getElementById("aspects.csv").rows]', "[]")
     dom, console = visit(text.replace("</body>", probe), "--dump-dom")
     assert console == []
@@ -221,7 +221,7 @@ def test_a_trial_plays(visit, tmp_path):
     fates = [told.rpartition(" ")[2] for _, told in captions]
     assert fates[0] == "passed" != fates[1]
     views = Views(scene, tuple((*told, ()) for told in captions), "trial-views", "Orientation", plays=True)
-    text = html(Page("part", "", (Section((views,), anchor="trial", title="Trial"),), "report"))
+    text = html(Page("part", "", (Chapter((views,), anchor="trial", title="Trial"),), "report"))
     dom, console = visit(text.replace("</body>", PLAY), "--dump-dom")
     assert console == []
     told = json.loads(unescape(re.search(r"<title>(.*?)</title>", dom, re.S).group(1)))

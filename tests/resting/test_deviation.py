@@ -7,14 +7,14 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from feederscrew.resting.counts import deviation as measure
-from feederscrew.resting.counts.profiles import Profile
+from feederscrew.resting.counts.profiles import AspectProfile
 
 shares = st.lists(st.floats(0.0, 1.0), min_size=2, max_size=8).filter(lambda p: sum(p) > 0.1)
 
 
 def profile(name, kind, values):
     values = np.asarray(values, dtype=float)
-    return Profile(name, kind, values, values / values.sum())
+    return AspectProfile(name, kind, values, values / values.sum())
 
 
 def test_deviation_by_hand():

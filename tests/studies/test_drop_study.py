@@ -13,8 +13,8 @@ from feederscrew.output.plate import files as plate_files
 from feederscrew.studies.aspects import aspects
 from feederscrew.studies.calibrate import calibrate
 from feederscrew.studies.compare import compare
-from feederscrew.studies.drop import drop
-from feederscrew.studies.plate import plate
+from feederscrew.studies.simulated.drop import drop
+from feederscrew.studies.simulated.plate import plate
 
 OWN = {"fall": "5 mm"}
 

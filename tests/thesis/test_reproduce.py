@@ -10,7 +10,7 @@ from feederscrew.mechanics import limits
 from feederscrew.output import style
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
-from feederscrew.output.page.blocks import Heading, Links, MarkedCell, Matrix, Page, Section
+from feederscrew.output.page.blocks import Chapter, Heading, Links, MarkedCell, Matrix, Page
 from feederscrew.thesis import chapter_5, figure_data, reproduction
 from feederscrew.thesis.claims import Claim, claims
 from feederscrew.thesis.findings import BY_ID, FINDINGS
@@ -236,7 +236,7 @@ def test_html_needs_no_other_file(items, page):
 
 
 def test_html_escapes_what_markdown_may_say():
-    text = html(Page("a < b", "", (Section((Matrix(("x",), ((MarkedCell("<b>", "exact"),),)),)),)))
+    text = html(Page("a < b", "", (Chapter((Matrix(("x",), ((MarkedCell("<b>", "exact"),),)),)),)))
     assert "<h1>a &lt; b</h1>" in text and '<td class="exact">&lt;b&gt;</td>' in text
 
 

@@ -13,10 +13,10 @@ from feederscrew.rates.steadiness import steady
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling import apart, hole_search
-from feederscrew.tooling.chain import Wishes
-from feederscrew.tooling.design import design, place
 from feederscrew.tooling.devices.kinds import made as device_of
+from feederscrew.tooling.isolating import apart, hole_search
+from feederscrew.tooling.isolating.chain import Wishes
+from feederscrew.tooling.isolating.design import design, place
 from feederscrew.tooling.orientations import named, orientations
 from feederscrew.tooling.verdicts import verdict
 
@@ -56,7 +56,7 @@ def test_a_cut_leaves_as_much_of_a_foot_as_keeps_it_from_rocking(heading, is_ste
     bowl = bowls.read(None, [])
     study = tooling(shapes.part(shapes.box(22, 13, 6)), bowl, "C", heading=heading, verdicts=1, without=ONES)
     found, one = study.design, study.orientations[study.wanted]
-    asked = {"margin": study.margin, "search": hole_search.Search(verdicts=1)}
+    asked = {"margin": study.margin, "search": hole_search.HoleSearch(verdicts=1)}
     asked["wishes"] = Wishes(without=ONES)
     midway = design(study.orientations, study.shares, study.wanted, **asked)
     assert not steady(midway.devices, [one], bowl, study.margin)[0]
@@ -86,7 +86,7 @@ def test_a_hole_parts_mirror_images(bracket):
     _, _, every, _ = bracket
     wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
     partner = next(k for k, one in enumerate(every) if one.name == every[wanted].mirror)
-    found = hole_search.cut_out(every, wanted, [partner], MARGIN, hole_search.Search(seed=3))
+    found = hole_search.cut_out(every, wanted, [partner], MARGIN, hole_search.HoleSearch(seed=3))
     assert found is not None
     cut, held = found
     assert held == [partner]
@@ -94,7 +94,7 @@ def test_a_hole_parts_mirror_images(bracket):
     assert cut.margin_pass >= MARGIN and cut.margin_reject >= MARGIN
     assert verdict(cut.smallest, every[partner]).margin < 1e-6
     assert verdict(cut.largest, every[wanted]).margin > -1e-6
-    again, _ = hole_search.cut_out(every, wanted, [partner], MARGIN, hole_search.Search(seed=3))
+    again, _ = hole_search.cut_out(every, wanted, [partner], MARGIN, hole_search.HoleSearch(seed=3))
     assert again.device == cut.device
 
 
@@ -103,7 +103,9 @@ def test_a_hole_that_is_not_better_is_left_early(bracket, rng):
     _, _, every, _ = bracket
     wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
     others = [k for k in range(len(every)) if k != wanted][:6]
-    whole, short = (hole_search._Judge(every, wanted, others, MARGIN, hole_search.Search()) for _ in range(2))
+    whole, short = (
+        hole_search._Judge(every, wanted, others, MARGIN, hole_search.HoleSearch()) for _ in range(2)
+    )
     holes = [whole._random(rng) for _ in range(60)]
     best = -np.inf
     for corners in (one for one in holes if one is not None):
@@ -118,7 +120,7 @@ def test_where_no_hole_is_found_that_of_the_mirror_images_is_mirrored(bracket, m
     _, _, every, _ = bracket
     wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
     partner = next(k for k, one in enumerate(every) if one.name == every[wanted].mirror)
-    search, direct = hole_search.Search(seed=3), hole_search._found
+    search, direct = hole_search.HoleSearch(seed=3), hole_search._found
 
     def found(every, k, *rest):
         return None if k == wanted else direct(every, k, *rest)
@@ -232,11 +234,11 @@ def test_the_design_is_found_behind_the_devices_of_the_bowl(bracket, tmp_path):
 def test_the_search_ends_by_a_count_of_verdicts_and_says_when_by_time(bracket):
     _, _, every, shares = bracket
     wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
-    search = hole_search.Search(verdicts=300)
+    search = hole_search.HoleSearch(verdicts=300)
     first, second = (design(every, shares, wanted, search=search) for _ in range(2))
     assert [cut.device for cut in first.cuts] == [cut.device for cut in second.cuts]
     assert not first.late
-    assert design(every, shares, wanted, search=hole_search.Search(until=0.0)).late
+    assert design(every, shares, wanted, search=hole_search.HoleSearch(until=0.0)).late
 
 
 def test_an_inside_that_differs_is_told_from_a_chamfer():

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
 from feederscrew.tooling import turning
-from feederscrew.tooling.design import design
 from feederscrew.tooling.devices.kinds import KINDS, made
 from feederscrew.tooling.fates import course
+from feederscrew.tooling.isolating.design import design
 from feederscrew.tooling.orientations import orientations
 
 TRACK = bowls.read(None, ("track.radius=100 m", "track.width=200 mm", "track.bank=0 deg")).track

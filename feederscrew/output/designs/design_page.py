@@ -2,7 +2,7 @@
 
 from feederscrew.output.designs import figures, tables
 from feederscrew.output.page.as_html import html
-from feederscrew.output.page.blocks import CsvSheet, Heading, Notes, Page, Picture, Section, Table, Text, Tile
+from feederscrew.output.page.blocks import Chapter, CsvSheet, Heading, Notes, Page, Picture, Table, Text, Tile
 from feederscrew.output.style import png
 from feederscrew.output.tables import text
 
@@ -27,16 +27,16 @@ def page(study):
 
 def _sections(study):
     d = tables.document(study)
-    yield Section(_answer(study, d), tiles=_tiles(d), warnings=study.warnings, title="The answer")
+    yield Chapter(_answer(study, d), tiles=_tiles(d), warnings=study.warnings, title="The answer")
     history = tables.attempts(study)
     picture = Picture("design_history.png", png(figures.history(study)), "Each short trial of the loop")
     lead = Text(
         "Each line is one short trial: a chain on its bowl, every orientation that comes often enough. What "
         "the trial denies is changed in the next."
     )
-    yield Section((lead, Table(history), picture) if study.attempts else (lead,), title="The loop")
+    yield Chapter((lead, Table(history), picture) if study.attempts else (lead,), title="The loop")
     if study.queues:
-        yield Section(_proof(study, d), title="The proof")
+        yield Chapter(_proof(study, d), title="The proof")
     sheet = tables.acceptance(study)
     told = Text("Computed values in, and empty cells for what is measured at the machine.")
     blocks = (
@@ -46,7 +46,7 @@ def _sections(study):
         Heading("What to measure"),
         Notes(MEASURE),
     )
-    yield Section(blocks, title="Acceptance sheet")
+    yield Chapter(blocks, title="Acceptance sheet")
 
 
 def _answer(study, d):

@@ -120,7 +120,7 @@ class Tile:
 
 
 @dataclass(frozen=True)
-class Section:
+class Chapter:
     """A chapter of the page; its place and title are the page's to give, '' for one without."""
 
     blocks: tuple
@@ -136,7 +136,7 @@ class Page:
 
     title: str
     subtitle: str
-    sections: tuple[Section, ...]
+    sections: tuple[Chapter, ...]
     kind: str = ""
 
     @property

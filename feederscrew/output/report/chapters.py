@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from feederscrew import __version__
 from feederscrew.errors import FeederError
-from feederscrew.output.page.blocks import Notes, Page, Section
+from feederscrew.output.page.blocks import Chapter, Notes, Page
 from feederscrew.output.report import closing, cutting, driving, moving, resting
 
 CHAPTERS = (  # anchor, title, what computes it
@@ -55,6 +55,6 @@ def _chapter(case, anchor, title, compute, step):
             found = compute(case)
     except FeederError as fault:
         told = tuple(f"{title}: {line}" for line in fault.lines)
-        found = Section((Notes(fault.lines, loud=True),), warnings=told)
+        found = Chapter((Notes(fault.lines, loud=True),), warnings=told)
     gc.collect()  # figures hold themselves: they would pile up
     return None if found is None else replace(found, anchor=anchor, title=title)

@@ -6,7 +6,7 @@ from importlib import metadata
 from feederscrew import __version__
 from feederscrew.output import tables
 from feederscrew.output.folder import LIBRARIES
-from feederscrew.output.page.blocks import Code, Notes, Section, Table, Text
+from feederscrew.output.page.blocks import Chapter, Code, Notes, Table, Text
 from feederscrew.output.report.resting import numbers
 from feederscrew.output.slide import tables as slide_tables
 
@@ -33,7 +33,7 @@ LIMITS = (
 
 def limits(case):
     """What the methods leave out, in plain words."""
-    return Section((Notes(LIMITS),))
+    return Chapter((Notes(LIMITS),))
 
 
 def repeat(case):
@@ -42,7 +42,7 @@ def repeat(case):
     bowl = slide_tables.settings(case.settings).only(("key", "value", "from", "meaning"))
     chain = [f"device {device.kind} ({device.where})" for device in case.bowl.devices]
     names, versions = zip(*_versions())
-    return Section(
+    return Chapter(
         (
             *((Code(case.command),) if case.command else ()),
             Text("The same program and inputs give this page again, byte for byte."),

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from feederscrew.output import tables as tables_of
-from feederscrew.output.page.blocks import Notes, Picture, Section, Table, Text, Views
+from feederscrew.output.page.blocks import Chapter, Notes, Picture, Table, Text, Views
 from feederscrew.output.report.scene import over_cuts
 from feederscrew.output.tooling import files, relief, tables
 from feederscrew.output.trial import files as trial_files
@@ -29,7 +29,7 @@ def tooling(case):
     drawn = files.chain_picture(study.devices, study.orientations, study.shares)
     picture = Picture(drawn.name, drawn.make(), drawn.alt)
     blocks = (lead, *_turning(study), *_views(study), Table(tables.passages(study)), picture)
-    return Section(blocks, warnings=remark(study.orientations))
+    return Chapter(blocks, warnings=remark(study.orientations))
 
 
 def trial(case):
@@ -49,7 +49,7 @@ def trial(case):
     frame = trial_tables.frame(study)
     table = Table(tables_of.frame({name: frame[name] for name in TRIED}))
     blocks = (lead, told, views, replace(stills, printed=True), table, matrix, paths)
-    return Section(blocks, warnings=study.warnings)
+    return Chapter(blocks, warnings=study.warnings)
 
 
 def _turning(study):

@@ -5,7 +5,7 @@ from feederscrew.output import offers
 from feederscrew.output import tables as plain
 from feederscrew.output.machine import offers as machine_files
 from feederscrew.output.machine import tables
-from feederscrew.output.page.blocks import Notes, Picture, Section, Table, Text, Tile, Views
+from feederscrew.output.page.blocks import Chapter, Notes, Picture, Table, Text, Tile, Views
 from feederscrew.output.page.numbers import SHORT, number
 from feederscrew.output.solidbowl import turnable
 
@@ -34,7 +34,7 @@ def bowl(case):
         Table(tables.leaf_sets(found.sets)),
         Table(_renamed(tables.emptying(found))),
     )
-    return Section(blocks, tiles=(_tile(found),), warnings=found.remarks)
+    return Chapter(blocks, tiles=(_tile(found),), warnings=found.remarks)
 
 
 def _turned(case):

@@ -13,7 +13,7 @@ from feederscrew.output.floor import files as floor_files
 from feederscrew.output.floor import tables as floor_tables
 from feederscrew.output.headings import files as heading_files
 from feederscrew.output.headings import tables as heading_tables
-from feederscrew.output.page.blocks import Notes, Picture, Section, Table, Text, Tile
+from feederscrew.output.page.blocks import Chapter, Notes, Picture, Table, Text, Tile
 from feederscrew.output.page.numbers import NOTHING, SHORT, number, percent
 from feederscrew.output.rate import tables as rate_tables
 from feederscrew.output.report.on_the_track import on_track
@@ -48,7 +48,7 @@ def slide(case):
     """When a part slips, over its heading and the drive."""
     study = case.slide
     pictures = _taken(slide_files.offers(study), "slide_regimes", "slide_contours")
-    return Section((*_notes(slide_tables.remarks(study)), Table(slide_tables.summary(study.maps)), *pictures))
+    return Chapter((*_notes(slide_tables.remarks(study)), Table(slide_tables.summary(study.maps)), *pictures))
 
 
 def convey(case):
@@ -61,7 +61,7 @@ def convey(case):
         title = convey_plots.cycle_title(study.trace(), study.answer)
         blocks.append(replace(cycle, alt=f"Plate and part: {title}"))
     blocks.append(_velocity_map(case))
-    return Section(
+    return Chapter(
         tuple(blocks),
         tiles=(_velocity_tile(document),),
         warnings=(*convey_tables.remarks(document), *study.warnings),
@@ -80,7 +80,7 @@ def floor(case):
         "the drive; the maps show the same instant for other drives and other friction."
     )
     lines = _notes(told + floor_tables.remarks(found))
-    return Section((lead, *lines, Table(floor_tables.summary(document)), *pictures))
+    return Chapter((lead, *lines, Table(floor_tables.summary(document)), *pictures))
 
 
 def headings(case):
@@ -94,7 +94,7 @@ def headings(case):
     )
     own = heading_files.offers(study.only(case.aspect), bowls.texts(case.settings))
     pictures = _taken(own, "headings")
-    return Section((lead, Table(frame), *pictures), warnings=tuple(heading_tables.remarks(study)))
+    return Chapter((lead, Table(frame), *pictures), warnings=tuple(heading_tables.remarks(study)))
 
 
 def track(case):
@@ -105,7 +105,7 @@ def track(case):
     offered = track_files.offers(found, settings, grid)
     pictures = _taken(offered, "track_part", "track_map", "track_cycle")
     lines = _notes(track_tables.remarks(found) + map_tables.remarks(grid))
-    return Section(
+    return Chapter(
         (Text(on_track(case, WORDS)), *lines, Table(track_tables.summary(document)), *pictures),
         tiles=_heading_tiles(found),
     )
@@ -120,7 +120,7 @@ def rate(case):
         "off and the interval of the shares. The second table has what the track and each device do "
         "with each orientation."
     )
-    return Section(
+    return Chapter(
         (lead, Table(rate_tables.summary(document)), Table(document["orientations"])),
         tiles=(_rate_tile(document),),
         warnings=(*rate_tables.remarks(found), *found.warnings),

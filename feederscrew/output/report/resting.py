@@ -11,10 +11,10 @@ from feederscrew.output.graph import figures
 from feederscrew.output.inertia import tables as inertia_tables
 from feederscrew.output.offers import by_name
 from feederscrew.output.page.blocks import (
+    Chapter,
     CsvSheet,
     Notes,
     Picture,
-    Section,
     ShareBar,
     Table,
     Text,
@@ -43,7 +43,7 @@ def the_part(case):
     facts = tables.frame({"quantity": names, "value": [row["value"] for row in rows]})
     facets = "a part card: published data, no shape" if part.vertices is None else f"{len(part.faces)} facets"
     lead = Text(f"{part.source}: {facets}, lengths in {part.units}. Material: {part.material}.")
-    return Section((lead, Table(facts)), warnings=tuple(part.warnings))
+    return Chapter((lead, Table(facts)), warnings=tuple(part.warnings))
 
 
 def aspects(case):
@@ -60,7 +60,7 @@ def aspects(case):
     shown = table.without((*aspects_tables.NORMALS, *straight))
     chances = [name for name in shown if name.startswith("p_")]
     shapes = Table(shown.without(chances))
-    return Section(
+    return Chapter(
         (*views, *lines, shapes, Table(shown.only(["aspect", *chances])), chart),
         tiles=(_tile(case),),
         warnings=tuple(found.warnings),
@@ -91,7 +91,7 @@ def tips(case):
     picture = Picture(
         "tipping.png", style.png(drawn), "Tipping graph: which aspect tips into which, and the lift it takes"
     )
-    return Section((lead, Table(table), picture), warnings=tuple(found.ground.tips.doubts))
+    return Chapter((lead, Table(table), picture), warnings=tuple(found.ground.tips.doubts))
 
 
 def numbers(case):

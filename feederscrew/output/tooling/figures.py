@@ -10,7 +10,9 @@ from shapely import affinity
 from feederscrew.output import style
 from feederscrew.output.tooling import ink, tables
 from feederscrew.tooling import tightest
-from feederscrew.tooling.proposal import LEAST_SHARE  # orientations that come less often have no row
+from feederscrew.tooling.isolating.proposal import (
+    LEAST_SHARE,  # orientations that come less often have no row
+)
 from feederscrew.units import factor
 
 MM = factor("mm", "length")

@@ -10,7 +10,9 @@ from feederscrew.output.solid import pair
 from feederscrew.output.solid.render import Camera
 from feederscrew.output.tooling import ink
 from feederscrew.tooling import solid, tightest
-from feederscrew.tooling.proposal import LEAST_SHARE  # what comes less often is not the nearest that falls
+from feederscrew.tooling.isolating.proposal import (
+    LEAST_SHARE,  # what comes less often is not the nearest that falls
+)
 from feederscrew.tooling.strip import strip
 
 WIDE, HIGH, HEAD = 620, 520, 96  # pixels of one view and of the lines over it

@@ -4,7 +4,7 @@ import numpy as np
 
 from feederscrew.output import columns, tables
 from feederscrew.tooling import tightest as passages_of
-from feederscrew.tooling.proposal import LEAST_SHARE
+from feederscrew.tooling.isolating.proposal import LEAST_SHARE
 from feederscrew.units import factor
 
 MM, DEG = factor("mm", "length"), factor("deg", "angle")

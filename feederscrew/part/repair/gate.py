@@ -25,7 +25,7 @@ NEARER = "export it near the origin"
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
+class CheckedSurface:
     """One solid's surface, facing outwards, and what it encloses."""
 
     vertices: np.ndarray  # (V, 3) [unit of the file]
@@ -51,7 +51,7 @@ def surface(vertices, faces, where, unit, allow_open=False):
 
     Returns
     -------
-    Surface
+    CheckedSurface
 
     Raises
     ------
@@ -73,7 +73,7 @@ def surface(vertices, faces, where, unit, allow_open=False):
         raise MeshError(where, "encloses no volume", SOLID)
     if not is_open and len(unseen):
         said += _crossed(vertices, faces[unseen], JOINED * size + 2.0 * step, size, where, unit, allow_open)
-    return Surface(vertices, faces, solid, is_open, slivers + blurred + mended + said)
+    return CheckedSurface(vertices, faces, solid, is_open, slivers + blurred + mended + said)
 
 
 def _crossed(vertices, faces, tolerance, size, where, unit, allow_open):

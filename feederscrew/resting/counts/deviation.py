@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 
 from feederscrew import check
-from feederscrew.resting.counts.profiles import Profile
+from feederscrew.resting.counts.profiles import AspectProfile
 
 LEAST = 5.0  # expected count below which the chi-square distribution is no longer trusted
 
@@ -28,8 +28,8 @@ NO_TEST = ChiSquare(np.nan, 0, np.nan)
 class Comparison:
     """Two profiles and every measure between them."""
 
-    first: Profile
-    second: Profile
+    first: AspectProfile
+    second: AspectProfile
     deviation: float
     total_variation: float
     chi_square: ChiSquare
@@ -168,7 +168,7 @@ def compare(profiles):
 
     Parameters
     ----------
-    profiles : sequence of Profile
+    profiles : sequence of AspectProfile
         Over the same aspects in the same order.
 
     Returns

@@ -25,7 +25,7 @@ DECIMAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
 
 @dataclass(frozen=True, eq=False)
-class Profile:
+class AspectProfile:
     """One number for each aspect of a part."""
 
     name: str
@@ -45,7 +45,7 @@ class Measured:
 
     source: str  # the path as given
     sha256: str  # of the file's bytes
-    profiles: tuple[Profile, ...]
+    profiles: tuple[AspectProfile, ...]
     head: Head = NO_HEAD
     lying: tuple[tuple[str, float], ...] = ()  # (M,) aspect and heading [rad] where it counts orientations
     by_orientation: np.ndarray | None = None  # (M, profiles) as given
@@ -78,7 +78,7 @@ def of_rules(aspects):
 
     Returns
     -------
-    tuple of Profile
+    tuple of AspectProfile
         Named as the thesis's tables do: 'PMI', 'CSA', 'STABILITY'. A rule that a part card gives no
         data for is left out.
     """
@@ -180,7 +180,7 @@ def _profiles(where, columns, texts):
 def _by_aspect(profile, rows, count):
     """A profile over orientations, summed up over the headings of each aspect."""
     values, fractions = (np.bincount(rows, of, minlength=count) for of in (profile.values, profile.fractions))
-    return Profile(profile.name, profile.kind, check.frozen(values), check.frozen(fractions))
+    return AspectProfile(profile.name, profile.kind, check.frozen(values), check.frozen(fractions))
 
 
 def _counted(table):
@@ -274,4 +274,4 @@ def _told(profile):
 
 
 def _profile(name, kind, values, whole=1.0):
-    return Profile(name, kind, check.frozen(values), check.frozen(values / whole))
+    return AspectProfile(name, kind, check.frozen(values), check.frozen(values / whole))

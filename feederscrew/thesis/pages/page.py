@@ -3,7 +3,7 @@
 import math
 from collections import Counter
 
-from feederscrew.output.page.blocks import Heading, Links, MarkedCell, Matrix, Page, Picture, Section, Text
+from feederscrew.output.page.blocks import Chapter, Heading, Links, MarkedCell, Matrix, Page, Picture, Text
 from feederscrew.thesis.claims import Claim
 from feederscrew.thesis.findings import BY_ID, FINDINGS
 from feederscrew.thesis.printed_cells import DIFFERS, EXACT, EXPLAINED, GIVEN
@@ -53,12 +53,12 @@ def page(items, pictures):
         TITLE,
         "",
         (
-            Section(tuple(Text(text) for text in OPENING)),
-            Section((Text(_totals(items)), _summary(items)), anchor="summary", title="Summary"),
-            Section(tuple(third), anchor="chapter-3", title="Chapter 3: natural resting aspects"),
-            Section(_chapter_4(items), anchor="chapter-4", title=CHAPTER_4_TITLE),
-            Section(tuple(fifth), anchor="chapter-5", title="Chapter 5: simulation results"),
-            Section(tuple(_errata(items)), anchor="findings", title="Findings and errata"),
+            Chapter(tuple(Text(text) for text in OPENING)),
+            Chapter((Text(_totals(items)), _summary(items)), anchor="summary", title="Summary"),
+            Chapter(tuple(third), anchor="chapter-3", title="Chapter 3: natural resting aspects"),
+            Chapter(_chapter_4(items), anchor="chapter-4", title=CHAPTER_4_TITLE),
+            Chapter(tuple(fifth), anchor="chapter-5", title="Chapter 5: simulation results"),
+            Chapter(tuple(_errata(items)), anchor="findings", title="Findings and errata"),
         ),
     )
 

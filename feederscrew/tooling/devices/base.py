@@ -88,7 +88,7 @@ class Device:
         return None
 
     def hole_on(self, track):
-        """Return the Hole that it cuts, if that has an edge across the track, or None."""
+        """Return the HoleEdges of what it cuts, if that has an edge across the track, or None."""
         return None
 
     def outline_on(self, track, length):

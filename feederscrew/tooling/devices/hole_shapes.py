@@ -13,7 +13,7 @@ BEHIND = 1e-3  # [m] a hole that reaches the wall is cut on into it
 STEPS = 33  # points along the edge of a gap that is parallel to a radial one
 
 
-class Hole(NamedTuple):
+class HoleEdges(NamedTuple):
     """What is cut out of the track, about the bowl's axis."""
 
     edges: np.ndarray  # (M, 7) as `crossing` has them
@@ -32,14 +32,14 @@ def polygon(corners, radius):
 
     Returns
     -------
-    Hole
+    HoleEdges
     """
     corners = through_the_wall(_turned_left(check.shaped("corners", corners, (-1, 2)).tolist()))
     sides = _sides(corners)
     rows = [_edge(s0 / radius, radius - y0, s1 / radius, radius - y1) for (s0, y0), (s1, y1) in sides]
     nodes = [(s / radius, radius - y, 1.0) for s, y in _reflex(corners)]
     nodes += [node for start, end in sides for node in _bulging(start, end, radius)]
-    return Hole(edges=np.array(rows), nodes=np.array(nodes).reshape(-1, 3))
+    return HoleEdges(edges=np.array(rows), nodes=np.array(nodes).reshape(-1, 3))
 
 
 def gap(length, radius, width):
@@ -55,16 +55,16 @@ def gap(length, radius, width):
 
     Returns
     -------
-    Hole
+    HoleEdges
     """
     low, high = max(radius - width, 1e-3 * radius, 1.000001 * length), radius + BEHIND
     rows = [[0.0, 0.0, 0.0, 0.0, low, high, 0.0], [0.0, 0.0, 0.0, length, low, high, 0.0]]
     inner = [1.0, 0.0, np.arcsin(length / low), 0.0, low, low, 1.0]
-    return Hole(edges=np.array([*rows, inner]), nodes=np.empty((0, 3)))
+    return HoleEdges(edges=np.array([*rows, inner]), nodes=np.empty((0, 3)))
 
 
 def gap_outline(length, radius, width):
-    """Return a gap unrolled from its start, (K, 2) [m], by the edges of its Hole.
+    """Return a gap unrolled from its start, (K, 2) [m], by the edges of its hole.
 
     Parameters
     ----------

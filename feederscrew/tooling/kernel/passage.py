@@ -69,7 +69,7 @@ def least(foot, hole, scratch, low, high, out):
     Parameters
     ----------
     foot : Foot
-    hole : Hole
+    hole : HoleEdges
     scratch : VerdictArrays
     low : float [m]
         A margin below it is told as it is found, wherever it is lowest; minus infinity for none.

@@ -17,7 +17,7 @@ def longest(foot, hole, scratch, enough):
     Parameters
     ----------
     foot : Foot
-    hole : Hole
+    hole : HoleEdges
     scratch : VerdictArrays
     enough : float [rad]
         A longer turn is told as soon as it is so long; infinite to be told the longest.

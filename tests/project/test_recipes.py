@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/contributing.md").read_text()
 BLOCK = re.compile(r"<!-- (new|in|shows) (.*?) -->\n```(?:python|sh|)\n(.*?)```", re.DOTALL)
 CHANGE = re.compile(r"(\S+) (after|instead of) (.*)", re.DOTALL)

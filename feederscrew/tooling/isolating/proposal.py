@@ -4,10 +4,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from feederscrew.tooling import apart
-from feederscrew.tooling.chain import Cut, Wishes
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.fates import course
+from feederscrew.tooling.isolating import apart
+from feederscrew.tooling.isolating.chain import Cut, Wishes
 
 LEAST_SHARE = 5e-3  # [1] orientations that come less often need not be returned
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew.errors import FeederError
-from feederscrew.tooling import chain, hole_search, rails, turners
 from feederscrew.tooling.devices.named import place_of
-from feederscrew.tooling.proposal import task as asked_for
-from feederscrew.tooling.proposal import told, weights, without
+from feederscrew.tooling.isolating import chain, hole_search, rails, turners
+from feederscrew.tooling.isolating.proposal import task as asked_for
+from feederscrew.tooling.isolating.proposal import told, weights, without
 
 MARGIN = 2.5e-4  # [m] to either side
 MOST_HOLES = 3  # cut-outs in one chain
@@ -31,7 +31,7 @@ def design(
         Which one.
     margin : float [m]
         To either side.
-    search : cutting.Search, optional
+    search : hole_search.HoleSearch, optional
         Seed and limits of the search for holes.
     holes : bool
         Whether holes of several corners may be cut.
@@ -52,7 +52,7 @@ def design(
     -------
     Design
     """
-    search = search or hole_search.Search()
+    search = search or hole_search.HoleSearch()
     given = asked_for(every, shares, wanted, margin, purity, before, gentle=gentle, wishes=wishes)
     found = _returning(given, search.started(), holes)
     if turn and not (found.isolated and found.efficiency >= efficiency > 0.0):

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from feederscrew.tooling import chain
 from feederscrew.tooling.devices.hanging_rails import Rails
 from feederscrew.tooling.hanging import neck
-from feederscrew.tooling.proposal import told, weights
+from feederscrew.tooling.isolating import chain
+from feederscrew.tooling.isolating.proposal import told, weights
 from feederscrew.tooling.verdicts import verdict
 
 PLAY, MOST = 4e-4, 6e-4  # [m] by which a slot is wider than the shank: 0.2 to 0.6 mm

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from feederscrew.tooling import foot as feet
-from feederscrew.tooling.chain import WHERE, judged, millimetres
 from feederscrew.tooling.devices import hole_shapes
 from feederscrew.tooling.devices.base import carried
 from feederscrew.tooling.devices.openings import CutOut
 from feederscrew.tooling.devices.values import crossed
+from feederscrew.tooling.isolating.chain import WHERE, judged, millimetres
 from feederscrew.tooling.verdicts import verdict
 
 STARTS = 220  # random holes tried
@@ -25,7 +25,7 @@ VERDICTS = 30000  # in the search for the holes of one orientation
 
 
 @dataclass
-class Search:
+class HoleSearch:
     """How long and from where holes are looked for: by a count of verdicts, the same on every machine."""
 
     seed: int = 1
@@ -58,7 +58,7 @@ def cut_out(every, wanted, others, margin, search):
         Those to be returned.
     margin : float [m]
         To either side.
-    search : Search
+    search : HoleSearch
 
     Returns
     -------

@@ -13,7 +13,7 @@ from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.tumbling.by_class import ground
-from feederscrew.studies.drop import check_run
+from feederscrew.studies.simulated.drop import check_run
 
 SURE = 0.95  # [1] from here on an answer is called sure
 
@@ -40,7 +40,7 @@ class TossStudy(Shown):
     part: Part
     aspects: Aspects
     launches: LaunchFile
-    surface: toss_runs.Surface
+    surface: toss_runs.SurfaceRanges
     seed: int
     result: toss_runs.Tosses
 
@@ -135,7 +135,7 @@ def follow(
     shape, length = shape_of_part(part, found)
     given = {key: (own or {}).get(key) for key in ("restitution", "friction")}
     launch = conditions.launch_of("feed", length, given)
-    surface = toss_runs.Surface(launch.restitution, launch.friction)
+    surface = toss_runs.SurfaceRanges(launch.restitution, launch.friction)
     if before:
         before()
     result = toss_runs.follow(

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 PROGRAM = """#!/bin/sh
 echo "$1 $2 $3" >> calls
 for word; do case $word in parts/*|configs/*) stem=$(basename "${word%.*}");; esac; done

@@ -10,7 +10,7 @@ from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules.recommended import launch_named
-from feederscrew.studies.drop import check_run
+from feederscrew.studies.simulated.drop import check_run
 
 LEAST = 1e-6  # [s]
 

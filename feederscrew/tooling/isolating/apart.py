@@ -6,8 +6,8 @@ import numpy as np
 import shapely
 
 from feederscrew.mechanics.wall import sameness
-from feederscrew.tooling.chain import limits, numbered
 from feederscrew.tooling.devices.kinds import KINDS
+from feederscrew.tooling.isolating.chain import limits, numbered
 from feederscrew.tooling.verdicts import opening_margin
 
 ROUNDS = 4  # of the fit of one hull over the other

@@ -1,0 +1,1 @@
+"""The studies that simulate drops, and what a run has simulated already."""
