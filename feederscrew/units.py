@@ -40,6 +40,7 @@ UNITS = {  # dimension: {unit: SI units in it}, the unit we suggest first
     "inertia": {"g mm2": 1e-9, "kg m2": 1.0, "kg mm2": 1e-6, "g cm2": 1e-7, "kg cm2": 1e-4},
     "force": {"N": 1.0, "mN": 1e-3, "kN": 1e3},
     "stress": {"MPa": 1e6, "GPa": 1e9, "Pa": 1.0, "N/mm2": 1e6},
+    "pressure": {"bar": 1e5, "Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "mbar": 1e2},
     "stiffness": {"N/mm": 1e3, "N/m": 1.0, "kN/m": 1e3},
     "count": {"": 1.0},
     "supply": {"Hz full wave": 2.0, "Hz half wave": 1.0},  # mains: hertz of the drive in one of the supply

@@ -197,12 +197,19 @@ _BLADE = _mapping(
     contour=_POLYGON | {"minItems": 1},
 )
 _SENSOR = _mapping(
-    ("sees", "resolution", "pulse"),
+    ("sees", "resolution", "jet"),
     of={"type": "string", "pattern": "^.+@.+$"},
     play=_LENGTH,
     sees={"enum": ["outline", "side", "height"]},
     resolution=_LENGTH,
-    pulse=_quantity("number", "0", "100"),
+    jet=_mapping(
+        ("nozzle", "pressure", "height", "time", "nozzles"),
+        nozzle=_LENGTH,
+        pressure=_quantity("pressure"),
+        height=_LENGTH,
+        time=_quantity("time"),
+        nozzles=_quantity("count", "1", "20"),
+    ),
 )
 _DEVICES = {  # what is written after 'kind:', by the dimension of the kind
     "length": _LENGTH,

@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 import shapely
+import shapely.affinity
 
 from feederscrew.bowl.record import Track
 from feederscrew.conveying import answer
@@ -15,6 +16,7 @@ from feederscrew.mechanics.wall.stable_headings import headings
 from feederscrew.resting.posture import Posture, posture
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling import touching
+from feederscrew.tooling.sensor_views import area
 from feederscrew.tooling.touching import silhouette
 
 ROUNDED = 5e-5  # [m] by which the borders of a cut are rounded: less depth does not catch
@@ -99,6 +101,14 @@ class Orientation:
     def seen(self):
         """Its silhouette as a shapely geometry."""
         return shapely.union_all([shapely.Polygon(ring) for ring in self.silhouette])
+
+    @cached_property
+    def aside(self):
+        """Its outline seen from the bowl's axis: distances ahead of its weight and heights, shapely."""
+        points = self.posture.surface
+        plan = turned(points[:, :2], self.heading)
+        seen = area(np.column_stack([plan, points[:, 2]]), self.posture.solid.faces, "side")
+        return shapely.affinity.translate(seen, plan[:, 0].max())
 
     @cached_property
     def balcony(self):

@@ -24,13 +24,16 @@ def difference(one, other, sees):
     Returns
     -------
     float
-        Greatest distance from a place of either to the other one, both with their front at the same place.
+        Greatest distance from a place of either to the other one, both with their front at the same place
+        and, seen from above, as near to the wall.
     """
     if sees == "height":
         return abs(one.height - other.height)
-    first, second = outline(one, sees), outline(other, sees)
-    if one is other:
-        return 0.0
+    return 0.0 if one is other else apart(outline(one, sees), outline(other, sees))
+
+
+def apart(first, second):
+    """Return the greatest distance [m] from a place of either area's border to the other's."""
     return max(_reach(first, second), _reach(second, first))
 
 
@@ -42,7 +45,7 @@ def _reach(area, other):
 
 @functools.lru_cache(maxsize=512)
 def outline(one, sees):
-    """Return the area that a sensor sees of an orientation [m]: ahead from its front, and from wall or track.
+    """Return the area that a sensor sees of an orientation [m]: ahead from its front, and from its side.
 
     Parameters
     ----------
@@ -52,8 +55,30 @@ def outline(one, sees):
     """
     points, faces = one.posture.surface, one.posture.solid.faces
     plan = turned(points[:, :2], one.heading)
-    across = plan[:, 1] + one.distance if sees == "outline" else points[:, 2]
-    corners = np.column_stack([plan[:, 0] - plan[:, 0].max(), across])[faces]
+    return area(np.column_stack([plan, points[:, 2]]), faces, sees)
+
+
+def area(points, faces, sees, resolution=0.0):
+    """Return the area that a sensor sees of a body.
+
+    Parameters
+    ----------
+    points : (V, 3) float [m]
+        Its corners: along the wall, from it, over the track.
+    faces : (F, 3) int
+    sees : str
+        As for ``outline``.
+    resolution : float [m]
+        Of the sensor: corners are seen at multiples of it.
+
+    Returns
+    -------
+    shapely geometry
+        Its front and, from above, the side nearest to the wall at 0.
+    """
+    seen = points[:, :2] if sees == "outline" else points[:, [0, 2]]
+    seen = seen - [seen[:, 0].max(), seen[:, 1].min() if sees == "outline" else 0.0]
+    corners = (np.round(seen / resolution) * resolution if resolution > 0.0 else seen)[faces]
     a, b, c = corners.transpose(1, 0, 2)
     twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
     whole = shapely.union_all(shapely.polygons(corners[np.abs(twice) > 1e-14]), grid_size=GRID)

@@ -65,11 +65,18 @@ class Meeting:
         """Return by how much [m] a sensor sees it differ from another orientation."""
         return sensor_views.difference(self.one, other, sees)
 
-    def blown_off(self, pulse):
-        """Return whether a pulse of air [N s] carries it over the free edge of a track that stands still."""
-        speed = pulse / self.one.posture.mass
-        way = speed * speed / (2.0 * STANDARD_GRAVITY * self.grip)
-        return bool(way >= self.one.track.width - self.one.distance)
+    def blown(self, force, seconds):
+        """Return how far [m] a force [N] for some time [s] carries it over a track that stands still.
+
+        Less what it has to go to leave it: negative where it stays.
+        """
+        weight = self.one.posture.mass * STANDARD_GRAVITY
+        left = force - self.grip * weight
+        if left <= 0.0:
+            return self.one.distance - self.one.track.width
+        speed = left * seconds / self.one.posture.mass
+        way = 0.5 * speed * seconds + speed**2 / (2.0 * STANDARD_GRAVITY * self.grip)
+        return float(way - (self.one.track.width - self.one.distance))
 
     @property
     def hanging(self):

@@ -8,7 +8,7 @@ from feederscrew import check
 from feederscrew.conveying import answer
 from feederscrew.dropping.pool import gather
 from feederscrew.geometry import vectors
-from feederscrew.trial import runs, starts, stations, whereabouts
+from feederscrew.trial import runs, sensed_rides, starts, stations, whereabouts
 from feederscrew.trial.looks import Looks
 from feederscrew.trial.rounding import rounded
 from feederscrew.trial.shape import solid_of
@@ -99,7 +99,7 @@ def course(
     states, times, entered = begun
     looks = Looks(every if poses is None else poses, solid, length, principal, bowl.track.radius)
     leaves = np.eye(len(every), len(looks.known), dtype=bool) if leaves is None else leaves
-    rides = [runs.past(known, station, **_limits(bowl, station, every)) for station in chain]
+    rides = [sensed_rides.past(known, station, **_limits(bowl, station, every)) for station in chain]
     rides[0](states[:0], times[:0])  # compiled here, if need be
 
     def through(n):
@@ -180,7 +180,11 @@ def rightly(leaving):
 def _chain(bowl, every, devices):
     """The bare track, then each device that is no measured yield."""
     size = max(one.length for one in every)
-    made = [stations.station(device, bowl.track, every) for device in devices if device.placed]
+    made, slopes = [], ()
+    for device in devices:
+        if device.placed:
+            made.append(stations.station(device, bowl.track, every, slopes=slopes))
+            slopes = (*slopes, *device.standing(bowl.track, every).slopes)
     return [stations.plain(bowl.track, every, RUN_UP * size), *made]
 
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.geometry.compiled import on_disk
-from feederscrew.trial import runs, staging, stations, whereabouts
+from feederscrew.trial import air, runs, sensed_rides, staging, stations, whereabouts
 from feederscrew.trial.arrays import crowd_of
-from feederscrew.trial.kernel import travel
+from feederscrew.trial.kernel import jets, travel
 
 TAIL = 1.2  # of the part's size: track behind the outlet, on which a whole part still lies as it leaves
 
@@ -41,12 +41,13 @@ def crowded(bowl, every, devices, room):
     -------
     CrowdedTrack
     """
-    track, place, level, windows, placed = bowl.track, 0.0, 0.0, [], []
+    track, place, level, windows, placed, blows = bowl.track, 0.0, 0.0, [], [], []
     size = staging.size_of(every)
     for device in [device for device in devices if device.kind != "yield"]:
         standing, start = device.standing(track, every), place + (0.5 + staging.SPARE) * size
         last = staging.passed(standing, start, size)
         placed.append((standing, start, last))
+        blows.append((standing, start, level))
         level -= standing.drop
         windows.append((place, last, level))
         place = last
@@ -54,7 +55,15 @@ def crowded(bowl, every, devices, room):
         placed[-1] = (*placed[-1][:2], place + TAIL * size)
     ends = -room - size, place + TAIL * size
     made = staging.built(placed, track, size, ends)
-    stage = staging.Stage(stations.BARE, *made, begin=-room, exit=np.inf)
+    stage = staging.Stage(
+        stations.BARE,
+        *made,
+        begin=-room,
+        exit=np.inf,
+        air=air.along(blows, track, every),
+        size=size,
+        width=track.extent,
+    )
     places = np.reshape(windows, (-1, 3))
     levels = np.append(0.0, places[:, 2])
     return CrowdedTrack(stage, -room, check.frozen(places[:, :2]), check.frozen(levels), place)
@@ -72,7 +81,8 @@ class PartsOnTrack:
     """
 
     def __init__(self, known, track, count):
-        self.known, self.solid = known, known.solid
+        self.known, self.solid, self.stage = known, known.solid, track.stage
+        self.windows, self.levels = track.windows, track.levels
         self.surface = runs.surface_of(known, track.stage)
         self.arrays, self.on = crowd_of(known.solid, self.surface, count), np.zeros(count, bool)
         self.period = 2.0 * np.pi / known.floor.rate
@@ -95,6 +105,42 @@ class PartsOnTrack:
             turn * self.period, round(self.period / self.known.floor.step), notes,
         )  # fmt: skip
         return notes[travel.SUNK]
+
+    def blown_off(self, n):
+        """Return whether part n is beyond the free edge, where the track does not hold it any more."""
+        x, y = self.arrays.states[n, 0], self.known.radius - self.arrays.states[n, 1]
+        out = self.known.radius - np.copysign(np.hypot(x, y), y)
+        return bool(out > self.stage.width / self.known.length + self.solid.radius)
+
+    def watch(self, lying, before, ways, turn):
+        """Let sensors look at the parts whose centres of mass have come past them in a period.
+
+        What is nearer to a part than the sensor can tell is one with it. Jets that a part sets off blow from
+        the next period on, the ``turn``-th.
+        """
+        now = turn * self.period
+        for watch in self.stage.air.watches:
+            place = watch.place / self.known.length
+            for n in [n for n in lying if before[n] < place <= ways[n]]:
+                states = self.arrays.states[[n, *self.near(n, lying, watch.sensor.resolution)]]
+                if sensed_rides.blows_off(watch.sensor, self.known, states, self.level(watch.place)):
+                    self.surface.jets[watch.jets, jets.BEGIN] = now
+                    self.surface.jets[watch.jets, jets.END] = now + watch.seconds / self.known.unit
+
+    def near(self, n, lying, resolution):
+        """Return the parts of a row that are one with part n for a sensor of some resolution [m]."""
+        reach = {m: self.extents(m) for m in lying}
+        found, rear, front = [], reach[n][0], reach[n][1]
+        wide = resolution / self.known.length
+        for m in sorted(lying, key=lambda m: abs(reach[m][0] - reach[n][0])):
+            if m != n and reach[m][0] < front + wide and reach[m][1] > rear - wide:
+                found.append(m)
+                rear, front = min(rear, reach[m][0]), max(front, reach[m][1])
+        return found
+
+    def level(self, place):
+        """Return the level [m] of the track at a place [m] along the wall."""
+        return float(self.levels[int(np.searchsorted(self.windows[:, 1], place))])
 
     @property
     def forces(self):

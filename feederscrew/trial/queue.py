@@ -168,7 +168,10 @@ class _Queue:
         self.depth = max(self.depth, self.crowd.ride(turn))
         self.periods += 1
         ways = whereabouts.ways(self.crowd.arrays.states, self.known.radius)
-        self.way.append((ways - before)[lying].mean())
+        self.crowd.watch(lying, before, ways, turn + 1)
+        on = [n for n in lying if not self.crowd.blown_off(n)]
+        if on:
+            self.way.append((ways - before)[on].mean())
         reach = {n: self.crowd.extents(n) for n in lying}
         order = sorted(lying, key=lambda n: -ways[n])
         self.free += [max(reach[a][0] - reach[b][1], 0.0) for a, b in itertools.pairwise(order)]
@@ -225,8 +228,11 @@ class _Queue:
             self.again(n)
 
     def fell(self, n):
-        """Whether a part has fallen off the track it is at."""
-        return self.crowd.arrays.states[n, body.Z] * self.known.length < self.track.levels.min() - self.deep
+        """Whether a part has fallen off the track it is at, or was blown off it."""
+        return (
+            self.crowd.blown_off(n)
+            or self.crowd.arrays.states[n, body.Z] * self.known.length < self.track.levels.min() - self.deep
+        )
 
     def at_outlet(self, n):
         """The state of a part as if the track were at the level at which it began."""

@@ -10,6 +10,7 @@ from feederscrew.dropping.kernel.floor_motion import Floor
 from feederscrew.dropping.plate import drive
 from feederscrew.dropping.pool import in_batches
 from feederscrew.geometry.compiled import on_disk
+from feederscrew.trial import air
 from feederscrew.trial.arrays import crowd_of
 from feederscrew.trial.kernel import crowd_records, travel
 
@@ -48,8 +49,8 @@ class BowlOfPart:
     unit: float  # [s] the unit of time
     floor: Floor
     radius: float  # of the wall
-    gravity: np.ndarray  # (3,)
-    upright: np.ndarray  # (2,) inwards and up, in the track's frame
+    climb: float  # [rad]
+    bank: float  # [rad]
     friction: np.ndarray  # (5,)
     restitution: float
     threshold: float
@@ -72,7 +73,6 @@ def setting(solid, length, bowl):
     floor, track, friction = drive.floor_of(bowl, length), bowl.track, bowl.friction
     if bowl.drive.amplitude == 0.0:
         floor = floor._replace(along=0.0, up=0.0)
-    c, s = np.cos(track.climb), np.sin(track.climb)
     steps = HOPPING if drive.throw_number(bowl) > 1.0 else PERIOD
     return BowlOfPart(
         solid=solid,
@@ -80,8 +80,8 @@ def setting(solid, length, bowl):
         unit=float(np.sqrt(length / bowl.gravity)),
         floor=floor._replace(step=2.0 * np.pi / floor.rate / steps),
         radius=track.radius / length,
-        gravity=np.array([-s, -c * np.sin(track.bank), -c * np.cos(track.bank)]),
-        upright=np.array([np.sin(track.bank), np.cos(track.bank)]),
+        climb=track.climb,
+        bank=track.bank,
         friction=np.array([friction.static, friction.kinetic, *friction.backward, friction.wall]),
         restitution=bowl.restitution,
         threshold=drive.steps_of(floor).threshold,
@@ -156,11 +156,10 @@ def surface_of(known, station):
     boxes = [[f(borders[own, k:4:2]) for k in (0, 1) for f in (np.min, np.max)] for own in spans]
     return crowd_records.Surface(
         radius=known.radius,
-        gravity=known.gravity,
-        upright=known.upright,
+        slopes=air.leaning(station.air.slopes, known.climb, known.bank, station.size, known.length),
         plates=np.hstack([plates, boxes]),
         borders=np.hstack([borders, onwards(borders, spans)]),
-        jets=np.zeros((0, 12)),
+        jets=air.blowing(station.air.jets, known.length, known.unit),
         friction=known.friction,
         restitution=known.restitution,
         threshold=known.threshold,
@@ -195,6 +194,7 @@ def limits_of(known, station, limits):
         patience=limits[1] / known.unit,
         progress=limits[2] / known.length,
         back=(station.begin - limits[3]) / known.length,
+        free=station.width / known.length + known.solid.radius,
     )
 
 

@@ -1,6 +1,6 @@
 """What stands along the track as solid plates with borders in the bowl's own frame."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -8,6 +8,8 @@ import shapely
 from feederscrew import check
 from feederscrew.tooling.orientations import ROUNDED
 from feederscrew.tooling.strip import bent
+from feederscrew.trial import air
+from feederscrew.trial.air import Air
 
 BEHIND = 0.5  # of the part's size: how far the track is drawn behind the wall
 CHORD = 5e-6  # [m] by which an arc may be seen too flat
@@ -33,6 +35,9 @@ class Stage:
     drop: float = 0.0  # [m] by which the track lies lower there
     aside: float = 0.0  # [m] from the wall, where a track that lies lower begins
     below: bool = False  # whether parts leave hanging, their centres of mass below the track
+    air: Air = air.STILL  # what blows there, and how the track leans
+    size: float = 0.0  # [m] of the part, the greatest length of its orientations
+    width: float = np.inf  # [m] of the track
 
 
 def size_of(every):
@@ -40,7 +45,7 @@ def size_of(every):
     return max(np.hypot(one.length, max(one.width, one.height)) for one in every)
 
 
-def stage(device, standing, track, every, start=0.0):
+def stage(device, standing, track, every, start=0.0, slopes=()):
     """Return one device with enough track before and behind it.
 
     Parameters
@@ -53,17 +58,22 @@ def stage(device, standing, track, every, start=0.0):
         Of the part.
     start : float [m]
         Where the device begins.
+    slopes : sequence of Slope
+        Of the devices before it, which go on.
 
     Returns
     -------
     Stage
     """
     size = size_of(every)
+    blows = air.along([(standing, start, 0.0)], track, every)
+    blows = replace(blows, slopes=(*((-FAR, one.climb, one.bank) for one in slopes), *blows.slopes))
     begin, beyond = start - (0.5 + SPARE) * size, passed(standing, start, size)
     ends = begin - BEFORE * size, beyond + AFTER * size
     return Stage(
         device, *built([(standing, start, ends[1])], track, size, ends), begin=begin, exit=beyond,
         cut=(start, start + standing.length), drop=standing.drop, aside=standing.aside, below=standing.hangs,
+        air=blows, size=size, width=track.extent,
     )  # fmt: skip
 
 
@@ -71,7 +81,7 @@ def plain(device, track, every, length):
     """Return a stretch of the bare track, from 0 to ``length`` [m]."""
     size = size_of(every)
     bare = built((), track, size, (-BEFORE * size, length + AFTER * size))
-    return Stage(device, *bare, begin=0.0, exit=length)
+    return Stage(device, *bare, begin=0.0, exit=length, size=size, width=track.extent)
 
 
 def passed(standing, start, size):
@@ -99,9 +109,6 @@ def built(placed, track, size, ends):
         if standing.drop > 0.0:
             plates.append(_floor(holes, track, size, ends, (first, last), level, depth=standing.drop + THICK))
             level, first, holes = level - standing.drop, start - THICK, []
-        for plate in standing.plates:
-            own = max(start + plate.begin, ends[0]), min(start + plate.end, ends[1])
-            plates.append(_floor((), track, size, ends, own, level + plate.level))
     plates.append(_floor(holes, track, size, ends, (first, ends[1]), level))
     return stacked([*plates, *blades])
 

@@ -6,7 +6,7 @@ from feederscrew.trial import staging
 BARE = Device("")
 
 
-def station(device, track, every, start=0.0):
+def station(device, track, every, start=0.0, slopes=()):
     """Return one device with enough track before and behind it, a Stage.
 
     Parameters
@@ -18,8 +18,10 @@ def station(device, track, every, start=0.0):
         Of the part, the longest of which sets how long a device is that goes on along the track.
     start : float [m]
         Where the cut begins.
+    slopes : sequence of Slope
+        Of the devices before it, which go on.
     """
-    return staging.stage(device, device.standing(track, every), track, every, start)
+    return staging.stage(device, device.standing(track, every), track, every, start, slopes)
 
 
 def plain(track, every, length):

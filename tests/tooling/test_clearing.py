@@ -118,7 +118,7 @@ def test_a_sorter_blows_off_what_looks_other_than_its_own_by_more_than_its_play(
     sorter = made("sorter", "here", **own)
     assert verdict(sorter, along, every).margin == pytest.approx(4e-4)  # its play without the blur
     assert verdict(sorter, across, every).margin == pytest.approx(5e-4 - 8e-3 + 1e-4, abs=2e-4)
-    weak = made("sorter", "here", **own, pulse=1e-4)
+    weak = made("sorter", "here", **own, time=1e-4)
     assert verdict(weak, across, every).passes == 1.0 and not verdict(weak, across, every).sure
     blind = made("sorter", "here", **own, sees="height")
     assert verdict(blind, across, every).passes == verdict(blind, along, every).passes == 1.0

@@ -1,4 +1,4 @@
-"""What stands along the track at one device: holes, blades, plates, sections and jets, of no kind by name.
+"""What stands along the track at one device: holes, blades, slopes, jets and a sensor, of no kind by name.
 
 Coordinates of a device: x along the wall from where the device begins, y from the wall inwards, z over the
 track. A device hands over one `Standing`; `trial.staging` makes of
@@ -31,36 +31,36 @@ class Blade:
 
 
 @dataclass(frozen=True, eq=False)
-class Plate:
-    """A further level plate, below the track."""
-
-    level: float  # [m] z of its surface
-    begin: float  # [m] x
-    end: float = np.inf  # [m]
-    aside: float = 0.0  # [m] y, where it begins
-
-
-@dataclass(frozen=True, eq=False)
-class Section:
-    """A stretch of the track with another cross-section."""
+class Slope:
+    """Another lean of the track, from a place on: to the end of what is tried, or to the next slope."""
 
     begin: float  # [m] x
-    end: float  # [m]
-    faces: np.ndarray  # (K, 2) [m] y, z from the wall outwards: two points are one slope, three a groove
+    climb: float | None = None  # [rad] rise along the track; None is the bowl's own
+    bank: float | None = None  # [rad] tilt towards the wall
 
 
 @dataclass(frozen=True, eq=False)
 class Jet:
-    """A round jet that pushes what of a part is in it."""
+    """A round jet of air that pushes what of a part is in it."""
 
     at: tuple[float, float, float]  # [m] x, y, z of its mouth
     towards: tuple[float, float, float]  # [1] along the wall, inwards, up
     radius: float  # [m]
-    pressure: float  # [Pa] on the area of the part across the jet
-    reach: float = np.inf  # [m] from the mouth
-    frequency: float = 0.0  # [Hz] of its pulses; 0 is steady
-    duty: float = 1.0  # [1] share of a pulse in which it blows
-    phase: float = 0.0  # [rad] of a pulse at the time 0
+    spread: float  # [1] growth of the radius along its way
+    thrust: float  # [N] on what takes all of it
+    reach: float  # [m] from the mouth
+    seconds: float = np.inf  # [s] of a pulse that a sensor sets off; infinite of a steady one
+
+
+@dataclass(frozen=True, eq=False)
+class Sensor:
+    """What looks at each part as its centre of mass comes to a place, and sets off the pulsed jets."""
+
+    at: float  # [m] x
+    sees: str  # 'outline' from above, 'side' from the bowl's axis, or 'height'
+    wanted: object  # Orientation
+    play: float  # [m] what is seen to differ by less passes
+    resolution: float  # [m] to which it sees
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,9 +70,9 @@ class Standing:
     length: float = 0.0  # [m] of the device along the wall
     holes: tuple[Hole, ...] = ()
     blades: tuple[Blade, ...] = ()
-    plates: tuple[Plate, ...] = ()
-    sections: tuple[Section, ...] = ()
+    slopes: tuple[Slope, ...] = ()
     jets: tuple[Jet, ...] = ()
+    sensor: Sensor | None = None
     drop: float = 0.0  # [m] by which the track that goes on lies lower
     aside: float = 0.0  # [m] from the wall, where that begins
     hangs: bool = False  # whether parts leave hanging, their centres of mass below the track

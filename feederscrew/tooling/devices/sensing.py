@@ -6,11 +6,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.tooling.devices import named, values
-from feederscrew.tooling.devices.base import MM, RETURNED, Device
+from feederscrew.tooling.devices.base import MM, RETURNED, Device, room_of
+from feederscrew.tooling.devices.nozzles import SPREAD, Nozzles
+from feederscrew.tooling.devices.pieces import Sensor, Standing
 
 VIEWS = ("outline", "side", "height")
 RESOLUTION = {"outline": 1e-4, "side": 1e-4, "height": 1e-3}  # [m] of a camera, of a fibre
-PULSE = 0.05  # [N s] of four nozzles for 100 ms at 2 bar of the regulator, as measured
+BORE, PRESSURE, PULSE = 2e-3, 3e5, 0.04  # [m], [Pa], [s] of each nozzle: 1.28 N, 0.051 N s
+REACTION = 0.01  # [s] of sensor and valve: 5 to 15 ms
 
 
 @dataclass(frozen=True)
@@ -19,7 +22,11 @@ class Sorter(Device):
 
     sees: str = "outline"
     resolution: float = math.nan  # [m] of the sensor; NaN: as common
-    pulse: float = PULSE  # [N s]
+    nozzle: float = BORE  # [m]
+    pressure: float = PRESSURE  # [Pa] at the nozzle, above the ambient
+    height: float = math.nan  # [m] of the nozzle over the track; NaN: as low as the lowest centre of mass
+    time: float = PULSE  # [s] of a pulse
+    nozzles: float = 4.0  # one above the other
 
     kind = "sorter"
     dimension = "sensor"
@@ -27,7 +34,8 @@ class Sorter(Device):
     meaning = (
         "sensor and pulse of air: passes what is seen to differ from an orientation by less than play, blows "
         "the rest off the free edge; sees outline (from above), side or height; resolution: 0.1 mm and "
-        "pulse: 0.05 may follow; parts must come with gaps"
+        "jet: {nozzle: 2 mm, pressure: 3 bar, height: 4 mm, time: 40 ms, "
+        "nozzles: 4} may follow; parts must come with gaps"
     )
     proposed = True
     feature = "outline seen by a sensor"
@@ -58,9 +66,29 @@ class Sorter(Device):
 
     def differs(self, met):
         """Return by how much [m] an orientation is seen to differ from the wanted one."""
+        return met.differs(self.wanted(met.every), self.sees)
+
+    def wanted(self, every):
+        """Return the orientation that it passes."""
         aspect, heading, _ = self.like
-        wanted = met.every[named.place_of(met.every, aspect, heading, self.where, f"{self.kind} names")]
-        return met.differs(wanted, self.sees)
+        return every[named.place_of(every, aspect, heading, self.where, f"{self.kind} names")]
+
+    @property
+    def jet(self):
+        """Its Nozzles."""
+        return Nozzles(self.nozzle, self.pressure, self.height, round(self.nozzles))
+
+    def standing(self, track, every):
+        """Return the nozzle in the wall, half a room behind its begin, and the sensor over it."""
+        room = room_of(every)
+        middle = 0.5 * room
+        sensor = Sensor(middle, self.sees, self.wanted(every), self.like[2], self.blur)
+        return Standing(room, jets=self.jet.jets(middle, every, self.time), sensor=sensor)
+
+    def gap(self, one, speed):
+        """Return the free way [m] that it needs between parts that come with some speed [m/s]."""
+        beam = self.nozzle + 2.0 * SPREAD * one.width
+        return max(beam + speed * (REACTION + self.time), self.blur)
 
     def fate(self, met):
         return RETURNED
@@ -68,7 +96,7 @@ class Sorter(Device):
     def judged(self, met):
         margin = self.like[2] - self.differs(met)
         margin = math.copysign(max(abs(margin) - self.blur, 0.0), margin)
-        if margin < 0.0 and not met.blown_off(self.pulse):
+        if margin < 0.0 and met.blown(self.jet.force(met.one, met.every or (met.one,)), self.time) <= 0.0:
             return met.verdict(0.0)  # it is carried on, whatever is seen
         return met.verdict(margin)
 
@@ -77,4 +105,9 @@ class Sorter(Device):
         return np.array([[start, 0.0], [start + length, 0.0], [start + length, width], [start, width]])
 
     def told(self):
-        return {"value_mm": self.like[2] / MM, "sees": self.sees, "resolution_mm": self.blur / MM}
+        return {
+            "value_mm": self.like[2] / MM,
+            "sees": self.sees,
+            "resolution_mm": self.blur / MM,
+            "thrust_N": self.jet.thrust,
+        }

@@ -9,6 +9,13 @@ from feederscrew.errors import ConfigError
 CORNER = "write [9 mm, 8 mm]"
 POLYGON = "write a list of three or more corners, as [[0 mm, 0 mm], [9 mm, 0 mm], [9 mm, 8 mm]]"
 FARTHEST = 1000.0  # [m] no bowl reaches so far
+NOZZLE = {  # dimension and limits, in SI units, of what is said of a jet
+    "nozzle": ("length", 1e-4, 2e-2),
+    "pressure": ("pressure", 1e3, 1e6),
+    "height": ("length", 0.0, 1.0),
+    "time": ("time", 1e-3, 1.0),
+    "nozzles": ("count", 1.0, 20.0),
+}
 
 
 def length(entry):
@@ -37,8 +44,8 @@ def blade(entry):
 
 
 def sensor(entry, views):
-    """Read {of: A@90, play: 0.5 mm, sees: outline, resolution: 0.1 mm, pulse: 0.05}."""
-    names, more = ("of", "play", "sees", "resolution", "pulse"), ("sees", "resolution", "pulse")
+    """Read {of: A@90, play: 0.5 mm, sees: outline, resolution: 0.1 mm, jet: {nozzle: 2 mm}}."""
+    names, more = ("of", "play", "sees", "resolution", "jet"), ("sees", "resolution", "jet")
     given = mapping(entry, names, "write {of: A@90, play: 0.5 mm, sees: outline}", more)
     found = {"like": _like(given)}
     if "sees" in given:
@@ -50,9 +57,17 @@ def sensor(entry, views):
             )
     if "resolution" in given:
         found["resolution"] = within(given, "resolution", "length", 0.0, FARTHEST)
-    if "pulse" in given:
-        found["pulse"] = within(given, "pulse", "number", 0.0, 100.0)
+    if "jet" in given:
+        found |= nozzle(given["jet"], ("time", "nozzles"))
     return found
+
+
+def nozzle(entry, more=(), needed=()):
+    """Read {nozzle: 2 mm, pressure: 3 bar, height: 4 mm}, and the time of a pulse where there is one."""
+    names = ("nozzle", "pressure", "height", *more)
+    optional = [name for name in names if name not in needed]
+    given = mapping(entry, names, "write {nozzle: 2 mm, pressure: 3 bar}", optional)
+    return {name: within(given, name, *NOZZLE[name]) for name in names if name in given}
 
 
 def within(given, name, dimension, low, high):

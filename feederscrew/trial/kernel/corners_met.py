@@ -12,7 +12,17 @@ from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import apart, compiled
 from feederscrew.trial.kernel import contact, edges_met, near, plate_views
 from feederscrew.trial.kernel.contact import GAP, KINDS, SPOT, put
-from feederscrew.trial.kernel.crowd_records import CORNERS, DEPTH, EDGES, NORMAL, POSTS, ROUNDED, RUBS, VERTS
+from feederscrew.trial.kernel.crowd_records import (
+    CORNERS,
+    DEPTH,
+    EDGES,
+    LEAN,
+    NORMAL,
+    POSTS,
+    ROUNDED,
+    RUBS,
+    VERTS,
+)
 from feederscrew.trial.kernel.edges_met import first_of
 from feederscrew.trial.kernel.plate_views import DEEP, SLANT, in_body, in_bowl, placed
 
@@ -76,13 +86,13 @@ def _outermost(heights, low, count):
 def _on_wall(surface, solid, crowd, n, reach):
     """Add contacts with the wall, a cone in the track's frame where that is banked."""
     state, turn, lows = crowd.states[n], crowd.turns[n], 0
-    lean, up, radius = surface.upright[0], surface.upright[1], surface.radius
+    lean, up, radius = crowd.leans[n, LEAN], crowd.leans[n, LEAN + 1], surface.radius
     for m in range(1, crowd.walled[n, 0] + 1):
         p = solid.corners[crowd.walled[n, m]]
         x = turn[0] * p[0] + turn[1] * p[1] + turn[2] * p[2]
         y = turn[3] * p[0] + turn[4] * p[1] + turn[5] * p[2]
         z = turn[6] * p[0] + turn[7] * p[1] + turn[8] * p[2]
-        gap = plate_views.off_wall(surface, state[X] + x, state[Y] + y, state[Z] + z)
+        gap = plate_views.off_wall(surface, crowd.leans[n], state[X] + x, state[Y] + y, state[Z] + z)
         if gap < reach:
             crowd.heights[lows, 0] = crowd.tangents[n, 0] * x + crowd.tangents[n, 1] * y
             crowd.heights[lows, 1], crowd.heights[lows, 2] = z, gap

@@ -13,6 +13,7 @@ ORIGIN, ACROSS, ALONG, FRONT, DEPTH, ROUNDED, FIRST, LAST = 0, 3, 6, 9, 12, 13, 
 RUBS, BOX = 16, 17  # its own friction, NaN for that of the track; least and greatest place of its borders (4)
 NORMAL, BEND, END, BEFORE = 4, 6, 7, 8  # of a border: normal; a convex corner at its start; the drawing's end
 ONWARDS = 10  # ... how far it goes on in the solid before its start and behind its end (2)
+LEAN = 3  # how the track leans where a part is: gravity (3), then the bowl's axis (2)
 VERTS, EDGES, POSTS, CORNERS = range(4)  # lists of what of a part is near a plate
 
 
@@ -24,11 +25,12 @@ class Surface(NamedTuple):
     """
 
     radius: float  # of the wall
-    gravity: np.ndarray  # (3,) ahead, from the wall inwards, up
-    upright: np.ndarray  # (2,) inwards and up: the bowl's axis, along which it moves and the wall stands
+    # (K, 6) along the wall, evenly between two: gravity ahead, from the wall inwards and up; the bowl's axis,
+    # along which it moves and the wall stands, inwards and up
+    slopes: np.ndarray
     plates: np.ndarray  # (P, 21) origin, three axes, depth, round, borders, friction, box
     borders: np.ndarray  # (B, 12) start, end, normal, corner, drawing's end, normal before, onwards
-    jets: np.ndarray  # (J, 12) mouth, direction, radius, pressure, reach, rate of pulses, their duty, phase
+    jets: np.ndarray  # (J, 12) mouth, direction, radius and its growth, thrust, reach, begin and end in time
     friction: np.ndarray  # (5,) static and kinetic ahead, static and kinetic back, wall
     restitution: float
     threshold: float  # approach speed from which a contact rebounds
@@ -46,6 +48,7 @@ class Limits(NamedTuple):
     patience: float  # time in which it must get on
     progress: float  # ... so far along the wall, or down
     back: float  # way along the wall, behind which it has gone back
+    free: float  # from the wall, beyond which the track does not hold it any more
 
 
 class Crowd(NamedTuple):
@@ -56,8 +59,9 @@ class Crowd(NamedTuple):
     push: np.ndarray  # (N, 13) velocities that take parts out of what they are too deep in
     turns: np.ndarray  # (N, 9) body to bowl, at the start of a step
     tangents: np.ndarray  # (N, 2) of the wall where each is
+    leans: np.ndarray  # (N, 5) gravity and the bowl's axis where each is, in the track's frame
     given: np.ndarray  # (N, 6) changes of velocity and rates by gravity, drive and jets over a step
-    blown: np.ndarray  # (N, 6) force and torque of jets that blow, the latter about the body's axes
+    blown: np.ndarray  # (N, 7) force and torque of jets, the latter about the body's axes; until when
     rows: np.ndarray  # (N, R, WIDTH) contacts with the track
     counts: np.ndarray  # (N,) int, of them
     known: np.ndarray  # (N, R, 4) of the step before: which contact, its impulses

@@ -17,6 +17,7 @@ from feederscrew.trial.kernel.crowd_records import (
     END,
     FIRST,
     LAST,
+    LEAN,
     POSTS,
     VERTS,
 )
@@ -75,14 +76,14 @@ def look_around(surface, solid, crowd, n, reach):
 def _near_wall(surface, solid, crowd, n, margin):
     state, turn, count = crowd.states[n], crowd.turns[n], 0
     x, y = state[X], surface.radius - state[Y]
-    if math.sqrt(x * x + y * y) + solid.radius > (surface.radius - margin) * surface.upright[1]:
+    if math.sqrt(x * x + y * y) + solid.radius > (surface.radius - margin) * crowd.leans[n, LEAN + 1]:
         for k in range(len(solid.corners)):
             if solid.outer[k]:
                 p = solid.corners[k]
                 x = state[X] + turn[0] * p[0] + turn[1] * p[1] + turn[2] * p[2]
                 y = state[Y] + turn[3] * p[0] + turn[4] * p[1] + turn[5] * p[2]
                 z = state[Z] + turn[6] * p[0] + turn[7] * p[1] + turn[8] * p[2]
-                if off_wall(surface, x, y, z) < margin:
+                if off_wall(surface, crowd.leans[n], x, y, z) < margin:
                     count += 1
                     crowd.walled[n, count] = k
     crowd.walled[n, 0] = count

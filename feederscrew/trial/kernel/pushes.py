@@ -6,28 +6,32 @@ from feederscrew.dropping.kernel import floor_motion as floors
 from feederscrew.dropping.kernel.body import X, Y
 from feederscrew.dropping.kernel.floor_contacts import IMPULSE, WANTED
 from feederscrew.geometry.compiled import compiled
-from feederscrew.trial.kernel import contact
+from feederscrew.trial.kernel import contact, jets
 from feederscrew.trial.kernel.contact import AHEAD, BACK, GAP, NORMAL, RUB
+from feederscrew.trial.kernel.crowd_records import LEAN
 
 STILL = 1e-5  # speed along a contact below which it sticks while static friction holds
 
 
 @compiled
-def give(surface, floor, crowd, n, time, dt):
+def give(surface, solid, floor, crowd, n, time, dt):
     """Write the changes of a part's velocity and rates over dt by gravity, the drive and jets."""
     given, state, turn = crowd.given[n], crowd.before[n], crowd.turns[n]
     c, s = crowd.tangents[n, 0], crowd.tangents[n, 1]
     x, y = state[X], surface.radius - state[Y]
     forth, rise = floors.quickening(floor, time, dt)
-    lean, up = surface.upright[0], surface.upright[1]
-    along = dt * surface.gravity[0] - forth * math.sqrt(x * x + y * y) / surface.radius
-    across = dt * surface.gravity[1] - rise * lean
+    leans = crowd.leans[n]
+    lean, up = leans[LEAN], leans[LEAN + 1]
+    along = dt * leans[0] - forth * math.sqrt(x * x + y * y) / surface.radius
+    across = dt * leans[1] - rise * lean
     given[0] = c * along - s * across
     given[1] = s * along + c * across
-    given[2] = dt * surface.gravity[2] - rise * up
+    given[2] = dt * leans[2] - rise * up
     spin = forth / surface.radius
     for k in range(3):
         given[3 + k] = -spin * (lean * (c * turn[3 + k] - s * turn[k]) + up * turn[6 + k])
+    if len(surface.jets):
+        jets.blow(surface, solid, floor, crowd, n, time, dt)
 
 
 @compiled

@@ -5,7 +5,7 @@ import math
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import apart, compiled, entry
-from feederscrew.trial.kernel import motion, pairs
+from feederscrew.trial.kernel import jets, motion, pairs
 
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = range(5)  # STANDS gets on no more, ROLLED went back
 TIME, MOVED, SUNK, WON, NOTES = 0, 1, 2, 3, 4  # what a run notes: time, way, depth, energy; how many
@@ -17,6 +17,13 @@ LEFT = 1e-6  # of a step: less is nothing
 def way(surface, state):
     """Return how far along the wall the centre of mass is."""
     return surface.radius * math.atan2(state[X], surface.radius - state[Y])
+
+
+@compiled
+def across(surface, state):
+    """Return how far from the wall the centre of mass is."""
+    x, y = state[X], surface.radius - state[Y]
+    return surface.radius - math.sqrt(x * x + y * y) if y > 0.0 else surface.radius + abs(y)
 
 
 @apart
@@ -37,7 +44,7 @@ def over(surface, solid, floor, crowd, island, time, notes):
 def travel(surface, limits, solid, floor, crowd, time, every, path, notes):
     """Follow the one part of a crowd until it has passed, has dropped out or its time is up; its outcome."""
     state, dt, begun, start = crowd.states[0], floor.step, time, way(surface, crowd.states[0])
-    crowd.lasted[0] = crowd.made[0, 7] = -1.0
+    crowd.lasted[0] = crowd.made[0, 7] = crowd.blown[0, jets.AGAIN] = -1.0
     crowd.knowns[0] = 0
     steps, noted, outcome = math.ceil(limits.longest / dt), 0, RUNNING
     often, mark, level = math.ceil(limits.patience / dt), start, state[Z]
@@ -58,7 +65,7 @@ def travel(surface, limits, solid, floor, crowd, time, every, path, notes):
             noted += 1
         over(surface, solid, floor, crowd, (0, 1), time, notes)
         time = begun + (k + 1) * dt
-        if state[Z] < -solid.radius - limits.drop:
+        if state[Z] < -solid.radius - limits.drop or across(surface, state) > limits.free:
             outcome = RETURNED
             break
         place = way(surface, state)

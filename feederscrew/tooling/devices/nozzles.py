@@ -1,0 +1,76 @@
+"""Air: the thrust of a nozzle, what of it meets a part, and the steady jet."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from feederscrew.tooling.devices.pieces import Jet
+
+AMBIENT = 101325.0  # [Pa]
+CHOKED = ((1.4 + 1.0) / 2.0) ** (1.4 / 0.4)  # [1] of absolute pressures: beyond it the nozzle is choked
+SPREAD = math.tan(math.radians(11.0))  # [1] growth of a free jet's radius: 10 to 12 deg to either side
+REACH = 0.5  # [m] no track is wider
+ACROSS = (0.0, 1.0, 0.0)  # straight across the track
+
+
+def thrust(diameter, pressure):
+    """Return the thrust [N] of a nozzle.
+
+    Parameters
+    ----------
+    diameter : float [m]
+    pressure : float [Pa]
+        At the nozzle, above the ambient.
+
+    Notes
+    -----
+    Isentropic flow of air (ratio of heats 1.4), of a convergent nozzle: beyond the critical ratio of 1.893
+    the mouth has the critical pressure, below it the ambient one.
+    """
+    area, whole = 0.25 * math.pi * diameter**2, pressure + AMBIENT
+    if whole / AMBIENT > CHOKED:
+        return 2.4 / CHOKED * whole * area - AMBIENT * area
+    ratio = AMBIENT / whole
+    return 2.0 * area * whole * 3.5 * (ratio ** (1.0 / 1.4) - ratio)
+
+
+@dataclass(frozen=True)
+class Nozzles:
+    """Nozzles in the wall, one above the other, that blow straight across the track."""
+
+    diameter: float  # [m] of each
+    pressure: float  # [Pa] at the nozzles, above the ambient
+    height: float = math.nan  # [m] of the lowest over the track; NaN: the lowest centre of mass
+    count: int = 1
+
+    @property
+    def thrust(self):
+        """Thrust [N] of one."""
+        return thrust(self.diameter, self.pressure)
+
+    def heights(self, every):
+        """Return their heights [m] over the track, (N,): the highest as far below the tallest orientation."""
+        low = self.height
+        if math.isnan(low):
+            low = max(min(one.posture.height for one in every), 0.5 * self.diameter)
+        high = max(max(one.height for one in every) - low, low)
+        return np.linspace(low, high, self.count) if high > low else np.full(self.count, low)
+
+    def force(self, one, every):
+        """Return the force [N] on an orientation whose centre of mass is before them."""
+        return self.thrust * sum(self.share(one, height) for height in self.heights(every))
+
+    def share(self, one, height):
+        """Return the share of the jet at a height [m] that an orientation takes."""
+        radius = 0.5 * self.diameter + SPREAD * max(one.distance - 0.5 * one.width, 0.0)
+        disc = shapely.Point(0.0, height).buffer(radius)
+        return float(one.aside.intersection(disc).area / disc.area)
+
+    def jets(self, place, every, seconds=math.inf):
+        """Return their Jets at a place [m] along the device."""
+        return tuple(
+            Jet((place, 0.0, height), ACROSS, 0.5 * self.diameter, SPREAD, self.thrust, REACH, seconds)
+            for height in self.heights(every)
+        )

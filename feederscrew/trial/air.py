@@ -1,0 +1,110 @@
+"""Jets of air and the lean of the track along a stretch of it, as the kernel takes them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew import check
+from feederscrew.trial.kernel import jets
+
+BLEND = 0.25  # of the part's size: way over which one lean of the track becomes the next
+
+
+@dataclass(frozen=True, eq=False)
+class Watch:
+    """A sensor at its place, and which jets it sets off."""
+
+    place: float  # [m] along the wall
+    sensor: object  # tooling.devices.pieces.Sensor
+    jets: slice  # rows of the stage's jets
+    seconds: float  # [s] for which those blow
+
+
+@dataclass(frozen=True, eq=False)
+class Air:
+    """What blows and leans along a stretch of track."""
+
+    jets: np.ndarray  # (J, 12) [m], [1], [m/s2], [s] as `trial.kernel.jets` names the columns
+    watches: tuple[Watch, ...]
+    slopes: tuple[tuple[float, float | None, float | None], ...]  # [m] place, [rad] climb and bank from there
+
+
+STILL = Air(np.zeros((0, jets.END + 1)), (), ())
+
+
+def along(placed, track, every):
+    """Return what blows and leans along a stretch of track.
+
+    Parameters
+    ----------
+    placed : sequence of (Standing, float [m], float [m])
+        In the order parts meet them: where each begins along the wall, and its level.
+    track : Track
+    every : sequence of Orientation
+        Of the part, which has one mass.
+
+    Returns
+    -------
+    Air
+    """
+    mass, rows, watches, slopes = every[0].posture.mass, [], [], []
+    for standing, start, level in placed:
+        first = len(rows)
+        rows += [_row(jet, start, level, track.radius, mass) for jet in standing.jets]
+        if standing.sensor is not None:
+            seconds = max((jet.seconds for jet in standing.jets), default=0.0)
+            watches.append(
+                Watch(start + standing.sensor.at, standing.sensor, slice(first, len(rows)), seconds)
+            )
+        slopes += [(start + slope.begin, slope.climb, slope.bank) for slope in standing.slopes]
+    return Air(check.frozen(np.reshape(rows, (-1, jets.END + 1))), tuple(watches), tuple(slopes))
+
+
+def _row(jet, start, level, radius, mass):
+    """A jet in the bowl's frame; one that a sensor sets off does not blow."""
+    x, y, z = jet.at
+    theta, off = (start + x) / radius, radius - y
+    ahead, inwards = (np.cos(theta), np.sin(theta), 0.0), (-np.sin(theta), np.cos(theta), 0.0)
+    up, size = (0.0, 0.0, 1.0), np.sqrt(sum(one * one for one in jet.towards))
+    way = [
+        sum(one * axis[k] for one, axis in zip(jet.towards, (ahead, inwards, up))) / size for k in range(3)
+    ]
+    mouth = off * ahead[1], radius - off * ahead[0], z + level
+    times = (0.0, np.inf) if np.isinf(jet.seconds) else (np.inf, np.inf)
+    return [*mouth, *way, jet.radius, jet.spread, jet.thrust / mass, jet.reach, *times]
+
+
+def blowing(rows, length, unit):
+    """Return jets (J, 12) without dimensions; ``length`` [m] and ``unit`` [s] are 1."""
+    out = np.array(rows, float)
+    out[:, [0, 1, 2, jets.RADIUS, jets.REACH]] /= length
+    out[:, jets.THRUST] *= unit**2 / length
+    out[:, [jets.BEGIN, jets.END]] /= unit
+    return out
+
+
+def leaning(slopes, climb, bank, size, length):
+    """Return how gravity and the bowl's axis lie in the track's frame along the wall, (K, 6).
+
+    Parameters
+    ----------
+    slopes : sequence of (float [m], float [rad] or None, float [rad] or None)
+        Where another climb or bank begins.
+    climb, bank : float [rad]
+        Before them, of the bowl's track.
+    size : float [m]
+        Of the part, over a share of which one lean becomes the next.
+    length : float [m]
+        Of the unit.
+    """
+    rows, here = [] if slopes else [(0.0, climb, bank)], (climb, bank)
+    for place, rise, tilt in sorted(slopes, key=lambda one: one[0]):
+        rows.append((place / length, *here))
+        here = here[0] if rise is None else rise, here[1] if tilt is None else tilt
+        rows.append((place / length + BLEND * size / length, *here))
+    return np.array([_lean(*row) for row in rows])
+
+
+def _lean(place, climb, bank):
+    c, s = np.cos(climb), np.sin(climb)
+    return [place, -s, -c * np.sin(bank), -c * np.cos(bank), np.sin(bank), np.cos(bank)]

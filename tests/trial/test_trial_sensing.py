@@ -1,0 +1,80 @@
+"""What a sensor sees differ is blown off in the trial as the static rule says; jets by themselves."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.resting.aspects import find
+from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.nozzles import Nozzles, thrust
+from feederscrew.tooling.orientations import orientations, travelling
+from feederscrew.tooling.verdicts import verdict
+from feederscrew.trial import air, course, crowd, runs
+from feederscrew.trial.kernel import jets
+from feederscrew.trial.queue import queue_of
+from feederscrew.trial.shape import solid_of
+
+BOWL = bowls.read(None, ["track.width=40 mm"])
+PART = shapes.part(shapes.box(20, 12, 5))
+ASPECTS = find(PART)
+EVERY = travelling(orientations(PART, ASPECTS, BOWL.track), BOWL)
+ALONG = next(one for one in EVERY if one.length > 0.0199 and one.height < 0.0051)
+OWN = {"like": (ALONG.aspect, ALONG.heading, 5e-4)}
+
+
+def test_the_trial_blows_off_what_a_sorter_sees_differ():
+    sorter = made("sorter", "here", **OWN)
+    seen = course.course(PART, BOWL, EVERY, range(len(EVERY)), [sorter], parts=len(EVERY))
+    for k, fate in zip(seen.entered, seen.fates):
+        said = verdict(sorter, EVERY[k], EVERY)
+        assert said.sure and fate == (course.PASSED if said.passes else course.RETURNED), EVERY[k].name
+
+
+def test_a_sensor_of_heights_lets_what_is_as_high_pass():
+    sorter = made("sorter", "here", **OWN, sees="height")
+    across = next(k for k, one in enumerate(EVERY) if one.length < 0.0121 and one.height < 0.0051)
+    seen = course.course(PART, BOWL, EVERY, [across], [sorter], parts=1)
+    assert seen.fates[0] == course.PASSED
+
+
+def test_a_queue_blows_off_what_differs_and_what_cannot_be_told_from_its_neighbour():
+    bowl = replace(BOWL, devices=(made("sorter", "here", **OWN),))
+    shares = np.array([float(one is ALONG) for one in EVERY])
+    alone = queue_of(PART, bowl, ASPECTS, EVERY, EVERY, shares, parts=1, seconds=5.0, seed=1)
+    assert alone.leaving.sum() and not alone.returned and alone.velocity > 0.0
+    line = crowd.crowded(bowl, EVERY, bowl.devices, 0.1)
+    solid, length, _ = solid_of(PART)
+    parts = crowd.PartsOnTrack(runs.setting(solid, length, bowl), line, 3)
+    for n, place in enumerate((0.0, 0.0200001, 0.05)):
+        parts.lay(n, np.array([place / length, 0.0, 0.0, *np.zeros(3), 1.0, *np.zeros(6)]))
+    assert parts.near(0, range(3), 1e-4) == [1] and parts.near(2, range(3), 1e-4) == []
+
+
+def test_the_thrust_is_that_of_isentropic_flow():
+    area = 0.25 * np.pi * 4e-6
+    assert thrust(2e-3, 3e5) == pytest.approx(1.268 * 401325.0 * area - 101325.0 * area, rel=2e-4)
+    critical = 101325.0 * (1.2**3.5 - 1.0)
+    assert thrust(2e-3, critical * (1 - 1e-9)) == pytest.approx(thrust(2e-3, critical * (1 + 1e-9)))
+    assert thrust(2e-3, 100.0) == pytest.approx(2.0 * 100.0 * area, rel=1e-3)  # twice the small difference
+
+
+def test_rays_take_the_share_of_a_jet_that_the_outline_does():
+    """A jet at the edge of a block, half on it, against the area of the disc."""
+    for height, share in ((2.5e-3, 1.0), (5e-3, 0.5), (9e-3, 0.0)):
+        nozzles = Nozzles(2e-3, 3e5, height)
+        assert nozzles.share(ALONG, height) == pytest.approx(share, abs=0.02)
+    points = np.array([jets.ray(k) for k in range(jets.RAYS)])
+    assert np.hypot(*points.T).max() < 1.0 and np.abs(points.mean(axis=0)).max() < 0.03
+    assert (points**2).sum(axis=1).mean() == pytest.approx(0.5, abs=0.01)  # of a disc
+
+
+def test_the_lean_of_the_track_changes_where_a_slope_begins():
+    flat = air.leaning((), 0.02, 0.0, 0.01, 1.0)
+    assert flat.shape == (1, 6) and flat[0, 1] == pytest.approx(-np.sin(0.02))
+    rows = air.leaning([(0.1, -0.05, None), (0.2, None, 0.1)], 0.02, 0.0, 0.01, 0.5)
+    assert rows[:, 0] == pytest.approx([0.2, 0.205, 0.4, 0.405])
+    assert rows[:, 1] == pytest.approx(-np.sin([0.02, -0.05, -0.05, -0.05]))
+    assert rows[-1, 4:] == pytest.approx([np.sin(0.1), np.cos(0.1)])
