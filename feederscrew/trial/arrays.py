@@ -3,7 +3,7 @@
 import numpy as np
 
 from feederscrew.dropping.kernel import body
-from feederscrew.trial.kernel import contact
+from feederscrew.trial.kernel import contact, supports
 from feederscrew.trial.kernel.crowd_records import Crowd
 
 CONTACTS = 96  # of a part with the track at a time
@@ -44,7 +44,8 @@ def crowd_of(solid, surface, count):
         edges=places(NEAR, 3), posts=places(NEAR, 2), corners=places(NEAR, 3), walled=places(corners + 1),
         frame=np.zeros(12), shown=np.zeros((corners, 3)),
         low=np.zeros(max(corners, CONTACTS), np.int64),
-        heights=np.zeros((corners, 3)), near=np.zeros(max(len(surface.borders), 1), np.int64),
+        levels=np.zeros((corners + 2 * CONTACTS, supports.COLUMNS)),
+        near=np.zeros(max(len(surface.borders), 1), np.int64),
         box=np.zeros(6),
         dips=np.zeros(len(surface.borders)),
         pairs=np.zeros((pairs, contact.WIDTH)), owners=np.zeros(pairs, np.int64),

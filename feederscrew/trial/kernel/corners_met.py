@@ -10,7 +10,7 @@ import math
 
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import apart, compiled
-from feederscrew.trial.kernel import contact, edges_met, near, plate_views
+from feederscrew.trial.kernel import contact, edges_met, near, plate_views, supports
 from feederscrew.trial.kernel.contact import GAP, KINDS, SPOT, put
 from feederscrew.trial.kernel.crowd_records import (
     CORNERS,
@@ -26,7 +26,6 @@ from feederscrew.trial.kernel.crowd_records import (
 from feederscrew.trial.kernel.edges_met import first_of
 from feederscrew.trial.kernel.plate_views import DEEP, SLANT, in_body, in_bowl, placed
 
-WAYS, FALL = 6, 20.0  # corners are kept in so many directions, a lower one rather than one further out
 SHALLOW = 1e-3  # a contact less deep is not looked at again
 AS_FAR = 4.0  # times its depth: a deeper contact is none where so near to it another is shallower
 
@@ -51,35 +50,13 @@ def found(surface, solid, crowd, n, reach):
         plate_views.seen_by(surface.plates[k], crowd.states[n], crowd.turns[n], crowd.frame)
         begun = crowd.counts[n]
         _dips(surface, solid, crowd, n, k)
-        _corners_on(surface, solid, crowd, n, k, reach)
-        edges_met.edges_on(surface, solid, crowd, n, k, reach)
+        lying = _corners_on(surface, solid, crowd, n, k, reach)
+        lying = edges_met.edges_on(surface, solid, crowd, n, k, reach, lying)
         edges_met.edges_on_posts(surface, solid, crowd, n, k, reach)
-        edges_met.faces_on(surface, solid, crowd, n, k, reach)
+        lying = edges_met.faces_on(surface, solid, crowd, n, k, reach, lying)
+        _put_lying(crowd, solid, n, surface.plates[k], lying)
         _without_deeper(crowd, n, begun)
     contact.remembered(crowd, n)
-
-
-@compiled
-def _outermost(heights, low, count):
-    """Keep of many corners the lowest and those furthest out around it, in front of the others; how many."""
-    if count <= WAYS + 1:
-        return count
-    kept = 0
-    for m in range(WAYS + 1):
-        c, s = math.cos(2.0 * math.pi * m / WAYS), math.sin(2.0 * math.pi * m / WAYS)
-        if m == WAYS:
-            c = s = 0.0
-        best, first = -math.inf, 0
-        for n in range(count):
-            score = c * heights[n, 0] + s * heights[n, 1] - FALL * heights[n, 2]
-            if score > best:
-                best, first = score, n
-        if first >= kept:
-            low[kept], low[first] = low[first], low[kept]
-            for e in range(3):
-                heights[kept, e], heights[first, e] = heights[first, e], heights[kept, e]
-            kept += 1
-    return kept
 
 
 @compiled
@@ -94,20 +71,27 @@ def _on_wall(surface, solid, crowd, n, reach):
         z = turn[6] * p[0] + turn[7] * p[1] + turn[8] * p[2]
         gap = plate_views.off_wall(surface, crowd.leans[n], state[X] + x, state[Y] + y, state[Z] + z)
         if gap < reach:
-            crowd.heights[lows, 0] = crowd.tangents[n, 0] * x + crowd.tangents[n, 1] * y
-            crowd.heights[lows, 1], crowd.heights[lows, 2] = z, gap
-            crowd.low[lows] = crowd.walled[n, m]
-            lows += 1
-    lows = _outermost(crowd.heights, crowd.low, lows)
-    for m in range(lows):
-        k = crowd.low[m]
-        p = solid.corners[k]
+            place = crowd.tangents[n, 0] * x + crowd.tangents[n, 1] * y, z
+            key = -KINDS * (1 + crowd.walled[n, m])
+            lows = supports.add(crowd.levels, lows, place, gap, p, key)
+    for m in range(supports.outermost(crowd.levels, lows)):
+        row = crowd.levels[m]
+        p = row[supports.SPOT], row[supports.SPOT + 1], row[supports.SPOT + 2]
         x = state[X] + turn[0] * p[0] + turn[1] * p[1] + turn[2] * p[2]
         y = state[Y] + turn[3] * p[0] + turn[4] * p[1] + turn[5] * p[2] - radius
         far = math.sqrt(x * x + y * y)
         normal = (-up * x / far, -up * y / far, -lean)
-        spot = (p[0], p[1], p[2])
-        put(crowd, n, solid, spot, normal, crowd.heights[m, 2], surface.friction[4], -KINDS * (1 + k))
+        put(crowd, n, solid, p, normal, row[supports.GAP], surface.friction[4], row[supports.KEY])
+
+
+@compiled
+def _put_lying(crowd, solid, n, plate, count):
+    """Add the contacts that carry the part on a plate's surface."""
+    normal = in_bowl(plate, 0.0, 0.0, 1.0)
+    for m in range(supports.outermost(crowd.levels, count)):
+        row = crowd.levels[m]
+        spot = row[supports.SPOT], row[supports.SPOT + 1], row[supports.SPOT + 2]
+        put(crowd, n, solid, spot, normal, row[supports.GAP], plate[RUBS], row[supports.KEY])
 
 
 @compiled
@@ -143,7 +127,7 @@ def _dips(surface, solid, crowd, n, k):
 
 @compiled
 def _corners_on(surface, solid, crowd, n, k, reach):
-    """Add contacts of the part's corners with a plate: its surface, its rounded sides, its back."""
+    """Add contacts of the part's corners with a plate's sides and back; how many lie on its surface."""
     plate, frame, lows = surface.plates[k], crowd.frame, 0
     for m in range(first_of(crowd, n, k, VERTS), crowd.ends[n, k, VERTS]):
         corner = crowd.verts[n, 0, m]
@@ -160,15 +144,8 @@ def _corners_on(surface, solid, crowd, n, k, reach):
         else:
             on_top = _by_borders(surface, solid, crowd, n, k, (m, reach, a, b, c))
         if on_top:
-            crowd.heights[lows, 0], crowd.heights[lows, 1], crowd.heights[lows, 2] = a, b, c
-            crowd.low[lows] = corner
-            lows += 1
-    lows = _outermost(crowd.heights, crowd.low, lows)
-    normal = in_bowl(plate, 0.0, 0.0, 1.0)
-    for m in range(lows):
-        p = solid.corners[crowd.low[m]]
-        key = KINDS * (crowd.low[m] + 1e6 * k)
-        put(crowd, n, solid, (p[0], p[1], p[2]), normal, crowd.heights[m, 2], plate[RUBS], key)
+            lows = supports.add(crowd.levels, lows, (a, b), c, p, KINDS * (corner + 1e6 * k))
+    return lows
 
 
 @compiled

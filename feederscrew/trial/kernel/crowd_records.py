@@ -78,7 +78,7 @@ class Crowd(NamedTuple):
     frame: np.ndarray  # (12,) how a plate sees a part, or a part another: rotation and place
     shown: np.ndarray  # (C, 3)
     low: np.ndarray  # (C,) int
-    heights: np.ndarray  # (C, 3)
+    levels: np.ndarray  # (L, 7) contacts that push one way, of `supports`
     near: np.ndarray  # (B,) int
     dips: np.ndarray  # (B,) how deep corners of the part come beside each border
     box: np.ndarray  # (6,)

@@ -3,7 +3,7 @@
 import math
 
 from feederscrew.geometry.compiled import compiled
-from feederscrew.trial.kernel import plate_views
+from feederscrew.trial.kernel import plate_views, supports
 from feederscrew.trial.kernel.contact import GAP, KEY, KINDS, SPOT, TOWARDS, put
 from feederscrew.trial.kernel.crowd_records import (
     BEFORE,
@@ -58,8 +58,8 @@ def _put_edge(crowd, n, solid, at, normal, gap, rub, key):
 
 
 @compiled
-def edges_on(surface, solid, crowd, n, k, reach):
-    """Add contacts of the part's edges with a plate's borders, in front and at the back."""
+def edges_on(surface, solid, crowd, n, k, reach, lying):
+    """Add contacts of the part's edges with a plate's borders; how many carry it, with those before."""
     plate, frame = surface.plates[k], crowd.frame
     for m in range(first_of(crowd, n, k, EDGES), crowd.ends[n, k, EDGES]):
         edge, border = crowd.edges[n, m, 0], surface.borders[crowd.edges[n, m, 1]]
@@ -79,7 +79,12 @@ def edges_on(surface, solid, crowd, n, k, reach):
         if _between(solid, edge, x, y, z):
             at = _along(i, j, share)
             key = 3.0 + back + KINDS * (edge + 1e6 * crowd.edges[n, m, 1])
+            if w > supports.LEVEL:
+                place = a + share * (d - a), b + share * (e - b)
+                lying = supports.add(crowd.levels, lying, place, gap, at, key)
+                continue
             _put_edge(crowd, n, solid, at, in_bowl(plate, u, v, w), gap, plate[RUBS], key)
+    return lying
 
 
 @compiled
@@ -177,8 +182,8 @@ def _before_corner(border, u, v):
 
 
 @compiled
-def faces_on(surface, solid, crowd, n, k, reach):
-    """Add contacts of the part's faces with the convex corners of borders, in front and at the back."""
+def faces_on(surface, solid, crowd, n, k, reach, lying):
+    """Add contacts of the part's faces with the convex corners of borders; as ``edges_on``."""
     plate, frame = surface.plates[k], crowd.frame
     m, last = first_of(crowd, n, k, CORNERS), crowd.ends[n, k, CORNERS]
     while m < last:
@@ -195,12 +200,14 @@ def faces_on(surface, solid, crowd, n, k, reach):
                 best, face = off, f
             m += 1
         if face >= 0:
-            _put_face(surface, solid, crowd, n, k, (k_border, back, face, x, y, z, best))
+            what = (k_border, back, face, x, y, z, best)
+            lying = _put_face(surface, solid, crowd, n, k, what, lying)
+    return lying
 
 
 @compiled
-def _put_face(surface, solid, crowd, n, k, what):
-    """Add the contact of a face of the part with a corner, if the corner points to it."""
+def _put_face(surface, solid, crowd, n, k, what, lying):
+    """Add the contact of a face of the part with a corner, if the corner points to it; as ``edges_on``."""
     plate, frame = surface.plates[k], crowd.frame
     k_border, back, face, x, y, z, gap = what
     t, border = solid.normals[face], surface.borders[k_border]
@@ -209,7 +216,7 @@ def _put_face(surface, solid, crowd, n, k, what):
     w = -(frame[6] * t[0] + frame[7] * t[1] + frame[8] * t[2])
     out = -w if back else w
     if out < -SLANT or not _before_corner(border, u, v):
-        return
+        return lying
     if out < LEVEL:
         low = crowd.dips[k_border]
         for e in range(3):
@@ -217,6 +224,9 @@ def _put_face(surface, solid, crowd, n, k, what):
             c = frame[6] * p[0] + frame[7] * p[1] + frame[8] * p[2] + frame[11]
             low = min(low, -plate[DEPTH] - c if back else c)
         if low > -plate[ROUNDED]:
-            return
+            return lying
     key = 6.0 + back + KINDS * (face + 1e6 * k_border)
+    if w > supports.LEVEL:
+        return supports.add(crowd.levels, lying, (border[0], border[1]), gap, (x, y, z), key)
     put(crowd, n, solid, (x, y, z), in_bowl(plate, u, v, w), gap, plate[RUBS], key)
+    return lying
