@@ -10,14 +10,11 @@ from feederscrew.solidbowl import facets, track
 from feederscrew.solidbowl.plan import TURN, BowlPlan
 from feederscrew.solidbowl.segments import Segments
 from feederscrew.tooling import whole_surface
-from feederscrew.units import factor
 
-MM = factor("mm", "length")
 INTO = 1e-3  # [m] by which one piece reaches into another
 FAR = 1.0  # [m] beyond everything
 PLAY = 1e-4  # [m] of a gate in its notch, to each side
 EARS = 4e-3  # [m] by which a gate stands out of the wall
-SIDES = 48  # of a bolt's hole
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,9 +50,12 @@ def body(plan):
         If cuts leave a piece loose.
     """
     whole, gates = pieces(plan)
-    vertices, faces = whole_surface.mesh(_placed(whole, plan))
+    vertices, faces = whole_surface.mesh(facets.placed_as(whole, mirrored=plan.left, turned=plan.turned))
     found = mass.solid(vertices[faces])
-    extra = tuple((name, *whole_surface.mesh(_placed(one, plan))) for name, one in gates)
+    extra = tuple(
+        (name, *whole_surface.mesh(facets.placed_as(one, mirrored=plan.left, turned=plan.turned)))
+        for name, one in gates
+    )
     parts = [found, *(mass.solid(v[f]) for _, v, f in extra)]
     weights = np.array([plan.material.density * one.volume for one in parts])
     total = float(weights.sum())
@@ -67,52 +67,50 @@ def body(plan):
     return BowlSolid(plan, vertices, faces, extra, float(found.volume), total, float(inertia), centre)
 
 
-def pieces(plan):
-    """Return the bowl as one Manifold [mm] and its gates (name, Manifold), the outlet at the angle 0."""
-    ring = facets.without(_wall(plan), [*_opening(plan), *(_notch(plan, one) for one in _gates(plan))])
-    slab = facets.without(track.slab(plan), [_hole(plan, cut) for cut in _holes(plan)])
-    blades = [_plate(plan, one) for one in _blades(plan) if not one.alone]
-    whole = facets.united([_floor(plan), ring, slab, *track.sides(plan), *track.yokes(plan), *blades])
-    whole = facets.without(whole, [*track.slots(plan), *_drilled(plan)])
-    gates = [(f"gate_{k + 1}", _plate(plan, one)) for k, one in enumerate(_gates(plan))]
-    return facets.one_piece(whole, "devices"), gates
+def pieces(plan, kit=facets):
+    """Return the bowl as one body [mm] of a kit and its gates (name, body), the outlet at the angle 0."""
+    ring = kit.without(
+        _wall(plan, kit), [*_opening(plan, kit), *(_notch(plan, kit, one) for one in _gates(plan))]
+    )
+    slab = kit.without(track.slab(plan, kit), [_hole(plan, kit, cut) for cut in _holes(plan)])
+    blades = [_plate(plan, kit, one) for one in _blades(plan) if not one.alone]
+    whole = kit.united(
+        [_floor(plan, kit), ring, slab, *track.sides(plan, kit), *track.yokes(plan, kit), *blades]
+    )
+    whole = kit.without(whole, [*track.slots(plan, kit), *_drilled(plan, kit)])
+    gates = [(f"gate_{k + 1}", _plate(plan, kit, one)) for k, one in enumerate(_gates(plan))]
+    return kit.one_piece(whole, "devices"), gates
 
 
-def _placed(one, plan):
-    """The body turned to the angle of its outlet, mirrored where the track is left-handed."""
-    placed = one.mirror((0.0, 1.0, 0.0)) if plan.left else one
-    return placed.rotate((0.0, 0.0, float(np.degrees(plan.turned)))) if plan.turned else placed
-
-
-def _floor(plan):
+def _floor(plan, kit):
     """Floor with its dome, and the hub below it."""
     low, inner, outer = plan.underside, plan.ring, plan.way.radius + plan.material.wall
     top = [(outer, 0.0), (inner, 0.0), (0.0, plan.dome)]
     if plan.material.flat:
-        return facets.turned([(0.0, low), (outer, low), *top], plan.segments)
+        return kit.turned([(0.0, low), (outer, low), *top], plan.segments)
     shell = [(0.0, plan.dome + low), (inner, low), (outer, low), *top]
     rim, middle = float(plan.floor(plan.hub)) + 0.5 * low, plan.dome + 0.5 * low
     hub = [(0.0, low), (plan.hub, low), (plan.hub, rim), (0.0, middle)]
-    return facets.united([facets.turned(one, plan.segments) for one in (shell, hub)])
+    return kit.united([kit.turned(one, plan.segments) for one in (shell, hub)])
 
 
-def _wall(plan):
+def _wall(plan, kit):
     inner, outer = plan.way.radius, plan.way.radius + plan.material.wall
-    return facets.turned(
+    return kit.turned(
         [(inner, plan.underside + INTO), (outer, plan.underside), (outer, plan.top), (inner, plan.top)],
         plan.segments,
     )
 
 
-def _opening(plan):
+def _opening(plan, kit):
     """Where the outlet passes through the wall."""
     end, far = plan.way.end, plan.way.end + 2.0 * plan.outlet
-    area = plan.way.laid(np.array([[end, 0.0], [far, 0.0], [far, plan.width], [end, plan.width]]), plan.chord)
-    lift = plan.width * np.sin(plan.way.bank)
-    return [facets.prism(area, plan.outlet_height - 0.5 * plan.material.plate, plan.top + lift + FAR)]
+    ring = np.array([[end, 0.0], [far, 0.0], [far, plan.width], [end, plan.width]])
+    low, lift = plan.outlet_height - 0.5 * plan.material.plate, plan.width * np.sin(plan.way.bank)
+    return [kit.over(plan.way, ring, low, plan.top + lift + FAR, plan.chord)]
 
 
-def _drilled(plan):
+def _drilled(plan, kit):
     """Holes of the bolts, in the middle and on their circle, and drain holes."""
     angles = TURN * (np.arange(plan.bolts) + 0.5) / plan.bolts
     circle = [(0.0, 0.0)] + [
@@ -122,13 +120,7 @@ def _drilled(plan):
     edge = plan.way.radius - plan.across - plan.drain
     angles = TURN * np.arange(plan.drains) / max(plan.drains, 1)
     holes += [((edge * np.cos(a), edge * np.sin(a)), plan.drain) for a in angles]
-    return [_drill(at, size, plan) for at, size in holes]
-
-
-def _drill(at, size, plan):
-    angles = TURN * np.arange(SIDES) / SIDES
-    ring = np.array(at) + 0.5 * size * np.column_stack([np.cos(angles), np.sin(angles)])
-    return facets.prism(shapely.Polygon(ring), plan.underside - INTO, plan.dome + INTO)
+    return [kit.disc(at, size, plan.underside - INTO, plan.dome + INTO) for at, size in holes]
 
 
 def _holes(plan):
@@ -143,15 +135,15 @@ def _gates(plan):
     return [one for one in _blades(plan) if one.alone]
 
 
-def _hole(plan, cut):
+def _hole(plan, kit, cut):
     """The body that a cut takes out of the track."""
     ring = cut.ring + [plan.first, 0.0]
     heights = plan.way.height(ring[:, 0], ring[:, 1])
     deep = plan.material.plate + track.fillet(plan) + INTO
-    return facets.prism(plan.way.laid(ring, 0.2 * plan.chord), heights.min() - deep, heights.max() + INTO)
+    return kit.over(plan.way, ring, heights.min() - deep, heights.max() + INTO, 0.2 * plan.chord)
 
 
-def _plate(plan, blade):
+def _plate(plan, kit, blade):
     """A blade across the track, at its height over the higher of its two faces."""
     s = plan.first + blade.start
     area = blade.area
@@ -159,10 +151,10 @@ def _plate(plan, blade):
         x0, _, _, x3 = area.bounds
         ear = shapely.box(-plan.material.wall - EARS, 0.0, x0 + INTO, x3)
         area = shapely.union_all([area, ear])
-    return _standing(plan, s, blade.thickness, area, blade.lean)
+    return _standing(plan, kit, s, blade.thickness, area, blade.lean)
 
 
-def _standing(plan, s, thickness, area, lean=0.0):
+def _standing(plan, kit, s, thickness, area, lean=0.0):
     """An area of distances from the wall and heights over the track, as a plate across the track.
 
     A swept one leans ahead with the distance; its edge keeps its height over the track at both ends.
@@ -171,13 +163,12 @@ def _standing(plan, s, thickness, area, lean=0.0):
     far = plan.way.places(from_wall + lean * plan.width, plan.width)
     across = (far - plan.way.places(from_wall, 0.0)) / plan.width
     ahead, upright = np.array([-np.sin(theta), np.cos(theta), 0.0]), np.array([0.0, 0.0, 1.0])
-    foot = np.array([*plan.way.plan(s, 0.0), float(plan.way.height(from_wall))]) / MM
-    plate = facets.prism(area, 0.0, thickness)
-    return plate.transform(np.column_stack([across, upright, ahead, foot]))
+    foot = np.array([*plan.way.plan(s, 0.0), float(plan.way.height(from_wall))])
+    return kit.plank(area, thickness, np.column_stack([across, upright, ahead]), foot)
 
 
-def _notch(plan, blade):
+def _notch(plan, kit, blade):
     """The notch of the wall in which a gate stands, open above."""
     z = -PLAY
     area = shapely.box(-plan.material.wall - INTO, z, INTO, FAR)
-    return _standing(plan, plan.first + blade.start - PLAY, blade.thickness + 2.0 * PLAY, area)
+    return _standing(plan, kit, plan.first + blade.start - PLAY, blade.thickness + 2.0 * PLAY, area)

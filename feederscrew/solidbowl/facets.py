@@ -9,18 +9,21 @@ from feederscrew.units import factor
 
 MM = factor("mm", "length")  # manifold3d works on numbers of that size
 CRUMB = 1e-9  # [m3] a loose piece smaller than this is left out
+SIDES = 48  # of a round hole
 
 
-def swept(sections, frames):
-    """Return a body whose section is handed on from frame to frame.
+SMOOTH = False  # a curve is a chain of chords
+
+
+def swept(legs):
+    """Return a body whose section is handed on from frame to frame, leg after leg.
 
     Parameters
     ----------
-    sections : (M, K, 2) float [m]
-        Corners of each section, counter-clockwise: outwards, upwards.
-    frames : (M, 2, 2) float
-        Of each section the place from above where its first coordinate is zero, and the unit vector along
-        which it grows.
+    legs : list of (sections, frames)
+        ``sections`` (M, K, 2) float [m] are the corners of each section, counter-clockwise: outwards,
+        upwards; ``frames`` (M, 2, 2) float of each the place from above where its first coordinate is zero,
+        and the unit vector along which it grows. A leg begins with the section that the one before ends with.
 
     Returns
     -------
@@ -28,17 +31,30 @@ def swept(sections, frames):
     """
     from manifold3d import Manifold, Mesh64, triangulate
 
-    place, outward = frames[:, None, 0], frames[:, None, 1]
-    flat = place + sections[..., :1] * outward
-    points = np.concatenate([flat, sections[..., 1:]], axis=-1)
-    count, corners = sections.shape[:2]
+    legs = [in_space(*leg) for leg in legs]
+    points = np.concatenate([legs[0], *(leg[1:] for leg in legs[1:])])
+    count, corners = points.shape[:2]
     k, row = np.arange(corners), corners * np.arange(count - 1)[:, None]
     a, b = row + k, row + (k + 1) % corners
     sides = np.stack([a, a + corners, b, b, a + corners, b + corners], axis=-1).reshape(-1, 3)
-    first, last = (np.asarray(triangulate([sections[m] / MM])) for m in (0, -1))
+    first, last = (np.asarray(triangulate([flattened(points[m]) / MM])) for m in (0, -1))
     faces = np.concatenate([sides, first, corners * (count - 1) + last[:, ::-1]])
     mesh = Mesh64(points.reshape(-1, 3) / MM, faces.astype(np.uint64))
     return sound(Manifold(mesh), "a swept body")
+
+
+def in_space(sections, frames):
+    """Return the corners (M, K, 3) [m] of sections (M, K, 2) in their frames (M, 2, 2)."""
+    place, outward = frames[:, None, 0], frames[:, None, 1]
+    return np.concatenate([place + sections[..., :1] * outward, sections[..., 1:]], axis=-1)
+
+
+def flattened(points):
+    """Return points (K, 3) in an upright plane as (K, 2): along it and up."""
+    far = points[np.argmax(((points - points[0])[:, :2] ** 2).sum(axis=1))] - points[0]
+    along = far[:2] / np.hypot(*far[:2])
+    along = along if np.sum(along * points[0, :2]) >= 0.0 else -along
+    return np.column_stack([points[:, 0] * along[0] + points[:, 1] * along[1], points[:, 2]])
 
 
 def turned(profile, segments):
@@ -79,6 +95,28 @@ def prism(area, low, high):
     return Manifold.extrude(flat, (high - low) / MM).translate((0.0, 0.0, low / MM))
 
 
+def over(way, ring, low, high, chord):
+    """Return a body over a ring (K, 2) [m] of lengths and distances along a way, between two heights [m]."""
+    return prism(way.laid(ring, chord), low, high)
+
+
+def disc(at, size, low, high):
+    """Return a round rod upright: its middle (2,), its diameter and its two heights [m]."""
+    angles = 2.0 * np.pi * np.arange(SIDES) / SIDES
+    ring = np.asarray(at) + 0.5 * size * np.column_stack([np.cos(angles), np.sin(angles)])
+    return prism(shapely.Polygon(ring), low, high)
+
+
+def drum(radius, low, high, segments):
+    """Return a cylinder about the axis, its facets those of the wall."""
+    return turned([(0.0, low), (radius, low), (radius, high), (0.0, high)], segments)
+
+
+def plank(area, thickness, axes, foot):
+    """Return a plate over an area [m], ``thickness`` [m] deep; columns of ``axes`` (3, 3): its axes."""
+    return prism(area, 0.0, thickness).transform(np.column_stack([axes, np.asarray(foot) / MM]))
+
+
 def united(bodies):
     """Return the union of a list of Manifolds."""
     from manifold3d import Manifold, OpType
@@ -96,6 +134,12 @@ def without(body, tools):
 def above(body, height):
     """Return what of a Manifold lies above a height [m]."""
     return body.trim_by_plane((0.0, 0.0, 1.0), height / MM)
+
+
+def placed_as(body, *, mirrored, turned):
+    """Return a body mirrored at the XZ plane or not, then turned about Z by an angle [rad]."""
+    body = body.mirror((0.0, 1.0, 0.0)) if mirrored else body
+    return body.rotate((0.0, 0.0, float(np.degrees(turned)))) if turned else body
 
 
 def sound(body, what):

@@ -3,15 +3,14 @@
 import itertools
 
 import numpy as np
-import shapely
 
-from feederscrew.solidbowl import facets
 from feederscrew.solidbowl.plan import DIP
 
 INTO = 1e-3  # [m] by which one piece reaches into another
 ARC = 6  # facets of a fillet
+THROUGH = 1.05  # its radius over its distance from the wall: it crosses the wall, and does not touch it
 YOKE = 6e-3  # [m] thickness of what carries the inner rail from below
-FAR = 1.0  # [m] beyond everything
+SPAN = 0.1  # [rad] of a curve between two places that it is led through
 
 
 def fillet(plan):
@@ -19,26 +18,41 @@ def fillet(plan):
     return min(plan.material.plate, 0.5 * plan.across)
 
 
-def slab(plan):
+def slab(plan, kit):
     """Return the track with its outlet, its devices not yet cut.
 
     Parameters
     ----------
     plan : BowlPlan
+    kit : module
+        ``facets`` or ``exact``, which the body is made with.
 
     Returns
     -------
-    Manifold [mm]
+    body of that kit [mm]
     """
     runs, way = [], plan.way
     borders = [way.rises(plan.width) - DIP * way.radius, *(at for at, _ in way.drops), way.end + plan.outlet]
     for start, end in itertools.pairwise(borders):
-        s = _steps(plan, start, end)
-        inside = np.clip(s, start + 1e-9, end - 1e-9)
-        runs.append(_swept(plan, s, plan.way.height(inside)))
-    risers = [_riser(plan, at, drop) for at, drop in way.drops]
-    whole = facets.united([*runs, *risers]) if len(runs) > 1 else runs[0]
-    return facets.above(whole, plan.underside + 0.5 * INTO)
+        legs = [start, way.end, end] if start < way.end < end else [start, end]
+        runs.append(kit.swept([_leg(plan, kit, leg, (start, end)) for leg in itertools.pairwise(legs)]))
+    risers = [_riser(plan, kit, at, drop) for at, drop in way.drops]
+    whole = kit.united([*runs, *risers]) if len(runs) > 1 else runs[0]
+    return kit.above(whole, plan.underside + 0.5 * INTO)
+
+
+def _leg(plan, kit, leg, run):
+    """Sections and frames of a piece of a run, which goes on past its ends at the same height."""
+    s = _smooth_steps(plan, *leg) if kit.SMOOTH else _steps(plan, *leg)
+    inside = np.clip(s, run[0] + 1e-9, run[1] - 1e-9)
+    strips = 1 if kit.SMOOTH else _strips(plan)
+    return _sections(plan, s, plan.way.height(inside), strips), frames(plan, s)
+
+
+def _smooth_steps(plan, start, end):
+    """Lengths along the wall through which a curve is led; the two ends of what is straight."""
+    count = 2 if start >= plan.way.end else max(int((end - start) / plan.way.radius / SPAN), 3) + 1
+    return np.linspace(start, end, count)
 
 
 def frames(plan, s):
@@ -57,10 +71,6 @@ def _steps(plan, start, end):
     return np.unique(np.concatenate([[start], inner, [way.end] if start < way.end < end else [], [end]]))
 
 
-def _swept(plan, s, heights):
-    return facets.swept(_sections(plan, s, heights), frames(plan, s))
-
-
 def _strips(plan):
     """Into how many strips the track is divided across, so that its twist stays within the chord."""
     way, inner = plan.way, plan.way.radius - plan.across
@@ -68,36 +78,35 @@ def _strips(plan):
     return int(np.ceil(twist / (0.3 * plan.chord))) + 1
 
 
-def _sections(plan, s, heights):
+def _sections(plan, s, heights, strips):
     """Sections (M, K, 2) of the plate with a fillet below it, by the wall."""
     plate, slope = plan.material.plate, np.tan(plan.way.bank)
     r = fillet(plan)
-    inward = plan.across * np.arange(_strips(plan) + 1) / _strips(plan)
-    top = np.column_stack([np.concatenate([[INTO], -inward]), np.concatenate([[0.0], inward * slope])])
-    turn = 0.5 * np.pi * np.arange(ARC + 1) / ARC
-    arc = np.column_stack([-r + r * np.sin(turn), -plate - r + r * np.cos(turn)])
+    inward = plan.across * np.arange(strips + 1) / strips
+    inward[0] = -INTO  # no edge lies on the wall
+    top = np.column_stack([-inward, inward * slope])
+    turn, own = 0.5 * np.pi * np.arange(ARC + 1) / ARC, THROUGH * r  # the arc goes on into the wall
+    arc = np.column_stack([-r + own * np.sin(turn), -plate - own + own * np.cos(turn)])
     arc[:, 1] -= arc[:, 0] * slope
-    under = [[-plan.across, plan.across * slope - plate], *arc, [INTO, -plate - r]]
+    under = [[-plan.across, plan.across * slope - plate], *arc, [INTO, -plate - own]]
     if not plan.material.supported:
-        under = [[-plan.across, plan.across * slope - plate], arc[0], arc[-1], [INTO, -plate - r]]
+        under = [[-plan.across, plan.across * slope - plate], arc[0], arc[-1], [INTO, -plate - own]]
     outline = np.concatenate([top, np.array(under)])
     sections = np.broadcast_to(outline, (len(s), *outline.shape)).copy()
     sections[..., 1] += heights[:, None]
     return sections
 
 
-def _riser(plan, at, drop):
+def _riser(plan, kit, at, drop):
     """The face below a step down, a plate thick."""
     plate = plan.material.plate
     s = np.array([at - plate, at + 1e-4])
-    area = plan.way.laid(
-        np.array([[s[0], -INTO], [s[1], -INTO], [s[1], plan.width], [s[0], plan.width]]), plan.chord
-    )
+    ring = np.array([[s[0], -INTO], [s[1], -INTO], [s[1], plan.width], [s[0], plan.width]])
     low = float(plan.way.height(at))
-    return facets.prism(area, low - plate, low + drop - 0.5 * plate)
+    return kit.over(plan.way, ring, low - plate, low + drop - 0.5 * plate, plan.chord)
 
 
-def sides(plan):
+def sides(plan, kit):
     """Return the walls of the outlet: one carries on the bowl's wall, one keeps parts on the outlet."""
     way, wall = plan.way, plan.material.wall
     end = way.end + plan.outlet
@@ -107,9 +116,9 @@ def sides(plan):
     outer = np.array([[way.end + 2e-3, -wall], [end, -wall], [end, 0.0], [way.end + 2e-3, 0.0]])
     y = plan.width
     inner = np.array([[way.end, y], [end, y], [end, y + wall], [way.end, y + wall]])
-    inside = shapely.Point(0.0, 0.0).buffer(way.radius + 0.4 * wall, quad_segs=90)
-    made = [facets.prism(way.laid(outer, plan.chord), low, max(top, height + plan.headroom))]
-    made.append(facets.prism(way.laid(inner, plan.chord).difference(inside), low + lift, top + lift))
+    inside = kit.drum(way.radius + 0.4 * wall, low + lift - INTO, top + lift + INTO, plan.segments)
+    made = [kit.over(way, outer, low, max(top, height + plan.headroom), plan.chord)]
+    made.append(kit.without(kit.over(way, inner, low + lift, top + lift, plan.chord), [inside]))
     return made
 
 
@@ -117,16 +126,17 @@ def _rails(plan):
     return () if plan.stretch is None else tuple(cut for cut in plan.stretch.cuts if cut.hangs)
 
 
-def slots(plan):
+def slots(plan, kit):
     """Return what is cut out for parts that hang: from their device to the end of the outlet, open there.
 
     Parameters
     ----------
     plan : BowlPlan
+    kit : module
 
     Returns
     -------
-    list of Manifold [mm]
+    list of bodies [mm]
     """
     made = []
     for cut in _rails(plan):
@@ -135,32 +145,33 @@ def slots(plan):
         ring = np.array([[start, low], [end, low], [end, high], [start, high]])
         heights = plan.way.height(ring[:, 0], ring[:, 1])
         deep = heights.min() - plan.material.plate - plan.hanging
-        made.append(facets.prism(plan.way.laid(ring, 0.2 * plan.chord), deep, heights.max() + INTO))
+        made.append(kit.over(plan.way, ring, deep, heights.max() + INTO, 0.2 * plan.chord))
     return made
 
 
-def yokes(plan):
+def yokes(plan, kit):
     """Return the brackets that carry the inner rail from below, behind the stretch that sorts.
 
     Parameters
     ----------
     plan : BowlPlan
+    kit : module
 
     Returns
     -------
-    list of Manifold [mm]
+    list of bodies [mm]
     """
     if not _rails(plan):
         return []
     behind = plan.first + max(cut.span[1] for cut in _rails(plan))
     end = plan.way.end + plan.outlet
-    return [_yoke(plan, s) for s in (behind, end - YOKE)]
+    return [_yoke(plan, kit, s) for s in (behind, end - YOKE)]
 
 
-def _yoke(plan, s):
+def _yoke(plan, kit, s):
     """A bracket below the track, deep enough that parts hang free over it."""
     ring = np.array([[s, -INTO], [s + YOKE, -INTO], [s + YOKE, plan.width], [s, plan.width]])
     height = float(plan.way.height(s, 0.5 * plan.width))
     plate = plan.material.plate
     low = float(plan.way.height(s)) - plate - plan.hanging - YOKE
-    return facets.prism(plan.way.laid(ring, plan.chord), low, height - 0.5 * plate)
+    return kit.over(plan.way, ring, low, height - 0.5 * plate, plan.chord)
