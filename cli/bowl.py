@@ -32,6 +32,7 @@ SOLID = (
         metavar="XxYxZ",
         help="Cut it into segments that fit a printer: 220x220x250mm; with holes for dowels at the seams.",
     ),
+    click.option("--step", is_flag=True, help="Write bowl.step, of exact faces; needs feederscrew[cad]."),
     click.option(
         "--chord",
         type=Quantity("length", positive=True),
@@ -52,7 +53,9 @@ def _wanted(command):
 
 def _of_the_solid(command):
     """The options of SOLID, packed as ``made``."""
-    return options.stacked(options.packed(command, "made", ("solid", "material", "chord", "bed")), *SOLID)
+    return options.stacked(
+        options.packed(command, "made", ("solid", "material", "chord", "bed", "step")), *SOLID
+    )
 
 
 @grouped.command(short_help="Size the bowl for a part and a rate; its springs, tuning and drift.")
@@ -104,6 +107,9 @@ def _fitting(part, target, made):
     """Wrong calls."""
     if made["solid"] and not part["source"]:
         raise click.UsageError("--solid is given without PART - name the part's file")
+    for option in ("bed", "step"):
+        if made[option] and not made["solid"]:
+            raise click.UsageError(f"--{option} is given without --solid - add --solid")
     if part["source"] and target is None:
         raise click.UsageError("PART is given without --target - give the rate as well: --target 120/min")
     if target is not None and not part["source"]:

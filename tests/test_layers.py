@@ -22,7 +22,7 @@ DOORS = {
     "embreex": {"feederscrew/output"},
     "ezdxf": {"feederscrew/dxf.py"},
     "manifold3d": {"feederscrew/tooling/solid.py", "feederscrew/solidbowl/facets.py"},
-    "OCP": {"feederscrew/output/tooling/written_step.py"},
+    "OCP": {"feederscrew/output/tooling/written_step.py", "feederscrew/solidbowl/exact"},
     "click": {"cli"},
     "numba": {"feederscrew/geometry"},
 }

@@ -31,6 +31,7 @@ class BowlSolid:
     centre: np.ndarray  # (3,) [m]
     riders: tuple = ()  # (Orientation, s [m]) of parts along its track, to draw
     segments: Segments | None = None  # where it is cut to fit a printer
+    step: object = None  # exact_file.StepFile, where it was asked for
 
 
 def body(plan):

@@ -99,6 +99,7 @@ class Asked:
     bolt_share: float = 0.4  # [1] the rule: of the bowl's diameter
     drains: int = 0
     drain: float = 4e-3  # [m]
+    step: bool = False  # a file with exact faces as well
     bed: tuple[float, ...] | None = None  # (x, y, z) [m] of the printer; None leaves the bowl whole
 
 

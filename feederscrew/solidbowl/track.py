@@ -25,7 +25,7 @@ def slab(plan, kit):
     ----------
     plan : BowlPlan
     kit : module
-        ``facets`` or ``exact``, which the body is made with.
+        ``facets`` or ``exact_body``, which the body is made with.
 
     Returns
     -------

@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.rates import stream
-from feederscrew.solidbowl import cuts, riding, segments
+from feederscrew.solidbowl import cuts, exact_body, exact_file, riding, segments
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.materials import STEEL, material
 from feederscrew.solidbowl.plan import CHORD, Asked, plan
@@ -14,7 +14,7 @@ from feederscrew.solidbowl.ways_down import check_ways_down
 from feederscrew.tooling.hanging import hung, neck
 
 
-def asked(settings, *, solid, material, chord, bed=None):
+def asked(settings, *, solid, material, chord, bed=None, step=False):
     """Return what is asked of the solid, None where none is.
 
     Parameters
@@ -26,6 +26,8 @@ def asked(settings, *, solid, material, chord, bed=None):
     chord : float [m]
     bed : str, optional
         Size of the printer's bed, '220x220x250mm'.
+    step : bool
+        A STEP file with exact faces as well.
 
     Returns
     -------
@@ -34,10 +36,12 @@ def asked(settings, *, solid, material, chord, bed=None):
     Raises
     ------
     ArgumentError
-        If the bed is not three lengths.
+        If the bed is not three lengths, or what writes STEP is not installed.
     """
     if not solid:
         return None
+    if step:
+        exact_body.check()
     rules = bowls.record(settings).sizing
     given = {s.key.name for s in settings if s.given}
     return Asked(
@@ -52,6 +56,7 @@ def asked(settings, *, solid, material, chord, bed=None):
         bolt_share=rules.bolt_share,
         drains=int(rules.drains),
         drain=rules.drain_hole,
+        step=step,
         bed=None if bed is None else segments.bed(bed),
     )
 
@@ -111,6 +116,8 @@ def solid(bowl, size, part, coming, asked, counted):
     check_ways_down(made)
     if asked.bed is not None:
         made = replace(made, segments=segments.segments(made, asked.bed))
+    if asked.step:
+        made = replace(made, step=exact_file.step_file(made))
     own = {"depth": made.plan.outlet_height, "turns": made.plan.turns}
     return replace(size, **own, mass=made.mass, inertia=made.inertia), replace(
         made, riders=_riders(made.plan, bowl.devices, coming, counted)

@@ -31,10 +31,16 @@ def offers(study):
             ),
         )
     )
+    exact = () if study.solid.step is None else (offer.text("bowl.step", _step, study.solid),)
     return (
         *pieces,
+        *exact,
         offer.text("bowl.stl", printing.stl, study.solid),
         offer.text("bowl.3mf", printing.threemf, study.solid, f"bowl for {name}"),
         offer.text("bowl.pdf", drawing_sheet.pdf, study),
         offer.picture("bowl_solid.png", "The bowl, parts on its track", bowl_picture.figure, study),
     )
+
+
+def _step(solid):
+    return solid.step.data

@@ -3,6 +3,11 @@
 from feederscrew.solidbowl.segments import overhangs
 from feederscrew.units import factor
 
+NOT_EXACT = (
+    "what runs along the track is ruled between cubic splines through its helices every 0.1 rad",
+    "the fillet below the track is six ruled strips",
+    "slanted edges of cuts are splines",
+)
 MM, DEG = factor("mm", "length"), factor("deg", "angle")
 
 
@@ -43,6 +48,17 @@ def document(solid):
         "separate_parts": [name for name, _, _ in solid.gates],
         "overhangs_mm2": {name: area / MM**2 for name, area in overhangs(solid).items()},
         **({} if solid.segments is None else _segments(solid.segments)),
+        **({} if solid.step is None else {"step": _step(solid.step)}),
+    }
+
+
+def _step(found):
+    """What the STEP file was found to be when it was opened again."""
+    return {
+        "volume_mm3": found.volume / MM**3,
+        "faces": found.faces,
+        "track_off_mm": found.off / MM,
+        "not_exact": list(NOT_EXACT),
     }
 
 

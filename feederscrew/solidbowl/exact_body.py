@@ -1,0 +1,160 @@
+"""Bodies with exact faces, united and cut: the bowl's door to OpenCASCADE, an extra (``cad``).
+
+Planes, cylinders and cones are exact; what runs along the track is a ruled face between two curves, each a
+cubic spline through places every 0.1 rad: within 1e-4 mm of the helix for a bowl of a metre.
+"""
+
+import itertools
+
+import numpy as np
+import shapely
+
+from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.solidbowl import exact_faces
+from feederscrew.solidbowl.facets import in_space
+from feederscrew.units import factor
+
+MM = factor("mm", "length")
+SMOOTH = True  # a curve is a curve
+SEAM = 0.7  # [rad] where a face of revolution is closed: nothing else of a bowl ends there
+CRUMB = 1.0  # [mm3] a loose piece smaller than this is left out
+WIDE = 1e4  # [mm] beyond everything
+MISSING = "pip install 'feederscrew[cad]'"
+
+
+def check(where="step"):
+    """Raise the line that says what to install where OpenCASCADE is not here.
+
+    Raises
+    ------
+    ArgumentError
+    """
+    try:
+        import OCP.STEPControl  # noqa: F401
+    except ImportError:
+        raise ArgumentError(where, "needs OpenCASCADE, which is not installed", MISSING) from None
+
+
+def swept(legs):
+    """Return a body whose section is handed on from frame to frame; as ``facets.swept``."""
+    legs = [in_space(*leg) / MM for leg in legs]
+    faces = [exact_faces.flat_face(legs[0][0][::-1]), exact_faces.flat_face(legs[-1][-1])]
+    for leg in legs:
+        borders = [exact_faces.spline(leg[:, k]) for k in range(leg.shape[1])]
+        faces += [exact_faces.ruled(one, other) for one, other in zip(borders, [*borders[1:], borders[0]])]
+    return exact_faces.closed(faces)
+
+
+def turned(profile, segments):
+    """Return a body of revolution about Z, of a profile (K, 2) [m]: radius and height."""
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeRevol
+
+    r, z = np.asarray(profile, float).T / MM
+    face = exact_faces.flat_face(np.column_stack([r * np.cos(SEAM), r * np.sin(SEAM), z]))
+    return BRepPrimAPI_MakeRevol(face, exact_faces.axis()).Shape()
+
+
+def drum(radius, low, high, segments):
+    """Return a cylinder about the axis."""
+    return turned([(0.0, low), (radius, low), (radius, high), (0.0, high)], segments)
+
+
+def disc(at, size, low, high):
+    """Return a round rod upright: its middle (2,), its diameter and its two heights [m]."""
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+    from OCP.gp import gp_Ax2, gp_Dir
+
+    foot = gp_Ax2(
+        exact_faces.point([at[0] / MM, at[1] / MM, low / MM]),
+        gp_Dir(0, 0, 1),
+        gp_Dir(*exact_faces.towards(SEAM)),
+    )
+    return BRepPrimAPI_MakeCylinder(foot, 0.5 * size / MM, (high - low) / MM).Shape()
+
+
+def prism(area, low, high):
+    """Return a body over an area [m] seen from above, between two heights [m]."""
+    axes = np.eye(3)
+    return plank(area, high - low, axes, [0.0, 0.0, low])
+
+
+def plank(area, thickness, axes, foot):
+    """Return a plate over an area [m], ``thickness`` [m] deep; columns of ``axes`` (3, 3): its axes."""
+    made = []
+    for one in shapely.get_parts(area):
+        if one.geom_type == "Polygon":
+            rings = [np.asarray(ring.coords)[:-1] for ring in (one.exterior, *one.interiors)]
+            rings = [(np.asarray(foot) + ring @ np.asarray(axes)[:, :2].T) / MM for ring in rings]
+            wires = [exact_faces.polygon(ring) for ring in rings]
+            made.append(exact_faces.drawn(wires, thickness / MM * np.asarray(axes)[:, 2]))
+    return made[0] if len(made) == 1 else united(made)
+
+
+def over(way, ring, low, high, chord):
+    """Return a body over a ring (K, 2) [m] of lengths and distances along a way, between two heights [m]."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeWire
+
+    wire = BRepBuilderAPI_MakeWire()
+    for a, b in zip(ring, np.roll(ring, -1, axis=0)):
+        for one, other in itertools.pairwise(exact_faces.broken(a, b, way.end)):
+            if np.abs(one - other).max() > 1e-9:
+                wire.Add(exact_faces.side(way, one, other, low / MM))
+    return exact_faces.drawn([wire.Wire()], [0.0, 0.0, (high - low) / MM])
+
+
+def united(bodies):
+    """Return the union of bodies, one after the other."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
+
+    whole, *others = bodies
+    for other in others:
+        whole = _combined(BRepAlgoAPI_Fuse, whole, [other])
+    return whole
+
+
+def without(body, tools):
+    """Return a body with others cut out of it."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+
+    return _combined(BRepAlgoAPI_Cut, body, tools) if tools else body
+
+
+def above(body, height):
+    """Return what of a body lies above a height [m]."""
+    below = shapely.box(*(WIDE * MM * np.array([-1.0, -1.0, 1.0, 1.0])))
+    return without(body, [prism(below, -WIDE * MM, height)])
+
+
+def placed_as(body, *, mirrored, turned):
+    """Return a body mirrored at the XZ plane or not, then turned about Z by an angle [rad]."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+    from OCP.gp import gp_Ax2, gp_Dir, gp_Trsf
+
+    turn, flip = gp_Trsf(), gp_Trsf()
+    turn.SetRotation(exact_faces.axis(), float(turned))
+    if mirrored:
+        flip.SetMirror(gp_Ax2(exact_faces.point([0, 0, 0]), gp_Dir(0, 1, 0)))
+    return BRepBuilderAPI_Transform(body, turn.Multiplied(flip), True).Shape()
+
+
+def one_piece(body, where):
+    """Return the one piece of a body; as ``facets.one_piece``."""
+    from OCP.TopAbs import TopAbs_SOLID
+
+    pieces = sorted(exact_faces.parts(body, TopAbs_SOLID), key=lambda one: -exact_faces.volume(one))
+    if not pieces or any(exact_faces.volume(one) > CRUMB for one in pieces[1:]):
+        raise FeederError(where, f"OpenCASCADE finds {len(pieces)} bodies", "take bowl.stl")
+    return pieces[0]
+
+
+def _combined(kind, body, tools):
+    from OCP.OCP.collections import List_TopoDS_Shape
+
+    made, lists = kind(), (List_TopoDS_Shape(), List_TopoDS_Shape())
+    lists[0].Append(body)
+    for one in tools:
+        lists[1].Append(one)
+    made.SetArguments(lists[0])
+    made.SetTools(lists[1])
+    made.Build()
+    return made.Shape()

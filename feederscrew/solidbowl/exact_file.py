@@ -1,0 +1,115 @@
+"""A bowl as a STEP file: written, opened again and measured."""
+
+import re
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from feederscrew.errors import FeederError
+from feederscrew.solidbowl import exact_body, exact_faces
+from feederscrew.solidbowl.closed_body import pieces
+from feederscrew.units import factor
+
+MM = factor("mm", "length")
+WHEN = re.compile(rb"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'")  # in the file's head: the same bytes twice
+NAME = "write.step.product.name"
+PLACES = 24  # along the track at which the height of the opened file is measured
+SAME = 3e-3  # of the volume of the facets, which lie within the chord of the arcs
+
+
+@dataclass(frozen=True, eq=False)
+class StepFile:
+    """A bowl as STEP, and what it was found to be when it was opened again."""
+
+    data: bytes
+    volume: float  # [m3]
+    faces: dict[str, int]  # how many are planes, cylinders, cones, ruled, others
+    off: float  # [m] the most by which the track's height differs from the formula
+
+
+def step_file(made):
+    """Return a bowl as a STEP file with exact faces.
+
+    Parameters
+    ----------
+    made : BowlSolid
+
+    Returns
+    -------
+    StepFile
+
+    Raises
+    ------
+    FeederError
+        If OpenCASCADE is not installed, or what it makes is not the bowl of the facets.
+    """
+    exact_body.check()
+    plan = made.plan
+    whole, gates = pieces(plan, exact_body)
+    bodies = [whole, *(one for _, one in gates)]
+    data = _written([exact_body.placed_as(one, mirrored=plan.left, turned=plan.turned) for one in bodies])
+    found = _opened(data)
+    sizes = [exact_faces.volume(one) * MM**3 for one in found]
+    if len(found) != len(bodies) or not all(exact_faces.valid(one) for one in found):
+        raise _refused(f"finds {len(found)} bodies, or one that is not closed")
+    if abs(sizes[0] / made.volume - 1.0) > SAME:
+        raise _refused(f"makes a bowl of {sizes[0] / MM**3:.6g} mm3, not {made.volume / MM**3:.6g}")
+    return StepFile(data, sizes[0], exact_faces.kinds(found[0]), _off(plan, found[0]))
+
+
+def _refused(what):
+    return FeederError("bowl.step", f"OpenCASCADE {what}", "take bowl.stl or bowl.3mf")
+
+
+def _written(bodies):
+    from OCP.IFSelect import IFSelect_RetDone
+    from OCP.Interface import Interface_Static
+    from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
+
+    _quiet()
+    writer = STEPControl_Writer()
+    (getattr(Interface_Static, "SetCVal_s", None) or Interface_Static.SetCVal)(NAME, "bowl")
+    if any(writer.Transfer(one, STEPControl_AsIs) != IFSelect_RetDone for one in bodies):
+        raise _refused("cannot write it")
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "bowl.step"
+        writer.Write(str(path))
+        text = WHEN.sub(b"'1970-01-01T00:00:00'", path.read_bytes())
+    return re.sub(rb"'bowl \d+'", b"'bowl'", text)  # it counts the files that it wrote
+
+
+def _opened(data):
+    from OCP.STEPControl import STEPControl_Reader
+    from OCP.TopAbs import TopAbs_SOLID
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "bowl.step"
+        path.write_bytes(data)
+        reader = STEPControl_Reader()
+        reader.ReadFile(str(path))
+        reader.TransferRoots()
+        return exact_faces.parts(reader.OneShape(), TopAbs_SOLID)
+
+
+def _off(plan, body):
+    """How far [m] the track's height lies off the formula, where no device is."""
+    body = exact_body.placed_as(body, mirrored=False, turned=-plan.turned)
+    body = exact_body.placed_as(body, mirrored=plan.left, turned=0.0)
+    last = plan.first if plan.stretch is not None else plan.way.end
+    found = []
+    for k in range(PLACES):
+        s, y = last * (k + 1.0) / (PLACES + 2.0), plan.width * (0.1 + 0.8 * (k * 0.618 % 1.0))
+        place = plan.way.places(s, y)
+        met = exact_faces.below(body, (place + [0.0, 0.0, 0.5 * plan.headroom]) / MM)
+        found.append(np.inf if met is None else abs(met * MM - place[2]))
+    return float(max(found))
+
+
+def _quiet():
+    """Keep what OpenCASCADE tells of each file off the terminal."""
+    from OCP.Message import Message
+
+    messenger = (getattr(Message, "DefaultMessenger_s", None) or Message.DefaultMessenger)()
+    messenger.ChangePrinters().Clear()
