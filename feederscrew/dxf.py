@@ -5,10 +5,11 @@ import io
 from dataclasses import dataclass
 
 from feederscrew import units
-from feederscrew.errors import ConfigError
+from feederscrew.errors import DAMAGE, ConfigError
 
 MILLIMETRES = {0: 1.0, 1: 25.4, 4: 1.0, 5: 10.0, 6: 1000.0}  # by $INSUNITS; 0 states none
 IN_MILLIMETRES = 4  # of $INSUNITS
+FARTHEST = 1e3  # [m] from the origin of a drawing to a corner of a hole
 LETTERS = 3.0  # [mm] height of texts
 
 
@@ -45,20 +46,27 @@ def closed_polylines(path, layer, where):
     import ezdxf
 
     try:
-        drawing = ezdxf.readfile(path)
+        found = _rings(ezdxf.readfile(path), layer)
     except FileNotFoundError:
         raise ConfigError(where, f"{path}: no such file", "check the path") from None
-    except (OSError, ezdxf.DXFError, UnicodeDecodeError, ValueError):
+    except (*DAMAGE, ezdxf.DXFError):
         raise ConfigError(
             where, f"{path} cannot be read as DXF", "save it as ASCII DXF R2000 or later"
         ) from None
-    size = MILLIMETRES.get(drawing.units, 1.0) * 1e-3
-    lines = drawing.modelspace().query(f'LWPOLYLINE[layer=="{layer}"]') if _named(layer) else []
-    found = [[(x * size, y * size) for x, y in line.get_points("xy")] for line in lines if line.closed]
+    if not all(abs(place) <= FARTHEST for ring in found for corner in ring for place in corner):
+        what = f"{path.name} has a corner farther than {FARTHEST:g} m from its origin, or at no finite place"
+        raise ConfigError(where, what, "check the drawing's units, and save it again")
     if not found:
         what = f"{path.name} has no closed polyline on layer {units.shown(layer)}"
         raise ConfigError(where, what, "draw the hole as one closed polyline (LWPOLYLINE)")
     return found
+
+
+def _rings(drawing, layer):
+    """Corners (x, y) [m] of each closed polyline on a layer."""
+    size = MILLIMETRES.get(drawing.units, 1.0) * 1e-3
+    lines = drawing.modelspace().query(f'LWPOLYLINE[layer=="{layer}"]') if _named(layer) else []
+    return [[(x * size, y * size) for x, y in line.get_points("xy")] for line in lines if line.closed]
 
 
 def written(layers):

@@ -1,5 +1,27 @@
 """Faults in what the user gave us; the command line prints each as one line."""
 
+import struct
+
+DAMAGE: tuple[type[Exception], ...] = (  # what other people's readers raise on damaged files
+    ArithmeticError,
+    AssertionError,
+    AttributeError,
+    EOFError,
+    ImportError,  # of what only odd files need
+    LookupError,
+    MemoryError,
+    NameError,
+    NotImplementedError,
+    OSError,
+    RecursionError,
+    RuntimeError,
+    StopIteration,
+    SyntaxError,  # lxml's
+    TypeError,
+    ValueError,
+    struct.error,
+)
+
 
 class FeederError(Exception):
     """Say where it is, what is wrong and how to mend it; all three are required."""

@@ -10,6 +10,7 @@ from typing import Any
 # functions that compiled ones may call, not yet registered, and how each is compiled
 PENDING: list[tuple[Callable[..., Any], dict[str, Any]]] = []
 TRIED = (0, 60), (0, 68)  # versions of numba, from and to, that `compiler` was tried with
+NOWHERE = "/dev/null"  # where no folder is: what is not kept is not found
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
 SOURCES = (
     "geometry/compile*.py",
@@ -50,7 +51,7 @@ def entry(function, arrays=False):
     from numba import njit
 
     _register()
-    return njit(cache=True, nogil=True, **_options(arrays))(_named(function))
+    return njit(cache=_can_keep(), nogil=True, **_options(arrays))(_named(function))
 
 
 def fitting(function, half_edges, plain=None):
@@ -64,7 +65,7 @@ def fitting(function, half_edges, plain=None):
 def on_disk(function):
     """Whether a compiled function is in the cache already, or numba is told not to compile."""
     return not hasattr(function, "stats") or any(
-        Path(function.stats.cache_path).glob(f"*{function.__name__}_{_fingerprint()}*.nbi")
+        Path(function.stats.cache_path or NOWHERE).glob(f"*{function.__name__}_{_fingerprint()}*.nbi")
     )
 
 
@@ -74,6 +75,22 @@ def due(function, half_edges):
 
 
 _once = functools.cache(entry)
+
+
+@functools.cache
+def _can_keep():
+    """Whether numba finds a place on disk that it can write; else each run compiles what it needs."""
+    from numba import njit
+
+    try:
+        njit(cache=True)(_nothing)
+    except RuntimeError:  # neither beside the sources nor in a folder of the user's
+        return False
+    return True
+
+
+def _nothing():
+    pass
 
 
 def _marked(function, **how):
@@ -96,7 +113,8 @@ def _register():
 
     while PENDING:
         function, how = PENDING.pop()
-        register_jitable(**{"forceinline": True} | _options(**how))(function)
+        kept = {"cache": _can_keep()} if how.get("cache") else {}
+        register_jitable(**{"forceinline": True} | _options(**how) | kept)(function)
 
 
 def _options(arrays=False, **others):

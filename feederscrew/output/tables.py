@@ -148,7 +148,7 @@ def _csv(frame):
 def _cell(value):
     if isinstance(value, (float, np.floating)):
         return "" if math.isnan(value) else f"{value:.6g}"
-    return "" if value is None else value
+    return units.printable(value) if isinstance(value, str) else "" if value is None else value
 
 
 def encoded(content):

@@ -35,3 +35,21 @@ def test_a_kernel_gives_the_same_by_either_compiler(tried, name, monkeypatch):
     both.py_func(numbers, plain)
     assert np.array_equal(out, plain)
     assert (tried == ANY) == both._compiler.pipeline_class.__module__.startswith("feederscrew")
+
+
+def test_a_kernel_runs_where_no_folder_can_be_written(monkeypatch):
+    """It raised a RuntimeError where neither the sources' folder nor the user's own takes a file."""
+    from numba.core import caching
+
+    door._can_keep.cache_clear()
+    monkeypatch.setattr(caching.CacheImpl, "_locator_classes", [])
+    monkeypatch.setattr(door, "_fingerprint", lambda: "nowhere")
+    try:
+        numbers, out, plain = np.linspace(0.5, 2.0, 7), np.empty(7), np.empty(7)
+        both = kernel()
+        both(numbers, out)
+        both.py_func(numbers, plain)
+        assert np.array_equal(out, plain)
+        assert not door.on_disk(both)
+    finally:
+        door._can_keep.cache_clear()

@@ -13,33 +13,13 @@ import zlib
 import numpy as np
 
 from feederscrew import units
-from feederscrew.errors import MeshError
+from feederscrew.errors import DAMAGE, MeshError
 from feederscrew.part.reading import step, threemf
 from feederscrew.part.reading.formats import FORMATS, plain
 from feederscrew.part.reading.soup import LARGEST, Soup
 
 MOST = 20_000_000  # facets, instances counted
-DAMAGE = (  # what trimesh's readers raise on damaged files
-    ArithmeticError,
-    AssertionError,
-    AttributeError,
-    EOFError,
-    ImportError,  # of what only odd files need
-    LookupError,
-    MemoryError,
-    NameError,
-    NotImplementedError,
-    OSError,
-    RecursionError,
-    RuntimeError,
-    StopIteration,
-    SyntaxError,  # lxml's
-    TypeError,
-    ValueError,
-    struct.error,
-    zipfile.BadZipFile,
-    zlib.error,
-)
+ARCHIVES = (zipfile.BadZipFile, zlib.error)  # what damaged archives raise
 THREEMF_UNITS = {  # the units of the specification, and one of ours with how many of it they are
     "micron": ("mm", 1e-3),
     "centimeter": ("cm", 1.0),
@@ -82,7 +62,7 @@ def soup(data, kind, where):
             warnings.simplefilter("ignore")
             warnings.simplefilter("error", DeprecationWarning)  # numpy's way to say 'not a number'
             return _joined(*_meshes(data, kind, where), data, kind)
-    except (*DAMAGE, DeprecationWarning) as error:
+    except (*DAMAGE, *ARCHIVES, DeprecationWarning) as error:
         raise MeshError(where, f"is a damaged {format.title} ({_reason(error)})", AGAIN) from None
 
 
