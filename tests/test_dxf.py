@@ -53,7 +53,7 @@ def test_a_corner_at_no_place_of_a_bowl_is_a_line(drawing, place):
     text = drawing.read_text()
     assert "\n10.0\n" in text
     drawing.write_text(text.replace("\n10.0\n", f"\n{place}\n"))
-    with pytest.raises(ConfigError, match="^bowl.yaml:3: "):
+    with pytest.raises(ConfigError, match=r"^bowl\.yaml:3: "):
         dxf.closed_polylines(drawing, "HOLE", "bowl.yaml:3")
 
 

@@ -1,6 +1,7 @@
 """Damaged files end in one line each: no traceback, no hang, no half-written output."""
 
 import pytest
+from fuzz import __main__ as runs
 from fuzz import harness, mutate
 
 COUNTS = {
@@ -10,6 +11,8 @@ COUNTS = {
     "counts": 50,
     "names": 20,
     "list": 200,
+    "batch": 4,
+    "dxf": 60,
 }  # about ten seconds in all
 
 
@@ -40,3 +43,14 @@ def test_every_kind_of_damage_changes_something(damage, rng):
     text = (harness.ROOT / "configs/bowl.yaml").read_bytes()
     seed = whole if damage in mutate.FACETS else text
     assert any(damage(seed, text[::-1], rng) != seed for _ in range(20))
+
+
+def test_each_run_goes_on_behind_the_last(tmp_path):
+    kept = tmp_path / "runs.csv"
+    assert runs.next_seeds(kept)[1] == 0
+    for _ in range(2):
+        first, _ = runs.next_seeds(kept)
+        runs.keep(kept, first, dict.fromkeys(harness.KINDS, 50), {kind: [] for kind in harness.KINDS})
+    first, count = runs.next_seeds(kept)
+    assert set(first.values()) == {100}
+    assert count == 100 * len(harness.KINDS)

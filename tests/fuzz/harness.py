@@ -58,7 +58,22 @@ PLAN = {  # seeds, how the damaged file is called, and what reads it
         (("aspects", str(ROOT / "parts/squarenut_m5.stl"), "--names", "FILE", "--no-pictures", "-o", "out"),),
     ),
     "list": (("tests/fuzz/list.csv",), "list.csv", (("gather", "FILE"),)),
+    "batch": (
+        ("tests/fuzz/list.csv",),
+        "list.csv",
+        (("batch", "FILE", "--rule", "csa", "--jobs", "1", "--no-pictures", "-o", "out"),),
+    ),
+    "dxf": (("tests/fuzz/hole.dxf",), "hole.dxf", (("config", "show", "--config", "bowl.yaml"),)),
 }
+BESIDE = {  # files that lie beside the damaged one, whole
+    "batch": {
+        "nut.stl": "parts/squarenut_m5.stl",
+        "bracket.stl": "parts/key_a_d12x20.stl",
+        "bowl.yaml": "configs/bowl.yaml",
+    },
+    "dxf": {"bowl.yaml": "tests/fuzz/hole.yaml"},
+}
+PARTLY = ("batch",)  # commands that keep what went well beside what failed
 TOGETHER = "together"  # the kind of case in which a part, a bowl and the options are damaged at once
 KINDS = (*PLAN, TOGETHER)
 
@@ -78,7 +93,9 @@ class Case:
         seeds, name, calls = PLAN[self.kind]
         first, second = ((ROOT / seeds[int(rng.integers(len(seeds)))]).read_bytes() for _ in range(2))
         call = calls[int(rng.integers(len(calls)))]
-        return {name: mutate.mutated(first, second, rng)}, [name if a == "FILE" else a for a in call]
+        whole = {beside: (ROOT / path).read_bytes() for beside, path in BESIDE.get(self.kind, {}).items()}
+        damaged = {name: mutate.mutated(first, second, rng)}
+        return whole | damaged, [name if a == "FILE" else a for a in call]
 
 
 def run(cases):
@@ -126,7 +143,7 @@ def _few():
 
 def _child(context):
     ours, theirs = context.Pipe()
-    process = context.Process(target=_serve, args=(theirs, ours), daemon=True)
+    process = context.Process(target=_serve, args=(theirs, ours))  # which may have children itself
     process.start()
     theirs.close()
     return process, ours
@@ -182,7 +199,7 @@ def _called(arguments):
         return f"status {done.exit_code} without a reason: {done.stderr}"
     if noise:
         return f"Python warns: {noise[0].message} ({noise[0].filename}:{noise[0].lineno})"
-    return _half_written(Path("out"), done.exit_code)
+    return "" if arguments[0] in PARTLY else _half_written(Path("out"), done.exit_code)
 
 
 def _half_written(out, status):
