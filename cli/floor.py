@@ -26,13 +26,13 @@ def floor(part, aspect, heading, as_published, bowl, pictures, out):
     floor.json, the cycle, maps over (beta, mu) and (frequency, amplitude) as Figures 5-6 and 5-7, and
     theta'' over the heading, as CSV and PNG.
     """
-    from feederscrew.bowl import record, settings, texts
+    from feederscrew.bowl import record, texts
     from feederscrew.output import columns, offers
     from feederscrew.output.floor import files, tables
     from feederscrew.studies import floor as complete
     from feederscrew.thesis.motion import as_published as by_print
 
-    solid, given = out.part(part), settings(**bowl)
+    solid, given = out.part(part), out.settings(bowl)
     conditions = columns.conditions(solid) | texts(given)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
         found = (by_print if as_published else complete).floor(solid, record(given), aspect, heading)

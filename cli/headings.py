@@ -22,13 +22,13 @@ def headings(part, aspect, bowl, pictures, out):
     PART is a mesh. The wall has the bowl's radius; straight_wall_share is for a straight one. With -o:
     headings.csv, headings.json and a picture of each aspect from above.
     """
-    from feederscrew.bowl import record, settings, texts
+    from feederscrew.bowl import record, texts
     from feederscrew.output import columns, offers
     from feederscrew.output.headings import files, tables
     from feederscrew.studies.headings import headings as study
     from feederscrew.studies.rate import arriving
 
-    solid, given = out.part(part), settings(**bowl)
+    solid, given = out.part(part), out.settings(bowl)
     conditions = columns.conditions(solid) | texts(given)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
         found = study(solid, record(given).track, aspect, arriving(solid, record(given)))

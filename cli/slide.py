@@ -49,12 +49,12 @@ def slide(betas, as_published, bowl, pictures, out):
     --format csv prints every cell. With -o: slide.csv, a surface, contour lines and regimes for
     each angle, and curves over all, as PNG.
     """
-    from feederscrew.bowl import identity, name, record, settings, texts
+    from feederscrew.bowl import identity, name, record, texts
     from feederscrew.output import offers
     from feederscrew.output.slide import files, tables
     from feederscrew.studies.slide import slide as study
 
-    given, path = settings(**bowl), bowl["path"]
+    given, path = out.settings(bowl), bowl["path"]
     with out.folder(name(path), identity(path), texts(given)) as folder:
         found = study(record(given), betas, as_published=as_published)
         offers.write(folder, files.offers(found), pictures=pictures)

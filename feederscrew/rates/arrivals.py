@@ -12,6 +12,9 @@ from feederscrew.tooling.devices.named import place
 
 UNDECIDED = "the shares at the track's entry are undecided: {}"
 STOPPED = "the parts on the floor were stopped after {}"
+TOO_LONG = (
+    "the part is too small, or the drive too quick, to be followed on the moving floor: the closed form is taken"
+)
 NOTHING = "no part came to lie on the moving floor: the closed form is taken"
 
 
@@ -39,6 +42,18 @@ def arrived(aspects, found, seed):
     low, high = launched(found.p, found.low, found.high, aspects.stable)
     answer = Recommended(rule, LAUNCH, found.p, check.frozen(low), check.frozen(high))
     return replace(aspects, recommended=answer, warnings=(*aspects.warnings, *said))
+
+
+def too_long(aspects, bowl):
+    """Whether a part would take more steps on the floor of a bowl than one is followed for."""
+    from feederscrew.dropping.plate.arrival import MOST_STEPS, steps_needed
+
+    return steps_needed(aspects.ground.hull, bowl) > MOST_STEPS
+
+
+def not_fed(aspects):
+    """Return the aspects of a part that is not fed, with a warning that says so."""
+    return replace(aspects, warnings=(*aspects.warnings, TOO_LONG))
 
 
 def counted(aspects, measured):

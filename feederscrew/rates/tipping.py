@@ -37,6 +37,54 @@ class TrackTipping:
     over: np.ndarray  # (M,) bool, whether its rocking turns it over
 
 
+STAYS, ROCKS, OVER, BACK, THROWN = "stays on its aspect", "rocks", "turns over", "rolls back", "is thrown"
+
+
+@dataclass(frozen=True)
+class Stands:
+    """What the drive does to one orientation on the track: the verdict that the rate reckons with."""
+
+    way: str  # STAYS, ROCKS, OVER, BACK or THROWN
+    tilt: float = 0.0  # [rad] that one stroke brings at most
+    lean: float = np.nan  # [rad] from which it goes on by itself; NaN where it stays
+
+    @property
+    def said(self):
+        """The verdict in words, with its angles."""
+        if self.way == ROCKS:
+            tilt, lean = np.degrees(self.tilt), np.degrees(self.lean)
+            return f"rocks by {tilt:.2g} deg a stroke; turns over from {lean:.3g} deg on"
+        return {OVER: "turns over, goes back into the bowl", BACK: "rolls back down the climb"}.get(
+            self.way, self.way
+        )
+
+
+def stands(one, bowl, hops):
+    """Return what the drive of a bowl does to an orientation on the bare track.
+
+    Parameters
+    ----------
+    one : Orientation
+    bowl : Bowl
+        Single values.
+    hops : bool
+        Whether the drive throws it: what it comes down on is not followed then.
+
+    Returns
+    -------
+    Stands
+    """
+    (known,), found = marked((one,), bowl)
+    angles = float(found.tilt[0]), float(found.balance[0])
+    if known.turns_over:
+        return Stands(OVER, *angles)
+    if known.may_roll_back:
+        return Stands(BACK)
+    if found.tips[0]:
+        return Stands(ROCKS, *angles)
+    return Stands(THROWN if hops else STAYS)
+
+
 def marked(lying, bowl):
     """Return orientations that know what the drive of a bowl does to them on the bare track, and what tips.
 

@@ -105,6 +105,8 @@ def shares(
         conveying(bowl)  # says so
     if np.count_nonzero(found.stable) < 2:
         return Shares(found)
+    if arrivals.too_long(found, bowl):
+        return Shares(arrivals.not_fed(found))
     arrived = arrivals.arrived(found, _on_the_floor(part, found, bowl, fed, seed, own), seed)
     return Shares(arrived, fed=arrived.recommended is not found.recommended)
 

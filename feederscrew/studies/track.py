@@ -11,16 +11,18 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.geometry import grids
 from feederscrew.mechanics import limits
 from feederscrew.mechanics.cycle import Cycle
-from feederscrew.mechanics.floor.balance import SLIDE, STICK, TIP
+from feederscrew.mechanics.floor.balance import HOP, SLIDE, STICK, TIP
 from feederscrew.mechanics.standing import standing
 from feederscrew.mechanics.track import balance, cells, equilibrium
 from feederscrew.mechanics.track.frame import Seat, bank_without_radial_friction
 from feederscrew.mechanics.track.opening import Opening, first_to_open
 from feederscrew.mechanics.wall.stable_headings import Headings
 from feederscrew.part.record import Part
+from feederscrew.rates import tipping
 from feederscrew.records import Shown
 from feederscrew.resting.posture import Posture
 from feederscrew.studies.rate import arriving
+from feederscrew.tooling import orientations
 
 USUAL = ("track.bank=0deg:30deg:41", "track.climb=0deg:8deg:41")  # of a map
 
@@ -43,6 +45,7 @@ class TrackStudy(Shown):
     held_across: bool  # at rest, by friction that the reactions of ``now`` do not show
     laid: float | None  # [rad] heading as laid down; None for the most frequent that stays on the track
     why: str | None = None  # this aspect; None where it was asked for
+    stands: tipping.Stands | None = None  # what the rate reckons with; None of a part card
     printed: ClassVar[Any] = None  # the upper reversal by print, in `thesis.motion.as_published`
 
     def over(self, settings, ranges=()):
@@ -69,7 +72,7 @@ class TrackStudy(Shown):
         return grids.evaluate(grids.axis(first), grids.axis(second), function, cells.REGIMES)
 
 
-def track(part, bowl, aspect=None, heading=None):
+def track(part: Part, bowl: Bowl, aspect: str | None = None, heading: float | None = None) -> TrackStudy:
     """Study a part on the track, against the wall.
 
     Parameters
@@ -113,7 +116,13 @@ def track(part, bowl, aspect=None, heading=None):
         held_across=held_across,
         laid=heading,
         why=why,
+        stands=None if found is None else _stands(posture, found, row, bowl, cycle),
     )
+
+
+def _stands(posture, found, row, bowl, cycle):
+    one = orientations.at(posture, found, row, bowl.track)
+    return tipping.stands(one, bowl, bool((cycle.state == HOP).any()))
 
 
 def _from_rest(seat, bowl):

@@ -169,6 +169,25 @@ def orientations(part, aspects, track):
     return tuple(found)
 
 
+def at(lying, known, row, track):
+    """Return a part on one aspect at one of its stable headings, without chances.
+
+    Parameters
+    ----------
+    lying : Posture
+    known : Headings
+        Of that posture.
+    row : int
+        Of the headings.
+    track : Track
+
+    Returns
+    -------
+    Orientation
+    """
+    return _orientation(lying, known, row, {}, track)
+
+
 def travelling(found, bowl):
     """Return orientations that know how a bowl carries them on: over an edge, by friction, and rolling back.
 

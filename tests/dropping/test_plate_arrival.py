@@ -8,7 +8,10 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.dropping.plate import arrival, bowl_test
+from feederscrew.errors import FeederError
+from feederscrew.rates import arrivals
 from feederscrew.resting.aspects import find
+from feederscrew.studies.rate import shares
 
 
 def plate(amplitude):
@@ -63,3 +66,14 @@ def test_parts_that_lie_on_nothing_are_told(shaken):
     assert found.reason == arrival.UNSEEN.format(12, 30)
     nothing = arrival.judged(changed(shaken[2], plate=[0.0, 0.0, 0.0]))
     assert np.isnan(nothing.p).all() and nothing.low.tolist() == [0.0] * 3
+
+
+def test_a_part_too_small_to_be_followed_on_its_floor_ends_at_once():
+    """A file in a wrong unit, 30 nm long, took 50 times 300,000 steps for each of its parts."""
+    part, bowl = shapes.part(shapes.box(3e-5, 2e-5, 1e-5)), bowls.read(None)
+    known = shares(part, bowl)
+    assert not known.fed
+    assert known.aspects.recommended.rule == known.aspects.closed.rule
+    assert known.aspects.warnings[-1] == arrivals.TOO_LONG
+    with pytest.raises(FeederError, match="a part so small takes .* steps at this drive for so long"):
+        bowl_test.test(part, known.aspects, [bowl], "feed", {})

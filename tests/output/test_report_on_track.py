@@ -4,7 +4,7 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.output.report.moving import WORDS
-from feederscrew.output.report.on_the_track import NOTHING, SLIDES_DOWN, THROWN, on_track
+from feederscrew.output.report.on_the_track import SLIDES_DOWN, THROWN, on_track
 from feederscrew.resting.aspects import find
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.rate import Shares
@@ -26,16 +26,14 @@ def test_what_slides_has_the_velocity_of_the_rate():
     said, case = told(shapes.box(20, 14, 5))
     speed = 1e3 * case.rate.rate.velocity.value
     assert said == f"On this track the part travels at {speed:.1f} mm/s and slips both ways:" + (
-        " the rate is reckoned with that."
+        " the rate is reckoned with that. It stays on its aspect through the stroke."
     )
 
 
 def test_what_is_thrown_rolls_back_or_slides_down_is_said():
     assert THROWN in told(shapes.box(20, 14, 5), "drive.amplitude=0.4 mm")[0]
     ball = told(shapes.ball(5.0, 3))[0]
-    assert ball.endswith(
-        f"It lies on its round side and rolls back down the climb, so the rate is 0. {NOTHING}"
-    )
+    assert ball.endswith("It lies on its round side and rolls back down the climb, so the rate is 0.")
     assert told(shapes.box(20, 14, 5), "track.climb=40 deg")[0] == SLIDES_DOWN
 
 

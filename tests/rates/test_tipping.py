@@ -13,7 +13,7 @@ from feederscrew.output.rate import tables
 from feederscrew.output.tooling.tables import passages as passage_table
 from feederscrew.rates import drive_settings as knobs
 from feederscrew.rates.stream import orientations
-from feederscrew.rates.tipping import tipping
+from feederscrew.rates.tipping import OVER, ROCKS, STAYS, tipping
 from feederscrew.resting.aspects import find
 from feederscrew.studies.bowl import bowl as sized
 from feederscrew.studies.passages import passages
@@ -173,3 +173,16 @@ def test_the_bowl_for_a_rate_reckons_without_what_its_drive_turns_over():
     assert sheet.order.flow.parts == pytest.approx(on.sum() / (on * ways.lengths[ways.stays > 0.0]).sum())
     assert sheet.rates(sheet.answer.velocity) >= 8.0 - 1e-9
     assert on.sum() < 1.0 - 1e-3 and SAID in sheet.remarks
+
+
+@pytest.mark.parametrize(("size", "way"), [(1, OVER), (2, ROCKS), (0, STAYS)])
+def test_the_track_says_what_the_rate_reckons_with(size, way):
+    part, found = pin(size)
+    stands = track(part, BOWL, "B").stands
+    known, tips = tilts(size)
+    row = known.aspects.index("B")
+    assert stands.way == way
+    assert (stands.tilt > 0.0) == bool(tips.tips[row])
+    if way == ROCKS:
+        assert stands.tilt == pytest.approx(tips.tilt[row], rel=1e-9)
+        assert f"rocks by {np.degrees(stands.tilt):.2g} deg a stroke" in stands.said

@@ -13,11 +13,13 @@ from feederscrew.dropping.plate import drive
 from feederscrew.dropping.plate.occupancy import Occupancy, lasting, occupancy
 from feederscrew.dropping.plate.rides import joined, ride
 from feederscrew.dropping.shape import shape_of_part
+from feederscrew.errors import ArgumentError
 from feederscrew.records import Shown
 from feederscrew.resting.tumbling.by_class import ground
 
 USUAL, SECONDS = 400, 5.0  # parts, and how long each is followed [s]
 ROUND = 400  # parts between two looks at the intervals
+MOST_STEPS = 20_000_000  # for one part: a minute of computing; 10 mm for ten minutes take 4,000,000
 LEAST, MOST = 8, 600  # looks at a part, one a period or one in so many
 
 
@@ -153,6 +155,7 @@ def _plate(found, aspects, shape, length, seconds, pace, bowl, launch, count, se
     looks = (np.ceil(pace.settling * unit / period) + np.arange(number + 1)) * period / unit
     starts = sample(launch, shape, count, np.random.default_rng(seed))
     steps, kick = drive.steps_of(floor, pace.coarse), drive.kick_of(floor, pace.kick)
+    _must_end(looks[-1] / min(steps.contact, floor.step))
     follow = partial(ride, shape, floor, looks=looks, steps=steps, kick=kick, jobs=jobs)
     rides = _enough(follow, starts, pace.width, found.rows, len(aspects.names), progress)
     rng = np.random.default_rng((seed, len(rides.faces)))
@@ -167,6 +170,13 @@ def _plate(found, aspects, shape, length, seconds, pace, bowl, launch, count, se
         lost=rides.lost,
         partial=rides.partial,
     )
+
+
+def _must_end(steps):
+    """Refuse to follow a part for more steps than anybody waits for."""
+    if steps > MOST_STEPS:
+        what = f"a part so small takes {steps:.2g} steps at this drive for so long"
+        raise ArgumentError("seconds", what, "follow it for less, or check the part's unit")
 
 
 def _enough(follow, starts, width, rows, classes, progress):

@@ -13,6 +13,8 @@ MAPS = {  # by the end of their file's name
     "beta_friction": FloorStudy.over_angle_and_friction,
     "frequency_amplitude": FloorStudy.over_frequency_and_amplitude,
 }
+OUTSIDE = "line of action of N outside the contact"  # at that instant; over the strokes it may only rock
+STATE_WORDS = {"tip": "line of action outside the contact", "stick": "held by friction"}  # else as it is
 EVERY = 5  # of the samples of a cycle, in tables and documents
 LABELS = {  # what people read
     "normal_force_N": "normal force N",
@@ -25,7 +27,7 @@ LABELS = {  # what people read
     "greatest_friction_N": "greatest static friction, mu N",
     "normal_line_offset_mm": "line of action of N, d along the heading",
     "normal_line_offset_y_mm": "line of action of N, across the heading",
-    "tips": "tips",
+    "tips": OUTSIDE,
 }
 
 
@@ -138,7 +140,11 @@ def summary(document):
     """Return the upper reversal, a row a quantity, for people."""
     now = document["instant"]
     rows = {label(name, text): now[name] for name, text in LABELS.items() if name in now}
-    rows |= {"state at the upper reversal": now["state"], "regime over the cycle": document["regime"]}
+    for name, state in (
+        ("state at the upper reversal", now["state"]),
+        ("regime over the cycle", document["regime"]),
+    ):
+        rows[name] = STATE_WORDS.get(state, state)
     return tables.frame({"quantity": list(rows), "value": [shown_value(value) for value in rows.values()]})
 
 
@@ -211,7 +217,20 @@ def map_notes(kind, grid):
     """Return a sentence where nothing slides on a map."""
     if STATES.index("slide") in grid.codes:
         return []
-    return [f"{kind.replace('_', ' and ')}: nothing slides anywhere on this map."]
+    return [f"{kind.replace('_', ' and ')}: {none_slides(grid)}."]
+
+
+def none_slides(grid):
+    """Say what a map shows on which nothing slides: of which instant it is, and what happens there."""
+    shares = {name: share for name, share in grid.shares().items() if share > 0.0}
+    words = {"stick": "is held", "tip": "has its line of action outside the contact", "hop": "is in the air"}
+    said = ", ".join(
+        f"{words[name]} in {100 * share:.3g} %" for name, share in shares.items() if name in words
+    )
+    return (
+        f"at the upper reversal the part slides in no cell of the map, it {said} of them; the map is of that"
+        " instant, the velocity of the whole cycle"
+    )
 
 
 def alignment(study):

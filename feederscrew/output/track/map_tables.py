@@ -4,6 +4,7 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.output import tables
+from feederscrew.output.floor.tables import none_slides
 from feederscrew.units import factor
 
 MM = factor("mm", "length")
@@ -24,7 +25,7 @@ def cells(grid):
 def remarks(grid):
     """Return what a reader of a map should know, a sentence each."""
     shares = grid.shares()
-    lines = [] if shares["slide"] or shares["leaves the wall"] else ["nothing slides anywhere on the map"]
+    lines = [] if shares["slide"] or shares["leaves the wall"] else [none_slides(grid)]
     unfit = int(np.round(shares["does not fit"] * grid.codes.size))
     if unfit:
         lines.append(f"the part does not fit the track in {unfit} of {grid.codes.size} cells")

@@ -7,6 +7,8 @@ from feederscrew.output import tables
 from feederscrew.output.floor.tables import (
     EVERY,
     MM,
+    OUTSIDE,
+    STATE_WORDS,
     chosen,
     difference,
     label,
@@ -38,7 +40,7 @@ LABELS = {
     "acceleration_x_m_s2": "acceleration along the track, V'_X",
     "acceleration_y_m_s2": "acceleration away from the wall",
     "turning_rad_s2": "turning off the wall",
-    "tips": "tips",
+    "tips": OUTSIDE,
 }
 
 
@@ -134,6 +136,8 @@ def document(found, settings):
         "regime": regime(found.cycle.state),
         "instant": instant(found.now),
         **told,
+        "on_the_track": None if found.stands is None else found.stands.way,
+        "on_the_track_said": None if found.stands is None else found.stands.said,
         "first_to_open": found.opening.contact,
         "opens_at_drive_factor": found.opening.drive_factor,
         "opens_at_reversal": found.opening.reversal,
@@ -184,17 +188,25 @@ def summary(document):
     now, needed = document["instant"], document["friction_needed"]
     rows = {label(name, text): now[name] for name, text in LABELS.items() if name in now}
     rows |= {
-        "state at the upper reversal": now["state"],
-        "regime over the cycle": document["regime"],
+        "state at the upper reversal": STATE_WORDS.get(now["state"], now["state"]),
+        "regime over the cycle": STATE_WORDS.get(document["regime"], document["regime"]),
+        "on the track, over the strokes": document["on_the_track_said"],
         ALONG: None if document["mean_velocity_m_s"] is None else document["mean_velocity_m_s"] / MM,
         "heading [deg]": document["heading_deg"],
-        "first contact to open": document["first_to_open"],
-        "opens at this many times the drive": document["opens_at_drive_factor"],
+        **_opening(document),
         "stays against the wall": UNKNOWN if document["stays_on_wall"] is None else document["stays_on_wall"],
         **{f"friction needed to hold it, {name.replace('_', ' ')}": needed[name] for name in CONTACTS},
         "bank without radial friction [deg]": document["bank_without_radial_friction_deg"],
     }
     return tables.frame({"quantity": list(rows), "value": [shown_value(value) for value in rows.values()]})
+
+
+def _opening(document):
+    """Which contact a growing drive opens first, and when; or which carries nothing even at rest."""
+    contact, factor = document["first_to_open"], document["opens_at_drive_factor"]
+    if factor == 0.0:
+        return {"carries nothing even at rest": contact.replace("_", " ")}
+    return {"first contact to open": contact, "opens at this many times the drive": factor}
 
 
 def remarks(found):

@@ -141,6 +141,18 @@ def test_one_key_of_the_machine_says_what_it_makes_of_the_drive(run):
     assert "by the machine" not in run("convey", *told).stderr
 
 
+@pytest.mark.parametrize(
+    "command",
+    [("slide",), ("floor", PART, "--aspect", "A"), ("track", DOWEL, "--aspect", "A")],
+    ids=lambda c: c[0],
+)
+def test_every_command_says_what_a_key_of_the_machine_makes_of_the_drive(run, command):
+    """They turned 50 into 100 Hz, and 25 into 102 mm/s, without a word."""
+    said = run(*command, "--set", "machine.leaves=10").stderr
+    assert "machine.leaves: is given, so drive.frequency is 100 Hz by the machine, not 50 Hz" in said
+    assert "by the machine" not in run(*command).stderr
+
+
 def test_the_sized_bowl_gives_the_same_rate_by_feeder_rate(run):
     """What was sized, written into a bowl file, brings the rate asked for on the aspect that counts."""
     wanted = ("--aspect", "A", "--rule", "pmi")

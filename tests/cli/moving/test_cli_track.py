@@ -9,6 +9,7 @@ import shapes
 
 PARTS = Path(__file__).parents[3] / "parts"
 BRACKET, CARD, MAGNET = PARTS / "lbracket_30x20x15.stl", PARTS / "arc_chute.yaml", PARTS / "magnet.yaml"
+DOWEL = PARTS / "dowel_6x20.stl"
 INSTANT = (
     "normal_force_N", "wall_1_N", "wall_2_N", "radial_friction_N", "traction_N",
     "normal_line_offset_mm", "acceleration_x_m_s2", "tips",
@@ -109,7 +110,22 @@ def test_a_map_on_which_nothing_slides_is_said(run):
         "track.climb=0:2:3",
     )
     assert result.exit_code == 0
-    assert "nothing slides anywhere on the map" in result.stderr
+    assert (
+        "at the upper reversal the part slides in no cell of the map, it is held in 100 % of them"
+        in result.stderr
+    )
+
+
+def test_one_verdict_stands_beside_the_velocity(run):
+    """'tips: yes', 'opens at 0 times the drive' and 'nothing slides anywhere' stood beside 19.3 mm/s."""
+    result = run("track", DOWEL, "--aspect", "B", "-o", "out", "--no-pictures")
+    assert result.exit_code == 0
+    rows = dict(line.rsplit("  ", 1) for line in result.stdout.splitlines())
+    assert rows[f"{'on the track, over the strokes':62}"] == "turns over, goes back into the bowl"
+    assert "carries nothing even at rest" in result.stdout
+    assert "tips" not in result.stdout and "opens at" not in result.stdout
+    assert "has its line of action outside the contact in" in result.stderr
+    assert "nothing slides anywhere" not in result.stderr
 
 
 def test_a_turned_and_moved_file_changes_nothing(run, tmp_path, rng):
