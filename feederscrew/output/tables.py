@@ -39,6 +39,8 @@ UNITS = {  # the end of a column's name, and how a heading writes it
     "_g": "g",
     "_s": "s",
 }
+SHARES = ("share", "efficiency", "purity")  # last words of columns of shares ...
+PASSED = ("passes", "passes_devices", "passed_low", "passed_high")  # ... and whole names of others
 DIGITS = 4  # significant, in a table for people
 NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
 
@@ -185,13 +187,15 @@ def _plain(value):
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def heading(name):
+def heading(name, numeric=True):
     """Return a column's name and unit for people.
 
     Parameters
     ----------
     name : str
-        'height_mm', 'p_pmi'.
+        'height_mm', 'p_pmi', 'purity'.
+    numeric : bool
+        Whether the column holds numbers: a share that is a word has no unit.
 
     Returns
     -------
@@ -199,6 +203,8 @@ def heading(name):
         ('height', '[mm]'), ('PMI', '[%]'); no unit is ''. The ends of an interval, which follow their
         value, are ('low', '[%]') and ('high', '[%]').
     """
+    if is_share(name) and not name.startswith("p_"):
+        return name.replace("_", " "), "[%]" if numeric else ""
     if is_share(name):
         rule = name.removeprefix("p_").replace("_", " ")
         if rule.endswith((" low", " high")):
@@ -216,8 +222,10 @@ def _is_abbreviation(name):
 
 
 def is_share(name):
-    """Return whether a column holds probabilities of aspects, which people read in percent."""
-    return name.startswith("p_") and name != "p_value"
+    """Return whether a column holds shares, which people read in percent and programs as fractions."""
+    if name.startswith("p_"):
+        return name != "p_value"
+    return name in PASSED or name.rpartition("_")[2] in SHARES
 
 
 def _aligned(frame, width):
@@ -236,7 +244,7 @@ def _column(name, values):
     """Name, unit and cells of one column, all of one width."""
     numeric = is_numeric(values)
     cells = _numbers(name, values) if numeric else [_word(value) for value in values]
-    cells = [*heading(name), *cells]
+    cells = [*heading(name, numeric), *cells]
     width = max(map(len, cells))
     return [cell.rjust(width) if numeric else cell.ljust(width) for cell in cells]
 

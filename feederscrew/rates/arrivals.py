@@ -13,7 +13,8 @@ from feederscrew.tooling.devices.named import place
 UNDECIDED = "the shares at the track's entry are undecided: {}"
 STOPPED = "the parts on the floor were stopped after {}"
 TOO_LONG = (
-    "the part is too small, or the drive too quick, to be followed on the moving floor: the closed form is taken"
+    "the part is too small, or the drive too quick, to be followed on the moving floor: the closed form"
+    " is taken"
 )
 NOTHING = "no part came to lie on the moving floor: the closed form is taken"
 

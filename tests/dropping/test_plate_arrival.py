@@ -75,5 +75,5 @@ def test_a_part_too_small_to_be_followed_on_its_floor_ends_at_once():
     assert not known.fed
     assert known.aspects.recommended.rule == known.aspects.closed.rule
     assert known.aspects.warnings[-1] == arrivals.TOO_LONG
-    with pytest.raises(FeederError, match="a part so small takes .* steps at this drive for so long"):
+    with pytest.raises(FeederError, match=r"a part so small takes .* steps at this drive for so long"):
         bowl_test.test(part, known.aspects, [bowl], "feed", {})

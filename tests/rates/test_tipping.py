@@ -177,7 +177,7 @@ def test_the_bowl_for_a_rate_reckons_without_what_its_drive_turns_over():
 
 @pytest.mark.parametrize(("size", "way"), [(1, OVER), (2, ROCKS), (0, STAYS)])
 def test_the_track_says_what_the_rate_reckons_with(size, way):
-    part, found = pin(size)
+    part, _ = pin(size)
     stands = track(part, BOWL, "B").stands
     known, tips = tilts(size)
     row = known.aspects.index("B")

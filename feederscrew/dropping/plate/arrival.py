@@ -100,7 +100,7 @@ def steps_needed(hull, bowl):
     Returns
     -------
     float [1]
-        Beyond ``MOST_STEPS`` a part is not fed: it is far smaller, or the drive far quicker, than in any bowl.
+        Beyond ``MOST_STEPS`` a part is not fed: it is far smaller, or the drive quicker, than in any bowl.
     """
     length = float(np.cbrt(hull.volume))
     unit = np.sqrt(length / bowl.gravity)

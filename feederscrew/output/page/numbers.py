@@ -29,7 +29,7 @@ def cells(frame):
     """
     numeric = [tables.is_numeric(column) for column in frame.values()]
     columns = [_column(name, column) for name, column in frame.items()]
-    return [tables.heading(name) for name in frame], numeric, list(zip(*columns))
+    return [tables.heading(name, known) for name, known in zip(frame, numeric)], numeric, list(zip(*columns))
 
 
 def number(value, digits=DIGITS):
@@ -52,7 +52,7 @@ def _column(name, values):
         return [_word(value) for value in values]
     if np.issubdtype(values.dtype, np.integer):
         return [str(value) for value in values]
-    if name.startswith("p_"):
+    if tables.is_share(name):
         return [percent(value) for value in values]
     noise = NOISE * np.abs(values[np.isfinite(values)]).max(initial=0.0)
     return [number(0.0 if abs(value) <= noise else value) for value in values]

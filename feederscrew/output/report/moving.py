@@ -121,10 +121,16 @@ def rate(case):
         "with each orientation."
     )
     return Chapter(
-        (lead, Table(rate_tables.summary(document)), Table(document["orientations"])),
+        (lead, Table(rate_tables.summary(document)), Table(_passing(found, document["orientations"]))),
         tiles=(_rate_tile(document),),
         warnings=(*rate_tables.remarks(found), *found.warnings),
     )
+
+
+def _passing(found, frame):
+    """The orientations with what each station lets pass as a share, which people read in percent."""
+    stations = found.rate.orientations.names
+    return tables.frame({f"p_{name}" if name in stations else name: column for name, column in frame.items()})
 
 
 def _velocity_map(case):
