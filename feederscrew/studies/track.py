@@ -121,7 +121,7 @@ def track(part: Part, bowl: Bowl, aspect: str | None = None, heading: float | No
 
 
 def _stands(posture, found, row, bowl, cycle):
-    one = orientations.at(posture, found, row, bowl.track)
+    one = orientations.at(posture, found, row, {}, bowl.track)
     return tipping.stands(one, bowl, bool((cycle.state == HOP).any()))
 
 

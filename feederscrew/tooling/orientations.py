@@ -40,9 +40,7 @@ class Orientation:
     falls_off: bool  # the bare track does not carry it
     kind: str  # 'flat', 'rolling' or 'hanging'
     mirror: str = ""  # name of its mirror image, fore and aft; '' where there is none
-    touching: np.ndarray | None = (
-        None  # of its corners, where it touches the wall; None where that is not known
-    )
+    touching: np.ndarray | None = None  # of its corners, where it touches the wall; None where not known
     turns_over: bool = False  # the drive tips it over on the track
     may_roll_back: bool = False  # on its round side, not along a climbing track: no verdict is sure
     carry: float = 0.0  # [m] it travels on unsupported before it has tipped: 0 of one that is only placed
@@ -165,27 +163,8 @@ def orientations(part, aspects, track):
         lying = posture(part, aspects, aspects.names[row])
         chances = {rule: float(chance[row]) for rule, chance in aspects.chances.items()}
         known = headings(lying, track)
-        found += [_orientation(lying, known, k, chances, track) for k in range(len(known.headings))]
+        found += [at(lying, known, k, chances, track) for k in range(len(known.headings))]
     return tuple(found)
-
-
-def at(lying, known, row, track):
-    """Return a part on one aspect at one of its stable headings, without chances.
-
-    Parameters
-    ----------
-    lying : Posture
-    known : Headings
-        Of that posture.
-    row : int
-        Of the headings.
-    track : Track
-
-    Returns
-    -------
-    Orientation
-    """
-    return _orientation(lying, known, row, {}, track)
 
 
 def travelling(found, bowl):
@@ -300,7 +279,8 @@ def _look(one):
     return supports[0], None if moments is None else moments[0]
 
 
-def _orientation(lying, known, row, chances, track):
+def at(lying, known, row, chances, track):
+    """Return a Posture at row ``row`` of its Headings, with the chances of its aspect by rule."""
     share = float(known.shares[row])
     return Orientation(
         posture=lying,

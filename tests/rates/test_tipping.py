@@ -175,12 +175,12 @@ def test_the_bowl_for_a_rate_reckons_without_what_its_drive_turns_over():
     assert on.sum() < 1.0 - 1e-3 and SAID in sheet.remarks
 
 
-@pytest.mark.parametrize(("size", "way"), [(1, OVER), (2, ROCKS), (0, STAYS)])
-def test_the_track_says_what_the_rate_reckons_with(size, way):
+@pytest.mark.parametrize(("size", "aspect", "way"), [(1, "B", OVER), (2, "B", ROCKS), (10, "A", STAYS)])
+def test_the_track_says_what_the_rate_reckons_with(size, aspect, way):
     part, _ = pin(size)
-    stands = track(part, BOWL, "B").stands
+    stands = track(part, BOWL, aspect).stands
     known, tips = tilts(size)
-    row = known.aspects.index("B")
+    row = known.aspects.index(aspect)
     assert stands.way == way
     assert (stands.tilt > 0.0) == bool(tips.tips[row])
     if way == ROCKS:
