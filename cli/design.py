@@ -83,7 +83,8 @@ def design(part, asked, rule, taken, jobs, bowl, pictures, out):
     partial.
 
     With -o: design.yaml, a bowl file that says what its trial showed, design.html, the page to hand on,
-    acceptance.csv, design_trials.csv, and the files of feeder tooling and feeder bowl.
+    acceptance.csv, design_trials.csv, and the files of feeder tooling and feeder bowl, the bowl as a solid
+    among them.
     """
     with held_back():
         from feederscrew import bowl as bowls
@@ -107,7 +108,5 @@ def design(part, asked, rule, taken, jobs, bowl, pictures, out):
         )  # fmt: skip
         document = tables.document(found)
         out.warn(*found.warnings)
-        offers.write(
-            folder, files.offers(found, settings, beside.machine_sheet(found, settings)), pictures=pictures
-        )
+        offers.write(folder, files.offers(found, settings, beside.built(found, settings)), pictures=pictures)
         out.show(tables.summary(found), document)

@@ -1,11 +1,17 @@
 """What other commands make of a design: the chain as a study of tooling, the machine below the bowl."""
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.settings import of_device
 from feederscrew.errors import FeederError
+from feederscrew.solidbowl.materials import STEEL
+from feederscrew.solidbowl.plan import CHORD
 from feederscrew.studies import bowl as machines
+from feederscrew.studies import solidbowl
+from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.tooling.isolating import proposal as static
 
@@ -48,8 +54,17 @@ def tooled(part, bowl, aspects, ways, weights, proposal, rule, margin):
     return ToolingStudy(part, bowl, aspects, rule, margin, ways.lying, weights, designs, proposal.row)
 
 
-def machine_sheet(study, settings):
-    """Return the machine below the bowl of a design, sized for it; None where no machine can be.
+@dataclass(frozen=True, eq=False)
+class Built:
+    """What is built for a design: the machine below its bowl, and the bowl as a solid."""
+
+    sheet: MachineSheet | None = None  # as it is driven; None where no machine can be
+    drawn: MachineSheet | None = None  # the same with its order and its solid; None where there is no solid
+    why: str = ""  # there is none
+
+
+def built(study, settings):
+    """Return the machine below the bowl of a design, sized for it, and that bowl as a solid of steel.
 
     Parameters
     ----------
@@ -59,10 +74,10 @@ def machine_sheet(study, settings):
 
     Returns
     -------
-    MachineSheet or None
+    Built
     """
     if study.bowl is None:
-        return None
+        return Built()
     given = [f"{s.key.name}={s.text}" for s in settings if s.given and not s.key.name.startswith("devices")]
     own = [*_texts("drive", study.bowl.drive, DRIVE), *_texts("track", study.bowl.track, TRACK)]
     words = {line.partition("=")[0] for line in own} | {"drive.amplitude", "drive.peak_to_peak"}
@@ -70,12 +85,23 @@ def machine_sheet(study, settings):
     devices = tuple(of_device(k, one) for k, one in enumerate(study.devices, start=1))
     try:
         made = bowls.settings(None, (*kept, *own))
-        sized = machines.bowl((*made, *devices), study.part, study.request.target)
+        sized, why = _sized((*made, *devices), study)
         under = [f"machine.{name}={text}" for name, text in _machine(sized.bowl.machine)]
         stroke = f"drive.amplitude={1e3 * study.bowl.drive.amplitude:.9g} mm"
-        return machines.machine(bowls.settings(None, (*kept, *own, stroke, *under)))
-    except FeederError:
-        return None
+        sheet = machines.machine(bowls.settings(None, (*kept, *own, stroke, *under)))
+    except FeederError as fault:
+        return Built(why=str(fault))
+    drawn = None if sized.solid is None else replace(sheet, order=sized.order, solid=sized.solid)
+    return Built(sheet, drawn, why)
+
+
+def _sized(settings, study):
+    """The bowl of a design, with its solid, or else why there is none."""
+    wanted = solidbowl.asked(settings, solid=True, material=STEEL, chord=CHORD)
+    try:
+        return machines.bowl(settings, study.part, study.request.target, solid=wanted), ""
+    except FeederError as fault:
+        return machines.bowl(settings, study.part, study.request.target), str(fault)
 
 
 def _texts(section, record, rows):

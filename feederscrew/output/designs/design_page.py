@@ -3,6 +3,7 @@
 from feederscrew.output.designs import figures, tables
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import Chapter, CsvSheet, Heading, Notes, Page, Picture, Table, Text, Tile
+from feederscrew.output.solidbowl import turnable
 from feederscrew.output.style import png
 from feederscrew.output.tables import text
 
@@ -18,14 +19,19 @@ MEASURE = (
 )
 
 
-def page(study):
-    """Return the page of a DesignStudy as HTML that needs no other file."""
+def page(study, built=None):
+    """Return the page of a DesignStudy and its Built bowl as HTML that needs no other file."""
     return html(
-        Page(study.part.name, f"design of a bowl: {study.status}", tuple(_sections(study)), kind="design")
+        Page(
+            study.part.name,
+            f"design of a bowl: {study.status}",
+            tuple(_sections(study, built)),
+            kind="design",
+        )
     )
 
 
-def _sections(study):
+def _sections(study, built):
     d = tables.document(study)
     yield Chapter(_answer(study, d), tiles=_tiles(d), warnings=study.warnings, title="The answer")
     history = tables.attempts(study)
@@ -37,6 +43,10 @@ def _sections(study):
     yield Chapter((lead, Table(history), picture) if study.attempts else (lead,), title="The loop")
     if study.queues:
         yield Chapter(_proof(study, d), title="The proof")
+    if built is not None and study.bowl is not None:
+        yield Chapter(
+            tuple(turnable.blocks(built.drawn and built.drawn.solid, study.part, built.why)), title="The bowl"
+        )
     sheet = tables.acceptance(study)
     told = Text("Computed values in, and empty cells for what is measured at the machine.")
     blocks = (

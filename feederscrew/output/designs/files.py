@@ -1,12 +1,13 @@
 """What ``feeder design`` leaves in its folder."""
 
-from feederscrew.output import machine
+from feederscrew.output import machine, solidbowl
 from feederscrew.output import offers as offer
 from feederscrew.output.designs import design_file, tables
+from feederscrew.output.solidbowl import tables as tables_of_solid
 from feederscrew.output.tooling import files as tooling_files
 
 
-def offers(study, settings, sheet=None):
+def offers(study, settings, built=None):
     """Offer the files of a DesignStudy, as a list of Offer.
 
     Parameters
@@ -14,18 +15,19 @@ def offers(study, settings, sheet=None):
     study : DesignStudy
     settings : sequence of Setting
         As the user gave them.
-    sheet : MachineSheet, optional
-        Of the machine below the bowl.
+    built : designing.beside.Built, optional
+        The machine below the bowl, and the bowl as a solid.
 
     Returns
     -------
     list of Offer
         Document, page and acceptance sheet; of a design with a bowl the bowl file, and everything of the
-        tooling and of the machine.
+        tooling, of the machine and of the bowl as a solid.
     """
+    sheet, drawn = (None, None) if built is None else (built.sheet, built.drawn)
     found = [
         offer.document("design.json", tables.document, study),
-        offer.text("design.html", _page, study),
+        offer.text("design.html", _page, study, built),
         offer.table("acceptance.csv", tables.acceptance, study),
         offer.table("design_trials.csv", tables.attempts, study),
         offer.picture("design_history.png", "Each short trial of the loop", _history, study),
@@ -35,16 +37,19 @@ def offers(study, settings, sheet=None):
     found.append(offer.text("design.yaml", design_file.bowl_file, study, settings, sheet))
     if sheet is not None:
         found += machine.offers(sheet)
+    if drawn is not None:
+        found += solidbowl.offers(drawn)
+        found.append(offer.document("bowl_solid.json", tables_of_solid.document, drawn.solid))
     if study.tooling is not None:
         own = tooling_files.offers(study.tooling, settings)
         found += [one for one in own if one.name != "tooling.yaml"]  # design.yaml has the devices
     return found
 
 
-def _page(study):
+def _page(study, built):
     from feederscrew.output.designs import design_page
 
-    return design_page.page(study)
+    return design_page.page(study, built)
 
 
 def _history(study):

@@ -5,7 +5,7 @@ from feederscrew.output import offers
 from feederscrew.output import tables as plain
 from feederscrew.output.machine import offers as machine_files
 from feederscrew.output.machine import tables
-from feederscrew.output.page.blocks import Chapter, Notes, Picture, Table, Text, Tile, Views
+from feederscrew.output.page.blocks import Chapter, Notes, Picture, Table, Text, Tile
 from feederscrew.output.page.numbers import SHORT, number
 from feederscrew.output.solidbowl import turnable
 
@@ -13,7 +13,6 @@ SIZED = (
     "The bowl that brings the rate asked for, by the rules of thumb of the section sizing: what the bowl "
     "file says of track, drive and machine is kept. The lines are those that a maker asks for in a quotation."
 )
-TURN = "The bowl as one closed body, parts on its track. Drag it to turn it, or use the arrow keys."
 GIVEN = "The springs, the tuning and the drift of the machine of the bowl file."
 
 
@@ -40,13 +39,9 @@ def bowl(case):
 def _turned(case):
     """The bowl as a solid with parts on its track, to be turned, or why there is none."""
     try:
-        made = case.solid
+        return turnable.blocks(case.solid, case.part)
     except FeederError as fault:
-        yield Notes(tuple(f"the bowl as a solid: {line}" for line in fault.lines))
-        return
-    if made is not None:
-        told = f"{1e3 * made.plan.way.radius * 2.0:.4g} mm, {made.mass:.3g} kg as {made.plan.material.name}"
-        yield Views(turnable.scene(made, case.part), (("bowl", told, ()),), "solid-bowl", "The", hint=TURN)
+        return [Notes(tuple(f"the bowl as a solid: {line}" for line in fault.lines))]
 
 
 def _renamed(frame):

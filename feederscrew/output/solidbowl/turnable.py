@@ -2,13 +2,36 @@
 
 import numpy as np
 
+from feederscrew.output.page.blocks import Notes, Views
 from feederscrew.output.solid import meshes
 from feederscrew.output.solidbowl.bowl_picture import HIGH, SIDE, parts
 from feederscrew.units import factor
 
 MM = factor("mm", "length")
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)  # quaternion x, y, z, w
+TURN = "The bowl as one closed body, parts on its track. Drag it to turn it, or use the arrow keys."
 MOST = 60_000  # facets of all parts together
+
+
+def blocks(solid, part, why=""):
+    """Return what a page shows of a bowl: the solid to be turned, or why there is none.
+
+    Parameters
+    ----------
+    solid : BowlSolid or None
+    part : Part
+        With a mesh.
+    why : str
+        There is none.
+
+    Returns
+    -------
+    list of blocks
+    """
+    if solid is None:
+        return [Notes((f"the bowl as a solid: {why}",))] if why else []
+    told = f"{2.0 * solid.plan.way.radius / MM:.4g} mm, {solid.mass:.3g} kg as {solid.plan.material.name}"
+    return [Views(scene(solid, part), (("bowl", told, ()),), "solid-bowl", "The", hint=TURN)]
 
 
 def scene(solid, part):

@@ -73,3 +73,13 @@ def test_rate_leads_with_the_lower_of_trial_and_rule_until_something_changes(des
     Path("other.yaml").write_text(text)
     other = run("rate", folder.parent / "cube.stl", "--config", "other.yaml")
     assert "void: version 9" in other.stderr
+
+
+def test_the_bowl_is_there_as_a_solid_that_turns_on_the_page(designed):
+    document, folder = designed
+    solid, machine = (json.loads((folder / name).read_text()) for name in ("bowl_solid.json", "bowl.json"))
+    assert solid["diameter_mm"] == pytest.approx(document["bowl"]["diameter_mm"])
+    assert machine["bowl_mass_kg"] == pytest.approx(solid["solid_mass_kg"], rel=1e-5)
+    assert (folder / "bowl.pdf").read_bytes()[:5] == b"%PDF-"
+    assert (folder / "bowl.stl").stat().st_size == 84 + 50 * solid["solid_facets"]
+    assert 'data-views="solid-bowl"' in (folder / "design.html").read_text()
