@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 
 from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.geometry.vectors import product
 from feederscrew.solidbowl import exact_faces
 from feederscrew.solidbowl.facets import in_space
 from feederscrew.units import factor
@@ -84,7 +85,7 @@ def plank(area, thickness, axes, foot):
     for one in shapely.get_parts(area):
         if one.geom_type == "Polygon":
             rings = [np.asarray(ring.coords)[:-1] for ring in (one.exterior, *one.interiors)]
-            rings = [(np.asarray(foot) + ring @ np.asarray(axes)[:, :2].T) / MM for ring in rings]
+            rings = [(np.asarray(foot) + product(ring, np.asarray(axes)[:, :2].T)) / MM for ring in rings]
             wires = [exact_faces.polygon(ring) for ring in rings]
             made.append(exact_faces.drawn(wires, thickness / MM * np.asarray(axes)[:, 2]))
     return made[0] if len(made) == 1 else united(made)
