@@ -2,6 +2,7 @@
 
 import signal
 
+import compile_first
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -20,23 +21,46 @@ settings.register_profile("same", derandomize=True, deadline=None)
 settings.load_profile("same")  # the same examples everywhere: new ones are for `make fuzz` to look for
 
 
+def pytest_sessionstart(session):
+    """Compile for all processes before they begin, where the whole suite is run by several."""
+    config = session.config
+    whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS
+    if whole and config.getoption("numprocesses", None) and not hasattr(config, "workerinput"):
+        compile_first.compile_side_by_side()
+
+
 def pytest_collection_modifyitems(items):
     """Begin with what takes longest, so that no process is left with it when the others are done."""
     items.sort(key=lambda item: item.get_closest_marker("long") is None)
 
 
+FEW = ((aspects, "MOST", 500), *((arrival, name, 60) for name in ("FIRST", "MOST", "LONGEST")))
+MANY = [(module, name, getattr(module, name)) for module, name, _ in FEW]
+
+
+def _set(patch, values):
+    for module, name, value in values:
+        patch.setattr(module, name, value)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def few():
+    """Drop and feed few parts where a test does not ask how many."""
+    with pytest.MonkeyPatch.context() as patch:
+        _set(patch, FEW)
+        yield
+
+
 @pytest.fixture(autouse=True)
-def few(request, monkeypatch):
-    """Drop and feed few parts where a test does not ask how many, unless it is marked ``thorough``."""
+def many(request, monkeypatch):
+    """As many as for a user in a test that is marked ``thorough``."""
     if request.node.get_closest_marker("thorough"):
         memory.forget()
+        _set(monkeypatch, MANY)
         yield
         memory.forget()
-        return
-    monkeypatch.setattr(aspects, "MOST", 500)
-    for name in ("FIRST", "MOST", "LONGEST"):
-        monkeypatch.setattr(arrival, name, 60)
-    yield
+    else:
+        yield
 
 
 @pytest.fixture

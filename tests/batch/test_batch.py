@@ -13,11 +13,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 from feederscrew import batch
 from feederscrew.batch import store, task
 from feederscrew.batch import work as works
 from feederscrew.errors import FeederError
+from feederscrew_cli.main import feeder
 
 ROOT = Path(__file__).parents[2]
 PARTS = ROOT / "parts"
@@ -340,53 +342,49 @@ def test_an_unknown_rule_is_a_near_miss(tmp_path, three):
         ran(three, tmp_path / "out", choices=batch.Choices(rule="pmj"))
 
 
+@pytest.fixture(scope="module")
+def uninterrupted(tmp_path_factory):
+    """Blocks in a folder, the call of a batch of them up to its ``-o``, and what a whole run of it leaves."""
+    folder, out = tmp_path_factory.mktemp("in"), tmp_path_factory.mktemp("whole")
+    for number in range(5):
+        block(folder / f"block_{number}.stl", 4.0 + 0.5 * number, 6.0, 3.0)
+    rest = ["batch", str(folder), "--rule", "closed", "--no-pictures", "-q", "-o"]
+    done = CliRunner().invoke(feeder, [*rest, str(out), "--jobs", "1"])
+    assert done.exit_code == 0, done.output
+    call = [sys.executable, "-c", "from feederscrew_cli.main import feeder; feeder()", *rest]
+    return call, tree(out)
+
+
+def begun(*call):
+    """A batch in a session of its own."""
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    return subprocess.Popen(call, cwd=ROOT, start_new_session=True, **quiet)
+
+
 @pytest.mark.long
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
-def test_killed_at_any_moment_and_resumed_it_ends_with_the_same_bytes(tmp_path):
-    folder, call = (
-        tmp_path / "in",
-        [sys.executable, "-c", "from feederscrew_cli.main import feeder; feeder()", "batch"],
-    )
-    folder.mkdir()
-    for number in range(8):
-        block(folder / f"block_{number}.stl", 4.0 + 0.5 * number, 6.0, 3.0)
-    rest = [str(folder), "--rule", "closed", "--no-pictures", "-q", "-o"]
-    subprocess.run(
-        [*call, *rest, str(tmp_path / "whole"), "--jobs", "1"], check=True, cwd=ROOT, capture_output=True
-    )
-    for goal in (1, 3, 5):
-        child = subprocess.Popen(
-            [*call, *rest, str(tmp_path / "cut"), "--jobs", "2", "--resume"],
-            cwd=ROOT, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        )  # fmt: skip
-        while len(list((tmp_path / "cut").glob("parts/*"))) < goal and child.poll() is None:
+def test_killed_at_any_moment_and_resumed_it_ends_with_the_same_bytes(tmp_path, uninterrupted):
+    call, whole = uninterrupted
+    call = [*call, str(tmp_path), "--jobs", "2", "--resume"]
+    for goal in (1, 3):
+        child = begun(*call)
+        while len(list(tmp_path.glob("parts/*"))) < goal and child.poll() is None:
             time.sleep(0.01)
         os.killpg(child.pid, signal.SIGKILL)
         assert child.wait() == -signal.SIGKILL
-    last = [*call, *rest, str(tmp_path / "cut"), "--jobs", "2", "--resume"]
-    subprocess.run(last, check=True, cwd=ROOT, capture_output=True)
-    assert tree(tmp_path / "cut") == tree(tmp_path / "whole")
+    subprocess.run(call, check=True, cwd=ROOT, capture_output=True)
+    assert tree(tmp_path) == whole
 
 
 @pytest.mark.long
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
-def test_stopped_at_any_moment_it_ends_soon_and_resumes_to_the_same_bytes(tmp_path, rng):
-    folder, call = (
-        tmp_path / "in",
-        [sys.executable, "-c", "from feederscrew_cli.main import feeder; feeder()"],
-    )
-    folder.mkdir()
-    for number in range(8):
-        block(folder / f"block_{number}.stl", 4.0 + 0.5 * number, 6.0, 3.0)
-    call += ["batch", str(folder), "--rule", "closed", "--no-pictures", "-q", "--jobs", "2", "--resume", "-o"]
-    for moment in rng.permutation(np.linspace(0.05, 2.3, 6)):  # Python itself, imports, workers, parts
-        child = subprocess.Popen(
-            [*call, str(tmp_path / "cut")],
-            cwd=ROOT, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        )  # fmt: skip
+def test_stopped_at_any_moment_it_ends_soon_and_resumes_to_the_same_bytes(tmp_path, rng, uninterrupted):
+    call, whole = uninterrupted
+    call = [*call, str(tmp_path), "--jobs", "2", "--resume"]
+    for moment in rng.permutation(np.linspace(0.05, 2.3, 4)):  # Python itself, imports, workers, parts
+        child = begun(*call)
         time.sleep(moment)
         os.killpg(child.pid, signal.SIGINT)  # as a terminal does, to every process of the batch
         child.wait(timeout=10.0)
-    for where in ("cut", "whole"):
-        subprocess.run([*call, str(tmp_path / where)], check=True, cwd=ROOT, capture_output=True)
-    assert tree(tmp_path / "cut") == tree(tmp_path / "whole")
+    subprocess.run(call, check=True, cwd=ROOT, capture_output=True)
+    assert tree(tmp_path) == whole

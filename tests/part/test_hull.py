@@ -54,9 +54,9 @@ def test_a_split_and_rounded_surface_has_the_hull_of_the_whole_one(seed, rng):
 
 
 def test_a_fine_circle_and_a_shallow_bevel_keep_their_corners():
-    turn = 2.0 * np.pi * np.arange(12000) / 12000
-    ring = np.column_stack([np.cos(turn), np.sin(turn)])
+    turn = 2.0 * np.pi * np.arange(1000) / 12000  # as fine as a whole circle of 12000
+    ring = np.vstack([np.column_stack([np.cos(turn), np.sin(turn)]), [(-1.0, -0.3)]])
     coin = np.concatenate([np.column_stack([ring, np.full(len(ring), z)]) for z in (-0.1, 0.1)])
-    assert len(convex_hull(coin, np.zeros(3)).vertices) == 24000
+    assert len(convex_hull(coin, np.zeros(3)).vertices) == 2 * len(ring)
     bevelled = np.vstack([shapes.box(2.0, 2.0, 2.0).vertices, [(0.0, 0.0, 1.0 + 1e-3)]])
     assert len(convex_hull(bevelled, np.zeros(3)).vertices) == 9

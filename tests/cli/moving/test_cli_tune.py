@@ -4,6 +4,9 @@ import json
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
+
+from feederscrew_cli.main import feeder
 
 PART = Path(__file__).parents[3] / "parts" / "lbracket_30x20x15.stl"
 BOWL = ("--set", "drive.frequency=50 Hz", "--set", "restitution=0", "--set", "friction.static=0.4")
@@ -13,9 +16,18 @@ def told(result):
     return [line for line in result.stderr.splitlines() if not line.startswith("Compiling")]
 
 
-def test_a_setting_that_reaches_the_target(run):
-    result = run("tune", PART, "--aspect", "A", "--target", "12/min", *BOWL, "--format", "json")
-    settings = json.loads(result.stdout)["settings"]
+@pytest.fixture(scope="module")
+def tuned(tmp_path_factory):
+    """The table of one call and the folder it wrote."""
+    out = tmp_path_factory.mktemp("tuned")
+    call = ("tune", PART, "--aspect", "A", "--target", "12/min", *BOWL, "-o", out)
+    done = CliRunner().invoke(feeder, [str(word) for word in call])
+    assert done.exit_code == 0, done.output
+    return done.stdout, out / PART.stem
+
+
+def test_a_setting_that_reaches_the_target(run, tuned):
+    settings = json.loads((tuned[1] / "tune.json").read_text())["settings"]
     assert all(abs(one["parts_per_minute"] - 12.0) < 1e-4 for one in settings)
     first = settings[0]
     amplitude = f"{first['key']}={first['value']!r} {first['unit']}"
@@ -23,13 +35,8 @@ def test_a_setting_that_reaches_the_target(run):
     assert abs(json.loads(back.stdout)["parts_per_minute"] - 12.0) < 1e-3
 
 
-def test_files(run):
-    run("tune", PART, "--aspect", "A", "--target", "12/min", *BOWL, "-o", "results")
-    assert {path.name for path in Path("results", PART.stem).iterdir()} == {
-        "tune.csv",
-        "tune.json",
-        "run.json",
-    }
+def test_files(tuned):
+    assert {path.name for path in tuned[1].iterdir()} == {"tune.csv", "tune.json", "run.json"}
 
 
 def test_an_unreachable_target_is_one_line(run):
@@ -47,9 +54,8 @@ def test_a_target_without_unit(run):
     )
 
 
-def test_the_table_fits_a_terminal(run):
-    result = run("tune", PART, "--aspect", "A", "--target", "12/min", *BOWL)
-    lines = result.stdout.splitlines()
+def test_the_table_fits_a_terminal(tuned):
+    lines = tuned[0].splitlines()
     assert max(map(len, lines)) <= 110
     assert lines[2].startswith("drive.")
     assert lines[0].startswith("12/min at this friction ")
@@ -58,8 +64,9 @@ def test_the_table_fits_a_terminal(run):
 
 def test_the_table_says_at_which_friction_the_rate_is_met(run):
     asked = ("tune", PART, "--aspect", "A", "--target", "6/min", *BOWL, "--worst")
-    assert run(*asked).stdout.startswith("6/min at the worst friction ")
-    document = json.loads(run(*asked, "--format", "json").stdout)
+    assert run(*asked, "-o", ".").stdout.startswith("6/min at the worst friction ")
+    [written] = Path().glob("**/tune.json")
+    document = json.loads(written.read_text())
     assert document["target_met"] == "at the worst friction"
     assert document["target_per_minute"] == pytest.approx(6.0)
     rows = document["settings"]

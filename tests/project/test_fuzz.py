@@ -5,15 +5,15 @@ from fuzz import __main__ as runs
 from fuzz import harness, mutate
 
 COUNTS = {
-    "stl": 40,
+    "stl": 25,
     "bowl": 50,
     "card": 60,
     "counts": 50,
     "names": 20,
-    "list": 200,
+    "list": 120,
     "batch": 4,
     "dxf": 60,
-}  # about ten seconds in all
+}
 
 
 @pytest.mark.parametrize("kind", list(harness.PLAN))
