@@ -111,6 +111,7 @@ class Sizing:
     slowest: float  # [m/s]
     fastest: float  # [m/s]
     handbook_speed: float  # [m/s]
+    shape: str = "cylinder"  # of the wall
     hand: str = "right"  # of the helix; 'left' is the mirror image
     bolts: float = 6.0  # of the bowl on its drive, beside the one in the middle
     bolt_hole: float = 9e-3  # [m] diameter

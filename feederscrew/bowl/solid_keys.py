@@ -36,6 +36,11 @@ SOLID = (
         "sizing.bolt_share", "sizing.bolt_share", "number", "0.05", "0.9", "0.4",
         "circle of the bolts below the bowl, over its diameter (assumption)",
     ),
+    _choice(
+        "sizing.shape", ("cylinder", "stepped", "conical"),
+        "of the wall; where it steps outwards with the track each turn lies beside the one before, and not "
+        "above it",
+    ),
     _length(
         "sizing.outlet_height", "0 mm", "3000 mm", "0 mm",
         "of the outlet's surface over the floor's edge; 0: where the turns of the track end",

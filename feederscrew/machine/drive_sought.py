@@ -31,7 +31,9 @@ class Sought:
     @property
     def fill(self):
         """A full bowl."""
-        return filling.full(self.bowl.track.radius, self.size.depth, self.bulk, self.bowl.sizing)
+        return filling.full(
+            self.size.room or self.bowl.track.radius, self.size.depth, self.bulk, self.bowl.sizing
+        )
 
 
 def given(settings, section=""):

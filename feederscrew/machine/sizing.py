@@ -14,6 +14,7 @@ from feederscrew.resting.posture import posture
 STRAIGHT = Track(climb=0.0, bank=0.0, radius=1e3, width=1.0)  # [m] a wall without a bend
 ROUNDS = 200  # of a search that halves its error in each
 SETTLED = 1e-12  # [m]
+STEEP = 0.9  # slope, a little over 40 deg, of a wall between two turns that lie beside each other
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,7 @@ class Size:
     pitch: float  # [m] rise of one turn
     mass: float | None = None  # [kg] of the bowl, where it is known from its solid
     inertia: float | None = None  # [kg m2] of the same about its axis
+    room: float | None = None  # [m] radius of its inside at the bottom, where its solid steps outwards
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,11 +127,19 @@ def size(part, given, rules, *, sorts, diameter=None, width=None, climb=None):
     bend = part.length**2 / (2.0 * across)
     wide = part.width + play + bend if width is None else width
     depth = rules.depth * across
-    rise = rules.headroom * part.tallest + rules.sheet
-    angle = max(rules.least_climb, np.arctan(rise / (np.pi * across))) if climb is None else climb
+    angle = _climb(part, across, wide, rules) if climb is None else climb
     pitch = np.pi * across * np.tan(angle)
     turns = depth / pitch if pitch > 0.0 else np.nan
     return Size(across, least, wide, play, bend, float(angle), depth, float(turns), float(pitch))
+
+
+def _climb(part, across, wide, rules):
+    """The least climb [rad]: parts pass below the next turn, or below the slope that leads to it."""
+    rise, way = rules.headroom * part.tallest + rules.sheet, np.pi * across
+    if rules.shape != "cylinder":
+        rise += STEEP * wide + 3.0 * rules.sheet
+        way = np.pi * (across - wide)
+    return max(rules.least_climb, np.arctan(rise / way))
 
 
 def _diameters(part, play, rules, width, sorts):

@@ -1,13 +1,13 @@
 """The bowl as one body: made of swept, turned and extruded pieces."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import shapely
 
 from feederscrew.part import mass
-from feederscrew.solidbowl import facets, track
-from feederscrew.solidbowl.plan import TURN, BowlPlan
+from feederscrew.solidbowl import facets, stairs, track
+from feederscrew.solidbowl.plan import BESIDE, TURN, BowlPlan
 from feederscrew.solidbowl.segments import Segments
 from feederscrew.tooling import whole_surface
 
@@ -29,6 +29,7 @@ class BowlSolid:
     mass: float  # [kg] gates included
     inertia: float  # [kg m2] about the axis
     centre: np.ndarray  # (3,) [m]
+    falls: dict = field(default_factory=dict)  # where what falls through each cut comes to lie
     riders: tuple = ()  # (Orientation, s [m]) of parts along its track, to draw
     segments: Segments | None = None  # where it is cut to fit a printer
     step: object = None  # exact_file.StepFile, where it was asked for
@@ -70,13 +71,12 @@ def body(plan):
 
 def pieces(plan, kit=facets):
     """Return the bowl as one body [mm] of a kit and its gates (name, body), the outlet at the angle 0."""
-    ring = kit.without(
-        _wall(plan, kit), [*_opening(plan, kit), *(_notch(plan, kit, one) for one in _gates(plan))]
-    )
+    wall, *ends = [_wall(plan, kit)] if plan.stairs is None else stairs.shell(plan, kit)
+    ring = kit.without(wall, [*_opening(plan, kit), *(_notch(plan, kit, one) for one in _gates(plan))])
     slab = kit.without(track.slab(plan, kit), [_hole(plan, kit, cut) for cut in _holes(plan)])
     blades = [_plate(plan, kit, one) for one in _blades(plan) if not one.alone]
     whole = kit.united(
-        [_floor(plan, kit), ring, slab, *track.sides(plan, kit), *track.yokes(plan, kit), *blades]
+        [*_floor(plan, kit), ring, *ends, slab, *track.sides(plan, kit), *track.yokes(plan, kit), *blades]
     )
     whole = kit.without(whole, [*track.slots(plan, kit), *_drilled(plan, kit)])
     gates = [(f"gate_{k + 1}", _plate(plan, kit, one)) for k, one in enumerate(_gates(plan))]
@@ -86,13 +86,18 @@ def pieces(plan, kit=facets):
 def _floor(plan, kit):
     """Floor with its dome, and the hub below it."""
     low, inner, outer = plan.underside, plan.ring, plan.way.radius + plan.material.wall
+    edge = []
+    if plan.stairs is not None:
+        outer = inner + INTO
+        inside = shapely.Point(0.0, 0.0).buffer(inner)
+        edge = [kit.prism(shapely.Polygon(stairs.floor_edge(plan)).difference(inside), low, 0.0)]
     top = [(outer, 0.0), (inner, 0.0), (0.0, plan.dome)]
     if plan.material.flat:
-        return kit.turned([(0.0, low), (outer, low), *top], plan.segments)
+        return [kit.turned([(0.0, low), (outer, low), *top], plan.segments), *edge]
     shell = [(0.0, plan.dome + low), (inner, low), (outer, low), *top]
     rim, middle = float(plan.floor(plan.hub)) + 0.5 * low, plan.dome + 0.5 * low
     hub = [(0.0, low), (plan.hub, low), (plan.hub, rim), (0.0, middle)]
-    return kit.united([kit.turned(one, plan.segments) for one in (shell, hub)])
+    return [kit.united([kit.turned(one, plan.segments) for one in (shell, hub)]), *edge]
 
 
 def _wall(plan, kit):
@@ -118,7 +123,7 @@ def _drilled(plan, kit):
         (0.5 * plan.bolt_circle * np.cos(a), 0.5 * plan.bolt_circle * np.sin(a)) for a in angles
     ]
     holes = [(one, plan.bolt) for one in circle]
-    edge = plan.way.radius - plan.across - plan.drain
+    edge = plan.ring + BESIDE - plan.drain
     angles = TURN * np.arange(plan.drains) / max(plan.drains, 1)
     holes += [((edge * np.cos(a), edge * np.sin(a)), plan.drain) for a in angles]
     return [kit.disc(at, size, plan.underside - INTO, plan.dome + INTO) for at, size in holes]

@@ -6,14 +6,14 @@ import numpy as np
 
 from feederscrew.solidbowl import facets
 
-ASIDE = 1e-4  # [rad] beside the corners of facets
+RIM = -0.3 - 1e-4  # [rad] before the outlet, where the rim is measured; beside the corners of facets
 
 
 @dataclass(frozen=True)
 class Measures:
     """Lengths [m] of a solid, as a shop would measure them."""
 
-    diameter: float  # inner, of the wall
+    diameter: float  # inner, of the wall where the outlet leaves it
     wall: float
     floor: float  # thickness by the wall
     height: float  # from the underside to the rim
@@ -36,16 +36,16 @@ def measures(made):
     plan, body = made.plan, facets.unplaced(made)
     way, far = plan.way, 3.0 * plan.way.radius
     high = plan.top - 1e-3
-    rim = facets.first_met(body, (0.0, 0.0, high), _towards(np.pi + ASIDE, far, high))
-    r = way.radius - 1e-3
+    rim = facets.first_met(body, (0.0, 0.0, high), _towards(RIM, far, high))
+    r = float(way.wall_radius(min(0.0, way.end))) - 1e-3
     bare = np.array([r * np.cos(_bare(plan)), r * np.sin(_bare(plan))])
     floor = facets.first_met(body, (*bare, 5e-4), (*bare, -far))
-    s = way.end - 0.5 * np.pi * way.radius
+    s = float(way.at(-0.5 * np.pi))
     outlet = way.end + 0.5 * plan.outlet
     at = plan.way.places(outlet, 1e-3) + [0.0, 0.0, 1e-3]
     lift = 1e-3 * np.sin(way.bank)
     return Measures(
-        diameter=2.0 * rim[0],
+        diameter=2.0 * (rim[0] + way.radius - float(way.wall_radius(way.at(RIM)))),
         wall=rim[1] - rim[0],
         floor=floor[1] - floor[0],
         height=float(np.ptp(made.vertices[:, 2])),
@@ -62,7 +62,7 @@ def track_width(plan, body, s):
     """
     way = plan.way
     theta = float(way.angle(s))
-    inside = way.radius - plan.across
+    inside = float(way.wall_radius(s)) - plan.across
     z = float(way.height(s, plan.width))
     to_wall = facets.first_met(body, (0.0, 0.0, z + 1e-3), _towards(theta, 3.0 * way.radius, z + 1e-3))[0]
     under = z - 0.3 * plan.material.plate

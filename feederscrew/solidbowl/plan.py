@@ -7,6 +7,7 @@ import numpy as np
 from feederscrew.errors import FeederError
 from feederscrew.solidbowl.cuts import Stretch
 from feederscrew.solidbowl.materials import BowlMaterial
+from feederscrew.solidbowl.stairs import CYLINDER, Stairs, stairs
 from feederscrew.solidbowl.way import Way
 
 CHORD = 5e-5  # [m] by which an arc may be seen too flat
@@ -43,6 +44,7 @@ class BowlPlan:
     turned: float  # angle of the outlet's begin, seen from above
     left: bool  # mirrored: parts travel clockwise, seen from above
     chord: float
+    stairs: Stairs | None = None  # where the wall steps outwards with the track
 
     @property
     def across(self):
@@ -62,12 +64,18 @@ class BowlPlan:
     @property
     def turns(self):
         """Turns of the track from the floor to the outlet."""
-        return self.way.end / self.way.radius / TURN
+        return -float(self.way.angle(0.0)) / TURN
+
+    @property
+    def room(self):
+        """Radius of a cylinder that holds as much as the lowest third of the bowl's rise."""
+        return float(self.way.wall_radius(self.way.end / 6.0))
 
     @property
     def ring(self):
         """Radius up to which the floor is level, a little more than the track covers; the dome is within."""
-        return self.way.radius - self.across - BESIDE
+        lowest = self.way.rises(self.width) - DIP * self.way.radius if self.stairs else 0.0
+        return float(self.way.wall_radius(lowest)) - self.across - BESIDE
 
     @property
     def dome(self):
@@ -93,6 +101,8 @@ class Asked:
     outlet_height: float = 0.0  # [m] 0: as the track's turns make it
     outlet_angle: float = 0.0  # [rad]
     left: bool = False
+    shape: str = CYLINDER  # of the wall, of ``stairs.SHAPES``
+    friction: float = 0.4  # [1] static, of parts on the bowl
     bolts: int = 6
     bolt: float = 9e-3  # [m] diameter of their holes
     bolt_circle: float = 0.0  # [m] 0: by the rule
@@ -128,8 +138,10 @@ def plan(size, track, made_of, tooled, asked, *, extents):
         through them would not reach the floor.
     """
     _check(size, track)
-    _check_holes(track, asked, extents)
-    way, first = _way(size, track, tooled, asked)
+    stepped = stairs(track, made_of, tooled, asked, extents)
+    way, first = _way(size, track, tooled, asked, stepped)
+    lowest = float(way.wall_radius(0.0))
+    _check_holes(track, asked, extents, lowest)
     across = track.width * np.cos(track.bank)
     outer = track.radius + made_of.wall
     outlet = np.sqrt(outer**2 - (track.radius - across) ** 2) + OUTLET
@@ -147,15 +159,16 @@ def plan(size, track, made_of, tooled, asked, *, extents):
         hanging=greatest + CLEAR if hangs else 0.0,
         headroom=tallest,
         top=float(way.height(way.end)) + sum(d for _, d in way.drops) + max([tallest + ABOVE, *gates]),
-        hub=_hub(track, asked),
+        hub=_hub(track, asked, lowest),
         bolts=asked.bolts,
         bolt=asked.bolt,
-        bolt_circle=_circle(track, asked),
+        bolt_circle=_circle(track, asked, lowest),
         drains=asked.drains,
         drain=asked.drain,
         turned=asked.outlet_angle,
         left=asked.left,
         chord=asked.chord,
+        stairs=stepped,
     )
 
 
@@ -171,20 +184,27 @@ def _check(size, track):
         raise FeederError("track.climb", what, "give a climb, as 3.5 deg, or leave it out")
 
 
-def _circle(track, asked):
-    """Diameter of the circle of bolts."""
-    return asked.bolt_circle or asked.bolt_share * 2.0 * track.radius
+def _circle(track, asked, radius):
+    """Diameter of the circle of bolts: as given, or by the rule as far as a floor of a radius has room."""
+    most = 2.0 * (_room(track, radius) - 2.0 * asked.bolt)
+    ruled = asked.bolt_share * 2.0 * track.radius
+    return asked.bolt_circle or (min(ruled, most) if most > 0.0 else ruled)
 
 
-def _hub(track, asked):
+def _room(track, radius):
+    """Radius within which nothing of the track lies."""
+    return radius - track.width - 2.0 * BESIDE
+
+
+def _hub(track, asked, radius):
     """Radius of the hub."""
-    return 0.5 * _circle(track, asked) + 2.0 * asked.bolt
+    return 0.5 * _circle(track, asked, radius) + 2.0 * asked.bolt
 
 
-def _check_holes(track, asked, extents):
-    room = track.radius - track.width - 2.0 * BESIDE
-    if _hub(track, asked) > room:
-        what = f"{1e3 * _circle(track, asked):.4g} mm lies under the track of a bowl this small"
+def _check_holes(track, asked, extents, radius):
+    room = _room(track, radius)
+    if _hub(track, asked, radius) > room + 1e-9:
+        what = f"{1e3 * _circle(track, asked, radius):.4g} mm lies under the track of a bowl this small"
         most = 2e3 * (room - 2.0 * asked.bolt)
         raise FeederError("machine.bolt_circle", what, f"give at most {most:.4g} mm, or smaller bolts")
     least = float(min(extents))
@@ -193,26 +213,35 @@ def _check_holes(track, asked, extents):
         raise FeederError("sizing.drain_hole", what, f"give less than {1e3 * least:.4g} mm")
 
 
-def _way(size, track, tooled, asked):
+def _way(size, track, tooled, asked, stepped):
     """The way of the track, and where on it the tooled stretch begins."""
     needed = 0.0 if tooled is None else tooled.length + LEAD
     drops = () if tooled is None else tooled.drops
     rise = np.tan(track.climb)
     round_once = TURN * track.radius
     free = round_once - track.width * np.sin(track.bank) / rise  # of track below, from where it rises
-    falls = None if tooled is None else tooled.falls
+    falls = None if tooled is None or stepped is not None else tooled.falls
     most = np.inf if falls is None else free + needed - falls
-    end = min(size.turns * round_once, most)
+    end = min(size.depth / rise, most, np.inf if stepped is None else stepped.most)
     if asked.outlet_height > 0.0:
         end = (asked.outlet_height + sum(drop for _, drop in drops)) / rise
         _check_height(asked.outlet_height, end, most, rise, drops)
+        _check_floor(end, stepped, rise)
     first = end - needed
     if first < 0.0:
         raise _too_short(asked.outlet_height, end, needed, rise, drops)
     return Way(
         radius=track.radius, climb=track.climb, bank=track.bank, end=float(end),
         drops=tuple((first + at, drop) for at, drop in drops),
+        flare=0.0 if stepped is None else stepped.flare,
     ), float(first)  # fmt: skip
+
+
+def _check_floor(end, stepped, rise):
+    if stepped is not None and end > stepped.most:
+        what = "leaves too small a floor: the wall steps outwards with the track"
+        mend = f"give at most {1e3 * stepped.most * rise:.4g} mm, or a larger bowl"
+        raise FeederError("sizing.outlet_height", what, mend)
 
 
 def _too_short(height, end, needed, rise, drops):

@@ -65,8 +65,8 @@ def frames(plan, s):
 def _steps(plan, start, end):
     """Lengths along the wall from facet to facet: those of the wall's own facets, and both ends."""
     way, step = plan.way, plan.way.radius * 2.0 * np.pi / plan.segments
-    first = np.ceil((start - way.end) / step)
-    inner = way.end + step * np.arange(first, 1.0)
+    first = np.ceil(float(way.angle(start)) / (2.0 * np.pi / plan.segments))
+    inner = way.at(2.0 * np.pi / plan.segments * np.arange(first, 1.0))
     inner = inner[(inner > start + 0.01 * step) & (inner < end - 0.01 * step)]
     return np.unique(np.concatenate([[start], inner, [way.end] if start < way.end < end else [], [end]]))
 
@@ -116,7 +116,12 @@ def sides(plan, kit):
     outer = np.array([[way.end + 2e-3, -wall], [end, -wall], [end, 0.0], [way.end + 2e-3, 0.0]])
     y = plan.width
     inner = np.array([[way.end, y], [end, y], [end, y + wall], [way.end, y + wall]])
-    inside = kit.drum(way.radius + 0.4 * wall, low + lift - INTO, top + lift + INTO, plan.segments)
+    inside = kit.drum(
+        float(way.wall_radius(way.at(-2.0 * np.pi)) if plan.stairs else way.radius) + 0.4 * wall,
+        low + lift - INTO,
+        top + lift + INTO,
+        plan.segments,
+    )
     made = [kit.over(way, outer, low, max(top, height + plan.headroom), plan.chord)]
     made.append(kit.without(kit.over(way, inner, low + lift, top + lift, plan.chord), [inside]))
     return made

@@ -1,4 +1,8 @@
-"""Where the track runs: round the wall as a helix of one climb, then straight on along its tangent."""
+"""Where the track runs: round the wall as a helix of one climb, then straight on along its tangent.
+
+Where the wall steps outwards with the track, the track's foot is a helix on a cone: its radius grows by
+``flare`` over its length, and so does its height, by the climb.
+"""
 
 from dataclasses import dataclass
 
@@ -26,9 +30,17 @@ class Way:
         """Return the radius [m] of the wall's inner face at lengths s."""
         return self.radius + self.flare * (np.minimum(s, self.end) - self.end)
 
+    def at(self, theta):
+        """Return the lengths s at angles about the axis, at most 0."""
+        theta = np.asarray(theta, float)
+        if self.flare == 0.0:
+            return self.end + self.radius * theta
+        return self.end + self.radius * np.expm1(self.flare * theta) / self.flare
+
     def angle(self, s):
         """Return the angle [rad] about the axis at lengths s; it stays at 0 along the outlet."""
-        return (np.minimum(s, self.end) - self.end) / self.radius
+        before = (np.minimum(s, self.end) - self.end) / self.radius
+        return before if self.flare == 0.0 else np.log1p(self.flare * before) / self.flare
 
     def rises(self, width):
         """Return the length s [m], at most 0, at which a track of a width first comes out of the floor.

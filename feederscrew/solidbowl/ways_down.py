@@ -1,44 +1,91 @@
-"""Whether what falls through a cut reaches the floor: rays straight down through the finished solid."""
+"""Whether what falls through a cut comes back: rays straight down the finished solid, and down slopes."""
 
 import numpy as np
 import shapely
 
 from feederscrew.errors import FeederError
 from feederscrew.solidbowl import facets
+from feederscrew.solidbowl.stairs import SURE, TURN
 
 PLACES = 7  # along and across each cut
 EDGE = 5e-4  # [m] from the border of a cut, where no ray is cast
 LOWEST = 3e-3  # [m] over the floor: what lies there is the lead-in, where it grows from the floor
+STEP = 1e-3  # [m] inwards, from place to place down a slope
+NEAR = 5e-4  # [m] from a face: what lies on it
+ON_FLOOR, ON_TURN = "the floor", "the turn of the track before"
 
 
-def check_ways_down(made):
-    """Raise the fault of a cut below which there is something other than the floor.
+def ways_down(made):
+    """Return where what falls through each cut comes to lie.
 
     Parameters
     ----------
     made : BowlSolid
 
+    Returns
+    -------
+    dict of str to str
+        By the label of the cut: straight down on the floor; where the wall steps outwards down its slope too,
+        on the floor or on the turn before, upstream of every device.
+
     Raises
     ------
     FeederError
+        If it comes to lie on something else.
     """
-    plan = made.plan
+    plan, found = made.plan, {}
     if plan.stretch is None:
-        return
+        return found
     whole = facets.unplaced(made)
     for cut in plan.stretch.cuts:
-        for s, y in _places(cut, plan.width):
-            place = plan.way.places(plan.first + s, y)
-            met = facets.below(whole, place)
-            floor = float(plan.floor(np.hypot(*place[:2])))
-            if met is None or met > floor + LOWEST:
-                _refuse(cut, s, met)
+        lain = {_lies(plan, whole, cut, s, y) for s, y in _places(cut, plan.width)}
+        if lain:
+            found[cut.label] = " or ".join(sorted(lain))
+    return found
 
 
-def _refuse(cut, s, met):
+def _lies(plan, whole, cut, s, y):
+    """Where what falls at a place of a cut comes to lie."""
+    place = plan.way.places(plan.first + s, y)
+    met = facets.below(whole, place)
+    if met is not None and plan.stairs is not None:
+        place, met = _slid(plan, whole, place, met)
+    if met is not None and met <= float(plan.floor(np.hypot(*place[:2]))) + LOWEST:
+        return ON_FLOOR
+    if met is not None and plan.stairs is not None and _on_the_turn_before(plan, place, met):
+        return ON_TURN
+    raise _refused(cut, s, met)
+
+
+def _slid(plan, whole, place, met):
+    """Place and height where a part holds still that slides inwards from a place down steep slopes."""
+    r = np.hypot(*place[:2])
+    outward, steep = place / r * [1.0, 1.0, 0.0], np.tan(plan.stairs.slope - SURE)
+    place = np.array([*place[:2], met])
+    while r > STEP:
+        r -= STEP
+        over = r * outward + [0.0, 0.0, met + 0.2 * STEP]
+        lower = facets.below(whole, over)
+        if lower is None or lower > met - steep * STEP:
+            break
+        place, met = over, lower
+    return place, met
+
+
+def _on_the_turn_before(plan, place, met):
+    """Whether a place lies on the track a turn before, and that before the first device."""
+    way = plan.way
+    s = float(way.at(np.arctan2(place[1], place[0]) % -TURN - TURN))
+    y = (float(way.wall_radius(s)) - np.hypot(*place[:2])) / np.cos(way.bank)
+    off = met - float(way.height(s, y))
+    return -NEAR < y < plan.width + NEAR and abs(off) < NEAR + plan.material.plate and s < plan.first
+
+
+def _refused(cut, s, met):
     there = "nothing" if met is None else f"the track at {1e3 * met:.3g} mm"
     what = f"what falls through it {1e3 * s:.3g} mm behind the start of the devices meets {there}"
-    raise FeederError(f"devices: {cut.label}", what, "give a lower sizing.outlet_height, or fewer devices")
+    mend = "give a lower sizing.outlet_height, sizing.shape: stepped, or fewer devices"
+    return FeederError(f"devices: {cut.label}", what, mend)
 
 
 def _places(cut, width):

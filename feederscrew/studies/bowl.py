@@ -226,7 +226,8 @@ def _sheet(bowl, settings, depth, bulk, order):
     under, rules, moved = bowl.machine, bowl.sizing, stroke(bowl)
     made = springs(under)
     magnified = float(gain(moved.frequency, made.natural_frequency, under.damping))
-    fill = filling.full(bowl.track.radius, depth, bulk, rules)
+    room = None if order is None else order.size.room
+    fill = filling.full(room or bowl.track.radius, depth, bulk, rules)
     emptied = filling.emptying(under, moved.frequency, fill, rules)
     radii, turned = angles(under, bowl.track)
     force = float(made.stiffness * moved.springs / magnified)

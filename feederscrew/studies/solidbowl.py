@@ -10,7 +10,7 @@ from feederscrew.solidbowl import cuts, exact_body, exact_file, riding, segments
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.materials import STEEL, material
 from feederscrew.solidbowl.plan import CHORD, Asked, plan
-from feederscrew.solidbowl.ways_down import check_ways_down
+from feederscrew.solidbowl.ways_down import ways_down
 from feederscrew.tooling.hanging import hung, neck
 
 
@@ -47,6 +47,7 @@ def asked(settings, *, solid, material, chord, bed=None, step=False):
     return Asked(
         chord=chord,
         material=material,
+        shape=rules.shape,
         outlet_height=rules.outlet_height,
         outlet_angle=rules.outlet_angle,
         left=rules.hand == "left",
@@ -112,13 +113,14 @@ def solid(bowl, size, part, coming, asked, counted):
         return size, None
     made_of = material(asked.material, bowl.sizing)
     tooled = cuts.stretch(bowl.track, bowl.devices, coming.lying) if _tooled(bowl.devices) else None
+    asked = replace(asked, friction=bowl.friction.static)
     made = body(plan(size, bowl.track, made_of, tooled, asked, extents=np.ptp(part.vertices, axis=0)))
-    check_ways_down(made)
+    made = replace(made, falls=ways_down(made))
     if asked.bed is not None:
         made = replace(made, segments=segments.segments(made, asked.bed))
     if asked.step:
         made = replace(made, step=exact_file.step_file(made))
-    own = {"depth": made.plan.outlet_height, "turns": made.plan.turns}
+    own = {"depth": made.plan.outlet_height, "turns": made.plan.turns, "room": made.plan.room}
     return replace(size, **own, mass=made.mass, inertia=made.inertia), replace(
         made, riders=_riders(made.plan, bowl.devices, coming, counted)
     )

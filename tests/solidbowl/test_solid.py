@@ -19,7 +19,7 @@ from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.materials import material
 from feederscrew.solidbowl.measuring import heights, measures, track_width
 from feederscrew.solidbowl.plan import Asked, plan
-from feederscrew.solidbowl.ways_down import check_ways_down
+from feederscrew.solidbowl.ways_down import ways_down
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.devices.kinds import made as device_of
 
@@ -67,7 +67,7 @@ def test_one_closed_body(name):
     solid = body(planned(CHAINS[name]))
     assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
     assert facets.placed(solid).decompose().__len__() == 1
-    check_ways_down(solid)
+    ways_down(solid)
 
 
 @pytest.mark.parametrize("name", ["pla", "pa12"])
@@ -292,7 +292,7 @@ def test_a_turn_below_a_cut_is_found():
     made = planned(CHAINS["gap"])
     longer = replace(made, way=replace(made.way, end=made.way.end + 0.3), first=made.first + 0.3)
     with pytest.raises(FeederError, match="meets the track at"):
-        check_ways_down(body(longer))
+        ways_down(body(longer))
 
 
 def test_every_default_of_the_schema_is_read():

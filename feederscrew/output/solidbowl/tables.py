@@ -32,6 +32,8 @@ def document(solid):
         "solid_extent_mm": list(extent / MM),
         "solid_facets": len(solid.faces),
         "material": plan.material.name,
+        "shape": "cylinder" if plan.stairs is None else plan.stairs.shape,
+        "falls_to": solid.falls,
         "hand": "left" if plan.left else "right",
         "wall_mm": plan.material.wall / MM,
         "floor_mm": plan.material.floor / MM,

@@ -1,0 +1,172 @@
+"""A wall that steps outwards with the track: each turn lies beside the one before, and not above it.
+
+What falls through a cut meets a slope that leads it to the turn before, or to the floor: so there may be more
+than one turn of track. Seen in a section the wall of a turn stands upright, leads outwards as a slope, and
+stands upright again below the next turn.
+"""
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from feederscrew.errors import FeederError
+
+CYLINDER, STEPPED, CONICAL = SHAPES = ("cylinder", "stepped", "conical")
+TURN = 2.0 * np.pi
+BESIDE = 1e-3  # [m] by which the next turn stands further out than the track is wide
+SLOPE, SURE = np.radians(40.0), np.radians(5.0)  # least slope, and how much steeper than parts hold still on
+FLOOR = 0.5  # of the bowl's radius: no floor is smaller
+LIFT = 3e-4  # [m] by which the wall ends higher than the floor below it
+ABOVE = 5e-3  # [m] of upright wall over the tallest part
+
+
+@dataclass(frozen=True)
+class Stairs:
+    """Section of the wall between the last turn of the track and the one before; lengths [m]."""
+
+    shape: str
+    step: float  # outwards
+    flare: float  # [1] by which the wall's radius grows over the length of the track
+    slope: float  # [rad] of what leads back inwards
+    upright: float  # of the wall over the turn before
+    below: float  # of upright wall below the last turn, at least
+    most: float  # length of track that the bowl has room for
+
+    def sections(self, way, theta, low):
+        """Return the corners (M, K, 2) [m] of the wall's inner side: radius and height, from below upwards.
+
+        Parameters
+        ----------
+        way : Way
+        theta : (M,) float [rad]
+            From a turn before the outlet to the outlet.
+        low : float [m]
+            Height below which no wall is needed.
+        """
+        last = way.at(-TURN * np.arange(1, 100))
+        turns = int(np.argmax(np.tan(way.climb) * last < low)) + 1
+        rows, lower = [], []
+        for k in range(turns, -1, -1):
+            s = way.at(np.asarray(theta) - TURN * k)
+            lower = np.column_stack([way.wall_radius(s), np.tan(way.climb) * s])
+            rows.append(lower)
+        corners = []
+        for foot, above in itertools.pairwise(rows):
+            step, pitch = (above - foot).T
+            slide = step * np.tan(self.slope)
+            high = np.clip(pitch - slide - self.below, 0.0, self.upright)
+            slide = np.minimum(slide, pitch - high)
+            corners += [foot, foot + np.column_stack([0.0 * high, high]),
+                        np.column_stack([above[:, 0], foot[:, 1] + high + slide])]  # fmt: skip
+        return np.stack([*corners, rows[-1]], axis=1)
+
+
+def stairs(track, made_of, tooled, asked, extents):
+    """Return the steps of a wall; None of a cylinder.
+
+    Parameters
+    ----------
+    track : Track
+    made_of : Material
+    tooled : Stretch or None
+    asked : Asked
+    extents : (3,) float [m]
+        Of the part along its axes.
+
+    Returns
+    -------
+    Stairs or None
+
+    Raises
+    ------
+    FeederError
+        If the track does not rise enough for them, or devices are to stand on a wall that leans.
+    """
+    if asked.shape == CYLINDER:
+        return None
+    if asked.shape == CONICAL and tooled is not None:
+        what = "conical leans outwards, and devices are computed by an upright wall"
+        raise FeederError("sizing.shape", what, "take stepped")
+    step = track.width * np.cos(track.bank) + BESIDE
+    flare = -np.log1p(-step / track.radius) / TURN
+    tallest = float(max(extents)) if tooled is None else tooled.tallest
+    hangs = tooled is not None and any(cut.hangs for cut in tooled.cuts)
+    slope = max(SLOPE, float(np.arctan(asked.friction)) + SURE)
+    pitch = np.tan(track.climb) * step / flare
+    below = 3.0 * made_of.plate + (float(max(extents)) + ABOVE if hangs else 0.0)
+    if asked.shape == CONICAL:
+        slope, below, upright = float(np.arctan2(pitch, step)), 0.0, 0.0
+    else:
+        upright = tallest + ABOVE
+        _check(pitch, upright + step * np.tan(slope) + below, step / flare)
+    return Stairs(
+        asked.shape,
+        float(step),
+        float(flare),
+        slope,
+        upright,
+        below,
+        float((1.0 - FLOOR) * track.radius / flare),
+    )
+
+
+def _check(pitch, needed, length):
+    if pitch < needed:
+        least = np.ceil(10.0 * np.degrees(np.arctan(needed / length))) / 10.0
+        what = f"a turn rises {1e3 * pitch:.4g} mm, and a stepped wall needs {1e3 * needed:.4g} mm"
+        raise FeederError("track.climb", what, f"give {least:.4g} deg, or sizing.shape: cylinder")
+
+
+def shell(plan, kit):
+    """Return the wall of a stepped or conical bowl, with what closes it below its outlet.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    kit : module
+        ``facets`` or ``exact_body``.
+
+    Returns
+    -------
+    list of bodies [mm]
+    """
+    way, halves = plan.way, (-TURN, -0.5 * TURN, 0.0)
+    found = []
+    for start, end in itertools.pairwise(halves):
+        theta = np.linspace(start, end, plan.segments // 2 + 1 if not kit.SMOOTH else 33)
+        inner = plan.stairs.sections(way, theta, plan.underside - 2e-3)
+        inner = np.concatenate([inner, inner[:, -1:]], axis=1)
+        inner[:, -1, 1] = plan.top
+        outer = inner + [plan.material.wall, 0.0]
+        outer[:, 1:-2, 1] -= plan.material.wall
+        outer[:, 0::3, 1] = np.where(
+            np.arange(outer.shape[1])[0::3] > 0, outer[:, 0::3, 1], inner[:, 0::3, 1]
+        )
+        sections = np.concatenate([outer, inner[:, ::-1]], axis=1)
+        sine = np.where(theta == -TURN, 0.0, np.sin(theta))  # the two ends meet there
+        towards = np.stack([np.cos(theta), sine], axis=-1)
+        frames = np.stack([np.zeros_like(towards), towards], axis=1)
+        found.append(kit.swept([(sections, frames)]))
+    return [kit.above(kit.united(found), plan.underside + LIFT), _end(plan, kit)]
+
+
+def _end(plan, kit):
+    """The plate that closes the wall where its last turn ends, below the outlet."""
+    inner = plan.stairs.sections(plan.way, np.zeros(1), plan.underside - 2e-3)[0]
+    low, rest = inner[-4], inner[-4:]
+    under = plan.outlet_height - 0.5 * plan.material.plate
+    half = 0.5 * plan.material.wall
+    ring = [[low[0] + half, low[1]], *(rest[1:3] + [half, -half]), [rest[3][0] + half, under],
+            [low[0] + half, under]]  # fmt: skip
+    axes = np.column_stack([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+    return kit.plank(shapely.Polygon(ring), plan.material.wall, axes, [0.0, 0.0, 0.0])
+
+
+def floor_edge(plan):
+    """Return the edge (K, 2) [m] of the floor, within the wall, seen from above."""
+    theta = np.linspace(-TURN, 0.0, plan.segments + 1)[:-1]
+    inner = plan.stairs.sections(plan.way, theta, plan.underside - 2e-3)
+    r = np.array([np.interp(0.0, one[:, 1], one[:, 0]) for one in inner]) + 0.3 * plan.material.wall
+    return np.column_stack([r * np.cos(theta), r * np.sin(theta)])
