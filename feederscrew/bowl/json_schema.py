@@ -213,6 +213,9 @@ _SENSOR = _mapping(
 )
 _DEVICES = {  # what is written after 'kind:', by the dimension of the kind
     "length": _LENGTH,
+    "angle": _quantity("angle"),
+    "climb": _mapping(climb=_quantity("angle")),
+    "jet": _mapping(nozzle=_LENGTH, pressure=_quantity("pressure"), height=_LENGTH),
     "span": _mapping(from_=_LENGTH, to=_LENGTH),
     "sensor": _SENSOR,
     "blade": {"anyOf": [_LENGTH, _BLADE]},

@@ -22,9 +22,12 @@ def entering(found, rule):
 
 
 def queued(found, row, rule, gap, fill):
-    """Return parts on a length of track before the devices [1/m]: all that stay on it, end to end."""
+    """Return parts on a length of track before the devices [1/m]: all that stay on it.
+
+    They come end to end, or as far apart as the devices need.
+    """
     length = mean_length(found, rule)
-    return float(fill / ((found.lengths[row] if np.isnan(length) else length) + gap))
+    return float(fill / ((found.lengths[row] if np.isnan(length) else length) + max(gap, found.gap)))
 
 
 def efficiency(found, row, rule):

@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew import check
+from feederscrew.rates.spacing import needed
 from feederscrew.rates.tipping import TrackTipping, marked
 from feederscrew.tooling import orientations as tooling
 from feederscrew.tooling.clearing import seconds
-from feederscrew.tooling.fates import course
+from feederscrew.tooling.fates import at_entry, course
 from feederscrew.tooling.orientations import Orientation
 
 
@@ -29,6 +30,7 @@ class Orientations:
     fates: tuple[str, ...]  # (M,) what becomes of most: carried, returned or stopped
     stops: np.ndarray  # (M, stations) share of each that stands before each station
     clearing: np.ndarray  # (M,) [s] how long what devices return blocks the track, in the mean of the row
+    gap: float = 0.0  # [m] free between parts at the entry, which the devices need
     tipping: TrackTipping | None = None  # on the track of a bowl; None where no drive is known
 
     @property
@@ -134,6 +136,7 @@ def orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None):
 def along(lying, aspects, chain=(), sigma=0.0, bowl=None):
     """Return what becomes of known orientations; the rest as for ``orientations``."""
     lying, tips = (lying, None) if bowl is None else marked(lying, bowl)
+    lying = at_entry(lying, chain)
     found = course(chain, lying, sigma)
     rules = {rule: np.array([one.chances[rule] for one in lying]) for rule in aspects.chances}
     return Orientations(
@@ -150,6 +153,7 @@ def along(lying, aspects, chain=(), sigma=0.0, bowl=None):
         fates=found.fates,
         stops=found.stops,
         clearing=check.frozen(_clearing(found, lying, chain, bowl)),
+        gap=0.0 if bowl is None else needed(chain, lying, bowl),
         tipping=tips,
     )
 

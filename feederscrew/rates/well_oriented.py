@@ -182,7 +182,7 @@ def _rate(found, speed, target, rule, gap, fill):
         efficiency=share,
         velocity=speed,
         pitch=fill / density,
-        gap=gap,
+        gap=max(gap, found.gap),
         probability=probability,
         through=through,
         fill=fill,
@@ -260,8 +260,10 @@ def leaving_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
     """Return the same, 0 where no part leaves so."""
     _check_rule(found, rule)
     row = _row(found, target)
-    share = efficiency(found, row, rule)
-    return min(share * queued(found, row, rule, gap, fill), 1.0 / float(fed(found, row).length))
+    share, density = efficiency(found, row, rule), queued(found, row, rule, gap, fill)
+    speed, (blocked, _) = found.lying[row].speed, _blocked(found, rule)
+    density = _offered(speed * density, blocked) / speed if blocked > 0.0 and speed > 0.0 else density
+    return min(share * density, 1.0 / float(fed(found, row).length))
 
 
 def _check_rule(found, rule):

@@ -17,6 +17,7 @@ from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.rate import arriving
 from feederscrew.tooling.devices.kinds import KINDS
+from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating.chain import FINE, STEP, Wishes
 from feederscrew.tooling.isolating.design import MARGIN, design, place
 from feederscrew.tooling.isolating.hole_search import VERDICTS, HoleSearch
@@ -136,6 +137,7 @@ def tooling(
     """
     found = arriving(part, bowl, rule) if known is None else known
     every, _ = marked(named(orientations(part, found, bowl.track)), bowl)
+    every = at_entry(every, bowl.devices)
     if rule not in found.chances:
         raise ArgumentError(
             f"rule {rule}", "has no probabilities of this part", hint(rule, list(found.chances))

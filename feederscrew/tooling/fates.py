@@ -130,7 +130,7 @@ def course(devices, every, sigma=0.0):
         told = [verdict(device, one, every, sigma) for one in here]
         ways.append([_way(device, k, one, found, states) for k, (one, found) in enumerate(zip(here, told))])
         verdicts.append(told)
-        here = here + states[len(here) :]
+        here = [device.onward(one) for one in here] + states[len(here) :]
         if device.hangs:
             here = [astride(one, device.span) for one in here]
     return DeviceFlow(
@@ -141,6 +141,15 @@ def course(devices, every, sigma=0.0):
         came=tuple(came),
         starts=check.frozen(np.array([0.0 if one.returned else 1.0 for one in every])),
     )
+
+
+def at_entry(every, devices):
+    """Return orientations as they come: where devices that lean the track come first, they begin there."""
+    for device in devices:
+        if not device.leans:
+            break
+        every = tuple(device.onward(one) for one in every)
+    return tuple(every)
 
 
 def _way(device, place, one, found, states):

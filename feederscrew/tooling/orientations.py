@@ -46,6 +46,9 @@ class Orientation:
     carry: float = 0.0  # [m] it travels on unsupported before it has tipped: 0 of one that is only placed
     carry_ahead: float = 0.0  # [m] the same over an edge across the track
     grip: float = 0.0  # [1] friction of the track it travels on: 0 of one that is only placed
+    speed: float = 0.0  # [m/s] at which it travels
+    swing: float = 0.0  # [m/s] amplitude of the track's velocity along it
+    wall_grip: float = 0.0  # [1] friction of the wall
     climbs: float = 0.0  # [m] height of an edge that the speed of the drive lifts it over
 
     @property
@@ -74,6 +77,11 @@ class Orientation:
         """What of it touches the track: a Footprint."""
         whole = touching.footprint(self.posture, self.heading)
         return touching.within(whole, self.distance, self.track.radius, self.track.width)
+
+    @cached_property
+    def foot_reach(self):
+        """How far its foot reaches from its weight towards the free edge [m]."""
+        return float(self.foot.corners[:, 1].max()) + self.shift
 
     @cached_property
     def standing(self):
@@ -130,7 +138,7 @@ def placed(found):
 
 
 def _placed(one):
-    other = replace(one, carry=0.0, carry_ahead=0.0, grip=0.0, climbs=0.0)
+    other = replace(one, carry=0.0, carry_ahead=0.0, grip=0.0, speed=0.0, swing=0.0, climbs=0.0)
     known = {name for name, value in vars(Orientation).items() if isinstance(value, cached_property)}
     vars(other).update({name: value for name, value in vars(one).items() if name in known})
     return other
@@ -191,6 +199,7 @@ def travelling(found, bowl):
     or even carry it on as it does what slides.
     """
     along, track = speed(bowl), bowl.track
+    swing = 2.0 * np.pi * bowl.drive.frequency * bowl.drive.amplitude * np.cos(bowl.drive.vibration_angle)
     held = np.tan(track.climb) <= bowl.friction.wall * np.tan(track.bank)
     return tuple(
         replace(
@@ -198,6 +207,9 @@ def travelling(found, bowl):
             carry=FALLEN * along * _tipping_time(one, _greatest(one), bowl.gravity),
             carry_ahead=FALLEN * along * _tipping_time(one, gyration(one, 0.5 * np.pi), bowl.gravity),
             grip=float(bowl.friction.static),
+            speed=along,
+            swing=swing,
+            wall_grip=float(bowl.friction.wall),
             climbs=_climbs(bowl),
             may_roll_back=bool(not held and rolls_across(one)),
         )

@@ -136,7 +136,7 @@ def _after(device, one, found, every, known):
         return every[max(found.onto, key=lambda place: place[1])[0]]
     if found.hangs:
         return hung(one, device.span, known)
-    return astride(one, device.span) if device.hangs and found.passes > 0.0 else one
+    return astride(one, device.span) if device.hangs and found.passes > 0.0 else device.onward(one)
 
 
 def until_returned(devices, one, every):

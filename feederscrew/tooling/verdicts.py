@@ -3,15 +3,14 @@
 import numpy as np
 import shapely
 
+from feederscrew.tooling import drift, sensor_views, turning
 from feederscrew.tooling import foot as feet
-from feederscrew.tooling import sensor_views, turning
-from feederscrew.tooling.devices.base import UNSURE, Verdict, share
+from feederscrew.tooling.devices.base import STANDARD_GRAVITY, UNSURE, Verdict, share
 from feederscrew.tooling.falling_through import falls_through
 from feederscrew.tooling.hanging import Hanging, hanging_margin, head_first
 from feederscrew.tooling.holding import leans, may_lay_over, may_wedge, rides, widest
 
 WORN = 2.5e-4  # [m] what an opening holds by less does not hold a part up
-STANDARD_GRAVITY = 9.80665  # [m/s2]
 GRIP = 0.6  # [1] of a dry steel track
 FAR = 10.0  # [m] an opening goes on so far below the track and behind the wall
 
@@ -64,6 +63,10 @@ class Meeting:
     def differs(self, other, sees):
         """Return by how much [m] a sensor sees it differ from another orientation."""
         return sensor_views.difference(self.one, other, sees)
+
+    def force_to_clear(self, wide, height):
+        """Return the least force [N] over a way along the track that takes it off it, at a height [m]."""
+        return drift.force_to_clear(self.one, wide, height)
 
     def blown(self, force, seconds):
         """Return how far [m] a force [N] for some time [s] carries it over a track that stands still.

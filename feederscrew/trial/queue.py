@@ -7,6 +7,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.dropping.kernel import body
+from feederscrew.rates import spacing
 from feederscrew.tooling.hanging import Hanging
 from feederscrew.trial import course, crowd, runs, starts, whereabouts
 from feederscrew.trial.kernel.motion import BEHIND, BELOW
@@ -112,6 +113,7 @@ class _Queue:
         room = min(1.5 * longest * parts + 2.0 * longest, PART_OF_TURN * 2.0 * np.pi * bowl.track.radius)
         self.track = crowd.crowded(bowl, every, bowl.devices, room)
         self.outlet, self.windows = self.track.outlet / known.length, self.track.windows / known.length
+        self.apart = spacing.needed(bowl.devices, every, bowl) / known.length
         self.crowd = crowd.PartsOnTrack(known, self.track, parts)
         self.looks = Looks(poses, solid, length, self.principal, bowl.track.radius)
         self.mark, self.since, self.on_others = np.zeros(parts), np.zeros(parts), np.zeros(parts, bool)
@@ -136,7 +138,7 @@ class _Queue:
         while self.waiting:
             state, length = self.fresh()
             rear, front, _ = whereabouts.extents(state, self.known.solid.corners, self.known.radius)
-            gap = 0.0 if self.poured else 2.0 * GAPS * self.rng.random() * length
+            gap = 0.0 if self.poured else self.apart + 2.0 * GAPS * self.rng.random() * length
             place = min(end, 0.0) - gap - front
             if place + rear < self.track.start / self.known.length:
                 break

@@ -67,7 +67,7 @@ def stage(device, standing, track, every, start=0.0, slopes=()):
     """
     size = size_of(every)
     blows = air.along([(standing, start, 0.0)], track, every)
-    blows = replace(blows, slopes=(*((-FAR, one.climb, one.bank) for one in slopes), *blows.slopes))
+    blows = replace(blows, slopes=(*_before(slopes), *blows.slopes))
     begin, beyond = start - (0.5 + SPARE) * size, passed(standing, start, size)
     ends = begin - BEFORE * size, beyond + AFTER * size
     return Stage(
@@ -77,11 +77,17 @@ def stage(device, standing, track, every, start=0.0, slopes=()):
     )  # fmt: skip
 
 
-def plain(device, track, every, length):
+def plain(device, track, every, length, slopes=()):
     """Return a stretch of the bare track, from 0 to ``length`` [m]."""
     size = size_of(every)
     bare = built((), track, size, (-BEFORE * size, length + AFTER * size))
-    return Stage(device, *bare, begin=0.0, exit=length, size=size, width=track.extent)
+    blows = replace(air.STILL, slopes=_before(slopes))
+    return Stage(device, *bare, begin=0.0, exit=length, size=size, width=track.extent, air=blows)
+
+
+def _before(slopes):
+    """Slopes that began before what is drawn."""
+    return tuple((-FAR, one.climb, one.bank) for one in slopes)
 
 
 def passed(standing, start, size):

@@ -24,6 +24,6 @@ def station(device, track, every, start=0.0, slopes=()):
     return staging.stage(device, device.standing(track, every), track, every, start, slopes)
 
 
-def plain(track, every, length):
-    """Return a stretch of the bare track, from 0 to ``length`` [m], a Stage."""
-    return staging.plain(BARE, track, every, length)
+def plain(track, every, length, slopes=()):
+    """Return a stretch of the bare track, from 0 to ``length`` [m], a Stage; slopes as for ``station``."""
+    return staging.plain(BARE, track, every, length, slopes)

@@ -10,7 +10,7 @@ from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.devices.nozzles import Nozzles, thrust
-from feederscrew.tooling.orientations import orientations, travelling
+from feederscrew.tooling.orientations import orientations, speed, travelling
 from feederscrew.tooling.verdicts import verdict
 from feederscrew.trial import air, course, crowd, runs
 from feederscrew.trial.kernel import jets
@@ -31,6 +31,16 @@ def test_the_trial_blows_off_what_a_sorter_sees_differ():
     for k, fate in zip(seen.entered, seen.fates):
         said = verdict(sorter, EVERY[k], EVERY)
         assert said.sure and fate == (course.PASSED if said.passes else course.RETURNED), EVERY[k].name
+
+
+def test_a_steady_jet_and_a_steeper_way_do_in_the_trial_what_they_say():
+    chain = [made("separation", "here", angle=np.radians(-6.0))]
+    chain += [made("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)]
+    tall = next(k for k, one in enumerate(EVERY) if one.length > 0.0119 and one.height > 0.0199)
+    seen = course.course(PART, BOWL, EVERY, [EVERY.index(ALONG), tall], chain, parts=2)
+    assert seen.fates.tolist() == [course.PASSED, course.RETURNED] and seen.ended[1] == 2
+    steep = replace(BOWL, track=replace(BOWL.track, climb=np.radians(-6.0)))
+    assert seen.velocities[0] == pytest.approx(speed(steep), rel=0.03)  # it comes first: from the entry on
 
 
 def test_a_sensor_of_heights_lets_what_is_as_high_pass():

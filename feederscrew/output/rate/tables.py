@@ -15,7 +15,7 @@ def document(study):
     found, rule = study.rate, study.rule
     known, row = found.orientations, found.row
     return {
-        **columns.part(study.part, (*study.aspects.warnings, *stopping(found))),
+        **columns.part(study.part, (*study.aspects.warnings, *stopping(found), *spaced(study))),
         **_range("parts_per_minute", found.parts, PER_MINUTE),
         "aspect": known.aspects[row],
         "heading_deg": known.headings[row] / DEG,
@@ -100,7 +100,7 @@ def remarks(study):
     found = study.rate
     if found.velocity.value <= 0.0:
         return ["the part does not travel up the track: see feeder convey"]
-    turned = [*stopping(found), *_tipping(found), *_rolling(found), *_turned(study.devices)]
+    turned = [*stopping(found), *spaced(study), *_tipping(found), *_rolling(found), *_turned(study.devices)]
     if found.orientations.lying[found.row].turns_over:
         return turned
     if found.through == 0.0 and found.efficiency > 0.0:
@@ -128,6 +128,20 @@ def stopping(found):
                 "efficiency and rate hold between jams only"
             )
     return said
+
+
+def spaced(study):
+    """Return which devices need more room between parts than they come with, a sentence each."""
+    free = study.rate.orientations.gap
+    if study.rate.gap > free or not free > 0.0:
+        return []
+    kinds = units.listed(
+        [one.kind for one in study.devices if one.gap(study.rate.orientations.lying[0], 0.0) > 0.0]
+    )
+    return [
+        f"{kinds} looks at one part at a time: the rate is that of parts that come {free / MM:.3g} mm apart "
+        "- put a separation before it, or feed fewer"
+    ]
 
 
 def _tipping(found):

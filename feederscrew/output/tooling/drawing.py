@@ -22,6 +22,8 @@ COLOURS = {
     "SENSOR": 3,
     "STEP": 6,
     "LEDGE": 6,
+    "NOZZLE": 3,
+    "SLOPE": 6,
 }
 PENS = {  # of the SVG: stroke, fill, dashes
     "TRACK": ("#22303c", "#eef1f4", ""),
@@ -30,6 +32,8 @@ PENS = {  # of the SVG: stroke, fill, dashes
     "GATE": ("#0072b2", "#0072b2", ""),
     "OPENING": ("#0072b2", "#ffffff", ""),
     "SENSOR": ("#009e73", "none", "2 1"),
+    "NOZZLE": ("#009e73", "none", "1 1"),
+    "SLOPE": ("#cc79a7", "#cc79a7", "2 1"),
     "STEP": ("#cc79a7", "#cc79a7", ""),
     "LEDGE": ("#cc79a7", "#cc79a7", ""),
     "GHOST": ("#7a8793", "none", "1.5 1"),

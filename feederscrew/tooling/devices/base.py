@@ -13,6 +13,7 @@ from feederscrew.tooling.devices.pieces import Blade, Hole, Standing
 CLOSE = 1e-9  # [m] a part this much over a limit still passes
 UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
 MM = units.factor("mm", "length")
+STANDARD_GRAVITY = 9.80665  # [m/s2]
 RETURNED, STOPPED, CARRIED = "returned", "stopped", "carried"  # what becomes of a part at a device
 LONG = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
 ROOM = 1.3  # a device has so many lengths of the longest part to itself
@@ -72,6 +73,7 @@ class Device:
     carries: ClassVar[bool] = False  # whether it leaves less of a foot that goes on over it
     feature: ClassVar[str] = ""  # what it measures of a part, in the part's own terms
     picture: ClassVar[str] = ""  # where a part at it is seen from: 'side', 'above', 'ahead', 'turned'
+    leans: ClassVar[bool] = False  # whether the track leans otherwise from it on
     layer: ClassVar[str] = ""  # of its edge in a drawing, where it is none of cuts and gates
 
     @classmethod
@@ -142,6 +144,14 @@ class Device:
             Of the track.
         """
         return None
+
+    def onward(self, one):
+        """Return an orientation that it lets pass as it goes on behind it."""
+        return one
+
+    def gap(self, one, speed):
+        """Return the free way [m] that it needs between parts that come with some speed [m/s]."""
+        return 0.0
 
     def lower(self, every):
         """Return the track that goes on lower, (drop, from where off the wall) [m], or None."""

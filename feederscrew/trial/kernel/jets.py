@@ -39,7 +39,10 @@ def blow(surface, solid, floor, crowd, n, time, dt):
 
 @apart
 def _in_jet(jet, solid, state, turn, blown):
-    """Add force, and torque about the body's axes, of one jet to ``blown``."""
+    """Add force, and torque about the body's axes, of one jet to ``blown``.
+
+    A ray loses what of its momentum goes into the facet, and flows off along it.
+    """
     a, b, c = jet[TOWARDS], jet[TOWARDS + 1], jet[TOWARDS + 2]
     x, y, z = state[X] - jet[0], state[X + 1] - jet[1], state[X + 2] - jet[2]
     ahead = a * x + b * y + c * z
@@ -61,13 +64,16 @@ def _in_jet(jet, solid, state, turn, blown):
             c + wider * (p * u[2] + q * v[2]),
         )  # fmt: skip
         spot, way = _turned(turn, spot), _turned(turn, way)
-        met = _first(solid, spot, way)
+        met, facet = _first(solid, spot, way)
         if 0.0 <= met < jet[REACH]:
-            push, force = jet[THRUST] / RAYS, _turned(turn, (a, b, c))
+            n = solid.normals[facet]
+            into = way[0] * n[0] + way[1] * n[1] + way[2] * n[2]
+            size = math.sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2])
+            push = jet[THRUST] / RAYS * into / size  # below 0: against the facet
             h = (spot[0] + met * way[0], spot[1] + met * way[1], spot[2] + met * way[2])
-            blown[0] += push * a
-            blown[1] += push * b
-            blown[2] += push * c
+            force = (n[0], n[1], n[2])
+            for e in range(3):
+                blown[e] += push * (turn[3 * e] * n[0] + turn[3 * e + 1] * n[1] + turn[3 * e + 2] * n[2])
             blown[3] += push * (h[1] * force[2] - h[2] * force[1])
             blown[4] += push * (h[2] * force[0] - h[0] * force[2])
             blown[5] += push * (h[0] * force[1] - h[1] * force[0])
@@ -95,8 +101,8 @@ def _turned(turn, p):
 
 @compiled
 def _first(solid, spot, way):
-    """How far along a ray it meets the body first; infinite where it does not."""
-    best = math.inf
+    """How far along a ray it meets the body first, infinite where it does not, and which facet."""
+    best, facet = math.inf, 0
     for f in range(len(solid.triangles)):
         n = solid.normals[f]
         slope = way[0] * n[0] + way[1] * n[1] + way[2] * n[2]
@@ -107,8 +113,8 @@ def _first(solid, spot, way):
         if fall > 0.0 or fall <= best * slope:  # behind the mouth, or farther than another
             continue
         if _through(solid, f, a, spot, way):
-            best = fall / slope
-    return best
+            best, facet = fall / slope, f
+    return best, facet
 
 
 @compiled

@@ -1,0 +1,37 @@
+"""How far apart parts have to come for devices that look at one part at a time."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from feederscrew.tooling.orientations import speed
+
+
+def needed(chain, lying, bowl):
+    """Return the free way [m] between parts at the track's entry that the devices need.
+
+    Parameters
+    ----------
+    chain : sequence of Device
+    lying : sequence of Orientation
+        Of the part.
+    bowl : Bowl
+
+    Returns
+    -------
+    float
+        0 where they need none. Behind a stretch on which parts travel r times as fast, their pitch is r times
+        as large.
+    """
+    here, gap, first = bowl, 0.0, speed(bowl)
+    shortest = min(one.length for one in lying)
+    for device in chain:
+        if device.leans:
+            track = device.onward(lying[0]).track
+            here = replace(here, track=replace(here.track, climb=track.climb))
+        now = speed(here)
+        free = max(device.gap(one, now) for one in lying)
+        if free > 0.0:
+            ratio = now / first if first > 0.0 else np.inf
+            gap = max(gap, (free + shortest) / ratio - shortest if ratio > 0.0 else np.inf)
+    return float(gap)

@@ -1,0 +1,84 @@
+"""Stretches of the track that lean otherwise: bank, and separation on a steeper way."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feederscrew.tooling.devices import values
+from feederscrew.tooling.devices.base import Device, room_of
+from feederscrew.tooling.devices.pieces import Slope, Standing
+
+STEEPEST = math.radians(45.0)  # [rad]
+LINE = 2e-4  # [m] of a line in a drawing
+
+
+@dataclass(frozen=True)
+class _Lean(Device):
+    angle: float = math.nan  # [rad]
+
+    def edge(self, start, length, width):
+        """Return where it begins, unrolled: a line across the track."""
+        return np.array([[start, 0.0], [start + LINE, 0.0], [start + LINE, width], [start, width]])
+
+    def told(self):
+        return {"angle_deg": math.degrees(self.angle)}
+
+    @property
+    def label(self):
+        return f"{self.kind} {self.text}"
+
+
+@dataclass(frozen=True)
+class Bank(_Lean):
+    """Another bank from here on."""
+
+    kind = "bank"
+    dimension = "angle"
+    example = "6 deg"
+    meaning = (
+        "the track is banked towards the wall by so much from here on; listed first, from the track's entry: "
+        "parts on their round side are then held at the wall where friction.wall tan(bank) > tan(climb)"
+    )
+    leans = True
+    layer = "SLOPE"
+
+    @classmethod
+    def read(cls, entry):
+        return {"angle": values.within({entry.key: entry}, entry.key, "angle", 0.0, STEEPEST)}
+
+    def onward(self, one):
+        """Return an orientation as it goes on: its weight meets the track nearer to the wall."""
+        track = replace(one.track, bank=self.angle)
+        held = math.tan(track.climb) <= one.wall_grip * math.tan(self.angle)
+        return replace(one, track=track, may_roll_back=one.may_roll_back and not held)
+
+    def standing(self, track, every):
+        return Standing(0.5 * room_of(every), slopes=(Slope(0.0, bank=self.angle),))
+
+
+@dataclass(frozen=True)
+class Separation(_Lean):
+    """A steeper way down from here on, on which parts travel faster and so come apart."""
+
+    kind = "separation"
+    dimension = "climb"
+    example = "{climb: -4 deg}"
+    meaning = (
+        "the track climbs by so much from here on, below 0 it goes down: parts travel faster and come apart, "
+        "as a sorter needs"
+    )
+    leans = True
+    layer = "SLOPE"
+
+    @classmethod
+    def read(cls, entry):
+        given = values.mapping(entry, ("climb",), "write {climb: -4 deg}")
+        return {"angle": values.within(given, "climb", "angle", -STEEPEST, STEEPEST)}
+
+    def onward(self, one):
+        """Return an orientation as it goes on, on the steeper track."""
+        return replace(one, track=replace(one.track, climb=self.angle))
+
+    def standing(self, track, every):
+        return Standing(room_of(every), slopes=(Slope(0.0, climb=self.angle),))

@@ -1,0 +1,80 @@
+"""Air that blows all the time: jet."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from feederscrew.tooling.devices import values
+from feederscrew.tooling.devices.base import MM, RETURNED, UNSURE, Device, room_of
+from feederscrew.tooling.devices.nozzles import SPREAD, Nozzles
+from feederscrew.tooling.devices.pieces import Standing
+
+CLEAR = 2.0  # times the force that just moves a part off: within it, to either side, nothing is sure
+BORE, PRESSURE = 2e-3, 2e4  # [m], [Pa]
+
+
+@dataclass(frozen=True)
+class SteadyJet(Device):
+    """A nozzle in the wall that blows all the time: it moves off what offers it enough area at its height."""
+
+    nozzle: float = BORE  # [m]
+    pressure: float = PRESSURE  # [Pa] above the ambient
+    height: float = math.nan  # [m] of the nozzle over the track
+
+    kind = "jet"
+    dimension = "jet"
+    example = "{nozzle: 2 mm, pressure: 0.2 bar, height: 8 mm}"
+    meaning = (
+        "nozzle in the wall that blows all the time, at a height over the track: returns what it moves over "
+        "the free edge while it passes; sure where the force is twice as large or half as large as that takes"
+    )
+    feature = "area that it offers a jet"
+    picture = "above"
+    layer = "NOZZLE"
+
+    @classmethod
+    def read(cls, entry):
+        return values.nozzle(entry, needed=("nozzle", "pressure", "height"))
+
+    @property
+    def jet(self):
+        """Its Nozzles, one."""
+        return Nozzles(self.nozzle, self.pressure, self.height)
+
+    def fate(self, met):
+        return RETURNED
+
+    def factor(self, met):
+        """Return its force on an orientation over the one that just moves it off the track [1]."""
+        one = met.one
+        wide = self.nozzle + SPREAD * one.width + one.length
+        return self.jet.force(one, met.every or (one,)) / met.force_to_clear(wide, self.height)
+
+    def judged(self, met):
+        factor = self.factor(met)
+        way = met.one.track.width - met.one.distance
+        margin = way * (1.0 - factor)
+        if 1.0 / CLEAR < factor < CLEAR:
+            margin = 0.0 if margin >= 0.0 else -UNSURE
+        return met.verdict(max(margin, -way))
+
+    def standing(self, track, every):
+        room = room_of(every)
+        return Standing(room, jets=self.jet.jets(0.5 * room, every))
+
+    def edge(self, start, length, width):
+        """Return its beam, unrolled."""
+        middle, near = start + 0.5 * length, 0.5 * self.nozzle
+        far = near + SPREAD * width
+        return np.array(
+            [[middle - near, 0.0], [middle + near, 0.0], [middle + far, width], [middle - far, width]]
+        )
+
+    def told(self):
+        return {"nozzle_mm": self.nozzle / MM, "pressure_bar": self.pressure / 1e5,
+                "height_mm": self.height / MM, "thrust_N": self.jet.thrust}  # fmt: skip
+
+    @property
+    def label(self):
+        return f"{self.kind} {self.text}"

@@ -1,0 +1,104 @@
+"""Jets that blow all the time, stretches that lean otherwise, and the room that a sorter needs."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.errors import ConfigError
+from feederscrew.rates import spacing
+from feederscrew.resting.aspects import find
+from feederscrew.tooling import drift
+from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.fates import at_entry
+from feederscrew.tooling.orientations import orientations, speed, travelling
+from feederscrew.tooling.verdicts import Meeting, verdict
+
+BOWL = bowls.read(None, ["track.width=30 mm"])
+PART = shapes.part(shapes.box(20, 12, 5))
+EVERY = travelling(orientations(PART, find(PART), BOWL.track), BOWL)
+FLAT = next(one for one in EVERY if one.length > 0.0199 and one.height < 0.0051)
+TALL = next(one for one in EVERY if one.length > 0.0119 and one.height > 0.0199)
+
+
+@pytest.mark.parametrize(("push", "found"), [(0.5, 1.60), (1.0, 3.88), (2.0, 10.1)])
+def test_the_drift_is_that_of_coulomb_friction_over_a_sine(push, found):
+    """Solved by hand from v = a pi V / (2 mu g ln(4 V / v)), mu 0.6, V 60 mm/s."""
+    assert 1e3 * drift.speed(push, 0.6, 0.06) == pytest.approx(found, rel=0.005)
+
+
+def test_what_friction_cannot_hold_does_not_drift_but_slides():
+    assert drift.speed(0.6 * 9.81, 0.6, 0.06) == math.inf
+    assert drift.speed(1.0, 0.6, 0.0) == 0.0 and drift.speed(-1.0, 0.6, 0.06) == 0.0
+
+
+def test_a_jet_over_what_lies_flat_blows_off_what_stands():
+    jet = made("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)
+    assert verdict(jet, FLAT, EVERY).passes == 1.0 and verdict(jet, FLAT, EVERY).sure
+    assert verdict(jet, TALL, EVERY).passes == 0.0 and jet.factor(Meeting(TALL, EVERY)) > 2.0
+    high = replace(jet, height=0.015)  # a longer lever tips it sooner
+    assert jet.factor(Meeting(TALL, EVERY)) < high.factor(Meeting(TALL, EVERY))
+    between = replace(jet, pressure=5e4 / jet.factor(Meeting(TALL, EVERY)))
+    assert not verdict(between, TALL, EVERY).sure
+
+
+def test_the_force_that_tips_is_weight_times_foot_over_height():
+    force = drift.force_to_clear(replace(TALL, swing=0.0), 1.0, 0.015)
+    assert force == pytest.approx(TALL.posture.mass * 9.80665 * 2.5e-3 / 0.015, rel=1e-6)
+
+
+def test_a_sorter_needs_room_that_a_steeper_way_makes():
+    sorter = made("sorter", "here", like=(FLAT.aspect, FLAT.heading, 5e-4))
+    alone = spacing.needed([sorter], EVERY, BOWL)
+    widest = max(one.width for one in EVERY)
+    assert alone == pytest.approx(2e-3 + 2 * math.tan(math.radians(11)) * widest + speed(BOWL) * 0.05)
+    steep = made("separation", "here", angle=math.radians(-6.0))
+    faster = speed(replace(BOWL, track=replace(BOWL.track, climb=math.radians(-6.0))))
+    behind = spacing.needed([steep, sorter], EVERY, BOWL)
+    shortest = min(one.length for one in EVERY)
+    needs = max(sorter.gap(one, faster) for one in EVERY)
+    assert behind == pytest.approx((needs + shortest) * speed(BOWL) / faster - shortest) and behind < alone
+    assert spacing.needed([sorter, steep], EVERY, BOWL) == alone  # behind it, it is too late
+
+
+def test_a_bank_that_comes_first_begins_at_the_entry_and_holds_what_rolls():
+    ball = replace(FLAT, may_roll_back=True)
+    bank = made("bank", "here", angle=math.radians(8.0))
+    (held,) = at_entry([ball], [bank])
+    assert not held.may_roll_back and held.shift == pytest.approx(
+        ball.posture.height * math.tan(math.radians(8))
+    )
+    (low,) = at_entry([ball], [replace(bank, angle=math.radians(0.5))])
+    assert low.may_roll_back
+    jet = made("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)
+    assert at_entry([ball], [jet, bank]) == (ball,)
+
+
+@pytest.mark.parametrize(
+    ("line", "fault"),
+    [
+        ("jet: {nozzle: 2 mm}", "jet has no pressure - write {nozzle: 2 mm, pressure: 3 bar}"),
+        ("jet: {nozzle: 2 mm, pressure: 30 bar, height: 1 mm}", "pressure is 30 bar - give 0.01 to 10 bar"),
+        ("bank: 60 deg", "bank is 60 deg - give 0 to 45 deg"),
+        ("separation: {}", "separation has no climb - write {climb: -4 deg}"),
+    ],
+)
+def test_faults_of_these_devices(line, fault, tmp_path):
+    path = tmp_path / "b.yaml"
+    path.write_text(f"devices:\n  - {line}\n")
+    with pytest.raises(ConfigError, match=fault.replace("{", r"\{").replace("}", r"\}")):
+        bowls.read(path, [])
+
+
+def test_they_are_read_as_written(tmp_path):
+    path = tmp_path / "b.yaml"
+    path.write_text(
+        "devices:\n  - bank: 6 deg\n  - separation: {climb: -4 deg}\n"
+        "  - jet: {nozzle: 2 mm, pressure: 0.2 bar, height: 8 mm}\n"
+    )
+    bank, steep, jet = bowls.read(path, []).devices
+    assert (bank.angle, steep.angle) == pytest.approx(np.radians([6.0, -4.0]))
+    assert (jet.nozzle, jet.pressure, jet.height) == pytest.approx((2e-3, 2e4, 8e-3))
