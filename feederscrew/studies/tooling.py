@@ -22,7 +22,8 @@ from feederscrew.tooling.isolating.chain import FINE, STEP, Wishes
 from feederscrew.tooling.isolating.design import MARGIN, design, place
 from feederscrew.tooling.isolating.hole_search import VERDICTS, HoleSearch
 from feederscrew.tooling.isolating.proposal import Design
-from feederscrew.tooling.orientations import Orientation, named, orientations, placed
+from feederscrew.tooling.mirrored import named
+from feederscrew.tooling.orientations import Orientation, orientations, placed
 from feederscrew.units import shown
 
 CARRIED = (

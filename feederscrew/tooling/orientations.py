@@ -11,7 +11,6 @@ from feederscrew.bowl.record import Track
 from feederscrew.conveying import answer
 from feederscrew.errors import ConfigError
 from feederscrew.geometry.polygons import turned
-from feederscrew.mechanics.wall import sameness
 from feederscrew.mechanics.wall.stable_headings import headings
 from feederscrew.resting.posture import Posture, posture
 from feederscrew.tooling import foot as feet
@@ -263,32 +262,6 @@ def gyration(one, angle):
     c, s = np.cos(turn), np.sin(turn)
     moment = c * c * inertia[0, 0] + s * s * inertia[1, 1] + 2.0 * s * c * inertia[0, 1]
     return float(moment / one.posture.mass)
-
-
-def named(found):
-    """Return orientations with the names of their mirror images, fore and aft.
-
-    Parameters
-    ----------
-    found : sequence of Orientation
-
-    Returns
-    -------
-    tuple of Orientation
-    """
-    looks = [_look(one) for one in found]
-    pairs = {}
-    for i in range(len(found)):
-        for j in range(len(found)):
-            near = abs(found[i].length - found[j].length) < 1e-2 * found[i].length
-            if i != j and near and sameness.alike(looks[i], looks[j], mirrored=True):
-                pairs[i] = found[j].name
-    return tuple(replace(one, mirror=pairs.get(k, "")) for k, one in enumerate(found))
-
-
-def _look(one):
-    supports, moments = sameness.looks(one.posture, [one.heading])
-    return supports[0], None if moments is None else moments[0]
 
 
 def at(lying, known, row, chances, track):

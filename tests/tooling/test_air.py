@@ -8,7 +8,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.errors import ConfigError
+from feederscrew.errors import Faults
 from feederscrew.rates import spacing
 from feederscrew.resting.aspects import find
 from feederscrew.tooling import drift
@@ -89,7 +89,7 @@ def test_a_bank_that_comes_first_begins_at_the_entry_and_holds_what_rolls():
 def test_faults_of_these_devices(line, fault, tmp_path):
     path = tmp_path / "b.yaml"
     path.write_text(f"devices:\n  - {line}\n")
-    with pytest.raises(ConfigError, match=fault.replace("{", r"\{").replace("}", r"\}")):
+    with pytest.raises(Faults, match=fault.replace("{", r"\{").replace("}", r"\}")):
         bowls.read(path, [])
 
 

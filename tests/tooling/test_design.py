@@ -17,7 +17,8 @@ from feederscrew.tooling.devices.kinds import made as device_of
 from feederscrew.tooling.isolating import apart, hole_search
 from feederscrew.tooling.isolating.chain import Wishes
 from feederscrew.tooling.isolating.design import design, place
-from feederscrew.tooling.orientations import named, orientations
+from feederscrew.tooling.mirrored import named
+from feederscrew.tooling.orientations import orientations
 from feederscrew.tooling.verdicts import verdict
 
 MARGIN = 2.5e-4

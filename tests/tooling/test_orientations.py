@@ -11,7 +11,8 @@ from feederscrew.bowl.record import Track
 from feederscrew.geometry.polygons import turned
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.hanging import neck
-from feederscrew.tooling.orientations import named, orientations
+from feederscrew.tooling.mirrored import named
+from feederscrew.tooling.orientations import orientations
 from feederscrew.tooling.touching import silhouette
 
 STRAIGHT = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
