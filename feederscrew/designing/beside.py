@@ -15,7 +15,11 @@ from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.tooling.isolating import proposal as static
 
-DRIVE = (("frequency", 1.0, "Hz"), ("vibration_angle", np.radians(1.0), "deg"))
+DRIVE = (
+    ("frequency", 1.0, "Hz"),
+    ("vibration_angle", np.radians(1.0), "deg"),
+    ("phase", np.radians(1.0), "deg"),
+)
 TRACK = (
     ("climb", np.radians(1.0), "deg"),
     ("bank", np.radians(1.0), "deg"),

@@ -1,5 +1,6 @@
 """The bowl and the track for a part, and drives that do not make it hop."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,13 +9,23 @@ from feederscrew.bowl.record import Bowl, Track
 from feederscrew.conveying import answer
 from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.errors import ConfigError
-from feederscrew.machine import sizing, throughput
+from feederscrew.machine import sizing
+from feederscrew.machine.stroke import greatest_amplitude
 
 CALM = 0.9  # throw number below which no part hops, with a reserve for the drive's own scatter
 HOPPING = (1.2, 1.5, 1.8)  # throw numbers where no tooling has to be met lying
-ANGLES = tuple(np.radians((25.0, 20.0, 16.0, 13.0, 10.0)))  # of the drive, the usual first
-MAINS = 50.0  # [Hz]
-BANK = np.radians(3.0)  # brings back to the wall what leaves it, and holds there what rolls
+BANKS = tuple(np.radians((3.0, 0.0)))  # bring back to the wall what leaves it
+STEEP_BANKS = tuple(np.radians((8.0, 3.0)))  # hold there what rolls
+WORST = (0.6, 1.4)  # [1] of the nominal friction
+STEADY = 0.6  # of the velocity asked for that is left at the worst friction
+HALVINGS = 12  # of the amplitude
+STROKE_STEP = 1e-6  # [m] to which an amplitude is rounded
+# frequency [Hz], vibration angle and lead of the normal motion [rad]: the simplest drive first
+STRAIGHT = tuple((f, math.radians(25.0), 0.0) for f in (50.0,))
+ELLIPTIC = tuple(
+    (f, math.radians(angle), math.radians(-60.0))
+    for f, angle in ((50.0, 16.0), (50.0, 10.0), (40.0, 10.0), (33.0, 10.0), (30.0, 10.0))
+)
 
 
 @dataclass(frozen=True)
@@ -26,7 +37,7 @@ class PlainBowl:
     size: sizing.Size
 
 
-def section(part, aspects, plain, given, *, diameter=None, bank=BANK):
+def section(part, aspects, plain, given, *, diameter=None, bank=BANKS[0]):
     """Return a bowl that is large enough for every way a part lies.
 
     Parameters
@@ -79,41 +90,78 @@ def driven(made, velocity, *, hops=False):
     Returns
     -------
     Bowl
-        With the steepest drive that is fast enough, else the fastest.
+        With the simplest drive that is fast enough, also at the worst friction, at the least stroke that
+        is; else the fastest.
+
+    Notes
+    -----
+    A straight drive below the throw number of 1 carries slowly, and hardly at all where friction is low. Out
+    of phase, the surface rises while it moves forward and falls while it moves back: friction itself carries
+    the part, several times as fast, and its coefficient hardly matters.
+
+    References
+    ----------
+    A. H. Redford, G. Boothroyd, "Vibratory feeding", Proc. Inst. Mech. Eng. 182, 135-152, 1967.
     """
     if "drive.amplitude" in made.given or "drive.peak_to_peak" in made.given:
         return made.bowl
     tried = []
     for bowl in _drives(made, hops):
-        fastest = speed(bowl)
+        fastest = _fast(bowl)
         if fastest >= velocity:
             return _slowed(bowl, velocity)
-        tried.append((fastest, len(tried), bowl))
+        tried.append((fastest, -len(tried), bowl))
     return max(tried)[2]
 
 
 def _drives(made, hops):
-    """Bowls whose drive is as strong as it may be, from the steepest to the flattest."""
+    """Bowls whose drive is as strong as it may be, the simplest first."""
     plain, given = made.bowl, made.given
-    angles = (plain.drive.vibration_angle,) if "drive.vibration_angle" in given else ANGLES
-    frequency = plain.drive.frequency if "drive.frequency" in given else MAINS
-    for throw in (CALM, *(HOPPING if hops else ())):
-        for angle in angles if throw == CALM else angles[:1]:
-            drive = replace(plain.drive, vibration_angle=float(angle), frequency=frequency)
-            bowl = replace(plain, drive=drive)
-            amplitude = drive.amplitude * throw / throw_number(bowl)
-            yield with_amplitude(bowl, amplitude)
+    calm = [(CALM, *row) for row in STRAIGHT]
+    calm += [(throw, *STRAIGHT[0]) for throw in HOPPING] if hops else []
+    seen = set()
+    for throw, frequency, angle, phase in (*calm, *((CALM, *row) for row in ELLIPTIC)):
+        own = {"frequency": frequency, "vibration_angle": angle, "phase": phase}
+        kept = {name: getattr(plain.drive, name) for name in own if f"drive.{name}" in given}
+        drive = replace(plain.drive, **own | kept)
+        if (throw, drive) in seen:
+            continue
+        seen.add((throw, drive))
+        bowl = replace(plain, drive=drive)
+        amplitude = min(drive.amplitude * throw / throw_number(bowl), greatest_amplitude(bowl))
+        yield with_amplitude(bowl, amplitude)
 
 
 def with_amplitude(bowl, amplitude):
     """Return a bowl at another amplitude [m], rounded to a micrometre."""
-    return replace(bowl, drive=replace(bowl.drive, amplitude=float(np.round(amplitude, 6))))
+    rounded = float(np.floor(amplitude / STROKE_STEP + 1e-6) * STROKE_STEP)
+    return replace(bowl, drive=replace(bowl.drive, amplitude=rounded))
 
 
 def _slowed(bowl, velocity):
     """The bowl at the least amplitude that is as fast as that, and no stronger than it was."""
-    found, _ = throughput.amplitude_for(bowl, velocity)
-    return bowl if found is None else with_amplitude(bowl, min(found[0], bowl.drive.amplitude))
+    low, high = 0.0, bowl.drive.amplitude
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if _fast(with_amplitude(bowl, middle)) >= velocity else (middle, high)
+    return with_amplitude(bowl, min(high + STROKE_STEP, bowl.drive.amplitude))
+
+
+def _fast(bowl):
+    """The velocity [m/s] that may be asked of a bowl: its own, or less where the worst friction slows it."""
+    return min(speed(bowl), slowest(bowl) / STEADY)
+
+
+def slowest(bowl):
+    """Return the velocity of the point mass [m/s] at the worst friction."""
+    return min(speed(rubbed(bowl, share)) for share in WORST)
+
+
+def rubbed(bowl, share):
+    """Return a bowl with a share of its friction."""
+    values = {name: getattr(bowl.friction, name) for name in vars(bowl.friction)}
+    scaled = {name: None if value is None else value * share for name, value in values.items()}
+    return replace(bowl, friction=replace(bowl.friction, **scaled))
 
 
 def speed(bowl):

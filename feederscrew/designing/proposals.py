@@ -5,14 +5,23 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.designing import trying
+from feederscrew.designing.record import PURE
 from feederscrew.rates import stream
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import KINDS
+from feederscrew.tooling.hanging import neck
 from feederscrew.tooling.isolating.chain import judged, limits, millimetres
+from feederscrew.tooling.isolating.rails import RAIL
 
-MARGINS = (5e-4, 2.5e-4)  # [m] asked for to either side: the wider first
+ROWS = 6  # orientations for which chains are proposed, the most frequent first
+DROPS = ("wiper", "sorter", "cut_out")  # what is left out at first: drops alone
+SOLID = ("cut_out",)  # and then: holes of several corners, which a shop's tolerance soon spoils
+HOWS = ((5e-4, DROPS), (2.5e-4, DROPS), (5e-4, SOLID), (2.5e-4, SOLID), (2.5e-4, ()))
+ENOUGH = 0.985  # purity at which a chain is not made longer
+VERDICTS = 3000  # of the search for holes: values that a shop's tolerance does not lose are found early
 GUARDS = tuple(KINDS[name] for name in ("gap", "canyon", "narrowed_track"))
 LEAST_WINDOW = 1e-3  # [m] between what passes such a drop and what it rejects
+WIDER, HELD = 0.35, 0.8  # of what the head is wider than the slot; of the head, that a slot may be
 STEP = 5e-5  # [m] to which a shop makes a value
 
 
@@ -64,7 +73,7 @@ def bare(known, shares, request, devices):
     return Proposal(best, (), tuple(devices), "no device") if pure >= 0.97 else None
 
 
-def proposed(part, bowl, aspects, row, known, request, margin):
+def proposed(part, bowl, aspects, row, known, request, how):
     """Return the static rule's chain for a row, or None where it isolates nothing or is not what was asked.
 
     Parameters
@@ -73,31 +82,41 @@ def proposed(part, bowl, aspects, row, known, request, margin):
     bowl : Bowl
         With the devices of the user.
     aspects : Aspects
-        With the answer to take.
     row : int
     known : Orientations
     request : DesignRequest
-    margin : float [m]
+    how : (float [m], sequence of str)
+        Margin to either side, and kinds of devices that are left out.
 
     Returns
     -------
     Proposal or None
+        What would stand at a device is returned before it by a drop.
     """
-    one = known.lying[row]
+    one, (margin, left_out) = known.lying[row], how
+    without = tuple(dict.fromkeys((*request.without, *left_out)))
     found = tooling(
         part, bowl, one.aspect, heading=one.heading, rule=request.rule, margin=margin, known=aspects,
-        seed=request.seed, verdicts=8000,
+        seed=request.seed, verdicts=VERDICTS, outcome=request.outcome, without=without,
+        purity=ENOUGH,
     ).design  # fmt: skip
-    if found is None or not found.efficiency > 0.0 or not found.isolated:
+    if found is None or not found.efficiency > 0.0 or not (found.cuts or found.before):
         return None
     cuts = tuple(rounded(cut, known.lying, row) for cut in found.cuts)
     made = Proposal(row, cuts, tuple(found.before), f"proposed with margins of {millimetres(margin)}")
-    hangs = any(cut.device.hangs for cut in cuts)
-    if request.outcome != "any" and hangs != (request.outcome == "hanging"):
-        return None
-    if any(device.kind in request.without for device in made.devices):
-        return None
-    return made
+    if found.isolated:
+        return made
+    through = known_through(part, aspects, replace(bowl, devices=made.devices))
+    return _guarded_stops(made, through) if found.purity >= PURE else None
+
+
+def _guarded_stops(proposal, through):
+    """The proposal with a drop before what stops some orientations; None where none tells them."""
+    often = np.nan_to_num(through.rules["recommended"]) if "recommended" in through.rules else None
+    stops = through.stops.sum(axis=1) > 0.0
+    stops &= True if often is None else often >= trying.SELDOM
+    wanted = trying.wanted_rows(through, int(through.leaves_as[proposal.row]))
+    return _before(proposal, list(np.flatnonzero(stops)), wanted, through.lying)
 
 
 def rounded(cut, every, row):
@@ -141,28 +160,66 @@ def mended(proposal, tried, every):
     return None
 
 
+def better(proposal, tried, every):
+    """Return the proposal changed where its trial denies it; None where nothing is left to change."""
+    return (
+        widened(proposal, tried, every) or mended(proposal, tried, every) or guarded(proposal, tried, every)
+    )
+
+
+def widened(proposal, tried, every):
+    """Return the proposal with a wider slot between its rails, where what should hang does not; else None.
+
+    A part lies askew along the wall: it comes to rails narrowed to its shank beside them, and slides on. The
+    slot grows towards the head, about its middle, as long as the head is held by the rails.
+    """
+    right = set(trying.wanted_rows(tried.known, tried.state))
+    lost = any(k in right and tried.right[n] < tried.parts[n] for n, k in enumerate(tried.rows))
+    for place, cut in enumerate(proposal.cuts if lost else ()):
+        found = neck(every[proposal.row]) if cut.device.hangs else None
+        if found is None:
+            continue
+        first, last = cut.device.span
+        more = float(np.round(0.5 * WIDER * (found.head - (last - first)) / STEP) * STEP)
+        span = max(first - more, RAIL), last + more
+        if more < STEP or span == cut.device.span or last - first > HELD * found.head:
+            continue
+        text = f"{{from: {millimetres(span[0])}, to: {millimetres(span[1])}}}"
+        device = replace(cut.device, span=span, text=text)
+        must = np.array([one.name in cut.returns for one in every])
+        other = judged(every, proposal.row, device, must, cut.smallest, cut.largest)
+        cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
+        return replace(proposal, cuts=cuts, step=f"slot widened to {millimetres(span[1] - span[0])}")
+    return None
+
+
 def guarded(proposal, tried, every):
-    """Return the proposal with a drop before it for what is carried through; None where none tells it.
+    """Return the proposal with a drop before it for what is carried through or stays; None without one.
 
     Only devices through which what they reject falls are taken: a queue hardly notices them.
     """
-    carried = [k for n, k in enumerate(tried.rows) if tried.wrong[n]]
     wanted = trying.wanted_rows(tried.known, tried.state)
-    if not carried or not wanted:
+    wrong = [k for n, k in enumerate(tried.rows) if tried.wrong[n] or tried.held[n]]
+    return _before(proposal, [k for k in wrong if k not in wanted], wanted, every)
+
+
+def _before(proposal, others, wanted, every):
+    """The proposal with the drop before it that tells some others from what is wanted by the most."""
+    if not others or not wanted:
         return None
-    best, chosen = LEAST_WINDOW, None
+    best, chosen, own = LEAST_WINDOW, None, {cut.device.kind for cut in proposal.cuts}
     for kind in GUARDS:
         values = limits(kind, every)
         sign = 1.0 if kind.bound == "lower" else -1.0
-        room = (sign * values[wanted]).min() - (sign * values[carried]).max()
-        if np.isfinite(room) and room > best:
-            middle = 0.5 * ((sign * values[wanted]).min() + (sign * values[carried]).max())
+        room = (sign * values[wanted]).min() - (sign * values[others]).max()
+        if np.isfinite(room) and room > best and kind.kind not in own:
+            middle = 0.5 * ((sign * values[wanted]).min() + (sign * values[others]).max())
             best, chosen = room, (kind, sign * middle)
-    if chosen is None or any(cut.device.kind == chosen[0].kind for cut in proposal.cuts):
+    if chosen is None:
         return None
     kind, limit = chosen[0], float(np.round(chosen[1] / STEP) * STEP)
     device = kind("design", limit=limit, text=millimetres(limit))
-    must = np.array([k in carried for k in range(len(every))])
+    must = np.array([k in others for k in range(len(every))])
     ends = [
         kind("design", limit=limit + way, text=millimetres(limit + way)) for way in (-0.5 * best, 0.5 * best)
     ]

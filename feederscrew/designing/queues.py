@@ -1,12 +1,13 @@
 """The queue at low, normal and high fill, as a buyer accepts a feeder."""
 
 from feederscrew.designing import trying
-from feederscrew.designing.record import NORMAL, FilledQueue
+from feederscrew.designing.record import NORMAL, PURE, FilledQueue
 
 FILLS = (("low", 6, 15.0), (NORMAL, 12, 30.0), ("high", 18, 15.0))  # name, parts, seconds
+SECONDS = sum(seconds for *_, seconds in FILLS)  # [s] in all
 
 
-def filled(part, bowl, aspects, known, shares, state, *, seed, told=None):
+def filled(part, bowl, aspects, known, shares, state, *, seed, whole=True, told=None):
     """Follow a queue at each fill.
 
     Parameters
@@ -20,27 +21,30 @@ def filled(part, bowl, aspects, known, shares, state, *, seed, told=None):
     state : int
         In which parts are wanted to leave.
     seed : int
+    whole : bool
+        Whether it goes on after a fill that jams or is not pure.
     told : callable, optional
-        Called with how many periods are done of how many, of each fill.
+        Called with what is being followed, a sentence.
 
     Returns
     -------
     tuple of FilledQueue
-        Fewer where the user stopped it.
+        Fewer where the user stopped it, or where one does not hold.
     """
     found = []
     for name, parts, seconds in FILLS:
-        try:
-            seen = trying.queue(
-                part, bowl, aspects, known, shares, parts=parts, seconds=seconds, seed=seed,
-                progress=told and told(name),
-            )  # fmt: skip
-        except KeyboardInterrupt:
-            break
+        if told:
+            told(f"queue of {parts} at {name} fill, {seconds:g} s")
+        seen = trying.queue(part, bowl, aspects, known, shares, parts=parts, seconds=seconds, seed=seed)
         found.append(_told(name, seen, state))
-        if seen.partial:
+        if seen.partial or not (whole or _holds(found[-1])):
             break
     return tuple(found)
+
+
+def _holds(one):
+    """Whether a fill may be one of a design that holds."""
+    return not one.jams and one.right >= PURE * one.left - 1
 
 
 def _told(name, seen, state):
@@ -55,4 +59,5 @@ def _told(name, seen, state):
         returned=seen.returned,
         jams=seen.jams,
         climbs=seen.climbs,
+        partial=seen.partial,
     )

@@ -86,6 +86,7 @@ class FilledQueue:
     returned: int
     jams: int
     climbs: int
+    partial: bool = False  # stopped by the user
 
     @property
     def rate(self):

@@ -17,8 +17,9 @@ from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 
 FRICTION, DRIVE, CUT = (0.6, 1.4), (0.9, 1.1), 1e-4  # [1], [1], [m] to either side
+CARRIED, CLEAN = " is carried through", 0.99  # and the purity from which that is let be
 ALIKE = 1e-4  # of the greatest: principal moments that a part of revolution has in common
-OTHERS = 2  # orientations tried in each draw beside the wanted one
+OTHERS = 3  # parts tried in each draw beside the wanted one, as they come
 
 
 def drawn_bowl(bowl, every, rng):
@@ -46,9 +47,12 @@ def drawn_bowl(bowl, every, rng):
 
 def _drawn_device(device, every, rng):
     """A device whose every length is off by up to CUT."""
-    if device.like:
-        device = replace(device, corners=opening(device, every), like=())
     more = {}
+    if device.like and device.kind == "profile":
+        device = replace(device, corners=opening(device, every), like=())
+    elif device.like:  # a sensor: by how much a part may differ that it takes for the wanted one
+        aspect, heading, play = device.like
+        more["like"] = aspect, heading, max(play + rng.uniform(-CUT, CUT), 0.5 * play)
     if math.isfinite(device.limit):
         more["limit"] = max(device.limit + rng.uniform(-CUT, CUT), CUT)
     if device.span:
@@ -60,12 +64,27 @@ def _drawn_device(device, every, rng):
     return replace(device, **more)
 
 
+def _named(devices, every, drawn):
+    """Devices with the orientation that they name as the drawn part has it: its aspects may change places."""
+    made = []
+    for device in devices:
+        if device.like:
+            one = drawn[matched(_meant(device, every), drawn)]
+            device = replace(device, like=(one.aspect, one.heading, *device.like[2:]))
+        made.append(device)
+    return tuple(made)
+
+
+def _meant(device, every):
+    """The orientation that a device names."""
+    aspect, heading, *_ = device.like
+    own = [one for one in every if one.aspect.casefold() == aspect.casefold()]
+    return min(own, key=lambda one: abs(math.remainder(one.heading - heading, 2.0 * math.pi)))
+
+
 def opening(device, every):
     """Return the corners (K, 2) [m] of a gate that is given by an orientation and its play."""
-    aspect, heading, play = device.like
-    own = [one for one in every if one.aspect.casefold() == aspect.casefold()]
-    one = min(own, key=lambda one: abs(math.remainder(one.heading - heading, 2.0 * math.pi)))
-    grown = one.seen.buffer(play)
+    grown = _meant(device, every).seen.buffer(device.like[2])
     return tuple(map(tuple, shapely.get_coordinates(grown.exterior)[:-1].tolist()))
 
 
@@ -182,7 +201,10 @@ def _draw(part, bowl, known, shares, row, tolerance, seed, draw, jobs):
     driven = drawn_bowl(bowl, known.lying, rng)
     chosen = _rows(known, shares, row, rng)
     try:
-        ways = stream.orientations(other, find(other), bowl.track, driven.devices, bowl=driven)
+        aspects = find(other)
+        bare = stream.orientations(other, aspects, bowl.track, (), bowl=driven)
+        driven = replace(driven, devices=_named(driven.devices, known.lying, bare.lying))
+        ways = stream.along(bare.lying, aspects, driven.devices, bowl=driven)
         rows = [matched(known.lying[k], ways.lying) for k in chosen]
         even = np.full(len(ways.lying), 1.0 / len(ways.lying))
         tried = trying.single(
@@ -195,16 +217,13 @@ def _draw(part, bowl, known, shares, row, tolerance, seed, draw, jobs):
 
 
 def _rows(known, shares, row, rng):
-    """The wanted orientation, and others drawn by their shares."""
+    """The wanted orientation, and parts as they come."""
     state = int(known.leaves_as[row])
     wanted = trying.wanted_rows(known, state) or [row]
     likely = np.where([k in wanted for k in range(len(shares))], shares + 1e-12, 0.0)
     first = int(rng.choice(len(shares), p=likely / likely.sum()))
-    rest = np.where([k in wanted for k in range(len(shares))], 0.0, shares)
-    rest[rest < trying.SELDOM] = 0.0
-    count = min(OTHERS, int(np.count_nonzero(rest)))
-    more = rng.choice(len(shares), count, replace=False, p=rest / rest.sum()) if count else []
-    return [first, *(int(k) for k in more)]
+    more = rng.choice(len(shares), OTHERS, p=shares / shares.sum())
+    return list(dict.fromkeys([first, *(int(k) for k in more)]))
 
 
 def faults(tried):
@@ -217,7 +236,7 @@ def faults(tried):
                 where = ", ".join(tried.places[place]) or "turned"
                 found.append(f"{name} is lost ({where})")
         elif tried.wrong[place]:
-            found.append(f"{name} is carried through")
+            found.append(f"{name}{CARRIED}")
         if tried.held[place] and k not in right:
             found.append(f"{name} stays ({', '.join(tried.places[place])})")
     return found
@@ -231,6 +250,8 @@ def denied(tried):
     for one in faults(tried):
         name = one.split(" ", 1)[0]
         place = next(n for n, k in enumerate(tried.rows) if tried.known.lying[k].name == name)
+        if one.endswith(CARRIED) and tried.purity >= CLEAN:
+            continue
         mostly = tried.rows[place] in right and 2 * tried.right[place] > tried.parts[place]
         if not (mostly and not tried.held[place]):
             yield one

@@ -8,7 +8,7 @@ from feederscrew.designing import proposals, trying
 from feederscrew.designing.record import Attempt
 from feederscrew.studies.rate import Shares
 
-RESERVE = 1.7  # of the target, for which a bowl is driven: queues bring less than rows, counts scatter
+RESERVE = 1.6  # of the target, for which a bowl is driven: queues bring less than rows, counts scatter
 
 
 @dataclass(eq=False)
@@ -31,6 +31,11 @@ class Search:
     def spent(self):
         """Whether the budget of trials is used up."""
         return len(self.attempts) >= self.request.budget
+
+    @property
+    def best_rate(self):
+        """The most that a clean attempt would deliver [1/s]."""
+        return max((one.attempt.rate for one in self.passed), default=0.0)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,6 @@
 """Short trials of a chain: what of each orientation leaves, how, and what names its device."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from feederscrew.trial.queue import queue_of
 
 SELDOM = 5e-3  # [1] orientations that come less often are left out
 HELD = (course.HANGING, course.STOPPED, course.STUCK)
+FEW = 8  # so many other orientations are tried more than once
 GAP = 1.2  # pitch of parts that come in a row, over their length
 
 
@@ -56,6 +57,19 @@ class Tried:
         """Share of the wanted in what leaves [1]; NaN where nothing does."""
         total = self.efficiency + self.carried
         return self.efficiency / total if total > 0.0 else np.nan
+
+    def joined(self, other):
+        """Return what both trials of one bowl show, of different orientations."""
+        names = ("rows", "parts", "right", "wrong", "held")
+        both = {name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in names}
+        speeds = [one.velocity for one in (self, other) if one.velocity > 0.0]
+        return replace(
+            self,
+            **both,
+            places=(*self.places, *other.places),
+            velocity=float(np.mean(speeds)) if speeds else 0.0,
+            deepest=max(self.deepest, other.deepest),
+        )
 
     @property
     def rate(self):

@@ -10,6 +10,7 @@ from feederscrew.output.tooling.bowl_file import device_value
 PER_MINUTE = units.factor("/min", "rate")
 DRIVE = (
     ("amplitude", "mm", "length"), ("frequency", "Hz", "frequency"), ("vibration_angle", "deg", "angle"),
+    ("phase", "deg", "angle"),
 )  # fmt: skip
 TRACK = (
     ("climb", "deg", "angle"),

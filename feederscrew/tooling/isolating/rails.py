@@ -42,7 +42,8 @@ def design(given):
     for stage in STAGES:
         if not stage.get("sensed") or given.wishes.allows("sorter"):
             cuts, returned = _before(given, passed, same, stage)
-        if not np.any(~returned & ~passed & given.often):
+        left = ~returned & ~passed & given.often
+        if given.coming[left].sum() <= given.coming[same].sum() * (1.0 / given.purity - 1.0):
             break
     else:
         return None

@@ -1,0 +1,190 @@
+"""Short trials of chains: an orientation at its own drive, what the trial denies changed, and again."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from feederscrew.designing import calm_drive, proposals, trying
+from feederscrew.designing.record import Attempt
+from feederscrew.designing.robust import denied
+from feederscrew.designing.searching import Candidate
+from feederscrew.rates import arrivals
+from feederscrew.rates.tipping import FLAT
+from feederscrew.studies.rate import shares
+
+EACH = 2  # parts of each orientation in a short trial
+MENDED = 3  # times that one proposal is mended
+LEAST_USE = 0.5  # of the best clean rate: an orientation that promises less is not tried
+ROLLS = 0.3  # of the parts that lie on a round side: then the bank is steep
+SLOWER = 1.2  # a chain that gains so many times what was taken for it is proposed again, at its own drive
+
+
+def candidates(search):
+    """Try proposals, and yield each Candidate that is clean and brings the target, within the budget.
+
+    Parameters
+    ----------
+    search : Search
+        Its ``passed`` and ``failed`` are filled.
+    """
+    for bank in _banks(search, _aspects(search)):
+        made = calm_drive.section(
+            search.part,
+            _aspects(search),
+            search.plain,
+            search.given,
+            diameter=search.request.diameter,
+            bank=bank,
+        )
+        start = replace(calm_drive.driven(made, 0.0), devices=search.plain.devices)
+        if search.known is None:
+            search.known = arriving(search, start)
+        ways, weights = offered(search, start)
+        yield from _searched(search, made, ways, weights)
+
+
+def _searched(search, made, ways, weights):
+    """Candidates on one track: no device at all, then each kind of chain for each orientation."""
+    alone = proposals.bare(ways, weights, search.request, search.plain.devices)
+    if alone is not None:
+        yield from _tried_out(search, made, alone, weights)
+    seen = set()
+    for how in proposals.HOWS:
+        for row in proposals.promising(ways, weights, search.request)[: proposals.ROWS]:
+            if search.spent:
+                return
+            if _promise(search, made, ways, weights, row) < LEAST_USE * search.best_rate:
+                continue
+            proposal = _proposed(search, made, ways, weights, row, how)
+            if proposal is not None and proposal.chain not in seen:
+                seen.add(proposal.chain)
+                yield from _tried_out(search, made, proposal, weights)
+
+
+def _promise(search, made, ways, weights, row):
+    """Parts [1/s] that an orientation brings at the fastest drive, were all others returned."""
+    if search.request.outcome != "lying":
+        return np.inf  # what hangs comes from several headings
+    pitch = trying.GAP * float((weights * ways.lengths).sum())
+    return float(weights[row]) * calm_drive.speed(calm_drive.driven(made, np.inf)) / pitch
+
+
+def _proposed(search, made, ways, weights, row, how):
+    """A chain for one orientation at the drive that its share asks for; None where there is none."""
+    gain = float(weights[row])
+    found = _at(search, made, ways, weights, row, how, gain)
+    more = 0.0 if found is None else _gain(search, made, found, weights)
+    if more > SLOWER * gain:
+        return _at(search, made, ways, weights, row, how, more) or found
+    return found
+
+
+def _at(search, made, ways, weights, row, how, gain):
+    """The chain for a drive that a share [1] asks for."""
+    bowl = calm_drive.driven(made, asked(search, ways, weights, gain))
+    bowl = replace(bowl, devices=search.plain.devices)
+    return proposals.proposed(search.part, bowl, search.known.aspects, row, ways, search.request, how)
+
+
+def _gain(search, made, proposal, weights):
+    """Share of the parts that leaves as wanted, as the static rule says [1]."""
+    bowl = replace(made.bowl, devices=proposal.devices)
+    ways = proposals.known_through(search.part, search.known.aspects, bowl)
+    return float((weights * ways.leaving[:, ways.leaves_as[proposal.row]]).sum())
+
+
+def asked(search, ways, weights, gain):
+    """Return the velocity [m/s] that brings the target, with a reserve, at a share that leaves as wanted."""
+    pitch = trying.GAP * float((weights * ways.lengths).sum())
+    return search.reserve * search.request.target * pitch / max(gain, 1e-3)
+
+
+def _banks(search, aspects):
+    """Banks of the track that are tried, in turn: steeper first where the part rolls."""
+    if "track.bank" in search.given:
+        return (search.plain.track.bank,)
+    chances = np.nan_to_num(aspects.chances[search.request.rule])
+    rolling = float(chances[[kind != FLAT for kind in aspects.kinds]].sum())
+    return calm_drive.STEEP_BANKS if rolling > ROLLS * chances.sum() else calm_drive.BANKS
+
+
+def _aspects(search):
+    if search.known is not None:
+        return search.known.aspects
+    from feederscrew.studies.aspects import answered
+
+    return answered(search.part)
+
+
+def arriving(search, bowl):
+    """Return what lies at the entry of the track of a bowl, a Shares."""
+    bare = replace(bowl, devices=())
+    return shares(search.part, bare, rule=search.request.rule, jobs=search.request.jobs)
+
+
+def offered(search, bowl):
+    """Return what comes along a track, Orientations, and in which shares (M,) [1]."""
+    ways = proposals.known_through(search.part, search.known.aspects, bowl)
+    ways = arrivals.oriented(ways, search.known.measured)
+    weights = np.nan_to_num(ways.rules[search.request.rule])
+    total = weights.sum()
+    return ways, weights / total if total > 0.0 else np.full(len(weights), 1.0 / len(weights))
+
+
+def _tried_out(search, made, proposal, weights):
+    """Try a proposal and what mends it; the Candidate where one is clean and fast enough."""
+    for _ in range(MENDED + 1):
+        candidate = attempted(search, made, proposal, weights)
+        if candidate.attempt.clean:
+            search.passed.append(candidate)
+            if candidate.attempt.rate >= search.request.target:
+                yield candidate
+            return
+        search.failed.append(candidate)
+        proposal = proposals.better(proposal, candidate.tried, candidate.ways.lying)
+        if proposal is None or search.spent:
+            return
+
+
+def attempted(search, made, proposal, weights):
+    """Return a Candidate: one short trial at the drive that the target asks for."""
+    part = search.part
+    bowl = replace(made.bowl, devices=proposal.devices)
+    ways = proposals.known_through(part, search.known.aspects, bowl)
+    gain = float((weights * ways.leaving[:, ways.leaves_as[proposal.row]]).sum())
+    velocity = asked(search, ways, weights, gain)
+    bowl = replace(calm_drive.driven(made, velocity, hops=not proposal.devices), devices=proposal.devices)
+    ways = arrivals.oriented(proposals.known_through(part, search.known.aspects, bowl), search.known.measured)
+    name = ways.lying[proposal.row].name
+    search.told(f"trial {len(search.attempts) + 1}: {name}, {proposal.step}")
+    tried = _short(search, bowl, ways, weights, proposal.row)
+    attempt = Attempt(
+        wanted=ways.states[tried.state].name,
+        chain=proposal.chain,
+        step=proposal.step,
+        bank=bowl.track.bank,
+        velocity=tried.velocity,
+        parts=int(tried.parts.sum()),
+        efficiency=tried.efficiency,
+        purity=tried.purity,
+        stopped=tried.stopped,
+        rate=tried.rate,
+        faults=tuple(denied(tried)),
+    )
+    search.attempts.append(attempt)
+    return Candidate(proposal, bowl, ways, weights, tried, attempt)
+
+
+def _short(search, bowl, ways, weights, row):
+    """The short trial: what is wanted first; where none of it leaves, the others are not tried."""
+    request = search.request
+    own = {"seed": request.seed, "jobs": request.jobs, "before": search.before}
+    rows = trying.often(weights, (row,))
+    right = set(trying.wanted_rows(ways, int(ways.leaves_as[row])))
+    first = [k for k in rows if k in right] or [row]
+    tried = trying.single(search.part, bowl, ways, weights, row, rows=first, each=EACH, **own)
+    others = [k for k in rows if k not in first]
+    if not tried.efficiency > 0.0 or not others:
+        return tried
+    each = EACH if len(others) <= trying.FEW else 1
+    return tried.joined(trying.single(search.part, bowl, ways, weights, row, rows=others, each=each, **own))
