@@ -62,10 +62,16 @@ def _of_the_solid(command):
 @options.optional_part
 @_wanted
 @_of_the_solid
+@click.option(
+    "--measured",
+    metavar="VALUES",
+    help="What was measured at the machine, any of 'acceleration=64 m/s2, stroke=0.3 mm, frequency=50 Hz, "
+    "fill=50 %': what it does now beside what it should, and the likely cause.",
+)
 @options.bowl
 @options.pictures
 @options.output
-def bowl(part, target, made, bowl, pictures, out, **wanted):
+def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
     """Example: feeder bowl parts/lbracket_30x20x15.stl --target 60/min -o results
 
     With PART and --target: diameter, track, climb, turns, fill, hopper, drive, stroke and leaf springs that
@@ -73,6 +79,8 @@ def bowl(part, target, made, bowl, pictures, out, **wanted):
 
     Without PART: the machine of the bowl file (section 'machine'): natural frequency, gain, leaf stress,
     vibration angle over the radius, sets of leaves that tune it, and what it does from full to empty.
+
+    With --measured: what the machine does now beside what it should at that fill, and the likely cause.
 
     What the bowl file says of track, drive and machine is kept; section 'sizing' has the rules of thumb.
     With -o: bowl.json, bowl.csv, bowl_angles.csv, bowl_leaves.csv, bowl_leaf_changes.csv,
@@ -86,7 +94,10 @@ def bowl(part, target, made, bowl, pictures, out, **wanted):
     from feederscrew.studies import bowl as study
     from feederscrew.studies import solidbowl as solids
 
-    _fitting(part, target, made)
+    _fitting(part, target, made, measured)
+    if measured is not None:
+        _found(bowl, measured, out)
+        return
     settings, path = bowls.settings(**bowl), bowl["path"]
     solid = out.part(part) if part["source"] else None
     identity = solid.inputs if solid else {}
@@ -103,8 +114,22 @@ def bowl(part, target, made, bowl, pictures, out, **wanted):
         out.show(tables.summary(found), tables.document(found))
 
 
-def _fitting(part, target, made):
+def _found(bowl, measured, out):
+    """The machine of a bowl file as it was found."""
+    from feederscrew import bowl as bowls
+    from feederscrew.machine import measured as condition
+    from feederscrew.output.machine import condition as tables
+    from feederscrew.studies import bowl as study
+
+    values = condition.read(measured)
+    found = condition.found(study.machine(bowls.settings(**bowl)), values)
+    out.show(tables.summary(found), tables.document(found))
+
+
+def _fitting(part, target, made, measured):
     """Wrong calls."""
+    if measured is not None and part["source"]:
+        raise click.UsageError("--measured is given with PART - leave PART out: the bowl file says it all")
     if made["solid"] and not part["source"]:
         raise click.UsageError("--solid is given without PART - name the part's file")
     for option in ("bed", "step"):

@@ -18,6 +18,7 @@ BANKS = tuple(np.radians((3.0, 0.0)))  # bring back to the wall what leaves it
 STEEP_BANKS = tuple(np.radians((8.0, 3.0)))  # hold there what rolls
 WORST = (0.6, 1.4)  # [1] of the nominal friction
 STEADY = 0.6  # of the velocity asked for that is left at the worst friction
+LEAST = 0.05  # [m/s] through tooling: what creeps rolls off the wall, or stands at a slot and falls in late
 HALVINGS = 12  # of the amplitude
 STROKE_STEP = 1e-6  # [m] to which an amplitude is rounded
 # frequency [Hz], vibration angle and lead of the normal motion [rad]: the simplest drive first
@@ -91,7 +92,7 @@ def driven(made, velocity, *, hops=False):
     -------
     Bowl
         With the simplest drive that is fast enough, also at the worst friction, at the least stroke that
-        is; else the fastest.
+        is; else the fastest. Through tooling no slower than ``LEAST``.
 
     Notes
     -----
@@ -105,7 +106,7 @@ def driven(made, velocity, *, hops=False):
     """
     if "drive.amplitude" in made.given or "drive.peak_to_peak" in made.given:
         return made.bowl
-    tried = []
+    tried, velocity = [], velocity if hops else max(velocity, LEAST)
     for bowl in _drives(made, hops):
         fastest = _fast(bowl)
         if fastest >= velocity:

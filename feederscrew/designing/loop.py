@@ -155,7 +155,7 @@ def _proved(search, candidate, *, whole):
 
 def whole(study):
     """Return whether a design was proved to the end, holding or not."""
-    return study.robust.draws >= study.request.draws and study.queue_seconds >= queues.SECONDS
+    return study.robust.draws >= study.request.draws and len(study.queues) == len(queues.FILLS)
 
 
 def _static(search, candidate):

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.designing import trying
-from feederscrew.designing.record import PURE
 from feederscrew.rates import stream
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import KINDS
@@ -107,14 +106,14 @@ def proposed(part, bowl, aspects, row, known, request, how):
     if found.isolated:
         return made
     through = known_through(part, aspects, replace(bowl, devices=made.devices))
-    return _guarded_stops(made, through) if found.purity >= PURE else None
+    return _guarded_stops(made, through, request.rule) if found.purity >= ENOUGH else None
 
 
-def _guarded_stops(proposal, through):
+def _guarded_stops(proposal, through, rule):
     """The proposal with a drop before what stops some orientations; None where none tells them."""
-    often = np.nan_to_num(through.rules["recommended"]) if "recommended" in through.rules else None
-    stops = through.stops.sum(axis=1) > 0.0
-    stops &= True if often is None else often >= trying.SELDOM
+    stops = (through.stops.sum(axis=1) > 0.0) & (np.nan_to_num(through.rules[rule]) >= trying.SELDOM)
+    if not stops.any():
+        return proposal
     wanted = trying.wanted_rows(through, int(through.leaves_as[proposal.row]))
     return _before(proposal, list(np.flatnonzero(stops)), wanted, through.lying)
 

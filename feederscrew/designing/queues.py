@@ -4,7 +4,6 @@ from feederscrew.designing import trying
 from feederscrew.designing.record import NORMAL, PURE, FilledQueue
 
 FILLS = (("low", 6, 15.0), (NORMAL, 12, 30.0), ("high", 18, 15.0))  # name, parts, seconds
-SECONDS = sum(seconds for *_, seconds in FILLS)  # [s] in all
 
 
 def filled(part, bowl, aspects, known, shares, state, *, seed, whole=True, told=None):

@@ -17,7 +17,7 @@ from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 
 FRICTION, DRIVE, CUT = (0.6, 1.4), (0.9, 1.1), 1e-4  # [1], [1], [m] to either side
-CARRIED, CLEAN = " is carried through", 0.99  # and the purity from which that is let be
+CARRIED, CLEAN = " is carried through", 0.985  # and the purity from which that is let be
 ALIKE = 1e-4  # of the greatest: principal moments that a part of revolution has in common
 OTHERS = 3  # parts tried in each draw beside the wanted one, as they come
 

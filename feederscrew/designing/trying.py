@@ -10,7 +10,7 @@ from feederscrew.trial import course
 from feederscrew.trial.queue import queue_of
 
 SELDOM = 5e-3  # [1] orientations that come less often are left out
-HELD = (course.HANGING, course.STOPPED, course.STUCK)
+HELD = (course.HANGING, course.STOPPED)  # what is stuck on the bare track is pushed on by a queue
 FEW = 8  # so many other orientations are tried more than once
 GAP = 1.2  # pitch of parts that come in a row, over their length
 

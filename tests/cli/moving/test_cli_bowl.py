@@ -313,3 +313,25 @@ def test_a_left_hand_is_said(run):
 def test_a_solid_needs_a_part(run):
     found = run("bowl", "--solid")
     assert found.exit_code == 2 and "--solid is given without PART - name the part's file" in found.stderr
+
+
+def test_what_was_measured_is_set_beside_what_should_be(run):
+    plain = ("bowl", *machine(), "--format", "json", "--measured")
+    asked = document(run(*plain, "stroke=0.42 mm"))
+    should = asked["should"]["stroke_mm"]
+    assert asked["causes"] == ["the machine does what it should, within 10 %"]
+    low = document(run(*plain, f"stroke={0.5 * should} mm, fill=0 %"))
+    assert any("50 % of its setting" in cause for cause in low["causes"])
+    assert low["measured"]["velocity_mm_s"] < low["should"]["velocity_mm_s"]
+    peak = 0.25 * asked["should"]["acceleration_m_s2"]  # at the same stroke: half the frequency
+    half = document(run(*plain, f"acceleration={peak} m/s2, stroke={should} mm"))
+    assert half["measured"]["frequency_hz"] == pytest.approx(0.5 * half["should"]["frequency_hz"])
+    assert half["causes"][0] == "only one half-wave pulls: the controller is set to half wave"
+
+
+def test_measured_values_that_are_none_are_refused(run):
+    refused = run("bowl", "--measured", "stroke=3 kg")
+    assert refused.exit_code == 1
+    assert refused.stderr == "Error: --measured stroke: '3 kg' is a mass, not a length - give it in mm\n"
+    only = run("bowl", "--measured", "fill=50 %")
+    assert "says nothing but the fill - add stroke=0.3 mm, or an acceleration" in only.stderr

@@ -1,0 +1,195 @@
+"""What was measured at a machine beside what it should do, and what makes the difference."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import brentq
+
+from feederscrew import units
+from feederscrew.conveying import answer
+from feederscrew.errors import ArgumentError
+from feederscrew.machine.springs import gain
+from feederscrew.machine.stroke import TURN
+
+# word: dimension
+WORDS = {"acceleration": "acceleration", "stroke": "length", "frequency": "frequency", "fill": "number"}
+NEAR = 0.05  # of a value: as far as a sticker and a usual accelerometer tell
+APART = 0.1  # of the stroke: from here on it is another one
+FARTHEST = 3.0  # natural frequencies over that of the drive are looked for up to here
+
+
+@dataclass(frozen=True)
+class MeasuredMachine:
+    """A machine as it was found; what was not measured is None."""
+
+    fill: float  # [1] of the full bowl
+    acceleration: float | None  # [m/s2] peak, along the motion
+    stroke: float | None  # [m] peak to peak
+    frequency: float | None  # [Hz] measured, or what acceleration and stroke say together
+    should: dict[str, float]  # the same of the machine as it is drawn, at that fill
+    natural_frequency: float  # [Hz] of the machine as it is drawn, at that fill
+    velocity: float  # [m/s] of a part now; NaN where it is not known
+    velocity_should: float  # [m/s]
+    causes: tuple[str, ...]  # what is likely, a sentence each
+
+
+def read(text):
+    """Return what a user says was measured, {word: SI}.
+
+    Parameters
+    ----------
+    text : str
+        'acceleration=64 m/s2, stroke=0.3 mm, fill=50 %', any of them.
+
+    Raises
+    ------
+    ArgumentError
+        If a word is unknown, or a value is not one.
+    """
+    found = {}
+    for piece in text.split(","):
+        word, _, value = (one.strip() for one in piece.partition("="))
+        if word not in WORDS:
+            mend = f"give some of {', '.join(WORDS)}: 'stroke=0.3 mm'"
+            raise ArgumentError("measured", f"{word!r} is unknown", mend)
+        try:
+            found[word] = units.quantity(value, WORDS[word])
+        except units.QuantityError as fault:
+            raise ArgumentError(f"measured {word}", fault.what, fault.mend) from fault
+        most = 1.0 if word == "fill" else math.inf
+        if not (0.0 < found[word] <= most or (word == "fill" and found[word] == 0.0)):
+            raise ArgumentError(f"measured {word}", f"{value} is out of range", "give a value above 0")
+    if not set(found) - {"fill"}:
+        raise ArgumentError("measured", "says nothing but the fill", "add stroke=0.3 mm, or an acceleration")
+    return found
+
+
+def found(sheet, values):
+    """Return a machine as it was found beside what it should do.
+
+    Parameters
+    ----------
+    sheet : MachineSheet
+        Of the machine as it is drawn.
+    values : dict of str to float
+        From ``read``.
+
+    Returns
+    -------
+    MeasuredMachine
+    """
+    bowl, emptied, level = sheet.bowl, sheet.emptying, values.get("fill", 0.0)
+    share = float(np.interp(level, emptied.levels[::-1], emptied.strokes[::-1]))
+    natural = float(np.interp(level, emptied.levels[::-1], emptied.natural_frequencies[::-1]))
+    should = {
+        "stroke": sheet.stroke.peak_to_peak * share,
+        "acceleration": sheet.stroke.acceleration * share,
+        "frequency": sheet.stroke.frequency,
+    }
+    acceleration, stroke = values.get("acceleration"), values.get("stroke")
+    frequency = values.get("frequency")
+    if frequency is None and acceleration and stroke:
+        frequency = math.sqrt(2.0 * acceleration / stroke) / TURN
+    now = _bowl_now(bowl, acceleration, stroke, frequency)
+    one = MeasuredMachine(
+        fill=level,
+        acceleration=acceleration,
+        stroke=stroke,
+        frequency=frequency,
+        should=should,
+        natural_frequency=natural,
+        velocity=math.nan if now is None else _velocity(now),
+        velocity_should=_velocity(_moving(bowl, 0.5 * should["stroke"], should["frequency"])),
+        causes=(),
+    )
+    return replace(one, causes=tuple(_causes(one, sheet, now)))
+
+
+def _bowl_now(bowl, acceleration, stroke, frequency):
+    """The bowl as it moves; None where the stroke cannot be told."""
+    turning = frequency or bowl.drive.frequency
+    if stroke is not None:
+        return _moving(bowl, 0.5 * stroke, turning)
+    return None if acceleration is None else _moving(bowl, acceleration / (TURN * turning) ** 2, turning)
+
+
+def _moving(bowl, amplitude, frequency):
+    return replace(bowl, drive=replace(bowl.drive, amplitude=amplitude, frequency=frequency))
+
+
+def _velocity(bowl):
+    return float(answer.cells(bowl)["velocity"])
+
+
+def _causes(one, sheet, now):
+    """What is likely, the first that would explain the most first."""
+    told = list(_of_frequency(one, sheet))
+    if now is not None and not told:
+        told = list(_of_stroke(one, sheet, 2.0 * now.drive.amplitude / one.should["stroke"]))
+    if not told:
+        told = [f"the machine does what it should, within {100.0 * APART:.0f} %"]
+    yield from told
+
+
+def _of_frequency(one, sheet):
+    """Causes where acceleration and stroke do not belong together at the frequency of the drive."""
+    if one.frequency is None:
+        return
+    ratio = one.frequency / one.should["frequency"]
+    if abs(ratio - 1.0) <= NEAR:
+        return
+    if one.acceleration and one.stroke:
+        angle, seen = sheet.stroke.angle, ratio**2
+        for part, share in (("horizontally", math.cos(angle)), ("upright", math.sin(angle))):
+            if abs(seen / share - 1.0) <= 2.0 * NEAR and abs(share - 1.0) > 2.0 * NEAR:
+                yield (
+                    f"the accelerometer stands {part}, not along the motion: there it shows {share:.2f} of "
+                    "the acceleration"
+                )
+    for times, said in ((2.0, "both half-waves pull: the controller is set to full wave"),
+                        (0.5, "only one half-wave pulls: the controller is set to half wave")):  # fmt: skip
+        if abs(ratio / times - 1.0) <= 2.0 * NEAR:
+            yield said
+    yield f"the drive runs at {one.frequency:.3g} Hz, not at {one.should['frequency']:.3g} Hz"
+
+
+def _of_stroke(one, sheet, ratio):
+    """Causes where the stroke is another one."""
+    if abs(ratio - 1.0) <= APART:
+        return
+    drive, damping = one.should["frequency"], sheet.bowl.machine.damping
+    g = float(gain(drive, one.natural_frequency, damping)) * ratio
+    stiff, soft = (_tuned(g, drive, damping, ends) for ends in ((1.0, FARTHEST), (1.0 / FARTHEST, 1.0)))
+    known = one.natural_frequency
+    if ratio < 1.0:
+        if stiff and stiff > known:
+            yield (
+                f"natural frequency at {stiff:.4g} Hz where {known:.4g} Hz is right: too many leaves, or a "
+                "lighter bowl - take a leaf off"
+            )
+        if soft:
+            yield (
+                f"or at {soft:.4g} Hz, below the drive: a leaf is broken or loose, or the bowl is heavier - "
+                "tighten the clamps, look for a cracked leaf"
+            )
+        yield f"or the controller gives {100.0 * ratio:.0f} % of its setting, or a part touches the frame"
+        return
+    if stiff:
+        yield (
+            f"natural frequency at {stiff:.4g} Hz where {known:.4g} Hz is right, nearer to the drive: a leaf "
+            "is missing, or the bowl is heavier - add a leaf before the stroke grows by itself"
+        )
+    yield f"or the controller is set {100.0 * (ratio - 1.0):.0f} % too high - turn it down"
+
+
+def _tuned(wanted, drive, damping, ends):
+    """Natural frequency [Hz] between two shares of the drive's at which a gain is reached; None for none."""
+
+    def miss(share):
+        return float(gain(drive, share * drive, damping)) - wanted
+
+    low, high = ends
+    if miss(low) * miss(high) > 0.0:
+        return None
+    return drive * float(brentq(miss, low, high))
