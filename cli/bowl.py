@@ -117,8 +117,8 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
 def _found(bowl, measured, out):
     """The machine of a bowl file as it was found."""
     from feederscrew import bowl as bowls
-    from feederscrew.machine import measured as condition
-    from feederscrew.output.machine import condition as tables
+    from feederscrew.machine import condition
+    from feederscrew.output.machine import as_found as tables
     from feederscrew.studies import bowl as study
 
     values = condition.read(measured)

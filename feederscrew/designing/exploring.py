@@ -122,6 +122,21 @@ def arriving(search, bowl):
     return shares(search.part, bare, rule=search.request.rule, jobs=search.request.jobs)
 
 
+def at_its_drive(search, candidate):
+    """Return a Candidate with what arrives on the floor of its own bowl, and those Shares.
+
+    The search itself takes them from one drive; what the user says of them is kept.
+    """
+    if search.shares_given:
+        return search.known, candidate
+    known, bowl = arriving(search, candidate.bowl), candidate.bowl
+    ways = arrivals.oriented(proposals.known_through(search.part, known.aspects, bowl), known.measured)
+    if [one.name for one in ways.lying] != [one.name for one in candidate.ways.lying]:
+        return search.known, candidate  # the same orientations, or its rows are others
+    weights = np.nan_to_num(ways.rules[search.request.rule])
+    return known, replace(candidate, ways=ways, weights=weights / weights.sum())
+
+
 def offered(search, bowl):
     """Return what comes along a track, Orientations, and in which shares (M,) [1]."""
     ways = proposals.known_through(search.part, search.known.aspects, bowl)

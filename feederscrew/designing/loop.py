@@ -39,6 +39,7 @@ def design(part, plain, given, request, *, known=None, told=None, before=None):
         If the part has no surface, fits no bowl, or has no such aspect.
     """
     search = Search(part, request, plain, frozenset(given), told or (lambda text: None), known, before=before)
+    search.shares_given = known is not None
     proofs = []
     try:
         for candidate in exploring.candidates(search):
@@ -105,29 +106,9 @@ def _make_whole(search, proofs):
 def _proved(search, candidate, *, whole):
     """The design with its draws and its queue; unless ``whole``, only as far as it holds."""
     request, part = search.request, search.part
+    known, candidate = exploring.at_its_drive(search, candidate)
     bowl, ways, weights, row = candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.row
-    study = DesignStudy(
-        part=part,
-        request=request,
-        bowl=bowl,
-        wanted=candidate.attempt.wanted,
-        turn=row,
-        cuts=candidate.proposal.cuts,
-        before=candidate.proposal.before,
-        attempts=tuple(search.attempts),
-        source=search.known.aspects.source(request.rule),
-        static_rate=_static(search, candidate),
-        tooling=beside.tooled(
-            part,
-            bowl,
-            search.known.aspects,
-            ways,
-            weights,
-            candidate.proposal,
-            request.rule,
-            proposals.HOWS[-1][0],
-        ),
-    )
+    study = _unproved(search, candidate, known)
     search.told(f"draws: {candidate.attempt.wanted}, {request.draws} of part, friction, drive and cuts")
     tested = robust_run(
         part, bowl, ways, weights, row, draws=request.draws, tolerance=request.tolerance, seed=request.seed,
@@ -138,19 +119,32 @@ def _proved(search, candidate, *, whole):
         return study
     search.told(f"queue: {candidate.attempt.wanted}, {', '.join(candidate.proposal.chain) or 'no device'}")
     found = queues.filled(
-        part,
-        bowl,
-        search.known.aspects,
-        ways,
-        weights,
-        candidate.tried.state,
-        seed=request.seed,
-        whole=whole,
+        part, bowl, known.aspects, ways, weights, candidate.tried.state, seed=request.seed, whole=whole,
         told=search.told,
-    )
+    )  # fmt: skip
     said = risks.risks(ways.lying[row], bowl.friction.kinetic, found)
-    stopped = any(one.partial for one in found)
-    return replace(study, queues=found, risks=said, partial=stopped)
+    return replace(study, queues=found, risks=said, partial=any(one.partial for one in found))
+
+
+def _unproved(search, candidate, known):
+    """The design before anything of it is proved."""
+    bowl, ways, weights = candidate.bowl, candidate.ways, candidate.weights
+    rule, margin = search.request.rule, proposals.HOWS[-1][0]
+    return DesignStudy(
+        part=search.part,
+        request=search.request,
+        bowl=bowl,
+        wanted=candidate.attempt.wanted,
+        turn=candidate.proposal.row,
+        cuts=candidate.proposal.cuts,
+        before=candidate.proposal.before,
+        attempts=tuple(search.attempts),
+        source=known.aspects.source(rule),
+        static_rate=_static(search, candidate),
+        tooling=beside.tooled(
+            search.part, bowl, known.aspects, ways, weights, candidate.proposal, rule, margin
+        ),
+    )
 
 
 def whole(study):

@@ -26,6 +26,7 @@ class Search:
     failed: list = field(default_factory=list)  # the same of others that deliver
     before: object = None
     reserve: float = RESERVE
+    shares_given: bool = False  # the user says what arrives
 
     @property
     def spent(self):
