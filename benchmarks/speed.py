@@ -32,7 +32,7 @@ from scipy.stats import chi2_contingency
 from feederscrew.dropping import ensemble
 from feederscrew.dropping.kernel import body, one_drop
 from feederscrew.dropping.launches import Launch, sample
-from feederscrew.dropping.shape import shape_of_part
+from feederscrew.dropping.rigid_body import shape_of_part
 from feederscrew.part.hull import convex_hull
 from feederscrew.resting.aspects import find
 from feederscrew.resting.tumbling.by_class import ground

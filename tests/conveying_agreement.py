@@ -5,7 +5,7 @@ import pytest
 
 from feederscrew.conveying import settling, steady
 from feederscrew.conveying.law import law
-from feederscrew.conveying.motion import TALLY, at_rest, turn
+from feederscrew.conveying.point_motion import TALLY, at_rest, turn
 
 LONGEST = 40  # periods the general solver is asked to follow
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from feederscrew.conveying.law import contact
-from feederscrew.conveying.motion import DOWNWARD, STOPS, TALLY, UPWARD, State, turn
+from feederscrew.conveying.point_motion import DOWNWARD, STOPS, TALLY, UPWARD, State, turn
 from feederscrew.conveying.setting import FLIGHT
 
 LONGEST_PERIOD = 32

@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew.conveying.harmonic import harmonic, peak, value
 from feederscrew.conveying.law import law, throw_number
-from feederscrew.conveying.motion import (
+from feederscrew.conveying.point_motion import (
     DOWNWARD,
     FLIGHTS,
     HARDEST,

@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from feederscrew import check
-from feederscrew.conveying import events, harmonic, law, motion, settling, steady, waves
+from feederscrew.conveying import events, harmonic, law, point_motion, settling, steady, waves
 from feederscrew.conveying.setting import OperatingPoint, checked
 from feederscrew.conveying.steady import COLUMNS, survey
 from feederscrew.geometry.compiled import apart, entry, on_disk
@@ -18,12 +18,20 @@ IN_A_PERIOD = (  # what follows a part through a period of the drive: compiled i
     *(harmonic.gain, harmonic._beyond_sine, harmonic._beyond_cosine),
     *(law.contact, events.later, events.slip_end, events._stop, events.landing),
     *(events._descent, events._beyond_bounce, events._dip),
-    *(motion.step, motion._ride, motion._slide, motion._fly, motion.land),
+    *(point_motion.step, point_motion._ride, point_motion._slide, point_motion._fly, point_motion.land),
 )
 KERNEL = (
     *(waves.height, waves.slope, waves._knots, waves.bends, waves.crest),
     *(waves.crossings, waves._insert, waves._zero, harmonic.harmonic, harmonic.peak, harmonic.travel),
-    *(law.law, law.lift_wave, law.pull_wave, law._pull, law.throw_number, motion.at_rest, motion.turn),
+    *(
+        law.law,
+        law.lift_wave,
+        law.pull_wave,
+        law._pull,
+        law.throw_number,
+        point_motion.at_rest,
+        point_motion.turn,
+    ),
     *(settling.settle, settling.follow, settling.noted, settling.evenly, settling._joins, settling._leap),
     *(settling._slid, settling._repeats, settling._normal_apart, settling._grows),
     *(settling._period_of_normal, settling._hasten, settling._closed_in, settling._at_speed),

@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.conveying.harmonic import onward, travel
 from feederscrew.conveying.law import law
-from feederscrew.conveying.motion import TALLY, TRAVEL, at_rest, step
+from feederscrew.conveying.point_motion import TALLY, TRAVEL, at_rest, step
 from feederscrew.conveying.setting import FLIGHT, FORWARD, STICK, TURN
 from feederscrew.conveying.settling import settle
 

@@ -9,7 +9,7 @@ from feederscrew.dropping import conditions, ensemble
 from feederscrew.dropping.ensemble import Aim, Drops, Tally
 from feederscrew.dropping.kernel import one_drop
 from feederscrew.dropping.launches import sample
-from feederscrew.dropping.shape import principal_axes, shape_of_part
+from feederscrew.dropping.rigid_body import principal_axes, shape_of_part
 from feederscrew.dropping.traces import DropTrace, follow
 from feederscrew.geometry.compiled import on_disk
 from feederscrew.records import Shown

@@ -3,7 +3,7 @@
 import numpy as np
 
 from feederscrew.dropping.kernel.one_drop import UNSETTLED, face_below
-from feederscrew.dropping.shape import shape_of_part
+from feederscrew.dropping.rigid_body import shape_of_part
 from feederscrew.geometry import vectors
 from feederscrew.resting.tumbling.by_class import ground
 from feederscrew.tooling.hanging import Hanging

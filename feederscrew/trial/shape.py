@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from feederscrew import check
-from feederscrew.dropping.shape import principal_axes
+from feederscrew.dropping.rigid_body import principal_axes
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
 from feederscrew.part.hull import convex_hull

@@ -9,7 +9,7 @@ import steady_formulas
 from feederscrew.conveying import flights, steady
 from feederscrew.conveying.harmonic import gain, harmonic, onward, reached, travel, value
 from feederscrew.conveying.law import law
-from feederscrew.conveying.motion import TALLY, State, at_rest, land, turn
+from feederscrew.conveying.point_motion import TALLY, State, at_rest, land, turn
 from feederscrew.conveying.setting import FLIGHT, FORWARD, STICK, TURN, checked, plain
 from feederscrew.conveying.waves import Wave
 from feederscrew.mechanics import limits

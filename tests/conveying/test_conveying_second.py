@@ -10,7 +10,7 @@ from conveying_reference import Reference, random_settings
 from feederscrew.conveying import onset, steady, sweep, waves
 from feederscrew.conveying.harmonic import above, harmonic, value
 from feederscrew.conveying.law import contact, law
-from feederscrew.conveying.motion import State
+from feederscrew.conveying.point_motion import State
 from feederscrew.conveying.setting import TURN, OperatingPoint, plain
 from feederscrew.mechanics import limits
 from feederscrew.mechanics.wedge import effective

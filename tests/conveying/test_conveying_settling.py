@@ -7,7 +7,7 @@ import pytest
 
 from feederscrew.conveying import settling, steady
 from feederscrew.conveying.law import law
-from feederscrew.conveying.motion import TALLY, at_rest, turn
+from feederscrew.conveying.point_motion import TALLY, at_rest, turn
 from feederscrew.conveying.setting import FLIGHT, FORWARD, STICK, OperatingPoint, plain
 
 DEG = math.pi / 180.0

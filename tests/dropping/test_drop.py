@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from feederscrew.dropping.kernel import body, floor_contacts, impulses, one_drop, touch
 from feederscrew.dropping.kernel.one_drop import Steps, scratch, settle
 from feederscrew.dropping.launches import PRESETS, sample
-from feederscrew.dropping.shape import shape_of_part
+from feederscrew.dropping.rigid_body import shape_of_part
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 

@@ -12,7 +12,7 @@ from feederscrew.dropping.launches import sample
 from feederscrew.dropping.plate import drive
 from feederscrew.dropping.plate.occupancy import Occupancy, lasting, occupancy
 from feederscrew.dropping.plate.rides import joined, ride
-from feederscrew.dropping.shape import shape_of_part
+from feederscrew.dropping.rigid_body import shape_of_part
 from feederscrew.errors import ArgumentError
 from feederscrew.records import Shown
 from feederscrew.resting.tumbling.by_class import ground

@@ -8,7 +8,7 @@ import numpy as np
 from feederscrew.dropping import conditions, launch_file, toss_runs
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.dropping.launch_file import FACES, LaunchFile
-from feederscrew.dropping.shape import principal_axes, shape_of_part
+from feederscrew.dropping.rigid_body import principal_axes, shape_of_part
 from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
