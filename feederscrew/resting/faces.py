@@ -20,8 +20,10 @@ DOUBLE = 2e-3  # of the same: normals off their plane or cone by more belong to 
 FEWEST_OF_A_BALL = 24  # facets that show a side curved both ways: a ball, or a cap of one
 ALIKE = np.radians(1.0)  # strips that lean by less apart are of one cone
 SLIVERS = 1e-2  # of their area: what a file's noise leaves between them
+BEND = 2.5  # strips, by their effective number: two planes that meet are a bend and no curve
 FEWEST = 6  # strips that show a curve whose middle is not the centre of mass
 TINY = np.finfo(float).tiny
+MOST_PAIRED = 1000  # directions of which every pair is looked at
 ARC = np.radians(60.0)  # coarse strips that turn less may be meant as flats
 
 
@@ -93,7 +95,8 @@ def unstable_faces(hull, taken):
 def _coarse_curves(hull, basins, members):
     """(B,) label of each sink; strips of one coarsely tessellated curve share it."""
     place, sinks = np.searchsorted(basins.sinks, basins.ripples), basins.ripples
-    step = np.abs(np.diff(hull.heights[sinks], axis=1))[:, 0] / hull.heights[sinks[:, 0]]
+    levels = hull.heights[sinks]
+    step = np.abs(np.diff(levels, axis=1))[:, 0] / levels.max(axis=1, initial=0.0)  # whichever comes first
     strips = (basins.rises < COARSE) & (basins.bends < SMOOTH) & (step < EQUAL + basins.bends**2)
     level = step < EQUAL
     labels = components(*place[level & strips].T, len(basins.sinks))[1]
@@ -172,10 +175,11 @@ def _rocks(hull, side, sink):
 
 
 def _even(normals, share):
-    """Effective number of strips, of (N, 3) normals and (N,) shares: 1 over the sum of squared shares."""
+    """Effective number of strips, of (N, 3) normals and (N,) weights: 1 over the sum of squared shares."""
     places = vectors.product(np.round(100.0 * normals), np.array([1.0, 1e3, 1e6]))  # one number a direction
     strips = np.unique(places, return_inverse=True)[1]
-    return 1.0 / (np.bincount(strips, share) ** 2).sum()
+    weights = np.bincount(strips, share)
+    return weights.sum() ** 2 / (weights**2).sum()
 
 
 def _ring(leans, share):
@@ -271,11 +275,17 @@ def _curved(hull, triangles):
     (every, owners), count = groups.joined(triangles), len(triangles)
     areas = hull.areas[every]
     mean = groups.sums(areas * np.ascontiguousarray(hull.normals.T)[:, every], owners, count)
-    several = np.bincount(owners, minlength=count) > 1
-    return several & (vectors.norm(mean) < CURVED * groups.sums(areas, owners, count))
+    several = np.bincount(owners, minlength=count) > 2
+    bent = several & (vectors.norm(mean) < CURVED * groups.sums(areas, owners, count))
+    for k in np.flatnonzero(bent):
+        bent[k] = _even(hull.normals[triangles[k]], hull.areas[triangles[k]]) > BEND
+    return bent
 
 
 def _spread(normals):
-    """Angle across a set of directions [rad], from its end to the end furthest from it."""
-    end = normals[np.argmax(angle(normals, normals[0]))]
-    return angle(normals, end).max()
+    """Angle across a set of directions [rad]: between the two furthest apart, whatever their order."""
+    if len(normals) > MOST_PAIRED:  # from the one furthest from their mean
+        end = normals[np.argmax(angle(normals, normals.mean(axis=0)))]
+        return angle(normals, end).max()
+    one, other = np.divmod(np.argmin(vectors.product(normals, normals.T)), len(normals))
+    return angle(normals[one], normals[other])
