@@ -30,13 +30,29 @@ def classes(faces, part, moments):
     (N,) int
         Class of each face, numbered in order of first appearance.
     """
-    normals, alike = np.array([face.normal for face in faces]), _alike(faces)
+    middles, alike = np.array([face.middle for face in faces]), _alike(faces)
+    axes = np.array([face.axis for face in faces])
     if alike.sum() == len(faces):
         return np.arange(len(faces))
     carried = np.zeros_like(alike)
     for rotation in symmetries(faces, part, moments):
-        carried |= vectors.product(vectors.product(normals, rotation.T), normals.T) > np.cos(SAME_WAY)
+        there = _along(vectors.product(axes, rotation.T), axes)
+        carried |= there & _laid_on(vectors.product(middles, rotation.T), middles)
     return components(*np.nonzero(carried & alike), len(faces))[1]
+
+
+def _laid_on(turned, middles):
+    """(N, N) bool: whether the mean normals of turned faces are those of others.
+
+    Of a round side the lowest strip says nothing: it lies wherever the tessellation begins.
+    """
+    apart = turned[:, None] - middles
+    return vectors.norm(apart) < 2.0 * np.sin(0.5 * SAME_WAY)
+
+
+def _along(turned, axes):
+    """(N, N) bool: whether turned axes are parallel to others; true where one has none."""
+    return ~(np.abs(vectors.product(turned, axes.T)) < np.cos(SAME_WAY))
 
 
 def symmetries(faces, part, moments):

@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew.geometry import groups, vectors
 from feederscrew.geometry.graphs import components
-from feederscrew.resting import contacts, rounds
+from feederscrew.resting import contacts, flats, rounds
 from feederscrew.resting.basins.landscape import RIPPLE_OF_RADIUS, SMOOTH, angle, edges, gentle
 from feederscrew.resting.planes import FLATNESS, planes
 
@@ -35,6 +35,7 @@ class Face:
     stable: bool
     normal: np.ndarray  # (3,) outward; of a rolling face, of its lowest strip
     axis: np.ndarray  # (3,) of a rolling face, NaN where it is a flat or a ball
+    middle: np.ndarray  # (3,) [1] mean of its outward normals: of a flat its normal, of a whole cylinder 0
     height: float  # [m] of the centre of mass
     area: float  # [m2] of contact; of a rolling face, of the whole curved side
     solid_angle: float  # [sr]
@@ -97,8 +98,9 @@ def _coarse_curves(hull, basins, members):
     place, sinks = np.searchsorted(basins.sinks, basins.ripples), basins.ripples
     levels = hull.heights[sinks]
     step = np.abs(np.diff(levels, axis=1))[:, 0] / levels.max(axis=1, initial=0.0)  # whichever comes first
-    strips = (basins.rises < COARSE) & (basins.bends < SMOOTH) & (step < EQUAL + basins.bends**2)
-    level = step < EQUAL
+    meant = flats.meant(hull, basins)[place].any(axis=1)
+    strips = ~meant & (basins.rises < COARSE) & (basins.bends < SMOOTH) & (step < EQUAL + basins.bends**2)
+    level = ~meant & (step < EQUAL)
     labels = components(*place[level & strips].T, len(basins.sinks))[1]
     for label in np.flatnonzero(np.bincount(labels) > 1):
         group = np.flatnonzero(labels == label)
@@ -209,6 +211,7 @@ def _described(hull, triangles, lowest, stable):
     normals, heights, roughness = _seats(hull, *standing, count)
     polygons = contacts.outlines(hull.vertices, *_corners(hull, *standing), normals)
     every, owners = groups.joined(triangles)
+    middles = groups.sums(hull.areas[every] * np.ascontiguousarray(hull.normals.T)[:, every], owners, count)
     areas, angles = (groups.sums(of[every], owners, count) for of in (hull.areas, hull.solid_angles))
     axes = np.full((count, 3), np.nan)
     for k in some:
@@ -220,6 +223,7 @@ def _described(hull, triangles, lowest, stable):
             stable=stable,
             normal=normals[k],
             axis=axes[k],
+            middle=middles[k] / max(float(areas[k]), TINY) if curved[k] else normals[k],
             height=float(heights[k]),
             area=float(areas[k]),
             solid_angle=float(angles[k]),
