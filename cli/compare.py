@@ -35,13 +35,29 @@ def compare(sources, reading, counts, launch, as_published, pictures, out):
 
     A feeding test counts by device ('device,passed,rejected') and names its bowl ('# config: FILE'): the
     share that passed each device beside what the static rules say, with both intervals (devices.csv).
+
+    The acceptance.csv of `feeder design`, filled in at the machine, is read back: what agrees with what was
+    computed, line by line.
     """
-    if counts is None:
+    from feederscrew.designing import accepting
+
+    if counts is None and len(sources) == 1 and accepting.is_sheet(sources[0]):
+        _accepted(sources[0], out)
+    elif counts is None:
         _over_files(sources, launch, as_published, pictures, out)
     elif len(sources) > 1:
         raise click.UsageError("--with goes with one PART - leave it out to compare many files")
     else:
         _of_part(reading | {"source": sources[0]}, counts, launch, as_published, pictures, out)
+
+
+def _accepted(source, out):
+    """A filled-in acceptance sheet."""
+    from feederscrew.designing import accepting
+    from feederscrew.output.designs import accepted
+
+    lines = accepting.sheet(source)
+    out.show(accepted.summary(lines), accepted.document(lines))
 
 
 def _of_part(part, counts, launch, as_published, pictures, out):

@@ -2,7 +2,7 @@
 
 import click
 
-from feederscrew_cli import grouped, options, orientation
+from feederscrew_cli import grouped, options, orientation, waiting
 from feederscrew_cli.angle import Angle
 from feederscrew_cli.progress import Progress
 from feederscrew_cli.quantity import Quantity
@@ -80,13 +80,14 @@ from feederscrew_cli.quantity import Quantity
     metavar="TIME",
     help="The last resort, after which the best so far is taken, and said to be so.",
 )
+@click.option("--static", is_flag=True, help="Leave out the trial of what is proposed.")
 @orientation.taken
 @options.bowl
 @options.pictures
 @options.output
 def tooling(
     part, aspect, heading, rule, margin, purity, efficiency, outcome, without, step, cad, turn, seed,
-    verdicts, limit, taken, bowl, pictures, out,
+    verdicts, limit, static, taken, bowl, pictures, out,
 ):  # fmt: skip
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
@@ -96,11 +97,15 @@ def tooling(
     devices, each with the smallest cut that still returns and the largest that still passes. Devices that
     the bowl file lists already stay, and the design is found behind them.
 
+    What is proposed is tried with a few parts of each orientation, of the table the best three, and both
+    verdicts are told; --static leaves that out.
+
     With -o: tooling.csv, tooling.json and tooling.png; with an aspect also tooling.yaml, a bowl file with
     the devices for feeder rate, report and batch, tooling.dxf and tooling.svg, 1:1 in mm, unrolled and as
     bent, and tooling.stl, the section of track to print.
     """
     from feederscrew import bowl as bowls
+    from feederscrew.designing import own_trial
     from feederscrew.output import columns, offers
     from feederscrew.output.tooling import files, tables
     from feederscrew.studies.tooling import tooling as study
@@ -121,8 +126,10 @@ def tooling(
                 outcome=outcome, without=without, step=step, seed=seed, verdicts=verdicts, seconds=limit,
                 told=bar.reach,
             )  # fmt: skip
-        document = tables.document(found)
-        out.warn(*found.warnings)
+        tried = () if static else own_trial.own_trials(found, before=lambda: waiting.trial(out))
+        document = tables.document(found) | {"trial": own_trial.document(tried)}
+        out.warn(*found.warnings, *(one.sentence for one in tried if one.faults))
+        out.say(*(one.sentence for one in tried if not one.faults))
         out.say(*tables.remarks(found, efficiency))
         offers.write(folder, files.offers(found, settings, cad), pictures=pictures)
         out.show(tables.summary(found), document, hidden=tables.HIDDEN)

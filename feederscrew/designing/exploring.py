@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew.designing import calm_drive, proposals, trying
 from feederscrew.designing.record import Attempt
-from feederscrew.designing.robust import denied
+from feederscrew.designing.robust import denied, robust_run
 from feederscrew.designing.searching import Candidate
 from feederscrew.rates import arrivals
 from feederscrew.rates.tipping import FLAT
@@ -15,6 +15,7 @@ from feederscrew.studies.rate import shares
 EACH = 2  # parts of each orientation in a short trial
 MENDED = 3  # times that one proposal is mended
 LEAST_USE = 0.5  # of the best clean rate: an orientation that promises less is not tried
+SCREENED = 6  # draws before a clean chain is proved
 ROLLS = 0.3  # of the parts that lie on a round side: then the bank is steep
 SLOWER = 1.2  # a chain that gains so many times what was taken for it is proposed again, at its own drive
 
@@ -149,16 +150,34 @@ def offered(search, bowl):
 def _tried_out(search, made, proposal, weights):
     """Try a proposal and what mends it; the Candidate where one is clean and fast enough."""
     for _ in range(MENDED + 1):
-        candidate = attempted(search, made, proposal, weights)
+        candidate = _screened(search, attempted(search, made, proposal, weights))
         if candidate.attempt.clean:
             search.passed.append(candidate)
             if candidate.attempt.rate >= search.request.target:
                 yield candidate
             return
         search.failed.append(candidate)
-        proposal = proposals.better(proposal, candidate.tried, candidate.ways.lying)
+        proposal = proposals.better(proposal, candidate.tried, candidate.ways.lying, candidate.drawn)
         if proposal is None or search.spent:
             return
+
+
+def _screened(search, candidate):
+    """A clean candidate after some draws of part, friction, drive and cuts; denied where one does not sort."""
+    if not candidate.attempt.clean or candidate.attempt.rate < search.request.target:
+        return candidate
+    request = search.request
+    drawn = robust_run(
+        search.part, candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.row,
+        draws=min(SCREENED, request.draws), tolerance=request.tolerance, seed=request.seed, jobs=request.jobs,
+    )  # fmt: skip
+    if drawn.partial:
+        raise KeyboardInterrupt
+    if drawn.held == drawn.draws:
+        return candidate
+    attempt = replace(candidate.attempt, faults=(f"in draws {drawn.worst}",))
+    search.attempts[-1] = attempt
+    return replace(candidate, attempt=attempt, drawn=drawn)
 
 
 def attempted(search, made, proposal, weights):

@@ -15,7 +15,11 @@ from feederscrew.tooling.isolating.rails import RAIL
 ROWS = 6  # orientations for which chains are proposed, the most frequent first
 DROPS = ("wiper", "sorter", "cut_out")  # what is left out at first: drops alone
 SOLID = ("cut_out",)  # and then: holes of several corners, which a shop's tolerance soon spoils
-HOWS = ((5e-4, DROPS), (2.5e-4, DROPS), (5e-4, SOLID), (2.5e-4, SOLID), (2.5e-4, ()))
+# margin [m] to either side, what is left out, and how parts leave: in turn
+HOWS = (
+    (5e-4, DROPS, "any"), (5e-4, SOLID, "hanging"), (5e-4, SOLID, "lying"), (2.5e-4, DROPS, "any"),
+    (2.5e-4, SOLID, "hanging"), (2.5e-4, SOLID, "lying"), (2.5e-4, (), "any"),
+)  # fmt: skip
 ENOUGH = 0.985  # purity at which a chain is not made longer
 VERDICTS = 3000  # of the search for holes: values that a shop's tolerance does not lose are found early
 GUARDS = tuple(KINDS[name] for name in ("gap", "canyon", "narrowed_track"))
@@ -84,19 +88,22 @@ def proposed(part, bowl, aspects, row, known, request, how):
     row : int
     known : Orientations
     request : DesignRequest
-    how : (float [m], sequence of str)
-        Margin to either side, and kinds of devices that are left out.
+    how : (float [m], sequence of str, str)
+        Margin to either side, kinds of devices that are left out, and how parts leave.
 
     Returns
     -------
     Proposal or None
         What would stand at a device is returned before it by a drop.
     """
-    one, (margin, left_out) = known.lying[row], how
+    one, (margin, left_out, outcome) = known.lying[row], how
+    if "any" not in (outcome, request.outcome) and outcome != request.outcome:
+        return None
+    outcome = request.outcome if outcome == "any" else outcome
     without = tuple(dict.fromkeys((*request.without, *left_out)))
     found = tooling(
         part, bowl, one.aspect, heading=one.heading, rule=request.rule, margin=margin, known=aspects,
-        seed=request.seed, verdicts=VERDICTS, outcome=request.outcome, without=without,
+        seed=request.seed, verdicts=VERDICTS, outcome=outcome, without=without,
         purity=ENOUGH,
     ).design  # fmt: skip
     if found is None or not found.efficiency > 0.0 or not (found.cuts or found.before):
@@ -159,22 +166,32 @@ def mended(proposal, tried, every):
     return None
 
 
-def better(proposal, tried, every):
-    """Return the proposal changed where its trial denies it; None where nothing is left to change."""
-    return (
-        widened(proposal, tried, every) or mended(proposal, tried, every) or guarded(proposal, tried, every)
-    )
+def better(proposal, tried, every, drawn=None):
+    """Return the proposal changed where its trial denies it; None where nothing is left to change.
+
+    Parameters
+    ----------
+    proposal : Proposal
+    tried : Tried
+    every : sequence of Orientation
+    drawn : RobustRun, optional
+        Draws that deny what the trial itself does not.
+    """
+    right = set(trying.wanted_rows(tried.known, tried.state))
+    lost = any(k in right and tried.right[n] < tried.parts[n] for n, k in enumerate(tried.rows))
+    if drawn is not None:
+        return widened(proposal, every) if "lost" in drawn.worst else None
+    wider = widened(proposal, every) if lost else None
+    return wider or mended(proposal, tried, every) or guarded(proposal, tried, every)
 
 
-def widened(proposal, tried, every):
-    """Return the proposal with a wider slot between its rails, where what should hang does not; else None.
+def widened(proposal, every):
+    """Return the proposal with a wider slot between its rails; None without rails that can be wider.
 
     A part lies askew along the wall: it comes to rails narrowed to its shank beside them, and slides on. The
     slot grows towards the head, about its middle, as long as the head is held by the rails.
     """
-    right = set(trying.wanted_rows(tried.known, tried.state))
-    lost = any(k in right and tried.right[n] < tried.parts[n] for n, k in enumerate(tried.rows))
-    for place, cut in enumerate(proposal.cuts if lost else ()):
+    for place, cut in enumerate(proposal.cuts):
         found = neck(every[proposal.row]) if cut.device.hangs else None
         if found is None:
             continue
@@ -203,24 +220,29 @@ def guarded(proposal, tried, every):
 
 
 def _before(proposal, others, wanted, every):
-    """The proposal with the drop before it that tells some others from what is wanted by the most."""
+    """The proposal with a drop before it: that which tells most others from what is wanted, and by the most.
+
+    What no drop tells is left to the trial.
+    """
     if not others or not wanted:
         return None
-    best, chosen, own = LEAST_WINDOW, None, {cut.device.kind for cut in proposal.cuts}
+    best, chosen, own = (0, 0.0), None, {cut.device.kind for cut in proposal.cuts}
     for kind in GUARDS:
-        values = limits(kind, every)
         sign = 1.0 if kind.bound == "lower" else -1.0
-        room = (sign * values[wanted]).min() - (sign * values[others]).max()
-        if np.isfinite(room) and room > best and kind.kind not in own:
-            middle = 0.5 * ((sign * values[wanted]).min() + (sign * values[others]).max())
-            best, chosen = room, (kind, sign * middle)
+        values = sign * limits(kind, every)
+        least = values[wanted].min()
+        told = [k for k in others if least - values[k] > LEAST_WINDOW]
+        room = least - max((values[k] for k in told), default=np.inf)
+        if told and np.isfinite(room) and (len(told), room) > best and kind.kind not in own:
+            best, chosen = (len(told), room), (kind, sign * (least - 0.5 * room), told)
     if chosen is None:
         return None
-    kind, limit = chosen[0], float(np.round(chosen[1] / STEP) * STEP)
+    (kind, middle, told), room = chosen, best[1]
+    limit = float(np.round(middle / STEP) * STEP)
     device = kind("design", limit=limit, text=millimetres(limit))
-    must = np.array([k in others for k in range(len(every))])
+    must = np.array([k in told for k in range(len(every))])
     ends = [
-        kind("design", limit=limit + way, text=millimetres(limit + way)) for way in (-0.5 * best, 0.5 * best)
+        kind("design", limit=limit + way, text=millimetres(limit + way)) for way in (-0.5 * room, 0.5 * room)
     ]
     cut = judged(every, proposal.row, device, must, *ends)
     return replace(proposal, cuts=(cut, *proposal.cuts), step=f"{kind.kind} of {device.text} before it")

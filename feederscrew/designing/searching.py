@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from feederscrew.designing import proposals, trying
-from feederscrew.designing.record import Attempt
+from feederscrew.designing.record import Attempt, RobustRun
 from feederscrew.studies.rate import Shares
 
 RESERVE = 1.6  # of the target, for which a bowl is driven: queues bring less than rows, counts scatter
@@ -49,3 +49,4 @@ class Candidate:
     weights: np.ndarray  # (M,)
     tried: trying.Tried
     attempt: Attempt
+    drawn: RobustRun | None = None  # some draws that it did not all hold

@@ -175,8 +175,11 @@ class TrialRun:
 
     @property
     def sorts(self):
-        """Say whether what shall pass still leaves as it came, and nothing else does."""
+        """Say whether what shall pass leaves, nothing else does, and nothing stops: sure of it or not."""
         passed = self.counts[:, course.PASSED]
+        lost = self.predicted & (passed < HELD * self.tried)
+        if lost.any() or self.jams:
+            return False
         return not self._against(np.where(self.predicted, passed, self.tried - passed)).any()
 
     def _against(self, holding):

@@ -63,7 +63,7 @@ def test_a_device_added_in_one_file_is_known_everywhere(ravine):
     passes = {round(row["length_mm"]): row["ravine_1"] for row in rows if row["aspect"] == "A"}
     assert passes == {20: 0.0, 12: 1.0}
     out = ravine / "out"
-    ran("tooling", part, "--aspect", "A", "--heading", "90", "--rule", "csa", "-o", str(out))
+    ran("tooling", part, "--aspect", "A", "--heading", "90", "--rule", "csa", "--static", "-o", str(out))
     files = {path.name: path for path in out.rglob("*")}
     assert "ravine 8 mm" in files["tooling.dxf"].read_text() and "CUT" in files["tooling.dxf"].read_text()
     assert "ravine: 8 mm" in files["tooling.yaml"].read_text()

@@ -198,6 +198,9 @@ def summary(study):
             f"{run.velocity / MM_S:.4g} mm/s{beside}, {run.parts / PER_MINUTE:.4g} parts per minute, "
             f"efficiency {100.0 * run.efficiency:.4g} %, purity {100.0 * np.nan_to_num(run.purity):.4g} %"
         )
+        if run.queue is None and run.jams:
+            where = ", ".join(_staying(run))
+            yield f"jams: {run.jams} of {run.tried.sum()} parts stay at a device or hang ({where})"
         yield (
             f"in {run.course.seconds.sum():.4g} part-seconds nothing was deeper in anything than "
             f"{_most(run.course.depths) / MM:.2g} mm, and no part won more energy than lifts it by "
@@ -210,6 +213,13 @@ def summary(study):
             yield from _beside(study.outlet(run))
     if len(study.runs) > 1 and np.isfinite(study.highest):
         yield f"the tooling sorts up to an amplitude of {study.highest / MM:.4g} mm of those tried"
+
+
+def _staying(run):
+    """Which orientations stay, and where most of them do."""
+    held = run.counts[:, [course.HANGING, course.STOPPED, course.STUCK]].sum(axis=1)
+    for k in np.flatnonzero(held):
+        yield f"{run.known.lying[k].name} at {_ended(run, k) or 'the track'}"
 
 
 def _fallen(run):

@@ -83,3 +83,26 @@ def test_the_bowl_is_there_as_a_solid_that_turns_on_the_page(designed):
     assert (folder / "bowl.pdf").read_bytes()[:5] == b"%PDF-"
     assert (folder / "bowl.stl").stat().st_size == 84 + 50 * solid["solid_facets"]
     assert 'data-views="solid-bowl"' in (folder / "design.html").read_text()
+
+
+def test_the_acceptance_sheet_is_read_back_filled_in(designed, run):
+    _, folder = designed
+    rows = (folder / "acceptance.csv").read_text().splitlines()
+    none = run("compare", folder / "acceptance.csv")
+    assert none.exit_code == 1 and "nothing was measured - fill in the column 'measured'" in none.stderr
+
+    def filled(word, value, sample=""):
+        found = [row.rsplit(",", 2)[0] + f",{value},{sample}" if word in row else row for row in rows]
+        Path("filled.csv").write_text("\n".join(found) + "\n")
+        done = run("compare", "filled.csv", "--format", "json")
+        assert done.exit_code == 0, done.stderr
+        return json.loads(done.stdout)
+
+    assert filled("frequency of the drive", "50")["accepted"]
+    assert not filled("frequency of the drive", "100")["accepted"]
+    assert filled("good parts at the discharge", "1000")["accepted"]
+    assert not filled("good parts at the discharge", "1")["accepted"]
+    assert filled("yield", "99", "50")["accepted"] and not filled("yield", "80", "50")["accepted"]
+    Path("odd.csv").write_text("\n".join([rows[0], rows[1].rsplit(",", 2)[0] + ",many,"]) + "\n")
+    odd = run("compare", "odd.csv")
+    assert "measured is 'many', not a number - write a number alone" in odd.stderr

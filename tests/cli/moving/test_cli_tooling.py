@@ -37,14 +37,20 @@ def test_the_chain_of_one_orientation(run, block):
     assert all(set(row) >= ROW for row in document["orientations"])
     assert sum(row["share"] for row in document["orientations"]) == pytest.approx(1.0, abs=1e-9)
     assert {row["isolated"] for row in document["orientations"]} == {True, None}
+    (tried,) = document["trial"]
+    assert tried["orientation"] == "A@90" and tried["sorts"] is (not tried["denied"]) and tried["parts"] >= 4
+    assert tried["efficiency_static"] == pytest.approx(document["efficiency"])
     for cut in document["chain"]:
         assert set(cut) >= (CUT - {"value_mm"} if "outline_mm" in cut else CUT)
         assert min(cut["margin_pass_mm"], cut["margin_reject_mm"]) >= 0.25
-    assert document == told(run, "tooling", block, "--aspect", "A", "--heading", "90deg", *WIDE)
+    alone = told(run, "tooling", block, "--aspect", "A", "--heading", "90deg", "--static", *WIDE)
+    assert document | {"trial": []} == alone
 
 
 def test_rate_reads_the_chain(run, block, tmp_path):
-    document = told(run, "tooling", block, "--aspect", "A", "--heading", "90deg", "--launch", "feed", *WIDE)
+    document = told(
+        run, "tooling", block, "--aspect", "A", "--heading", "90deg", "--launch", "feed", "--static", *WIDE
+    )
     lines = "".join(f"  - {cut['device']}: {cut['text']}\n" for cut in document["chain"])
     (tmp_path / "tooling.yaml").write_text(f"track: {{width: 200 mm}}\ndevices:\n{lines}")
     wanted = ("--aspect", "A", "--heading", "90deg", "--config", "tooling.yaml")

@@ -1,0 +1,100 @@
+"""An acceptance sheet that was filled in at the machine, beside what was computed."""
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+
+from feederscrew.dropping.ensemble import wilson
+from feederscrew.errors import FeederError
+
+HEAD = ("quantity", "fill", "computed", "low", "high", "unit", "measured", "sample")
+RATE, YIELD, JAMS = "good parts at the discharge", "yield, good of what leaves", "jams"
+SAMPLE = 100  # parts, where the sheet does not say how many were looked at
+OFF = 0.1  # [1] of a computed value without ends, from which a measured one is another
+
+
+@dataclass(frozen=True)
+class SheetLine:
+    """One line of the sheet."""
+
+    quantity: str
+    fill: str
+    computed: float
+    low: float | None
+    high: float | None
+    unit: str
+    measured: float | None  # None where nobody measured
+    sample: float | None  # parts, or seconds
+
+    @property
+    def ends(self):
+        """Ends within which the measured value agrees: those of the sheet, or of a sample of its size."""
+        low, high = self.low, self.high
+        if self.quantity == YIELD:
+            sample = self.sample or SAMPLE
+            return 100.0 * float(wilson([0.01 * self.computed * sample], sample)[0][0]), 100.0
+        if low is None and high is None:
+            return (1.0 - OFF) * self.computed, (1.0 + OFF) * self.computed
+        return (0.0 if low is None else low), (float("inf") if high is None else high)
+
+    @property
+    def agrees(self):
+        """Whether it does what was computed, or better; None where nobody measured."""
+        if self.measured is None:
+            return None
+        low, high = self.ends
+        if self.quantity in (RATE, YIELD):  # more is no fault
+            return self.measured >= low
+        return self.measured <= high if self.quantity == JAMS else low <= self.measured <= high
+
+
+def is_sheet(path):
+    """Return whether a file is an acceptance sheet, by its first line."""
+    try:
+        with Path(path).open(encoding="utf-8-sig", newline="") as file:
+            return tuple(one.strip() for one in next(csv.reader(file), ())) == HEAD
+    except (OSError, UnicodeDecodeError):
+        return False
+
+
+def sheet(path):
+    """Read an acceptance sheet, as ``feeder design`` writes it and someone has filled it in.
+
+    Parameters
+    ----------
+    path : str or Path
+
+    Returns
+    -------
+    tuple of SheetLine
+
+    Raises
+    ------
+    FeederError
+        If a number is not one, or nothing was measured.
+    """
+    lines = []
+    with Path(path).open(encoding="utf-8-sig", newline="") as file:
+        for place, row in enumerate(csv.DictReader(file), start=2):
+            values = {name: _number(path, place, name, row.get(name)) for name in HEAD if name not in TEXT}
+            if values["computed"] is None:
+                raise FeederError(f"{path}:{place}", "has no computed value", "leave that column as it was")
+            texts = {name: (row.get(name) or "").strip() for name in TEXT}
+            lines.append(SheetLine(**texts, **values))
+    if all(line.measured is None for line in lines):
+        raise FeederError(str(path), "nothing was measured", "fill in the column 'measured'")
+    return tuple(lines)
+
+
+TEXT = ("quantity", "fill", "unit")
+
+
+def _number(path, place, name, text):
+    """A cell as a number; None where it is empty."""
+    if text is None or not text.strip():
+        return None
+    try:
+        return float(text.strip().replace(",", "."))
+    except ValueError as fault:
+        mend = "write a number alone, the unit is in its own column"
+        raise FeederError(f"{path}:{place}", f"{name} is {text.strip()!r}, not a number", mend) from fault

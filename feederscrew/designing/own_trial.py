@@ -1,0 +1,95 @@
+"""The trial of what the static rule proposes: both verdicts side by side."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feederscrew.designing import trying
+from feederscrew.designing.robust import denied
+from feederscrew.errors import FeederError
+from feederscrew.rates import stream
+
+EACH = 2  # parts of each orientation
+BEST = 3  # designs of a table that are tried
+OFTEN = 0.02  # [1] shares of the orientations that are tried, and the one that is wanted
+
+
+@dataclass(frozen=True)
+class TriedDesign:
+    """A chain of ``feeder tooling``, tried with a few parts of each orientation that comes often."""
+
+    name: str  # of the orientation wanted
+    static_efficiency: float  # [1]
+    efficiency: float  # [1] of those tried
+    purity: float  # [1] NaN where nothing leaves
+    parts: int
+    faults: tuple[str, ...]  # what the trial denies, a sentence each
+
+    @property
+    def sentence(self):
+        """Both verdicts."""
+        said = "the trial agrees" if not self.faults else "the trial denies it: " + "; ".join(self.faults)
+        return (
+            f"{self.name}: the static rule lets {100.0 * self.static_efficiency:.3g} % leave, of {self.parts}"
+            f" parts tried {100.0 * self.efficiency:.3g} % do; {said}"
+        )
+
+
+def own_trials(study, *, seed=1, jobs=1, before=None):
+    """Try the chain of the orientation that was asked for, or the best three of a table.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+    seed, jobs : int
+    before : callable, optional
+        Called before anything is compiled.
+
+    Returns
+    -------
+    tuple of TriedDesign
+        Without chains that isolate nothing.
+    """
+    known = [one for one in study.designs if one is not None and one.devices and one.efficiency > 0.0]
+    best = sorted(known, key=lambda one: (-one.isolated, -one.efficiency, one.wanted))
+    return tuple(_tried(study, one, seed, jobs, before) for one in best[:BEST])
+
+
+def _tried(study, one, seed, jobs, before):
+    """One design with parts of its own."""
+    bowl = replace(study.bowl, devices=one.devices)
+    ways = stream.along(study.orientations, study.aspects, bowl.devices, bowl=bowl)
+    name, total = ways.lying[one.wanted].name, study.shares.sum()
+    shares = study.shares / total if total > 0.0 else np.full(len(study.shares), 1.0 / len(study.shares))
+    rows = [k for k in trying.often(shares, (one.wanted,)) if shares[k] >= OFTEN or k == one.wanted]
+    try:
+        tried = trying.single(
+            study.part, bowl, ways, shares, one.wanted, rows=rows, each=EACH, seed=seed, jobs=jobs,
+            before=before,
+        )  # fmt: skip
+    except FeederError as fault:  # the bowl does not convey
+        return TriedDesign(name, one.efficiency, 0.0, np.nan, 0, (fault.what,))
+    return TriedDesign(
+        name=name,
+        static_efficiency=one.efficiency,
+        efficiency=tried.efficiency,
+        purity=tried.purity,
+        parts=int(tried.parts.sum()),
+        faults=tuple(denied(tried)),
+    )
+
+
+def document(tried):
+    """Return TriedDesigns as a list of dicts."""
+    return [
+        {
+            "orientation": one.name,
+            "efficiency_static": one.static_efficiency,
+            "efficiency_tried": one.efficiency,
+            "purity_tried": None if np.isnan(one.purity) else one.purity,
+            "parts": one.parts,
+            "sorts": not one.faults,
+            "denied": list(one.faults),
+        }
+        for one in tried
+    ]
