@@ -163,7 +163,7 @@ def _tried_out(search, made, proposal, weights):
 
 
 def _screened(search, candidate):
-    """A clean candidate after some draws of part, friction, drive and cuts; denied where one does not sort."""
+    """A clean candidate after some draws of part, friction, drive and cuts; denied where one fails."""
     if not candidate.attempt.clean or candidate.attempt.rate < search.request.target:
         return candidate
     request = search.request
