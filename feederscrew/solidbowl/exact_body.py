@@ -84,6 +84,7 @@ def plank(area, thickness, axes, foot):
     made = []
     for one in shapely.get_parts(area):
         if one.geom_type == "Polygon":
+            one = shapely.geometry.polygon.orient(one)
             rings = [np.asarray(ring.coords)[:-1] for ring in (one.exterior, *one.interiors)]
             rings = [(np.asarray(foot) + product(ring, np.asarray(axes)[:, :2].T)) / MM for ring in rings]
             wires = [exact_faces.polygon(ring) for ring in rings]

@@ -74,7 +74,7 @@ def drawn(wires, along):
 
     face = BRepBuilderAPI_MakeFace(wires[0], True)
     for hole in wires[1:]:
-        face.Add(cast("Wire", hole.Reversed()))
+        face.Add(hole)
     return outwards(BRepPrimAPI_MakePrism(face.Face(), gp_Vec(*(float(x) for x in along))).Shape())
 
 

@@ -158,8 +158,11 @@ def _end(plan, kit):
     low, rest = inner[-4], inner[-4:]
     under = plan.outlet_height - 0.5 * plan.material.plate
     half = 0.5 * plan.material.wall
-    ring = [[low[0] + half, low[1]], *(rest[1:3] + [half, -half]), [rest[3][0] + half, under],
-            [low[0] + half, under]]  # fmt: skip
+    ring = [
+        *(rest[1:3] + [half, -half]),
+        [rest[3][0] + half, under],
+        [low[0] + half, under],
+    ]
     axes = np.column_stack([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
     return kit.plank(shapely.Polygon(ring), plan.material.wall, axes, [0.0, 0.0, 0.0])
 

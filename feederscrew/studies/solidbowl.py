@@ -5,11 +5,13 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.errors import ArgumentError
 from feederscrew.rates import stream
 from feederscrew.solidbowl import cuts, exact_body, exact_file, riding, segments
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.materials import STEEL, material
 from feederscrew.solidbowl.plan import CHORD, Asked, plan
+from feederscrew.solidbowl.stairs import CYLINDER
 from feederscrew.solidbowl.ways_down import ways_down
 from feederscrew.tooling.hanging import hung, neck
 
@@ -40,9 +42,9 @@ def asked(settings, *, solid, material, chord, bed=None, step=False):
     """
     if not solid:
         return None
-    if step:
-        exact_body.check()
     rules = bowls.record(settings).sizing
+    if step:
+        _check_step(rules.shape)
     given = {s.key.name for s in settings if s.given}
     return Asked(
         chord=chord,
@@ -60,6 +62,14 @@ def asked(settings, *, solid, material, chord, bed=None, step=False):
         step=step,
         bed=None if bed is None else segments.bed(bed),
     )
+
+
+def _check_step(shape):
+    """Raise the fault of a bowl that STEP cannot be made of."""
+    exact_body.check()
+    if shape != CYLINDER:
+        what = f"a {shape} wall and its track are not united by OpenCASCADE in useful time"
+        raise ArgumentError("step", what, "take bowl.stl or bowl.3mf, or sizing.shape: cylinder")
 
 
 def in_material(bowl, asked):
