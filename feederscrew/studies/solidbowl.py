@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import bowl as bowls
 from feederscrew.errors import ArgumentError
 from feederscrew.rates import stream
-from feederscrew.solidbowl import cuts, exact_body, exact_file, riding, segments
+from feederscrew.solidbowl import cuts, exact_body, exact_file, leaning, riding, segments
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.materials import STEEL, material
 from feederscrew.solidbowl.plan import CHORD, Asked, plan
@@ -122,9 +122,10 @@ def solid(bowl, size, part, coming, asked, counted):
     if asked is None:
         return size, None
     made_of = material(asked.material, bowl.sizing)
-    tooled = cuts.stretch(bowl.track, bowl.devices, coming.lying) if _tooled(bowl.devices) else None
+    track = leaning.banked(bowl.track, bowl.devices, coming.lying)
+    tooled = cuts.stretch(track, bowl.devices, coming.lying) if _tooled(bowl.devices) else None
     asked = replace(asked, friction=bowl.friction.static)
-    made = body(plan(size, bowl.track, made_of, tooled, asked, extents=np.ptp(part.vertices, axis=0)))
+    made = body(plan(size, track, made_of, tooled, asked, extents=np.ptp(part.vertices, axis=0)))
     made = replace(made, falls=ways_down(made))
     if asked.bed is not None:
         made = replace(made, segments=segments.segments(made, asked.bed))

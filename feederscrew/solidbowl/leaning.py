@@ -1,0 +1,45 @@
+"""What of the devices a solid with one bank and one climb can be made of."""
+
+from dataclasses import replace
+
+from feederscrew.errors import FeederError
+
+
+def banked(track, devices, every):
+    """Return the track with the bank that the first devices give it from its entry on.
+
+    Parameters
+    ----------
+    track : Track
+    devices : sequence of Device
+    every : sequence of Orientation
+        Of the part on that track.
+
+    Returns
+    -------
+    Track
+
+    Raises
+    ------
+    FeederError
+        If a device changes the lean of the track further on, or leads it on beside a ledge.
+    """
+    entry = True
+    for device in devices:
+        if not device.placed:
+            continue
+        for slope in device.standing(track, every).slopes:
+            if not entry or slope.climb is not None:
+                raise _refused(
+                    device, "changes the lean of the track, and a solid has one climb and one bank"
+                )
+            track = replace(track, bank=slope.bank)
+        entry = entry and device.leans
+        lower = device.lower(every)
+        if lower is not None and lower[1] > 0.0:
+            raise _refused(device, "leads to a lower track beside it, which a solid does not have")
+    return track
+
+
+def _refused(device, what):
+    return FeederError(f"devices: {device.label}", what, "leave it out of the bowl file of the solid")

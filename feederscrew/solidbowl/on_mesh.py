@@ -1,0 +1,144 @@
+"""The tooled track as the trial takes it, measured on the mesh of the finished bowl and not by its plan.
+
+The mesh is unrolled: lengths along the wall, distances from it, heights over the track. Sections of that are
+the holes and the blades that parts meet.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import shapely
+from shapely import affinity
+
+from feederscrew.solidbowl import facets, measuring
+from feederscrew.tooling.devices.pieces import Hole
+
+MM = facets.MM
+UNDER = 3e-4  # [m] below the track's surface, where its plate is cut to see its holes
+CRUMB = 5e-5  # [m] what is narrower is a chord beside its arc
+PLACES = 20  # at which radius and climb are measured
+BEFORE = 20e-3  # [m] of track before the devices that is unrolled
+
+
+class OnMesh:
+    """A device whose holes and blades are those of the mesh; everything else is its own."""
+
+    def __init__(self, device, standing):
+        self._device, self._standing = device, standing
+
+    def __getattr__(self, name):
+        return getattr(self._device, name)
+
+    def standing(self, track, every):
+        """Return what stands along the track, as it was measured."""
+        return self._standing
+
+
+def ridden(made, bowl, every):
+    """Return the bowl and its devices as parts meet them on the mesh.
+
+    Parameters
+    ----------
+    made : BowlSolid
+        Of that bowl, a cylinder.
+    bowl : Bowl
+    every : sequence of Orientation
+        Of the part on its track.
+
+    Returns
+    -------
+    Bowl
+        Its track as wide, as steep and as much bent as was measured.
+    list of OnMesh
+        Its devices.
+    """
+    plan, body = made.plan, facets.unplaced(made)
+    track = _track(plan, body, bowl.track)
+    flat = _unrolled(plan, body)
+    devices, stretch = [], plan.stretch
+    placed = [one for one in bowl.devices if one.placed and not one.leans]
+    cuts = {cut.label: list(_of(stretch.cuts, cut.label)) for cut in stretch.cuts}
+    blades = {one.label: list(_of(stretch.blades, one.label)) for one in stretch.blades}
+    for device in placed:
+        own = device.standing(bowl.track, every)
+        if own.holes:
+            cut = cuts[device.label].pop(0)
+            start = plan.first + cut.span[0] - min(hole.outline[:, 0].min() for hole in own.holes)
+            own = replace(own, holes=_holes(plan, flat, start, own, track.width))
+        if own.blades:
+            drawn = blades[device.label].pop(0)
+            own = replace(own, blades=tuple(_blade(plan, flat, drawn, one) for one in own.blades))
+        devices.append(OnMesh(device, own))
+    return replace(bowl, track=track, devices=tuple(devices)), devices
+
+
+def _of(some, label):
+    return (one for one in some if one.label == label)
+
+
+def _track(plan, body, track):
+    """The track with width, radius, climb and bank as measured before the devices."""
+    s = np.linspace(0.6, 0.98, PLACES) * plan.first
+    widths = [measuring.track_width(plan, body, one) for one in s]
+    heights = np.array(
+        [[measuring.heights(plan, body, one, y * plan.width) for y in (0.2, 0.8)] for one in s]
+    )
+    slope = np.polyfit(s, heights[:, 0], 1)[0]
+    bank = np.arcsin(float(np.mean(heights[:, 1] - heights[:, 0])) / (0.6 * plan.width))
+    theta, z = float(plan.way.angle(s[-1])), float(plan.way.height(s[-1])) + 2e-3
+    out = 3.0 * plan.way.radius * np.array([np.cos(theta), np.sin(theta)])
+    radius = facets.first_met(body, (0.0, 0.0, z), (*out, z))[0]
+    climb = float(np.arctan(slope))
+    return replace(track, width=float(np.mean(widths)), radius=radius, climb=climb, bank=float(bank))
+
+
+def _unrolled(plan, body):
+    """The tooled stretch of the mesh as a Manifold [mm] of lengths along the wall, distances, heights."""
+    way, wall = plan.way, plan.material.wall
+    ends = max(plan.first - BEFORE, 0.0), way.end + plan.outlet - 1e-3
+    ring = [[ends[0], -0.5 * wall], [ends[1], -0.5 * wall], [ends[1], 1.2 * plan.width],
+            [ends[0], 1.2 * plan.width]]  # fmt: skip
+    low = float(way.height(ends[0])) - 2.0 * plan.material.plate
+    piece = body ^ facets.over(way, np.array(ring), low, plan.top + 1.0, 0.2 * plan.chord)
+
+    def laid(points):
+        x, y, z = np.asarray(points).T * MM
+        theta = np.arctan2(y, x)
+        straight = (y > 0.0) & (theta < 0.5 * np.pi) & (x > 0.0)
+        s = np.where(straight, way.end + y, way.at(np.where(theta > 0.0, theta - 2.0 * np.pi, theta)))
+        off = np.where(straight, way.radius - x, way.wall_radius(s) - np.hypot(x, y)) / np.cos(way.bank)
+        return np.column_stack([s, off, z - way.height(s, off)]) / MM
+
+    return piece.warp_batch(laid)
+
+
+def _section(flat, height):
+    """What a level plane cuts of the unrolled mesh, as an area [m]."""
+    return facets.cut_face(flat, 2, height)
+
+
+def _holes(plan, flat, start, own, width):
+    """The holes of a device: what is not there of the plate, as far as the device goes."""
+    far = min(max(hole.outline[:, 0].max() for hole in own.holes), plan.way.end + plan.outlet - 2e-3 - start)
+    near = min(hole.outline[:, 0].min() for hole in own.holes)
+    room = shapely.box(start + near - CRUMB, 0.0, start + far + CRUMB, width)
+    missing = room.difference(_section(flat, -UNDER).buffer(0.5 * CRUMB, join_style="mitre"))
+    missing = missing.buffer(-CRUMB, join_style="mitre").buffer(1.5 * CRUMB, join_style="mitre")
+    parts = shapely.get_parts(affinity.translate(missing.intersection(room), -start, 0.0))
+    return tuple(
+        Hole(np.asarray(shapely.simplify(one, 0.2 * CRUMB).exterior.coords)[:-1])
+        for one in parts
+        if one.geom_type == "Polygon" and one.area > CRUMB * plan.width
+    )
+
+
+def _blade(plan, flat, drawn, blade):
+    """A blade with the face that the mesh has in the middle of its thickness."""
+    s = plan.first + drawn.start + 0.5 * drawn.thickness
+    turned = flat.translate((-s / MM, 0.0, 0.0)).rotate((0.0, 0.0, float(np.degrees(np.arctan(drawn.lean)))))
+    face = facets.cut_face(turned, 0, 0.0)
+    face = affinity.scale(face, 1.0 / np.cos(np.arctan(drawn.lean)), 1.0, origin=(0.0, 0.0))
+    low, _, high, top = blade.solid.bounds
+    face = face.intersection(shapely.box(max(low, 0.0), CRUMB, high, top))
+    face = face.buffer(-CRUMB, join_style="mitre").buffer(CRUMB, join_style="mitre")
+    return replace(blade, solid=shapely.simplify(face, 0.2 * CRUMB))
