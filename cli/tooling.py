@@ -8,6 +8,11 @@ from feederscrew_cli.progress import Progress
 from feederscrew_cli.quantity import Quantity
 
 
+def _searching(command):
+    """Where the search for holes ends, packed as ``search``."""
+    return options.packed(command, "search", ("seed", "verdicts", "seconds"))
+
+
 @grouped.command(short_help="Which cuts let only one orientation leave the bowl.")
 @options.part
 @click.option(
@@ -74,6 +79,7 @@ from feederscrew_cli.quantity import Quantity
 )
 @click.option(
     "--limit",
+    "seconds",
     type=Quantity("time", positive=True),
     default="10 min",
     show_default=True,
@@ -85,9 +91,10 @@ from feederscrew_cli.quantity import Quantity
 @options.bowl
 @options.pictures
 @options.output
+@_searching
 def tooling(
-    part, aspect, heading, rule, margin, purity, efficiency, outcome, without, step, cad, turn, seed,
-    verdicts, limit, static, taken, bowl, pictures, out,
+    part, aspect, heading, rule, margin, purity, efficiency, outcome, without, step, cad, turn, search,
+    static, taken, bowl, pictures, out,
 ):  # fmt: skip
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
@@ -123,7 +130,7 @@ def tooling(
             found = study(
                 solid, record, aspect, known=known.aspects,
                 heading=heading, rule=rule, margin=margin, purity=purity, efficiency=efficiency, turn=turn,
-                outcome=outcome, without=without, step=step, seed=seed, verdicts=verdicts, seconds=limit,
+                outcome=outcome, without=without, step=step, **search,
                 told=bar.reach,
             )  # fmt: skip
         tried = () if static else own_trial.own_trials(found, before=lambda: waiting.trial(out))
