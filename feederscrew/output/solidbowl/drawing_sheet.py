@@ -11,6 +11,8 @@ from feederscrew.units import factor
 MM = factor("mm", "length")
 SCALES = (1.0, 0.5, 0.4, 0.2, 0.1, 0.05, 0.02)  # ISO 5455, with 1 : 2.5
 ROOM = 134.0  # [mm] of paper for the bowl across
+HIGH = 56.0  # and upright, in each of two views
+TOP, BETWEEN = 276.0, 21.0  # [mm] where the upper of them begins, and from its foot to the lower one
 STRIP = 205.0, 26.0  # [mm] of paper for the unrolled track
 FRAME = 20.0, 10.0, 410.0, 287.0
 
@@ -27,9 +29,14 @@ def pdf(study):
     -------
     bytes
     """
+    return sheet(study).pdf(f"{study.order.part.name}: bowl")
+
+
+def sheet(study):
+    """Return the drawing sheet of a bowl as a Paper."""
     paper, solid = Paper(), study.solid
     found = measures(solid)
-    scale = _scale(max(found.extent[:2]) / MM, ROOM)
+    scale = min(_scale(max(found.extent[:2]) / MM, ROOM), _scale(found.height / MM, HIGH))
     paper.box(*FRAME, width=THICK)
     _above(paper, solid, found, scale)
     _cut(paper, solid, found, scale)
@@ -39,7 +46,7 @@ def pdf(study):
     lists.cuts(paper, study, (25.0, 84.0))
     lists.parts(paper, study, (246.0, 134.0))
     lists.title(paper, study, found, scale)
-    return paper.pdf(f"{study.order.part.name}: bowl")
+    return paper
 
 
 def _scale(size, room):
@@ -62,17 +69,30 @@ def _above(paper, solid, found, scale):
     paper.lines(_placed(views.lines(solid.vertices, solid.faces, looked), at, scale), THIN * 1.6)
     r = 0.5 * found.diameter / MM * scale
     low = at[1] - 0.5 * max(found.extent[:2]) / MM * scale - 6.0
-    paper.dimension((at[0] - r, at[1]), (at[0] + r, at[1]), f"Ø{found.diameter / MM:.5g}", (0.0, low - at[1]))
+    if plan.stairs is None:
+        told = f"Ø{found.diameter / MM:.4g}"
+        paper.dimension((at[0] - r, at[1]), (at[0] + r, at[1]), told, (0.0, low - at[1]))
+    else:
+        _radius(paper, plan, found, at, scale)
     _track_width(paper, plan, found, at, scale)
     circle = np.linspace(0.0, 2.0 * np.pi, 181)
     ring = 0.5 * plan.bolt_circle / MM * scale * np.column_stack([np.cos(circle), np.sin(circle)]) + at
     paper.lines([ring], THIN, linestyles="dashdot")
     told = f"{plan.bolts} x Ø{plan.bolt / MM:.4g} on Ø{plan.bolt_circle / MM:.4g}, and one in the middle"
-    paper.text(at[0], at[1] + 0.5 * plan.bolt_circle / MM * scale + 4.0, told, size=2.2, ha="center")
+    paper.text(25.0, 276.5, told, size=2.2)
     paper.lines([[at - [r + 6, 0], at + [r + 6, 0]]], THIN, linestyles="dashdot")
     for side in (-1, 1):
         paper.text(at[0] + side * (r + 9.0), at[1] + 1.0, "A", size=3.5, ha="center", fontweight="bold")
     paper.text(25.0, 281.0, f"from above  {named(scale)}", size=3.0, fontweight="bold")
+
+
+def _radius(paper, plan, found, at, scale):
+    """The radius of a stepped wall where the outlet leaves it, and of the floor."""
+    out = np.array([np.cos(plan.turned), np.sin(plan.turned)])
+    r = 0.5 * found.diameter / MM
+    paper.dimension(at, at + r * scale * out, f"R{r:.4g} at the outlet", (0.0, 0.0), size=2.2)
+    lowest = float(plan.way.wall_radius(0.0)) / MM
+    paper.text(25.0, 272.5, f"R{lowest:.4g} of the wall where the track begins", size=2.2)
 
 
 def _track_width(paper, plan, found, at, scale):
@@ -88,7 +108,7 @@ def _track_width(paper, plan, found, at, scale):
 def _cut(paper, solid, found, scale):
     """The section A-A."""
     rings = facets.section(facets.placed(solid), 0.0)
-    at = np.array([255.0, 248.0])
+    at = np.array([255.0, TOP - solid.vertices[:, 2].max() / MM * scale])
     rings = [_placed(ring, at, scale) for ring in rings]
     paper.hatched(rings)
     low = at[1] + solid.vertices[:, 2].min() / MM * scale
@@ -108,15 +128,20 @@ def _cut(paper, solid, found, scale):
 
 def _from_outside(paper, solid, found, scale):
     """The bowl from the side that its outlet leaves to."""
-    at = np.array([255.0, 172.0])
+    top = TOP - found.height / MM * scale - BETWEEN
+    at = np.array([255.0, top - solid.vertices[:, 2].max() / MM * scale])
     turn = np.degrees(solid.plan.turned) + (-90.0 if solid.plan.left else 90.0)
     looked = views.camera(turn, 0.0)
-    paper.lines(_placed(views.lines(solid.vertices, solid.faces, looked), at, scale), THIN * 1.6)
+    drawn = _placed(views.lines(solid.vertices, solid.faces, looked), at, scale)
+    paper.lines(drawn, THIN * 1.6)
     low = at[1] + solid.vertices[:, 2].min() / MM * scale
-    r = (0.5 * found.diameter + found.wall) / MM * scale
-    told = f"Ø{2.0 * (0.5 * found.diameter + found.wall) / MM:.5g}"
-    paper.dimension((at[0] - r, low), (at[0] + r, low), told, (0.0, -6.0))
-    paper.text(190.0, 218.0, f"towards the outlet  {named(scale)}", size=3.0, fontweight="bold")
+    wide = 0.5 * found.diameter + found.wall
+    ends, told = np.array([-wide, wide]) / MM * scale + at[0], f"Ø{2.0 * wide / MM:.4g}"
+    if solid.plan.stairs is not None:
+        ends = drawn[..., 0].min(), drawn[..., 0].max()
+        told = f"{(ends[1] - ends[0]) / scale:.4g}"
+    paper.dimension((ends[0], low), (ends[1], low), told, (0.0, -6.0))
+    paper.text(190.0, top + 3.0, f"towards the outlet  {named(scale)}", size=3.0, fontweight="bold")
 
 
 def _standing(paper, solid):
@@ -159,7 +184,7 @@ def _unrolled(paper, solid):
             [x, x + thick, x + thick, x], [at[1], at[1], at[1] + wide, at[1] + wide], color="#0072b2"
         )
         paper.text(x + thick + 0.8, at[1] + 0.5 * wide, str(number), size=2.5, va="center")
-    paper.dimension(at, at + [length, 0.0], f"{stretch.length / MM:.4g}", (0.0, -5.0), size=2.2)
+    paper.dimension(at, at + [length, 0.0], f"{stretch.length / MM:.4g}", (0.0, -6.5), size=2.2)
     told = f"{plan.width / MM:.4g}"
     paper.dimension(at + [length, 0.0], at + [length, wide], told, (4.0, 0.0), size=2.2)
     head = f"track unrolled  {named(scale)}: wall below, parts move to the right; its end lies "
