@@ -274,7 +274,7 @@ def test_a_part_with_a_shape_has_the_recommended_answer(bracket):
     case = report(bracket, None, ())
     answer = case.resting.recommended
     (tile,) = page(case, chapters=LIGHT[:1]).tiles
-    assert tile.note.startswith(f"{100.0 * answer.p[case.row]:.3g} % of drops (")
+    assert tile.note.startswith(f"{numbers.percent(answer.p[case.row])} % of drops (")
     assert tile.note.endswith(f" %), {answer.rule}")
 
 
