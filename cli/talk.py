@@ -93,11 +93,19 @@ class Output:
         yield
         self.detail(f"{name}: {time.perf_counter() - start:.2f} s")
 
-    def table(self, frame, *, hidden=()):
-        """Print a frame as the table or CSV asked for; a table for people leaves out ``hidden`` columns."""
+    def table(self, frame, *, hidden=(), spare=()):
+        """Print a frame as the table or CSV asked for.
+
+        A table for people leaves out ``hidden`` columns, and of ``spare`` ones, from the first on, as many
+        as it takes to be no wider than a page; it says which.
+        """
         from feederscrew.output import tables
 
         shown = frame.without(hidden) if self.format == "table" else frame
+        if self.format == "table" and spare:
+            shown, left_out = tables.to_page(shown, spare)
+            if left_out:
+                self.say(f"Left out of the table: {', '.join(left_out)}; --format csv prints them too")
         click.echo(tables.text(shown, self.format, _window()), nl=False)
 
     def json(self, document):
@@ -106,12 +114,12 @@ class Output:
 
         click.echo(tables.json_text(document), nl=False)
 
-    def show(self, frame, document, *, hidden=()):
+    def show(self, frame, document, *, hidden=(), spare=()):
         """Print the document with ``--format json``, else the frame."""
         if self.format == "json":
             self.json(document)
         else:
-            self.table(frame, hidden=hidden)
+            self.table(frame, hidden=hidden, spare=spare)
 
     def depend(self, targets, inputs=None):
         """Write the rule of ``--depfile``, where it is given: files and what they are made from."""

@@ -139,4 +139,4 @@ def tooling(
         out.say(*(one.sentence for one in tried if not one.faults))
         out.say(*tables.remarks(found, efficiency))
         offers.write(folder, files.offers(found, settings, cad), pictures=pictures)
-        out.show(tables.summary(found), document, hidden=tables.HIDDEN)
+        out.show(tables.summary(found), document, hidden=tables.HIDDEN, spare=tables.SPARE)

@@ -114,4 +114,4 @@ def trial(part, aspect, rule, taken, parts, landing, queued, amplitudes, seed, j
         out.warn(*found.warnings)
         out.say(*tables.summary(found))
         offers.write(folder, files.offers(found), pictures=pictures)
-        out.show(tables.frame(found), document, hidden=tables.HIDDEN)
+        out.show(tables.frame(found), document, hidden=tables.HIDDEN, spare=tables.spare(found))

@@ -43,6 +43,7 @@ SHARES = ("share", "efficiency", "purity")  # last words of columns of shares ..
 PASSED = ("passes", "passes_devices", "passed_low", "passed_high")  # ... and whole names of others
 DIGITS = 4  # significant, in a table for people
 NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
+PAGE = 100  # letters of a line that a table for people should not be wider than
 
 
 class Frame(dict):
@@ -136,6 +137,33 @@ def text(frame, format, width=None):
     if format == "table":
         return _aligned(frame, width)
     raise ValueError(f"format is {format!r}, not 'table' or 'csv'")
+
+
+def to_page(frame, spare, width=PAGE):
+    """Leave columns out of a table for people until it is no wider than a page.
+
+    Parameters
+    ----------
+    frame : Frame
+    spare : sequence of tuple of str
+        Columns that may go, the first ones first; those of a tuple together.
+    width : int, optional
+        Letters of a line.
+
+    Returns
+    -------
+    frame : Frame
+    left_out : list of str
+        Headings of the columns that went.
+    """
+    wide = {name: len(_column(name, column)[0]) for name, column in frame.items()}
+    waiting = [group for names in spare if (group := [name for name in names if name in wide])]
+    gone = []
+    while waiting and sum(wide.values()) + len(window.GAP) * (len(wide) - 1) > width:
+        gone += waiting[0]
+        wide = {name: letters for name, letters in wide.items() if name not in waiting[0]}
+        del waiting[0]
+    return frame.without(gone), [heading(name)[0] for name in gone]
 
 
 def _csv(frame):

@@ -9,6 +9,11 @@ from feederscrew.units import factor
 
 MM, DEG = factor("mm", "length"), factor("deg", "angle")
 HIDDEN = ("reasons",)
+SPARE = (  # left out of a table for people that is too wide, the first ones first
+    ("smallest_cut", "largest_cut"),
+    ("mirror", "wall_distance_mm", "balcony_mm", "canyon_mm", "gap_mm"),
+    ("height_mm",), ("length_mm", "width_mm"), ("steady",), ("purity",), ("left_over",),
+)  # fmt: skip
 QUASI_STATIC = "quasi-static, until a trial confirms it"
 
 
@@ -74,12 +79,22 @@ def summary(study):
             "margin_reject_mm": cut.margin_reject / MM,
             "smallest_cut": cut.smallest.text,
             "largest_cut": cut.largest.text,
-            "returns": " ".join(cut.returns) or _turns(cut),
+            "returns": _returned(study, cut) or _turns(cut),
         }
         for cut in study.design.cuts
     ]
     columns_of = "device value margin_pass_mm margin_reject_mm smallest_cut largest_cut returns".split()
     return tables.frame({name: [row[name] for row in rows] for name in columns_of})
+
+
+def _returned(study, cut):
+    """'A@2 A@90, all of B, C': what a device returns, aspects of which it returns every orientation last."""
+    names = {}
+    for one in study.orientations:
+        names.setdefault(one.aspect, set()).add(one.name)
+    whole = [aspect for aspect, all_of in names.items() if all_of <= set(cut.returns)]
+    single = " ".join(name for name in cut.returns if not any(name in names[aspect] for aspect in whole))
+    return ", ".join(told for told in (single, f"all of {', '.join(whole)}" if whole else "") if told)
 
 
 def remarks(study, efficiency=0.0):

@@ -12,6 +12,7 @@ PER_MINUTE, MM_S = units.factor("/min", "rate"), units.factor("mm/s", "velocity"
 MM, DEG = columns.MM, columns.DEG
 UM = 1e-3 * MM
 HIDDEN = ("fell_mm", "seconds")
+MEASURES = ("energy_won_um", "penetration_mm", "length_mm", "velocity_mm_s")
 
 
 def document(study):
@@ -85,6 +86,17 @@ def orientations(run):
         }
         for k, one in ((k, run.known.lying[k]) for k in first)
     ]
+
+
+def spare(study):
+    """Return columns to leave out of a table for people that is too wide, the first one first.
+
+    Fates of no part go before those of some.
+    """
+    counts = sum(run.counts.sum(axis=0) for run in study.runs)
+    none = [name for name, count in zip(course.FATES, counts) if not count and name != "passed"]
+    rest = ("passed_low", "passed_high"), ("predicted",), ("leaves_as",), ("share",)
+    return (MEASURES, tuple(none), *rest)
 
 
 def queue(study, run):
