@@ -8,9 +8,15 @@ from feederscrew_cli.progress import Progress
 from feederscrew_cli.quantity import Quantity
 
 
-def _searching(command):
-    """Where the search for holes ends, packed as ``search``."""
-    return options.packed(command, "search", ("seed", "verdicts", "seconds"))
+ASKED = (
+    *("heading", "margin", "purity", "efficiency", "outcome", "without"),
+    *("step", "turn", "seed", "verdicts", "seconds"),
+)
+
+
+def _asked(command):
+    """What the design shall keep to; the command receives ``asked``."""
+    return options.packed(command, "asked", ASKED)
 
 
 @grouped.command(short_help="Which cuts let only one orientation leave the bowl.")
@@ -91,11 +97,8 @@ def _searching(command):
 @options.bowl
 @options.pictures
 @options.output
-@_searching
-def tooling(
-    part, aspect, heading, rule, margin, purity, efficiency, outcome, without, step, cad, turn, search,
-    static, taken, bowl, pictures, out,
-):  # fmt: skip
+@_asked
+def tooling(part, aspect, rule, asked, cad, static, taken, bowl, pictures, out):
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
     Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect:
@@ -127,16 +130,11 @@ def tooling(
     known = orientation.shares(out, solid, record, taken, rule)
     with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
         with Progress(None, not out.quiet, "orientations") as bar:
-            found = study(
-                solid, record, aspect, known=known.aspects,
-                heading=heading, rule=rule, margin=margin, purity=purity, efficiency=efficiency, turn=turn,
-                outcome=outcome, without=without, step=step, **search,
-                told=bar.reach,
-            )  # fmt: skip
+            found = study(solid, record, aspect, known=known.aspects, rule=rule, told=bar.reach, **asked)
         tried = () if static else own_trial.own_trials(found, before=lambda: waiting.trial(out))
         document = tables.document(found) | {"trial": own_trial.document(tried)}
         out.warn(*found.warnings, *(one.sentence for one in tried if one.faults))
         out.say(*(one.sentence for one in tried if not one.faults))
-        out.say(*tables.remarks(found, efficiency))
+        out.say(*tables.remarks(found, asked["efficiency"]))
         offers.write(folder, files.offers(found, settings, cad), pictures=pictures)
         out.show(tables.summary(found), document, hidden=tables.HIDDEN, spare=tables.SPARE)

@@ -157,7 +157,7 @@ MORE = {
     "cli.batch.batch": 12,
     "cli.drop.drop": 12,
     "cli.rate.rate": 11,
-    "cli.tooling.tooling": 18,
+    "cli.tooling.tooling": 10,
     "cli.trial.trial": 13,
     "cli.tune.tune": 11,
     "designing.queues.filled": 9,

@@ -140,29 +140,12 @@ def text(frame, format, width=None):
 
 
 def to_page(frame, spare, width=PAGE):
-    """Leave columns out of a table for people until it is no wider than a page.
+    """Leave columns out of a table for people until its lines have no more letters than a page.
 
-    Parameters
-    ----------
-    frame : Frame
-    spare : sequence of tuple of str
-        Columns that may go, the first ones first; those of a tuple together.
-    width : int, optional
-        Letters of a line.
-
-    Returns
-    -------
-    frame : Frame
-    left_out : list of str
-        Headings of the columns that went.
+    ``spare`` names those that may go, in groups that go together, the first group first. Returns the
+    frame, and the headings of what went.
     """
-    wide = {name: len(_column(name, column)[0]) for name, column in frame.items()}
-    waiting = [group for names in spare if (group := [name for name in names if name in wide])]
-    gone = []
-    while waiting and sum(wide.values()) + len(window.GAP) * (len(wide) - 1) > width:
-        gone += waiting[0]
-        wide = {name: letters for name, letters in wide.items() if name not in waiting[0]}
-        del waiting[0]
+    gone = window.spared({name: len(_column(name, cells)[0]) for name, cells in frame.items()}, spare, width)
     return frame.without(gone), [heading(name)[0] for name in gone]
 
 

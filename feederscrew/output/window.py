@@ -35,6 +35,27 @@ def folded(columns, width):
     return [_in_lines(piece) for piece in pieces]
 
 
+def spared(wide, spare, width):
+    """Return the names of columns to leave out so that the others fit.
+
+    Parameters
+    ----------
+    wide : dict of str to int
+        Letters of each column by its name.
+    spare : sequence of sequence of str
+        Columns that may go, in groups that go together, the first group first.
+    width : int
+        Letters of a line.
+    """
+    gone = []
+    for group in spare:
+        kept = [letters for name, letters in wide.items() if name not in gone]
+        if sum(kept) + len(GAP) * (len(kept) - 1) <= width:
+            break
+        gone += [name for name in group if name in wide]
+    return gone
+
+
 def _widest(columns, names, most):
     """Letters of the widest of some columns, as far as they count."""
     return min(max((len(columns[name][0]) for name in names), default=0), most)

@@ -141,3 +141,15 @@ def test_an_interval_stays_with_its_value_and_rows_keep_their_names():
     heads = [line.split() for line in lines if line.startswith("aspect")]
     assert all(head[:2] == ["aspect", "heading"] for head in heads)
     assert [head[2:] for head in heads[-2:]] == [["PMI", "low", "high"], ["CSA", "low", "high"]]
+
+
+def test_a_table_wider_than_a_page_loses_its_spare_columns_in_order():
+    wide = tables.frame(
+        {"name": ["x" * 30], "low_mm": [1.5], "high_mm": [2.5], "note": ["y" * 60], "kept": ["z"]}
+    )
+    spare = [("low_mm", "high_mm"), ("gone",), ("note",)]
+    shown, left_out = tables.to_page(wide, spare)
+    assert list(shown) == ["name", "note", "kept"] and left_out == ["low", "high"]
+    assert len(tables.text(shown, "table").splitlines()[-1]) <= tables.PAGE
+    assert tables.to_page(wide, spare, 200)[1] == []
+    assert tables.to_page(wide, spare, 10)[1] == ["low", "high", "note"]

@@ -12,7 +12,6 @@ PER_MINUTE, MM_S = units.factor("/min", "rate"), units.factor("mm/s", "velocity"
 MM, DEG = columns.MM, columns.DEG
 UM = 1e-3 * MM
 HIDDEN = ("fell_mm", "seconds")
-MEASURES = ("energy_won_um", "penetration_mm", "length_mm", "velocity_mm_s")
 
 
 def document(study):
@@ -89,14 +88,11 @@ def orientations(run):
 
 
 def spare(study):
-    """Return columns to leave out of a table for people that is too wide, the first one first.
-
-    Fates of no part go before those of some.
-    """
+    """Return groups of columns to leave out of a table that is too wide; fates of no part go first."""
     counts = sum(run.counts.sum(axis=0) for run in study.runs)
     none = [name for name, count in zip(course.FATES, counts) if not count and name != "passed"]
-    rest = ("passed_low", "passed_high"), ("predicted",), ("leaves_as",), ("share",)
-    return (MEASURES, tuple(none), *rest)
+    measures = ("energy_won_um", "penetration_mm", "length_mm", "velocity_mm_s")
+    return measures, none, ("passed_low", "passed_high"), ("predicted",), ("leaves_as",), ("share",)
 
 
 def queue(study, run):
