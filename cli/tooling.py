@@ -7,7 +7,6 @@ from feederscrew_cli.angle import Angle
 from feederscrew_cli.progress import Progress
 from feederscrew_cli.quantity import Quantity
 
-
 ASKED = (
     *("heading", "margin", "purity", "efficiency", "outcome", "without"),
     *("step", "turn", "seed", "verdicts", "seconds"),
