@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import shapely
 
+from feederscrew.errors import FeederError
 from feederscrew.part import mass
 from feederscrew.solidbowl import facets, stairs, track
 from feederscrew.solidbowl.plan import BESIDE, TURN, BowlPlan
@@ -14,6 +15,7 @@ from feederscrew.tooling import whole_surface
 INTO = 1e-3  # [m] by which one piece reaches into another
 FAR = 1.0  # [m] beyond everything
 PLAY = 1e-4  # [m] of a gate in its notch, to each side
+SHORTER = 0.99  # of the turns that were asked for: less is said
 EARS = 4e-3  # [m] by which a gate stands out of the wall
 
 
@@ -30,9 +32,21 @@ class BowlSolid:
     inertia: float  # [kg m2] about the axis
     centre: np.ndarray  # (3,) [m]
     falls: dict = field(default_factory=dict)  # where what falls through each cut comes to lie
+    turns_of_sheet: float = 0.0  # that the sheet has, and the solid may not have room for
     riders: tuple = ()  # (Orientation, s [m]) of parts along its track, to draw
     segments: Segments | None = None  # where it is cut to fit a printer
     step: object = None  # exact_file.StepFile, where it was asked for
+
+    @property
+    def remarks(self):
+        """What must not be overlooked, a tuple of str."""
+        if self.plan.stairs is not None or self.plan.turns >= SHORTER * self.turns_of_sheet:
+            return ()
+        what = (
+            f"{self.plan.turns:.3g} turns in place of {self.turns_of_sheet:.3g}, or what falls through a cut"
+        )
+        what += " would stay on the turn below"
+        return (str(FeederError("sizing.outlet_height", what, "sizing.shape: stepped has room for more")),)
 
 
 def body(plan):

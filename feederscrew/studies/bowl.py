@@ -85,7 +85,8 @@ class MachineSheet(Shown):
     @property
     def remarks(self):
         """What must not be overlooked, a tuple of str."""
-        return checks.remarks(self)
+        own = () if self.solid is None else self.solid.remarks
+        return (*checks.remarks(self), *own)
 
     @property
     def lowest(self):

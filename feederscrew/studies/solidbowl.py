@@ -126,7 +126,8 @@ def solid(bowl, size, part, coming, asked, counted):
     tooled = cuts.stretch(track, bowl.devices, coming.lying) if _tooled(bowl.devices) else None
     asked = replace(asked, friction=bowl.friction.static)
     made = body(plan(size, track, made_of, tooled, asked, extents=np.ptp(part.vertices, axis=0)))
-    made = replace(made, falls=ways_down(made))
+    wanted = 0.0 if asked.outlet_height > 0.0 else size.turns
+    made = replace(made, falls=ways_down(made), turns_of_sheet=float(wanted))
     if asked.bed is not None:
         made = replace(made, segments=segments.segments(made, asked.bed))
     if asked.step:

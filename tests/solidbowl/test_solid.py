@@ -309,3 +309,12 @@ def test_a_turn_below_a_cut_is_found():
 
 def test_every_default_of_the_schema_is_read():
     assert BY_NAME["sizing.sheet"].default == f"{1e3 * material('steel', RULES).wall:g} mm"
+
+
+def test_a_track_that_was_shortened_says_so():
+    short = replace(body(planned(CHAINS["gap"], turns=1.5)), turns_of_sheet=1.5)
+    assert short.remarks == (
+        "sizing.outlet_height: 1.04 turns in place of 1.5, or what falls through a cut would stay on the "
+        "turn below - sizing.shape: stepped has room for more",
+    )
+    assert body(planned()).remarks == ()
