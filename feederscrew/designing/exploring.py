@@ -56,10 +56,19 @@ def _searched(search, made, ways, weights):
                 return
             if _promise(search, made, ways, weights, row) < LEAST_USE * search.best_rate:
                 continue
-            proposal = _proposed(search, made, ways, weights, row, how)
-            if proposal is not None and proposal.chain not in seen:
-                seen.add(proposal.chain)
-                yield from _tried_out(search, made, proposal, weights)
+            avoided = None
+            while avoided != search.avoided.get(row, ()) and not search.spent:
+                avoided = search.avoided.get(row, ())
+                proposal = _proposed(search, made, ways, weights, row, _without(how, avoided))
+                if proposal is not None and proposal.chain not in seen:
+                    seen.add(proposal.chain)
+                    yield from _tried_out(search, made, proposal, weights)
+
+
+def _without(how, kinds):
+    """The same way of proposing, without kinds of devices at which the wanted orientation was lost."""
+    margin, left_out, outcome = how
+    return margin, (*left_out, *kinds), outcome
 
 
 def _promise(search, made, ways, weights, row):
@@ -157,9 +166,11 @@ def _tried_out(search, made, proposal, weights):
                 yield candidate
             return
         search.failed.append(candidate)
-        proposal = proposals.better(proposal, candidate.tried, candidate.ways.lying, candidate.drawn)
-        if proposal is None or search.spent:
-            return
+        changed = proposals.better(proposal, candidate.tried, candidate.ways.lying, candidate.drawn)
+        if changed is None or search.spent:
+            break
+        proposal = changed
+    search.avoid(proposal, candidate.tried)
 
 
 def _screened(search, candidate):

@@ -150,7 +150,7 @@ def mended(proposal, tried, every):
         if not cut.device.bound:
             continue
         kind = cut.device.kind
-        lost = _lost_at(tried, kind)
+        lost = lost_at(tried, kind)
         slipped = [k for n, k in enumerate(tried.rows) if tried.wrong[n] and every[k].name in cut.returns]
         if lost == bool(slipped):
             continue
@@ -248,8 +248,8 @@ def _before(proposal, others, wanted, every):
     return replace(proposal, cuts=(cut, *proposal.cuts), step=f"{kind.kind} of {device.text} before it")
 
 
-def _lost_at(tried, kind):
-    """Whether the wanted orientation ends at a device of a kind."""
+def lost_at(tried, kind):
+    """Return whether the wanted orientation ends at a device of a kind."""
     right = set(trying.wanted_rows(tried.known, tried.state))
     ends = [tried.places[n] for n, k in enumerate(tried.rows) if k in right]
     return any(name.endswith(f"at {kind}") for one in ends for name in one)

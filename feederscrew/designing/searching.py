@@ -26,12 +26,20 @@ class Search:
     failed: list = field(default_factory=list)  # the same of others that deliver
     before: object = None
     reserve: float = RESERVE
+    avoided: dict = field(default_factory=dict)  # kinds of devices at which a row was lost, by row
     shares_given: bool = False  # the user says what arrives
 
     @property
     def spent(self):
         """Whether the budget of trials is used up."""
         return len(self.attempts) >= self.request.budget
+
+    def avoid(self, proposal, tried):
+        """Note the devices of a chain at which what is wanted is lost; rails are the only way to hang."""
+        lost = {cut.device.kind for cut in proposal.cuts if not cut.device.hangs}
+        kinds = sorted(kind for kind in lost if proposals.lost_at(tried, kind))
+        known = self.avoided.get(proposal.row, ())
+        self.avoided[proposal.row] = tuple(dict.fromkeys((*known, *kinds)))
 
     @property
     def best_rate(self):

@@ -1,0 +1,78 @@
+"""What a trial denies changes the chain: drops before it, wider slots, values moved."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.designing import proposals, robust, trying
+from feederscrew.resting.aspects import find
+from feederscrew.tooling.devices.kinds import made
+
+
+@pytest.fixture(scope="module")
+def block():
+    """A block of 20 x 12 x 5 mm along a track without a device, and how it lies there."""
+    part = shapes.part(shapes.box(20, 12, 5))
+    ways = proposals.known_through(part, find(part), bowls.default())
+    return part, ways, {one.name: k for k, one in enumerate(ways.lying)}
+
+
+def tried(ways, right, wrong, held, row):
+    """A short trial of all orientations, two of each."""
+    count = len(ways.lying)
+    own = [np.array([2 * (k in some) for k in range(count)]) for some in (right, wrong, held)]
+    return trying.Tried(
+        ways, np.full(count, 1.0 / count), np.arange(count), np.full(count, 2), *own,
+        places=tuple({"stopped at gap": 2} if k in held else {} for k in range(count)), velocity=0.05,
+        state=row, deepest=0.0,
+    )  # fmt: skip
+
+
+def test_a_drop_is_put_before_what_is_carried_through(block):
+    _, ways, names = block
+    across, along = names["A@90"], names["A@0"]
+    proposal = proposals.Proposal(along, (), (), "no device")
+    seen = tried(ways, {along}, {across}, (), along)
+    better = proposals.better(proposal, seen, ways.lying)
+    (cut,) = better.cuts
+    values = proposals.limits(type(cut.device), ways.lying)
+    sign = 1.0 if cut.device.bound == "lower" else -1.0
+    assert sign * values[across] < sign * cut.device.limit < sign * values[along]
+    assert "A@90" in cut.returns and "A@0" not in cut.returns
+
+
+def test_nothing_is_changed_where_nothing_tells_them_apart(block):
+    _, ways, names = block
+    proposal = proposals.Proposal(names["A@0"], (), (), "no device")
+    assert proposals.better(proposal, tried(ways, {names["A@0"]}, (), (), names["A@0"]), ways.lying) is None
+
+
+def test_what_is_lost_at_a_device_is_noted(block):
+    _, ways, names = block
+    seen = tried(ways, (), (), {names["A@0"]}, names["A@0"])
+    assert proposals.lost_at(seen, "gap") and not proposals.lost_at(seen, "canyon")
+
+
+def test_trials_of_different_orientations_are_joined(block):
+    _, ways, _ = block
+    whole = tried(ways, {0, 1}, {2}, (), 0)
+    first, second = (
+        replace(whole, **{n: getattr(whole, n)[part] for n in ("rows", "parts", "right", "wrong", "held")},
+                places=whole.places[part])
+        for part in (slice(0, 2), slice(2, None))
+    )  # fmt: skip
+    joined = first.joined(second)
+    assert (joined.efficiency, joined.carried) == pytest.approx((whole.efficiency, whole.carried))
+    assert joined.places == whole.places
+
+
+def test_a_sensor_is_drawn_with_other_play_and_the_drawn_part_s_name(block):
+    _, ways, names = block
+    one = ways.lying[names["A@0"]]
+    sorter = made("sorter", "test", like=(one.aspect, one.heading, 1e-3), text="test")
+    rng = np.random.default_rng(1)
+    drawn = robust.drawn_bowl(replace(bowls.default(), devices=(sorter,)), ways.lying, rng).devices[0]
+    assert drawn.like[:2] == sorter.like[:2] and 0.0 < abs(drawn.like[2] - 1e-3) <= robust.CUT
