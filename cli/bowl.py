@@ -9,12 +9,12 @@ TARGET = click.option(
     "--target",
     type=Quantity("rate", positive=True),
     metavar="RATE",
-    help="Parts that shall leave: 120/min.  [needed with PART]",
+    help="Parts that shall leave the bowl: 120/min.  [needed with PART]",
 )
 ASPECT = click.option(
     "--aspect",
     metavar="NAME",
-    help="Aspect that counts.  [default: every one that passes the track and the devices]",
+    help="Aspect that shall leave the bowl.  [default: every one that passes the track and the devices]",
 )
 
 SOLID = (
@@ -39,7 +39,7 @@ SOLID = (
         default="0.05 mm",
         show_default=True,
         metavar="LENGTH",
-        help="By which an arc of the solid may be seen too flat.",
+        help="Greatest distance of the solid's flat facets from the true arc.",
     ),
 )
 

@@ -16,12 +16,19 @@ REQUEST = (  # what shall leave, and what may be used
         type=Quantity("rate", positive=True),
         required=True,
         metavar="RATE",
-        help="Parts that shall leave: 60/min.",
+        help="Parts that shall leave the bowl: 60/min.",
     ),
     click.option(
-        "--aspect", metavar="NAME", help="Aspect they shall leave on.  [default: whichever delivers most]"
+        "--aspect",
+        metavar="NAME",
+        help="Aspect on which they shall leave.  [default: the one that delivers most]",
     ),
-    click.option("--heading", type=Angle(), metavar="DEG", help="Heading of it.  [default: whichever]"),
+    click.option(
+        "--heading",
+        type=Angle(),
+        metavar="DEG",
+        help="Heading of that aspect.  [default: the one that delivers most]",
+    ),
     click.option(
         "--outcome",
         type=click.Choice(["any", "lying", "hanging"]),
@@ -29,27 +36,44 @@ REQUEST = (  # what shall leave, and what may be used
         show_default=True,
         help="Lying on the track, or hanging by the head between rails.",
     ),
-    click.option("--without", metavar="KINDS", default="", help="Devices not to be used: 'profile,wiper'."),
-    click.option("--diameter", type=Span(), metavar="LOW:HIGH", help="Of the bowl: 200mm:400mm."),
+    click.option(
+        "--without", metavar="KINDS", default="", help="Kinds of devices that are not used: 'profile,wiper'."
+    ),
+    click.option(
+        "--diameter",
+        type=Span(),
+        metavar="LOW:HIGH",
+        help="Least and greatest diameter of the bowl: 200mm:400mm.",
+    ),
     click.option(
         "--tolerance",
         type=Quantity("length"),
         default="0.1 mm",
         show_default=True,
         metavar="LENGTH",
-        help="Of the part's size, to either side.",
+        help="By which a part may be larger or smaller than its file.",
     ),
     click.option(
-        "--budget", type=click.IntRange(1, 1000), default=16, show_default=True, help="Short trials."
+        "--budget",
+        type=click.IntRange(1, 1000),
+        default=16,
+        show_default=True,
+        help="Short trials of the search, at most.",
     ),
     click.option(
         "--draws",
         type=click.IntRange(1, 1000),
         default=20,
         show_default=True,
-        help="Of part, friction, drive and cuts.",
+        help="Trials of the answer with part, friction, drive and cuts drawn from their spread.",
     ),
-    click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of everything drawn."),
+    click.option(
+        "--seed",
+        type=click.IntRange(0),
+        default=1,
+        show_default=True,
+        help="Seed of everything that is drawn.",
+    ),
 )
 REQUESTED = (
     "target", "aspect", "heading", "outcome", "without", "diameter", "tolerance", "budget", "draws", "seed",

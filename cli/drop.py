@@ -14,11 +14,22 @@ def conditions(command):
     for option in reversed(
         [
             options.launch,
-            click.option("--height", "fall", metavar="LENGTH", help='Fall: "20 mm" or "5 mm:50 mm".'),
+            click.option(
+                "--height",
+                "fall",
+                metavar="LENGTH",
+                help='Height from which it falls: "20 mm" or "5 mm:50 mm".',
+            ),
             click.option("--spin", metavar="RATE", help='How fast it turns: "20 rad/s".'),
-            click.option("--speed", metavar="SPEED", help='Along the plane: "0.3 m/s".'),
-            click.option("--restitution", metavar="E", help="Of a corner hit: 0.3 or 0.1:0.5."),
-            click.option("--friction", metavar="MU", help="Against the plane: 0.4 or 0.3:0.6."),
+            click.option("--speed", metavar="SPEED", help='Velocity along the plane: "0.3 m/s".'),
+            click.option(
+                "--restitution",
+                metavar="E",
+                help="Coefficient of restitution where a corner hits: 0.3 or 0.1:0.5.",
+            ),
+            click.option(
+                "--friction", metavar="MU", help="Coefficient of friction on the plane: 0.4 or 0.3:0.6."
+            ),
         ]
     ):
         command = option(command)
@@ -31,10 +42,12 @@ def conditions(command):
 @click.option(
     "--drops",
     type=click.IntRange(1, 10**7),
-    help="How many.  [default: 10000; on a plate 400; 64 of each of --launches]",
+    help="How many drops.  [default: 10000; on a plate 400; 64 of each of --launches]",
 )
 @click.option("--until", metavar="SHARE", help='Go on until no 95 % interval is wider: "1%" to either side.')
-@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the random launches.")
+@click.option(
+    "--seed", type=click.IntRange(0), default=1, show_default=True, help="Seed of the random launches."
+)
 @click.option("--jobs", type=click.IntRange(1, 256), metavar="N", help="Cores to use.  [default: all]")
 @click.option(
     "--trace", type=click.IntRange(1, 1000), metavar="K", help="With -o: the motion of the first K drops."

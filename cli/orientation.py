@@ -22,7 +22,7 @@ CHAIN = (
         default="0 mm",
         show_default=True,
         metavar="LENGTH",
-        help="Between one part and the next.",
+        help="Gap between one part and the next.",
     ),
     click.option(
         "--fill",
@@ -68,7 +68,9 @@ FED = click.option(
     "--fed", metavar="N", type=click.IntRange(1, 10**6),
     help="Feed N parts onto the moving floor.  [default: until every share is known to 2 %]",
 )  # fmt: skip
-SEED = click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of these parts.")
+SEED = click.option(
+    "--seed", type=click.IntRange(0), default=1, show_default=True, help="Seed of the parts that are fed."
+)
 PROBABILITIES = click.option(
     "--probabilities",
     metavar="CSV",

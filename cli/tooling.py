@@ -23,7 +23,9 @@ def _asked(command):
 @click.option(
     "--aspect", metavar="NAME", help="Aspect the part shall leave on.  [default: every orientation]"
 )
-@click.option("--heading", type=Angle(), metavar="DEG", help="Heading of it.  [default: the most frequent]")
+@click.option(
+    "--heading", type=Angle(), metavar="DEG", help="Heading of that aspect.  [default: the most frequent]"
+)
 @options.rule
 @click.option(
     "--margin",
@@ -31,7 +33,7 @@ def _asked(command):
     default="0.25 mm",
     show_default=True,
     metavar="LENGTH",
-    help="By which the wanted orientation passes and the others fail.",
+    help="Least margin by which the wanted orientation passes and the others fail.",
 )
 @click.option(
     "--purity",
@@ -39,7 +41,7 @@ def _asked(command):
     default="1",
     show_default=True,
     metavar="SHARE",
-    help="Of what leaves, that is enough: a shorter chain may do.",
+    help="Share of what leaves that is enough in the wanted orientation: a shorter chain may do.",
 )
 @click.option(
     "--efficiency",
@@ -47,7 +49,7 @@ def _asked(command):
     default="0",
     show_default=True,
     metavar="SHARE",
-    help="Of what is offered, that is asked for: the search goes on for it, or says what is missing.",
+    help="Share of what is offered that shall leave: the search goes on for it, or says what is missing.",
 )
 @click.option(
     "--outcome",
@@ -73,14 +75,14 @@ def _asked(command):
 @click.option("--cad", is_flag=True, help="Write tooling.step as well; needs feederscrew[cad].")
 @click.option("--turn", is_flag=True, help="Allow steps and ledges that turn parts over, before the cuts.")
 @click.option(
-    "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of the search for holes."
+    "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the search for holes."
 )
 @click.option(
     "--verdicts",
     type=click.IntRange(min=1),
     default=30000,
     show_default=True,
-    help="Most of them in the search for holes of one orientation: the same end on every machine.",
+    help="Most verdicts in the search for holes of one orientation: the same end on every machine.",
 )
 @click.option(
     "--limit",
@@ -89,7 +91,7 @@ def _asked(command):
     default="10 min",
     show_default=True,
     metavar="TIME",
-    help="The last resort, after which the best so far is taken, and said to be so.",
+    help="Time after which the best so far is taken; the answer then says so.",
 )
 @click.option("--static", is_flag=True, help="Leave out the trial of what is proposed.")
 @orientation.taken

@@ -13,24 +13,29 @@ def _queued(command):
     return options.stacked(
         options.packed(command, "queued", ("queue", "poured", "seconds", "measured"), _together),
         click.option(
-            "--queue", type=click.IntRange(1, 1000), metavar="N", help="So many that push each other, too."
+            "--queue",
+            type=click.IntRange(1, 1000),
+            metavar="N",
+            help="Send a queue of N parts as well, which push each other.",
         ),
         click.option(
-            "--poured", is_flag=True, help="The queue falls onto the track, not laid down in a row."
+            "--poured",
+            is_flag=True,
+            help="The parts of the queue fall onto the track; without it they lie in a row.",
         ),
         click.option(
             "--seconds",
             type=options.Number(0.05, 3600.0),
             default=10.0,
             show_default=True,
-            help="Of the queue.",
+            help="Simulated time of the queue, in seconds.",
         ),
         click.option(
             "--with",
             "measured",
             metavar="CSV",
             type=options.Place(),
-            help="What was measured at an outlet, beside the profile of the queue.",
+            help="Counts of a feeding test, set beside the profile of the queue.",
         ),
     )
 
@@ -45,14 +50,20 @@ def _together(queue, **others):
 
 @grouped.command(short_help="A trial run: parts of true shape on the vibrating, tooled track.")
 @options.part
-@click.option("--aspect", metavar="NAME", help="Only its orientations.  [default: every orientation]")
+@click.option(
+    "--aspect",
+    metavar="NAME",
+    help="Send only the orientations of this aspect.  [default: every orientation]",
+)
 @options.rule
 @orientation.taken
 @click.option(
-    "--parts", type=click.IntRange(1, 10**6), help="One at a time.  [default: 200; with --queue 60]"
+    "--parts",
+    type=click.IntRange(1, 10**6),
+    help="Parts that are sent one at a time.  [default: 200; with --queue 60]",
 )
 @click.option(
-    "--landing", type=click.IntRange(1, 10**6), metavar="N", help="So many fall onto the track, too."
+    "--landing", type=click.IntRange(1, 10**6), metavar="N", help="Let N parts fall onto the track as well."
 )
 @_queued
 @click.option(
@@ -61,7 +72,13 @@ def _together(queue, **others):
     metavar="LIST",
     help="A trial at each, '60%,80%,100%' of the bowl's or '0.3 mm,0.4 mm'.",
 )
-@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of play and phase.")
+@click.option(
+    "--seed",
+    type=click.IntRange(0),
+    default=1,
+    show_default=True,
+    help="Seed of the play and the phases that are drawn.",
+)
 @click.option("--jobs", type=click.IntRange(1, 256), metavar="N", help="Cores to use.  [default: all]")
 @options.bowl
 @options.pictures
