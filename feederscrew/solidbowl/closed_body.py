@@ -103,7 +103,7 @@ def _floor(plan, kit):
     edge = []
     if plan.stairs is not None:
         outer = inner + INTO
-        inside = shapely.Point(0.0, 0.0).buffer(inner)
+        inside = shapely.Point(0.0, 0.0).buffer(inner - 0.7 * INTO)
         edge = [kit.prism(shapely.Polygon(stairs.floor_edge(plan)).difference(inside), low, 0.0)]
     top = [(outer, 0.0), (inner, 0.0), (0.0, plan.dome)]
     if plan.material.flat:

@@ -10,6 +10,7 @@ from feederscrew.units import factor
 MM = factor("mm", "length")  # manifold3d works on numbers of that size
 CRUMB = 1e-9  # [m3] a loose piece smaller than this is left out
 SIDES = 48  # of a round hole
+APART = 0.5  # of a side: no corner of a hole lies on an edge of what it is drilled through
 
 
 SMOOTH = False  # a curve is a chain of chords
@@ -102,7 +103,7 @@ def over(way, ring, low, high, chord):
 
 def disc(at, size, low, high):
     """Return a round rod upright: its middle (2,), its diameter and its two heights [m]."""
-    angles = 2.0 * np.pi * np.arange(SIDES) / SIDES
+    angles = 2.0 * np.pi * (np.arange(SIDES) + APART) / SIDES
     ring = np.asarray(at) + 0.5 * size * np.column_stack([np.cos(angles), np.sin(angles)])
     return prism(shapely.Polygon(ring), low, high)
 
@@ -143,9 +144,16 @@ def placed_as(body, *, mirrored, turned):
 
 
 def sound(body, what):
-    """Return a Manifold that is one; a ValueError otherwise."""
+    """Return a Manifold that is one.
+
+    Raises
+    ------
+    FeederError
+        If it is none.
+    """
     if body.is_empty():
-        raise ValueError(f"{what} is not a closed surface: {body.status()}")
+        fault = f"{what} is not a closed surface ({body.status()})"
+        raise FeederError("the bowl as a solid", fault, "take another --chord, or another width of track")
     return body
 
 

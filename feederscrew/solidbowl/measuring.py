@@ -37,7 +37,7 @@ def measures(made):
     way, far = plan.way, 3.0 * plan.way.radius
     high = plan.top - 1e-3
     rim = facets.first_met(body, (0.0, 0.0, high), _towards(RIM, far, high))
-    r = float(way.wall_radius(min(0.0, way.end))) - 1e-3
+    r = float(way.wall_radius(way.at(_bare(plan)))) - 1e-3
     bare = np.array([r * np.cos(_bare(plan)), r * np.sin(_bare(plan))])
     floor = facets.first_met(body, (*bare, 5e-4), (*bare, -far))
     s = float(way.at(-0.5 * np.pi))

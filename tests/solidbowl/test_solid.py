@@ -121,7 +121,7 @@ def test_a_cut_is_as_large_as_its_device_says():
 
 def test_a_left_hand_is_the_mirror_image():
     right, left = (body(planned(CHAINS["gap"], asked=Asked(left=hand))) for hand in (False, True))
-    assert closed(left) == pytest.approx(closed(right), rel=1e-7)
+    assert closed(left) == pytest.approx(closed(right), rel=1e-6)  # corners within 2e-3 mm become one
     np.testing.assert_allclose(left.centre * [1, -1, 1], right.centre, rtol=0, atol=1e-8)
 
 
