@@ -1,11 +1,16 @@
 """Direction in which leaf springs move a bowl, over its radius."""
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import ArrayLike
+
+from feederscrew.bowl.record import Machine
 
 RIGHT = 0.5 * np.pi  # [rad] upright
 
 
-def direction(machine, radius):
+def direction(machine: Machine, radius: ArrayLike) -> Any:
     """Return the angle of the bowl's motion to the horizontal.
 
     Parameters
@@ -29,13 +34,13 @@ def direction(machine, radius):
     return np.arctan2(along, np.asarray(radius) * turn * np.cos(machine.spring_angle))
 
 
-def shares(machine):
+def shares(machine: Machine) -> tuple[float, float]:
     """Return the bowl's shares of the rise and of the turn between bowl and base [1]."""
     rise = machine.base_mass / (machine.bowl_mass + machine.base_mass)
     return rise, machine.base_inertia / (machine.bowl_inertia + machine.base_inertia)
 
 
-def vibration_angle(machine, radius, climb):
+def vibration_angle(machine: Machine, radius: ArrayLike, climb: ArrayLike) -> Any:
     """Return the angle from the track to the bowl's motion [rad], within 0 to 90 deg.
 
     Parameters

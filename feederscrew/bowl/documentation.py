@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from feederscrew.bowl.devices import SECTION
+from feederscrew.bowl.key import Key
 from feederscrew.bowl.schema import BY_NAME, KEYS, OPTIONAL, rival
 from feederscrew.bowl.settings import OF_THE_MACHINE, default
 from feederscrew.errors import FeederError
@@ -21,7 +22,7 @@ friction; there are no tables of friction on coatings to rely on.
 """
 
 
-def template():
+def template() -> str:
     """Return a bowl file of all defaults, commented: what ``feeder config init`` writes."""
     lines = [
         EDITORS,
@@ -39,12 +40,12 @@ def template():
     return "\n".join(lines) + "\n"
 
 
-def write_template(path, *, replace=False):
+def write_template(path: str | Path, *, replace: bool = False) -> None:
     """Write ``template`` to a file; FeederError if it exists, unless ``replace``, or cannot be made."""
     write_new(path, template(), replace=replace)
 
 
-def write_new(path, text, *, replace=False):
+def write_new(path: str | Path, text: str, *, replace: bool = False) -> None:
     """Write a text to a file; FeederError if it exists, unless ``replace``, or cannot be made."""
     if Path(path).is_dir():
         raise FeederError(path, "is a folder", f"name a file in it, such as {Path(path) / 'bowl.yaml'}")
@@ -61,14 +62,14 @@ def write_new(path, text, *, replace=False):
         ) from None
 
 
-def _opening(section):
+def _opening(section: str) -> list[str]:
     """The line that opens a section; an optional one stands behind comment signs."""
     if section not in OPTIONAL:
         return [f"{section}:"]
     return ["# Take the '# ' away from these lines to describe your own drive unit.", f"# {section}:"]
 
 
-def _template_line(key):
+def _template_line(key: Key) -> str:
     """'amplitude: 0.05 mm  # ...'; a key that follows another stands behind a comment sign."""
     indent, follows = "  " if key.section else "", key.default in BY_NAME or key.name in OF_THE_MACHINE
     behind = "# " if follows or key.section in OPTIONAL else ""
@@ -78,7 +79,7 @@ def _template_line(key):
     return f"{text:<25}  # {key.meaning}{left_out}"
 
 
-def _default_for_people(key):
+def _default_for_people(key: Key) -> str:
     if key.name in OF_THE_MACHINE:
         return f"{key.default}, or from machine"
     if key.default not in BY_NAME:

@@ -20,26 +20,26 @@ class Key:
     choices: tuple[str, ...] = ()  # words of which it is one; then it has no unit and no size
 
     @property
-    def section(self):
+    def section(self) -> str:
         """'drive' of drive.amplitude; '' at the top level."""
         return self.name.rpartition(".")[0]
 
     @property
-    def word(self):
+    def word(self) -> str:
         """'amplitude' of drive.amplitude: the key as the file has it."""
         return self.name.rpartition(".")[2]
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         """The unit of its lowest value, in which we show it."""
         return "" if self.choices else units.split(self.lowest)[1]
 
     @property
-    def bounds(self):
+    def bounds(self) -> str:
         """What it may be, for people: '0 mm to 20 mm', 'right or left'."""
         return " or ".join(self.choices) if self.choices else f"{self.lowest} to {self.highest}"
 
-    def value(self, text):
+    def value(self, text: str) -> float | str:
         """Return a value as typed: in SI units, or the word; QuantityError where it is neither."""
         if not self.choices:
             return units.quantity(text, self.dimension, suggest=self.unit)
@@ -49,6 +49,6 @@ class Key:
         return word
 
     @property
-    def column(self):
+    def column(self) -> str:
         """Name of a table's column of its values: 'amplitude_mm'."""
         return f"{self.word}_{self.unit}".replace("/", "_").rstrip("_")

@@ -3,11 +3,13 @@
 from feederscrew.bowl.key import Key
 
 
-def _machine(word, dimension, lowest, highest, default, meaning):
+def _machine(word: str, dimension: str, lowest: str, highest: str, default: str, meaning: str) -> Key:
     return Key(f"machine.{word}", f"machine.{word}", dimension, lowest, highest, default, meaning)
 
 
-def _rule(word, dimension, lowest, highest, default, meaning, source):
+def _rule(
+    word: str, dimension: str, lowest: str, highest: str, default: str, meaning: str, source: str
+) -> Key:
     name = f"sizing.{word}"
     return Key(name, name, dimension, lowest, highest, default, f"{meaning} ({source})")
 

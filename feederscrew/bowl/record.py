@@ -32,10 +32,10 @@ class Friction:
     kinetic_backward: float | None = None  # [1] never above static_backward; None: as kinetic
 
     @property
-    def backward(self):
+    def backward(self) -> tuple[float, float]:
         """Static and kinetic coefficient against sliding down the track."""
-        pairs = (self.static_backward, self.static), (self.kinetic_backward, self.kinetic)
-        return tuple(same if own is None else own for own, same in pairs)
+        static, kinetic = self.static_backward, self.kinetic_backward
+        return self.static if static is None else static, self.kinetic if kinetic is None else kinetic
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Track:
     width: float  # [m]
 
     @property
-    def extent(self):
+    def extent(self) -> float:
         """How far from the wall there is track [m]: its width, or nearly to the bowl's axis."""
         return min(self.width, WIDEST * self.radius)
 

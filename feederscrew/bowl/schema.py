@@ -92,6 +92,6 @@ OPTIONAL = ("machine",)  # sections that change other keys once one of theirs is
 SECTIONS = tuple(dict.fromkeys(key.section for key in KEYS if key.section))
 
 
-def rival(key):
+def rival(key: Key) -> Key | None:
     """Return the other key of the same field, or None."""
     return next((other for other in KEYS if other.field == key.field and other is not key), None)

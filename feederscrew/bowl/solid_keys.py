@@ -3,16 +3,16 @@
 from feederscrew.bowl.key import Key
 
 
-def _choice(name, choices, meaning):
+def _choice(name: str, choices: tuple[str, ...], meaning: str) -> Key:
     return Key(name, f"sizing.{name.rpartition('.')[2]}", "choice", choices[0], choices[-1], choices[0],
                meaning, choices=choices)  # fmt: skip
 
 
-def _length(name, lowest, highest, default, meaning):
+def _length(name: str, lowest: str, highest: str, default: str, meaning: str) -> Key:
     return Key(name, f"sizing.{name.rpartition('.')[2]}", "length", lowest, highest, default, meaning)
 
 
-def _count(name, lowest, highest, default, meaning):
+def _count(name: str, lowest: str, highest: str, default: str, meaning: str) -> Key:
     return Key(name, f"sizing.{name.rpartition('.')[2]}", "count", lowest, highest, default, meaning)
 
 

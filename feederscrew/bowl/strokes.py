@@ -1,10 +1,12 @@
 """``--amplitude 78%,80%,82%``: bowls at several strokes."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from feederscrew import units
 from feederscrew.bowl.reading import checked
+from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.schema import BY_NAME
 from feederscrew.errors import ArgumentError, ConfigError
 
@@ -13,7 +15,7 @@ MOST = 50  # strokes of one call
 FULL = 5.0  # of the bowl's own amplitude, at most
 
 
-def strokes(bowl, text=None):
+def strokes(bowl: Bowl, text: str | None = None) -> tuple[Bowl, ...]:
     """Return the bowl at each amplitude of its drive.
 
     Parameters
@@ -40,7 +42,7 @@ def strokes(bowl, text=None):
     return tuple(replace(bowl, drive=replace(bowl.drive, amplitude=amplitude)) for amplitude in amplitudes)
 
 
-def named(paths):
+def named(paths: Sequence[str | None]) -> list[str]:
     """Return what bowl files are called side by side: their stems, their paths where two stems are the same.
 
     Parameters
@@ -58,7 +60,7 @@ def named(paths):
     return [stem if path is None else str(path) for stem, path in zip(stems, paths)]
 
 
-def _amplitude(full, entry):
+def _amplitude(full: float, entry: str) -> float:
     if not entry.strip().endswith("%"):
         try:
             return checked(BY_NAME["drive.amplitude"], entry, WHERE).value

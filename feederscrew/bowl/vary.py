@@ -1,5 +1,6 @@
 """One key of the bowl over a range, KEY=a:b:n."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from feederscrew import documents, units
@@ -18,7 +19,7 @@ class KeyRange:
     values: tuple[float, ...]  # [SI]
 
 
-def ranges(texts):
+def ranges(texts: Iterable[str]) -> tuple[KeyRange, ...]:
     """Return the ranges of one command.
 
     Parameters
@@ -36,7 +37,8 @@ def ranges(texts):
     Faults
         Every fault of every text, one a line; also a field varied twice.
     """
-    found, faults = {}, []
+    found: dict[str, KeyRange] = {}
+    faults: list[ConfigError] = []
     for text in texts:
         try:
             one = _range(text)
@@ -49,7 +51,7 @@ def ranges(texts):
     return tuple(found.values())
 
 
-def _range(text):
+def _range(text: str) -> KeyRange:
     name, _, span = (part.strip() for part in text.partition("="))
     where = f"vary {units.one_line(name)}"
     key = named(name, where)
@@ -66,11 +68,11 @@ def _range(text):
     return KeyRange(key, tuple((low * (steps - i) + high * i) / steps for i in range(steps + 1)))
 
 
-def _count(text, where):
+def _count(text: str, where: str) -> int:
     if text.strip().isascii() and text.strip().isdigit() and 2 <= int(text.strip()[:9]) <= MOST:
         return int(text.strip())
     raise ArgumentError(where, f"{units.shown(text)} is not a count", f"give a whole number from 2 to {MOST}")
 
 
-def _example(key):
+def _example(key: Key) -> str:
     return f"{key.lowest}:{key.highest}:20".replace(" ", "")

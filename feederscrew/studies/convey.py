@@ -1,5 +1,8 @@
 """The study of ``feeder convey``: how fast a part travels, at one point, along a curve, over a map."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -8,6 +11,7 @@ import numpy as np
 from feederscrew import bowl as bowls
 from feederscrew import units
 from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.settings import Setting
 from feederscrew.bowl.vary import KeyRange
 from feederscrew.conveying import answer, phase, radius, sensitivity, trace
 from feederscrew.conveying.steady import STATUSES
@@ -26,26 +30,26 @@ class ConveyStudy(Shown):
     answer: answer.Answer
 
     @cached_property
-    def nearby(self):
+    def nearby(self) -> dict[str, sensitivity.Neighbours]:
         """Velocities with each quantity ``sensitivity.CHANGE`` lower and higher, a dict of Neighbours."""
         return sensitivity.sensitivity(self.bowl)
 
     @cached_property
-    def doubt(self):
+    def doubt(self) -> sensitivity.Neighbours:
         """Velocities for friction ``sensitivity.FRICTION_DOUBT`` lower and higher, Neighbours."""
         return sensitivity.friction_doubt(self.bowl)
 
     @property
-    def validity(self):
+    def validity(self) -> str:
         """What the answer leaves out, in one sentence."""
         return answer.validity(self.answer, self.bowl)
 
     @property
-    def warnings(self):
+    def warnings(self) -> tuple[str, ...]:
         """What is odd about the velocity, a tuple of at most one sentence."""
         return tuple(speeds.remark(self.answer.velocity, self.bowl.sizing))
 
-    def trace(self):
+    def trace(self) -> trace.CycleTrace:
         """Follow plate and part over one steady cycle, as a ``conveying.trace.CycleTrace``."""
         return trace.trace(self.answer.setting)
 
@@ -60,12 +64,12 @@ class ConveyCurve(Shown):
     cells: dict[str, np.ndarray]  # (N,) as ``conveying.answer.cells`` names them, in SI
 
     @property
-    def statuses(self):
+    def statuses(self) -> np.ndarray:
         """Return the status of each point, (N,) of ``STATUSES``."""
         return np.asarray(STATUSES)[self.cells["status"]]
 
     @property
-    def several(self):
+    def several(self) -> np.ndarray:
         """Return where a part has several steady velocities, (N,) bool."""
         spread, high = self.cells["high"] - self.cells["low"], np.abs(self.cells["high"])
         return (self.statuses == "periodic") & (spread > answer.COEXIST * high)
@@ -78,7 +82,7 @@ class ConveyPhase(Shown):
     best: phase.BestPhase
 
     @property
-    def curve(self):
+    def curve(self) -> ConveyCurve:
         """Return the velocities over the phase, as a ConveyCurve."""
         axis = grids.GridAxis("phase_deg", self.best.phases, DEG)
         return ConveyCurve("phase", "drive.phase", (axis,), self.best.cells)
@@ -93,12 +97,12 @@ class ConveyMap(Shown):
     line: Bowl | None  # operating points to be drawn over the map; None if not asked for
 
     @property
-    def statuses(self):
+    def statuses(self) -> np.ndarray:
         """Return the status of each cell, (N1, N2) of ``STATUSES``."""
         return np.asarray(STATUSES)[self.grid.values["status"].astype(int)]
 
 
-def convey(bowl):
+def convey(bowl: Bowl) -> ConveyStudy:
     """Study how a part travels on the track of a bowl.
 
     Parameters
@@ -118,7 +122,7 @@ def convey(bowl):
     return ConveyStudy(bowl, answer.answer(bowl))
 
 
-def curve(settings, span):
+def curve(settings: Sequence[Setting], span: KeyRange) -> ConveyCurve:
     """Study a bowl along one of its keys.
 
     Parameters
@@ -135,7 +139,7 @@ def curve(settings, span):
     return ConveyCurve("curve", span.key.name, (grids.axis(span),), cells)
 
 
-def along_radius(bowl):
+def along_radius(bowl: Bowl) -> ConveyCurve:
     """Study a bowl along its radius, inwards, where its angle is steeper.
 
     Parameters
@@ -161,7 +165,7 @@ def along_radius(bowl):
     return ConveyCurve("radius", "the radius", axes, answer.cells(there))
 
 
-def best_phase(bowl):
+def best_phase(bowl: Bowl) -> ConveyPhase:
     """Study a bowl over the phase of its drive.
 
     Parameters
@@ -181,7 +185,9 @@ def best_phase(bowl):
     return ConveyPhase(phase.best_phase(bowl))
 
 
-def velocity_map(settings, ranges, *, drawn=None):
+def velocity_map(
+    settings: Sequence[Setting], ranges: tuple[KeyRange, KeyRange], *, drawn: str | None = None
+) -> ConveyMap:
     """Study a bowl over two of its keys.
 
     Parameters
@@ -197,7 +203,7 @@ def velocity_map(settings, ranges, *, drawn=None):
     """
     first, second = ranges
 
-    def function(one, other):
+    def function(one: np.ndarray, other: np.ndarray) -> dict[str, np.ndarray]:
         return answer.cells(bowls.swept(settings, {first.key.name: one, second.key.name: other}))
 
     grid = grids.evaluate(grids.axis(first), grids.axis(second), function, answer.REGIMES)

@@ -1,5 +1,7 @@
 """The study of ``feeder headings``: how a part lies along the track's wall."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 
 from feederscrew.bowl.record import Track
@@ -22,14 +24,16 @@ class HeadingsStudy(Shown):
     chances: dict[str, float]  # probability of each aspect of the part by the answer that ranks them
     answer: str  # whose they are: 'hops, launch feed'
 
-    def only(self, aspect):
+    def only(self, aspect: str) -> HeadingsStudy:
         """Return the study of one of its aspects."""
         kept = [k for k, one in enumerate(self.postures) if one.name == aspect]
-        postures, found = (tuple(many[k] for k in kept) for many in (self.postures, self.headings))
+        postures, found = tuple(self.postures[k] for k in kept), tuple(self.headings[k] for k in kept)
         return replace(self, postures=postures, headings=found)
 
 
-def headings(part, track, aspect=None, aspects: Aspects | None = None):
+def headings(
+    part: Part, track: Track, aspect: str | None = None, aspects: Aspects | None = None
+) -> HeadingsStudy:
     """Study the stable headings of a part's aspects.
 
     Parameters

@@ -1,5 +1,8 @@
 """The study of ``feeder slide``: when a part slips, which way, and when it hops."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,7 +38,7 @@ class SlideMap(Shown):
     onsets: dict[str, float]  # [1] G of forward slip, backward slip and hop at the bowl's heading
     level_hop: float  # [1] G of the hop on a level floor, the pole of mu_limit
 
-    def sheet(self, highest):
+    def sheet(self, highest: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Compute the surface of [4.27] from zero up to a friction, on a grid that follows that edge.
 
         Parameters
@@ -56,7 +59,7 @@ class SlideMap(Shown):
         )  # rounding at the pole
         return np.broadcast_to(angles, ratio.shape), ratio, friction
 
-    def level_line(self, friction, alpha_minus_theta):
+    def level_line(self, friction: float, alpha_minus_theta: np.ndarray) -> np.ndarray:
         """Return the G [1] at which [4.27] equals a friction [1], over alpha - theta [rad]."""
         return limits.published_ratio(friction, self.beta, alpha_minus_theta)
 
@@ -69,7 +72,7 @@ class SlideStudy(Shown):
     as_published: bool  # whether mu_limit keeps its negative branch
     maps: tuple[SlideMap, ...]
 
-    def fine(self, shape):
+    def fine(self, shape: tuple[int, int]) -> tuple[SlideMap, ...]:
         """Compute the maps again for pictures.
 
         Parameters
@@ -85,7 +88,7 @@ class SlideStudy(Shown):
         return tuple(sliding_map(self.bowl, one.beta, shape=shape) for one in self.maps)
 
 
-def slide(bowl, betas=(), *, as_published=False):
+def slide(bowl: Bowl, betas: Sequence[float] = (), *, as_published: bool = False) -> SlideStudy:
     """Study when a part slips on a bowl's track.
 
     Parameters
@@ -111,7 +114,9 @@ def slide(bowl, betas=(), *, as_published=False):
     return SlideStudy(bowl, as_published, maps)
 
 
-def sliding_map(bowl, beta, *, as_published=False, shape=None):
+def sliding_map(
+    bowl: Bowl, beta: float, *, as_published: bool = False, shape: tuple[int, int] | None = None
+) -> SlideMap:
     """Compute the sliding map of a bowl at one vibration angle.
 
     Parameters

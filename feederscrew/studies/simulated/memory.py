@@ -2,14 +2,21 @@
 
 import hashlib
 from collections import OrderedDict
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
+
+from feederscrew.part.record import Part
+from feederscrew.resting.aspects import Aspects
 
 KEPT = 32  # of them
 _MADE: OrderedDict = OrderedDict()
 
 
-def once(part, aspects, more, make, whole):
+def once(
+    part: Part, aspects: Aspects, more: tuple, make: Callable[[], Any], whole: Callable[[Any], bool]
+) -> Any:
     """Return what was made of a part before; else make it, and keep it if it is whole.
 
     Parameters
@@ -41,15 +48,15 @@ def once(part, aspects, more, make, whole):
     return _MADE[key]
 
 
-def _identity(part, aspects, more):
+def _identity(part: Part, aspects: Aspects, more: tuple) -> bytes:
     """All that decides what is made of a part."""
     arrays = (part.vertices, part.faces, part.centre_of_mass, part.inertia, aspects.normals, aspects.stable)
     text = hashlib.sha256(repr((float(part.mass), aspects.names, more)).encode())
     for array in arrays:
-        text.update(np.ascontiguousarray(array))
+        text.update(np.ascontiguousarray(array).tobytes())
     return text.digest()
 
 
-def forget():
+def forget() -> None:
     """Forget all that was made: for tests that make it otherwise."""
     _MADE.clear()
