@@ -5,9 +5,12 @@ N samples; other letters are explained where they stand. SI units and radians th
 unit.
 """
 
+import functools
+import importlib
 import sys
+from collections.abc import Callable
 from types import ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 __version__ = "0.2.0"
 
@@ -59,6 +62,27 @@ __all__ = [
 ]  # fmt: skip
 
 
+ROOMS = ("tooling", "trial")  # functions that share their name with a folder of the package
+
+
+class _FunctionAndRoom:
+    """A function that has the modules of the room of its name as attributes.
+
+    ``feederscrew.tooling(part, bowl)`` is a call, ``import feederscrew.tooling.orientations as ways`` works.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        functools.update_wrapper(self, function)
+
+    def __call__(self, *given: Any, **named: Any) -> Any:
+        return self.__wrapped__(*given, **named)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return getattr(importlib.import_module(f"{__name__}.{self.__name__}"), name)
+
+
 class _Library(ModuleType):
     """The package: ``tooling`` and ``trial`` are functions of it, though rooms of those names are in it."""
 
@@ -74,9 +98,15 @@ def __getattr__(name: str) -> object:
     """A public name, its library imported when it is first asked for: ``feeder --help`` stays quick."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return _public(name)
+
+
+@functools.cache
+def _public(name: str) -> object:
     from feederscrew import api
 
-    return getattr(api, name)
+    found = getattr(api, name)
+    return _FunctionAndRoom(found) if name in ROOMS else found
 
 
 def __dir__() -> list[str]:

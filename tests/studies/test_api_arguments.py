@@ -1,5 +1,6 @@
 """Arguments of the library that cannot be used: one line that names the argument, never an answer."""
 
+import inspect
 import math
 from dataclasses import replace
 
@@ -7,6 +8,7 @@ import pytest
 import shapes
 
 import feederscrew as fs
+from feederscrew import api
 
 
 @pytest.fixture(scope="module")
@@ -54,3 +56,15 @@ def test_a_bowl_keeps_what_its_file_lists(part, tmp_path):
     found = fs.rate(part, bowl, "A")
     assert found.rate.orientations.stations == ("track", "wiper")
     assert fs.rate(part, bowl, "A", devices=()).rate.orientations.stations == ("track",)
+
+
+@pytest.mark.parametrize(("room", "module"), [("tooling", "orientations"), ("trial", "staging")])
+def test_a_function_that_shares_its_name_with_a_room_hides_no_module(room, module):
+    """``import feederscrew.tooling.x as y`` failed once the function was asked for."""
+    function = getattr(fs, room)
+    assert callable(function)
+    assert inspect.signature(function) == inspect.signature(getattr(api, room))
+    known = {}
+    exec(f"import feederscrew.{room}.{module} as found", known)  # the statement itself is what is looked at
+    assert known["found"].__name__ == f"feederscrew.{room}.{module}"
+    assert getattr(fs, room) is function
