@@ -127,7 +127,7 @@ docs/conveying_map.png: docs/conveying_map.py | $(READY)
 release: ## what a release is, step by step; checks version and changelog
 	@$(PYTHON) docs/release.py
 
-fuzz: $(READY_TO_TEST) ## 2,000 round bodies, then ten minutes of damaged files
+fuzz: $(READY_TO_TEST) ## 2,000 round bodies, then ten minutes of damaged files, on from where the last run stopped
 	PYTHONPATH=tests $(BIN)/python -m fuzz.rounds 2000
 	PYTHONPATH=tests $(BIN)/python -m fuzz 600
 
