@@ -83,7 +83,8 @@ def _track(plan, body, track):
     heights = np.array(
         [[measuring.heights(plan, body, one, y * plan.width) for y in (0.2, 0.8)] for one in s]
     )
-    slope = np.polyfit(s, heights[:, 0], 1)[0]
+    from_middle = s - s.mean()
+    slope = (from_middle * heights[:, 0]).sum() / (from_middle**2).sum()  # least squares
     bank = np.arcsin(float(np.mean(heights[:, 1] - heights[:, 0])) / (0.6 * plan.width))
     theta, z = float(plan.way.angle(s[-1])), float(plan.way.height(s[-1])) + 2e-3
     out = 3.0 * plan.way.radius * np.array([np.cos(theta), np.sin(theta)])
