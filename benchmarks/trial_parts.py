@@ -3,6 +3,7 @@
 import sys
 from pathlib import Path
 
+import numpy as np
 import trimesh
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
@@ -27,6 +28,30 @@ OUTLINES = {  # [mm]
 BOXES = {"block_22x13x6": (22, 13, 6), "block_16x9x4": (16, 9, 4)}
 TURNED = {"headed_10x15": HEADED, "stepped_10x14": STEPPED}
 NAMES = (*BOXES, *OUTLINES, *TURNED, "disc_14x5")
+
+
+def drawn(seed):
+    """Return a part drawn by a seed: a plate with a step or a notch, a stepped prism or a turned pin."""
+    rng = np.random.default_rng((24, seed))
+    length, width, height = np.sort(rng.uniform([10.0, 6.0, 2.0], [24.0, 14.0, 9.0]))[::-1]
+    cut, deep = rng.uniform(0.25, 0.75, 2)
+    notched = [
+        (0, 0), (length, 0), (length, width * deep),
+        (length * cut, width * deep), (length * cut, width), (0, width),
+    ]  # fmt: skip
+    raised = [(0, 0), (length, 0), (length, height * deep), (length * cut, height), (0, height)]
+    thick, thin = 0.5 * width, 0.5 * width * cut
+    pin = [(0, 0), (thick, 0), (thick, length * deep), (thin, length * deep), (thin, length), (0, length)]
+    kind = seed % 4
+    if kind == 0:
+        mesh = shapes.prism(notched, height)
+    elif kind == 1:
+        mesh = shapes.prism(raised, width)
+    elif kind == 2:
+        mesh = trimesh.creation.revolve(pin, sections=SECTIONS)
+    else:
+        mesh = shapes.box(length, width, height)
+    return shapes.part(mesh, f"drawn_{seed}")
 
 
 def made(name):

@@ -9,7 +9,7 @@ from feederscrew_cli.quantity import Quantity
 
 ASKED = (
     *("heading", "margin", "purity", "efficiency", "outcome", "without"),
-    *("step", "turn", "seed", "verdicts", "seconds"),
+    *("step", "up", "cutter", "play", "tolerance", "turn", "seed", "verdicts", "seconds"),
 )
 
 
@@ -71,6 +71,31 @@ def _asked(command):
     show_default=True,
     metavar="LENGTH",
     help="What a shop makes: values are whole multiples of it.",
+)
+@click.option("--up", default="", metavar="NAME,...", help="Other aspects that count as the one wanted: B,C.")
+@click.option(
+    "--cutter",
+    type=Quantity("length"),
+    default="0 mm",
+    show_default=True,
+    metavar="LENGTH",
+    help="Radius that corners of holes are rounded to.",
+)
+@click.option(
+    "--play",
+    type=Quantity("length"),
+    default="0 mm",
+    show_default=True,
+    metavar="LENGTH",
+    help="Of parts from the wall: every margin is larger by it.",
+)
+@click.option(
+    "--tolerance",
+    type=Quantity("length"),
+    default="0 mm",
+    show_default=True,
+    metavar="LENGTH",
+    help="Of the part's size: every margin is larger by it.",
 )
 @click.option("--cad", is_flag=True, help="Write tooling.step as well; needs feederscrew[cad].")
 @click.option("--turn", is_flag=True, help="Allow steps and ledges that turn parts over, before the cuts.")

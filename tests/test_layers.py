@@ -182,7 +182,7 @@ MORE = {
     "studies.report.report": 17,
     "studies.simulated.drop.drop": 11,
     "studies.simulated.plate.plate": 11,
-    "studies.tooling.tooling": 17,
+    "studies.tooling.tooling": 15,
     "studies.trial._further": 9,
     "studies.trial.trial": 15,
     "studies.tune.tune": 13,

@@ -9,6 +9,7 @@ from feederscrew.rates.spacing import needed
 from feederscrew.rates.tipping import TrackTipping, marked
 from feederscrew.tooling import orientations as tooling
 from feederscrew.tooling.clearing import seconds
+from feederscrew.tooling.devices.base import UNSURE
 from feederscrew.tooling.fates import at_entry, course
 from feederscrew.tooling.orientations import Orientation
 
@@ -92,13 +93,14 @@ class Orientations:
     def margin(self):
         """(M,) [m] of the first device that returns it, or the least by which it passes all; NaN without any.
 
+        One that momentum, friction or the wall may undo is none.
         To the devices behind the first that returns it, it does not come as it lies.
         """
         known = np.where(np.isnan(self.margins), np.inf, self.margins)
         returns = np.isfinite(known) & (self.passes < 0.5)
         first = np.take_along_axis(known, returns.argmax(axis=1)[:, None], axis=1)[:, 0]
         least = np.where(returns.any(axis=1), first, known.min(axis=1))
-        return np.where(np.isinf(least), np.nan, least)
+        return np.where(np.isinf(least) | (np.abs(least) <= UNSURE), np.nan, least)
 
     @property
     def sure(self):

@@ -1,8 +1,9 @@
 """The study of ``feeder tooling``: which orientation can be isolated, and by which cuts."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -16,14 +17,14 @@ from feederscrew.rates.tipping import marked, remark
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.rate import arriving
-from feederscrew.tooling.devices.kinds import KINDS
+from feederscrew.tooling.devices.kinds import KINDS, made
 from feederscrew.tooling.fates import at_entry
-from feederscrew.tooling.isolating.chain import FINE, STEP, Wishes
+from feederscrew.tooling.isolating.chain import FINE, STEP, WHERE, Wishes
 from feederscrew.tooling.isolating.design import MARGIN, design, place
 from feederscrew.tooling.isolating.hole_search import VERDICTS, HoleSearch
 from feederscrew.tooling.isolating.proposal import Design
 from feederscrew.tooling.mirrored import named
-from feederscrew.tooling.orientations import Orientation, orientations, placed
+from feederscrew.tooling.orientations import Orientation, orientations, placed, speed
 from feederscrew.units import shown
 
 CARRIED = (
@@ -34,6 +35,7 @@ ROCKS = (
     "{} may rock on what these cuts leave of its foot, and nothing surer lies between the limits - try it "
     "with feeder trial"
 )
+STEEP = np.radians(-6.0)  # [rad] climb of a stretch that separates parts
 OUTCOMES = ("lying", "hanging", "any")
 LATE = "the search stopped at the time limit: another machine may find more - raise the limit"
 
@@ -80,14 +82,12 @@ def tooling(
     purity: float = 1.0,
     efficiency: float = 0.0,
     turn: bool = False,
-    outcome: str = "any",
-    without: str | Sequence[str] = (),
-    step: float = STEP,
     seed: int = 1,
     verdicts: int = VERDICTS,
     seconds: float = 600.0,
     told: Callable[[int, int], None] | None = None,
     known: Aspects | None = None,
+    **wishes: Any,
 ) -> ToolingStudy:
     """Study which orientations of a part can be isolated by cuts, and how.
 
@@ -110,12 +110,6 @@ def tooling(
         Of what is offered, that is asked for.
     turn : bool
         Whether devices that turn parts over may be used, where returning them wastes too much.
-    outcome : str
-        How parts shall leave: 'lying', 'hanging' or 'any'.
-    without : str or sequence of str
-        Kinds of devices that are not used, 'wiper,cut_out'.
-    step : float [m]
-        Values are whole multiples of it.
     seed : int
         Of the search for holes.
     verdicts : int
@@ -126,6 +120,12 @@ def tooling(
         Called with how many designs are done of how many, first with none.
     known : Aspects, optional
         Of the part, with the answer to take, where they are known already.
+    **wishes
+        What a design may use, as ``Wishes``: outcome, how parts shall leave ('lying', 'hanging' or 'any');
+        without, kinds of devices that are not used ('wiper,cut_out'); step [m], of which values are whole
+        multiples; up, other aspects that count as the one wanted ('B,C'); cutter [m], the radius that corners
+        of holes are rounded to; play and tolerance [m], of the part from the wall and of its size, which are
+        added to the margin that is asked for.
 
     Returns
     -------
@@ -146,9 +146,10 @@ def tooling(
     shares = np.nan_to_num([one.chances[rule] for one in every])
     wanted = None if aspect is None else place(every, aspect, heading, part.source)
     search = HoleSearch(seed=seed, verdicts=verdicts, until=time.monotonic() + seconds)
-    wishes = asked_for(outcome, without, step)
+    margin += wishes.pop("play", 0.0) + wishes.pop("tolerance", 0.0)
+    may_use = asked_for(part, bowl, found, **wishes)
     asked_of_each = {"purity": purity, "efficiency": efficiency, "turn": turn, "before": bowl.devices}
-    asked_of_each |= {"wishes": wishes}
+    asked_of_each |= {"wishes": may_use}
     asked = range(len(every)) if wanted is None else [wanted]
     designs = [None] * len(every)
     if told is not None:
@@ -170,17 +171,40 @@ def tooling(
     )
 
 
-def asked_for(outcome, without, step):
+def asked_for(part, bowl, found, *, outcome="any", without=(), step=STEP, up=(), cutter=0.0):
     """Return what a design may use, checked, as Wishes."""
     if outcome not in OUTCOMES:
         raise ArgumentError("outcome", f"{outcome!r} is unknown", f"choose {', '.join(OUTCOMES)}")
     check.argument("step", step, FINE)
-    names = without.split(",") if isinstance(without, str) else without
-    kinds = tuple(name.strip() for name in names if name.strip())
+    kinds = _listed(without)
     for kind in kinds:
         if kind not in KINDS:
             raise ArgumentError("without", f"unknown device {shown(kind)}", hint(kind, list(KINDS)))
-    return Wishes(outcome, kinds, float(step))
+    wishes = Wishes(outcome, kinds, float(step), _aspects(part, found, up), float(cutter))
+    return replace(wishes, separation=_separation(bowl, wishes))
+
+
+def _listed(names):
+    """Names of a list, or of a text with commas."""
+    names = names.split(",") if isinstance(names, str) else names
+    return tuple(name.strip() for name in names if name.strip())
+
+
+def _aspects(part, found, up):
+    """Names of aspects that may be up as well, checked."""
+    known = {name.casefold() for name in found.names}
+    for name in _listed(up):
+        if name.casefold() not in known:
+            mend = f"choose one of {', '.join(found.names)}"
+            raise ArgumentError("up", f"{part.name} has no aspect {shown(name)}", mend)
+    return _listed(up)
+
+
+def _separation(bowl, wishes):
+    """The stretch that makes gaps in this bowl; None where it may not be used or makes none."""
+    steeper = made("separation", WHERE, angle=STEEP, text=f"{{climb: {np.degrees(STEEP):.6g} deg}}")
+    there = replace(bowl, track=replace(bowl.track, climb=STEEP))
+    return steeper if wishes.allows("separation") and speed(there) > speed(bowl) else None
 
 
 def _designed(every, shares, wanted, bowl, **asked):

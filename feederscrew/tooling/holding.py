@@ -45,6 +45,35 @@ def may_lay_over(one, low):
     return (mu * c - s) / (1.0 - mu * mu) * lever + one.posture.height * s > behind * c
 
 
+def may_lay_aside(one, low, sweep):
+    """Return whether a swept blade may lay a part over towards the free edge as it slides along the face.
+
+    Parameters
+    ----------
+    one : Orientation
+        That travels.
+    low : float [m]
+        Height of the blade's edge.
+    sweep : float [rad]
+        Of its face to the direction of travel.
+
+    Notes
+    -----
+    The face pushes across itself, back and towards the free edge, with no more than the track drags: mu N.
+    Over a side of the foot, b from the weight and with its normal at an angle a to that push, the part tips
+    where mu z cos(a) > b, z the height of the edge.
+    """
+    hull = shapely.MultiPoint(one.foot.corners).convex_hull
+    if hull.geom_type != "Polygon":
+        return True
+    corners = shapely.get_coordinates(shapely.geometry.polygon.orient(hull))
+    sides = np.diff(corners, axis=0)
+    away = np.column_stack([sides[:, 1], -sides[:, 0]]) / np.hypot(*sides.T)[:, None]
+    reach = away[:, 0] * corners[:-1, 0] + away[:, 1] * corners[:-1, 1]
+    push = away[:, 1] * math.cos(sweep) - away[:, 0] * math.sin(sweep)
+    return bool((one.grip * low * push > reach).any())
+
+
 def may_wedge(one, span):
     """Return whether a head that comes first may stick between rails as a wedge.
 

@@ -8,7 +8,7 @@ from feederscrew.tooling import foot as feet
 from feederscrew.tooling.devices.base import STANDARD_GRAVITY, UNSURE, Verdict, share
 from feederscrew.tooling.falling_through import falls_through
 from feederscrew.tooling.hanging import Hanging, hanging_margin, head_first
-from feederscrew.tooling.holding import leans, may_lay_over, may_wedge, rides, widest
+from feederscrew.tooling.holding import leans, may_lay_aside, may_lay_over, may_wedge, rides, widest
 
 WORN = 2.5e-4  # [m] what an opening holds by less does not hold a part up
 GRIP = 0.6  # [1] of a dry steel track
@@ -137,11 +137,15 @@ class Meeting:
         """Return the greatest width [m] across the track of a hole with some corners (K, 2) [m]."""
         return widest(corners)
 
-    def unless_laid_over(self, margin, low):
-        """Return the margin [m] of what a blade from a height on holds up: none where it may lay it over."""
-        if margin < 0.0 < self.one.grip and may_lay_over(self.one, low):
-            return max(margin, -UNSURE)
-        return margin
+    def unless_laid_over(self, margin, low, sweep=0.0):
+        """Return the margin [m] of what a blade from a height on holds up: none where it may lay it over.
+
+        A face with a ``sweep`` [rad] to the direction of travel may do so to the side as well.
+        """
+        if not margin < 0.0 < self.one.grip:
+            return margin
+        over = may_lay_over(self.one, low) or (sweep > 0.0 and may_lay_aside(self.one, low, sweep))
+        return max(margin, -UNSURE) if over else margin
 
     def through(self, opening):
         """Return its margin [m] in an opening: ``gate_margin``."""

@@ -7,19 +7,23 @@ import numpy as np
 import pytest
 import shapely
 import shapes
+import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew.errors import ArgumentError
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling import clearing
+from feederscrew.tooling import clearing, sensor_views
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling.devices import hole_shapes
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.falling_through import falls_through
 from feederscrew.tooling.foot import Footprint
-from feederscrew.tooling.orientations import orientations
+from feederscrew.tooling.holding import may_lay_aside
+from feederscrew.tooling.isolating import chain, round_corners
+from feederscrew.tooling.isolating.proposal import task
+from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.verdicts import verdict
 
 BOWL = bowls.read(None, ("track.climb=0 deg", "track.bank=0 deg"))
@@ -95,7 +99,11 @@ def test_a_design_stops_nothing_and_its_values_are_on_the_step():
         for cut in study.design.cuts:
             assert cut.device.kind not in without.split(",")
             value = cut.device.like[2] if cut.device.like else cut.device.limit
-            assert value / step == pytest.approx(round(value / step), abs=1e-6) or cut.device.corners
+            assert (
+                cut.device.leans
+                or value / step == pytest.approx(round(value / step), abs=1e-6)
+                or cut.device.corners
+            )
             assert not cut.stops or not study.design.isolated
         if study.design.isolated:
             again = rate(part, replace(BOWL, devices=study.design.devices), "A", rule="csa").rate
@@ -122,3 +130,72 @@ def test_a_sorter_blows_off_what_looks_other_than_its_own_by_more_than_its_play(
     assert verdict(weak, across, every).passes == 1.0 and not verdict(weak, across, every).sure
     blind = made("sorter", "here", **own, sees="height")
     assert verdict(blind, across, every).passes == verdict(blind, along, every).passes == 1.0
+
+
+def test_other_ways_up_that_count_are_not_returned():
+    part = shapes.part(shapes.box(22, 13, 6))
+    own = {"rule": "csa", "without": "cut_out"}
+    one = tooling(part, BOWL, "A", **own).design
+    both = tooling(part, BOWL, "A", up="a,B", **own).design
+    assert both.isolated and both.efficiency > one.efficiency and both.purity > 0.999
+    assert not any(name.startswith("B") for cut in both.cuts for name in cut.returns)
+    with pytest.raises(ArgumentError, match=r"up: .* has no aspect 'Q' - choose one of A, B, C"):
+        tooling(part, BOWL, "A", up="Q", **own)
+
+
+def test_play_and_tolerance_are_added_to_every_margin():
+    part = shapes.part(shapes.box(22, 13, 6))
+    own = {"rule": "csa", "without": "cut_out"}
+    loose = tooling(part, BOWL, "A", play=2e-4, tolerance=1e-4, **own)
+    assert loose.margin == pytest.approx(5.5e-4)
+    ends = [end for cut in loose.design.cuts for end in (cut.margin_pass, cut.margin_reject)]
+    assert min(end for end in ends if end == end) >= 5.5e-4 - 1e-9
+
+
+def test_a_sorter_of_a_design_has_a_separation_before_it():
+    part = shapes.part(shapes.box(22, 13, 6))
+    without = "wiper,cut_out,narrowed_track,canyon,slot,gap"
+    kinds = [cut.device.kind for cut in tooling(part, BOWL, "A", rule="csa", without=without).design.cuts]
+    assert kinds == ["separation", "sorter"]
+    without += ",separation"
+    kinds = [cut.device.kind for cut in tooling(part, BOWL, "A", rule="csa", without=without).design.cuts]
+    assert kinds == ["sorter"]
+
+
+def test_a_cutter_leaves_round_corners_and_a_smaller_hole():
+    part = shapes.part(shapes.box(20, 12, 5))
+    every = orientations(part, find(part), replace(BOWL.track, width=0.04))
+    along, across = (
+        next(k for k, one in enumerate(every) if abs(one.length - size) < 1e-6 and one.height < 0.006)
+        for size in (0.02, 0.012)
+    )
+    square = made("cut_out", "here", corners=((0.0, 0.0), (0.013, 0.0), (0.013, 0.0115), (0.0, 0.0115)))
+    given = task(every, np.ones(len(every)) / len(every), along, 2.5e-4, 1.0, ())
+    cut = chain.judged(every, along, square, np.arange(len(every)) == across, square, square)
+    assert min(cut.margin_pass, cut.margin_reject) > 2.5e-4
+    found, held = round_corners.with_corners(given, (cut, [across]), 1e-3)
+    area = shapely.Polygon(found.device.corners).area
+    assert area == pytest.approx(shapely.Polygon(square.corners).area - (2.0 - 0.5 * np.pi) * 1e-6, rel=1e-3)
+    assert held == [across] and found.margin_reject <= cut.margin_reject
+    assert round_corners.with_corners(given, (cut, [across]), 6e-3) is None  # no such cutter goes in
+
+
+def test_a_swept_face_may_lay_what_is_slender_across_the_track_over_to_the_side():
+    """A plate on its long edge, 20 x 4 mm of foot and 12 high: mu z cos 30 deg = 0.6 x 6 x 0.87 > 2."""
+    part = shapes.part(shapes.box(20, 12, 4))
+    every = travelling(orientations(part, find(part), BOWL.track), BOWL)
+    plate = next(one for one in every if one.length > 0.0199 and abs(one.height - 0.012) < 1e-6)
+    square, swept = (made("wiper", "here", limit=6e-3, **own) for own in ({}, {"sweep": math.radians(30.0)}))
+    assert verdict(square, plate, every).sure and not verdict(swept, plate, every).sure
+    least = 2e-3 / math.cos(math.radians(30.0)) / 0.6
+    assert may_lay_aside(plate, 1.01 * least, math.radians(30.0))
+    assert not may_lay_aside(plate, 0.99 * least, math.radians(30.0))
+
+
+def test_a_sensor_sees_no_slits_between_facets():
+    pin = [(0, 0), (4.3, 0), (4.3, 8.2), (2.8, 8.2), (2.8, 13), (0, 13)]
+    part = shapes.part(trimesh.creation.revolve(pin))
+    every = orientations(part, find(part), BOWL.track)
+    for one in every:
+        seen = sensor_views.outline(one, "outline")
+        assert seen.geom_type == "Polygon" and not len(seen.interiors)

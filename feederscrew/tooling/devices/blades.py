@@ -105,7 +105,8 @@ class Wiper(_Overhead):
 
     def judged(self, met):
         if not self.contour:
-            return super().judged(met)
+            sweep = self.sweep if self.face else 0.0
+            return met.verdict(met.unless_laid_over(self.limit - met.one.height, self.limit, sweep))
         return met.verdict(met.through(self.opening(met.every, FAR)))
 
     def standing(self, track, every):

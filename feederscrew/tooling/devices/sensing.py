@@ -54,9 +54,8 @@ class Sorter(Device):
     @classmethod
     def around(cls, one, margin, where):
         """Return the sorters of an orientation, with the play [m] by which what they pass may differ."""
-        views = [view for view in VIEWS if view != "side"]
-        like = {view: (one.aspect, one.heading, float(margin) + RESOLUTION[view]) for view in views}
-        return [cls(where, like=like[view], sees=view) for view in views]
+        like = {view: (one.aspect, one.heading, float(margin) + RESOLUTION[view]) for view in VIEWS}
+        return [cls(where, like=like[view], sees=view) for view in VIEWS]
 
     def with_play(self, play, text):
         """Return the same sorter with other play [m], written as some text."""

@@ -36,13 +36,16 @@ class Wishes:
     outcome: str = "any"  # how parts leave: 'lying', 'hanging' or 'any'
     without: tuple[str, ...] = ()  # kinds of devices that are not used
     step: float = STEP  # [m] a shop makes: values are whole multiples
+    up: tuple[str, ...] = ()  # aspects that count as the one wanted
+    cutter: float = 0.0  # [m] radius that corners of holes are rounded to
+    separation: Device | None = None  # that comes before a device that needs gaps
 
     def allows(self, kind):
         """Return whether a kind of device may be used."""
         return kind not in self.without
 
 
-def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=False):
+def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=False, same=()):
     """Return every device of one number that the wanted orientation passes by a margin.
 
     Parameters
@@ -52,6 +55,8 @@ def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=Fals
         Its place among them.
     margin : float [m]
     wishes : Wishes, optional
+    same : sequence of int
+        Those that count as the wanted one: a device of one number lets all of them pass.
     clearing, sensed : bool
         Whether what has to clear itself, and what sees, is tried beside what drops parts.
 
@@ -64,15 +69,12 @@ def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=Fals
     found, wishes = {}, wishes or Wishes()
     for kind in numbered():
         values, lower = limits(kind, every), kind.bound == "lower"
-        if (
-            not wishes.allows(kind.kind)
-            or not np.isfinite(values[wanted])
-            or (kind.overhead and not clearing)
-        ):
+        first = pivot(kind, every, wanted, same)
+        if not wishes.allows(kind.kind) or not np.isfinite(values[first]) or (kind.overhead and not clearing):
             continue
-        if lower and values[wanted] <= 2.0 * margin:
+        if lower and values[first] <= 2.0 * margin:
             continue
-        limit = snapped(values[wanted] + (-margin if lower else margin), wishes.step, up=not lower)
+        limit = snapped(values[first] + (-margin if lower else margin), wishes.step, up=not lower)
         device = kind.proposal(WHERE, limit)
         if limit > 0.0 and device.acts(every[wanted].track):
             found[device] = np.array([_margin(device, one, every) for one in every])
@@ -81,6 +83,13 @@ def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=Fals
             for device in kind.around(every[wanted], margin, WHERE):
                 found[device] = np.array([_margin(device, one, every) for one in every])
     return found
+
+
+def pivot(kind, every, wanted, same=()):
+    """Return which of those that count as the wanted one a device of one number lets pass last."""
+    values = limits(kind, every)
+    rows = sorted({wanted, *same}, key=lambda k: k != wanted)
+    return (max if kind.bound == "upper" else min)(rows, key=lambda k: values[k])
 
 
 def around():
@@ -155,7 +164,7 @@ def jams(found, chosen, others, margin):
     return False
 
 
-def placed(every, wanted, devices, must, least=np.inf, step=FINE):
+def placed(every, wanted, devices, must, least=np.inf, step=FINE, same=()):
     """Return the cuts of a chain, each value in the middle of what it may be.
 
     Parameters
@@ -169,12 +178,24 @@ def placed(every, wanted, devices, must, least=np.inf, step=FINE):
         What leaves less of a foot returns them by no more than this: the wanted orientation has the rest.
     step : float [m]
         Values are whole multiples of it.
+    same : sequence of int
+        As for ``candidates``.
 
     Returns
     -------
     tuple of Cut
     """
-    return tuple(_cut(every, wanted, device, some, least, step) for device, some in zip(devices, must))
+    return tuple(
+        _cut(
+            every,
+            pivot(type(device), every, wanted, same) if device.bound else wanted,
+            device,
+            some,
+            least,
+            step,
+        )
+        for device, some in zip(devices, must)
+    )
 
 
 def shared_out(found, devices, margin):

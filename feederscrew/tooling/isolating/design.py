@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew.errors import FeederError
 from feederscrew.tooling.devices.named import place_of
-from feederscrew.tooling.isolating import chain, hole_search, rails, turners
+from feederscrew.tooling.isolating import chain, hole_search, rails, round_corners, turners
 from feederscrew.tooling.isolating.proposal import task as asked_for
 from feederscrew.tooling.isolating.proposal import told, weights, without
 
@@ -130,7 +130,8 @@ def _plain(given, search, holes):
     if not given.coming[wanted] > 0.0 and given.shares[wanted] > 0.0:
         return without(given, "does not come past the devices of the bowl file")
     weight = weights(given)
-    weight[wanted] = 0.0
+    weight[given.same] = 0.0
+    holes = holes and given.same.sum() == 1  # a hole is searched for one orientation
     stages = ({"clearing": False}, {}) if given.wishes.allows("wiper") else ({"clearing": False},)
     for stage in stages:
         cuts, returned = _chosen(given, weight, stage)
@@ -148,20 +149,22 @@ def _plain(given, search, holes):
 def _chosen(given, weight, stage):
     """Cuts of the fewest devices of a stage, and which orientations are returned."""
     every, wanted = given.every, given.wanted
-    found = chain.candidates(every, wanted, given.margin, given.wishes, **stage)
+    same = np.flatnonzero(given.same & given.often)
+    found = chain.candidates(every, wanted, given.margin, given.wishes, same=same, **stage)
+    alike = given.same & given.often
+    found = {device: some for device, some in found.items() if (some[alike] >= given.margin).all()}
     counted = np.where(weight > 0.0, given.coming, 0.0) if given.purity < 1.0 else weight
     devices = chain.fewest(found, counted, given.margin, given.allowed)
     gone = ~given.stays | ((given.coming <= 0.0) & (given.shares > 0.0))
     must = [some & ~gone for some in chain.shared_out(found, devices, given.margin)] if devices else []
     least = given.margin if given.gentle else np.inf
-    cuts = chain.placed(every, wanted, devices, must, least, given.wishes.step)
+    cuts = chain.placed(every, wanted, devices, must, least, given.wishes.step, same)
     return cuts, np.any([gone, *must], axis=0)
 
 
 def _left(given, returned):
     """Whether others that come often enough are left over."""
-    left = ~returned & given.often
-    left[given.wanted] = False
+    left = ~returned & given.often & ~given.same
     return bool(given.coming[left].sum() > given.allowed) if left.any() else False
 
 
@@ -173,6 +176,8 @@ def _with_holes(given, cuts, returned, search):
         if given.coming[left].sum() <= given.allowed:
             break
         made = hole_search.cut_out(given.every, given.wanted, left, given.margin, search) if left else None
+        if made is not None and given.wishes.cutter > 0.0:
+            made = round_corners.with_corners(given, made, given.wishes.cutter)
         if made is None:
             break
         cuts, returned[made[1]] = (*cuts, made[0]), True

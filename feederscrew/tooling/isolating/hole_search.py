@@ -246,12 +246,12 @@ def _as_cut(every, wanted, held, corners):
         return _margin(every[wanted], scaled(share)) >= 0.0
 
     def returns(share):
-        device = _device(scaled(share))
+        device = device_of(scaled(share))
         return all(verdict(device, every[k], every).margin < 0.0 for k in held)
 
     least = _border(returns, 1.0, 0.0)
     most = _border(passes, 1.0, 2.0)
-    return judged(every, wanted, _device(corners), must, _device(scaled(least)), _device(scaled(most)))
+    return judged(every, wanted, device_of(corners), must, device_of(scaled(least)), device_of(scaled(most)))
 
 
 def _margin(one, corners):
@@ -271,7 +271,8 @@ def _border(holds, inside, outside):
     return inside
 
 
-def _device(corners):
+def device_of(corners):
+    """Return the hole of some corners (K, 2) [m]."""
     shape = tuple((float(x), float(y)) for x, y in corners)
     text = ", ".join(f"[{millimetres(x)}, {millimetres(y)}]" for x, y in shape)
     return CutOut(WHERE, corners=shape, text=f"[{text}]")

@@ -10,6 +10,7 @@ from feederscrew.tooling.isolating import apart
 from feederscrew.tooling.isolating.chain import Cut, Wishes
 
 LEAST_SHARE = 5e-3  # [1] orientations that come less often need not be returned
+NEVER = 1e-4  # [1] those that come less often change no number: no device is added for them
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +56,13 @@ class DesignTask:
         return np.array([not one.returned for one in self.every])
 
     @property
+    def same(self):
+        """(M,) bool, which count as the wanted one: itself, and what lies on an aspect that may be up too."""
+        up = {name.casefold() for name in self.wishes.up}
+        alike = np.array([one.aspect.casefold() in up for one in self.every])
+        return alike | (np.arange(len(self.every)) == self.wanted)
+
+    @property
     def often(self):
         """(M,) bool, whether it comes often enough to matter."""
         return self.coming >= LEAST_SHARE
@@ -77,6 +85,7 @@ def task(every, shares, wanted, margin, purity, before, turners=(), gentle=False
 def weights(given):
     """Return how much it matters to return each orientation (M,): those that come often enough first."""
     weight = np.where(given.often, 1.0 + given.coming, 1e-3 * given.coming)
+    weight = np.where(given.coming < NEVER, 0.0, weight)
     return np.where(given.stays, weight, 0.0)
 
 
@@ -100,10 +109,10 @@ def told(given, cuts, returned, same=None, late=False):
     Design
     """
     every, shares, wanted = given.every, given.shares, given.wanted
-    same = np.arange(len(every)) == wanted if same is None else same
-    cuts = (*given.turners, *cuts)
+    same = given.same if same is None else same
+    cuts = (*given.turners, *_separated(given, cuts))
     flow = course((*given.before, *(cut.device for cut in cuts)), every)
-    state = flow.leaves_as(wanted)
+    states = sorted({flow.leaves_as(k) for k in np.flatnonzero(given.same)})
     out = (shares[:, None] * flow.leaving).sum(axis=0)
     total, leaving = shares.sum(), out.sum()
     cuts = _with_stops(given, flow, cuts)
@@ -116,15 +125,28 @@ def told(given, cuts, returned, same=None, late=False):
         before=given.before,
         cuts=cuts,
         margin=float(min(margins, default=np.nan)),
-        efficiency=float(out[state] / total) if total > 0.0 else 0.0,
-        purity=float(out[state] / leaving) if leaving > 0.0 else np.nan,
-        left_over=tuple(one.name for k, one in enumerate(flow.states) if out[k] > 0.0 and k != state),
+        efficiency=float(out[states].sum() / total) if total > 0.0 else 0.0,
+        purity=float(out[states].sum() / leaving) if leaving > 0.0 else np.nan,
+        left_over=tuple(one.name for k, one in enumerate(flow.states) if out[k] > 0.0 and k not in states),
         reasons=(
             *(f"{' '.join(cut.stops)} come to stand at the {cut.device.kind}" for cut in cuts if cut.stops),
             *(apart.reason(every[wanted], every[k], given.margin) for k in left),
         ),
         late=late,
     )
+
+
+def _separated(given, cuts):
+    """Cuts with a stretch that separates parts before the first of them that needs gaps."""
+    steeper, one = given.wishes.separation, given.every[given.wanted]
+    first = next((k for k, cut in enumerate(cuts) if cut.device.gap(one, one.speed) > 0.0), None)
+    if steeper is None or first is None or any(device.leans for device in given.before):
+        return tuple(cuts)
+    if any(
+        cut.device.hangs for cut in cuts
+    ):  # on a steeper way a head that comes first has no time to turn down
+        return tuple(cuts)
+    return (*cuts[:first], Cut(steeper, np.nan, np.nan, steeper, steeper, ()), *cuts[first:])
 
 
 def _with_stops(given, flow, cuts):

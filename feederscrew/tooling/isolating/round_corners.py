@@ -1,0 +1,32 @@
+"""Holes as a cutter or a laser leaves them: with round corners."""
+
+import numpy as np
+import shapely
+
+from feederscrew.tooling.isolating import hole_search
+from feederscrew.tooling.isolating.chain import FINE, judged
+
+ARC = 6  # chords of a quarter of a round corner
+FAR = 1.0  # [m] beyond any hole
+
+
+def with_corners(given, made, radius):
+    """Return a hole with corners of a radius [m], as a cutter leaves them, or None where it then does not do.
+
+    Parameters
+    ----------
+    given : DesignTask
+    made : (Cut, sequence of int)
+        From ``cut_out``.
+    radius : float [m]
+    """
+    cut, held = made
+    open_ = [(x, y if y > 0.0 else -FAR) for x, y in cut.device.corners]  # it goes on into the wall
+    round_ = shapely.Polygon(open_).buffer(-radius).buffer(radius, quad_segs=ARC)
+    round_ = round_.intersection(shapely.box(-FAR, 0.0, FAR, FAR))
+    if round_.geom_type != "Polygon" or round_.is_empty:
+        return None
+    corners = np.round(shapely.get_coordinates(round_.exterior)[:-1] / FINE) * FINE
+    must, ends = np.isin(np.arange(len(given.every)), held), (cut.smallest, cut.largest)
+    found = judged(given.every, given.wanted, hole_search.device_of(corners), must, *ends)
+    return (found, held) if min(found.margin_pass, found.margin_reject) >= given.margin else None
