@@ -140,7 +140,7 @@ def spaced(study):
     )
     return [
         f"{kinds} looks at one part at a time: the rate is that of parts that come {free / MM:.3g} mm apart "
-        "- put a separation before it, or feed fewer"
+        "- a separation before it makes that less"
     ]
 
 

@@ -39,6 +39,7 @@ PENS = {  # of the SVG: stroke, fill, dashes
     "GHOST": ("#7a8793", "none", "1.5 1"),
 }
 WALL = 2e-3  # [m] thickness the wall is drawn with
+SHOP = "values +-0.1 mm; edges broken 0.1 to 0.2 mm; lands 1 mm and the sheet's thickness at least"
 
 
 def dxf(strip, ghosts=()):
@@ -164,6 +165,7 @@ def _texts(strip):
             f"as bent: radius of the wall {strip.track.radius / MM:.6g} mm",
             (0.0, -_drop(strip) - WALL - 4.5e-3),
         ),
+        (SHOP, (0.0, -WALL - 9e-3)),
     ]
     return tuple(named + seen + notes)
 
