@@ -11,10 +11,12 @@ from feederscrew.designing.searching import Candidate
 from feederscrew.rates import arrivals
 from feederscrew.rates.tipping import FLAT
 from feederscrew.studies.rate import shares
+from feederscrew.tooling.hanging import neck
 
 EACH = 2  # parts of each orientation in a short trial
 MENDED = 3  # times that one proposal is mended
 LEAST_USE = 0.5  # of the best clean rate: an orientation that promises less is not tried
+SHORT = 5  # short trials where no orientation comes often enough for the target at any calm drive
 SCREENED = 6  # draws before a clean chain is proved
 ROLLS = 0.3  # of the parts that lie on a round side: then the bank is steep
 SLOWER = 1.2  # a chain that gains so many times what was taken for it is proposed again, at its own drive
@@ -49,9 +51,11 @@ def _searched(search, made, ways, weights):
     alone = proposals.bare(ways, weights, search.request, search.plain.devices)
     if alone is not None:
         yield from _tried_out(search, made, alone, weights)
-    seen = set()
+    seen, rows = set(), proposals.promising(ways, weights, search.request)[: proposals.ROWS]
+    if not any(_promise(search, made, ways, weights, row) >= search.request.target for row in rows):
+        search.most = SHORT
     for how in proposals.HOWS:
-        for row in proposals.promising(ways, weights, search.request)[: proposals.ROWS]:
+        for row in rows:
             if search.spent:
                 return
             if _promise(search, made, ways, weights, row) < LEAST_USE * search.best_rate:
@@ -73,7 +77,7 @@ def _without(how, kinds):
 
 def _promise(search, made, ways, weights, row):
     """Parts [1/s] that an orientation brings at the fastest drive, were all others returned."""
-    if search.request.outcome != "lying":
+    if search.request.outcome != "lying" and neck(ways.lying[row]) is not None:
         return np.inf  # what hangs comes from several headings
     pitch = trying.GAP * float((weights * ways.lengths).sum())
     return float(weights[row]) * calm_drive.speed(calm_drive.driven(made, np.inf)) / pitch

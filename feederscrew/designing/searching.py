@@ -27,12 +27,13 @@ class Search:
     before: object = None
     reserve: float = RESERVE
     avoided: dict = field(default_factory=dict)  # kinds of devices at which a row was lost, by row
+    most: float = np.inf  # short trials that are worth it
     shares_given: bool = False  # the user says what arrives
 
     @property
     def spent(self):
         """Whether the budget of trials is used up."""
-        return len(self.attempts) >= self.request.budget
+        return len(self.attempts) >= min(self.request.budget, self.most)
 
     def avoid(self, proposal, tried):
         """Note the devices of a chain at which what is wanted is lost; rails are the only way to hang."""

@@ -82,7 +82,7 @@ def along_blade(bowl, sweep, friction):
         if step == SETTLED * STEPS:
             start = y
         phase = w * dt * step
-        press = max(normal - lift * math.sin(phase), 0.0)
+        press = max(normal - lift * math.sin(phase + drive.phase), 0.0)
         u, v = u + pull[0] * dt, v + pull[1] * dt
         u, v = _rubbed(u, v, fore * math.cos(phase), grip.kinetic * press * dt)
         into = u * s - v * c

@@ -199,3 +199,13 @@ def test_a_sensor_sees_no_slits_between_facets():
     for one in every:
         seen = sensor_views.outline(one, "outline")
         assert seen.geom_type == "Polygon" and not len(seen.interiors)
+
+
+def test_a_drive_out_of_phase_clears_faster():
+    drive = BOWL.drive
+    ahead = replace(BOWL, drive=replace(drive, phase=math.radians(-30.0)))
+    against = replace(BOWL, drive=replace(drive, phase=math.radians(120.0)))
+    sweep = math.radians(30.0)
+    known = clearing.along_blade(BOWL, sweep, 0.3)
+    assert clearing.along_blade(ahead, sweep, 0.3) > 1.1 * known
+    assert clearing.along_blade(against, sweep, 0.3) == 0.0
