@@ -42,17 +42,24 @@ def measures(made):
     floor = facets.first_met(body, (*bare, 5e-4), (*bare, -far))
     s = float(way.at(-0.5 * np.pi))
     outlet = way.end + 0.5 * plan.outlet
-    at = plan.way.places(outlet, 1e-3) + [0.0, 0.0, 1e-3]
-    lift = 1e-3 * np.sin(way.bank)
     return Measures(
         diameter=2.0 * (rim[0] + way.radius - float(way.wall_radius(way.at(RIM)))),
         wall=rim[1] - rim[0],
         floor=floor[1] - floor[0],
         height=float(np.ptp(made.vertices[:, 2])),
         track_width=track_width(plan, body, s),
-        outlet_height=facets.below(body, at) - lift,
+        outlet_height=_outlet_height(plan, body, outlet),
         extent=tuple(float(x) for x in np.ptp(made.vertices, axis=0)),
     )
+
+
+def _outlet_height(plan, body, outlet):
+    """Height [m] of the outlet at the wall, seen where there is metal beside it: rails leave a slot."""
+    for across in (1e-3, 5e-4, 0.5 * plan.width, plan.width - 1e-3):
+        found = facets.below(body, plan.way.places(outlet, across) + [0.0, 0.0, 1e-3])
+        if found is not None:
+            return found - across * np.sin(plan.way.bank)
+    return float(plan.way.height(outlet, 0.0))
 
 
 def track_width(plan, body, s):
