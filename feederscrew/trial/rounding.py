@@ -4,7 +4,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.geometry import vectors
-from feederscrew.trial.shape import on_hull
+from feederscrew.trial.shape import boxes, on_hull, together
 
 FINE = np.radians(2.0)  # between two points of a circle that touches
 COARSEST = np.radians(45.0)  # corners further apart belong to a polygon, as of a hexagon's head
@@ -35,11 +35,14 @@ def rounded(solid, axes):
     far = np.array([np.argmax(vectors.length(solid.corners - point)) for point in points])
     own = np.column_stack([ends, far])
     vertices = np.concatenate([solid.corners, points, solid.vertices[count:]])
+    grouped = together(vertices[: count + more])
     return solid._replace(
         vertices=check.frozen(vertices),
         corners=check.frozen(vertices[: count + more]),
         firsts=check.frozen(np.concatenate([solid.firsts, solid.firsts[-1] + 3 * (1 + np.arange(more))])),
         beside=check.frozen(np.concatenate([solid.beside, own.ravel()])),
+        grouped=check.frozen(grouped),
+        corner_blocks=check.frozen(boxes(vertices[grouped][:, None])),
         outer=check.frozen(on_hull(vertices[: count + more])),
         triangles=check.frozen(solid.triangles + more * (solid.triangles >= count)),
         radius=float(vectors.length(vertices).max()),

@@ -17,7 +17,7 @@ from feederscrew.trial.kernel import crowd_records, travel
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = (
     travel.RUNNING, travel.PASSED, travel.RETURNED, travel.STANDS, travel.ROLLED,
 )  # fmt: skip
-PERIOD, HOPPING = 80, 160  # steps of a period of the drive, and where parts hop
+PERIOD, HOPPING = 48, 160  # steps of a period of the drive, and where parts hop
 SWEEPS, CONVERGED = 60, 1e-4  # of the contact solver: at most, and what a sweep may still change
 ONWARDS = 5e-3  # of the unit of length: a border goes on so far where its corner is not convex
 BATCH = 5  # parts a core takes at a time

@@ -10,7 +10,7 @@ from feederscrew.dropping.rigid_body import principal_axes
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
 from feederscrew.part.hull import convex_hull
-from feederscrew.trial.kernel.near import BLOCK
+from feederscrew.trial.kernel.near_borders import BLOCK
 
 FLAT = 2e-3  # [rad] facets that meet at a smaller angle are one face
 ONWARDS = 3e-3  # of the unit of length: an edge goes on so far where a hollow edge meets its end
@@ -30,8 +30,10 @@ class TrueSolid(NamedTuple):
     triangles: np.ndarray  # (T, 3) int, counter-clockwise from outside
     normals: np.ndarray  # (T, 3)
     outer: np.ndarray  # (C,) bool, corners of the hull: of a plane no other can touch
-    edge_blocks: np.ndarray  # (ceil(E / BLOCK), 6) least and greatest place of so many edges
-    face_blocks: np.ndarray  # (ceil(T / BLOCK), 6) the same of triangles
+    grouped: np.ndarray  # (C,) int, corners in an order in which each so many, BLOCK, lie together
+    corner_blocks: np.ndarray  # (ceil(C / BLOCK), 6) least and greatest place of so many corners
+    edge_blocks: np.ndarray  # (ceil(E / BLOCK), 6) the same of edges
+    face_blocks: np.ndarray  # (ceil(T / BLOCK), 6) and of triangles
     inertia: np.ndarray  # (3,) principal moments at mass 1
     radius: float  # largest distance of a corner
 
@@ -73,6 +75,7 @@ def solid_of(part):
     corners = check.frozen(corners[order])
     order = together(corners[place[part.faces]].mean(axis=1))
     triangles, normals = place[part.faces][order], normals[order]
+    grouped = together(corners[: touches.sum()])
     firsts, beside = neighbours(triangles, int(touches.sum()))
     return (
         TrueSolid(
@@ -86,6 +89,8 @@ def solid_of(part):
             triangles=check.frozen(triangles),
             normals=check.frozen(normals),
             outer=check.frozen(on_hull(corners[: touches.sum()])),
+            grouped=check.frozen(grouped),
+            corner_blocks=check.frozen(boxes(corners[grouped][:, None])),
             edge_blocks=check.frozen(boxes(corners[place[ends]])),
             face_blocks=check.frozen(boxes(corners[triangles])),
             inertia=check.frozen(moments / (part.mass * length**2)),

@@ -74,7 +74,7 @@ def _on_wall(surface, solid, crowd, n, reach):
             place = crowd.tangents[n, 0] * x + crowd.tangents[n, 1] * y, z
             key = -KINDS * (1 + crowd.walled[n, m])
             lows = supports.add(crowd.levels, lows, place, gap, p, key)
-    for m in range(supports.outermost(crowd.levels, lows)):
+    for m in range(supports.outermost(crowd.levels, crowd.best, lows)):
         row = crowd.levels[m]
         p = row[supports.SPOT], row[supports.SPOT + 1], row[supports.SPOT + 2]
         x = state[X] + turn[0] * p[0] + turn[1] * p[1] + turn[2] * p[2]
@@ -88,7 +88,7 @@ def _on_wall(surface, solid, crowd, n, reach):
 def _put_lying(crowd, solid, n, plate, count):
     """Add the contacts that carry the part on a plate's surface."""
     normal = in_bowl(plate, 0.0, 0.0, 1.0)
-    for m in range(supports.outermost(crowd.levels, count)):
+    for m in range(supports.outermost(crowd.levels, crowd.best, count)):
         row = crowd.levels[m]
         spot = row[supports.SPOT], row[supports.SPOT + 1], row[supports.SPOT + 2]
         put(crowd, n, solid, spot, normal, row[supports.GAP], plate[RUBS], row[supports.KEY])

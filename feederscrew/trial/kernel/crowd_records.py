@@ -76,10 +76,15 @@ class Crowd(NamedTuple):
     corners: np.ndarray  # (N, ..., 3) int, faces near a border's start: border, front or back, face
     walled: np.ndarray  # (N, C + 1) int, how many corners are near the wall, and which
     frame: np.ndarray  # (12,) how a plate sees a part, or a part another: rotation and place
-    shown: np.ndarray  # (C, 3)
+    shown: np.ndarray  # (C, 3) corners as a plate, or another part, sees them
+    seen: np.ndarray  # (C,) int, which corners those are
+    spans: np.ndarray  # (E, 6) both ends of edges as a plate sees them
+    blocks: np.ndarray  # (E,) int, of which blocks of edges
     low: np.ndarray  # (C,) int
     levels: np.ndarray  # (L, 7) contacts that push one way, of `supports`
+    best: np.ndarray  # (7, 2) the best of them each way
     near: np.ndarray  # (B,) int
+    close: np.ndarray  # (B,) int, of these, those near some corners
     dips: np.ndarray  # (B,) how deep corners of the part come beside each border
     box: np.ndarray  # (6,)
     pairs: np.ndarray  # (2 K, WIDTH) contacts with each other, two rows each

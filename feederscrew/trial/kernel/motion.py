@@ -13,7 +13,7 @@ from feederscrew.trial.kernel.pushes import give, reversal, wanted, wanted_of_pa
 REACH = 2e-3  # how far ahead contacts are looked for, beside the way of two steps
 FREE = 1e-9  # work against gravity and the drive that is rounding, of one part alone, and ...
 APART = 2e-6  # ... of parts that are pushed apart, by impulses that are not wholly converged
-SLOP = 2e-4  # depth that is left alone
+SLOP, TROUBLE = 3e-4, 6e-4  # depth that is left, and from which on it is made less
 LIFT, MOST = 0.1, 0.01  # of a greater depth, taken back in a step; of so much at most
 AT_ONCE = 0.02  # of a step: what happens sooner happens at its start
 UPWARD = 0.5  # [1] of the normal: a part that is held so by another is carried
@@ -174,7 +174,7 @@ def step(surface, solid, floor, crowd, island, time, dt):
         contact.remember(crowd, n)
         _moved(crowd, n, 1.0 if strikes else 0.5, dt)
     _strained(crowd)
-    if deepest < -SLOP:
+    if deepest < -TROUBLE:
         lift(surface, solid, crowd, island, dt)
     return deepest, dt
 

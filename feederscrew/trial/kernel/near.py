@@ -8,32 +8,12 @@ import math
 
 from feederscrew.dropping.kernel.body import Q, X, Y, Z
 from feederscrew.geometry.compiled import apart, compiled
-from feederscrew.trial.kernel.crowd_records import (
-    BEND,
-    BOX,
-    CORNERS,
-    DEPTH,
-    EDGES,
-    END,
-    FIRST,
-    LAST,
-    LEAN,
-    POSTS,
-    VERTS,
-)
-from feederscrew.trial.kernel.plate_views import (
-    DEEP,
-    beside,
-    in_body,
-    inside,
-    off_wall,
-    placed,
-    seen_by,
-    within,
-)
+from feederscrew.trial.kernel.crowd_records import BOX, DEPTH, END, FIRST, LAST, LEAN, VERTS
+from feederscrew.trial.kernel.near_borders import BLOCK, near_edges, near_faces
+from feederscrew.trial.kernel.plate_views import DEEP, beside, inside, off_wall, placed, seen_by
 
-AROUND = 0.02  # how far around a part is looked
-BLOCK = 16  # edges, or faces, that have a box together
+AROUND, FURTHER = 0.02, 3.0  # how far around a part is looked, at least, and times how far contacts are
+SIDED = 4  # where it is counted how many borders near corners there are
 
 
 @compiled
@@ -54,7 +34,7 @@ def hold(crowd, solid, n, reach):
 def look_around(surface, solid, crowd, n, reach):
     """Make the lists of a part anew."""
     state, made = crowd.states[n], crowd.made[n]
-    margin = reach + max(AROUND, 2.0 * reach)
+    margin = reach + max(AROUND, FURTHER * reach)
     for k in range(3):
         made[k] = state[k]
     for k in range(4):
@@ -74,19 +54,32 @@ def look_around(surface, solid, crowd, n, reach):
 
 @compiled
 def _near_wall(surface, solid, crowd, n, margin):
-    state, turn, count = crowd.states[n], crowd.turns[n], 0
+    state, count = crowd.states[n], 0
     x, y = state[X], surface.radius - state[Y]
     if math.sqrt(x * x + y * y) + solid.radius > (surface.radius - margin) * crowd.leans[n, LEAN + 1]:
-        for k in range(len(solid.corners)):
-            if solid.outer[k]:
-                p = solid.corners[k]
-                x = state[X] + turn[0] * p[0] + turn[1] * p[1] + turn[2] * p[2]
-                y = state[Y] + turn[3] * p[0] + turn[4] * p[1] + turn[5] * p[2]
-                z = state[Z] + turn[6] * p[0] + turn[7] * p[1] + turn[8] * p[2]
-                if off_wall(surface, crowd.leans[n], x, y, z) < margin:
+        for j in range(len(solid.corner_blocks)):
+            block = solid.corner_blocks[j]
+            p = 0.5 * (block[0] + block[3]), 0.5 * (block[1] + block[4]), 0.5 * (block[2] + block[5])
+            x, y, z = block[3] - p[0], block[4] - p[1], block[5] - p[2]
+            if _off_wall(surface, crowd, n, p) > margin + math.sqrt(x * x + y * y + z * z):
+                continue
+            for m in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.grouped))):
+                k = solid.grouped[m]
+                p = solid.corners[k, 0], solid.corners[k, 1], solid.corners[k, 2]
+                if solid.outer[k] and _off_wall(surface, crowd, n, p) < margin:
                     count += 1
                     crowd.walled[n, count] = k
     crowd.walled[n, 0] = count
+
+
+@compiled
+def _off_wall(surface, crowd, n, p):
+    """How far a point of a body is from the wall."""
+    state, turn = crowd.states[n], crowd.turns[n]
+    x = state[X] + turn[0] * p[0] + turn[1] * p[1] + turn[2] * p[2]
+    y = state[Y] + turn[3] * p[0] + turn[4] * p[1] + turn[5] * p[2]
+    z = state[Z] + turn[6] * p[0] + turn[7] * p[1] + turn[8] * p[2]
+    return off_wall(surface, crowd.leans[n], x, y, z)
 
 
 @compiled
@@ -102,188 +95,140 @@ def _meets(plate, frame, far):
 @compiled
 def _near_plate(surface, solid, crowd, n, k, margin):
     """Add what of a part is near one plate; ``crowd.frame`` is how that sees it."""
-    plate, shown, box = surface.plates[k], crowd.shown, crowd.box
-    for e in range(3):
-        box[2 * e], box[2 * e + 1] = math.inf, -math.inf
-    for m in range(len(solid.corners)):
-        a, b, c = placed(crowd.frame, solid.corners[m])
-        shown[m, 0], shown[m, 1], shown[m, 2] = a, b, c
-        box[4], box[5] = min(box[4], c), max(box[5], c)
-    if box[4] > margin or box[5] < -plate[DEPTH] - margin:
-        return
-    for m in range(len(solid.edges)):
-        p, q = shown[solid.edges[m, 0]], shown[solid.edges[m, 1]]
-        if min(p[2], q[2]) <= margin and max(p[2], q[2]) >= -plate[DEPTH] - margin:
-            for e in range(2):
-                box[2 * e] = min(box[2 * e], p[e], q[e])
-                box[2 * e + 1] = max(box[2 * e + 1], p[e], q[e])
-    nears = _near_borders(plate, surface.borders, box, margin, crowd.near)
-    _near_corners(surface, solid, crowd, n, k, nears, margin)
-    if nears:
-        for m in range(nears):
-            _near_edges(surface, solid, crowd, n, plate, crowd.near[m], margin)
-        _near_faces(surface, solid, crowd, n, plate, nears, margin)
+    plate = surface.plates[k]
+    corners = _seen_corners(solid, crowd, plate, margin)
+    blocks = _seen_edges(solid, crowd, plate, margin)
+    nears, every = _near_borders(plate, surface.borders, crowd.box, margin, crowd.near)
+    _near_corners(surface, solid, crowd, n, k, (nears, every, corners), margin)
+    for m in range(nears):
+        near_edges(surface, solid, crowd, n, plate, (crowd.near[m], blocks), margin)
+    near_faces(surface, solid, crowd, n, plate, nears, margin)
 
 
 @compiled
-def _near_borders(plate, borders, box, margin, found):
-    """Write which borders come into a box; how many."""
-    count = 0
-    for k in range(int(plate[FIRST]), int(plate[LAST])):
-        p, q, u, v = borders[k, 0], borders[k, 1], borders[k, 2], borders[k, 3]
-        if min(p, u) > box[1] + margin or max(p, u) < box[0] - margin:
+def _level(frame, block):
+    """Least and greatest height over a plate of what is in a box."""
+    middle, half = frame[11], 0.0
+    for e in range(3):
+        middle += 0.5 * frame[6 + e] * (block[e] + block[3 + e])
+        half += 0.5 * abs(frame[6 + e]) * (block[3 + e] - block[e])
+    return middle - half, middle + half
+
+
+@compiled
+def _seen_corners(solid, crowd, plate, margin):
+    """Write which corners are as high as a plate, and where it sees them; how many."""
+    count, top, bottom = 0, margin, -plate[DEPTH] - margin
+    for j in range(len(solid.corner_blocks)):
+        low, high = _level(crowd.frame, solid.corner_blocks[j])
+        if low > top or high < bottom:
             continue
-        if min(q, v) > box[3] + margin or max(q, v) < box[2] - margin or borders[k, END] > 0.5:
-            continue
-        found[count] = k
-        count += 1
+        for m in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.grouped))):
+            k = solid.grouped[m]
+            a, b, c = placed(crowd.frame, solid.corners[k])
+            if bottom <= c <= top:
+                crowd.seen[count] = k
+                crowd.shown[count, 0], crowd.shown[count, 1], crowd.shown[count, 2] = a, b, c
+                count += 1
     return count
 
 
 @compiled
-def _near_corners(surface, solid, crowd, n, k, nears, margin):
-    """Add the corners near a plate, each with the borders near it."""
-    plate, borders, shown = surface.plates[k], surface.borders, crowd.shown
-    count = crowd.low[VERTS]
-    sides = crowd.verts[n, 2, count - 1] if count else 0
-    first, last = int(plate[FIRST]), int(plate[LAST])
-    for m in range(len(shown)):
-        a, b, c = shown[m, 0], shown[m, 1], shown[m, 2]
-        if c > margin or c < -plate[DEPTH] - margin or (nears == 0 and not solid.outer[m]):
-            continue
-        begun = sides
-        for e in range(nears):
-            if abs(beside(borders[crowd.near[e]], a, b)) < margin + DEEP and sides < crowd.sides.shape[1]:
-                crowd.sides[n, sides] = crowd.near[e]
-                sides += 1
-        within_it = -plate[DEPTH] + DEEP + margin < c < -DEEP - margin
-        if sides == begun and (within_it or not inside(borders, first, last, a, b)):
-            continue
-        if count < crowd.verts.shape[2]:
-            crowd.verts[n, 0, count], crowd.verts[n, 1, count] = m, begun
-            crowd.verts[n, 2, count] = sides
-            count += 1
-    crowd.low[VERTS] = count
-
-
-@compiled
-def _box_of(frame, first, second, wide, box):
-    """Write the box in the body's axes of what a plate sees between two points, and so far around it."""
-    p = in_body(frame, first[0] - frame[9], first[1] - frame[10], first[2] - frame[11])
-    q = in_body(frame, second[0] - frame[9], second[1] - frame[10], second[2] - frame[11])
+def _seen_edges(solid, crowd, plate, margin):
+    """Write which blocks of edges come to a plate's height, where it sees those, and their box; how many."""
+    box, count, top, bottom = crowd.box, 0, margin, -plate[DEPTH] - margin
     for e in range(3):
-        box[e], box[3 + e] = min(p[e], q[e]) - wide, max(p[e], q[e]) + wide
-
-
-@compiled
-def _apart(box, other):
-    """Whether two boxes, three least places and three greatest, lie apart."""
-    if box[0] > other[3] or box[3] < other[0] or box[1] > other[4] or box[4] < other[1]:
-        return True
-    return box[2] > other[5] or box[5] < other[2]
-
-
-@compiled
-def _near_edges(surface, solid, crowd, n, plate, k, margin):
-    """Add the edges near one border, in front or at the back, and near what runs back from its start."""
-    border, shown, depth, box = surface.borders[k], crowd.shown, plate[DEPTH], crowd.box
-    wide = margin + DEEP
-    for what in range(3):
-        if what == 2 and border[BEND] < 0.5:
+        box[2 * e], box[2 * e + 1] = math.inf, -math.inf
+    for j in range(len(solid.edge_blocks)):
+        low, high = _level(crowd.frame, solid.edge_blocks[j])
+        if low > top + DEEP or high < bottom - DEEP:
             continue
-        level = -depth if what == 1 else 0.0
-        first = (border[0], border[1], level)
-        second = (border[0], border[1], -depth) if what == 2 else (border[2], border[3], level)
-        _box_of(crowd.frame, first, second, wide, box)
-        for j in range(len(solid.edge_blocks)):
-            if _apart(box, solid.edge_blocks[j]):
-                continue
-            for m in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.edges))):
-                p, q = shown[solid.edges[m, 0]], shown[solid.edges[m, 1]]
-                if what == 2:
-                    _add_post(crowd, n, m, k, _past(p, q, border, wide) and _between(p, q, depth, margin))
+        crowd.blocks[count] = j
+        count += 1
+        for m in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.edges))):
+            p = placed(crowd.frame, solid.corners[solid.edges[m, 0]])
+            q = placed(crowd.frame, solid.corners[solid.edges[m, 1]])
+            for e in range(3):
+                crowd.spans[m, e], crowd.spans[m, 3 + e] = p[e], q[e]
+            if min(p[2], q[2]) <= top and max(p[2], q[2]) >= bottom:
+                for e in range(2):
+                    box[2 * e] = min(box[2 * e], p[e], q[e])
+                    box[2 * e + 1] = max(box[2 * e + 1], p[e], q[e])
+    return count
+
+
+@compiled
+def _near_borders(plate, borders, box, margin, found):
+    """Write which borders come into a box, those at which the drawing ends last; how many, and all of them."""
+    count, ends = 0, 0
+    for turn in range(2):
+        for k in range(int(plate[FIRST]), int(plate[LAST])):
+            if (borders[k, END] > 0.5) == (turn == 1) and _comes(borders[k], box, margin):
+                found[count + ends] = k
+                if turn == 0:
+                    count += 1
                 else:
-                    _add_edge(crowd, n, (m, k, what), _may_cross(p, q, border, level, wide))
+                    ends += 1
+    return count, count + ends
 
 
 @compiled
-def _between(p, q, depth, margin):
-    """Whether an edge comes between the front and the back of a plate."""
-    return min(p[2], q[2]) <= margin and max(p[2], q[2]) >= -depth - margin
+def _comes(border, box, wide):
+    """Whether a border may come into a box."""
+    p, q, u, v = border[0], border[1], border[2], border[3]
+    if min(p, u) > box[1] + wide or max(p, u) < box[0] - wide:
+        return False
+    return min(q, v) <= box[3] + wide and max(q, v) >= box[2] - wide
 
 
 @compiled
-def _add_edge(crowd, n, found, meets):
-    count = crowd.low[EDGES]
-    if meets and count < crowd.edges.shape[1]:
-        for e in range(3):
-            crowd.edges[n, count, e] = found[e]
-        crowd.low[EDGES] = count + 1
+def _near_corners(surface, solid, crowd, n, k, found, margin):
+    """Add the corners near a plate, each with the borders near it, of so many borders and corners."""
+    nears, every, corners = found
+    crowd.low[SIDED] = crowd.verts[n, 2, crowd.low[VERTS] - 1] if crowd.low[VERTS] else 0
+    for begin in range(0, corners, BLOCK):
+        end, box, few, plain = min(begin + BLOCK, corners), crowd.box, 0, True
+        for e in range(2):
+            box[2 * e] = box[2 * e + 1] = crowd.shown[begin, e]
+        for m in range(begin + 1, end):
+            for e in range(2):
+                box[2 * e] = min(box[2 * e], crowd.shown[m, e])
+                box[2 * e + 1] = max(box[2 * e + 1], crowd.shown[m, e])
+        for e in range(every):
+            if _comes(surface.borders[crowd.near[e]], box, margin + DEEP):
+                plain = False
+                if e < nears:
+                    crowd.close[few] = crowd.near[e]
+                    few += 1
+        if plain:
+            plate, a, b = surface.plates[k], crowd.shown[begin, 0], crowd.shown[begin, 1]
+            if not inside(surface.borders, int(plate[FIRST]), int(plate[LAST]), a, b):
+                continue
+        for m in range(begin, end):
+            if nears or solid.outer[crowd.seen[m]]:
+                _near_corner(surface, crowd, n, k, (m, few, plain), margin)
 
 
 @compiled
-def _add_post(crowd, n, m, k, meets):
-    count = crowd.low[POSTS]
-    if meets and count < crowd.posts.shape[1]:
-        crowd.posts[n, count, 0], crowd.posts[n, count, 1] = m, k
-        crowd.low[POSTS] = count + 1
-
-
-@compiled
-def _may_cross(p, q, border, level, wide):
-    """Whether an edge and a border, at a level of its plate, come as near to each other as that."""
-    a, b, c = q[0] - p[0], q[1] - p[1], q[2] - p[2]
-    u, v = border[2] - border[0], border[3] - border[1]
-    x, y, z = p[0] - border[0], p[1] - border[1], p[2] - level
-    ee, ff, ef = a * a + b * b + c * c, u * u + v * v, a * u + b * v
-    ex, fx = a * x + b * y + c * z, u * x + v * y
-    flat = ee * ff - ef * ef
-    share = min(max((ef * fx - ff * ex) / flat, 0.0), 1.0) if flat > 1e-9 * ee * ff else 0.0
-    place = (fx + share * ef) / ff
-    if place < 0.0 or place > 1.0:
-        place = min(max(place, 0.0), 1.0)
-        share = min(max((place * ef - ex) / ee, 0.0), 1.0)
-    x, y, z = x + share * a - place * u, y + share * b - place * v, z + share * c
-    return x * x + y * y + z * z < wide * wide
-
-
-@compiled
-def _past(p, q, border, wide):
-    """Whether an edge comes past the start of a border as near as that."""
-    a, b = q[0] - p[0], q[1] - p[1]
-    x, y = border[0] - p[0], border[1] - p[1]
-    square = a * a + b * b
-    share = min(max((x * a + y * b) / square, 0.0), 1.0) if square > 0.0 else 0.0
-    x, y = x - share * a, y - share * b
-    return x * x + y * y < wide * wide
-
-
-@compiled
-def _near_faces(surface, solid, crowd, n, plate, nears, margin):
-    """Add the faces of a part near the convex corners of near borders."""
-    frame, box = crowd.frame, crowd.box
-    for m in range(nears):
-        border = surface.borders[crowd.near[m]]
-        if border[BEND] < 0.5:
-            continue
-        for back in range(2):
-            place = (border[0], border[1], -plate[DEPTH] if back else 0.0)
-            _box_of(frame, place, place, margin + DEEP, box)
-            for j in range(len(solid.face_blocks)):
-                if _apart(box, solid.face_blocks[j]):
-                    continue
-                for f in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.triangles))):
-                    _add_face(solid, crowd, n, (crowd.near[m], back, f), margin)
-
-
-@compiled
-def _add_face(solid, crowd, n, found, margin):
-    """Add a face near a corner, in the middle of ``crowd.box``, if it is that near."""
-    box, f, count = crowd.box, found[2], crowd.low[CORNERS]
-    x, y, z = 0.5 * (box[0] + box[3]), 0.5 * (box[1] + box[4]), 0.5 * (box[2] + box[5])
-    t, v = solid.normals[f], solid.vertices[solid.triangles[f, 0]]
-    off = (x - v[0]) * t[0] + (y - v[1]) * t[1] + (z - v[2]) * t[2]
-    if -margin - DEEP < off < margin and count < crowd.corners.shape[1] and within(solid, f, x, y, z, margin):
-        for e in range(3):
-            crowd.corners[n, count, e] = found[e]
-        crowd.low[CORNERS] = count + 1
+def _near_corner(surface, crowd, n, k, which, margin):
+    """Add a corner with the borders near it, of the few that come near to those around it."""
+    plate, borders, (m, few, plain) = surface.plates[k], surface.borders, which
+    a, b, c = crowd.shown[m, 0], crowd.shown[m, 1], crowd.shown[m, 2]
+    count, begun = crowd.low[VERTS], crowd.low[SIDED]
+    sides = begun
+    for e in range(few):
+        if abs(beside(borders[crowd.close[e]], a, b)) < margin + DEEP and sides < crowd.sides.shape[1]:
+            crowd.sides[n, sides] = crowd.close[e]
+            sides += 1
+    if sides == begun:
+        if -plate[DEPTH] + DEEP + margin < c < -DEEP - margin:
+            return
+        if not plain and not inside(borders, int(plate[FIRST]), int(plate[LAST]), a, b):
+            return
+    if count < crowd.verts.shape[2]:
+        crowd.verts[n, 0, count], crowd.verts[n, 1, count], crowd.verts[n, 2, count] = (
+            crowd.seen[m],
+            begun,
+            sides,
+        )
+        crowd.low[VERTS], crowd.low[SIDED] = count + 1, sides

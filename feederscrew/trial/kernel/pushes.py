@@ -48,7 +48,7 @@ def wanted(surface, crowd, n, dt):
         row = crowd.rows[n, m]
         gap, fall = row[GAP], contact.speed(saved, row, NORMAL)
         deepest = min(deepest, gap)
-        row[WANTED] = -max(gap, 0.0) / dt
+        row[WANTED] = -max(gap, 0.0) / dt - max(fall, 0.0)
         if fall < -surface.threshold and gap + fall * dt < 0.0:
             strikes = True
             share = min(share, max(gap, 0.0) / (-fall * dt))

@@ -9,7 +9,9 @@ import math
 from feederscrew.geometry.compiled import apart, compiled
 
 PLACE, GAP, SPOT, KEY, COLUMNS = 0, 2, 3, 6, 7
-WAYS, FALL = 6, 20.0  # contacts are kept in so many directions, a lower one rather than one further out
+WAYS, FALL = 6, 100.0  # contacts are kept in so many directions, a lower one rather than one further out
+COSINES = tuple(math.cos(2.0 * math.pi * m / WAYS) for m in range(WAYS // 2))
+SINES = tuple(math.sin(2.0 * math.pi * m / WAYS) for m in range(WAYS // 2))
 LEVEL = 1.0 - 1e-5  # [1] of a normal against a surface's: less than it looks around parts tilt so
 
 
@@ -25,22 +27,51 @@ def add(levels, count, place, gap, spot, key):
 
 
 @apart
-def outermost(levels, count):
-    """Move the contacts that are kept, the lowest and those furthest out, before the others; how many."""
+def outermost(levels, best, count):
+    """Move the contacts that are kept, the lowest and those furthest out, before the others; how many.
+
+    ``best`` has WAYS + 1 rows in which it works.
+    """
     if count <= WAYS + 1:
         return count
+    half = WAYS // 2
+    for m in range(WAYS + 1):
+        best[m, 0] = -math.inf
+    for n in range(count):
+        x, y, fall = levels[n, PLACE], levels[n, PLACE + 1], FALL * levels[n, GAP]
+        _better(best[WAYS], -fall, n)
+        for m in range(half):
+            off = COSINES[m] * x + SINES[m] * y
+            _better(best[m], off - fall, n)
+            _better(best[half + m], -off - fall, n)
+    return _foremost(levels, best)
+
+
+@compiled
+def _better(row, score, n):
+    if score > row[0]:
+        row[0], row[1] = score, n
+
+
+@compiled
+def _foremost(levels, best):
+    """Move the rows named in ``best`` before the others, each once; how many."""
     kept = 0
     for m in range(WAYS + 1):
-        c, s = math.cos(2.0 * math.pi * m / WAYS), math.sin(2.0 * math.pi * m / WAYS)
-        if m == WAYS:
-            c = s = 0.0
-        best, first = -math.inf, 0
-        for n in range(count):
-            score = c * levels[n, PLACE] + s * levels[n, PLACE + 1] - FALL * levels[n, GAP]
-            if score > best:
-                best, first = score, n
-        if first >= kept:
-            for e in range(COLUMNS):
-                levels[kept, e], levels[first, e] = levels[first, e], levels[kept, e]
+        first, own = int(best[m, 1]), True
+        for e in range(m):
+            own = own and int(best[e, 1]) != first
+        if own:
+            best[kept, 1] = first
             kept += 1
+    for m in range(kept):  # the smallest first: none is moved before its turn
+        least = m
+        for e in range(m + 1, kept):
+            if best[e, 1] < best[least, 1]:
+                least = e
+        best[m, 1], best[least, 1] = best[least, 1], best[m, 1]
+        first = int(best[m, 1])
+        if first != m:
+            for e in range(COLUMNS):
+                levels[m, e] = levels[first, e]
     return kept
