@@ -159,7 +159,7 @@ def _seen_edges(solid, crowd, plate, margin):
 
 @compiled
 def _near_borders(plate, borders, box, margin, found):
-    """Write which borders come into a box, those at which the drawing ends last; how many, and all of them."""
+    """Write which borders come into a box, those where the drawing ends last; how many, and all of them."""
     count, ends = 0, 0
     for turn in range(2):
         for k in range(int(plate[FIRST]), int(plate[LAST])):

@@ -52,7 +52,8 @@ def wanted(surface, crowd, n, dt):
         if fall < -surface.threshold and gap + fall * dt < 0.0:
             strikes = True
             share = min(share, max(gap, 0.0) / (-fall * dt))
-            row[WANTED] = -surface.restitution * fall
+            given = contact.speed(crowd.states[n], row, NORMAL) - fall
+            row[WANTED] = max(given - surface.restitution * fall, 0.0)
         if math.isnan(row[RUB]):
             slides = math.hypot(contact.speed(saved, row, 0), contact.speed(saved, row, 1)) > STILL
             row[AHEAD] = surface.friction[int(slides)]
@@ -74,7 +75,8 @@ def wanted_of_pairs(surface, crowd, dt):
         if fall < -surface.threshold and gap + fall * dt < 0.0:
             strikes = True
             share = min(share, max(gap, 0.0) / (-fall * dt))
-            row[WANTED] = -surface.restitution * fall
+            given = contact.apart_by(crowd.states, crowd, k, NORMAL) - fall
+            row[WANTED] = max(given - surface.restitution * fall, 0.0)
         along = contact.apart_by(crowd.before, crowd, k, 0)
         aside = contact.apart_by(crowd.before, crowd, k, 1)
         row[AHEAD] = surface.friction[int(math.hypot(along, aside) > STILL)]
