@@ -134,6 +134,21 @@ def test_a_lying_pin_along_the_wall_is_not_in_the_way_of_those_across_it():
     assert made.parts.value == pytest.approx(made.offered.value * made.efficiency)
 
 
+def test_it_is_said_how_many_must_come_where_few_stay_on_the_track(monkeypatch):
+    part = shapes.part(shapes.cylinder(3.0, 20.0, 48))
+    study = rate(part, BOWL, "A", heading=0.0, rule="csa", known=Shares(find(part)))
+    share = float((study.rate.orientations.rules["csa"] * study.rate.orientations.stays).sum())
+    assert 0.0 < share < 1.0
+    assert not any("at the entry" in line for line in tables.remarks(study))
+    monkeypatch.setattr(tables, "SCARCE", share + 0.01)
+    (said,) = [line for line in tables.remarks(study) if "at the entry" in line]
+    come = 60.0 * study.rate.offered.value / share
+    assert said == (
+        f"{100.0 * share:.2g} % of the parts at the entry stay on the track: this rate needs {come:,.0f} "
+        "parts a minute there"
+    )
+
+
 def test_tune_gives_the_rate_that_rate_gives_at_each_setting():
     part, found = pin(1)
     study = tune(part, BOWL, "A", 400.0 / 60.0, rule="csa", arriving=lambda bowl: Shares(found))

@@ -4,10 +4,12 @@ import numpy as np
 
 from feederscrew import units
 from feederscrew.output import columns, tables
+from feederscrew.rates.shares_on_track import entering
 from feederscrew.rates.tipping import remark
 
 PER_MINUTE = units.factor("/min", "rate")
 MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
+SCARCE = 0.25  # share of the parts at the entry that stay on the track, below which it is said
 
 
 def document(study):
@@ -100,7 +102,14 @@ def remarks(study):
     found = study.rate
     if found.velocity.value <= 0.0:
         return ["the part does not travel up the track: see feeder convey"]
-    turned = [*stopping(found), *spaced(study), *_tipping(found), *_rolling(found), *_turned(study.devices)]
+    turned = [
+        *stopping(found),
+        *spaced(study),
+        *_tipping(found),
+        *_rolling(found),
+        *_scarce(study),
+        *_turned(study.devices),
+    ]
     if found.orientations.lying[found.row].turns_over:
         return turned
     if found.through == 0.0 and found.efficiency > 0.0:
@@ -173,6 +182,18 @@ def _rolling(found):
     )
     lost = "; rate is 0" if known[found.row].may_roll_back else ""
     return [f"{said}: {counts} as returned, but as carried in the highest rate{lost}; see feeder trial"]
+
+
+def _scarce(study):
+    """How many parts have to come to the entry where few of them stay on the track."""
+    share, offered = entering(study.rate.orientations, study.rule)[1], study.rate.offered.value
+    if not 0.0 < share < SCARCE or not offered > 0.0:
+        return []
+    come = offered / share / PER_MINUTE
+    return [
+        f"{100.0 * share:.2g} % of the parts at the entry stay on the track: this rate "
+        f"needs {come:,.0f} parts a minute there"
+    ]
 
 
 def _turned(devices):
