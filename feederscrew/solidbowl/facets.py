@@ -153,7 +153,7 @@ def sound(body, what):
     """
     if body.is_empty():
         fault = f"{what} is not a closed surface ({body.status()})"
-        raise FeederError("the bowl as a solid", fault, "take another --chord, or another width of track")
+        raise FeederError("the bowl as a solid", fault, "take another `chord`, or another width of track")
     return body
 
 
