@@ -1,12 +1,23 @@
-"""The surface of a body in single precision: closed, and no facet without an area."""
+"""The surface of a body in single precision: closed, no facet without an area, no two corners at one place.
+
+Each edge has two facets by the places of its ends alone, as readers of STL see it. Where two sheets of a
+surface touch, in a corner or along an edge, their corners are moved apart, each into its own sheet.
+"""
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from feederscrew import check
+from feederscrew.errors import FeederError
+from feederscrew.geometry.graphs import components
 from feederscrew.units import factor
 
 MM = factor("mm", "length")
 FINEST = 2e-6  # [m] corners nearer than this become one
+CRUMB = 1.0  # [mm3] a film of air that closes in itself, or a piece, smaller than this is left out
+NEAR = 2e-4  # [mm] corners nearer than this are at one place; readers of STL unite what lies within 1e-5
+AWAY = 1e-3  # [mm] by which corners that meet are moved apart
+ROUNDS = 60
 
 
 def mesh(body):
@@ -19,44 +30,152 @@ def mesh(body):
     Returns
     -------
     vertices : (V, 3) float [m]
-        Numbers that single precision holds in millimetres.
+        Numbers that single precision holds in millimetres, no two nearer than 2e-4 mm.
     faces : (F, 3) int
         Counter-clockwise seen from outside.
+
+    Raises
+    ------
+    FeederError
+        If sheets of the surface that touch cannot be told apart.
     """
     found = body.simplify(FINEST / MM).to_mesh64()
-    points = np.asarray(found.vert_properties)[:, :3].astype(np.float32).astype(float)
-    points, places = np.unique(points, axis=0, return_inverse=True)
-    faces = places.ravel()[np.asarray(found.tri_verts).astype(int)]
-    faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
-    faces = _in_order(_with_area(points, faces))
+    points = _single(np.asarray(found.vert_properties)[:, :3])
+    points, faces = closed(points, _without_crumbs(points, np.asarray(found.tri_verts).astype(int)))
+    used, faces = np.unique(faces, return_inverse=True)
+    points, places = np.unique(points[used], axis=0, return_inverse=True)
+    faces = _in_order(places.ravel()[faces.reshape(-1, 3)])
     return check.frozen(points * MM), check.frozen(faces)
 
 
+def closed(points, faces):
+    """Return points and faces of a surface that is closed by the places of its corners alone.
+
+    Parameters
+    ----------
+    points : (V, 3) float [mm]
+        In single precision; several may lie at one place.
+    faces : (F, 3) int
+        Each edge with one facet in either direction.
+
+    Returns
+    -------
+    points : (V, 3) float [mm]
+        No two of those in use at one place.
+    faces : (F, 3) int
+        None without an area.
+
+    Raises
+    ------
+    FeederError
+        If sixty rounds do not do it.
+    """
+    points = np.array(points, float)
+    for _ in range(ROUNDS):
+        faces, stuck = _with_area(points, _collapsed(points, faces))
+        met = np.union1d(_sharing_a_place(points, faces), stuck).astype(int)
+        if not len(met):
+            return points, faces
+        points = _apart(points, faces, met)
+    what = f"{len(met)} corners of its surface lie on others"
+    raise FeederError("the body", what, "move its cuts apart, or take other sizes")
+
+
+def _single(points):
+    return np.asarray(points).astype(np.float32).astype(float) + 0.0  # no -0
+
+
+def _without_crumbs(points, faces):
+    """The faces without shells of next to no volume, but for the largest."""
+    i, j = np.concatenate([faces[:, :2], faces[:, 1:]]).T
+    count, shells = components(i, j, len(points))
+    a, b, c = points[faces].transpose(1, 0, 2)
+    own = shells[faces[:, 0]]
+    volumes = np.abs(np.bincount(own, (a * np.cross(b, c)).sum(axis=1) / 6.0, count))
+    return faces[(volumes[own] > CRUMB) | (own == np.argmax(volumes))]
+
+
+def _sharing_a_place(points, faces):
+    """The corners in use that lie at the place of another."""
+    used = np.unique(faces)
+    return used[np.unique(cKDTree(points[used]).query_pairs(NEAR, output_type="ndarray"))]
+
+
+def _apart(points, faces, met):
+    """The points, those given moved towards the middle of their neighbours."""
+    moved = points.copy()
+    for one in met:
+        near = np.unique(faces[(faces == one).any(axis=1)])
+        ways = points[near] - points[one]
+        sizes = np.sqrt((ways**2).sum(axis=1, keepdims=True))
+        way = np.divide(ways, sizes, out=np.zeros_like(ways), where=sizes > 0.0).sum(axis=0)
+        size = np.sqrt((way**2).sum())
+        moved[one] = _single(points[one] + AWAY * way / max(size, 1e-3))
+    return moved
+
+
+def _collapsed(points, faces):
+    """The faces, each edge of next to no length taken away where that does not join two sheets."""
+    faces, before = np.array(faces), np.inf
+    while len(faces) < before:
+        before = len(faces)
+        ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+        short = ends[((points[ends[:, 0]] - points[ends[:, 1]]) ** 2).sum(axis=1) < NEAR**2]
+        for kept, gone in short[short[:, 0] < short[:, 1]]:
+            faces = _without_edge(faces, kept, gone)
+    return faces
+
+
+def _without_edge(faces, kept, gone):
+    """The faces with a corner in place of its neighbour; as they are where that would join two sheets."""
+    with_kept, with_gone = (faces == kept).any(axis=1), (faces == gone).any(axis=1)
+    both = with_kept & with_gone
+    common = np.setdiff1d(np.intersect1d(faces[with_kept], faces[with_gone]), (kept, gone))
+    if both.sum() != 2 or len(common) != 2:
+        return faces
+    return np.where(faces == gone, kept, faces)[~both]
+
+
 def _with_area(points, faces):
-    """The facets without those that rounding left no area: their long side is split in the neighbour."""
-    faces = [tuple(one) for one in faces.tolist()]
-    for _ in range(100):
-        a, b, c = points[np.array(faces)].transpose(1, 0, 2)
-        flat = np.flatnonzero(~np.cross(b - a, c - a).any(axis=1))
-        if not len(flat):
+    """The facets without those that rounding left no area, and the corners where that cannot be.
+
+    The long side of such a facet is turned in its neighbour.
+    """
+    stuck = set()
+    for _ in range(ROUNDS * ROUNDS):
+        flat = [row for row in _flat(points, faces) if row[2] not in stuck]
+        if not flat:
             break
-        faces = _split(points, faces, int(flat[0]))
-    return np.array(faces)
+        faces, turned = _turned(faces, *flat[0])
+        stuck |= set() if turned else {flat[0][2]}
+    return faces, np.array(sorted(stuck), int)
 
 
-def _split(points, faces, at):
-    """The facets without one whose corners lie on a line."""
-    one = faces[at]
-    sides = [np.sum((points[one[k]] - points[one[k - 1]]) ** 2) for k in range(3)]
-    k = int(np.argmax(sides))
-    a, b, c = one[k - 1], one[k], one[k - 2]  # c lies between a and b
-    kept = [face for place, face in enumerate(faces) if place != at]
-    for place, face in enumerate(kept):
-        for turn in range(3):
-            if (face[turn], face[turn - 2]) == (b, a):
-                d = face[turn - 1]
-                return [*kept[:place], (b, c, d), (c, a, d), *kept[place + 1 :]]
-    return kept
+def _flat(points, faces):
+    """The facets whose three places lie on a line, as (one end, other end, corner between)."""
+    a, b, c = points[faces].transpose(1, 0, 2)
+    found = []
+    for one in faces[~np.cross(b - a, c - a).any(axis=1)]:
+        sides = ((points[one] - points[np.roll(one, 1)]) ** 2).sum(axis=1)
+        k = int(np.argmax(sides))
+        if sides.min() > NEAR**2:
+            found.append((int(one[k - 1]), int(one[k]), int(one[k - 2])))
+    return found
+
+
+def _turned(faces, a, b, c):
+    """The faces without the flat one (a, b, c), and whether that could be."""
+    following = np.roll(faces, -1, axis=1)
+    own = (faces == a) & (following == b)
+    across = (faces == b) & (following == a)
+    row = int(np.flatnonzero(across.any(axis=1))[0])
+    d = int(faces[row][(int(np.argmax(across[row])) + 2) % 3])
+    kept = faces[~(own | across).any(axis=1)]
+    if d == c:
+        return kept, True
+    if ((kept == c).any(axis=1) & (kept == d).any(axis=1)).any():
+        return faces, False
+    return np.concatenate([kept, [(b, c, d), (c, a, d)]]), True
 
 
 def _in_order(faces):
