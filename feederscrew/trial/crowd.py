@@ -91,6 +91,7 @@ class PartsOnTrack:
         """Put part n onto the track."""
         self.arrays.states[n] = state
         self.arrays.made[n, -1] = self.arrays.lasted[n] = -1.0  # no list of it holds, no impulse is known
+        self.arrays.blown[n, jets.AGAIN] = -1.0  # nor what blows on it
         self.on[n] = True
 
     def take(self, n):
@@ -108,8 +109,7 @@ class PartsOnTrack:
 
     def blown_off(self, n):
         """Return whether part n is beyond the free edge, where the track does not hold it any more."""
-        x, y = self.arrays.states[n, 0], self.known.radius - self.arrays.states[n, 1]
-        out = self.known.radius - np.copysign(np.hypot(x, y), y)
+        out = travel.across(self.surface, self.arrays.states[n])
         return bool(out > self.stage.width / self.known.length + self.solid.radius)
 
     def watch(self, lying, before, ways, turn):

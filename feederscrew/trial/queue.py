@@ -18,7 +18,7 @@ from feederscrew.trial.shape import solid_of
 GAPS = 0.2  # of a part's length: mean free way between parts as they come in a row
 HOLD = 1.0  # [s] a part that stands at a device with nothing before it is taken out by hand after so long
 MOVED = 0.05  # of the unit of length: a part that has come no further stands
-PART_OF_TURN = 0.5  # of the bowl's circumference: more parts than fit there wait to enter
+PART_OF_TURN = 0.5  # of the bowl's circumference, less two lengths: more parts than fit there wait to enter
 CARRIED = 0.1  # of its weight that other parts carry, and ...
 LIFTED = 0.02  # ... as high over the track: a part has climbed on others
 POURED = 1.05  # of the part's radius: apart along the track, and over it, where parts are poured
@@ -110,7 +110,8 @@ class _Queue:
         self.poured, self.parts, self.chances = poured, parts, np.cumsum(shares)
         self.rng = np.random.default_rng((seed, parts))
         longest = max(one.length for one in every)
-        room = min(1.5 * longest * parts + 2.0 * longest, PART_OF_TURN * 2.0 * np.pi * bowl.track.radius)
+        turn = PART_OF_TURN * 2.0 * np.pi * bowl.track.radius - 2.0 * longest  # what rolls back has a place, too
+        room = min(1.5 * longest * parts + 2.0 * longest, max(turn, 2.0 * longest))
         self.track = crowd.crowded(bowl, every, bowl.devices, room)
         self.outlet, self.windows = self.track.outlet / known.length, self.track.windows / known.length
         self.apart = spacing.needed(bowl.devices, every, bowl) / known.length

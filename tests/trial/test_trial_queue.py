@@ -13,6 +13,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.resting.counts import profiles
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import crowd, looks, outlet, queue, runs, shape, whereabouts
+from feederscrew.trial.kernel import travel
 from feederscrew.trial.kernel.motion import BEHIND, BELOW
 
 OWN = [
@@ -97,6 +98,31 @@ def test_a_row_on_the_bare_track_delivers_what_its_velocity_brings():
     assert 0.0 < found.rate <= found.velocity / 0.02 * 1.001
     assert found.rate == pytest.approx(found.velocity / (0.02 + found.gap), rel=0.25)
     assert found.jams == found.returned == found.climbs == 0 and found.depth < 5e-5
+
+
+def test_a_row_that_reaches_round_the_bowl_stays_on_the_track():
+    # 12 blocks on a track of 80 mm in radius: the last enter beyond a quarter of the turn
+    tight = replace(BOWL, track=replace(BOWL.track, radius=0.08, width=0.04))
+    found = queued(tight, parts=12, seconds=0.5, seed=1)
+    assert found.on_track * 0.02 > 0.5 * np.pi * 0.08
+    assert found.returned == found.jams == 0
+
+
+def test_a_part_is_as_far_from_the_wall_all_round_the_bowl():
+    on = parts_on(STILL, 0.0)
+    tight = on.surface._replace(radius=10.0)
+    for angle in np.radians([0.0, 80.0, 100.0, 170.0, -100.0]):
+        state = np.zeros(body.STATE)
+        state[:2] = 9.0 * np.sin(angle), 10.0 - 9.0 * np.cos(angle)
+        assert travel.across(tight, state) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_what_blew_on_a_part_does_not_blow_on_the_next_in_its_place():
+    on = parts_on(STILL, -0.1)
+    on.arrays.blown[0] = [5.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]  # as far as that time
+    on.lay(0, np.array(on.arrays.states[0]))
+    on.ride(0)
+    assert abs(on.arrays.states[0, body.VX]) < 1e-3
 
 
 def test_a_row_pushes_what_a_blade_holds(tmp_path):

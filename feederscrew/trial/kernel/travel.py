@@ -21,9 +21,9 @@ def way(surface, state):
 
 @compiled
 def across(surface, state):
-    """Return how far from the wall the centre of mass is."""
+    """Return how far from the wall the centre of mass is, anywhere round the bowl."""
     x, y = state[X], surface.radius - state[Y]
-    return surface.radius - math.sqrt(x * x + y * y) if y > 0.0 else surface.radius + abs(y)
+    return surface.radius - math.sqrt(x * x + y * y)
 
 
 @apart
