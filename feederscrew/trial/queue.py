@@ -110,7 +110,7 @@ class _Queue:
         self.poured, self.parts, self.chances = poured, parts, np.cumsum(shares)
         self.rng = np.random.default_rng((seed, parts))
         longest = max(one.length for one in every)
-        turn = PART_OF_TURN * 2.0 * np.pi * bowl.track.radius - 2.0 * longest  # what rolls back has a place, too
+        turn = PART_OF_TURN * 2.0 * np.pi * bowl.track.radius - 2.0 * longest  # some rolls back
         room = min(1.5 * longest * parts + 2.0 * longest, max(turn, 2.0 * longest))
         self.track = crowd.crowded(bowl, every, bowl.devices, room)
         self.outlet, self.windows = self.track.outlet / known.length, self.track.windows / known.length

@@ -7,12 +7,13 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
+from feederscrew.dropping.kernel import body
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.devices.nozzles import Nozzles, thrust
 from feederscrew.tooling.orientations import orientations, speed, travelling
 from feederscrew.tooling.verdicts import verdict
-from feederscrew.trial import air, course, crowd, runs
+from feederscrew.trial import air, course, crowd, runs, stations, whereabouts
 from feederscrew.trial.kernel import jets
 from feederscrew.trial.queue import queue_of
 from feederscrew.trial.shape import solid_of
@@ -43,6 +44,19 @@ def test_a_steady_jet_and_a_steeper_way_do_in_the_trial_what_they_say():
     assert seen.fates.tolist() == [course.PASSED, course.RETURNED] and seen.ended[1] == 2
     steep = replace(BOWL, track=replace(BOWL.track, climb=np.radians(-6.0)))
     assert seen.velocities[0] == pytest.approx(speed(steep), rel=0.03)  # it comes first: from the entry on
+
+
+def test_what_a_jet_does_on_a_part_that_tumbles_is_paid_for():
+    jet = made("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)
+    solid, length, principal = solid_of(PART)
+    known = runs.setting(solid, length, replace(BOWL, drive=replace(BOWL.drive, amplitude=0.0)))
+    station = stations.station(jet, BOWL.track, EVERY)
+    state = whereabouts.laid(ALONG, principal, length, BOWL.track, place=station.begin, aside=3e-3)
+    state[body.Z] += 20e-3 / length
+    state[body.VX], state[body.W : body.W + 3] = 2.0, (20.0, 33.0, 27.0)
+    limits = (0.5, 1.0, 0.0, 10.0)
+    ride = runs.ride(known, station, state[None], np.zeros(1), limits=limits, every=0.1, places=9)
+    assert 0.0 < ride.gains[0] < 1e-6
 
 
 def test_a_sensor_of_heights_lets_what_is_as_high_pass():

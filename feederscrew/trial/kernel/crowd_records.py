@@ -61,6 +61,7 @@ class Crowd(NamedTuple):
     tangents: np.ndarray  # (N, 2) of the wall where each is
     leans: np.ndarray  # (N, 5) gravity and the bowl's axis where each is, in the track's frame
     given: np.ndarray  # (N, 6) changes of velocity and rates by gravity, drive and jets over a step
+    free: np.ndarray  # (N, 3) rates at the end of a step by free rotation alone
     blown: np.ndarray  # (N, 7) force and torque of jets, the latter about the body's axes; until when
     rows: np.ndarray  # (N, R, WIDTH) contacts with the track
     counts: np.ndarray  # (N,) int, of them

@@ -86,6 +86,7 @@ def pushed(surface, solid, floor, crowd, island, time, dt):
         give(surface, solid, floor, crowd, n, time, dt)
         for k in range(3):
             state[VX + k] += crowd.given[n, k]
+            crowd.free[n, k] = state[W + k]
             state[W + k] += crowd.given[n, 3 + k]
         depth, hits, at = wanted(surface, crowd, n, dt)
         deepest, strikes, share = min(deepest, depth), strikes or hits, min(share, at)
@@ -206,5 +207,5 @@ def unpaid(solid, crowd, island, taken):
         found += body.moving_energy(end, solid.inertia) - body.moving_energy(start, solid.inertia)
         for k in range(3):
             found -= given[k] * (end[k] - start[k]) / taken
-            found -= given[3 + k] * solid.inertia[k] * 0.5 * (start[W + k] + end[W + k])
+            found -= given[3 + k] * solid.inertia[k] * 0.5 * (crowd.free[n, k] + end[W + k])
     return found
