@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import logging
 from dataclasses import dataclass
 
 from feederscrew import units
@@ -45,6 +46,7 @@ def closed_polylines(path, layer, where):
     """
     import ezdxf
 
+    logging.getLogger(ezdxf.__name__).setLevel(logging.CRITICAL)  # our line says what is wrong
     try:
         found = _rings(ezdxf.readfile(path), layer)
     except FileNotFoundError:

@@ -105,7 +105,7 @@ def _checked(header, row, where, few):
         few.add(where, what, f"give one of {', '.join(FACES)}")
     if bad:
         return
-    size = math.sqrt(sum(float(row[name]) ** 2 for name in ATTITUDE))
+    size = math.hypot(*(float(row[name]) for name in ATTITUDE))
     if abs(size - 1.0) > UNIT:
         few.add(where, f"the quaternion has the length {size:.3g}", "give one of length 1, as w x y z")
     for names, most, what in (

@@ -1,5 +1,7 @@
 """Drawings of holes: read back as written, and damaged ones told of in a line."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -34,6 +36,16 @@ def test_a_group_value_of_minus_infinity_is_a_line(drawing):
 def test_a_damaged_header_is_a_line(drawing, cut):
     """It was a StopIteration in the reader."""
     _refused(drawing, drawing.read_bytes()[:cut])
+
+
+def test_what_the_reader_says_of_odd_drawings_stays_out_of_sight(tmp_path, caplog):
+    """Its own lines stood on stderr beside the answer: 'Found non-unique entity handle'."""
+    few = (Path(__file__).parents[1] / "fuzz/few.dxf").read_text()
+    start, end = few.index("0\nLWPOLYLINE"), few.rindex("0\nENDSEC")
+    twice = few[:end] + few[start:end] + few[end:]
+    (tmp_path / "twice.dxf").write_text(twice)
+    assert len(dxf.closed_polylines(tmp_path / "twice.dxf", "CUT", "bowl.yaml:3")) == 2
+    assert caplog.records == []
 
 
 def test_every_damage_is_a_line(drawing, rng):

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from fuzz import mutate, together
+from fuzz import mutate, readers, together
 
 ROOT = Path(__file__).parent.parent.parent
 PATIENCE = 10.0  # [s] of computing for one input
@@ -75,7 +75,12 @@ BESIDE = {  # files that lie beside the damaged one, whole
 }
 PARTLY = ("batch",)  # commands that keep what went well beside what failed
 TOGETHER = "together"  # the kind of case in which a part, a bowl and the options are damaged at once
-KINDS = (*PLAN, TOGETHER)
+KINDS = (*PLAN, *readers.READERS, TOGETHER)
+ROUND = 50  # inputs of one kind at a time
+QUICK = {  # of readers, so that each takes some seconds
+    "read stl": 1500, "read open stl": 1500, "read bowl": 300, "read card": 300, "read names": 300,
+    "read counts": 4000, "read list": 2000, "read launches": 4000, "read dxf": 1000,
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -90,7 +95,11 @@ class Case:
         rng = np.random.default_rng(self.seed)
         if self.kind == TOGETHER:
             return together.job(ROOT, rng)
-        seeds, name, calls = PLAN[self.kind]
+        if self.kind in readers.READERS:
+            seeds, name, _ = readers.READERS[self.kind]
+            calls = (("read", "FILE"),)
+        else:
+            seeds, name, calls = PLAN[self.kind]
         first, second = ((ROOT / seeds[int(rng.integers(len(seeds)))]).read_bytes() for _ in range(2))
         call = calls[int(rng.integers(len(calls)))]
         whole = {beside: (ROOT / path).read_bytes() for beside, path in BESIDE.get(self.kind, {}).items()}
@@ -129,7 +138,7 @@ def run(cases):
 def _warm():
     """Import before the first process is forked what every one needs."""
     _few()
-    for kind in PLAN:
+    for kind in (*PLAN, *readers.READERS):
         fault(Case(kind, 0))
 
 
@@ -173,10 +182,16 @@ def fault(case):
         for name, data in files.items():
             Path(name).write_bytes(data)
         try:
-            told = _gathered(name) if arguments[0] == "gather" else _called(arguments)
+            told = _told(case.kind, arguments)
         finally:
             os.chdir(here)
     return told
+
+
+def _told(kind, arguments):
+    if arguments[0] == "read":
+        return readers.fault(kind, arguments[1])
+    return _gathered(arguments[1]) if arguments[0] == "gather" else _called(arguments)
 
 
 def _most_memory():

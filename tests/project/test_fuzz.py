@@ -2,7 +2,7 @@
 
 import pytest
 from fuzz import __main__ as runs
-from fuzz import harness, mutate
+from fuzz import harness, mutate, readers
 
 COUNTS = {
     "stl": 25,
@@ -30,6 +30,16 @@ def test_a_corner_beyond_any_bowl_is_one_line():
 def test_a_bowl_file_with_a_name_that_no_disk_can_hold_is_one_line():
     """Found in the config column of a list: asking whether it is a folder or a stream was refused."""
     assert harness.run([harness.Case("list", 1795355655052)]) == []
+
+
+def test_an_attitude_beyond_all_numbers_is_one_line():
+    """Found in a file of launches: the square of 1e308 overflowed."""
+    assert harness.run([harness.Case("read launches", 1163)]) == []
+
+
+@pytest.mark.parametrize("kind", list(readers.READERS))
+def test_readers_take_damaged_files(kind):
+    assert harness.run(harness.Case(kind, seed) for seed in range(100)) == []
 
 
 def test_a_case_is_made_again_from_its_seed():

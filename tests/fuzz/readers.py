@@ -1,0 +1,89 @@
+"""Readers of files given damaged ones in this process, without a command: hundreds to thousands a second.
+
+A command tries far fewer in the same time; what a reader lets through, the kinds of ``harness.PLAN`` try on.
+"""
+
+import traceback
+import warnings
+from pathlib import Path
+
+ROOT = Path(__file__).parent.parent.parent
+TOSSES = "tests/fuzz/tosses.csv"
+COUNTED = ("docs/measured/cuboid_047.csv", "docs/measured/arc_chute.csv", "docs/measured/example/feeding.csv")
+
+
+def _load(name):
+    from feederscrew.part import load
+
+    load(name)
+
+
+def _load_open(name):
+    from feederscrew.part import load
+
+    load(name, allow_open=True)
+
+
+def _bowl(name):
+    from feederscrew import bowl
+
+    bowl.read(name)
+
+
+def _hole(name):
+    from feederscrew import dxf
+
+    dxf.closed_polylines(Path(name), "CUT", "bowl.yaml:3")
+
+
+def _counts(name):
+    from feederscrew.resting.counts import profiles
+
+    profiles.read(name, ("A", "B", "C", "D", "E"))
+
+
+def _names(name):
+    from feederscrew.part import aspect_names
+
+    aspect_names.read(name)
+
+
+def _gather(name):
+    from feederscrew.batch import gather
+
+    gather([name])
+
+
+def _launches(name):
+    from feederscrew.dropping import launch_file
+
+    launch_file.read(name)
+
+
+READERS = {  # seeds, how the damaged file is called, and what reads it
+    "read stl": (("tests/fuzz/cube.stl", "parts/key_a_d12x20.stl", "tests/fuzz/text.stl"), "part.stl", _load),
+    "read open stl": (("tests/fuzz/cube.stl", "tests/fuzz/text.stl"), "part.stl", _load_open),
+    "read bowl": (("docs/measured/example/bowl.yaml", "configs/thesis.yaml"), "bowl.yaml", _bowl),
+    "read card": (("parts/magnet.yaml", "parts/arc_chute.yaml"), "card.yaml", _load),
+    "read names": (("tests/fuzz/names.yaml",), "names.yaml", _names),
+    "read counts": (COUNTED, "counts.csv", _counts),
+    "read list": (("tests/fuzz/list.csv",), "list.csv", _gather),
+    "read launches": ((TOSSES,), "tosses.csv", _launches),
+    "read dxf": (("tests/fuzz/hole.dxf", "tests/fuzz/few.dxf"), "hole.dxf", _hole),
+}
+
+
+def fault(kind, name):
+    """What is wrong with how a reader takes a file of the working folder; '' if nothing is."""
+    from feederscrew.errors import FeederError
+
+    with warnings.catch_warnings(record=True) as noise:
+        warnings.simplefilter("always")
+        try:
+            READERS[kind][2](name)
+        except FeederError as told:
+            if not all(": " in line and " - " in line for line in told.lines):
+                return f"no place or no mend: {told}"
+        except Exception:  # noqa: BLE001 - any other is what is looked for
+            return traceback.format_exc()
+    return f"Python warns: {noise[0].message} ({noise[0].filename}:{noise[0].lineno})" if noise else ""
