@@ -23,7 +23,7 @@ from feederscrew_cli.quantity import Quantity
 def tune(part, target, aspect, heading, rule, gap, fill, taken, worst, bowl, out):
     """Example: feeder tune parts/lbracket_30x20x15.stl --aspect A --target 20/min
 
-    Every setting of amplitude, vibration angle or frequency alone that gives the target to 2 %, one-way
+    Every setting of amplitude, vibration angle or frequency alone that gives the target to 3 %, one-way
     and gentle motions first, each with its regime, hardest impact, the margins to slip forward, slip
     back and hop (below 0: beyond it), and the rate if friction is a fifth lower or higher.
     Another drive lets other shares of the aspects arrive: each setting is found with its own, so that

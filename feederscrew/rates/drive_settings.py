@@ -18,7 +18,10 @@ HALVINGS = 45
 FASTEST = 20  # settings that are asked what they bring at most
 REACHED = 1e-6  # of the rate
 CLOSE = 0.01  # of the rate: no further step is made
+DECIDED = 0.03  # of the rate: as near as the parts that decide are asked for, which are known to 5 %
 WITHIN = 0.04  # of the rate: a setting gives it; what arrives is sampled, so that it jumps by a few per cent
+LED = 0.1  # of the rate: a setting that fewer parts lead no nearer to it is sought only if no other gives it
+LEADS = 2  # steps that fewer parts lead
 ROUNDS, REMEMBERED = 8, 3  # steps towards a setting, and those whose parts lead on
 ALIKE = 0.01  # of a value: two settings are one
 DIGITS = 6  # of a value as it is printed
@@ -85,19 +88,51 @@ def solutions(bowl, target, density, *, rough=None, worst=False, progress=None):
     if not any(np.isfinite(look.speeds).any() for look in looks):
         raise FeederError("track.climb", "is steeper than friction holds", "lower the climb")
     starts = [(look, value) for look in looks for value in look.starts(target / density(None))]
-    found = []
-    for count, (look, value) in enumerate(starts):
-        if rough is not None:
-            value = _settled(look, value, target, rough).value
-        found.append(_settled(look, value, target, density, CLOSE if rough is None else 0.5 * WITHIN))
+    likely, others = _led(starts, target, rough)
+    found, near = [], []
+    for count, (look, value) in enumerate(likely + others):
+        if near and count >= len(likely):
+            break
+        found.append(_settled(look, value, target, density, CLOSE if rough is None else DECIDED))
+        near = [one for one in _apart(found, target) if abs(one.rate - target) <= WITHIN * target]
         if progress:
-            progress(count + 1, len(starts))
-    several = _apart(found, target)
-    near = [one for one in several if abs(one.rate - target) <= WITHIN * target]
-    beyond = [one for one in several if one.rate > target]
+            progress(count + 1, len(likely + others))
+    beyond = [one for one in _apart(found, target) if one.rate > target]
     if not near and not beyond:
         raise _unreachable(looks, target, density)
     return sorted(near or beyond, key=lambda one: one.order)
+
+
+def _led(starts, target, rough):
+    """Where fewer parts lead from each start, none beside another: those LED to the rate, and the others."""
+    if rough is None:
+        return starts, []
+    likely, others = [], []
+    for look, value in starts:
+        value, rate = _lead(look, value, target, rough)
+        if all(key != look.key or abs(value - near) > ALIKE * near for key, near in _places(likely + others)):
+            near = abs(rate - target) <= LED * target
+            (likely if near else others).append((look, value))
+    return likely, others
+
+
+def _places(starts):
+    return [(look.key, value) for look, value in starts]
+
+
+def _lead(look, value, target, rough):
+    """The value that few parts lead to from a start, and the rate they give there.
+
+    They are too few for more than their mean at some drives near to each other.
+    """
+    known = []
+    for _ in range(LEADS):
+        known.append(rough(turned(look.bowl, look.key, look.readable(value))))
+        there = look.crossings(target / np.mean(known)) if known[-1] > 0.0 else np.zeros(0)
+        if not there.size:
+            break
+        value = float(there[np.argmin(np.abs(there - value))])
+    return value, look.speed(value) * float(np.mean(known))
 
 
 def _settled(look, value, target, density, close=CLOSE):
@@ -188,8 +223,11 @@ class _Look:
     def solution(self, value, density):
         """What the bowl does at a value, a Solution."""
         driven = turned(self.bowl, self.key, value)
-        speed = float(_speeds(self.bowl, self.key, np.array([value]), self.worst)[0])
-        return Solution(self.key, value, answer.answer(driven), speed, density(driven))
+        return Solution(self.key, value, answer.answer(driven), self.speed(value), density(driven))
+
+    def speed(self, value):
+        """The velocity [m/s] at a value."""
+        return float(_speeds(self.bowl, self.key, np.array([value]), self.worst)[0])
 
 
 def _look(bowl, key, worst):

@@ -75,16 +75,22 @@ def arrival(part, aspects, bowl, *, drops=None, seed=1, jobs=1, progress=None):
         if found is not None and not _wanted(found, count, seconds):
             continue
         own = {"drops": count, "seconds": seconds, "seed": seed, "jobs": jobs, "progress": progress}
+        if found is not None and seconds == SPELLS[0]:
+            pace = replace(pace, done=found.shaken.rides)
         try:
             shaken = bowl_test.test(part, aspects, [bowl], LAUNCH, {}, pace=pace, **own)[0]
         except KeyboardInterrupt:
             if found is None:
                 raise
-            return replace(found, shaken=replace(found.shaken, partial=True))
+            return _without_rides(replace(found, shaken=replace(found.shaken, partial=True)))
         found = judged(shaken)
         if shaken.partial:
             break
-    return found
+    return _without_rides(found)
+
+
+def _without_rides(found):
+    return replace(found, shaken=replace(found.shaken, rides=None))
 
 
 def steps_needed(hull, bowl):
@@ -115,7 +121,11 @@ def _runs(bowl, drops):
     if drops is not None:
         return [(drops, seconds, pace) for seconds in SPELLS]
     adaptive = replace(pace, width=WIDTH)
-    return [(FIRST, SPELLS[0], pace), (MOST, SPELLS[0], adaptive), (LONGEST, SPELLS[1], adaptive)]
+    return [
+        (FIRST, SPELLS[0], replace(pace, keep=True)),
+        (MOST, SPELLS[0], adaptive),
+        (LONGEST, SPELLS[1], adaptive),
+    ]
 
 
 def _wanted(found, count, seconds):

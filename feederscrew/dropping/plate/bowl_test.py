@@ -11,7 +11,7 @@ from feederscrew.dropping.ensemble import Aim
 from feederscrew.dropping.launches import sample
 from feederscrew.dropping.plate import drive
 from feederscrew.dropping.plate.occupancy import Occupancy, lasting, occupancy
-from feederscrew.dropping.plate.rides import joined, ride
+from feederscrew.dropping.plate.rides import Rides, joined, ride
 from feederscrew.dropping.rigid_body import shape_of_part
 from feederscrew.errors import ArgumentError
 from feederscrew.records import Shown
@@ -31,6 +31,8 @@ class Pace:
     settling: float = 30.0  # [sqrt(L / g)] before the count begins: the launch has died away
     kick: float = np.inf  # [1] times the floor's own energy: a part that this does not tip stays
     width: float | None = None  # [1] of the widest 95 % interval to either side: then enough parts are known
+    keep: bool = False  # the rides themselves, for a run of more parts
+    done: Rides | None = None  # those of the first parts, where they were kept
 
 
 EXACT = Pace()
@@ -48,6 +50,7 @@ class Shaken(Shown):
     occupancy: Occupancy
     lost: int  # parts left out: their motion took far more steps than it should
     partial: bool  # stopped by the user before all parts were done
+    rides: Rides | None = None  # of each part, where they are kept
 
     @property
     def transitions(self):
@@ -157,7 +160,7 @@ def _plate(found, aspects, shape, length, seconds, pace, bowl, launch, count, se
     steps, kick = drive.steps_of(floor, pace.coarse), drive.kick_of(floor, pace.kick)
     _must_end(looks[-1] / min(steps.contact, floor.step))
     follow = partial(ride, shape, floor, looks=looks, steps=steps, kick=kick, jobs=jobs)
-    rides = _enough(follow, starts, pace.width, found.rows, len(aspects.names), progress)
+    rides = _enough(follow, starts, pace, found.rows, len(aspects.names), progress)
     rng = np.random.default_rng((seed, len(rides.faces)))
     seen = occupancy(rides.faces, length * rides.places[:, :, 0], found.rows, len(aspects.names), period, rng)
     return Shaken(
@@ -169,6 +172,7 @@ def _plate(found, aspects, shape, length, seconds, pace, bowl, launch, count, se
         occupancy=seen,
         lost=rides.lost,
         partial=rides.partial,
+        rides=rides if pace.keep else None,
     )
 
 
@@ -179,11 +183,13 @@ def _must_end(steps):
         raise ArgumentError("seconds", what, "follow it for less, or check the part's unit")
 
 
-def _enough(follow, starts, width, rows, classes, progress):
+def _enough(follow, starts, pace, rows, classes, progress):
     """Rides of all parts or, with a width, of as many as make no share's interval wider."""
-    count, done = len(starts.energies), []
-    size = count if width is None else ROUND
-    for first in range(0, count, size):
+    count, done = len(starts.energies), [] if pace.done is None else [pace.done]
+    size = count if pace.width is None else ROUND
+    first = sum(len(rides.faces) + rides.lost for rides in done)
+    aim = pace.width and Aim(pace.width, rows, classes)
+    while first < count and not (aim and done and aim.widest(_last(done)) <= pace.width):
         tell = progress and (lambda parts, before=first: progress(before + parts))
         try:
             done.append(follow(starts.some(slice(first, first + size)), progress=tell))
@@ -191,8 +197,9 @@ def _enough(follow, starts, width, rows, classes, progress):
             if not done:
                 raise
             return replace(joined(done), partial=True)
-        if done[-1].partial or (width and Aim(width, rows, classes).widest(_last(done)) <= width):
+        if done[-1].partial:
             break
+        first += size
     return joined(done)
 
 
