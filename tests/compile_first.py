@@ -28,8 +28,8 @@ COMMANDS = {
     "hull": "aspects {ball} --rule closed",
 }
 SHARED_OUT = (  # as long as each other
-    ("part", "drop", "plate", "hull"),
-    ("crowd", "verdicts", "holes", "sweep"),
+    ("part", "drop", "plate", "hull", "sweep"),
+    ("crowd", "verdicts", "holes"),
 )
 
 

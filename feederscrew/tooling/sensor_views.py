@@ -9,7 +9,6 @@ from feederscrew.geometry.polygons import turned
 
 FINE = 1e-4  # [m] between places of a border at which two are compared
 PLAIN = 1e-4  # of the part's size: corners that stand out by less are left out
-GRID = 1e-8  # [m] of corners
 SLIT = 2e-5  # [m] half the width of slits between facets that are closed
 
 
@@ -82,6 +81,6 @@ def area(points, faces, sees, resolution=0.0):
     corners = (np.round(seen / resolution) * resolution if resolution > 0.0 else seen)[faces]
     a, b, c = corners.transpose(1, 0, 2)
     twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-    whole = shapely.union_all(shapely.polygons(corners[np.abs(twice) > 1e-14]), grid_size=GRID)
+    whole = shapely.union_all(shapely.polygons(corners[twice > 1e-14]))  # one side of it covers all
     whole = whole.buffer(SLIT, join_style="mitre").buffer(-SLIT, join_style="mitre")
     return whole.simplify(PLAIN * np.ptp(points, axis=0).max())

@@ -36,7 +36,7 @@ def test_a_batch_writes_a_summary_and_a_folder_a_part(run, tmp_path):
 
 def test_a_bad_part_is_one_line_and_status_1_and_resume_says_what_it_kept(run, tmp_path):
     (tmp_path / "bad.stl").write_bytes(b"")
-    call = ("batch", NUT, "bad.stl", "-o", "out", "--jobs", "1", "--no-pictures")
+    call = ("batch", NUT, "bad.stl", "-o", "out", "--jobs", "1", "--no-pictures", "--rule", "closed")
     done = run(*call)
     assert done.exit_code == 1
     assert done.stderr == (
@@ -58,7 +58,20 @@ def test_drops_add_a_drop_test_with_a_seed_from_the_part(run, tmp_path):
 
 
 def test_a_depfile_names_every_part(run, tmp_path):
-    run("batch", NUT, "-o", "out", "--jobs", "1", "--no-pictures", "-q", "--depfile", "all.d")
+    run(
+        "batch",
+        NUT,
+        "-o",
+        "out",
+        "--jobs",
+        "1",
+        "--no-pictures",
+        "--rule",
+        "closed",
+        "-q",
+        "--depfile",
+        "all.d",
+    )
     assert (tmp_path / "all.d").read_text() == f"out/summary.csv out/index.html: {NUT}\n{NUT}:\n"
 
 

@@ -16,6 +16,7 @@ from feederscrew_cli.main import feeder
 
 ROOT = Path(__file__).parents[3]
 NUT = ROOT / "parts" / "squarenut_m5.stl"
+QUICK = ("--no-pictures", "--jobs", 1, "--rule", "closed")  # nothing is simulated
 FULL = Path("/dev/full")
 ODD = ("$dollar^_{x}$.stl", "=1+1.stl", "n" * 240 + ".stl", os.fsdecode(b"bad\xff\xfe.stl"))
 EXTRA = {
@@ -79,7 +80,7 @@ def test_a_full_disk_in_a_batch_is_one_line_and_keeps_what_is_finished(run, monk
     seen, write, told = [], Path.write_bytes, store._told
     monkeypatch.setattr(store, "_told", lambda outcome: seen.append(outcome.name) or told(outcome))
     monkeypatch.setattr(Path, "write_bytes", full)
-    done = run("batch", "a.stl", "b.stl", "-o", "out", "--no-pictures", "--jobs", 1)
+    done = run("batch", "a.stl", "b.stl", "-o", "out", *QUICK)
     monkeypatch.setattr(Path, "write_bytes", write)
     assert done.exit_code == 1
     assert done.stderr.splitlines()[-1] == (
@@ -88,9 +89,7 @@ def test_a_full_disk_in_a_batch_is_one_line_and_keeps_what_is_finished(run, monk
     )
     assert (tmp_path / "out/parts/a/run.json").exists()
     assert not list((tmp_path / "out").glob(f"{store.STALE}*"))
-    assert (
-        run("batch", "a.stl", "b.stl", "-o", "out", "--no-pictures", "--jobs", 1, "--resume").exit_code == 0
-    )
+    assert run("batch", "a.stl", "b.stl", "-o", "out", *QUICK, "--resume").exit_code == 0
 
 
 def test_a_batch_of_odd_names_ends_with_its_summary(run, tmp_path):
@@ -99,7 +98,7 @@ def test_a_batch_of_odd_names_ends_with_its_summary(run, tmp_path):
             shutil.copy(NUT, tmp_path / name)
         except OSError:
             pytest.skip("this file system takes no such name")
-    done = run("batch", ".", "-o", "out", "--jobs", 1, "--no-pictures")
+    done = run("batch", ".", "-o", "out", *QUICK)
     assert (done.exit_code, "Error" in done.stderr) == (0, False)
     rows = (tmp_path / "out/summary.csv").read_text().splitlines()
     assert len(rows) == 1 + len(ODD)
@@ -120,18 +119,18 @@ def test_links_that_go_round_are_counted_once_and_dangling_ones_are_told(run, tm
     shutil.copy(NUT, tmp_path / "in/a.stl")
     (tmp_path / "in/round").symlink_to(tmp_path / "in", target_is_directory=True)
     (tmp_path / "in/lost.stl").symlink_to(tmp_path / "nothing.stl")
-    done = run("batch", "in/**/*.stl", "-o", "out", "--no-pictures", "--jobs", 1)
+    done = run("batch", "in/**/*.stl", "-o", "out", *QUICK)
     assert done.exit_code == 1
     line = "Error: in/lost.stl: is a link to a file that is not there - mend or remove the link"
     assert line in done.stderr.splitlines()
     assert len((tmp_path / "out/summary.csv").read_text().splitlines()) == 3
-    assert line in run("batch", "in", "-o", "out", "--no-pictures", "--jobs", 1).stderr.splitlines()
+    assert line in run("batch", "in", "-o", "out", *QUICK).stderr.splitlines()
 
 
 def test_faults_of_a_list_name_part_and_line(run, tmp_path):
     shutil.copy(NUT, tmp_path / "a.stl")
     (tmp_path / "list.csv").write_text("part,density\na.stl,steel\na.stl,heavy\n")
-    done = run("batch", "list.csv", "-o", "out", "--no-pictures", "--jobs", 1)
+    done = run("batch", "list.csv", "-o", "out", *QUICK)
     assert done.exit_code == 1
     assert done.stderr.splitlines()[0].startswith("Error: list.csv:3: a.stl: density: no material is called")
 

@@ -52,7 +52,7 @@ def test_a_device_that_rejects_what_is_wanted(run, tmp_path):
 
 def test_one_part_is_one(run, tmp_path):
     shutil.copy(NUT, tmp_path / "a.stl")
-    done = run("batch", "a.stl", "-o", "out", "--no-pictures", "--jobs", 1)
+    done = run("batch", "a.stl", "-o", "out", "--no-pictures", "--jobs", 1, "--rule", "closed")
     assert "Wrote out (1 part; open index.html)\n" in done.stderr
 
 

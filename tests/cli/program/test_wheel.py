@@ -13,6 +13,7 @@ import pytest
 
 from feederscrew_cli.main import COMMANDS
 
+pytestmark = pytest.mark.long  # all of them, so that one process has them and makes the wheel once
 ROOT = Path(__file__).parents[3]
 SOURCES = ("pyproject.toml", "README.md", "LICENSE", "feederscrew", "cli")
 CACHES = shutil.ignore_patterns("__pycache__", "*.nbi", "*.nbc")
@@ -100,7 +101,6 @@ def test_no_file_of_the_packages_is_left_behind(place):
         assert {p for p in ours if p.suffix not in (".pyc", ".nbi", ".nbc")} <= there
 
 
-@pytest.mark.long
 def test_every_command_runs_there(place):
     shutil.copy(ROOT / "parts" / PART, place)
     (place / "counts.csv").write_text(COUNTS)
