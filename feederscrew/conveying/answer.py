@@ -53,7 +53,7 @@ def settings(bowl):
 
     Returns
     -------
-    (..., 11) float
+    (..., 11) float [1 and rad, as OperatingPoint]
         An ``OperatingPoint`` along the last axis; the acceleration ratio of a bowl at rest is ``STILL``.
     """
     here = wedge.level(bowl)

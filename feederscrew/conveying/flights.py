@@ -10,7 +10,7 @@ def throw_of_flight(periods):
 
     Parameters
     ----------
-    periods : float
+    periods : float [1 period]
         Length of the flight, above 0; of one that starts from contact.
 
     Returns

@@ -40,7 +40,7 @@ def harmonic(wave):
 
 
 def peak(a):
-    """Return its greatest value."""
+    """Return the greatest value of a harmonic, in its own unit: here accelerations [A w2]."""
     if a.second == 0.0:
         return a.level + a.swing
     once, twice = a.phase, a.second_phase
@@ -50,7 +50,7 @@ def peak(a):
 
 
 def value(a, angle):
-    """Return the harmonic at an angle."""
+    """Return the harmonic at an angle [rad], in its own unit."""
     once = a.level + a.swing * math.sin(angle + a.phase)
     return once if a.second == 0.0 else once + a.second * math.sin(2.0 * angle + a.second_phase)
 
@@ -91,7 +91,7 @@ def onward(a, start):
 
 
 def reached(arc, span):
-    """Return the harmonic after a span."""
+    """Return the harmonic after a span [rad], in its own unit."""
     s, c = math.sin(0.5 * span), math.cos(0.5 * span)
     once = arc.level + arc.sine + 2.0 * s * (arc.cosine * c - arc.sine * s)
     if arc.second == 0.0:
@@ -101,7 +101,7 @@ def reached(arc, span):
 
 
 def gain(arc, span):
-    """Integrate over a span: the velocity gained; as a product, so that short spans keep their digits."""
+    """Integrate over a span [rad]: the velocity gained [A w]. As a product, short spans keep their digits."""
     s, c = math.sin(0.5 * span), math.cos(0.5 * span)
     once = arc.level * span + 2.0 * s * (arc.sine * c + arc.cosine * s)
     if arc.second == 0.0:
@@ -111,7 +111,7 @@ def gain(arc, span):
 
 
 def travel(arc, span):
-    """Integrate twice over a span: the way made from rest."""
+    """Integrate twice over a span [rad]: the way made from rest [A]."""
     curved = arc.cosine * _beyond_sine(span) - arc.sine * _beyond_cosine(span)
     once = 0.5 * (arc.level + arc.sine) * span * span + curved
     if arc.second == 0.0:

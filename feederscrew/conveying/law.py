@@ -62,7 +62,7 @@ def pull_wave(setting, direction, friction):
     Parameters
     ----------
     setting : OperatingPoint
-    direction : float
+    direction : float [1]
         Of the slip and of the acceleration: +1 up the track, -1 down.
     friction : float [1]
 

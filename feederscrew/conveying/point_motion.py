@@ -38,7 +38,7 @@ def turn(rules, state, tally):
     ----------
     rules : Law
     state : State
-    tally : (11,) float
+    tally : (11,) float [as follows]
         Way made [A], time in each phase [rad], longest flight [rad], hardest impact [A w], number of flights,
         of times at rest on the plate, of slips and landings up the track and of those down; the one array
         that is added to in place, because the loops over it are compiled.

@@ -50,7 +50,7 @@ def follow(rules, state, known, patience):
     ----------
     rules : Law
     state : State
-    known : (N, 3) float
+    known : (N, 3) float [A, A w, A w]
         Of ``noted``: states of steady motions at the start of a period.
     patience : int
         Periods followed before the motion is hastened, or counts as not periodic.
@@ -83,7 +83,7 @@ def follow(rules, state, known, patience):
 
 
 def noted(state):
-    """Return what tells a state at the start of a period: height, velocity along the normal, speed."""
+    """Return a state at the start of a period: height [A], velocity along the normal [A w], speed [A w]."""
     return (state.height if state.phase == FLIGHT else RESTING), state.rising, state.speed
 
 

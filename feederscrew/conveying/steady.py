@@ -47,7 +47,7 @@ def steady(rules, state, out):
     ----------
     rules : Law
     state : State
-    out : (17,) float
+    out : (17,) float [each as named]
         Filled with status, period, velocity and its spread [A w], fraction of the time in each phase,
         longest flight [periods], hardest impact [A w], flights a period, velocity in the slowest and in the
         fastest period of the drive [A w].
@@ -154,7 +154,7 @@ def survey(setting, out):
     Parameters
     ----------
     setting : OperatingPoint
-    out : (17,) float
+    out : (17,) float [as of ``steady``]
         As ``steady`` fills it from rest, its spread widened to all starts; NaN without a steady state.
         Then the throw number, the regime, and whether a part that slides fast enough runs away: 1 or 0.
     """
@@ -177,7 +177,7 @@ def _nothing(out):
 
 
 def regime(rules):
-    """Return what a part held by static friction does within a cycle, a place in ``limits.REGIMES``."""
+    """Return what a part held by static friction does within a cycle, a place [1] in ``limits.REGIMES``."""
     if throw_number(rules) >= 1.0 - limits.ROUNDING:
         return limits.HOP
     forward = limits.FORWARD if peak(rules.onset) > 0.0 else limits.RIDE

@@ -48,14 +48,14 @@ def sweep(settings, workers=None):
 
     Parameters
     ----------
-    settings : (N, 11) float
+    settings : (N, 11) float [1 and rad, as OperatingPoint]
         One ``OperatingPoint`` a row.
     workers : int, optional
         Threads; by default one a core.
 
     Returns
     -------
-    (N, 17) float
+    (N, 17) float [as of ``steady.survey``]
         Rows as ``steady.survey`` fills them.
 
     Raises

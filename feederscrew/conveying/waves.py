@@ -29,7 +29,7 @@ class Wave(NamedTuple):
 
 
 def height(wave, angle):
-    """Return the wave at an angle."""
+    """Return the wave at an angle [rad], in its own unit."""
     s, c = math.sin(angle), math.cos(angle)
     once = wave.sine * s + wave.cosine * c
     return wave.level + once + 2.0 * wave.sine_2 * s * c + wave.cosine_2 * (c - s) * (c + s)

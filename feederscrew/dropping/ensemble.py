@@ -142,12 +142,12 @@ def tally(drops, rows, count):
 
 
 def counted(faces, rows, count):
-    """Count (A,) drops by class, from the (N,) faces they rest on."""
+    """Count drops by class, (A,) [1], from the faces (N,) they rest on."""
     return np.bincount(rows[faces[faces != kernel.UNSETTLED]], minlength=count)
 
 
 def shares(counts):
-    """Return the (A,) shares of (A,) counts; NaN where all are zero."""
+    """Return the shares (A,) [1] of counts (A,); NaN where all are zero."""
     total = counts.sum()
     return counts / total if total else np.full(len(counts), np.nan)
 
@@ -188,7 +188,7 @@ def wilson(counts, total):
 
 
 def half_width(low, high):
-    """Return half the longest of some intervals."""
+    """Return half the longest of the intervals from ``low`` (A,) to ``high`` (A,) [1]."""
     return float(0.5 * (high - low).max())
 
 

@@ -123,7 +123,7 @@ def _turns(kind, shape, u):
 
 
 def lowest_points(shape, attitudes):
-    """Return the height of the lowest point over the centre (N,), for (N, 4) attitudes of the body."""
+    """Return heights (N,) [L] of the lowest point over the centre, for attitudes (N, 4) [1] of the body."""
     up = _in_body(attitudes, np.array([[0.0, 0.0, 1.0]]))
     lowest = np.einsum("ni,vi->nv", up, shape.vertices).min(axis=1)
     rims = np.einsum("ni,nri->nr", up, lowest_on(shape, up))

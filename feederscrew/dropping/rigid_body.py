@@ -66,7 +66,7 @@ def shape_of(hull, labels, mass, inertia, axes=None):
     mass : float [kg]
     inertia : (3, 3) float [kg m2]
         About the centre of mass, in the hull's axes.
-    axes : (F, 3) float, optional
+    axes : (F, 3) float [1], optional
         Unit axis of each rolling face, NaN for flat ones; none rolls by default.
 
     Returns
@@ -155,7 +155,7 @@ def shape_of_part(part, found):
 
 
 def principal_axes(inertia):
-    """Return the principal moments (3,), ascending, and a rotation (3, 3) whose columns are their axes."""
+    """Return the principal moments (3,) [any], ascending, and their axes, columns of a rotation (3, 3)."""
     moments, principal = vectors.eigen(inertia)
     return moments, principal * np.sign(vectors.determinant(principal))
 

@@ -32,7 +32,7 @@ def rims_of(edges, radius, axes=()):
     edges : Edges
     radius : float [m]
         Of the hull.
-    axes : sequence of (3,) float, optional
+    axes : sequence of (3,) float [1], optional
         Unit axes to look along beside the normals of flat facets: those of rolling faces.
 
     Returns
@@ -277,12 +277,12 @@ def lowest_on(shape, up):
     Parameters
     ----------
     shape : Shape
-    up : (N, 3) float
+    up : (N, 3) float [1]
         Unit directions in body axes.
 
     Returns
     -------
-    (N, R, 3) float
+    (N, R, 3) float [L]
         Of an arc that does not reach so low, the point in its middle.
     """
     rims = shape.solid.rims

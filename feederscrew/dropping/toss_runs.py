@@ -55,7 +55,7 @@ def follow(shape, length, principal, rows, launches, surface, rng, *, runs=USUAL
     shape : Shape
     length : float [m]
         Of the shape.
-    principal : (3, 3) float
+    principal : (3, 3) float [1]
         Its columns are the shape's axes along the file's: ``shape.principal_axes``.
     rows : (F,) int
         Class of each face.
@@ -154,16 +154,16 @@ def scattered(ends, relative, draws):
 
     Parameters
     ----------
-    ends : (float, float)
+    ends : (float, float) [that of the value]
         Equal for one value.
     relative : float [1]
         Standard deviation of one value, over it.
-    draws : (K,) float
+    draws : (K,) float [1]
         Normal numbers; 0 gives the value, or the middle of the range.
 
     Returns
     -------
-    (K,) float
+    (K,) float [that of the value]
         About one value normal, not below a tenth of it; in a range as good as uniform.
     """
     low, high = ends

@@ -60,7 +60,7 @@ def follow(shape, length, principal, starts, drops, rows):
     shape : Shape
     length : float [m]
         Of the shape.
-    principal : (3, 3) float
+    principal : (3, 3) float [1]
         Its columns are the shape's axes along the file's: `shape.principal_axes`.
     starts : Starts
         Of the drops to follow.

@@ -72,7 +72,7 @@ def found(sheet, values):
     ----------
     sheet : MachineSheet
         Of the machine as it is drawn.
-    values : dict of str to float
+    values : dict of str to float [Hz, m, kg, as its key says]
         From ``read``.
 
     Returns

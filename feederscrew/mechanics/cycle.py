@@ -43,7 +43,7 @@ def settle(acceleration, windows, period, samples=SAMPLES):
     ----------
     acceleration : callable
         Of phase [rad], velocity [m/s] and sense of sliding, +1 or -1: relative to the surface [m/s2].
-    windows : sequence of (float, float, float)
+    windows : sequence of (float [rad], float [rad], float [1])
         Phases from which and to which a part at rest breaks loose, from 0 to 2 pi, ascending, and its sense.
     period : float [s]
     samples : int

@@ -102,6 +102,10 @@ def published_ratio(friction, beta, alpha_minus_theta=0.0):
     Returns
     -------
     array [1]
+
+    Notes
+    -----
+    The thesis, eq. [4.27], solved for G.
     """
     slope = np.cos(beta) * np.cos(alpha_minus_theta) + friction * np.sin(beta)
     return friction / slope  # eq. [4.27], solved for G
@@ -153,7 +157,8 @@ def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0):
 
     Parameters
     ----------
-    ratio, beta, alpha_minus_theta, climb : array_like
+    ratio : array_like [1]
+    beta, alpha_minus_theta, climb : array_like [rad]
         As for ``forward_limit``.
 
     Returns
@@ -173,7 +178,7 @@ def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0):
     ----------
     friction : array_like [1]
         Static.
-    beta, alpha_minus_theta, climb : array_like
+    beta, alpha_minus_theta, climb : array_like [rad]
         As for ``forward_limit``.
 
     Returns
@@ -193,7 +198,7 @@ def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0):
     ----------
     friction : array_like [1]
         Static.
-    beta, alpha_minus_theta, climb : array_like
+    beta, alpha_minus_theta, climb : array_like [rad]
         As for ``forward_limit``.
 
     Returns
@@ -211,7 +216,8 @@ def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0):
 
     Parameters
     ----------
-    ratio, beta, alpha_minus_theta, climb : array_like
+    ratio : array_like [1]
+    beta, alpha_minus_theta, climb : array_like [rad]
         As for ``forward_limit``.
     friction : array_like [1]
         Static; a part whose friction equals a limit still sticks.

@@ -18,7 +18,7 @@ def places(known, counts):
 
     Returns
     -------
-    (D,) int
+    (D,) int [1]
 
     Raises
     ------

@@ -16,7 +16,7 @@ def mean_length(found, rule):
 
 
 def entering(found, rule):
-    """Return (M,) chance of each orientation by a rule, and the share of all parts that stay on the track."""
+    """Return the chance (M,) [1] of each orientation by a rule, and the share [1] that stays on the track."""
     chance = np.nan_to_num(found.rules[rule])
     return chance, float((chance * found.stays).sum())
 
@@ -64,5 +64,5 @@ def fed(found, row):
 
 
 def fed_share(found, row):
-    """Return (M,) share of each orientation that leaves in the state of a wanted row."""
+    """Return the share (M,) [1] of each orientation that leaves in the state of a wanted row."""
     return np.where(found.rolls_back, 0.0, found.leaving[:, found.leaves_as[row]])

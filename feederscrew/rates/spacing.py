@@ -19,7 +19,7 @@ def needed(chain, lying, bowl):
 
     Returns
     -------
-    float
+    float [m]
         0 where they need none. Behind a stretch on which parts travel r times as fast, their pitch is r times
         as large.
     """

@@ -27,7 +27,7 @@ def classes(faces, part, moments):
 
     Returns
     -------
-    (N,) int
+    (N,) int [1]
         Class of each face, numbered in order of first appearance.
     """
     middles, alike = np.array([face.middle for face in faces]), _alike(faces)

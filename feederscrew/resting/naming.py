@@ -20,7 +20,7 @@ def named(groups, normals, hull, given):
     ----------
     groups : sequence of lists of Face
         The faces of each class, classes in the order of the rows.
-    normals : (A, 3) float
+    normals : (A, 3) float [1]
         What is down when the part rests on each.
     hull : Hull
     given : AspectNames or None

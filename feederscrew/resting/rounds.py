@@ -15,7 +15,7 @@ def height(polygon, axis, flat):
     ----------
     polygon : (K, 3) float [m]
         Corners of the lowest strip, from the centre of mass.
-    axis : (3,) float
+    axis : (3,) float [1]
         Unit axis of the side; NaN for a ball.
     flat : float [m]
         Height over the strip.

@@ -19,7 +19,7 @@ def pluecker(screw):
 
     Returns
     -------
-    (..., 6) float
+    (..., 6) float [m/s, rad/s] of a twist, [N, N m] of a wrench
         Ordered so that the plain product of a twist's and a wrench's six numbers is their power.
     """
     parts = (screw.resultant, screw.moment)

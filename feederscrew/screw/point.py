@@ -14,12 +14,12 @@ def vectors(name, value):
     ----------
     name : str
         The argument, as the caller knows it.
-    value : (..., 3) array_like
+    value : (..., 3) array_like [any]
         Any leading axes.
 
     Returns
     -------
-    (..., 3) float
+    (..., 3) float [the same]
 
     Raises
     ------
@@ -35,12 +35,12 @@ def vectors(name, value):
 
 
 def dot(u, v):
-    """Return the scalar product over the last axis, (..., 3) and (..., 3) to (...,)."""
+    """Return the scalar product (...,) over the last axis of (..., 3) and (..., 3) [any units]."""
     return np.einsum("...i,...i->...", u, v)
 
 
 def length(u):
-    """Return the Euclidean length over the last axis; squares neither overflow nor vanish."""
+    """Return the length (...,) of vectors (..., 3), in their unit [any]; no square overflows or vanishes."""
     return np.hypot(np.hypot(u[..., 0], u[..., 1]), u[..., 2])
 
 

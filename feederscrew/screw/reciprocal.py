@@ -103,7 +103,7 @@ def reactions(wrenches, external):
 
     Returns
     -------
-    (..., 6) float
+    (..., 6) float [1]
         In units of each contact's wrench; negative where the contact would have to pull.
 
     Raises

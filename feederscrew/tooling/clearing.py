@@ -60,7 +60,7 @@ def along_blade(bowl, sweep, friction):
 
     Returns
     -------
-    float
+    float [m/s]
         A lower bound: what comes behind pushes. 0 where it does not slide.
 
     Notes

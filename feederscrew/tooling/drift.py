@@ -21,7 +21,7 @@ def speed(push, friction, swing, gravity=STANDARD_GRAVITY):
 
     Returns
     -------
-    float
+    float [m/s]
         Infinite where friction does not hold the push back at all.
 
     Notes

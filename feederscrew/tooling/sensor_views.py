@@ -23,7 +23,7 @@ def difference(one, other, sees):
 
     Returns
     -------
-    float
+    float [m]
         Greatest distance from a place of either to the other one, both with their front at the same place
         and, seen from above, as near to the wall.
     """

@@ -19,7 +19,7 @@ def crowd_of(solid, surface, count):
     ----------
     solid : TrueSolid
     surface : Surface
-    count : int
+    count : int [1]
 
     Returns
     -------

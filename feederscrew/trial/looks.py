@@ -74,7 +74,7 @@ class AspectsBelow:
 
 
 def spread(count):
-    """Return unit vectors (count, 3) spread over the sphere, along a spiral."""
+    """Return unit vectors (count, 3) [1] spread over the sphere, along a spiral."""
     k = np.arange(count) + 0.5
     z, turn = 1.0 - 2.0 * k / count, np.pi * (1.0 + np.sqrt(5.0)) * k
     flat = np.sqrt(1.0 - z * z)

@@ -54,12 +54,12 @@ def between(corners, axis):
 
     Parameters
     ----------
-    corners : (C, 3) float
+    corners : (C, 3) float [L]
     axis : (3,) float [1]
 
     Returns
     -------
-    points : (P, 3) float
+    points : (P, 3) float [L]
         Between neighbouring corners of a circle.
     ends : (P, 2) int
         Those corners.

@@ -95,8 +95,8 @@ def ride(known, station, states, times, *, limits, every, places, jobs=1, progre
     ----------
     known : BowlOfPart
     station : Stage
-    states : (N, 13) float
-        At the start, without dimensions.
+    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+        At the start.
     times : (N,) float [s]
         Of the start, which sets the phase of the drive.
     limits : (float [s], float [s], float [m], float [m])

@@ -18,8 +18,8 @@ def blows_off(sensor, known, states, level=0.0):
     ----------
     sensor : Sensor
     known : runs.BowlOfPart
-    states : (N, 13) float
-        Of the part before it and of others that it cannot tell from that one, without dimensions.
+    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+        Of the part before it and of others that it cannot tell from that one.
     level : float [m]
         Of the track there.
 

@@ -115,7 +115,7 @@ def onwards(corners, place, ends, hollow):
 
     Parameters
     ----------
-    corners : (V, 3) float
+    corners : (V, 3) float [L]
     place : (V,) int
         Where each corner of the file is among them.
     ends : (E, 2) int
@@ -135,7 +135,7 @@ def on_hull(corners):
 
 
 def together(points):
-    """Return an order of points (N, 3) in which each so many, a block, lie together.
+    """Return an order (N,) of points (N, 3) [L] in which those of each block lie together.
 
     They are halved across where they lie furthest apart, by whole blocks, over and over.
     """
@@ -153,7 +153,7 @@ def together(points):
 
 
 def boxes(features):
-    """Return the box (B, 6), least places and greatest, around each block of features (N, K, 3)."""
+    """Return the box (B, 6) [L], least places and greatest, around each block of features (N, K, 3) [L]."""
     made = [features[k : k + BLOCK] for k in range(0, len(features), BLOCK)]
     return np.array([[*one.min(axis=(0, 1)), *one.max(axis=(0, 1))] for one in made]).reshape(-1, 6)
 
@@ -171,7 +171,7 @@ def neighbours(triangles, count):
 
     Parameters
     ----------
-    triangles : (T, 3) int
+    triangles : (T, 3) int [1]
     count : int
         Only corners before this one count.
 
@@ -192,7 +192,7 @@ def convex_edges(corners, faces, normals):
 
     Parameters
     ----------
-    corners : (V, 3) float
+    corners : (V, 3) float [L]
     faces : (T, 3) int
         Of a closed surface, counter-clockwise from outside.
     normals : (T, 3) float [1]

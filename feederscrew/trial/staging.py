@@ -185,7 +185,9 @@ def _onwards(solid, behind, at_wall):
 
 
 def rings(area, is_end):
-    """Return borders (B, 10) of a solid area: start, end, normal away, corner, end of drawing, normal before.
+    """Return borders (B, 10) [m] of a solid area.
+
+    Start, end, normal away, corner, end of drawing, normal before.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ def laid_down(bowl, every, entered, solid, principal, length, seed):
 
     Returns
     -------
-    states : (N, 13) float
+    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
         At the place 0, the lowest corner on the track.
     times : (N,) float [s]
     """
@@ -76,7 +76,7 @@ def falling(bowl, launch, shape, count, length, seed):
 
     Returns
     -------
-    states : (N, 13) float
+    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
         At the place 0.
     times : (N,) float [s]
     """
@@ -89,5 +89,5 @@ def falling(bowl, launch, shape, count, length, seed):
 
 
 def lowest(corners, state):
-    """Return the height of the lowest corner (C, 3) of a part."""
+    """Return the height [L] of the lowest of the corners (C, 3) [L] of a part in a state (13,)."""
     return state[body.Z] + vectors.product(corners, whereabouts.matrix(state)[2]).min()

@@ -26,7 +26,7 @@ def laid(orientation, principal, length, track, *, place, aside=0.0, turn=0.0):
 
     Returns
     -------
-    (13,) float
+    (13,) float [L, sqrt(g L), 1, sqrt(g/L)]
     """
     theta, angle = place / track.radius, place / track.radius + orientation.heading + turn
     axes = vectors.product(_about_z(angle), vectors.product(orientation.posture.axes, principal))
@@ -44,7 +44,7 @@ def _about_z(angle):
 
 
 def quaternion(axes):
-    """Return the quaternion (4,), w x y z, of a rotation matrix (3, 3)."""
+    """Return the quaternion (4,) [1], w x y z, of a rotation matrix (3, 3) [1]."""
     trace = np.array([axes.trace(), *np.diag(axes)])
     k = int(np.argmax(trace))
     if k == 0:
@@ -61,7 +61,7 @@ def quaternion(axes):
 
 
 def matrix(state):
-    """Return the rotation matrix (3, 3) of a state, body to bowl."""
+    """Return the rotation matrix (3, 3) [1] of a state (13,), body to bowl."""
     a, b, c, d = state[body.Q : body.Q + 4]
     return np.array(
         [
@@ -73,7 +73,7 @@ def matrix(state):
 
 
 def ways(states, radius):
-    """Return how far along the wall states (N, 13) are (N,), in the unit of length of the radius."""
+    """Return how far along the wall states (N, 13) are, (N,) [that of the radius]."""
     return radius * np.arctan2(states[:, 0], radius - states[:, 1])
 
 

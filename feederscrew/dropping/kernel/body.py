@@ -36,34 +36,34 @@ def rotation(state, turn):
 
 @compiled
 def spin_energy(state, inertia):
-    """Return the rotational energy."""
+    """Return the rotational energy over mass [g L] of a state (13,), from the inertia (3,) over mass [L2]."""
     p, q, r = state[W], state[W + 1], state[W + 2]
     return 0.5 * (inertia[0] * p * p + inertia[1] * q * q + inertia[2] * r * r)
 
 
 @compiled
 def rate(state):
-    """Return how fast the body turns."""
+    """Return how fast the body of a state (13,) turns [sqrt(g/L)]."""
     p, q, r = state[W], state[W + 1], state[W + 2]
     return math.sqrt(p * p + q * q + r * r)
 
 
 @compiled
 def quickest(state, inertia):
-    """Bound of how fast the body comes to turn in free rotation: all energy about the easiest axis."""
+    """Bound how fast a body turns in free rotation [sqrt(g/L)]: all energy about the easiest axis."""
     return math.sqrt(2.0 * spin_energy(state, inertia) / min(inertia[0], inertia[1], inertia[2]))
 
 
 @compiled
 def moving_energy(state, inertia):
-    """Return the kinetic energy at mass 1."""
+    """Return the kinetic energy over mass [g L] of a state (13,)."""
     u, v, w = state[VX], state[VY], state[VZ]
     return spin_energy(state, inertia) + 0.5 * (u * u + v * v + w * w)
 
 
 @compiled
 def energy(state, inertia):
-    """Return the kinetic energy and height: the total energy at mass 1 and gravity 1."""
+    """Return kinetic energy and height of a state (13,): the total energy over mass [g L]."""
     return moving_energy(state, inertia) + state[Z]
 
 
@@ -166,7 +166,7 @@ def lowest(points, links, turn, corner):
 
 @compiled
 def rim_level(rims, k, turn):
-    """Return the height of a rim's lowest point over the body's centre; infinite where an arc has no such."""
+    """Return the height [L] of a rim's lowest point over the centre; infinite where an arc has none."""
     a, b, c = turn[6], turn[7], turn[8]
     along = a * rims[k, 3] + b * rims[k, 4] + c * rims[k, 5]
     x, y, z = a - along * rims[k, 3], b - along * rims[k, 4], c - along * rims[k, 5]

@@ -75,7 +75,7 @@ class Steps(NamedTuple):
 
 @compiled
 def gap_after(solid, work, floor, time, corner, dt):
-    """Fly from the saved state over dt; corner to look on from, and height over the floor."""
+    """Fly from the saved state over dt [sqrt(L/g)]; return the corner to look on from and the height [L]."""
     state = work.state
     body.keep(work.saved, state)
     body.fly(state, solid.inertia, dt)
@@ -118,7 +118,7 @@ def approach(solid, work, floor, time, corner, gap, steps):
 
 @compiled
 def move(solid, work, corner, dt):
-    """Move the saved positions at the mean of saved and present velocities over dt; corner, and height."""
+    """Move at the mean of saved and present velocities over dt [sqrt(L/g)]; return corner and height [L]."""
     state, saved = work.state, work.saved
     for k in range(3):
         state[k] = saved[k] + 0.5 * dt * (saved[VX + k] + state[VX + k])
@@ -226,7 +226,7 @@ def advance(solid, work, floor, time, corner, gap, restitution, friction, steps)
 
 @compiled
 def start(solid, work):
-    """Return the corner from which to look for the body's lowest point as it stands, and its height."""
+    """Return the corner from which to look for the body's lowest point as it stands, and its height [L]."""
     work.pressed[0] = 0.0
     body.rotation(work.state, work.turn)
     corner, level = body.bottom(solid, work.turn, 0)

@@ -48,13 +48,13 @@ def stick(state, row, friction):
 
 @compiled
 def along(c, n, k, v, p, q, r):
-    """Return the velocity of contact n along one axis: of the centre, and of the rates on the lever at k."""
+    """Return the velocity [sqrt(g L)] of contact n: of the centre, and of the rates on the lever at k."""
     return v + c[n, k] * p + c[n, k + 1] * q + c[n, k + 2] * r
 
 
 @compiled
 def spun(c, n, k, impulse, p, q, r):
-    """Return the rates after an impulse along the axis whose RATE column is k."""
+    """Return the rates [sqrt(g/L)] after an impulse [sqrt(g L)] along the axis whose RATE column is k."""
     return p + c[n, k] * impulse, q + c[n, k + 1] * impulse, r + c[n, k + 2] * impulse
 
 

@@ -30,7 +30,7 @@ def face_below(shape, turn, corner):
 
 @compiled
 def rolling_energy(shape, state, turn, face):
-    """Return the energy of rolling about the axis of a rolling face, which no impact turns into height."""
+    """Return the energy [g L] of rolling about the axis of a rolling face: no impact turns it into height."""
     a = shape.axes[face]
     x = turn[0] * a[0] + turn[1] * a[1] + turn[2] * a[2]
     y = turn[3] * a[0] + turn[4] * a[1] + turn[5] * a[2]
@@ -123,7 +123,7 @@ def settle(shape, work, restitution, friction, steps):
     shape : Shape
     work : Scratch
         Its ``state`` holds the start, and the end afterwards; its ``trace`` is filled.
-    restitution, friction : float
+    restitution, friction : float [1]
     steps : Steps
 
     Returns

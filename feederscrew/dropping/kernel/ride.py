@@ -114,13 +114,13 @@ def ride(shape, work, floor, restitution, friction, steps, looks, faces, places)
     work : Scratch
         Its ``state`` holds the start, relative to the floor, and the end afterwards.
     floor : Floor
-    restitution, friction : float
+    restitution, friction : float [1]
     steps : Steps
-    looks : (K,) float
+    looks : (K,) float [sqrt(L/g)]
         Times at which to look, ascending.
     faces : (K,) int
         Filled with the face it lies on, UNSETTLED while it may be tipping over.
-    places : (K, 2) float
+    places : (K, 2) float [L]
         Filled with where its centre of mass is over the floor.
 
     Returns

@@ -88,7 +88,7 @@ def occupancy(faces, places, rows, count, period, rng):
 
 
 def lasting(faces):
-    """Return the (N, K) face each part lies on or lay on last; UNSETTLED before the first."""
+    """Return the face (N, K) [1] each part lies on or lay on last; UNSETTLED before the first."""
     at = np.where(faces == UNSETTLED, 0, np.arange(faces.shape[1]))
     return np.take_along_axis(faces, np.maximum.accumulate(at, axis=1), axis=1)
 

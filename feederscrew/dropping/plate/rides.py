@@ -35,8 +35,8 @@ def ride(shape, floor, starts, looks, steps, *, kick=math.inf, jobs=1, progress=
     floor : Floor
     starts : feederscrew.dropping.launches.Starts
         Of the N parts, relative to the plate.
-    looks : (K,) float
-        Times in units of sqrt(L / g), ascending.
+    looks : (K,) float [sqrt(L/g)]
+        Times, ascending.
     steps : Steps
     kick : float [m g L]
         Energy that the floor gives a part at most: one whose face it does not tip it off is followed no

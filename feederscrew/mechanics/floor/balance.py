@@ -72,7 +72,7 @@ def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0):
         theta.
     phase : array_like [rad]
         w t; a quarter turn is the upper reversal.
-    moving : array_like
+    moving : array_like [1]
         Sense of the part's sliding along the drive's direction, +1 or -1; 0 for a part at rest, which
         breaks loose only against static friction. A rolling part is taken from rest.
 
@@ -83,8 +83,9 @@ def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0):
     Notes
     -----
     Friction is a vector against the sliding, so the factor cos(alpha - theta) of [4.27] is absent: the
-    thesis's form holds where a wall takes the force across. The normal force acts where it balances
-    friction's lever h: d = h R / N, and further by the products of inertia while the part turns.
+    thesis's form holds where a wall takes the force across. The normal force, eq. [4.14], acts where it
+    balances friction's lever h: d = h R / N, and further by the products of inertia while the part turns,
+    eq. [4.17].
     """
     force = drive_force(posture, bowl, heading, phase)
     normal = posture.mass * bowl.gravity - force[..., 2]  # eq. [4.14]

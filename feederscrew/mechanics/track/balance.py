@@ -53,7 +53,7 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
         Fields may be arrays, except the track's radius and the sign of its bank, which belong to the seat.
     phase : array_like [rad]
         w t; a quarter turn is the upper reversal.
-    moving : array_like
+    moving : array_like [1]
         Sense of sliding along the track, +1 or -1; 0 for a part at rest.
     speed : array_like [m/s]
         Of that sliding, for the centrifugal force.

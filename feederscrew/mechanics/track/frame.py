@@ -54,7 +54,7 @@ def seat(posture, heading, touching, lean):
     heading : float [rad]
     touching : (2, 2) float [m]
         Corners of the outline at the wall in track axes, from the foot of the centre of mass.
-    lean : float
+    lean : float [1]
         Sign of the bank: with it the upper end of an upright side touches the wall, against it the lower
         end; upright, the reaction may act anywhere between and is put halfway.
 

@@ -35,7 +35,7 @@ class Landscape:
 
 
 def edges(hull):
-    """Return every edge of the hull once: (E, 2) triangles, (E, 2) corners."""
+    """Return every edge of the hull once: its triangles (E, 2) and corners (E, 2), places in the hull [1]."""
     first, second = np.repeat(np.arange(len(hull.triangles)), 3), hull.neighbours.ravel()
     once = np.flatnonzero(first < second)
     starts, ends = (hull.triangles[:, corners].ravel()[once] for corners in ([1, 2, 0], [2, 0, 1]))

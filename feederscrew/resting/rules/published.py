@@ -73,7 +73,7 @@ def normalised(weights, stable):
 
     Parameters
     ----------
-    weights : (A,) float
+    weights : (A,) float [any one unit]
     stable : (A,) bool
 
     Returns

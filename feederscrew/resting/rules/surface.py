@@ -31,8 +31,8 @@ def surface_weights(shares, heights, radius, exponent):
 
     Returns
     -------
-    (F,) float
-        share (radius - height)^exponent: a bouncing part visits every face and stays where it lies deep.
+    (F,) float [1]
+        share (1 - height / radius)^exponent: a bouncing part visits every face and stays where it lies deep.
 
     Raises
     ------
@@ -51,6 +51,6 @@ def surface_weights(shares, heights, radius, exponent):
 
 
 def surface_shares(shares, heights, radius, exponent):
-    """Return (F,) surface_weights that sum to 1."""
+    """Return ``surface_weights`` (F,) [1] that sum to 1."""
     weights = surface_weights(shares, heights, radius, exponent)
     return weights / weights.sum()

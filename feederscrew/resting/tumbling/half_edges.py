@@ -141,7 +141,7 @@ def _settle(slopes, sides, twins, before, over, leaving):
 
 
 def sinks(edges):
-    """(S,) facets that hold the foot of the centre of mass: the part rests on them."""
+    """Return (S,) facets that hold the foot of the centre of mass: the part rests on them."""
     leaves = edges.borders & (edges.sides < 0.0)
     stable = np.ones(len(edges.normals), bool)
     stable[np.repeat(edges.facets, 3)[leaves]] = False
@@ -149,7 +149,7 @@ def sinks(edges):
 
 
 def saddles(edges):
-    """(E,) half-edges, one of each pair, over which the part can be balanced.
+    """Return (E,) half-edges, one of each pair, over which the part can be balanced.
 
     The foot of the centre of mass lies between the two corners and neither facet rolls over the edge.
     """
@@ -159,7 +159,7 @@ def saddles(edges):
 
 
 def maxima(edges):
-    """(M,) corners on which the part can be balanced: no neighbour is further out along them."""
+    """Return (M,) corners on which the part can be balanced: no neighbour is further out along them."""
     origins = edges.origins[edges.borders]
     top = np.zeros(len(edges.vertices), bool)
     top[origins] = True

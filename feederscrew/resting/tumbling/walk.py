@@ -20,13 +20,13 @@ def row(array, k):
 
 @compiled
 def dot(a, b):
-    """Return the scalar product of two triples."""
+    """Return the scalar product of two triples (3,), in the product of their units [any]."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @compiled
 def triple(a, b, c):
-    """Return a . (b x c)."""
+    """Return a . (b x c) of triples (3,): of unit vectors, a volume [1]."""
     return (
         a[0] * (b[1] * c[2] - b[2] * c[1])
         + a[1] * (b[2] * c[0] - b[0] * c[2])
@@ -36,7 +36,7 @@ def triple(a, b, c):
 
 @compiled
 def toward(a, b, step):
-    """Return the unit vector along a + step b."""
+    """Return the unit vector [1] along a + step b, of triples (3,)."""
     x, y, z = a[0] + step * b[0], a[1] + step * b[1], a[2] + step * b[2]
     n = 1.0 / math.sqrt(x * x + y * y + z * z)
     return n * x, n * y, n * z

@@ -128,10 +128,10 @@ def fewest(found, others, margin, enough=0.0):
     ----------
     found : dict of Device to (M,) float [m]
         From ``candidates``.
-    others : (M,) float
+    others : (M,) float [1]
         How much each of the orientations to be returned weighs; 0 for those that need not be.
     margin : float [m]
-    enough : float
+    enough : float [1]
         Of what may be left over: a chain that leaves no more is not made longer.
 
     Returns
@@ -278,5 +278,5 @@ def millimetres(value):
 
 
 def fine(value):
-    """Return a length rounded to what a bowl file says of it."""
+    """Return a length [m] rounded to what a bowl file says of it."""
     return float(np.round(value / FINE)) * FINE

@@ -83,7 +83,7 @@ def task(every, shares, wanted, margin, purity, before, turners=(), gentle=False
 
 
 def weights(given):
-    """Return how much it matters to return each orientation (M,): those that come often enough first."""
+    """Return how much it matters to return each orientation, (M,) [1]: those that come often enough first."""
     weight = np.where(given.often, 1.0 + given.coming, 1e-3 * given.coming)
     weight = np.where(given.coming < NEVER, 0.0, weight)
     return np.where(given.stays, weight, 0.0)

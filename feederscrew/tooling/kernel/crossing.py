@@ -47,11 +47,11 @@ def stretches(sides, edges, out, cuts):
     ----------
     sides : (E, 4) float [m]
         Start and vector of each side of the foot, x ahead and q away from the bowl's axis.
-    edges : (M, 7) float
+    edges : (M, 7) float [m or 1]
         Columns as above.
-    out : (N, 6) float
+    out : (N, 6) float [m or 1]
         To be filled; no more than it holds are kept.
-    cuts : (CUTS,) float
+    cuts : (CUTS,) float [1]
         Scratch.
 
     Returns

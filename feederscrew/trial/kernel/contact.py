@@ -68,7 +68,7 @@ def put(crowd, n, solid, spot, normal, gap, rub, key):
 
 @compiled
 def speed(state, row, e):
-    """Return the velocity of a contact along one of its axes."""
+    """Return the velocity [sqrt(g L)] of a contact, a row (WIDTH,), along its axis e."""
     a, k = AXES + 3 * e, LEVER + 3 * e
     found = row[a] * state[VX] + row[a + 1] * state[VX + 1] + row[a + 2] * state[VZ]
     return found + row[k] * state[W] + row[k + 1] * state[W + 1] + row[k + 2] * state[W + 2]
@@ -76,7 +76,7 @@ def speed(state, row, e):
 
 @compiled
 def apart_by(states, crowd, k, e):
-    """Return the velocity of the first part of a pair's contact against the second, along one of its axes."""
+    """Return the velocity [sqrt(g L)] of a pair's first part against the second, along one of their axes."""
     first, second = states[crowd.owners[k]], states[crowd.owners[k + 1]]
     return speed(first, crowd.pairs[k], e) - speed(second, crowd.pairs[k + 1], e)
 
@@ -187,7 +187,7 @@ def solve(surface, crowd, states, island, rough, warm):
     ----------
     surface : Surface
     crowd : Crowd
-    states : (N, 13) float
+    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
         Whose velocities are changed.
     island : (int, int)
         From where to where in ``crowd.order`` those parts are.

@@ -15,7 +15,7 @@ EDGE_ON = 1e-12  # twice the area across a ray: a facet seen edge on is not met
 
 @compiled
 def ray(k):
-    """Return where the k-th ray is in the round cross-section of a jet, over its radius: evenly spread."""
+    """Return the place of the k-th ray in the round section of a jet, over its radius [1]: evenly spread."""
     off = math.sqrt((k + 0.5) / RAYS)
     return off * math.cos(GOLDEN * k), off * math.sin(GOLDEN * k)
 

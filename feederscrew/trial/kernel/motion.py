@@ -22,7 +22,7 @@ BEHIND, BELOW = 0, 1  # columns of the strains
 
 @compiled
 def ahead(solid, state, dt):
-    """Return how far ahead contacts of a part are looked for."""
+    """Return how far ahead [L] contacts of a part with a state (13,) are looked for in a step [sqrt(L/g)]."""
     quick = math.sqrt(state[VX] ** 2 + state[VY] ** 2 + state[VZ] ** 2) + solid.radius * body.rate(state)
     return REACH + 2.0 * dt * quick
 
@@ -157,11 +157,13 @@ def step(surface, solid, floor, crowd, island, time, dt):
     crowd : Crowd
     island : (int, int)
         From where to where in ``crowd.order`` they are.
-    time, dt : float
+    time, dt : float [sqrt(L/g)]
 
     Returns
     -------
-    depth of the deepest contact, time taken
+    depth : float [L]
+        Of the deepest contact.
+    taken : float [sqrt(L/g)]
     """
     met(surface, solid, crowd, island, dt)
     deepest, strikes, share = pushed(surface, solid, floor, crowd, island, time, dt)

@@ -25,7 +25,7 @@ def seen_by(plate, state, turn, frame):
 
 @compiled
 def placed(frame, p):
-    """Return where a point of the body is, as a plate sees it."""
+    """Return where a point (3,) [L] of the body is, as a plate sees it [L]; frame (12,) of ``seen_by``."""
     return (
         frame[0] * p[0] + frame[1] * p[1] + frame[2] * p[2] + frame[9],
         frame[3] * p[0] + frame[4] * p[1] + frame[5] * p[2] + frame[10],
@@ -35,7 +35,7 @@ def placed(frame, p):
 
 @compiled
 def in_body(frame, x, y, z):
-    """Return a vector that a plate sees in the body's axes."""
+    """Return a vector that a plate sees, in the body's axes and its own unit [any]."""
     return (
         frame[0] * x + frame[3] * y + frame[6] * z,
         frame[1] * x + frame[4] * y + frame[7] * z,
@@ -45,7 +45,7 @@ def in_body(frame, x, y, z):
 
 @compiled
 def in_bowl(plate, x, y, z):
-    """Return a vector that a plate sees in the bowl's frame."""
+    """Return a vector that a plate sees, in the bowl's frame and its own unit [any]; ``plate`` (21,)."""
     return (
         x * plate[ACROSS] + y * plate[ALONG] + z * plate[FRONT],
         x * plate[ACROSS + 1] + y * plate[ALONG + 1] + z * plate[FRONT + 1],
@@ -55,7 +55,7 @@ def in_bowl(plate, x, y, z):
 
 @compiled
 def off_wall(surface, leans, x, y, z):
-    """Return how far a point is from the wall, which stands upright also where the track is banked."""
+    """Return how far a point is from the wall [L], which stands upright also where the track is banked."""
     y -= surface.radius
     return leans[LEAN + 1] * (surface.radius - math.sqrt(x * x + y * y)) - leans[LEAN] * z
 
@@ -73,7 +73,7 @@ def inside(borders, first, last, a, b):
 
 @compiled
 def beside(border, a, b):
-    """Return how far a point is from a border, negative where it is solid; infinite at the border's end."""
+    """Return how far a point is from a border (12,) [L], negative where it is solid; infinite at its end."""
     u, v = border[2] - border[0], border[3] - border[1]
     x, y = a - border[0], b - border[1]
     share = (x * u + y * v) / (u * u + v * v)

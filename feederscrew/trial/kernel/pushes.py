@@ -85,7 +85,7 @@ def wanted_of_pairs(surface, crowd, dt):
 
 @compiled
 def reversal(crowd, n):
-    """Return the share of a step after which sliding comes to a stand, if it does; else 1.
+    """Return the share [1] of a step after which sliding comes to a stand, if it does; else 1.
 
     Of the contact that slides fastest. What friction did less than its most against the sliding is what it
     did after the stand: without that the contact would have gone on to slide back so much faster.

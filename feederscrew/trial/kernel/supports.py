@@ -17,7 +17,7 @@ LEVEL = 1.0 - 1e-5  # [1] of a normal against a surface's: less than it looks ar
 
 @compiled
 def add(levels, count, place, gap, spot, key):
-    """Note a contact at a place along the surface and a spot in body axes; how many there are now."""
+    """Note a contact at a place (2,) [L] along the surface, a spot (3,) [L] in body axes; return how many."""
     if count == len(levels):
         return count
     row = levels[count]

@@ -15,13 +15,13 @@ LEFT = 1e-6  # of a step: less is nothing
 
 @compiled
 def way(surface, state):
-    """Return how far along the wall the centre of mass is."""
+    """Return how far along the wall [L] the centre of mass of a state (13,) is."""
     return surface.radius * math.atan2(state[X], surface.radius - state[Y])
 
 
 @compiled
 def across(surface, state):
-    """Return how far from the wall the centre of mass is, anywhere round the bowl."""
+    """Return how far from the wall [L] the centre of mass of a state (13,) is, anywhere round the bowl."""
     x, y = state[X], surface.radius - state[Y]
     return surface.radius - math.sqrt(x * x + y * y)
 
@@ -92,15 +92,15 @@ def travel_all(surface, limits, solid, floor, crowd, starts, times, every, paths
         Its ``step`` is the time step.
     crowd : Crowd
         Of one part.
-    starts : (N, 13) float
+    starts : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
         Hold the ends afterwards.
-    times : (N,) float
+    times : (N,) float [sqrt(L/g)]
         At the start: the phase of the drive.
     every : int
         Steps between two places noted.
-    paths : (N, K, 8) float
+    paths : (N, K, 8) float [sqrt(L/g), L, 1]
         Filled with time, position and attitude, from the first row on; nothing more once it is full.
-    notes : (N, NOTES + 2) float
+    notes : (N, NOTES + 2) float [sqrt(L/g), L, L, g L]
         Filled with the time taken, the way along the wall, the greatest depth and the greatest rise of the
         energy over what gravity and the drive gave; then what the last is reckoned with.
     outcomes : (N,) int
