@@ -12,7 +12,7 @@ LATE = 10  # steps
 
 
 def later(zeros, now):
-    """Return the first of two angles, ascending, that is still to come in this period; inf otherwise."""
+    """Return the first of two angles [rad], ascending, still to come in this period; inf otherwise."""
     if zeros[0] >= now - TIE:
         return max(zeros[0], now)
     return max(zeros[1], now) if zeros[1] >= now - TIE else math.inf

@@ -56,14 +56,14 @@ def value(a, angle):
 
 
 def after(zeros, angle):
-    """Return the first of two angles, ascending, beyond another; inf where neither is."""
+    """Return the first of two angles [rad], ascending, beyond another; inf where neither is."""
     if zeros[0] > angle:
         return zeros[0]
     return zeros[1] if zeros[1] > angle else INF
 
 
 def above(a, angle):
-    """Tell by its zeros whether it is positive from an angle on: at one, its value is only rounding."""
+    """Tell by its zeros whether it is positive from an angle [rad] on: at one, its value is only rounding."""
     rise, fall = after(a.rises, angle), after(a.falls, angle)
     if rise == fall:  # neither is to come in this period
         rise, fall = a.rises[0], a.falls[0]
@@ -82,7 +82,7 @@ class Arc(NamedTuple):
 
 
 def onward(a, start):
-    """Return the harmonic from ``start`` on."""
+    """Return the harmonic from ``start`` [rad] on."""
     sine, cosine = a.swing * math.sin(start + a.phase), a.swing * math.cos(start + a.phase)
     if a.second == 0.0:
         return Arc(a.level, sine, cosine, 0.0, 0.0, 0.0)

@@ -49,7 +49,7 @@ def law(setting):
 
 
 def lift_wave(setting):
-    """Return the acceleration along the normal of a part in flight; pressed on, what is missing to it."""
+    """Return the acceleration [A w2] along the normal of a part in flight; pressed on, what it lacks."""
     weight = math.cos(setting.climb) / setting.ratio
     normal = math.sin(setting.angle)
     second, phase = normal * OVERTONE * setting.second, setting.second_phase
@@ -94,7 +94,7 @@ def throw_number(rules):
 
 
 def contact(rules, angle, speed):
-    """Return the phase of a part that touches the plate at ``angle`` with a relative ``speed`` along it."""
+    """Return the phase of a part that touches the plate at ``angle`` [rad], relative ``speed`` [A w]."""
     if above(rules.lift, angle):
         return FLIGHT
     if speed > 0.0 or (speed == 0.0 and value(rules.onset, angle) > 0.0):

@@ -56,7 +56,7 @@ def turn(rules, state, tally):
 
 
 def step(rules, state, tally):
-    """Follow the part to its next event, or to the end of this period."""
+    """Follow the part to its next event, or to the end of this period; adds to ``tally`` (11,)."""
     if state.phase == FLIGHT:
         return _fly(rules, state, tally)
     if state.phase == STICK:

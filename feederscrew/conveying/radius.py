@@ -11,7 +11,7 @@ STEPS = 26
 
 
 def inwards(bowl):
-    """Return the bowl at radii from half the track's to the track's own, evenly spaced."""
+    """Return the bowl at radii [m] from half the track's to the track's own, evenly spaced."""
     return at_radius(bowl, bowl.track.radius * np.linspace(INNER, 1.0, STEPS))
 
 

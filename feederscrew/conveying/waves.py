@@ -36,7 +36,7 @@ def height(wave, angle):
 
 
 def slope(wave):
-    """Return its derivative, a wave again."""
+    """Return its derivative, a wave again, in its own unit over [rad]."""
     return Wave(0.0, -wave.cosine, wave.sine, -2.0 * wave.cosine_2, 2.0 * wave.sine_2)
 
 

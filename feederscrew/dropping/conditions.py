@@ -71,7 +71,7 @@ def described(launch, length, gravity=GRAVITY):
 
 
 def share(text, where):
-    """Read a share above 0 and below 1 as typed, '1%' or '0.01'."""
+    """Read a share [1] above 0 and below 1 as typed, '1%' or '0.01'."""
     value = _read(where, text, "number")
     if not NARROWEST <= value <= WIDEST:
         limits = f"give {NARROWEST:.2%} to {WIDEST:.0%}"

@@ -52,7 +52,7 @@ def full(radius, depth, bulk, rules):
 
 
 def loaded(machine, fill, share):
-    """Return the machine with a share of a fill vibrating with its bowl."""
+    """Return the machine with a share [1] of a fill vibrating with its bowl."""
     mass = machine.bowl_mass + share * fill.mass
     return replace(machine, bowl_mass=mass, bowl_inertia=machine.bowl_inertia + share * fill.inertia)
 

@@ -117,7 +117,7 @@ def throw_number(ratio, beta, climb=0.0):
 
 
 def hops(ratio, beta, climb=0.0):
-    """Return whether contact is lost within the cycle; at k = 1 within rounding it counts as lost."""
+    """Return whether contact is lost within the cycle; at k = 1 [1] within rounding it counts as lost."""
     return throw_number(ratio, beta, climb) >= 1.0 - ROUNDING
 
 

@@ -48,7 +48,7 @@ def efficiency(found, row, rule):
 
 
 def efficiency_ends(found, row, rule):
-    """Return the least and the greatest efficiency, by the rule's own interval or over all rules."""
+    """Return the least and the greatest efficiency [1], by the rule's own interval or over all rules."""
     fed, (_, enters) = fed_share(found, row), entering(found, rule)
     if not enters > 0.0:
         return 0.0, 0.0

@@ -257,7 +257,7 @@ def _where(target):
 
 
 def leaving_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
-    """Return the same, 0 where no part leaves so."""
+    """Return the same [1/m], 0 where no part leaves so."""
     _check_rule(found, rule)
     row = _row(found, target)
     share, density = efficiency(found, row, rule), queued(found, row, rule, gap, fill)

@@ -120,8 +120,8 @@ def spatial_triangle(body, twist, twist_rate):
 
     Notes
     -----
-    The thesis, eq. [4.4] and eq. [4.6], which it writes out for its parts on the floor, eqs. [4.9] to [4.12], eqs. [4.40] to [4.42], and
-    on the track, eqs. [4.30], [4.31], eqs. [4.55], [4.56].
+    The thesis, eq. [4.4] and eq. [4.6]; written out for its parts on the floor, eqs. [4.9] to [4.12],
+    eqs. [4.40] to [4.42], and on the track, eqs. [4.30], [4.31], eqs. [4.55], [4.56].
     """
     rate = body.momentum(twist_rate.at(twist.reference))  # linear in the twist, so its rate has its form
     rate = Wrench(rate.resultant, rate.moment, rate.reference)

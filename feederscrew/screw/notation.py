@@ -27,7 +27,7 @@ def pluecker(screw):
 
 
 def from_pluecker(kind, coordinates, reference=ORIGIN):
-    """Return the ``Twist``, ``Wrench``, ``Momentum`` or ``Screw`` of six coordinates."""
+    """Return the ``Twist``, ``Wrench``, ``Momentum`` or ``Screw`` of six coordinates (..., 6)."""
     coordinates = np.asarray(coordinates, dtype=float)
     if coordinates.ndim == 0 or coordinates.shape[-1] != 6:
         raise ValueError(f"coordinates has shape {coordinates.shape}, not (..., 6)")
@@ -47,7 +47,7 @@ def lie_matrix(screw):
 
 
 def from_lie_matrix(kind, matrix, reference=ORIGIN):
-    """Return the screw of a kind from its 4 x 4 matrix; only the part that is skew is read."""
+    """Return the screw of a kind from its matrix (..., 4, 4); only the part that is skew is read."""
     matrix = np.asarray(matrix, dtype=float)
     if matrix.shape[-2:] != (4, 4):
         raise ValueError(f"matrix has shape {matrix.shape}, not (..., 4, 4)")

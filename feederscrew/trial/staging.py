@@ -144,7 +144,7 @@ def _arc(places, across, radius):
 
 
 def drawn_end(a, b, radius, ends):
-    """Return whether a border is where the drawing ends: behind the wall, or at either end of the stretch."""
+    """Return whether a border from a (2,) to b (2,) [m] ends the drawing: behind the wall, or at an end."""
     near = 1e-6 * radius
     off = [np.hypot(x, radius - y) for x, y in (a, b)]
     place = [radius * np.arctan2(x, radius - y) for x, y in (a, b)]

@@ -78,7 +78,7 @@ def ways(states, radius):
 
 
 def extents(state, corners, radius):
-    """Return how far a part of some corners reaches along the wall, rear and front, and its lowest point."""
+    """Return how far a part reaches along the wall, rear and front, and its lowest point [any]."""
     spots = state[:3] + vectors.product(corners, matrix(state).T)
     along = radius * np.arctan2(spots[:, 0], radius - spots[:, 1])
     return along.min(), along.max(), spots[:, 2].min()

@@ -14,14 +14,14 @@ STATE = 13
 
 @compiled
 def keep(source, target):
-    """Copy one state into another; a loop is quicker here than a slice."""
+    """Copy one state (13,) [L, sqrt(g L), 1, sqrt(g/L)] into another; a loop is quicker here than a slice."""
     for k in range(STATE):
         target[k] = source[k]
 
 
 @compiled
 def rotation(state, turn):
-    """Fill ``turn`` with the rotation matrix of a state."""
+    """Fill ``turn`` (9,) [1] with the rotation matrix of a state (13,), row by row."""
     a, b, c, d = state[Q], state[Q + 1], state[Q + 2], state[Q + 3]
     turn[0] = 1.0 - 2.0 * (c * c + d * d)
     turn[1] = 2.0 * (b * c - a * d)
@@ -82,7 +82,7 @@ def rotate(state, p, q, r, dt):
 
 @compiled
 def turn_freely(state, inertia, dt):
-    """Rotate freely over a step on the floor: rates by the midpoint rule, then no energy won or lost."""
+    """Rotate a state (13,) freely over dt [sqrt(L/g)] on the floor: by the midpoint rule, energy kept."""
     i, j, k = inertia[0], inertia[1], inertia[2]
     a, b, c = (j - k) / i, (k - i) / j, (i - j) / k  # Euler's equations
     p, q, r = state[W], state[W + 1], state[W + 2]
@@ -96,7 +96,7 @@ def turn_freely(state, inertia, dt):
 
 @compiled
 def coast(inertia, p, q, r, dt):
-    """Return the rates after free rotation over dt, of fourth order, and what the turn over it is.
+    """Return rates [sqrt(g/L)] after free rotation over dt [sqrt(L/g)], of fourth order, and the turn [rad].
 
     The rates follow Euler's equations by the rule of Runge and Kutta, then no energy is won or lost. The turn
     is the first terms of Magnus' series, h / 2 (w + w') + h^2 / 12 (dw - dw' + w x w'): the rates are a cubic
@@ -130,7 +130,7 @@ def coast(inertia, p, q, r, dt):
 
 @compiled
 def tumble(state, inertia, dt):
-    """Rotate freely over dt, to fourth order."""
+    """Rotate a state (13,) freely over dt [sqrt(L/g)], to fourth order."""
     p, q, r, x, y, z = coast(inertia, state[W], state[W + 1], state[W + 2], dt)
     state[W], state[W + 1], state[W + 2] = p, q, r
     half = 0.25 * (x * x + y * y + z * z)
@@ -140,7 +140,7 @@ def tumble(state, inertia, dt):
 
 @compiled
 def fly(state, inertia, dt):
-    """Fly over dt."""
+    """Fly a state (13,) over dt [sqrt(L/g)]."""
     state[X] += dt * state[VX]
     state[Y] += dt * state[VY]
     state[Z] += dt * (state[VZ] - 0.5 * dt)
@@ -150,7 +150,7 @@ def fly(state, inertia, dt):
 
 @compiled
 def lowest(points, links, turn, corner):
-    """Find the lowest corner, down the hull's edges from ``corner``; and its height over the centre."""
+    """Find the lowest of the points (V, 3) [L], down the hull's edges; return it and its height [L]."""
     a, b, c = turn[6], turn[7], turn[8]
     best = a * points[corner, 0] + b * points[corner, 1] + c * points[corner, 2]
     while True:
@@ -178,7 +178,7 @@ def rim_level(rims, k, turn):
 
 @compiled
 def bottom(solid, turn, corner):
-    """Return the corner from which to look on, and the height of the body's lowest point over its centre.
+    """Return the corner from which to look on, and the height [L] of the body's lowest point over its centre.
 
     A corner that a rim replaces counts, too: beyond an arc's end, and by rounding, its rim is not lower.
     """

@@ -92,7 +92,7 @@ def gap_after(solid, work, floor, time, corner, dt):
 
 @compiled
 def approach(solid, work, floor, time, corner, gap, steps):
-    """Take one step through the air, ended on the floor if it would go below; corner, gap and time taken.
+    """Take one step through the air, ended on the floor; return corner, gap [L] and time taken [sqrt(L/g)].
 
     No point comes down faster than ``down``, and what gravity adds, whatever way the body turns.
     """
@@ -133,7 +133,7 @@ def move(solid, work, corner, dt):
 
 @compiled
 def press_on(solid, work, floor, time, corner, count, friction, steps):
-    """Take one step on the floor, ended where another point lands; corner, gap and time taken.
+    """Take one step on the floor, to where another point lands; return corner, gap [L] and time [sqrt(L/g)].
 
     Of first order in the step, as measured (benchmarks/convergence.py): positions follow the mean velocity
     and forces act half of the step ahead, but speeds are wanted at its end.
@@ -173,7 +173,7 @@ def press_on(solid, work, floor, time, corner, count, friction, steps):
 
 @compiled
 def limit_energy(solid, work, before, gap, pull, press):
-    """Lift a body that has sunk in; leave it no more energy than it had ``before`` and the forces gave it."""
+    """Lift a body that sank in by ``gap`` [L]; leave it the energy [g L] it had and what forces gave."""
     state = work.state
     left = before + pull * (state[X] - work.saved[X]) + press * (state[Z] - work.saved[Z])
     lift = max(-gap, 0.0)
@@ -185,7 +185,7 @@ def limit_energy(solid, work, before, gap, pull, press):
 
 @compiled
 def resist(state, inertia, lever, dt):
-    """Take the work of rolling resistance out of the rotation."""
+    """Take the work of rolling resistance with a lever [L] over dt [sqrt(L/g)] out of a state's rotation."""
     spinning = body.spin_energy(state, inertia)
     if spinning > 0.0:
         scale = math.sqrt(max(1.0 - lever * body.rate(state) * dt / spinning, 0.0))

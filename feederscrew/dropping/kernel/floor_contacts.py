@@ -19,14 +19,14 @@ LEVER, RATE, MASS, WANTED, IMPULSE, LAST, CHANGE, WIDTH = 0, 9, 18, 21, 22, 25, 
 
 @compiled
 def arms(work, count):
-    """Fill the levers of ``work.contacts`` for the points found, where they are: their speeds follow."""
+    """Fill the levers [L] of ``work.contacts`` (N, WIDTH) for the points found: their speeds follow."""
     for n in range(count):
         arm(work.turn, work.spots[n], work.contacts[n])
 
 
 @compiled
 def levers(inertia, work, count):
-    """Fill the rows of ``work.contacts`` for the points found, where they are."""
+    """Fill the rows of ``work.contacts`` (N, WIDTH) for the points found; inertia (3,) [L2] over mass."""
     arms(work, count)
     for n in range(count):
         rates(inertia, work.contacts[n])
@@ -34,7 +34,7 @@ def levers(inertia, work, count):
 
 @compiled
 def levers_ahead(solid, work, count, dt):
-    """Fill the rows for a step: impulses act half of it ahead, and speeds are wanted at its end.
+    """Fill the rows for a step dt [sqrt(L/g)]: impulses act half of it ahead, speeds are wanted at its end.
 
     A rim's lowest point travels around it meanwhile.
     """
@@ -58,7 +58,7 @@ def levers_ahead(solid, work, count, dt):
 
 @compiled
 def arm(turn, spot, row):
-    """Fill the levers of a contact."""
+    """Fill the levers [L] of a contact, a row (WIDTH,), at a spot (3,) [L] in body axes."""
     for e in range(3):
         x, y, z = turn[3 * e], turn[3 * e + 1], turn[3 * e + 2]
         k = LEVER + 3 * e
@@ -68,14 +68,14 @@ def arm(turn, spot, row):
 
 @compiled
 def rates(inertia, row):
-    """Fill the rates of a contact from its levers."""
+    """Fill the rates [1/L] of a contact, a row (WIDTH,), from its levers [L] and the inertia (3,) [L2]."""
     for k in range(9):
         row[RATE + k] = row[LEVER + k] / inertia[k % 3]
 
 
 @compiled
 def masses(row):
-    """Fill the effective masses of a contact from its levers and rates."""
+    """Fill the effective masses [1] of a contact, a row (WIDTH,), from its levers and rates."""
     xx, yy, zz = 1.0 + coupling(row, 0, 0), 1.0 + coupling(row, 1, 1), 1.0 + coupling(row, 2, 2)
     lean, mean, cross = 0.5 * (xx - yy), 0.5 * (xx + yy), coupling(row, 0, 1)
     row[MASS] = row[MASS + 1] = 1.0 / (mean + math.sqrt(lean * lean + cross * cross))
@@ -91,7 +91,7 @@ def speed(state, row, e):
 
 @compiled
 def push(state, row, e, impulse):
-    """Give the body the impulse of a contact along floor axis e."""
+    """Give the body of a state (13,) the impulse [sqrt(g L)] of a contact along floor axis e."""
     k = RATE + 3 * e
     state[VX + e] += impulse
     state[W] += row[k] * impulse

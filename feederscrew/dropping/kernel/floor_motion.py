@@ -57,7 +57,7 @@ def quickening(floor, time, dt):
 
 @compiled
 def gained(floor, time, dt):
-    """Return the floor's way over a step beyond its present velocity times ``dt``, along x and z."""
+    """Return the floor's way [L] over dt [sqrt(L/g)] beyond its present velocity times dt, along x and z."""
     if floor.rate == 0.0:
         return 0.0, 0.0
     now, then = floor.rate * time, floor.rate * (time + dt)

@@ -27,7 +27,7 @@ FURTHEST = 1000.0  # a leap, in changes of a sweep
 
 @compiled
 def stick(state, row, friction):
-    """Hold a single contact still by an impulse, if friction can; returns whether it was given."""
+    """Hold one contact, a row (WIDTH,), still by an impulse [sqrt(g L)]; return whether friction can."""
     u, v, w = -speed(state, row, 0), -speed(state, row, 1), row[WANTED] - speed(state, row, 2)
     xx, yy, zz = 1.0 + coupling(row, 0, 0), 1.0 + coupling(row, 1, 1), 1.0 + coupling(row, 2, 2)
     xy, xz, yz = coupling(row, 0, 1), coupling(row, 0, 2), coupling(row, 1, 2)
@@ -60,7 +60,7 @@ def spun(c, n, k, impulse, p, q, r):
 
 @compiled
 def relax(c, n, friction, u, v, w, p, q, r):
-    """Do one projected Gauss-Seidel step on contact n: velocities and rates after it."""
+    """Do one projected Gauss-Seidel step on contact n; return velocities [sqrt(g L)], rates [sqrt(g/L)]."""
     x, y, z = c[n, IMPULSE], c[n, IMPULSE + 1], c[n, IMPULSE + 2]
     up = max(z + c[n, MASS + 2] * (c[n, WANTED] - along(c, n, LEVER + 6, w, p, q, r)), 0.0)
     w += up - z
@@ -81,7 +81,7 @@ def relax(c, n, friction, u, v, w, p, q, r):
 
 @compiled
 def noted(contacts, count):
-    """Keep what the last sweep changed of the impulses, and the impulses themselves."""
+    """Keep what the last sweep changed of impulses [sqrt(g L)] of contacts (N, WIDTH), and the impulses."""
     for n in range(count):
         for e in range(3):
             contacts[n, CHANGE + e] = contacts[n, IMPULSE + e] - contacts[n, LAST + e]
@@ -90,7 +90,7 @@ def noted(contacts, count):
 
 @compiled
 def leap(contacts, count):
-    """Return how often the last sweep's change may be repeated before a contact pulls; 0 for never.
+    """Return how often [1] the last sweep's change may be repeated before a contact pulls; 0 for never.
 
     Two sweeps that change the impulses the same way tell the rest of the geometric series (Aitken). Of two
     corners side by side the impulse creeps from one to the other, by as much in every sweep.
@@ -113,7 +113,7 @@ def leap(contacts, count):
 
 @apart
 def solve(state, contacts, count, friction, sweeps, converged):
-    """Give contact impulses with Coulomb friction: each contact leaves at its wanted speed or faster.
+    """Give contacts (N, WIDTH) impulses [sqrt(g L)] with Coulomb friction: they leave as wanted or faster.
 
     One or two contacts directly where that goes; else swept from the impulses that the contacts hold, until
     a whole sweep changes the body's velocities by no more than ``converged`` of what presses it: between many
@@ -127,7 +127,7 @@ def solve(state, contacts, count, friction, sweeps, converged):
 
 @compiled
 def sweep(state, contacts, count, friction, sweeps, converged):
-    """Give contact impulses by projected Gauss-Seidel sweeps, from those that the contacts hold."""
+    """Give contacts (N, WIDTH) impulses [sqrt(g L)] by projected Gauss-Seidel sweeps, from what they hold."""
     for n in range(count):
         masses(contacts[n])
         for e in range(3):
@@ -161,7 +161,7 @@ def sweep(state, contacts, count, friction, sweeps, converged):
 
 @compiled
 def strike(inertia, state, saved, contacts, count, restitution, friction, steps):
-    """Do an impact: corners that approach faster than the threshold rebound; energy is never won."""
+    """Do an impact: contacts (N, WIDTH) that approach faster than the threshold [sqrt(g L)] rebound."""
     before = energy(state, inertia)
     keep(state, saved)
     for trial in range(4):
@@ -179,7 +179,7 @@ def strike(inertia, state, saved, contacts, count, restitution, friction, steps)
 
 @compiled
 def steepest(state, contacts, count):
-    """Return the upward speed of the contact that falls fastest."""
+    """Return the upward speed [sqrt(g L)] of that of the contacts (N, WIDTH) which falls fastest."""
     fall = math.inf
     for n in range(count):
         fall = min(fall, speed(state, contacts[n], 2))
@@ -188,7 +188,7 @@ def steepest(state, contacts, count):
 
 @compiled
 def hold(state, contacts, count, friction, steps, share):
-    """Give impulses that let nothing fall further, without rebound; sought from a share of the last."""
+    """Give contacts (N, WIDTH) impulses [sqrt(g L)] that let nothing fall further, without rebound."""
     for n in range(count):
         contacts[n, WANTED] = 0.0
         for k in range(IMPULSE, LAST):

@@ -22,7 +22,7 @@ STEADY = 0.3  # of the barrier: what a steadily rolling part may have beside its
 
 @compiled
 def face_below(shape, turn, corner):
-    """Return the face the body would roll to if set down as it is."""
+    """Return the face [1] the body would roll to if set down as ``turn`` (9,) has it."""
     down = -turn[6], -turn[7], -turn[8]
     facet = roll_from_facet(shape.edges, roll_from_corner(shape.edges, down, corner))
     return shape.faces[facet] if facet != LOST else UNSETTLED
@@ -44,7 +44,7 @@ def rolling_energy(shape, state, turn, face):
 
 @compiled
 def slides_flat(shape, state, turn, face, friction):
-    """Tell whether the body lies flat on the floor and friction cannot tip it while it slides."""
+    """Tell whether the body of a state (13,) lies flat and friction [1] cannot tip it while it slides."""
     around = state[W] * turn[6] + state[W + 1] * turn[7] + state[W + 2] * turn[8]
     quick = body.rate(state)
     rocking = quick * quick - around * around
@@ -79,7 +79,7 @@ def decided(shape, state, turn, corner, count, friction, quiet, steps):
 
 @compiled
 def record(trace, k, time, state):
-    """Write one row of a trace."""
+    """Write row k of a trace (K, 14): time [sqrt(L/g)] and state (13,)."""
     trace[k, 0] = time
     for j in range(body.STATE):
         trace[k, 1 + j] = state[j]

@@ -19,7 +19,7 @@ PATIENCE = 50  # steps for each that a floor without events would take
 
 @compiled
 def lying(shape, state, turn, corner):
-    """Return the face on which the body lies, travelling or spinning; UNSETTLED while it may be tipping."""
+    """Return the face on which the body of a state (13,) lies, travelling or spinning, or UNSETTLED."""
     face = face_below(shape, turn, corner)
     if face == UNSETTLED:
         return UNSETTLED
@@ -32,7 +32,7 @@ def lying(shape, state, turn, corner):
 
 @compiled
 def rocking_energy(shape, state, turn):
-    """Return the rotational energy without the spin about the vertical."""
+    """Return the rotational energy [g L] of a state (13,) without the spin about the vertical."""
     around = state[W] * turn[6] + state[W + 1] * turn[7] + state[W + 2] * turn[8]
     energy = 0.0
     for k in range(3):
@@ -43,7 +43,7 @@ def rocking_energy(shape, state, turn):
 
 @compiled
 def held_fast(shape, state, turn, corner, kick):
-    """Return the face that the floor's motion, which gives it ``kick`` at most, cannot tip the body off."""
+    """Return the face that the floor, which gives a part ``kick`` [g L] at most, cannot tip it off."""
     total = body.energy(state, shape.solid.inertia) + kick
     if total >= shape.ceiling:
         return UNSETTLED

@@ -16,7 +16,7 @@ TURNS = 6  # changes of the directions after which the sweeps take over
 
 @compiled
 def slide(state, contacts, count, friction, converged):
-    """Give impulses to one or two contacts that press and slip; returns whether they were found."""
+    """Give impulses [sqrt(g L)] to one or two contacts (N, WIDTH) that press and slip; say if found."""
     first, last = contacts[0], contacts[count - 1]
     for n in range(count):
         aim(contacts[n], friction, speed(state, contacts[n], 0), speed(state, contacts[n], 1))
@@ -38,7 +38,7 @@ def slide(state, contacts, count, friction, converged):
 
 @compiled
 def aim(row, friction, ahead, aside):
-    """Note the impulse of a contact that slips with such a velocity; how far it turned."""
+    """Note the impulse of a contact that slips with a velocity [sqrt(g L)]; return how far it turned [1]."""
     size = math.sqrt(ahead * ahead + aside * aside)
     if size == 0.0:
         return math.inf
@@ -71,7 +71,7 @@ def pressed(state, first, last, count):
 
 @compiled
 def turned(state, row, first, last, one, other, friction):
-    """Aim a contact along the slip that impulses leave; how far it turned."""
+    """Aim a contact, a row (WIDTH,), along the slip that impulses leave; return how far it turned [1]."""
     ahead = speed(state, row, 0) + one * given(row, 0, first) + other * given(row, 0, last)
     aside = speed(state, row, 1) + one * given(row, 1, first) + other * given(row, 1, last)
     return aim(row, friction, ahead, aside)

@@ -71,7 +71,7 @@ def lowest_on(rims, k, turn):
 
 @compiled
 def on_rim(rims, k, work, height, reach, count):
-    """Write the lowest point of a rim to ``work.spots``, and QUARTERS around it where all of it touches."""
+    """Write a rim's lowest point to ``work.spots`` (N, 3) [L], and QUARTERS around it where all touches."""
     r, turn, spots = rims[k], work.turn, work.spots
     x, y, z, steep = lowest_on(rims, k, turn)
     u, v, w = r[4] * z - r[5] * y, r[5] * x - r[3] * z, r[3] * y - r[4] * x  # a quarter of a turn on
@@ -92,7 +92,7 @@ def on_rim(rims, k, work, height, reach, count):
 
 @compiled
 def thin_out(spots, owners, turn, count):
-    """Keep of many touching points the lowest and those furthest out around it, in front of the others."""
+    """Keep of many touching spots (N, 3) [L] the lowest and those furthest out around it, in front."""
     best, first = math.inf, 0
     for k in range(count):
         level = turn[6] * spots[k, 0] + turn[7] * spots[k, 1] + turn[8] * spots[k, 2]
@@ -111,7 +111,7 @@ def thin_out(spots, owners, turn, count):
 
 @compiled
 def furthest(spots, turn, count, cos, sin):
-    """Return the index of the point furthest along a direction of the floor."""
+    """Return the index of that of the spots (N, 3) [L] which is furthest along a direction of the floor."""
     best, first = -math.inf, 0
     for k in range(count):
         p = spots[k]
@@ -124,7 +124,7 @@ def furthest(spots, turn, count, cos, sin):
 
 @compiled
 def swap(spots, owners, i, j):
-    """Exchange two points."""
+    """Exchange two of the spots (N, 3) [L], with their owners (N,)."""
     owners[i], owners[j] = owners[j], owners[i]
     for e in range(3):
         spots[i, e], spots[j, e] = spots[j, e], spots[i, e]

@@ -185,7 +185,7 @@ def stable_heading(posture, bowl):
 
 
 def with_friction(bowl, friction):
-    """Return the bowl with one coefficient for sticking and sliding; the wall keeps its own."""
+    """Return the bowl with one coefficient [1] for sticking and sliding; the wall keeps its own."""
     return replace(bowl, friction=replace(bowl.friction, static=friction, kinetic=friction))
 
 

@@ -8,7 +8,7 @@ NAMELESS = -1  # a sink of no face
 
 
 def roots(forest):
-    """Return the root of every member of a forest."""
+    """Return the root of every member of a forest (N,) of places in itself."""
     while True:
         further = forest[forest]
         if np.array_equal(further, forest):
@@ -31,7 +31,7 @@ def on_lists(function):
 
 @compiled
 def root(forest, k):
-    """Return the root of a member of a forest, and cut the way to it short."""
+    """Return the root of a member of a forest (N,), and cut the way to it short."""
     while forest[k] != k:
         forest[k] = forest[forest[k]]
         k = forest[k]

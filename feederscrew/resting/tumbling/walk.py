@@ -87,7 +87,7 @@ def next_corner(edges, x, corner, sign):
 
 @compiled
 def side_of(edges, h, x):
-    """Return the facet to which the part rolls from direction x on the arc of a half-edge."""
+    """Return the facet to which the part rolls from direction x (3,) [1] on the arc of a half-edge."""
     u, w = row(edges.vertices, edges.origins[h]), row(edges.vertices, edges.targets[h])
     ahead = h if triple(x, u, w) >= 0.0 else edges.twins[h]
     return edges.facets[ahead // 3]
@@ -95,7 +95,7 @@ def side_of(edges, h, x):
 
 @compiled
 def support(edges, x, corner):
-    """Return the corner furthest along direction x, climbing from ``corner``."""
+    """Return the corner furthest along direction x (3,) [1], climbing from ``corner``."""
     while True:
         height = dot(x, row(edges.vertices, corner))
         start = h = edges.vertex_edges[corner]
@@ -114,7 +114,7 @@ def support(edges, x, corner):
 
 @compiled
 def roll_from_corner(edges, x, corner):
-    """Return the facet first reached by a part that rolls over a corner from direction x; LOST if none.
+    """Return the facet first reached by a part that rolls over a corner from x (3,) [1]; LOST if none.
 
     A corner in the middle of a facet or an edge gives way to the lowest corner of the facet.
     """

@@ -19,7 +19,7 @@ NOZZLE = {  # dimension and limits, in SI units, of what is said of a jet
 
 
 def length(entry):
-    """Read a length above 0, as {'limit': m}."""
+    """Read a length above 0, as {'limit': [m]}."""
     limit = _quantity(entry.value, entry.key, "length")
     if limit <= 0.0:
         what = f"{entry.key} is {units.one_line(entry.value.text)}"
@@ -231,7 +231,7 @@ def _parsed(text, where, name, dimension):
 
 
 def crossed(corners):
-    """Return whether two sides that are not neighbours meet, or two corners coincide."""
+    """Return whether two sides of corners (K, 2) that are not neighbours meet, or two corners coincide."""
     sides = list(zip(corners, (*corners[1:], corners[0])))
     count = len(sides)
     for i in range(count):

@@ -73,7 +73,7 @@ def _inside(apart):
 
 
 def smallest_change(wanted, other, margin):
-    """Return in words the least that has to be added to what some device measures of a part."""
+    """Return in words the least [m] that has to be added to what some device measures of a part."""
     feature, step = _nearest(wanted, other)
     return f"{1e3 * max(2.0 * margin - step, 0.0):.2g} mm more in {feature} would part them"
 

@@ -273,7 +273,7 @@ def judged(every, wanted, device, must, smallest, largest):
 
 
 def millimetres(value):
-    """Return a length as a bowl file has it, to a tenth of a micrometre: '9.25 mm'."""
+    """Return a length [m] as a bowl file has it, to a tenth of a micrometre: '9.25 mm'."""
     return f"{1e3 * fine(value):.9g} mm"
 
 

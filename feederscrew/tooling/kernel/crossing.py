@@ -165,7 +165,7 @@ def _keep(row, k, j, t0, t1, phi0, phi1):
 
 @compiled
 def place(side, edge, row, phi):
-    """Return the share of a side at which an edge shifted by ``phi`` crosses it, on one stretch."""
+    """Return the share [1] of a side at which an edge shifted by ``phi`` [rad] crosses it, on one stretch."""
     low, high = row[T0], row[T1]
     if low == high:
         return low

@@ -11,7 +11,7 @@ ROUNDING = 1e-12  # [m] of a margin: what is sure by more cannot come out lower
 
 @apart
 def carried(foot, hole, scratch, i, margin):
-    """Whether the corners that have track below in a piece carry a foot by a margin for certain.
+    """Return whether the corners that have track below in a piece carry a foot by a margin [m] for certain.
 
     More track can only carry it better, so the few corners of its hull are asked first; with all of them it
     is carried as on the whole track, to the last digit. Fills ``keep`` where that is not certain.
@@ -29,7 +29,7 @@ def carried(foot, hole, scratch, i, margin):
 
 @apart
 def kept_inset(foot, scratch, corners):
-    """The margin on no more than those of some corners of a foot that have track below."""
+    """Return the margin [m] on no more than those of some corners of a foot that have track below."""
     count = 0
     for k in corners:
         if scratch.keep[k]:

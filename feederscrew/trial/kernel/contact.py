@@ -23,7 +23,7 @@ TOWARDS = AXES + 3 * NORMAL  # where it is
 
 @compiled
 def axes(row, tangent, normal):
-    """Write the axes of a contact with a normal, the first along the track where it can be."""
+    """Write the axes (9,) [1] of a contact with a normal, the first along the track where it can be."""
     nx, ny, nz = normal
     u, v, w = tangent[0], tangent[1], 0.0
     across = u * nx + v * ny
@@ -39,7 +39,7 @@ def axes(row, tangent, normal):
 
 @compiled
 def levers(row, turn, inertia, spot):
-    """Write the levers of a contact at a spot in body axes, the rates and the masses."""
+    """Write the levers [L] of a contact at a spot (3,) [L] in body axes, its rates [1/L] and masses [1]."""
     x, y, z = spot
     for e in range(3):
         u, v, w = row[AXES + 3 * e], row[AXES + 3 * e + 1], row[AXES + 3 * e + 2]
@@ -54,7 +54,7 @@ def levers(row, turn, inertia, spot):
 
 @apart
 def put(crowd, n, solid, spot, normal, gap, rub, key):
-    """Add a contact of part n at a spot in its axes, with a normal in the bowl's frame."""
+    """Add a contact of part n at a spot (3,) [L] in its axes, with a normal (3,) [1] in the bowl's frame."""
     count = crowd.counts[n]
     if count >= crowd.rows.shape[1]:
         return
@@ -219,7 +219,7 @@ def solve(surface, crowd, states, island, rough, warm):
 
 @compiled
 def remembered(crowd, n):
-    """Begin the contacts of a part with the impulses that they had a step before."""
+    """Begin the contacts of a part with the impulses [sqrt(g L)] that they had a step before."""
     start = 0
     for m in range(crowd.counts[n]):
         row = crowd.rows[n, m]
@@ -234,7 +234,7 @@ def remembered(crowd, n):
 
 @compiled
 def remember(crowd, n):
-    """Keep the impulses of a part's contacts for the next step."""
+    """Keep the impulses [sqrt(g L)] of a part's contacts for the next step."""
     crowd.knowns[n] = crowd.counts[n]
     for m in range(crowd.counts[n]):
         crowd.known[n, m, 0] = crowd.rows[n, m, KEY]

@@ -32,7 +32,7 @@ AS_FAR = 4.0  # times its depth: a deeper contact is none where so near to it an
 
 @apart
 def found(surface, solid, crowd, n, reach):
-    """Find every contact of part n as it is; ``crowd.turns`` and ``crowd.tangents`` are of its place."""
+    """Find every contact of part n within ``reach`` [L]; its turn and tangent are of its place."""
     if not near.hold(crowd, solid, n, reach):
         near.look_around(surface, solid, crowd, n, reach)
     crowd.counts[n] = 0

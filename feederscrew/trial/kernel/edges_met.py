@@ -59,7 +59,7 @@ def _put_edge(crowd, n, solid, at, normal, gap, rub, key):
 
 @compiled
 def edges_on(surface, solid, crowd, n, k, reach, lying):
-    """Add contacts of the part's edges with a plate's borders; how many carry it, with those before."""
+    """Add contacts of edges with a plate's borders within ``reach`` [L]; return how many carry it."""
     plate, frame = surface.plates[k], crowd.frame
     for m in range(first_of(crowd, n, k, EDGES), crowd.ends[n, k, EDGES]):
         edge, border = crowd.edges[n, m, 0], surface.borders[crowd.edges[n, m, 1]]
@@ -129,7 +129,7 @@ def crossing(p, along, ends, border, reach):
 
 @compiled
 def edges_on_posts(surface, solid, crowd, n, k, reach):
-    """Add contacts of the part's edges with what runs straight back from the convex corners of borders."""
+    """Add contacts of edges within ``reach`` [L] of what runs back from convex corners of borders."""
     plate, frame = surface.plates[k], crowd.frame
     for m in range(first_of(crowd, n, k, POSTS), crowd.ends[n, k, POSTS]):
         edge, border = crowd.posts[n, m, 0], surface.borders[crowd.posts[n, m, 1]]
@@ -183,7 +183,7 @@ def _before_corner(border, u, v):
 
 @compiled
 def faces_on(surface, solid, crowd, n, k, reach, lying):
-    """Add contacts of the part's faces with the convex corners of borders; as ``edges_on``."""
+    """Add contacts of faces within ``reach`` [L] of the convex corners of borders; as ``edges_on``."""
     plate, frame = surface.plates[k], crowd.frame
     m, last = first_of(crowd, n, k, CORNERS), crowd.ends[n, k, CORNERS]
     while m < last:

@@ -22,7 +22,7 @@ def ray(k):
 
 @compiled
 def blow(surface, solid, floor, crowd, n, time, dt):
-    """Add what jets change of a part's velocity and rates over a step to ``crowd.given``."""
+    """Add what jets change of velocity and rates [sqrt(g L), sqrt(g/L)] over a step to ``crowd.given``."""
     blown = crowd.blown[n]
     often = 2.0 * math.pi / floor.rate / OFTEN if floor.rate > 0.0 else dt
     if not blown[AGAIN] - often <= time < blown[AGAIN]:

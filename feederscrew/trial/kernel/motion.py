@@ -29,7 +29,7 @@ def ahead(solid, state, dt):
 
 @compiled
 def met(surface, solid, crowd, island, dt):
-    """Find the contacts of an island's parts with the track and with each other, at the start of a step."""
+    """Find the contacts of an island's parts with the track and each other, as dt [sqrt(L/g)] begins."""
     reach = 0.0
     for m in range(island[0], island[1]):
         n = crowd.order[m]
@@ -107,7 +107,7 @@ def pushed(surface, solid, floor, crowd, island, time, dt):
 
 @apart
 def lift(surface, solid, crowd, island, dt):
-    """Take a part of what is too deep back, without a speed, as far as the parts' motion can pay for it."""
+    """Take a part of what is too deep [L] back, without a speed, as far as the motion can pay for it."""
     push, cost = crowd.push, 0.0
     for m in range(island[0], island[1]):
         n = crowd.order[m]
@@ -198,7 +198,7 @@ def _strained(crowd):
 
 @compiled
 def unpaid(solid, crowd, island, taken):
-    """Change of the kinetic energy over a step, less the work of gravity, drive and jets; at mass 1.
+    """Return the change of the energy over mass [g L] in a step, less the work of gravity, drive and jets.
 
     Both in the bowl's frame, in which the drive is a force.
     """

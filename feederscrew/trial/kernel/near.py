@@ -18,7 +18,7 @@ SIDED = 4  # where it is counted how many borders near corners there are
 
 @compiled
 def hold(crowd, solid, n, reach):
-    """Say whether the lists of a part still hold for contacts that far ahead."""
+    """Say whether the lists of a part still hold for contacts ``reach`` [L] ahead."""
     state, made = crowd.states[n], crowd.made[n]
     square = turned = other = 0.0
     for k in range(3):
@@ -32,7 +32,7 @@ def hold(crowd, solid, n, reach):
 
 @apart
 def look_around(surface, solid, crowd, n, reach):
-    """Make the lists of a part anew."""
+    """Make the lists of a part anew, of what may come within ``reach`` [L]."""
     state, made = crowd.states[n], crowd.made[n]
     margin = reach + max(AROUND, FURTHER * reach)
     for k in range(3):

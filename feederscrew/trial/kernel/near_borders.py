@@ -106,7 +106,7 @@ def _past(p, q, border, wide):
 
 @compiled
 def near_faces(surface, solid, crowd, n, plate, nears, margin):
-    """Add the faces of a part near the convex corners of near borders."""
+    """Add the faces of a part within ``margin`` [L] of the convex corners of near borders."""
     frame, box = crowd.frame, crowd.box
     for m in range(nears):
         border = surface.borders[crowd.near[m]]

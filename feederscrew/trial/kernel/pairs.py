@@ -17,7 +17,7 @@ BESIDE = 2e-3  # by which a corner may lie beside the face it touches
 
 @apart
 def met(solid, crowd, i, j, reach):
-    """Add contacts of two parts with each other, if they come so near."""
+    """Add contacts of two parts with each other, if they come within ``reach`` [L]."""
     _relative(crowd, i, j)
     if not _meet(crowd, reach):
         return
@@ -28,7 +28,7 @@ def met(solid, crowd, i, j, reach):
 
 @compiled
 def may_meet(solid, crowd, i, j, reach):
-    """Say whether two parts come so near to each other, by balls and boxes around them."""
+    """Say whether two parts come within ``reach`` [L] of each other, by balls and boxes around them."""
     square = 0.0
     for e in range(3):
         square += (crowd.states[i, X + e] - crowd.states[j, X + e]) ** 2
@@ -182,7 +182,7 @@ def _near_faces(crowd, solid, reach):
 
 @compiled
 def corners_on(crowd, solid, i, j, reach, count):
-    """Add contacts of the corners of part i with faces of part j; leaves the corners in ``crowd.shown``."""
+    """Add contacts of part i's corners within ``reach`` [L] of faces of j; fills ``crowd.shown`` (C, 3)."""
     _relative(crowd, i, j)
     _shifted(solid.corners, crowd.frame, crowd.shown)
     nears = _near_corners(crowd, solid, reach)
@@ -225,7 +225,7 @@ def _beside(p, q, r, s, reach):
 
 @compiled
 def edges_on(crowd, solid, i, j, reach, count):
-    """Add contacts of the convex edges of part i, its corners in ``crowd.shown``, with those of part j."""
+    """Add contacts of convex edges of part i, corners in ``crowd.shown`` (C, 3) [L], with those of j."""
     nears = _near_edges(solid, crowd.shown, crowd.least, crowd.most, reach, crowd.ours)
     _emptied(crowd.box)
     for m in range(nears):

@@ -14,7 +14,7 @@ INSIDE = 1.0 - 1e-9  # a border's end counts for the next border's start
 
 @compiled
 def seen_by(plate, state, turn, frame):
-    """Write how a plate sees a body: rotation, row by row, and place."""
+    """Write how a plate (21,) sees a body to ``frame`` (12,): rotation [1], row by row, and place [L]."""
     x, y, z = state[X] - plate[0], state[Y] - plate[1], state[Z] - plate[2]
     for e in range(3):
         u, v, w = plate[ACROSS + 3 * e], plate[ACROSS + 3 * e + 1], plate[ACROSS + 3 * e + 2]
@@ -62,7 +62,7 @@ def off_wall(surface, leans, x, y, z):
 
 @compiled
 def inside(borders, first, last, a, b):
-    """Say whether a point of a plate's surface is solid: it is within its borders, holes left out."""
+    """Say whether a point (a, b) [L] of a plate is solid: within its borders (B, 12), holes left out."""
     odd = False
     for k in range(first, last):
         p, q, r, s = borders[k, 0], borders[k, 1], borders[k, 2], borders[k, 3]
@@ -92,7 +92,7 @@ def beside(border, a, b):
 
 @compiled
 def within(solid, k, x, y, z, wide):
-    """Say whether a point lies over a triangle, or no further than that outside it."""
+    """Say whether a point [L] lies over triangle k, or no further than ``wide`` [L] outside it."""
     n = solid.normals[k]
     for i in range(3):
         p, q = solid.vertices[solid.triangles[k, i]], solid.vertices[solid.triangles[k, (i + 1) % 3]]

@@ -15,7 +15,7 @@ STILL = 1e-5  # speed along a contact below which it sticks while static frictio
 
 @compiled
 def give(surface, solid, floor, crowd, n, time, dt):
-    """Write the changes of a part's velocity and rates over dt by gravity, the drive and jets."""
+    """Write the changes (6,) [sqrt(g L), sqrt(g/L)] of velocity and rates by gravity, drive and jets."""
     given, state, turn = crowd.given[n], crowd.before[n], crowd.turns[n]
     c, s = crowd.tangents[n, 0], crowd.tangents[n, 1]
     x, y = state[X], surface.radius - state[Y]
@@ -65,7 +65,7 @@ def wanted(surface, crowd, n, dt):
 
 @compiled
 def wanted_of_pairs(surface, crowd, dt):
-    """Say how each contact of two parts shall leave a step, with which friction; as ``wanted``."""
+    """Say with which speed [sqrt(g L)] each contact of two parts shall leave a step; as ``wanted``."""
     deepest, strikes, share = 0.0, False, 1.0
     for k in range(0, crowd.paired[0], 2):
         row = crowd.pairs[k]

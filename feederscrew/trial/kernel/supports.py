@@ -28,7 +28,7 @@ def add(levels, count, place, gap, spot, key):
 
 @apart
 def outermost(levels, best, count):
-    """Move the contacts that are kept, the lowest and those furthest out, before the others; how many.
+    """Move the levels (L, 7) [L] that are kept, the lowest and those furthest out, to the front; how many.
 
     ``best`` has WAYS + 1 rows in which it works.
     """

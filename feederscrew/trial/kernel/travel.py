@@ -28,7 +28,7 @@ def across(surface, state):
 
 @apart
 def over(surface, solid, floor, crowd, island, time, notes):
-    """Move an island's parts through a step of the floor; ``notes`` gets depth and energy."""
+    """Move an island's parts through a step of the floor; ``notes`` gets depth [L] and energy [g L]."""
     rest = floor.step
     while rest > LEFT * floor.step:
         now = time + floor.step - rest
@@ -42,7 +42,7 @@ def over(surface, solid, floor, crowd, island, time, notes):
 
 @compiled
 def travel(surface, limits, solid, floor, crowd, time, every, path, notes):
-    """Follow the one part of a crowd until it has passed, has dropped out or its time is up; its outcome."""
+    """Follow the one part of a crowd until it passed, dropped out or its time [sqrt(L/g)] is up."""
     state, dt, begun, start = crowd.states[0], floor.step, time, way(surface, crowd.states[0])
     crowd.lasted[0] = crowd.made[0, 7] = crowd.blown[0, jets.AGAIN] = -1.0
     crowd.knowns[0] = 0
@@ -144,7 +144,7 @@ def _islands(solid, crowd, active, dt):
 
 @entry
 def follow(surface, solid, floor, crowd, active, time, steps, notes):
-    """Move all active parts for so many steps of the floor; fills ``crowd.strains`` and ``notes``."""
+    """Move all active parts so many steps; fills ``crowd.strains`` (N, 2) [sqrt(g L)] and ``notes``."""
     for n in range(len(crowd.states)):
         crowd.strains[n, motion.BEHIND] = crowd.strains[n, motion.BELOW] = 0.0
     for k in range(steps):
