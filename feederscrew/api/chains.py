@@ -130,7 +130,7 @@ def report(
     """
     from feederscrew.studies.report import report as study
 
-    own = {name: value for name, value in answer.items() if name not in ("rule", "known")}
+    own: dict[str, Any] = {name: value for name, value in answer.items() if name not in ("rule", "known")}
     file = bowl or {}
     path = file.get("path")
     return study(

@@ -1,7 +1,7 @@
 """How many well-oriented parts leave a bowl, and what drive or what bowl reaches a rate."""
 
 from collections.abc import Sequence
-from typing import Unpack, cast
+from typing import Any, Unpack, cast
 
 from feederscrew.api import asked
 from feederscrew.api.asked import AlongTrack, BowlFile, ProbabilitySource, Quantity
@@ -176,7 +176,7 @@ def size_bowl(
     """
     from feederscrew.studies.bowl import bowl as study
 
-    own = {"rule": rule, "gap": asked.amount("gap", gap, "length", 0.0), "fill": fill}
+    own: dict[str, Any] = {"rule": rule, "gap": asked.amount("gap", gap, "length", 0.0), "fill": fill}
     wanted = asked.amount("target", target, "rate")
     lies = asked.angle("heading", heading)
     solid = asked.a_part(part, mesh=True)

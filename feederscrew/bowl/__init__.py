@@ -1,6 +1,8 @@
 """The bowl: its record, its schema and its YAML."""
 
 import hashlib
+from collections.abc import Iterable
+from os import PathLike
 from pathlib import Path
 
 from feederscrew.bowl.reading import settings
@@ -17,7 +19,7 @@ __all__ = [
 ]  # fmt: skip
 
 
-def read(path=None, overrides=()):
+def read(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> Bowl:
     """Return the Bowl of a file and of overrides.
 
     Parameters
@@ -39,16 +41,16 @@ def read(path=None, overrides=()):
     return record(settings(path, overrides))
 
 
-def default():
+def default() -> Bowl:
     """Return the Bowl of the documented defaults."""
     return record(effective({}))
 
 
-def name(path=None):
+def name(path: str | PathLike[str] | None = None) -> str:
     """Return what a bowl's results are filed under: its file's stem, or 'defaults'."""
     return "defaults" if path is None else Path(path).stem
 
 
-def identity(path=None):
+def identity(path: str | PathLike[str] | None = None) -> dict[str, str]:
     """Return the sha256 of a bowl file by its path; empty for the defaults."""
     return {} if path is None else {str(path): hashlib.sha256(Path(path).read_bytes()).hexdigest()}

@@ -1,14 +1,18 @@
 """The devices along the track, as a bowl file lists them."""
 
+from collections.abc import Sequence
+
 from feederscrew import documents, units
-from feederscrew.errors import ConfigError
+from feederscrew.documents import Entry
+from feederscrew.errors import ConfigError, FeederError
+from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.devices.values import written
 
 SECTION = "devices"  # of a bowl file
 
 
-def listed(entry, faults):
+def listed(entry: Entry, faults: list[FeederError]) -> tuple[Device, ...]:
     """Return the devices of a bowl file's list, in the order parts meet them.
 
     Parameters
@@ -34,7 +38,7 @@ def listed(entry, faults):
     return tuple(found)
 
 
-def misplaced(chain, width):
+def misplaced(chain: Sequence[Device], width: float) -> list[ConfigError]:
     """Return the faults of devices that do not fit a track.
 
     Parameters
@@ -50,7 +54,7 @@ def misplaced(chain, width):
     return [fault for device in chain for fault in device.misfits(width)] + beyond_rails(chain)
 
 
-def beyond_rails(chain):
+def beyond_rails(chain: Sequence[Device]) -> list[ConfigError]:
     """Return the faults of devices behind rails that mean nothing to parts that hang.
 
     Parameters
@@ -73,7 +77,7 @@ def beyond_rails(chain):
     ]
 
 
-def strangers(chain, aspects):
+def strangers(chain: Sequence[Device], aspects: Sequence[str]) -> list[str]:
     """Return what is odd in a chain for one part: yields of aspects that it does not have.
 
     Parameters
@@ -96,7 +100,7 @@ def strangers(chain, aspects):
     ]
 
 
-def _device(item):
+def _device(item: documents.Node) -> Device:
     if item.kind != "mapping" or len(item.entries) != 1:
         raise ConfigError(item.where, "is not a device", "write one '- wiper: 6 mm' a line")
     entry = item.entries[0]

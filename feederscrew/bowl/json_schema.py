@@ -2,11 +2,15 @@
 
 import json
 import re
+from collections.abc import Sequence
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 from feederscrew import units
 from feederscrew.bowl import documentation
 from feederscrew.bowl.devices import SECTION
+from feederscrew.bowl.key import Key
 from feederscrew.bowl.schema import BY_NAME, KEYS, SECTIONS, rival
 
 DRAFT = "http://json-schema.org/draft-07/schema#"  # the latest one that YAML editors know well
@@ -22,7 +26,7 @@ ABOUT = {
 }
 
 
-def schema():
+def schema() -> dict[str, Any]:
     """Return the JSON Schema of a bowl file.
 
     Returns
@@ -55,12 +59,12 @@ def schema():
     }
 
 
-def text():
+def text() -> str:
     """Return ``schema`` as the text of a file."""
     return json.dumps(schema(), indent=1, ensure_ascii=False) + "\n"
 
 
-def write_beside(path):
+def write_beside(path: str | PathLike[str]) -> Path:
     """Write the schema beside a bowl file, in place of an older one of ours.
 
     Parameters
@@ -83,7 +87,7 @@ def write_beside(path):
     return place
 
 
-def _section(section):
+def _section(section: str) -> dict[str, Any]:
     keys = [key for key in KEYS if key.section == section]
     made = {
         "description": ABOUT.get(section, f"Values of {section}."),
@@ -91,13 +95,14 @@ def _section(section):
         "properties": {key.word: _value(key) for key in keys},
         "additionalProperties": False,
     }
-    rivals = {frozenset((key.word, rival(key).word)) for key in keys if rival(key) is not None}
+    pairs = ((key, rival(key)) for key in keys)
+    rivals = {frozenset((key.word, other.word)) for key, other in pairs if other is not None}
     if rivals:
         made["allOf"] = [{"not": {"required": sorted(pair)}} for pair in sorted(rivals, key=sorted)]
     return made
 
 
-def _value(key):
+def _value(key: Key) -> dict[str, Any]:
     """The schema of one key."""
     bounds = f"From {key.lowest} to {key.highest}."
     if key.choices:
@@ -115,7 +120,7 @@ def _value(key):
     return made if follows else {**made, "default": _typed(key.default, key.dimension)}
 
 
-def _word(key):
+def _word(key: Key) -> dict[str, Any]:
     """The schema of a key that is one of several words."""
     return {
         "description": f"{key.meaning}. One of {', '.join(key.choices)}. Default: {key.default}.",
@@ -129,7 +134,7 @@ def _word(key):
     }
 
 
-def _typed(text, dimension):
+def _typed(text: str, dimension: str) -> str | float:
     """A default as YAML reads it: a number where it has no unit."""
     number, unit = units.split(text)
     if dimension not in PLAIN or unit:
@@ -137,7 +142,7 @@ def _typed(text, dimension):
     return int(number) if number.is_integer() else number
 
 
-def _quantity(dimension, lowest=None, highest=None):
+def _quantity(dimension: str, lowest: str | None = None, highest: str | None = None) -> dict[str, Any]:
     """A value with its unit; without one a number within bounds, or a text of it."""
     text = {"type": "string", "pattern": pattern(dimension)}
     if dimension not in PLAIN:
@@ -151,7 +156,7 @@ def _quantity(dimension, lowest=None, highest=None):
     return {"anyOf": [number, text]}
 
 
-def pattern(dimension):
+def pattern(dimension: str) -> str:
     """Return the regular expression of a quantity as a bowl file writes it."""
     spelt = [
         *units.UNITS[dimension],
@@ -162,13 +167,13 @@ def pattern(dimension):
     return f"^\\s*{NUMBER}{behind}{'?' if dimension in PLAIN and ends else ''}\\s*$"
 
 
-def _loose(unit):
+def _loose(unit: str) -> str:
     """A unit with a superscript or a caret where it has a power, and any blanks."""
     escaped = re.escape(unit).replace("\\ ", r"[\s*·]+").replace("\\-", "-")
     return escaped.replace("2", r"\^?[2²]").replace("3", r"\^?[3³]")
 
 
-def _device(kind):
+def _device(kind: Any) -> dict[str, Any]:
     return {"description": f"{kind.meaning}. Example: {kind.example}", **_DEVICES.get(kind.dimension, {})}
 
 
@@ -180,7 +185,7 @@ _POLYGON = {
 }
 
 
-def _mapping(optional=(), **values):
+def _mapping(optional: Sequence[str] = (), **values: dict[str, Any]) -> dict[str, Any]:
     """A mapping of exactly these keys; one that Python keeps for itself ends in '_'."""
     named = {name.rstrip("_"): value for name, value in values.items()}
     needed = [name for name in named if name not in optional]

@@ -1,17 +1,21 @@
 """Bowl files and overrides, checked against the schema; every fault is told, each with its place."""
 
 import itertools
+from collections.abc import Iterable, Sequence
+from os import PathLike
 
 from feederscrew import documents, units
 from feederscrew.bowl import devices, verified
+from feederscrew.bowl.key import Key
 from feederscrew.bowl.schema import BY_NAME, KEYS, SECTIONS, rival
 from feederscrew.bowl.settings import OVERRIDES, Setting, chain, default, effective, of_device, replaced
-from feederscrew.errors import ArgumentError, ConfigError
+from feederscrew.documents import Entry, Node
+from feederscrew.errors import ArgumentError, ConfigError, FeederError
 
 TOP_LEVEL = (*SECTIONS, devices.SECTION, verified.SECTION, *(key.name for key in KEYS if not key.section))
 
 
-def settings(path=None, overrides=()):
+def settings(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> tuple[Setting, ...]:
     """Return every value in effect.
 
     Parameters
@@ -40,11 +44,13 @@ def settings(path=None, overrides=()):
     return found
 
 
-def _width(found):
+def _width(found: Iterable[Setting]) -> float:
     return next(s.value for s in found if s.key.name == "track.width")
 
 
-def checked(key, text, where, *, bare=False, kind=ConfigError):
+def checked(
+    key: Key, text: str, where: str, *, bare: bool = False, kind: type[ConfigError] = ConfigError
+) -> Setting:
     """Return one value as a Setting.
 
     Parameters
@@ -79,7 +85,7 @@ def checked(key, text, where, *, bare=False, kind=ConfigError):
     except units.QuantityError as fault:
         raise kind(where, f"{subject}{fault.what}", fault.mend) from None
     if key.choices:
-        return Setting(key, value, value, where)
+        return Setting(key, str(value), value, where)
     low, high = (units.quantity(limit, key.dimension) for limit in (key.lowest, key.highest))
     if not low <= value <= high:
         what = f"{subject}{units.shown(text)} is out of range"
@@ -89,11 +95,11 @@ def checked(key, text, where, *, bare=False, kind=ConfigError):
     return Setting(key, " ".join(text.split()), value, where)
 
 
-def _from_file(path):
+def _from_file(path: str | PathLike[str]) -> tuple[dict[str, Setting], list[FeederError]]:
     root, faults = documents.read(path)
     if root.kind != "mapping":
         raise ConfigError(root.where, "no 'key: value' line", "start from 'feeder config init'")
-    given = {}
+    given: dict[str, Setting] = {}
     for entry in root.entries:
         if entry.key in SECTIONS:
             _read_section(entry, given, faults)
@@ -108,7 +114,7 @@ def _from_file(path):
     return given, faults
 
 
-def _read_section(section, given, faults):
+def _read_section(section: Entry, given: dict[str, Setting], faults: list[FeederError]) -> None:
     value = section.value
     if value.kind == "list" or value.text:
         what = f"'{section.key}' is a section, not a value"
@@ -121,18 +127,18 @@ def _read_section(section, given, faults):
             faults.append(_unknown(entry, section.key, words))
 
 
-def _read_value(key, entry, given, faults):
+def _read_value(key: Key, entry: Entry, given: dict[str, Setting], faults: list[FeederError]) -> None:
     try:
         setting = _from_node(key, entry.value)
     except ConfigError as fault:
         faults.append(fault)
         return
     if replaced(key, given):
-        faults.append(_both(key, entry.where))
+        faults.append(_both(key, rival(key), entry.where))
     given[key.name] = setting
 
 
-def _from_node(key, node):
+def _from_node(key: Key, node: Node) -> Setting:
     if node.kind != "text":
         raise ConfigError(
             node.where, f"{key.name} is a {node.kind}", f"write one value, such as {default(key).text}"
@@ -142,7 +148,7 @@ def _from_node(key, node):
     return checked(key, node.text, node.where)
 
 
-def _unknown(entry, section, known):
+def _unknown(entry: Entry, section: str, known: Sequence[str]) -> ConfigError:
     """The fault of a key that does not exist here; it may exist elsewhere."""
     elsewhere = next((k for k in KEYS if entry.key in (k.word, k.name) and k.section != section), None)
     mend = documents.hint(entry.key, known)
@@ -153,9 +159,9 @@ def _unknown(entry, section, known):
     return ConfigError(entry.where, f"unknown key {units.shown(entry.key)}", mend)
 
 
-def _from_overrides(overrides, faults):
+def _from_overrides(overrides: Iterable[str], faults: list[FeederError]) -> dict[str, Setting]:
     """Settings of overrides by key name; what is wrong is added to ``faults``."""
-    given = {}
+    given: dict[str, Setting] = {}
     for override in overrides:
         try:
             setting = _from_override(override)
@@ -163,12 +169,12 @@ def _from_overrides(overrides, faults):
             faults.append(fault)
             continue
         if replaced(setting.key, given):
-            faults.append(_both(setting.key, setting.where, ArgumentError))
+            faults.append(_both(setting.key, rival(setting.key), setting.where, ArgumentError))
         given[setting.key.name] = setting
     return given
 
 
-def _from_override(override):
+def _from_override(override: str) -> Setting:
     name, equals, text = override.partition("=")
     name = name.strip()
     where = f"{OVERRIDES} {units.one_line(name)}"
@@ -180,7 +186,7 @@ def _from_override(override):
     return checked(key, text, where, kind=ArgumentError)
 
 
-def named(name, where):
+def named(name: str, where: str) -> Key:
     """Return the key that an argument names.
 
     Parameters
@@ -206,11 +212,12 @@ def named(name, where):
     raise ArgumentError(where, f"unknown key {units.shown(name)}", documents.hint(name, list(BY_NAME)))
 
 
-def _both(key, where, kind=ConfigError):
-    return kind(where, f"{key.name} and {rival(key).name} are both given", "keep one of them")
+def _both(key: Key, other: Key | None, where: str, kind: type[ConfigError] = ConfigError) -> ConfigError:
+    names = " and ".join(one.name for one in (key, other) if one is not None)
+    return kind(where, f"{names} are both given", "keep one of them")
 
 
-def _kinetic_above_static(given):
+def _kinetic_above_static(given: dict[str, Setting]) -> list[ConfigError]:
     """The faults of kinetic coefficients above static ones, each told at the last word on either."""
     held = {s.key.name: s for s in effective(given)}
     told = []
@@ -221,7 +228,7 @@ def _kinetic_above_static(given):
     return told
 
 
-def _above(static, kinetic):
+def _above(static: Setting, kinetic: Setting) -> ConfigError:
     static_last = not kinetic.given or (static.overrides and not kinetic.overrides)
     last, other = (static, kinetic) if static_last else (kinetic, static)
     place = "given as well" if other.overrides else other.where

@@ -132,7 +132,6 @@ class Bowl(Shown):
     track: Track
     restitution: float  # [1] of an impact on the track
     gravity: float  # [m/s2]
-    machine: Machine | None = None  # None only of a record made by hand
-    sizing: Sizing | None = None
-
+    machine: Machine = None  # type: ignore[assignment]  # None only of a record made by hand
+    sizing: Sizing = None  # type: ignore[assignment]
     devices: tuple[Device, ...] = ()  # along the track, in the order parts meet them

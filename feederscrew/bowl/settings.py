@@ -1,7 +1,9 @@
 """The values in effect: what the user gave, completed by the defaults, each with where it came from."""
 
 import dataclasses
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +12,7 @@ from feederscrew.bowl.devices import SECTION
 from feederscrew.bowl.direction import vibration_angle
 from feederscrew.bowl.record import Bowl, Drive, Friction, Machine, Sizing, Track
 from feederscrew.bowl.schema import BY_NAME, KEYS, OPTIONAL, Key, rival
+from feederscrew.tooling.devices.base import Device
 
 RECORDS = {"drive": Drive, "friction": Friction, "track": Track, "machine": Machine, "sizing": Sizing}
 OVERRIDES = "overrides"  # the argument that goes over the file; ``--set`` of the commands
@@ -28,24 +31,24 @@ class Setting:
 
     key: Key
     text: str  # as typed: '0.5 mm'
-    value: float  # [SI]; an array while the key is varied
+    value: Any  # [SI] a number, or an array while the key is varied; a word; a Device
     where: str  # 'bowl.yaml:2:14', 'overrides drive.amplitude', 'default', 'as friction.static'
     given: bool = True  # by the user
 
     @property
-    def overrides(self):
+    def overrides(self) -> bool:
         """Whether it goes over the file."""
         return self.given and self.where == f"{OVERRIDES} {self.key.name}"
 
     @property
-    def origin(self):
+    def origin(self) -> str:
         """Where it came from, for people: 'bowl.yaml:2', '--set', 'default'."""
         if not self.given:
             return self.where
         return "--set" if self.overrides else self.where.rpartition(":")[0]
 
 
-def effective(given):
+def effective(given: Mapping[str, Setting]) -> tuple[Setting, ...]:
     """Return complete settings.
 
     Parameters
@@ -62,18 +65,18 @@ def effective(given):
     return (*keyed, *(s for name, s in given.items() if name not in BY_NAME))
 
 
-def of_device(place, device):
+def of_device(place: int, device: Device) -> Setting:
     """Return a device as the Setting 'devices.1', for people: 'gap: 9 mm'."""
     key = Key(f"{SECTION}.{place}", SECTION, device.dimension, "", "", "", device.meaning)
     return Setting(key, f"{device.kind}: {device.text}", device, device.where)
 
 
-def chain(settings):
+def chain(settings: Iterable[Setting]) -> tuple[Device, ...]:
     """Return the devices (Device, ...) among settings, in the order parts meet them."""
     return tuple(s.value for s in settings if s.key.field == SECTION)
 
 
-def record(settings):
+def record(settings: Sequence[Setting]) -> Bowl:
     """Return the Bowl of complete settings; a field is an array where its setting's value is one.
 
     A field that may be None, 'as the other one', stays so until its key is given: a Bowl in which the other
@@ -82,7 +85,7 @@ def record(settings):
     keyed = [s for s in settings if s.key.field != SECTION]
     fields = {s.key.field: s.value if s.key.choices else s.value * s.key.share for s in keyed}
     fields |= {s.key.field: None for s in keyed if s.key.field in FOLLOWING and not s.given}
-    sections = {name: {} for name in RECORDS}
+    sections: dict[str, dict[str, Any]] = {name: {} for name in RECORDS}
     for name, value in fields.items():
         section, _, word = name.rpartition(".")
         sections.setdefault(section, {})[word] = value
@@ -94,7 +97,7 @@ def record(settings):
     )
 
 
-def swept(settings, values):
+def swept(settings: Sequence[Setting], values: Mapping[str, Any]) -> Bowl:
     """Return the Bowl of settings of which some are varied.
 
     Parameters
@@ -114,14 +117,14 @@ def swept(settings, values):
     return record(effective(given | varied))
 
 
-def texts(settings):
+def texts(settings: Sequence[Setting]) -> dict[str, str]:
     """Return the settings by key name as text, for run.json; without an optional section not given."""
     told = {s.key.section for s in settings if s.given}
     silent = [name for name in OPTIONAL if name not in told]
     return {s.key.name: s.text for s in settings if s.key.section not in silent}
 
 
-def has_machine(given):
+def has_machine(given: Iterable[str]) -> bool:
     """Return whether a key of what moves the bowl is among those given; its bolts do not.
 
     Parameters
@@ -132,7 +135,7 @@ def has_machine(given):
     return any(name in BY_NAME and BY_NAME[name].field.startswith("machine.") for name in given)
 
 
-def by_machine(settings):
+def by_machine(settings: Sequence[Setting]) -> tuple[str, ...]:
     """Return what a machine of which little is given makes of the drive, a tuple of at most one sentence.
 
     As soon as one key of the machine is given, its springs and its supply set the drive: whoever gives
@@ -151,22 +154,23 @@ def by_machine(settings):
     return (f"{one}: is given, so {' and '.join(moved)} - write drive.frequency and drive.vibration_angle",)
 
 
-def default(key):
+def default(key: Key) -> Setting:
     """Return the Setting of a key while the user gives nothing."""
     return _effective(key, {})
 
 
-def replaced(key, given):
+def replaced(key: Key, given: Container[str]) -> bool:
     """Return whether another key of the same field is given."""
     other = rival(key)
     return other is not None and other.name in given
 
 
-def _effective(key, given):
+def _effective(key: Key, given: Mapping[str, Setting]) -> Setting:
     if key.name in given:
         return given[key.name]
-    if replaced(key, given) or key.default == getattr(rival(key), "name", None):
-        return _converted(key, _effective(rival(key), given))
+    other = rival(key)
+    if other is not None and (replaced(key, given) or key.default == other.name):
+        return _converted(key, _effective(other, given))
     if key.name in OF_THE_MACHINE and has_machine(given):
         return _of_the_machine(key, given)
     if key.default in BY_NAME:
@@ -175,14 +179,14 @@ def _effective(key, given):
     return Setting(key, key.default, key.value(key.default), "default", given=False)
 
 
-def _converted(key, source):
+def _converted(key: Key, source: Setting) -> Setting:
     """The same field said by its other key."""
     value = source.value * source.key.share / key.share
     text = f"{value / units.factor(key.unit, key.dimension):.6g} {key.unit}" if source.text else ""
     return Setting(key, text, value, f"from {source.key.name}", given=False)
 
 
-def _of_the_machine(key, given):
+def _of_the_machine(key: Key, given: Mapping[str, Setting]) -> Setting:
     """The value that a machine's springs or its supply give to a key of the drive."""
     if key.name == "drive.frequency":
         supply = _effective(BY_NAME["machine.supply"], given)
@@ -193,6 +197,6 @@ def _of_the_machine(key, given):
     return _derived(key, vibration_angle(machine, radius, climb), "from machine")
 
 
-def _derived(key, value, where):
+def _derived(key: Key, value: Any, where: str) -> Setting:
     shown = "" if np.ndim(value) else f"{value / units.factor(key.unit, key.dimension):.6g} {key.unit}"
     return Setting(key, shown, value, where, given=False)

@@ -2,9 +2,14 @@
 
 import hashlib
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from os import PathLike
 
 from feederscrew import documents, units
+from feederscrew.bowl.record import Bowl
+from feederscrew.part.record import Part
+from feederscrew.tooling.devices.base import Device
 
 SECTION = "verified"
 WORDS = (
@@ -32,7 +37,7 @@ class Verified:
     part: str  # sha256 of its file
     bowl: str  # of ``fingerprint``
 
-    def void(self, part, bowl, version):
+    def void(self, part: Part | None, bowl: Bowl, version: str) -> Iterator[str]:
         """Say what has changed since, a sentence each; nothing where the block still holds.
 
         Parameters
@@ -50,7 +55,7 @@ class Verified:
             yield f"version {self.version} tried it, this is {version}"
 
     @property
-    def sentence(self):
+    def sentence(self) -> str:
         """What the trial showed, in a sentence."""
         minute = units.factor("/min", "rate")
         return (
@@ -61,7 +66,7 @@ class Verified:
         )
 
 
-def fingerprint(bowl):
+def fingerprint(bowl: Bowl) -> str:
     """Return a short text that another drive, friction, track or device changes.
 
     Parameters
@@ -79,18 +84,18 @@ def fingerprint(bowl):
     return hashlib.sha256("\n".join(told).encode()).hexdigest()[:16]
 
 
-def _told(record):
+def _told(record: object) -> str:
     return " ".join("-" if value is None else f"{value:.5g}" for value in vars(record).values())
 
 
-def _device(one):
+def _device(one: Device) -> str:
     limit = f"{one.limit:.5g}" if math.isfinite(one.limit) else "-"
     flat = [end for pair in one.corners for end in pair]
     numbers = " ".join(f"{end:.5g}" for end in (*one.span, *flat, *one.like[1:]))
     return f"{one.kind} {limit} {one.like[:1]} {numbers}"
 
 
-def verified(path):
+def verified(path: str | PathLike[str] | None) -> Verified | None:
     """Return the ``verified`` block of a bowl file, or None where it has none that can be read.
 
     Parameters
@@ -105,12 +110,14 @@ def verified(path):
         return None
     text = {one.key: one.value.text for one in entry.value.entries}
     try:
-        rates = [
+        rates = (
             units.quantity(text[k], "rate")
             for k in ("target", "delivered", "delivered_low", "delivered_high")
-        ]
+        )
+        target, delivered, low, high = rates
         return Verified(
-            text["status"], text["wanted"], *rates, float(text["purity"]), int(text["jams"]),
+            text["status"], text["wanted"], target, delivered, low, high,
+            float(text["purity"]), int(text["jams"]),
             units.quantity(text["queue_seconds"], "time"), int(text["draws"]), int(text["draws_held"]),
             text["version"], text["part"], text["bowl"],
         )  # fmt: skip

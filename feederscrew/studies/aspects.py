@@ -1,6 +1,7 @@
 """The study of ``feeder aspects``: how one part rests, how often, and what tips it."""
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -63,8 +64,8 @@ def aspects(
     launch: str = LAUNCH,
     drops: int | None = None,
     jobs: int | None = None,
-    progress=None,
-    before=None,
+    progress: Callable[..., None] | None = None,
+    before: Callable[..., None] | None = None,
 ) -> AspectsStudy:
     """Study how a part comes to rest.
 
@@ -114,11 +115,19 @@ def answered(part: Part) -> Aspects:
     return aspects(part).aspects
 
 
-def _dropped(part, found, launch, drops, jobs, progress, before):
+def _dropped(
+    part: Part,
+    found: Aspects,
+    launch: str,
+    drops: int | None,
+    jobs: int | None,
+    progress: Callable[..., None] | None,
+    before: Callable[..., None] | None,
+) -> "DropStudy":
     """The drop test, made once in a run."""
     from feederscrew.studies.simulated.drop import drop
 
-    def make():
+    def make() -> "DropStudy":
         if before:
             before(many["drops"])
         return drop(part, launch, **many, jobs=cores, progress=progress, aspects=found)

@@ -1,15 +1,17 @@
 """``feeder bowl``: the machine under a bowl, and the bowl for a part and a rate."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any, cast
 
 import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew import check
 from feederscrew.bowl.direction import vibration_angle
-from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.settings import has_machine
+from feederscrew.bowl.record import Bowl, Track
+from feederscrew.bowl.settings import Setting, has_machine
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError
 from feederscrew.machine import checks, drive_sought, filling, sizing, throughput, tuning
@@ -19,9 +21,12 @@ from feederscrew.part.record import Part
 from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.tipping import remark
 from feederscrew.records import Shown
+from feederscrew.resting.aspects import Aspects
 from feederscrew.solidbowl.closed_body import BowlSolid
+from feederscrew.solidbowl.plan import Asked
 from feederscrew.studies import solidbowl
 from feederscrew.studies.rate import arriving
+from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
 
 STEEL = 7850.0  # [kg/m3] of a fill without a part
@@ -83,26 +88,32 @@ class MachineSheet(Shown):
     solid: BowlSolid | None = None  # where it was asked for
 
     @property
-    def remarks(self):
+    def remarks(self) -> tuple[str, ...]:
         """What must not be overlooked, a tuple of str."""
         own = () if self.solid is None else self.solid.remarks
         return (*checks.remarks(self), *own)
 
     @property
-    def lowest(self):
+    def _asked(self) -> Order:
+        if self.order is None:
+            raise ValueError("a machine without an order brings no parts")
+        return self.order
+
+    @property
+    def lowest(self) -> Lowest:
         """The Lowest rate from the full bowl to the empty one; of a sheet with an order."""
         alone, controlled = (self.rates(v) for v in (self.velocities, self.controlled))
-        enough = alone.min() >= ENOUGH * self.order.target or alone.min() >= controlled.min()
+        enough = alone.min() >= ENOUGH * self._asked.target or alone.min() >= controlled.min()
         rates, way = (alone, drive_sought.ALONE) if enough else (controlled, drive_sought.CONTROLLED)
         row = int(np.argmin(rates))
         return Lowest(float(rates[row]), float(self.emptying.levels[row]), drive_sought.WAYS[way])
 
-    def rates(self, velocities):
+    def rates(self, velocities: np.ndarray) -> np.ndarray:
         """Return counted parts [1/s] at velocities; of a sheet with an order."""
-        return np.nan_to_num(np.maximum(velocities, 0.0)) * self.order.flow.parts
+        return np.nan_to_num(np.maximum(velocities, 0.0)) * self._asked.flow.parts
 
 
-def machine(settings):
+def machine(settings: Sequence[Setting]) -> MachineSheet:
     """Compute what a machine does with the bowl of a file.
 
     Parameters
@@ -119,9 +130,18 @@ def machine(settings):
 
 
 def bowl(
-    settings, part, target, *, aspect=None, heading=None, rule="recommended", gap=0.0, fill=1.0, known=None,
-    solid=None,
-):  # fmt: skip
+    settings: Sequence[Setting],
+    part: Part,
+    target: float,
+    *,
+    aspect: str | None = None,
+    heading: float | None = None,
+    rule: str = "recommended",
+    gap: float = 0.0,
+    fill: float = 1.0,
+    known: Aspects | None = None,
+    solid: Asked | None = None,
+) -> MachineSheet:
     """Compute the bowl, the drive and the stroke that bring a part at a rate.
 
     Parameters
@@ -162,11 +182,11 @@ def bowl(
     track = replace(plain.track, radius=0.5 * size.diameter, width=size.track_width, climb=size.climb)
     wanted = None if wanted is None else well_oriented.wanted(part, found, track, *wanted)
     ways = _ways(part, found, track, plain.devices)
-    counted = {"rule": rule, "target": wanted, "gap": gap, "fill": fill}
+    counted: dict[str, Any] = {"rule": rule, "target": wanted, "gap": gap, "fill": fill}
     plain = replace(plain, track=track)
     size, made = solidbowl.solid(plain, size, part, ways(None), solid, counted)
-    room = part.volume if part.hull is None else part.hull.volume
-    sought = drive_sought.Sought(plain, size, settings, target, part.mass / room)
+    room = cast(float, part.volume if part.hull is None else part.hull.volume)  # a card has no size
+    sought = drive_sought.Sought(plain, size, tuple(settings), target, part.mass / room)
     driven, flow = drive_sought.brought(sought, lambda bowl: throughput.flow(ways(bowl), **counted))
     order = Order(
         part=part,
@@ -186,7 +206,7 @@ def bowl(
     return replace(_sheet(driven, settings, size.depth, sought.bulk, order), solid=made)
 
 
-def _on_its_springs(bowl, settings):
+def _on_its_springs(bowl: Bowl, settings: Sequence[Setting]) -> Bowl:
     """The bowl at the frequency and angle of its machine, were it only the default one, unless given."""
     made = {
         "frequency": bowl.machine.supply,
@@ -196,13 +216,15 @@ def _on_its_springs(bowl, settings):
     return replace(bowl, drive=replace(bowl.drive, **{k: v for k, v in made.items() if k not in said}))
 
 
-def _check_rule(rule, found):
+def _check_rule(rule: str, found: Aspects) -> None:
     if rule not in found.chances:
         known = ", ".join(found.chances)
         raise ArgumentError(f"rule {rule}", "has no probabilities of this part", f"choose one of {known}")
 
 
-def _size(lying, part, plain, settings, *, sorts):
+def _size(
+    lying: sizing.Lying, part: Part, plain: Bowl, settings: Sequence[Setting], *, sorts: bool
+) -> sizing.Size:
     """The size of the bowl; what the file says of its track is kept."""
     said, track = drive_sought.given(settings, "track"), plain.track
     return sizing.size(
@@ -216,13 +238,17 @@ def _size(lying, part, plain, settings, *, sorts):
     )
 
 
-def _ways(part, aspects, track, devices):
+def _ways(
+    part: Part, aspects: Aspects, track: Track, devices: Sequence[Device]
+) -> Callable[[Bowl | None], stream.Orientations]:
     """A function from a bowl, or None, to the orientations along its track."""
     every = orientations(part, aspects, track)
     return cache(lambda driven: stream.along(every, aspects, devices, bowl=driven))
 
 
-def _sheet(bowl, settings, depth, bulk, order):
+def _sheet(
+    bowl: Bowl, settings: Sequence[Setting], depth: float, bulk: float, order: Order | None
+) -> MachineSheet:
     """Everything of a bowl with its machine."""
     under, rules, moved = bowl.machine, bowl.sizing, stroke(bowl)
     made = springs(under)
@@ -256,7 +282,7 @@ def _sheet(bowl, settings, depth, bulk, order):
     )
 
 
-def _velocities(bowl, strokes):
+def _velocities(bowl: Bowl, strokes: np.ndarray) -> np.ndarray:
     """Velocity at multiples of the bowl's stroke [m/s]; its stroke ends where the magnet would strike."""
     most = max(greatest_amplitude(bowl), bowl.drive.amplitude)
     drive = replace(bowl.drive, amplitude=np.minimum(bowl.drive.amplitude * strokes, most))

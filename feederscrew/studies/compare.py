@@ -1,6 +1,6 @@
 """The study of ``feeder compare``: what was measured on one part, or on many, against every rule."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -115,8 +115,8 @@ def compare(
     *,
     launch: str | None = None,
     as_published: bool = False,
-    progress=None,
-    before=None,
+    progress: Callable[..., None] | None = None,
+    before: Callable[..., None] | None = None,
 ) -> CompareStudy | FeedingStudy:
     """Study how far what was counted by aspect, or by device, is from every rule.
 
@@ -160,7 +160,7 @@ def compare_sets(
     *,
     launch: str | None = None,
     as_published: bool = False,
-    progress=None,
+    progress: Callable[..., None] | None = None,
 ) -> SetsStudy:
     """Study how far many measured sets are from every rule and from the recommended answer.
 
@@ -182,26 +182,28 @@ def compare_sets(
     FeederError
         Every fault of the files.
     """
-    files = [str(path) for path in files]
-    if not 0 < len(files) <= MOST:
-        raise FeederError("files", f"are {len(files)}", f"name 1 to {MOST} files of counts")
+    names = [str(path) for path in files]
+    if not 0 < len(names) <= MOST:
+        raise FeederError("files", f"are {len(names)}", f"name 1 to {MOST} files of counts")
     faults: list[FeederError] = []
     studies: list[SetStudy | FeedingStudy] = []
     inputs: dict[str, str] = {}
-    for done, path in enumerate(files, 1):
+    for done, path in enumerate(names, 1):
         try:
             studies += _studies(path, launch, as_published, inputs)
         except FeederError as fault:
             faults += fault.faults if isinstance(fault, Faults) else [fault]
         if progress:
-            progress(done, len(files))
+            progress(done, len(names))
     if faults:
         raise Faults(faults)
     sets = tuple(one for one in studies if isinstance(one, SetStudy))
     return SetsStudy(sets, inputs, tuple(one for one in studies if isinstance(one, FeedingStudy)))
 
 
-def _studies(path, launch, as_published, inputs):
+def _studies(
+    path: str, launch: str | None, as_published: bool, inputs: dict[str, str]
+) -> list[SetStudy | FeedingStudy]:
     """Every profile of one file against every answer; of a file by device one FeedingStudy."""
     text, sha256 = count_rows.content(path)
     table = count_rows.parse(text, path)
@@ -221,7 +223,9 @@ def _studies(path, launch, as_published, inputs):
     return [SetStudy(part, aspects, measured, profile, answers) for profile in measured.profiles]
 
 
-def _answers(part, head, launch, as_published):
+def _answers(
+    part: Part, head: count_rows.Head, launch: str | None, as_published: bool
+) -> tuple[Aspects, tuple[profiles.AspectProfile, ...]]:
     """The aspects of a part with the answer for a launch, and the profiles of all rules and of that."""
     launch = launch or head.launch or LAUNCH
     aspects = resting(part, as_published=as_published, launch=launch).aspects

@@ -186,7 +186,7 @@ def best_phase(bowl: Bowl) -> ConveyPhase:
 
 
 def velocity_map(
-    settings: Sequence[Setting], ranges: tuple[KeyRange, KeyRange], *, drawn: str | None = None
+    settings: Sequence[Setting], ranges: Sequence[KeyRange], *, drawn: str | None = None
 ) -> ConveyMap:
     """Study a bowl over two of its keys.
 

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.geometry.grids import evaluate, span
+from feederscrew.geometry.grids import Grid, evaluate, span
 from feederscrew.mechanics import limits
 from feederscrew.mechanics.cycle import Cycle
 from feederscrew.mechanics.floor import balance, cells
@@ -37,11 +37,11 @@ class FloorStudy(Shown):
     printed: ClassVar[Any] = None  # the upper reversal by print, in `thesis.motion.as_published`
 
     @property
-    def stable_heading(self):
+    def stable_heading(self) -> float:
         """Return the heading [rad] that the part turns to while it slides; NaN for none."""
         return balance.stable_heading(self.posture, self.bowl)
 
-    def cells(self, bowl, heading):
+    def cells(self, bowl: Bowl, heading: float | np.ndarray) -> dict[str, np.ndarray]:
         """Compute the upper reversal for arrays of bowl settings and headings.
 
         Parameters
@@ -58,7 +58,7 @@ class FloorStudy(Shown):
         """
         return cells.cells(self.posture, bowl, heading)
 
-    def over_angle_and_friction(self, count):
+    def over_angle_and_friction(self, count: int) -> Grid:
         """Compute the upper reversal over vibration angle and friction, as Figure 5-6.
 
         Parameters
@@ -71,7 +71,7 @@ class FloorStudy(Shown):
         Grid
         """
 
-        def function(beta, mu):
+        def function(beta: Any, mu: Any) -> dict[str, np.ndarray]:
             varied = replace(self.bowl, drive=replace(self.bowl.drive, vibration_angle=beta))
             return self.cells(balance.with_friction(varied, mu), self.heading)
 
@@ -79,7 +79,7 @@ class FloorStudy(Shown):
         friction = span("friction", 0.0, TOP_FRICTION, count)
         return evaluate(angle, friction, function, cells.REGIMES)
 
-    def over_frequency_and_amplitude(self, count):
+    def over_frequency_and_amplitude(self, count: int) -> Grid:
         """Compute the upper reversal over frequency [Hz] and amplitude [mm], as Figure 5-7.
 
         Parameters
@@ -92,7 +92,7 @@ class FloorStudy(Shown):
         Grid
         """
 
-        def function(f, a):
+        def function(f: Any, a: Any) -> dict[str, np.ndarray]:
             drive = replace(self.bowl.drive, frequency=f, amplitude=a)
             return self.cells(replace(self.bowl, drive=drive), self.heading)
 
@@ -102,7 +102,7 @@ class FloorStudy(Shown):
         amplitude = span("amplitude_mm", 0.0, widest, count, 1e-3)
         return evaluate(frequency, amplitude, function, cells.REGIMES)
 
-    def alignment(self):
+    def alignment(self) -> tuple[np.ndarray, dict[str, np.ndarray]]:
         """Compute theta'' over every heading, a degree apart.
 
         Returns
@@ -115,7 +115,7 @@ class FloorStudy(Shown):
         return headings, self.cells(self.bowl, headings)
 
 
-def floor(part, bowl, aspect=None, heading=0.0):
+def floor(part: Part, bowl: Bowl, aspect: str | None = None, heading: float = 0.0) -> FloorStudy:
     """Study a part on the bowl floor.
 
     Parameters

@@ -1,5 +1,6 @@
 """What the devices of a bowl do with each orientation of a part, and what passed them in a feeding test."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,7 +33,7 @@ class PassagesStudy(Shown):
     passages: tuple[tuple[Passage, ...], ...]  # (M,) up to the device that returns it
 
     @property
-    def wanted(self):
+    def wanted(self) -> int:
         """Place of the most frequent orientation that leaves; of the most frequent one where none does."""
         leaves = [not one.returned and all(k.verdict.passes > 0.0 for k in met)
                   for one, met in zip(self.orientations, self.passages)]  # fmt: skip
@@ -87,13 +88,13 @@ class FeedingStudy(Shown):
         return self.aspects.source("recommended")
 
     @property
-    def ends(self):
+    def ends(self) -> np.ndarray:
         """(D, 2) [1] the 95 % interval of the share that was measured."""
         pairs = zip(self.measured.passed, self.measured.rejected)
         return np.array([[float(end[0]) for end in wilson([on], on + off)] for on, off in pairs])
 
     @property
-    def agrees(self):
+    def agrees(self) -> np.ndarray:
         """(D,) bool, whether the predicted and the measured interval have something in common."""
         low, high = self.ends.T
         return (self.low <= high) & (low <= self.high)
@@ -109,7 +110,14 @@ class FeedingStudy(Shown):
         return (*self.aspects.warnings, *self.measured.warnings(self.part))
 
 
-def feeding(part: Part, counts: DeviceCounts, *, launch=None, progress=None, before=None) -> FeedingStudy:
+def feeding(
+    part: Part,
+    counts: DeviceCounts,
+    *,
+    launch: str | None = None,
+    progress: Callable[..., None] | None = None,
+    before: Callable[..., None] | None = None,
+) -> FeedingStudy:
     """Study what passed the devices of the bowl that a feeding test names.
 
     Parameters
@@ -152,7 +160,7 @@ def feeding(part: Part, counts: DeviceCounts, *, launch=None, progress=None, bef
     )
 
 
-def bowl_of(counts):
+def bowl_of(counts: DeviceCounts) -> tuple[str, Bowl]:
     """Return the path of the bowl file that a feeding test names, and its Bowl."""
     if not counts.head.config:
         what = "counts by device but does not name the bowl"
@@ -161,7 +169,9 @@ def bowl_of(counts):
     return config, bowls.read(config)
 
 
-def counted_ways(part, aspects, bowl, counts):
+def counted_ways(
+    part: Part, aspects: Aspects, bowl: Bowl, counts: DeviceCounts
+) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return which share of each aspect's parts comes to each counted device, and which goes on from it.
 
     Parameters

@@ -1,9 +1,10 @@
 """The study of ``feeder rate``: well-oriented parts per minute of one part from one bowl."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
+from typing import Any
 
 import numpy as np
 
@@ -52,8 +53,8 @@ def shares(
     fed: int | None = None,
     seed: int = SEED,
     jobs: int | None = None,
-    progress=None,
-    before=None,
+    progress: Callable[..., None] | None = None,
+    before: Callable[..., None] | None = None,
 ) -> Shares:
     """Return the aspects of a part with the answer that rate, report, tune, batch and tooling take.
 
@@ -89,7 +90,7 @@ def shares(
     FeederError
         Every fault of the file; if the part has no shape to drop.
     """
-    own = {"progress": progress, "before": before, "jobs": jobs}
+    own: dict[str, Any] = {"progress": progress, "before": before, "jobs": jobs}
     check.argument("seed", seed, 0)
     if fed is not None:
         check.argument("fed", fed, 1)
@@ -116,11 +117,13 @@ def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED) -> Aspects:
     return shares(part, bowl, rule=rule).aspects
 
 
-def _on_the_floor(part, found, bowl, fed, seed, own):
+def _on_the_floor(
+    part: Part, found: Aspects, bowl: Bowl, fed: int | None, seed: int, own: Mapping[str, Any]
+) -> Any:
     """What lies at the track's entry, followed once in a run."""
     from feederscrew.dropping.plate.arrival import arrival
 
-    def make():
+    def make() -> Any:
         if own["before"]:
             own["before"](None)
         cores = own["jobs"] or os.cpu_count() or 1
@@ -153,7 +156,7 @@ class RateStudy(Shown):
         return self.aspects.source(self.rule)
 
     @property
-    def warnings(self):
+    def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each: of the devices, the aspects, the velocity."""
         odd = speeds.remark(self.rate.velocity.value, self.bowl.sizing)
         other = () if self.measured is None else self.measured.warnings(self.part)
@@ -228,7 +231,7 @@ def rate(
     )
 
 
-def checked(bowl, heading, gap, fill, sigma=0.0):
+def checked(bowl: Bowl, heading: float | None, gap: float, fill: float, sigma: float = 0.0) -> None:
     """Raise an ArgumentError that names the argument that cannot be used."""
     check.argument("gap", gap, 0.0)
     check.argument("fill", fill, LEAST, 1.0)
@@ -237,7 +240,7 @@ def checked(bowl, heading, gap, fill, sigma=0.0):
         check.argument("heading", heading)
 
 
-def most_frequent(known, rule):
+def most_frequent(known: well_oriented.Orientations, rule: str) -> tuple[str, float]:
     """Return the aspect and the heading in which most parts leave the bowl.
 
     Parameters

@@ -1,8 +1,10 @@
 """The study of ``feeder report``: what the other studies find of one part in one bowl, each on request."""
 
 import os
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
+from os import PathLike
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Bowl
@@ -11,17 +13,20 @@ from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.posture import posture
+from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import convey, solidbowl
 from feederscrew.studies.aspects import AspectsStudy
-from feederscrew.studies.floor import floor
-from feederscrew.studies.headings import headings
-from feederscrew.studies.inertia import inertia
-from feederscrew.studies.passages import passages
-from feederscrew.studies.rate import SEED, Shares, rate, shares
-from feederscrew.studies.slide import slide
-from feederscrew.studies.track import track
-from feederscrew.studies.trial import trial
+from feederscrew.studies.bowl import MachineSheet
+from feederscrew.studies.convey import ConveyMap, ConveyStudy
+from feederscrew.studies.floor import FloorStudy, floor
+from feederscrew.studies.headings import HeadingsStudy, headings
+from feederscrew.studies.inertia import InertiaStudy, inertia
+from feederscrew.studies.passages import PassagesStudy, passages
+from feederscrew.studies.rate import SEED, RateStudy, Shares, rate, shares
+from feederscrew.studies.slide import SlideStudy, slide
+from feederscrew.studies.track import TrackStudy, track
+from feederscrew.studies.trial import TrialStudy, trial
 
 ANGLES, STROKES = 56, 48  # cells of the velocity map
 LEAST_STROKE = 0.1e-3  # [m] the velocity map goes at least so far
@@ -36,7 +41,7 @@ class ReportStudy(Shown):
     resting: AspectsStudy
     settings: tuple[Setting, ...]
     bowl: Bowl
-    path: str | None  # of the bowl file
+    path: str | PathLike[str] | None  # of the bowl file
     aspect: str  # the wanted one
     heading: float | None  # [rad]
     rule: str
@@ -65,22 +70,22 @@ class ReportStudy(Shown):
         return self.resting.aspects.likeliest
 
     @cached_property
-    def inertia(self):
+    def inertia(self) -> InertiaStudy:
         """Mass properties, an InertiaStudy."""
         return inertia(self.part)
 
     @cached_property
-    def headings(self):
+    def headings(self) -> HeadingsStudy:
         """The stable headings of every aspect, a HeadingsStudy."""
         return headings(self.part, self.bowl.track, aspects=self.resting.aspects)
 
     @cached_property
-    def convey(self):
+    def convey(self) -> ConveyStudy:
         """Velocity at the bowl's own point, a ConveyStudy."""
         return convey.convey(self.bowl)
 
     @cached_property
-    def velocity_map(self):
+    def velocity_map(self) -> ConveyMap:
         """Velocity over vibration angle and stroke, with the bowl's own point, a ConveyMap."""
         top = 1e3 * max(ROOM * self.bowl.drive.amplitude, LEAST_STROKE)
         strokes = f"drive.amplitude={0.02 * top:.4g}mm:{top:.4g}mm:{STROKES}"
@@ -88,7 +93,7 @@ class ReportStudy(Shown):
         return convey.velocity_map(self.settings, spans, drawn="point")
 
     @cached_property
-    def rate(self):
+    def rate(self) -> RateStudy:
         """Well-oriented parts, a RateStudy."""
         return rate(
             self.part, self.bowl, self.aspect, heading=self.heading, rule=self.rule,
@@ -96,76 +101,76 @@ class ReportStudy(Shown):
         )  # fmt: skip
 
     @cached_property
-    def passages(self):
+    def passages(self) -> PassagesStudy | None:
         """What the bowl's devices do with each orientation, a PassagesStudy; None without such devices."""
         if not any(device.placed for device in self.bowl.devices):
             return None
         return passages(self.part, self.bowl, self.resting.aspects, self.rule)
 
     @cached_property
-    def trial(self):
+    def trial(self) -> TrialStudy | None:
         """Parts sent through the devices one by one, a TrialStudy; None where it was not asked for."""
         if self.sent is None:
             return None
-        own = {"rule": self.rule, "known": self.shares, "parts": self.sent, "jobs": os.cpu_count() or 1}
-        return trial(self.part, [self.bowl], **own)
+        jobs = os.cpu_count() or 1
+        return trial(self.part, [self.bowl], rule=self.rule, known=self.shares, parts=self.sent, jobs=jobs)
 
     @cached_property
-    def machine(self):
+    def machine(self) -> MachineSheet | None:
         """The bowl for the target, or the machine of the bowl file; None without either."""
         if self.target is not None:
-            wanted = {"aspect": self.counted, "heading": self.heading if self.counted else None}
+            heading = self.heading if self.counted else None
             return machines.bowl(
                 self.settings, self.part, self.target,
-                **wanted, rule=self.rule, gap=self.gap, fill=self.fill,
+                aspect=self.counted, heading=heading, rule=self.rule, gap=self.gap, fill=self.fill,
                 known=self.resting.aspects,
             )  # fmt: skip
         given = has_machine({s.key.name for s in self.settings if s.given})
         return machines.machine(self.settings) if given else None
 
     @cached_property
-    def solid(self):
+    def solid(self) -> BowlSolid | None:
         """The bowl for the target as a BowlSolid; None without a target, or of a part without a mesh."""
         if self.target is None or self.part.vertices is None:
             return None
         return solidbowl.of_sheet(self.machine, self.settings, self.resting.aspects)
 
     @cached_property
-    def track(self):
+    def track(self) -> TrackStudy:
         """The part on the track, a TrackStudy."""
         return track(self.part, self.bowl, self.aspect, self.heading)
 
     @cached_property
-    def floor(self):
+    def floor(self) -> FloorStudy:
         """The part on the floor, a FloorStudy."""
         return floor(self.part, self.bowl, self.aspect, self.heading or 0.0)
 
     @cached_property
-    def slide(self):
+    def slide(self) -> SlideStudy:
         """The sliding map, a SlideStudy."""
         return slide(self.bowl)
 
 
 def report(
-    part,
-    path=None,
-    overrides=(),
+    part: Part,
+    path: str | PathLike[str] | None = None,
+    overrides: Iterable[str] = (),
     *,
-    aspect=None,
-    heading=None,
-    rule="recommended",
-    gap=0.0,
-    fill=1.0,
-    target=None,
-    launch=None,
-    probabilities=None,
-    fed=None,
-    seed=SEED,
-    command="",
-    sent=None,
-    progress=None,
-    before=None,
-):
+    aspect: str | None = None,
+    heading: float | None = None,
+    rule: str = "recommended",
+    gap: float = 0.0,
+    fill: float = 1.0,
+    target: float | None = None,
+    launch: str | None = None,
+    probabilities: str | PathLike[str] | None = None,
+    fed: int | None = None,
+    seed: int = SEED,
+    command: str = "",
+    sent: int | None = None,
+    progress: Callable[..., None] | None = None,
+    before: Callable[..., None] | None = None,
+) -> ReportStudy:
     """Check everything that can be wrong with the inputs of a report, before anything long is computed.
 
     Parameters
@@ -200,8 +205,10 @@ def report(
     """
     settings = bowls.settings(path, overrides)
     bowl = bowls.record(settings)
-    taken = {"launch": launch, "probabilities": probabilities, "fed": fed, "seed": seed, "rule": rule}
-    known = shares(part, bowl, **taken, progress=progress, before=before)
+    known = shares(
+        part, bowl, launch=launch, probabilities=probabilities, rule=rule, fed=fed, seed=seed,
+        progress=progress, before=before,
+    )  # fmt: skip
     found = known.aspects
     rule = found.ranking if rule == RECOMMENDED else rule  # a card has no such answer
     if rule not in found.chances:

@@ -144,7 +144,7 @@ def sliding_map(
     direction = limits.plain(bowl).drive.direction
     ratio = float(limits.acceleration_ratio(bowl.drive.amplitude, bowl.drive.frequency, bowl.gravity))
 
-    def cells(alpha_minus_theta, ratio):
+    def cells(alpha_minus_theta: np.ndarray | float, ratio: np.ndarray | float) -> dict[str, np.ndarray]:
         return _cells(bowl, beta, alpha_minus_theta, ratio, as_published)
 
     first, second = _headings(direction), _ratios(beta, ratio)
@@ -160,7 +160,13 @@ def sliding_map(
     )
 
 
-def _cells(bowl, beta, alpha_minus_theta, ratio, as_published):
+def _cells(
+    bowl: Bowl,
+    beta: float,
+    alpha_minus_theta: np.ndarray | float,
+    ratio: np.ndarray | float,
+    as_published: bool,
+) -> dict[str, np.ndarray]:
     climb, wall = bowl.track.climb, (bowl.friction.wall, bowl.track.bank)
     published = limits.published_limit(ratio, beta, alpha_minus_theta)
     pole = np.abs(ratio * np.sin(beta) - 1.0) <= limits.ROUNDING
@@ -176,7 +182,7 @@ def _cells(bowl, beta, alpha_minus_theta, ratio, as_published):
     return {name: np.round(array, NOISE) + 0.0 for name, array in found.items()} | {"regime": regimes}
 
 
-def _onsets(bowl, beta):
+def _onsets(bowl: Bowl, beta: float) -> dict[str, float]:
     here = wedge.level(bowl)
     slip = (here.friction.static, beta, here.drive.direction, here.track.climb)
     return {
@@ -186,7 +192,7 @@ def _onsets(bowl, beta):
     }
 
 
-def _headings(direction):
+def _headings(direction: float) -> GridAxis:
     """Return alpha - theta over half a turn, or over the whole one where the drive points backward."""
     widest = 90 if abs(direction) <= np.pi / 2.0 else 180
     return GridAxis(
@@ -194,7 +200,7 @@ def _headings(direction):
     )
 
 
-def _ratios(beta, ratio):
+def _ratios(beta: float, ratio: float) -> GridAxis:
     """Return G from 0 past the hop and past the bowl's own, in round steps that grow with the range."""
     hop = float(limits.hop_ratio(beta)) if beta > 0.0 else 0.0
     hop = hop if hop < FARTHEST else 0.0
@@ -205,12 +211,12 @@ def _ratios(beta, ratio):
     )
 
 
-def _resampled(axis, count):
+def _resampled(axis: GridAxis, count: int) -> GridAxis:
     values = np.linspace(axis.values[0], axis.values[-1], count)
     return GridAxis(axis.column, check.frozen(values), axis.unit)
 
 
-def _rounded_up(number):
+def _rounded_up(number: float) -> float:
     """Return the next round number: 3.65 gives 4, 0.125 gives 0.2."""
     decade = 10.0 ** np.floor(np.log10(number))
     return float(next(step for step in STEPS if step * decade >= number * (1.0 - 1e-12)) * decade)

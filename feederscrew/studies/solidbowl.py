@@ -1,22 +1,38 @@
 """``feeder bowl --solid``: the bowl of a sheet as one closed body."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.settings import Setting
 from feederscrew.errors import ArgumentError
+from feederscrew.machine.sizing import Size
+from feederscrew.part.record import Part
 from feederscrew.rates import stream
+from feederscrew.resting.aspects import Aspects
 from feederscrew.solidbowl import cuts, exact_body, exact_file, leaning, riding, segments
-from feederscrew.solidbowl.closed_body import body
+from feederscrew.solidbowl.closed_body import BowlSolid, body
 from feederscrew.solidbowl.materials import STEEL, material
-from feederscrew.solidbowl.plan import CHORD, Asked, plan
+from feederscrew.solidbowl.plan import CHORD, Asked, BowlPlan, plan
 from feederscrew.solidbowl.stairs import CYLINDER
 from feederscrew.solidbowl.ways_down import ways_down
+from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.hanging import hung, neck
 
 
-def asked(settings, *, solid, material, chord, bed=None, step=False):
+def asked(
+    settings: Sequence[Setting],
+    *,
+    solid: bool,
+    material: str,
+    chord: float,
+    bed: str | None = None,
+    step: bool = False,
+) -> Asked | None:
     """Return what is asked of the solid, None where none is.
 
     Parameters
@@ -64,7 +80,7 @@ def asked(settings, *, solid, material, chord, bed=None, step=False):
     )
 
 
-def _check_step(shape):
+def _check_step(shape: str) -> None:
     """Raise the fault of a bowl that STEP cannot be made of."""
     exact_body.check()
     if shape != CYLINDER:
@@ -72,7 +88,7 @@ def _check_step(shape):
         raise ArgumentError("step", what, "take bowl.stl or bowl.3mf, or sizing.shape: cylinder")
 
 
-def in_material(bowl, asked):
+def in_material(bowl: Bowl, asked: Asked | None) -> Bowl:
     """Return the bowl with the thickness and density of what its solid is made of.
 
     Parameters
@@ -92,7 +108,14 @@ def in_material(bowl, asked):
     return replace(bowl, sizing=rules)
 
 
-def solid(bowl, size, part, coming, asked, counted):
+def solid(
+    bowl: Bowl,
+    size: Size,
+    part: Part,
+    coming: stream.Orientations,
+    asked: Asked | None,
+    counted: Mapping[str, Any],
+) -> tuple[Size, BowlSolid | None]:
     """Return the size of a bowl and its solid.
 
     Parameters
@@ -125,7 +148,7 @@ def solid(bowl, size, part, coming, asked, counted):
     track = leaning.banked(bowl.track, bowl.devices, coming.lying)
     tooled = cuts.stretch(track, bowl.devices, coming.lying) if _tooled(bowl.devices) else None
     asked = replace(asked, friction=bowl.friction.static)
-    made = body(plan(size, track, made_of, tooled, asked, extents=np.ptp(part.vertices, axis=0)))
+    made = body(plan(size, track, made_of, tooled, asked, extents=np.ptp(np.asarray(part.vertices), axis=0)))
     wanted = 0.0 if asked.outlet_height > 0.0 else size.turns
     made = replace(made, falls=ways_down(made), turns_of_sheet=float(wanted))
     if asked.bed is not None:
@@ -138,7 +161,7 @@ def solid(bowl, size, part, coming, asked, counted):
     )
 
 
-def of_sheet(sheet, settings, aspects):
+def of_sheet(sheet: Any, settings: Sequence[Setting], aspects: Aspects) -> BowlSolid | None:
     """Return the solid, in steel, of a bowl that was sized without one.
 
     Parameters
@@ -161,7 +184,9 @@ def of_sheet(sheet, settings, aspects):
     return solid(bowl, order.size, order.part, coming, wanted, counted)[1]
 
 
-def _riders(plan, devices, coming, counted):
+def _riders(
+    plan: BowlPlan, devices: Sequence[Device], coming: stream.Orientations, counted: Mapping[str, Any]
+) -> tuple[Any, ...]:
     """Parts to draw: as they come along most often among those that leave, and as they hang."""
     often = np.nan_to_num(coming.rules[counted["rule"]]) * coming.stays
     if counted["target"] is not None:
@@ -172,5 +197,5 @@ def _riders(plan, devices, coming, counted):
     return tuple(riding.riders(plan, one, hung(one, spans[-1]) if spans and neck(one) else None))
 
 
-def _tooled(devices):
+def _tooled(devices: Sequence[Device]) -> bool:
     return any(device.kind != "yield" for device in devices)

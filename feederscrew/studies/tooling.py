@@ -1,7 +1,7 @@
 """The study of ``feeder tooling``: which orientation can be isolated, and by which cuts."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -17,6 +17,7 @@ from feederscrew.rates.tipping import marked, remark
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.rate import arriving
+from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.kinds import KINDS, made
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating.chain import FINE, STEP, WHERE, Wishes
@@ -55,7 +56,7 @@ class ToolingStudy(Shown):
     wanted: int | None  # the orientation asked for; None for all of them
 
     @property
-    def design(self):
+    def design(self) -> Design | None:
         """The design of the orientation asked for; None where all were."""
         return None if self.wanted is None else self.designs[self.wanted]
 
@@ -65,7 +66,7 @@ class ToolingStudy(Shown):
         return self.aspects.source(self.rule)
 
     @property
-    def warnings(self):
+    def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
         late = any(one is not None and one.late for one in self.designs)
         return (*self.aspects.warnings, *remark(self.orientations), *([LATE] if late else []))
@@ -151,7 +152,7 @@ def tooling(
     asked_of_each = {"purity": purity, "efficiency": efficiency, "turn": turn, "before": bowl.devices}
     asked_of_each |= {"wishes": may_use}
     asked = range(len(every)) if wanted is None else [wanted]
-    designs = [None] * len(every)
+    designs: list[Design | None] = [None] * len(every)
     if told is not None:
         told(0, len(asked))
     for done, k in enumerate(asked):
@@ -171,7 +172,17 @@ def tooling(
     )
 
 
-def asked_for(part, bowl, found, *, outcome="any", without=(), step=STEP, up=(), cutter=0.0):
+def asked_for(
+    part: Part,
+    bowl: Bowl,
+    found: Aspects,
+    *,
+    outcome: str = "any",
+    without: str | Sequence[str] = (),
+    step: float = STEP,
+    up: str | Sequence[str] = (),
+    cutter: float = 0.0,
+) -> Wishes:
     """Return what a design may use, checked, as Wishes."""
     if outcome not in OUTCOMES:
         raise ArgumentError("outcome", f"{outcome!r} is unknown", f"choose {', '.join(OUTCOMES)}")
@@ -184,13 +195,13 @@ def asked_for(part, bowl, found, *, outcome="any", without=(), step=STEP, up=(),
     return replace(wishes, separation=_separation(bowl, wishes))
 
 
-def _listed(names):
+def _listed(names: str | Sequence[str]) -> tuple[str, ...]:
     """Names of a list, or of a text with commas."""
     names = names.split(",") if isinstance(names, str) else names
     return tuple(name.strip() for name in names if name.strip())
 
 
-def _aspects(part, found, up):
+def _aspects(part: Part, found: Aspects, up: str | Sequence[str]) -> tuple[str, ...]:
     """Names of aspects that may be up as well, checked."""
     known = {name.casefold() for name in found.names}
     for name in _listed(up):
@@ -200,14 +211,16 @@ def _aspects(part, found, up):
     return _listed(up)
 
 
-def _separation(bowl, wishes):
+def _separation(bowl: Bowl, wishes: Wishes) -> Device | None:
     """The stretch that makes gaps in this bowl; None where it may not be used or makes none."""
     steeper = made("separation", WHERE, angle=STEEP, text=f"{{climb: {np.degrees(STEEP):.6g} deg}}")
     there = replace(bowl, track=replace(bowl.track, climb=STEEP))
     return steeper if wishes.allows("separation") and speed(there) > speed(bowl) else None
 
 
-def _designed(every, shares, wanted, bowl, **asked):
+def _designed(
+    every: Sequence[Orientation], shares: np.ndarray, wanted: int, bowl: Bowl, **asked: Any
+) -> Design:
     """The design of an orientation that the drive leaves lying on what is cut; if there is none, said so."""
     found = _isolating(every, shares, wanted, **asked)
     if _steady(found, every, bowl, asked["margin"]):
@@ -223,12 +236,12 @@ def _designed(every, shares, wanted, bowl, **asked):
     return replace(found, steady=False, reasons=(*found.reasons, said))
 
 
-def _steady(found, every, bowl, margin):
+def _steady(found: Design, every: Sequence[Orientation], bowl: Bowl, margin: float) -> bool:
     """Whether the drive leaves the wanted orientation lying at every cut of a design."""
     return not found.cuts or bool(steady(found.devices, [every[found.wanted]], bowl, margin)[0])
 
 
-def _isolating(every, shares, wanted, **asked):
+def _isolating(every: Sequence[Orientation], shares: np.ndarray, wanted: int, **asked: Any) -> Design:
     """The design for parts that travel; where none isolates, one for parts that are placed, and said so."""
     found = design(every, shares, wanted, **asked)
     if found.isolated or not any(one.carry > 0.0 for one in every):

@@ -1,5 +1,6 @@
 """The study of ``feeder track``: a part on one aspect against the wall of one bowl."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, ClassVar
@@ -8,6 +9,8 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.settings import Setting
+from feederscrew.bowl.vary import KeyRange
 from feederscrew.geometry import grids
 from feederscrew.mechanics import limits
 from feederscrew.mechanics.cycle import Cycle
@@ -48,7 +51,7 @@ class TrackStudy(Shown):
     stands: tipping.Stands | None = None  # what the rate reckons with; None of a part card
     printed: ClassVar[Any] = None  # the upper reversal by print, in `thesis.motion.as_published`
 
-    def over(self, settings, ranges=()):
+    def over(self, settings: Sequence[Setting], ranges: Sequence[KeyRange] = ()) -> grids.Grid:
         """Compute the upper reversal at every pair of two values of the bowl.
 
         Parameters
@@ -65,7 +68,7 @@ class TrackStudy(Shown):
         """
         first, second = ranges or bowls.ranges(USUAL)
 
-        def function(x, y):
+        def function(x: np.ndarray, y: np.ndarray) -> dict[str, np.ndarray]:
             bowl = limits.plain(bowls.swept(settings, {first.key.name: x, second.key.name: y}))
             return cells.cells(self.posture, bowl, self.laid)
 
@@ -120,12 +123,14 @@ def track(part: Part, bowl: Bowl, aspect: str | None = None, heading: float | No
     )
 
 
-def _stands(posture, found, row, bowl, cycle):
+def _stands(
+    posture: Posture, found: Headings, row: int, bowl: Bowl, cycle: balance.TrackMotion
+) -> tipping.Stands:
     one = orientations.at(posture, found, row, {}, bowl.track)
     return tipping.stands(one, bowl, bool((cycle.state == HOP).any()))
 
 
-def _from_rest(seat, bowl):
+def _from_rest(seat: Seat, bowl: Bowl) -> tuple[balance.TrackMotion, bool]:
     """The upper reversal from rest, and whether the part is held though the least friction would not do."""
     now = balance.motion(seat, bowl)
     if now.state not in (SLIDE, TIP) or not equilibrium.exists(seat, bowl):

@@ -1,8 +1,9 @@
 """The study of ``feeder trial``: parts of true shape on the vibrating, tooled track, one and many."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
+from typing import Any
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from feederscrew.studies.rate import Shares
 from feederscrew.studies.rate import shares as arriving
 from feederscrew.trial import course, outlet
 from feederscrew.trial import landing as landings
+from feederscrew.trial.outlet import Outlet
 from feederscrew.trial.queue import queue_of
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.shape import solid_of
@@ -44,18 +46,18 @@ class TrialStudy(Shown):
     measured: profiles.Measured | None = None  # at the outlet of a bowl, to be set beside a queue's profile
 
     @property
-    def answer(self):
+    def answer(self) -> str:
         """Say whose shares parts arrive in: 'hops, launch feed', 'csa'."""
         known = self.aspects.recommended
         return known.rule if self.rule == RECOMMENDED and known is not None else self.rule
 
     @property
-    def launch(self):
+    def launch(self) -> str | None:
         """What is done to the parts: 'feed', 'drop'; None where a rule knows no launch."""
         known = self.aspects.recommended
         return known.launch if self.rule == RECOMMENDED and known is not None else None
 
-    def outlet(self, run):
+    def outlet(self, run: TrialRun) -> Outlet | None:
         """Return what left one run's queue by aspect, an Outlet; None without a queue."""
         if run.queue is None:
             return None
@@ -63,17 +65,17 @@ class TrialStudy(Shown):
         return outlet.outlet(run.queue, run.known.lying, run.shares, self.aspects.names, columns)
 
     @property
-    def partial(self):
+    def partial(self) -> bool:
         """Whether the user stopped it before all parts were done."""
         return self.stopped or any(run.partial for run in self.runs)
 
     @property
-    def highest(self):
+    def highest(self) -> float:
         """The greatest amplitude tried [m] at which the tooling still sorts; NaN where it does at none."""
         return max((run.bowl.drive.amplitude for run in self.runs if run.sorts), default=np.nan)
 
     @property
-    def warnings(self):
+    def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
         first = self.runs[0]
         told = [*strangers(first.bowl.devices, self.aspects.names), *self.aspects.warnings]
@@ -170,12 +172,12 @@ def trial(
         ways = arrivals.oriented(ways, known.measured)
         tried = _tried(part, found, ways, aspect)
         shares = _shares(ways, rule, tried)
-        own = {"parts": max(count, len(tried)), "seed": seed, "jobs": jobs, "before": before}
+        own: dict[str, Any] = {"parts": max(count, len(tried)), "seed": seed, "jobs": jobs, "before": before}
         own |= {"poses": ways.states, "leaves": course.rightly(ways.leaving)}
         own["progress"] = _after(len(made), progress, len(bowls))
         try:
             seen = course.course(part, bowl, ways.lying, tried, bowl.devices, **own)
-            more = {}
+            more: dict[str, Any] = {}
             if not seen.partial:
                 more, stopped = _further(part, bowl, found, ways, shares, fall, crowd, seed, progress)
             made.append(TrialRun(bowl, throw_number(bowl), ways, shares, seen, **more))
@@ -188,7 +190,17 @@ def trial(
     return TrialStudy(part, found, rule, seed, tuple(made), stopped, measured)
 
 
-def _further(part, bowl, found, ways, shares, fall, crowd, seed, progress):
+def _further(
+    part: Part,
+    bowl: Bowl,
+    found: Aspects,
+    ways: stream.Orientations,
+    shares: np.ndarray,
+    fall: Mapping[str, Any] | None,
+    crowd: Mapping[str, Any] | None,
+    seed: int,
+    progress: Callable[..., None] | None,
+) -> tuple[dict[str, Any], bool]:
     """Parts that fall onto the track and a queue, as far as asked for; and whether the user stopped them."""
     made, own = {}, {"seed": seed, "progress": progress}
     try:
@@ -223,12 +235,14 @@ def at_outlet(counts: str | PathLike[str], known: Shares) -> profiles.Measured:
     return profiles.read(counts, list(known.aspects.names))
 
 
-def _after(before, progress, bowls):
+def _after(
+    before: int, progress: Callable[..., None] | None, bowls: int
+) -> Callable[[int, int], None] | None:
     """``progress`` of one bowl of several, after those before it; each has as many stations."""
     return progress and (lambda done, total: progress(before * total + done, bowls * total))
 
 
-def _tried(part, found, known, aspect):
+def _tried(part: Part, found: Aspects, known: stream.Orientations, aspect: str | None) -> list[int]:
     """Rows of the orientations that are laid down."""
     if aspect is None:
         return list(range(len(known.lying)))
@@ -239,7 +253,7 @@ def _tried(part, found, known, aspect):
     return rows
 
 
-def _shares(known, rule, tried):
+def _shares(known: stream.Orientations, rule: str, tried: list[int]) -> np.ndarray:
     """(M,) shares of the orientations tried; evenly where the rule gives none of them a chance."""
     chances = np.zeros(len(known.lying))
     chances[tried] = np.nan_to_num(known.rules[rule])[tried]

@@ -44,7 +44,7 @@ class TuneStudy(Shown):
     settings: tuple[Tuned, ...]
 
     @property
-    def warnings(self):
+    def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each: of the devices, then of the aspects."""
         return (*strangers(self.devices, self.aspects.names), *self.aspects.warnings)
 
@@ -110,7 +110,7 @@ def tune(
     well_oriented.parts_per_metre(ways.along(None), wanted, rule, gap=gap, fill=fill)
     well_oriented.holds(ways.along(bowl), wanted)
 
-    def density(ways, driven):
+    def density(ways: _DriveWays, driven: Bowl) -> float:
         return well_oriented.leaving_per_metre(ways.along(driven), wanted, rule, gap=gap, fill=fill)
 
     led = None if lead is None else partial(density, lead)
@@ -129,18 +129,20 @@ def tune(
 class _DriveWays:
     """The orientations along the track of a bowl at other drives, with what arrives at each of them."""
 
-    def __init__(self, part, bowl, chain, arriving):
+    def __init__(
+        self, part: Part, bowl: Bowl, chain: Sequence[Device], arriving: Callable[[Bowl], Shares]
+    ) -> None:
         self.part, self.bowl, self.chain = part, bowl, chain
         self.shares, self.along = cache(arriving), cache(self._along)
 
-    def _along(self, driven):
+    def _along(self, driven: Bowl | None) -> well_oriented.Orientations:
         """At a drive; None: at the bowl's own as if it turned nothing over."""
         known = self.shares(driven or self.bowl)
         every = orientations(self.part, known.aspects, self.bowl.track)
         return arrivals.oriented(along(every, known.aspects, self.chain, bowl=driven), known.measured)
 
 
-def _tuned(solution, bowl, ways):
+def _tuned(solution: knobs.Solution, bowl: Bowl, ways: _DriveWays) -> Tuned:
     """Add to a solution what it gives if friction is a fifth lower or higher, and what it turns over."""
     found, driven = solution.answer, knobs.turned(bowl, solution.key, solution.value)
     return Tuned(

@@ -1,7 +1,9 @@
 """The study of ``feeder drop``: a virtual drop test of one part on a hard plane."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+
+import numpy as np
 
 from feederscrew import check
 from feederscrew.dropping import drop_test, traces
@@ -33,7 +35,7 @@ class DropStudy(Shown):
         return len(self.result.drops.faces)
 
     @property
-    def rules(self):
+    def rules(self) -> dict[str, np.ndarray]:
         """Probabilities (A,) by the rules that the drops are shown with."""
         return {rule: self.aspects.probabilities[rule] for rule in BESIDE}
 
@@ -53,8 +55,8 @@ def drop(
     seed: int = 1,
     jobs: int = 1,
     traced: int = 0,
-    progress=None,
-    before=None,
+    progress: Callable[..., None] | None = None,
+    before: Callable[..., None] | None = None,
     aspects: Aspects | None = None,
 ) -> DropStudy:
     """Study on which aspects a part comes to rest when it is dropped again and again.
@@ -105,7 +107,7 @@ def drop(
     return DropStudy(part, found, result)
 
 
-def check_run(drops, seed, jobs):
+def check_run(drops: int | None, seed: int | None, jobs: int | None) -> None:
     """Raise an ArgumentError that names the argument of a run that cannot be used."""
     for name, value, low in (("drops", drops, 1), ("seed", seed, 0), ("jobs", jobs, 1)):
         if value is not None:

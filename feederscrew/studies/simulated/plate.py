@@ -1,6 +1,6 @@
 """The study of ``feeder drop --plate``: a virtual dynamic bowl test of one part."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from feederscrew import check
@@ -42,8 +42,8 @@ def plate(
     seconds: float | None = None,
     seed: int = 1,
     jobs: int = 1,
-    progress=None,
-    before=None,
+    progress: Callable[..., None] | None = None,
+    before: Callable[..., None] | None = None,
 ) -> PlateStudy:
     """Study what parts do on plates that vibrate with the drives of bowls.
 

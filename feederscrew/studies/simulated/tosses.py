@@ -1,6 +1,6 @@
 """The study of ``feeder drop --launches``: tosses of one part, each followed from its own state."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,21 +45,21 @@ class TossStudy(Shown):
     result: toss_runs.Tosses
 
     @property
-    def p(self):
+    def p(self) -> np.ndarray:
         """Share (N,) of the settled runs that end as told; NaN without any."""
         found = self.result
         best = np.take_along_axis(found.shares, np.maximum(found.faces, 0)[:, None], axis=1)[:, 0]
         return np.where(found.faces >= 0, best, np.nan)
 
     @property
-    def intervals(self):
+    def intervals(self) -> tuple[np.ndarray, ...]:
         """Ends (N,), (N,) of the 95 % interval that so few runs leave of ``p``."""
         settled = self.result.settled
         pairs = [wilson(np.nan_to_num(p) * n, n) if n else (0.0, 1.0) for p, n in zip(self.p, settled)]
         return tuple(np.array([float(np.ravel(pair[k])[0]) for pair in pairs]) for k in (0, 1))
 
     @property
-    def off(self):
+    def off(self) -> np.ndarray | None:
         """Distance (N,) [m] from the place told to the one measured; None where none was measured."""
         ends = self.launches.ends
         return None if ends is None else np.hypot(*(self.result.places - ends[: len(self.p)]).T)
@@ -95,8 +95,8 @@ def follow(
     runs: int | None = None,
     seed: int = 1,
     jobs: int = 1,
-    progress=None,
-    before=None,
+    progress: Callable[..., None] | None = None,
+    before: Callable[..., None] | None = None,
 ) -> TossStudy:
     """Study where tosses lead whose states at the launch are known.
 
