@@ -107,6 +107,11 @@ class PartsOnTrack:
         )  # fmt: skip
         return notes[travel.SUNK]
 
+    def slides_off(self, n):
+        """Return whether part n is beyond the free edge, or too fast towards it to stay on the track."""
+        out = travel.slides_to(self.surface, self.arrays.states[n])
+        return bool(out > self.stage.width / self.known.length)
+
     def blown_off(self, n):
         """Return whether part n is beyond the free edge, where the track does not hold it any more."""
         out = travel.across(self.surface, self.arrays.states[n])

@@ -198,7 +198,7 @@ class _Queue:
         if self.first is None and front > self.outlet and not fell:
             self.first = self.time
             self.start = self.outside(rear, front)
-        if rear > self.outlet and not fell:
+        if rear > self.outlet and not fell and not self.crowd.slides_off(n):
             self.leave(n)
             self.again(n)
         elif fell or front < self.track.start / self.known.length:

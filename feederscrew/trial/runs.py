@@ -194,6 +194,7 @@ def limits_of(known, station, limits):
         patience=limits[1] / known.unit,
         progress=limits[2] / known.length,
         back=(station.begin - limits[3]) / known.length,
+        edge=station.width / known.length,
         free=station.width / known.length + known.solid.radius,
     )
 

@@ -48,6 +48,7 @@ class Limits(NamedTuple):
     patience: float  # time in which it must get on
     progress: float  # ... so far along the wall, or down
     back: float  # way along the wall, behind which it has gone back
+    edge: float  # from the wall, where the track ends: what slides beyond it does not pass
     free: float  # from the wall, beyond which the track does not hold it any more
 
 

@@ -3,7 +3,7 @@
 import math
 
 from feederscrew.dropping.kernel import body
-from feederscrew.dropping.kernel.body import X, Y, Z
+from feederscrew.dropping.kernel.body import VX, VY, X, Y, Z
 from feederscrew.geometry.compiled import apart, compiled, entry
 from feederscrew.trial.kernel import jets, motion, pairs
 
@@ -24,6 +24,17 @@ def across(surface, state):
     """Return how far from the wall [L] the centre of mass of a state (13,) is, anywhere round the bowl."""
     x, y = state[X], surface.radius - state[Y]
     return surface.radius - math.sqrt(x * x + y * y)
+
+
+@compiled
+def slides_to(surface, state):
+    """Return how far from the wall [L] a part (13,) gets that slides on as it is until friction stops it.
+
+    What was blown off may come past the end of a stretch before it is beyond the free edge.
+    """
+    x, y = state[X], surface.radius - state[Y]
+    outwards = (state[VY] * y - state[VX] * x) / math.sqrt(x * x + y * y)
+    return across(surface, state) + 0.5 * max(outwards, 0.0) ** 2 / max(surface.friction[1], LEFT)
 
 
 @apart
@@ -70,7 +81,8 @@ def travel(surface, limits, solid, floor, crowd, time, every, path, notes):
             break
         place = way(surface, state)
         if place > limits.exit:
-            outcome = PASSED if state[Z] > limits.under else RETURNED
+            held = state[Z] > limits.under and slides_to(surface, state) < limits.edge
+            outcome = PASSED if held else RETURNED
             break
         if place < limits.back:
             outcome = ROLLED
