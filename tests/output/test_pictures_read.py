@@ -186,3 +186,23 @@ def test_a_matrix_can_be_sorted_where_it_says_so():
     for sortable in (False, True):
         page = html(Page("all", "", (Chapter((Matrix(("part",), cells, sortable),)),)))
         assert ('class="matrix sortable"' in page) == ("aria-sort" in page.split("</style>")[1]) == sortable
+
+
+def test_a_part_behind_a_blade_shines_through():
+    """A cube behind a plate as large: without what shines through it one colour would be all that is seen."""
+    import numpy as np
+    import trimesh
+
+    from feederscrew.output.solid import pair
+    from feederscrew.output.solid.render import Camera
+
+    part, blade = trimesh.creation.box((1.0, 1.0, 1.0)), trimesh.creation.box((4.0, 4.0, 0.1))
+    blade.apply_translation((0.0, 0.0, 2.0))
+    camera = Camera(
+        right=np.array([1.0, 0.0, 0.0]), up=np.array([0.0, 1.0, 0.0]), back=np.array([0.0, 0.0, 1.0])
+    )
+    meshes = ((one.vertices, one.faces) for one in (blade, part))
+    image, _, _ = pair.picture(*meshes, np.zeros(3), camera, 1.5, 60, 60)
+    colours = [image[30, 30], image[5, 5]]
+    assert np.abs(colours[0] - colours[1]).max() > 0.04
+    assert (np.abs(image - image[5, 5]).max(axis=2) > 0.02)[20:40, 20:40].all()

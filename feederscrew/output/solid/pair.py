@@ -1,4 +1,4 @@
-"""A part on a track, rendered together: each hides what of the other is behind it."""
+"""A part on a track, rendered together: what of the part a blade or the track hides shines through."""
 
 import numpy as np
 
@@ -7,6 +7,7 @@ from feederscrew.output.solid.shading import EDGE, STEEL, Shot, averaged, edges,
 
 METAL = np.array([0.90, 0.91, 0.92])  # the track
 SAMPLES = 2  # rays a pixel, each way
+THROUGH = 0.45  # of its colour: the part where something is in front of it
 
 
 def picture(track, part, centre, camera, half, columns, rows):
@@ -38,26 +39,32 @@ def picture(track, part, centre, camera, half, columns, rows):
     frame = Shot(-half, -half * rows / columns, 2.0 * half / columns, columns, rows)
     across, up = frame.positions(SAMPLES)
     depths, normals = camera.cast(whole, across, up)
-    met, is_part = np.isfinite(depths), _part_in_front(part, centre, camera, whole.size, across, up, depths)
+    near, own = _part_alone(part, centre, camera, whole.size, across, up)
+    met, there = np.isfinite(depths), np.isfinite(near)
+    is_part = there & (near <= np.where(met, depths, np.inf) + 1e-3)
     image = np.ones((*depths.shape, 3))
     for mask, colour in ((met & ~is_part, METAL), (met & is_part, STEEL)):
         image[mask] = lit(normals[mask], camera, colour)
-    image[edges(depths, normals, camera, up[0] - up[1])] = EDGE
+    step = up[0] - up[1]
+    image[edges(depths, normals, camera, step)] = EDGE
+    hidden = there & ~is_part
+    shape = lit(own[hidden], camera, STEEL)
+    shape[edges(near, own, camera, step)[hidden]] = EDGE
+    image[hidden] += THROUGH * (shape - image[hidden])
     return averaged(image, SAMPLES), frame, whole.size
 
 
-def _part_in_front(part, centre, camera, size, across, up, depths):
-    """(rows, columns) whether the part is what is seen."""
+def _part_alone(part, centre, camera, size, across, up):
+    """Depths (rows, columns) in a size, and normals, of the part without the track."""
     corners, faces = part
     alone = Rays(corners, faces, centre)
     scale = size / alone.size
-    near = np.full(depths.shape, np.inf)
+    near = np.full((len(up), len(across)), np.inf)
+    normals = np.zeros((*near.shape, 3))
     low, high = (end(camera.project(corners - centre), axis=0) / size for end in (np.min, np.max))
     columns = np.flatnonzero((across > low[0]) & (across < high[0]))
     rows = np.flatnonzero((up > low[1]) & (up < high[1]))
     if len(columns) and len(rows):
         box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-        near[box], _ = camera.cast(alone, across[columns] * scale, up[rows] * scale)
-    return np.isfinite(near) & (
-        (near - AWAY) / scale + AWAY <= np.where(np.isfinite(depths), depths, np.inf) + 1e-3
-    )
+        near[box], normals[box] = camera.cast(alone, across[columns] * scale, up[rows] * scale)
+    return (near - AWAY) / scale + AWAY, normals

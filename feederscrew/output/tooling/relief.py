@@ -74,6 +74,11 @@ def _drawable(met):
     return [one for one in met if one.picture and one.picture != "turned"]
 
 
+def _over_a_cut(met):
+    """Whether a passage leads over something that is cut out of the track."""
+    return met.picture == "above" and met.device.cuts
+
+
 def _leaves(devices, every, wanted):
     """The passage of the wanted orientation with the least margin, with lines of text."""
     met = _drawable(tightest.until_returned(devices, every[wanted], every))
@@ -96,14 +101,14 @@ def _falls(devices, every, shares, wanted):
     if not found:
         return None
     nearest = max(found, key=lambda one: round(one.verdict.margin, 9))
-    word = "falls at" if nearest.picture == "above" else "is stopped at"
+    word = "falls at" if _over_a_cut(nearest) else f"is {nearest.fate} at"
     return nearest, _told(nearest, word), FALLS
 
 
 def _told(met, word):
     kind = met.device.kind.replace("_", " ")
     where = "half way through" if met.verdict.passes > 0.0 else "in front of it"
-    if met.picture == "above":
+    if _over_a_cut(met):
         where = "where it bears least; outline: hull of its support, dot: its weight"
     return f"{met.orientation.name} {word} the {kind}, {ink.margin(met.verdict)}", where
 
@@ -177,7 +182,7 @@ def camera_at(angle):
 
 def _marks(axes, met, every, camera, centre, colour):
     """Hull of the support and the weight, seen through the part."""
-    if met.picture != "above" or met.orientation.kind == "hanging":
+    if not _over_a_cut(met) or met.orientation.kind == "hanging":
         return
     camera, size = camera
     radius = met.orientation.track.radius
