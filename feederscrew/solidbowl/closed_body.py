@@ -38,6 +38,17 @@ class BowlSolid:
     step: object = None  # exact_file.StepFile, where it was asked for
 
     @property
+    def balance(self):
+        """Mass [kg] and angle about Z [rad] of a weight on the wall that centres it."""
+        x, y, _ = self.centre
+        return float(self.mass * np.hypot(x, y) / self.balanced_at), float(np.arctan2(-y, -x))
+
+    @property
+    def balanced_at(self):
+        """Radius [m] at which that weight is: of the wall's outer face."""
+        return self.plan.way.radius + self.plan.material.wall
+
+    @property
     def remarks(self):
         """What must not be overlooked, a tuple of str."""
         if self.plan.stairs is not None or self.plan.turns >= SHORTER * self.turns_of_sheet:

@@ -119,6 +119,14 @@ def test_a_cut_is_as_large_as_its_device_says():
                 assert on_track == (not low < y < high)
 
 
+def test_the_weight_that_balances_it_brings_its_centre_over_the_axis():
+    solid = body(planned(CHAINS["gap"]))
+    weight, angle = solid.balance
+    at = solid.balanced_at * np.array([np.cos(angle), np.sin(angle)])
+    np.testing.assert_allclose(solid.mass * solid.centre[:2] + weight * at, 0.0, rtol=0, atol=1e-12)
+    assert 0.01 < weight / solid.mass < 0.1
+
+
 def test_a_left_hand_is_the_mirror_image():
     right, left = (body(planned(CHAINS["gap"], asked=Asked(left=hand))) for hand in (False, True))
     assert closed(left) == pytest.approx(closed(right), rel=1e-6)  # corners within 2e-3 mm become one

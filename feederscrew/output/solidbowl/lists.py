@@ -45,6 +45,10 @@ def parts(paper, study, at):
     )
     rows = [["pos.", "quantity", "what"]]
     rows.append(["1", "1", f"bowl, {plan.material.name}, {study.solid.mass:.4g} kg"])
+    weight, angle = study.solid.balance
+    rows.append(
+        ["2", "1", f"weight to balance it, {1e3 * weight:.3g} g on the wall at {np.degrees(angle):.0f}°"]
+    )
     for name, _, _ in study.solid.gates:
         rows.append([str(len(rows)), "1", f"{name.replace('_', ' ')}, in its notch of the wall"])
     cut = study.solid.segments
