@@ -33,3 +33,17 @@ def test_the_chapter_plays_the_path_of_the_part():
     assert (np.diff(path[:, 0]) > 0.0).all() and path[-1, 1] > path[0, 1] + 10.0
     track = decoded(scene["tracks"][0]["positions"]).reshape(-1, 3)
     assert track[:, 2].min() == pytest.approx(-4.0) and track[:, 2].max() > 10.0  # the wall
+
+
+def test_the_stills_are_of_the_device_that_decides():
+    """Where most do not pass while others do; a device that loses all shows nothing that passes."""
+    from types import SimpleNamespace
+
+    from feederscrew.output.trial.shown import _station
+    from feederscrew.trial import runs
+
+    def lost(count):
+        return SimpleNamespace(outcomes=np.where(np.arange(9) < count, runs.PASSED + 1, runs.PASSED))
+
+    for counts, place in (((0, 1, 5, 2), 2), ((3, 0, 0, 0), 3), ((0, 2, 2), 1), ((0, 9, 1), 2)):
+        assert _station(SimpleNamespace(rides=[lost(count) for count in counts])) == place

@@ -3,7 +3,6 @@
 import matplotlib
 import numpy as np
 from matplotlib.colors import ListedColormap, TwoSlopeNorm
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from feederscrew.conveying.flights import throw_of_flight
@@ -177,8 +176,8 @@ def _velocity(figure, axes, grid):
     bar.set_ylim(lowest, highest)
     if known.min() < 0.0 < known.max():
         axes.contour(x, y, velocity, [0.0], colors=style.INK, linewidths=1.2)
-        line = Line2D([], [], color=style.INK, linewidth=1.2, label="velocity 0")
-        axes.legend(handles=[line], fontsize=8, frameon=True, loc="upper right", labelcolor=style.INK)
+        style.tidy(axes, title="Velocity [mm/s], from rest; line: 0", grid="none")  # a legend hides cells
+        axes.set(xlabel=_label(grid.first), ylabel=_label(grid.second))
     several = grid.values["several"].T.astype(float)
     if several.any():
         with matplotlib.rc_context({"hatch.linewidth": 0.5}):

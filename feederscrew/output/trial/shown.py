@@ -24,7 +24,7 @@ class ShownRide:
 
 
 def shown(run):
-    """Return one part that passes and one that does not, at the first device that stops any.
+    """Return one part that passes and one that does not, at the device that decides.
 
     Parameters
     ----------
@@ -42,11 +42,13 @@ def shown(run):
 
 
 def _station(found):
-    """The first device at which some part does not pass; where all do the last station."""
-    for place, ride in list(enumerate(found.rides))[1:]:
-        if (ride.outcomes != runs.PASSED).any():
-            return place
-    return len(found.rides) - 1
+    """The device that decides: where most do not pass while others do; where all do the last station."""
+    lost = [int((ride.outcomes != runs.PASSED).sum()) for ride in found.rides]
+    some = [0 < count < len(ride.outcomes) for count, ride in zip(lost, found.rides)]
+    places = range(1, len(lost))
+    if not any(lost[1:]):
+        return len(lost) - 1
+    return max(places, key=lambda place: (some[place], lost[place], -place))
 
 
 def _of(run, place, n):

@@ -16,7 +16,7 @@ WALL = 1.1  # of the part's radius: how high the wall is
 
 
 def stills(part, run):
-    """Draw one part that passes the first device where some are lost, and one that is lost there.
+    """Draw one part that passes the device that decides, and one that is lost there.
 
     Parameters
     ----------
