@@ -2,7 +2,7 @@
 
 import click
 
-from feederscrew_cli import grouped, options, orientation, waiting
+from feederscrew_cli import grouped, options, orientation, quantity, waiting
 from feederscrew_cli.quantity import Quantity
 
 TARGET = click.option(
@@ -33,13 +33,12 @@ SOLID = (
         help="Cut it into segments that fit a printer: 220x220x250mm; with holes for dowels at the seams.",
     ),
     click.option("--step", is_flag=True, help="Write bowl.step, of exact faces; needs feederscrew[cad]."),
-    click.option(
+    quantity.with_default(
         "--chord",
-        type=Quantity("length", positive=True),
-        default="0.05 mm",
-        show_default=True,
-        metavar="LENGTH",
-        help="Greatest distance of the solid's flat facets from the true arc.",
+        "length",
+        "0.05 mm",
+        "Greatest distance of the solid's flat facets from the true arc.",
+        positive=True,
     ),
 )
 

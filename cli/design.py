@@ -4,7 +4,7 @@ import os
 
 import click
 
-from feederscrew_cli import grouped, options, orientation, waiting
+from feederscrew_cli import grouped, options, orientation, quantity, waiting
 from feederscrew_cli.angle import Angle
 from feederscrew_cli.interrupt import held_back
 from feederscrew_cli.quantity import Quantity
@@ -45,13 +45,8 @@ REQUEST = (  # what shall leave, and what may be used
         metavar="LOW:HIGH",
         help="Least and greatest diameter of the bowl: 200mm:400mm.",
     ),
-    click.option(
-        "--tolerance",
-        type=Quantity("length"),
-        default="0.1 mm",
-        show_default=True,
-        metavar="LENGTH",
-        help="By which a part may be larger or smaller than its file.",
+    quantity.with_default(
+        "--tolerance", "length", "0.1 mm", "By which a part may be larger or smaller than its file."
     ),
     click.option(
         "--budget",

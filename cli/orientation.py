@@ -2,9 +2,8 @@
 
 import click
 
-from feederscrew_cli import options, waiting
+from feederscrew_cli import options, quantity, waiting
 from feederscrew_cli.angle import Angle
-from feederscrew_cli.quantity import Quantity
 
 CHAIN = (
     click.option("--aspect", required=True, metavar="NAME", help="Aspect the part shall leave the bowl on."),
@@ -16,21 +15,9 @@ CHAIN = (
         "[default: the most frequent that stays on the track]",
     ),
     options.rule,
-    click.option(
-        "--gap",
-        type=Quantity("length"),
-        default="0 mm",
-        show_default=True,
-        metavar="LENGTH",
-        help="Gap between one part and the next.",
-    ),
-    click.option(
-        "--fill",
-        type=Quantity("number", positive=True, most=1.0),
-        default="1",
-        show_default=True,
-        metavar="SHARE",
-        help="Share of the track that is occupied.",
+    quantity.with_default("--gap", "length", "0 mm", "Gap between one part and the next."),
+    quantity.with_default(
+        "--fill", "number", "1", "Share of the track that is occupied.", positive=True, most=1.0
     ),
 )
 
@@ -40,9 +27,7 @@ def chain(command):
 
     The command receives ``aspect``, ``heading``, ``rule``, ``gap`` and ``fill``.
     """
-    for option in reversed(CHAIN):
-        command = option(command)
-    return command
+    return options.stacked(command, *CHAIN)
 
 
 LEAVES_MOST = click.option(
@@ -54,9 +39,7 @@ LEAVES_MOST = click.option(
 
 def any_chain(command):
     """As ``chain``, but ``aspect`` may be left out."""
-    for option in reversed((LEAVES_MOST, *CHAIN[1:])):
-        command = option(command)
-    return command
+    return options.stacked(command, LEAVES_MOST, *CHAIN[1:])
 
 
 LAUNCHED = click.option(
@@ -151,14 +134,10 @@ def telling(out):
 
 def doubt(command):
     """How far part and cut may be off; the command receives ``play`` and ``tolerance``."""
-    for name, text in reversed(DOUBT):
-        command = click.option(
-            name, type=Quantity("length"), default="0 mm", show_default=True, metavar="LENGTH", help=text
-        )(command)
-    return command
+    return options.stacked(command, *DOUBT)
 
 
-DOUBT = (
-    ("--play", "Standard deviation of where a part is over a cut."),
-    ("--tolerance", "Standard deviation of where a cut's edge is."),
+DOUBT = tuple(
+    quantity.with_default(name, "length", "0 mm", f"Standard deviation of where {what}.")
+    for name, what in (("--play", "a part is over a cut"), ("--tolerance", "a cut's edge is"))
 )

@@ -2,6 +2,20 @@
 
 import click
 
+METAVARS = {"length": "LENGTH", "number": "SHARE", "time": "TIME"}
+
+
+def with_default(names, dimension, default, told, **bounds):
+    """An option of a quantity with a default, which its help shows; bounds as of ``Quantity``."""
+    return click.option(
+        *names.split(),
+        type=Quantity(dimension, **bounds),
+        default=default,
+        show_default=True,
+        metavar=METAVARS[dimension],
+        help=told,
+    )
+
 
 class Quantity(click.ParamType):
     """'0.5 mm', '120/min': a quantity of one dimension, in SI units."""

@@ -2,10 +2,9 @@
 
 import click
 
-from feederscrew_cli import grouped, options, orientation, waiting
+from feederscrew_cli import grouped, options, orientation, quantity, waiting
 from feederscrew_cli.angle import Angle
 from feederscrew_cli.progress import Progress
-from feederscrew_cli.quantity import Quantity
 
 ASKED = (
     *("heading", "margin", "purity", "efficiency", "outcome", "without"),
@@ -27,29 +26,27 @@ def _asked(command):
     "--heading", type=Angle(), metavar="DEG", help="Heading of that aspect.  [default: the most frequent]"
 )
 @options.rule
-@click.option(
+@quantity.with_default(
     "--margin",
-    type=Quantity("length", positive=True),
-    default="0.25 mm",
-    show_default=True,
-    metavar="LENGTH",
-    help="Least margin by which the wanted orientation passes and the others fail.",
+    "length",
+    "0.25 mm",
+    "Least margin by which the wanted orientation passes and the others fail.",
+    positive=True,
 )
-@click.option(
+@quantity.with_default(
     "--purity",
-    type=Quantity("number", positive=True, most=1.0),
-    default="1",
-    show_default=True,
-    metavar="SHARE",
-    help="Share of what leaves that is enough in the wanted orientation: a shorter chain may do.",
+    "number",
+    "1",
+    "Share of what leaves that is enough in the wanted orientation: a shorter chain may do.",
+    positive=True,
+    most=1.0,
 )
-@click.option(
+@quantity.with_default(
     "--efficiency",
-    type=Quantity("number", most=1.0),
-    default="0",
-    show_default=True,
-    metavar="SHARE",
-    help="Share of what is offered that shall leave: the search goes on for it, or says what is missing.",
+    "number",
+    "0",
+    "Share of what is offered that shall leave: the search goes on for it, or says what is missing.",
+    most=1.0,
 )
 @click.option(
     "--outcome",
@@ -64,39 +61,13 @@ def _asked(command):
     metavar="KIND,...",
     help="Kinds of devices that are not used: wiper,cut_out.",
 )
-@click.option(
-    "--step",
-    type=Quantity("length", positive=True),
-    default="0.05 mm",
-    show_default=True,
-    metavar="LENGTH",
-    help="What a shop makes: values are whole multiples of it.",
+@quantity.with_default(
+    "--step", "length", "0.05 mm", "What a shop makes: values are whole multiples of it.", positive=True
 )
 @click.option("--up", default="", metavar="NAME,...", help="Other aspects that count as the one wanted: B,C.")
-@click.option(
-    "--cutter",
-    type=Quantity("length"),
-    default="0 mm",
-    show_default=True,
-    metavar="LENGTH",
-    help="Radius that corners of holes are rounded to.",
-)
-@click.option(
-    "--play",
-    type=Quantity("length"),
-    default="0 mm",
-    show_default=True,
-    metavar="LENGTH",
-    help="Of parts from the wall: every margin is larger by it.",
-)
-@click.option(
-    "--tolerance",
-    type=Quantity("length"),
-    default="0 mm",
-    show_default=True,
-    metavar="LENGTH",
-    help="Of the part's size: every margin is larger by it.",
-)
+@quantity.with_default("--cutter", "length", "0 mm", "Radius that corners of holes are rounded to.")
+@quantity.with_default("--play", "length", "0 mm", "Of parts from the wall: every margin is larger by it.")
+@quantity.with_default("--tolerance", "length", "0 mm", "Of the part's size: every margin is larger by it.")
 @click.option("--cad", is_flag=True, help="Write tooling.step as well; needs feederscrew[cad].")
 @click.option("--turn", is_flag=True, help="Allow steps and ledges that turn parts over, before the cuts.")
 @click.option(
@@ -109,14 +80,12 @@ def _asked(command):
     show_default=True,
     help="Most verdicts in the search for holes of one orientation: the same end on every machine.",
 )
-@click.option(
-    "--limit",
-    "seconds",
-    type=Quantity("time", positive=True),
-    default="10 min",
-    show_default=True,
-    metavar="TIME",
-    help="Time after which the best so far is taken; the answer then says so.",
+@quantity.with_default(
+    "--limit seconds",
+    "time",
+    "10 min",
+    "Time after which the best so far is taken; the answer then says so.",
+    positive=True,
 )
 @click.option("--static", is_flag=True, help="Leave out the trial of what is proposed.")
 @orientation.taken

@@ -36,3 +36,31 @@ def test_parts_a_metre_are_those_counted_on_a_drawn_queue(wanted):
     told = throughput.flow(found, "csa", target=target, gap=gap, fill=fill)
     assert told.parts == pytest.approx(counts / way, rel=0.01)
     assert told.parts < 0.9 * throughput.flow(found, "csa", target=target, fill=fill).parts
+
+
+@pytest.mark.parametrize("shape", ["stepped", "conical"])
+def test_beside_a_slope_a_turn_rises_by_the_slope_and_three_sheets_more(shape):
+    """The track, the wall that leads to it and the wall above are a sheet each; the slope is 0.9 in 1."""
+    rules = replace(awkward.bowl().sizing, sheet=0.003, least_climb=0.0)
+    found = sizing.size(LYING, "a part", replace(rules, shape=shape), sorts=False)
+    upright = sizing.size(LYING, "a part", rules, sorts=False)
+    rise = np.pi * (found.diameter - found.track_width) * np.tan(found.climb)
+    own = np.pi * upright.diameter * np.tan(upright.climb)
+    assert rise - own == pytest.approx(0.9 * found.track_width + 3.0 * rules.sheet, rel=1e-9)
+
+
+@pytest.mark.parametrize(("more", "diameter"), [(0.0, 0.3), (1e-5, 0.4), (-1e-5, 0.3)])
+def test_a_bowl_is_rounded_up_unless_it_is_a_whole_number_of_steps(more, diameter):
+    """0.3 over 0.1 is a little less or more than 3, by how it was made: three steps either way."""
+    for least in (0.3, 0.1 * 3, np.nextafter(0.1 * 3, 1.0)):
+        rules = replace(awkward.bowl().sizing, least_diameter=least + more, diameter_step=0.1)
+        rules = replace(rules, diameter_per_length=1.0, diameter_per_width=0.1)
+        found = sizing.size(LYING, "a part", rules, sorts=False)
+        assert found.diameter == pytest.approx(diameter, rel=1e-12)
+
+
+def test_what_no_stroke_brings_is_told_in_parts_a_minute_and_millimetres_peak_to_peak():
+    """3 parts a metre at 0.05 m/s are 0.15 a second; 0.4 mm of amplitude are 0.8 mm of stroke."""
+    told = str(throughput.unreachable(2.0, 3.0, (0.05, 0.4e-3)))
+    assert "no bowl reaches 120/min" in told
+    assert "the most is 9/min at 0.8 mm peak to peak" in told

@@ -1,16 +1,73 @@
 """Signs and constants of rocking that a level, symmetric pin would not show."""
 
+from types import SimpleNamespace
+
 import awkward
 import numpy as np
 import pytest
 import shapes
 
+from feederscrew.mechanics.cycle import phases
+from feederscrew.mechanics.track import balance
+from feederscrew.mechanics.track.frame import seat
 from feederscrew.rates import rocking, steadiness, stream, tipping
 from feederscrew.rates.rocking import INSTANTS, Rocker, goes_over
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import made
 
 GRAVITY = 9.81
+
+
+def sliding(ahead, back, push, instants):
+    """Motions of a part at rest, sliding ahead, and sliding back, pushed off at some instants only."""
+    slides, rest = np.zeros(INSTANTS, bool), np.zeros((INSTANTS, 2))
+    slides[list(instants)], rest[list(instants), 0] = True, push
+    braked = [np.column_stack([np.full(INSTANTS, one), np.zeros(INSTANTS)]) for one in (-ahead, back)]
+    return [SimpleNamespace(acceleration=one, slides=slides) for one in (rest, *braked)]
+
+
+@pytest.mark.parametrize(("push", "sense", "brake"), [(7.0, 1, 1.0), (-7.0, 2, 0.5)])
+def test_a_part_slides_on_until_the_friction_of_its_direction_has_stopped_it(push, sense, brake):
+    """From a push it slides for push over brake instants, each way with a brake of its own."""
+    found = rocking._senses(sliding(1.0, 0.5, push, [5]), 1e-3)
+    lasts = int(abs(push) / brake)
+    assert np.flatnonzero(found).tolist() == list(range(5, 5 + lasts))
+    assert set(found[5 : 5 + lasts]) == {sense}
+
+
+def test_the_sliding_of_a_settled_period_does_not_begin_at_rest():
+    """Pushed late in a period, a part comes sliding into the next one."""
+    found = rocking._senses(sliding(1.0, 0.5, 9.0, [INSTANTS - 4]), 1e-3)
+    assert found[:5].all() and found[-4:].all() and not found[5:-4].any()
+
+
+def test_seen_at_any_instant_a_settled_part_slides_as_the_point_mass_does():
+    """Its senses are ahead where the velocity over the track is ahead: followed finely from rest."""
+    bowl = awkward.plain_bowl("track.radius=100 m", "track.bank=0 deg", "drive.amplitude=0.3 mm")
+    one = next(one for one in awkward.lying("track.radius=100 m", "track.bank=0 deg") if one.kind == "flat")
+    place = seat(one.posture, one.heading, one.touching, 0.0)
+    phase = phases(INSTANTS)
+    motions = [balance.motion(place, bowl, phase, np.full(INSTANTS, sense)) for sense in rocking.SENSES]
+    found = rocking._senses(motions, 1.0 / bowl.drive.frequency / INSTANTS)
+    assert {0, 1, 2} >= set(found) and (found == 1).any()
+    drive, climb = bowl.drive, bowl.track.climb
+    fine, speed, settled = 400, 0.0, {}
+    step = 1.0 / drive.frequency / (fine * INSTANTS)
+    top = drive.amplitude * (2.0 * np.pi * drive.frequency) ** 2
+    for k in range(6 * fine * INSTANTS):
+        drop = -top * np.sin(phase[0] + 2.0 * np.pi * k / (fine * INSTANTS))
+        along = -drop * np.cos(drive.vibration_angle) - bowl.gravity * np.sin(climb)
+        press = bowl.gravity * np.cos(climb) + drop * np.sin(drive.vibration_angle)
+        if speed == 0.0:
+            speed = step * along if abs(along) > bowl.friction.static * press else 0.0
+        else:
+            after = speed + step * (along - np.sign(speed) * bowl.friction.kinetic * press)
+            speed = after if after * speed > 0.0 else 0.0
+        if k % fine == 0:
+            settled[k // fine % INSTANTS] = np.sign(speed)
+    senses = np.array([settled[k] for k in range(INSTANTS)])
+    told = np.array([0.0, 1.0, -1.0])[found]
+    assert (senses == told).mean() > 0.9  # the first and the last instant of a slide are a close call
 
 
 @pytest.mark.parametrize("share", [0.98, 1.02])
@@ -80,6 +137,7 @@ def test_over_a_gap_it_rocks_about_the_edge_across_the_track(monkeypatch, flat):
     spreads = {rocker.spread for rocker, *_ in asked}
     assert len(spreads) == 1 and spreads.pop() == pytest.approx(moment_across(flat), rel=1e-6)
     reach = flat.foot.corners[:, 0]
+    assert {period for _, period, *_ in asked} == {1.0 / awkward.plain_bowl().drive.frequency}
     leaving, coming = asked[0][0], asked[-1][0]
     assert (leaving.far, coming.far) == pytest.approx((-reach.min(), reach.max()), rel=1e-9)
     assert leaving.far != pytest.approx(coming.far, rel=1e-3)

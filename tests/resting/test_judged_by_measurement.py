@@ -1,14 +1,18 @@
 """Constants that were chosen on measured sets, judged by those sets."""
 
+import csv
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy import stats
 
+from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.counts.deviation import total_variation
 from feederscrew.resting.rules import recommended
 from feederscrew.studies.compare import compare_sets
+from feederscrew.studies.simulated.drop import drop
 
 MEASURED = Path(__file__).parents[2] / "docs/measured"
 
@@ -38,3 +42,55 @@ def test_the_share_of_hops_of_drop_is_nearest_to_what_was_measured(dropped):
             for share in (chosen - 0.05, chosen, chosen + 0.05)
         }
         assert min(error, key=error.get) == chosen
+
+
+def test_the_interval_of_a_share_of_nothing_is_an_eleventh_of_that_of_a_half():
+    """As docs/resting.md prints it: (2 sqrt(p (1 - p)) + 0.1) / 1.1 of the width."""
+    known = np.array([0.0, 0.5, 0.2])
+    page = (MEASURED.parent / "resting.md").read_text()
+    assert "(2 sqrt(p (1 - p)) + 0.1) / 1.1" in page
+    told = (2.0 * np.sqrt(known * (1.0 - known)) + 0.1) / 1.1
+    assert recommended.shape(known) == pytest.approx(told, rel=1e-12, abs=0)
+
+
+def simulated():
+    """Measured and simulated share of each class that was measured, and the tosses and drops behind them."""
+    shares = {path.stem: counts_of(path) for path in sorted(MEASURED.glob("*.csv"))}
+    text = (Path(__file__).parents[1] / "data/launched_shares.csv").read_text()
+    rows = list(csv.DictReader(line for line in text.splitlines() if line[0] != "#"))
+    told = [shares[row["set"]][row["class"]] for row in rows]
+    return rows, np.array([share for share, _ in told]), np.array([tosses for _, tosses in told])
+
+
+def counts_of(path):
+    """Share of each class in a file of counts, and how many tosses that is; NaN where it is not told."""
+    head, *lines = [line for line in path.read_text().splitlines() if line and line[0] != "#"]
+    values = {name: float(first) for name, first, *_ in (line.split(",") for line in lines)}
+    total = sum(values.values())
+    tosses = total if head.endswith("tosses") else np.nan
+    return {name: (value / total, tosses) for name, value in values.items()}
+
+
+def test_what_a_launchs_name_leaves_open_is_what_the_measured_sets_are_off_by():
+    """95 % of a new one, normal about zero, whose standard deviation may be anything: on a grid of it."""
+    rows, shares, tosses = simulated()
+    p, drops = (np.array([float(row[name]) for row in rows]) for name in ("simulated", "drops"))
+    shape = recommended.shape(p)
+    noise = (np.nan_to_num(shares * (1.0 - shares) / tosses) + p * (1.0 - p) / drops) / shape**2
+    spread = np.linspace(1e-4, 0.5, 4000)[:, None]
+    density = stats.norm.pdf((shares - p) / shape, scale=np.sqrt(spread**2 + noise)).prod(axis=1)
+    reaches = np.linspace(0.05, 0.2, 1501)
+    held = (density * (2.0 * stats.norm.cdf(reaches[:, None] / spread[:, 0]) - 1.0)).sum(axis=1)
+    width = reaches[np.argmax(held >= 0.95 * density.sum())]
+    assert width == pytest.approx(recommended.LAUNCHED, abs=0.006)
+
+
+@pytest.mark.parametrize("name", ["t_shape", "short_cube"])
+def test_the_shares_that_the_launchs_name_was_judged_by_are_those_of_a_drop_test(name):
+    rows, _, _ = simulated()
+    known = {row["class"]: float(row["simulated"]) for row in rows if row["set"] == name}
+    part = load(str(MEASURED / f"{name}.stl"))
+    tally = drop(part, "drop", drops=1000, seed=5).tally
+    found = dict(zip(find(part).names, tally.p))
+    for one, share in known.items():
+        assert found[one] == pytest.approx(share, abs=4.0 * np.sqrt(share * (1.0 - share) / 1000))

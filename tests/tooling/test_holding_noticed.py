@@ -99,3 +99,44 @@ def test_beyond_a_ledge_a_margin_is_the_least_of_what_it_lacks_and_what_turns_it
             assert min(abs(found - lacks), abs(found - certain)) < 1e-12
             seen.add(bool(lacks < certain))
     assert seen == {True, False}
+
+
+def test_the_rear_that_follows_a_part_down_a_step_lifts_it_by_what_its_momentum_keeps():
+    """It falls from the slope on which its rear stands on the upper track and its front on the lower one.
+
+    Turned about the front end, points of the part keep the moment of their momentum about the rear end as
+    that lands; what is left of the energy lifts the centre of mass.
+    """
+    uneven = []
+    for one in placed(awkward.lying()):
+        foot = one.foot.corners[:, 0]
+        if one.kind != "flat" or len(foot) < 3:
+            continue
+        front, rear, height = foot.max(), foot.min(), 0.3 * np.ptp(foot)
+        uneven.append(abs(front + rear) / height)
+        slope = np.arcsin(height / (front - rear))
+        down = np.array([[np.cos(slope), np.sin(slope)], [-np.sin(slope), np.cos(slope)]])
+        centre = down @ [-front, one.posture.height]  # from the front end
+        fall = centre[1] - one.posture.height
+        spread = square_of_gyration(one)
+        points = np.sqrt(spread) * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
+        ahead, behind = points + [-front, one.posture.height], points + [-rear, one.posture.height]
+        velocity = np.column_stack([-ahead[:, 1], ahead[:, 0]])
+        moment = (behind[:, 0] * velocity[:, 1] - behind[:, 1] * velocity[:, 0]).sum()
+        kept = max(moment, 0.0) / (behind**2).sum()  # none where it goes back
+        left = kept**2 * (behind**2).sum() / (ahead**2).sum()
+        assert turning._rear(one, height) == pytest.approx(left * max(fall, 0.0), rel=1e-6)
+    assert max(uneven) > 0.5
+
+
+def square_of_gyration(one):
+    """Mean square distance from the axis across the track through the centre of mass, over the tetrahedra."""
+    mesh = one.posture.solid
+    corners = mesh.vertices[mesh.faces]
+    volumes = np.linalg.det(corners)
+    values = corners - mesh.centre_of_mass
+    apex = -mesh.centre_of_mass[None, None]
+    whole = np.concatenate([np.broadcast_to(apex, (len(values), 1, 3)), values], axis=1)
+    seen = whole @ one.axes[[0, 2]].T
+    squares = (seen.sum(axis=1) ** 2 + (seen**2).sum(axis=1)).sum(axis=1) / 20.0
+    return (volumes * squares).sum() / volumes.sum()

@@ -1,0 +1,71 @@
+"""Changes to the physics that once stayed unnoticed, and those that have no consequence: for `mutants.py`."""
+
+SIZING = "tests/machine/test_sizing_rules.py"
+ROCKING = "tests/rates/test_rocking_noticed.py"
+HOLDING = "tests/tooling/test_holding_noticed.py"
+JUDGED = "tests/resting/test_judged_by_measurement.py"
+SIGNS = "tests/trial/test_trial_signs.py"
+QUEUE = "tests/trial/test_trial_queue.py"
+ROLLED = "tests/dropping/test_drop_resistance.py"
+RECOMMENDED = "resting/rules/recommended.py"
+
+NAMED = (
+    ("machine/sizing.py", "* part.tallest + rules.sheet", "* part.tallest", SIZING),
+    ("machine/sizing.py", "STEEP * wide + 3.0 * rules.sheet", "STEEP * wide + 2.0 * rules.sheet", SIZING),
+    ("machine/sizing.py", "value / step - 1e-9", "value / step + 1e-9", SIZING),
+    ("machine/throughput.py", "(length + gap)", "length", SIZING),
+    ("machine/throughput.py", "(length + gap)", "(length - gap)", SIZING),
+    ("machine/throughput.py", "{2e3 * amplitude", "{1e3 * amplitude", SIZING),
+    ("rates/rocking.py", "(still - beside * other)", "still", ROCKING),
+    ("rates/rocking.py", "(still - beside * other)", "(still + beside * other)", ROCKING),
+    ("rates/rocking.py", "(still + other**2), 0.0)", "(still + beside**2), 0.0)", ROCKING),
+    ("rates/rocking.py", "gains[1 if speed > 0.0 else 2]", "gains[2 if speed > 0.0 else 1]", ROCKING),
+    ("rates/rocking.py", "SENSES = (0.0, 1.0, -1.0)", "SENSES = (0.0, -1.0, 1.0)", ROCKING),
+    ("rates/rocking.py", "SETTLES, FOLLOWED = 12", "SETTLES, FOLLOWED = 1", ROCKING),
+    ("rates/steadiness.py", "LANDINGS = 8", "LANDINGS = 1", ROCKING),
+    ("rates/steadiness.py", "gyration(one, 0.5 * np.pi)", "gyration(one, 0.0)", ROCKING),
+    ("rates/steadiness.py", "1.0 / bowl.drive.frequency", "1.25 / bowl.drive.frequency", ROCKING),
+    ("rates/tipping.py", "> back * stroke", "> 2.0 * back * stroke", ROCKING),
+    ("rates/tipping.py", "rate + np.sqrt(rate**2", "rate - np.sqrt(rate**2", ROCKING),
+    ("tooling/holding.py", "-one.shift", "one.shift", HOLDING),
+    ("tooling/verdicts.py", "WORN = 2.5e-4", "WORN = 3e-4", HOLDING),
+    ("tooling/verdicts.py", "WORN = 2.5e-4", "WORN = 2e-4", HOLDING),
+    ("tooling/verdicts.py", "may_wedge(self.one, span)", "False", HOLDING),
+    ("tooling/holding.py", "lean <= 2.0 * math.atan(one.grip)", "lean <= math.atan(one.grip)", HOLDING),
+    ("tooling/devices/ledge_edges.py", "min(-margin, certain)", "certain", HOLDING),
+    ("tooling/devices/ledge_edges.py", "min(-margin, certain)", "max(-margin, certain)", HOLDING),
+    ("tooling/turning.py", "height * (1.0 - math.cos(tilt))\n    return _carr",
+     "height * (1.0 + math.cos(tilt))\n    return _carr", HOLDING),
+    ("tooling/turning.py", "foot.max(), foot.min(), one.posture",
+     "foot.min(), foot.max(), one.posture", HOLDING),
+    (RECOMMENDED, '"drop": 0.4', '"drop": 0.45', JUDGED),
+    (RECOMMENDED, '"drop": 0.4', '"drop": 0.35', JUDGED),
+    (RECOMMENDED, "LAUNCHED = 0.11", "LAUNCHED = 0.12", JUDGED),
+    (RECOMMENDED, "LAUNCHED = 0.11", "LAUNCHED = 0.1", JUDGED),
+    (RECOMMENDED, "FLOOR = 0.1", "FLOOR = 0.125", JUDGED),
+    (RECOMMENDED, "FLOOR = 0.1", "FLOOR = 0.08", JUDGED),
+    ("trial/kernel/pushes.py", "surface.friction[2 + int(slides)]", "surface.friction[int(slides)]", SIGNS),
+    ("trial/kernel/contact.py", "row[BACK] if ahead > 0.0 else row[AHEAD]",
+     "row[AHEAD] if ahead > 0.0 else row[BACK]", SIGNS),
+    ("trial/kernel/corners_met.py", "surface.friction[4]", "surface.friction[1]", SIGNS),
+    ("trial/kernel/pushes.py", "spin = forth", "spin = 0.0 * forth", SIGNS),
+    ("trial/kernel/pushes.py", "spin = forth", "spin = -forth", SIGNS),
+    ("trial/kernel/motion.py", "crowd.pairs[k, WANTED] = LIFT", "crowd.pairs[k, WANTED] = 0.0 * LIFT", QUEUE),
+    ("trial/kernel/motion.py", "crowd.pairs[k, WANTED] = LIFT", "crowd.pairs[k, WANTED] = -LIFT", QUEUE),
+    ("trial/queue.py", "2.0 * GAPS * self.rng", "GAPS * self.rng", QUEUE),
+    ("trial/queue.py", "min(end, 0.0) - gap - front", "min(end, 0.0) + gap - front", QUEUE),
+    ("dropping/kernel/falling.py", "lever = steps.rolling", "pass", ROLLED),
+    ("dropping/kernel/falling.py", "1.0 - lever * body", "1.0 - 2.0 * lever * body", ROLLED),
+)  # fmt: skip
+"""File, text, changed text, and the tests that notice it."""
+
+EQUIVALENT = {
+    ("machine/sizing.py", "1e-09"): "any number between rounding and what is built tells a whole multiple",
+    ("machine/sizing.py", "SETTLED"): "a bound below every length that is printed",
+    ("machine/sizing.py", "ROUNDS"): "the search ends by itself long before",
+    ("rates/rocking.py", "SETTLES"): "the sliding repeats itself from the second period on",
+    ("rates/rocking.py", "FOLLOWED"): "what goes over does so within the first strokes, or never",
+    ("rates/rocking.py", "QUIET"): "a part that comes down so slowly is at rest within the same instant",
+    ("rates/tipping.py", "BESIDE"): "any width beyond every force's place: it tips over the ends alone",
+}
+"""File and what stands in a changed line of it, and why no test can notice the change."""
