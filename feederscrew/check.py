@@ -1,11 +1,13 @@
 """Checks of what a caller hands to a numerics function; each names the argument."""
 
+from typing import Any
+
 import numpy as np
 
 from feederscrew.errors import ArgumentError
 
 
-def shaped(name, value, shape):
+def shaped(name: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:
     """Return a finite float array of a given shape.
 
     Parameters
@@ -37,7 +39,7 @@ def shaped(name, value, shape):
     return array
 
 
-def positive(name, value):
+def positive(name: str, value: Any) -> float:
     """Return a finite number above zero; raises ValueError otherwise."""
     number = float(value)
     if not (np.isfinite(number) and number > 0.0):
@@ -45,7 +47,7 @@ def positive(name, value):
     return number
 
 
-def kind(name, value, wanted, mend):
+def kind(name: str, value: object, wanted: type | tuple[type, ...], mend: str) -> None:
     """Raise an ArgumentError that names the argument where a value is not of a class.
 
     Parameters
@@ -63,14 +65,14 @@ def kind(name, value, wanted, mend):
         raise ArgumentError(name, f"is {said}", mend)
 
 
-def frozen(array):
+def frozen(array: Any) -> np.ndarray:
     """Return the same array, closed to writing: what a record holds must not change under it."""
     array = np.ascontiguousarray(array)
     array.setflags(write=False)
     return array
 
 
-def argument(name, value, low=-np.inf, high=np.inf):
+def argument(name: str, value: Any, low: float = -np.inf, high: float = np.inf) -> float:
     """Return a finite number from low to high.
 
     Parameters

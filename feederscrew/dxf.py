@@ -3,7 +3,10 @@
 import contextlib
 import io
 import logging
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 from feederscrew import units
 from feederscrew.errors import DAMAGE, ConfigError
@@ -25,7 +28,7 @@ class Layer:
     texts: tuple[tuple[str, tuple[float, float]], ...] = ()  # with the place [m] where each begins
 
 
-def closed_polylines(path, layer, where):
+def closed_polylines(path: Path, layer: str, where: str) -> list[list[tuple[float, float]]]:
     """Read the closed polylines of one layer.
 
     Parameters
@@ -51,7 +54,7 @@ def closed_polylines(path, layer, where):
         found = _rings(ezdxf.readfile(path), layer)
     except FileNotFoundError:
         raise ConfigError(where, f"{path}: no such file", "check the path") from None
-    except (*DAMAGE, ezdxf.DXFError):
+    except (*DAMAGE, ezdxf.DXFError):  # type: ignore[misc]
         raise ConfigError(
             where, f"{path} cannot be read as DXF", "save it as ASCII DXF R2000 or later"
         ) from None
@@ -64,14 +67,14 @@ def closed_polylines(path, layer, where):
     return found
 
 
-def _rings(drawing, layer):
+def _rings(drawing: Any, layer: str) -> list[list[tuple[float, float]]]:
     """Corners (x, y) [m] of each closed polyline on a layer."""
     size = MILLIMETRES.get(drawing.units, 1.0) * 1e-3
     lines = drawing.modelspace().query(f'LWPOLYLINE[layer=="{layer}"]') if _named(layer) else []
     return [[(x * size, y * size) for x, y in line.get_points("xy")] for line in lines if line.closed]
 
 
-def written(layers):
+def written(layers: Iterable[Layer]) -> bytes:
     """Return a drawing as the bytes of a DXF file in millimetres, the same for the same layers.
 
     Parameters
@@ -99,7 +102,7 @@ def written(layers):
     return file.getvalue().encode()
 
 
-def _draw(space, layer):
+def _draw(space: Any, layer: Layer) -> None:
     look = {"layer": layer.name}
     for closed, lines in ((True, layer.rings), (False, layer.lines)):
         for line in lines:
@@ -110,7 +113,7 @@ def _draw(space, layer):
 
 
 @contextlib.contextmanager
-def _without_a_date(options):
+def _without_a_date(options: Any) -> Iterator[None]:
     """Let ezdxf write neither a date nor a fresh identity into the file."""
     before = options.write_fixed_meta_data_for_testing
     options.write_fixed_meta_data_for_testing = True
@@ -120,5 +123,5 @@ def _without_a_date(options):
         options.write_fixed_meta_data_for_testing = before
 
 
-def _named(layer):
+def _named(layer: str) -> bool:
     return layer.replace("_", "").replace("-", "").isalnum()

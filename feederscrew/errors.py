@@ -1,6 +1,7 @@
 """Faults in what the user gave us; the command line prints each as one line."""
 
 import struct
+from collections.abc import Iterable
 
 DAMAGE: tuple[type[Exception], ...] = (  # what other people's readers raise on damaged files
     ArithmeticError,
@@ -26,12 +27,12 @@ DAMAGE: tuple[type[Exception], ...] = (  # what other people's readers raise on 
 class FeederError(Exception):
     """Say where it is, what is wrong and how to mend it; all three are required."""
 
-    def __init__(self, where, what, mend):
+    def __init__(self, where: object, what: str, mend: str) -> None:
         super().__init__(f"{where}: {what} - {mend}")
         self.where, self.what, self.mend = where, what, mend
 
     @property
-    def lines(self):
+    def lines(self) -> tuple[str, ...]:
         """Every fault as its own line."""
         return (str(self),)
 
@@ -54,11 +55,11 @@ class ArgumentError(ConfigError):
 class Faults(FeederError):
     """All faults of one file, told in one go."""
 
-    def __init__(self, faults):
+    def __init__(self, faults: Iterable[FeederError]) -> None:
         Exception.__init__(self, "\n".join(str(fault) for fault in faults))
         self.faults = tuple(faults)
 
     @property
-    def lines(self):
+    def lines(self) -> tuple[str, ...]:
         """Every fault as its own line."""
         return tuple(str(fault) for fault in self.faults)

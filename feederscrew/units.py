@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections.abc import Iterable
 
 FOOT, INCH, POUND = 0.3048, 0.0254, 0.45359237  # [m, m, kg] exact by definition
 MINUTE, HOUR = 60.0, 3600.0  # [s]
@@ -58,12 +59,12 @@ PLAIN = str.maketrans({"²": "2", "³": "3", "^": None, "*": " ", "·": " ", "\N
 class QuantityError(ValueError):
     """A text that is not a quantity of the wanted dimension: what is wrong and how to mend it."""
 
-    def __init__(self, what, mend):
+    def __init__(self, what: str, mend: str) -> None:
         super().__init__(f"{what} - {mend}")
         self.what, self.mend = what, mend
 
 
-def quantity(text, dimension, *, suggest=None, bare=None):
+def quantity(text: str, dimension: str, *, suggest: str | None = None, bare: str | None = None) -> float:
     """Return a quantity as typed, in SI units.
 
     Parameters
@@ -94,12 +95,12 @@ def quantity(text, dimension, *, suggest=None, bare=None):
     return number * UNITS[dimension][unit]
 
 
-def factor(unit, dimension):
+def factor(unit: str, dimension: str) -> float:
     """Return how many SI units one ``unit`` is; raises KeyError for a unit of another dimension."""
     return UNITS[dimension][unit]
 
 
-def split(text):
+def split(text: str) -> tuple[float, str]:
     """Return the number and unit of '0.5 mm', as (0.5, 'mm'); raises QuantityError where no number leads."""
     plain = text.strip().translate(PLAIN)
     if COMMA.match(plain):
@@ -114,44 +115,44 @@ def split(text):
     return number, SPELLINGS.get(unit, unit)
 
 
-def one_line(text):
+def one_line(text: str) -> str:
     """Return a user's text fit for a message: printable, on one line and not too long."""
     line = " ".join("".join(c if c.isprintable() else " " for c in text).split())
     return line if len(line) <= 40 else f"{line[:37]}..."
 
 
-def printable(text):
+def printable(text: str) -> str:
     """Return a text on one line, with an escape for every letter that a terminal may take for a command."""
     letters = " ".join(text.splitlines())
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in letters)
 
 
-def counted(number, noun):
+def counted(number: int, noun: str) -> str:
     """Return a number of things for people: '1 part', '2 parts'."""
     return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
-def listed(names):
+def listed(names: Iterable[str]) -> str:
     """Return names for people: 'A', 'A and B', 'A, B and C'."""
     *most, last = names
     return f"{', '.join(most)} and {last}" if most else last
 
 
-def shown(text):
+def shown(text: str) -> str:
     """Return a user's text fit for a message, in quotes."""
     return f"'{one_line(text)}'"
 
 
-def _no_number(text):
+def _no_number(text: str) -> QuantityError:
     return QuantityError(f"{shown(text)} is not a number", "write digits with a decimal point, as in 0.4")
 
 
-def _without_comma(plain):
+def _without_comma(plain: str) -> str:
     whole, _, rest = plain.partition(",")
     return "write it without commas" if "," in rest else f"write {whole}.{rest}"
 
 
-def _wrong_unit(text, unit, dimension, suggest):
+def _wrong_unit(text: str, unit: str, dimension: str, suggest: str) -> QuantityError:
     known = next((other for other, units in UNITS.items() if unit in units), None)
     if dimension in ("number", "count"):
         what = f"{shown(text)} has a unit, and this is a plain number"
@@ -167,12 +168,12 @@ def _wrong_unit(text, unit, dimension, suggest):
     )
 
 
-def _with_article(dimension):
+def _with_article(dimension: str) -> str:
     name = "percentage" if dimension == "number" else dimension
     return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
 
 
-def _units_of(unit, dimension):
+def _units_of(unit: str, dimension: str) -> str:
     folded = {known.lower(): known for known in UNITS[dimension]}
     if unit.lower() in folded:
         return f"did you mean {folded[unit.lower()]}?"

@@ -172,8 +172,6 @@ MORE = {
     "dropping.kernel.ride.ride_all": 12,
     "dropping.plate.bowl_test._plate": 12,
     "dropping.plate.bowl_test.test": 12,
-    "dropping.toss_runs.follow": 10,
-    "mechanics.track.system.solution": 9,
     "output.style.draw_text": 9,
     "studies.aspects.aspects": 9,
     "studies.bowl.bowl": 10,

@@ -147,8 +147,8 @@ def _quantity(dimension: str, lowest: str | None = None, highest: str | None = N
     text = {"type": "string", "pattern": pattern(dimension)}
     if dimension not in PLAIN:
         return text
-    number = {"type": "number"}
-    if lowest is not None:
+    number: dict[str, Any] = {"type": "number"}
+    if lowest is not None and highest is not None:
         number |= {
             "minimum": units.quantity(lowest, dimension),
             "maximum": units.quantity(highest, dimension),

@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Iterable, Sequence
 from os import PathLike
+from typing import Any
 
 from feederscrew import documents, units
 from feederscrew.bowl import devices, verified
@@ -77,7 +78,7 @@ def checked(
     subject = "" if where.endswith(key.name) else f"{key.name}: "
     try:
         unit = key.unit if bare else None
-        value = (
+        value: Any = (
             key.value(text)
             if key.choices
             else units.quantity(text, key.dimension, suggest=key.unit, bare=unit)

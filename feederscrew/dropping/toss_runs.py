@@ -10,6 +10,7 @@ from feederscrew.dropping.kernel import body, one_drop
 from feederscrew.dropping.launch_file import FACES
 from feederscrew.dropping.launches import lowest_points
 from feederscrew.dropping.pool import in_batches
+from feederscrew.dropping.rigid_body import principal_axes, shape_of_part
 from feederscrew.errors import FeederError
 from feederscrew.units import GRAVITY
 
@@ -47,18 +48,15 @@ class Tosses:
     partial: bool  # stopped by the user before all were done
 
 
-def follow(shape, length, principal, rows, launches, surface, rng, *, runs=USUAL, jobs=1, progress=None):
+def follow(part, found, launches, surface, rng, *, runs=USUAL, jobs=1, progress=None):
     """Follow each launch of a file until the part lies still, again and again with small changes.
 
     Parameters
     ----------
-    shape : Shape
-    length : float [m]
-        Of the shape.
-    principal : (3, 3) float [1]
-        Its columns are the shape's axes along the file's: ``shape.principal_axes``.
-    rows : (F,) int
-        Class of each face.
+    part : Part
+        From a mesh.
+    found : Ground
+        Of that part.
     launches : LaunchFile
     surface : SurfaceRanges
     rng : numpy.random.Generator
@@ -85,6 +83,8 @@ def follow(shape, length, principal, rows, launches, surface, rng, *, runs=USUAL
     part by the spin times the time: velocities, those of a point at half the part's length from the centre,
     and attitudes scatter as a value does that is anywhere in such an interval, by 1 / sqrt(12) of it.
     """
+    shape, length = shape_of_part(part, found)
+    principal = principal_axes(part.inertia)[1]
     states = _states(launches, length, principal)
     _above_the_plane(shape, length, launches, states)
     draws = rng.standard_normal((len(states), runs, DRAWS))
@@ -101,7 +101,7 @@ def follow(shape, length, principal, rows, launches, surface, rng, *, runs=USUAL
 
     tell = None if progress is None else lambda done: progress(done, len(states))
     (ends, faces, times), partial = in_batches(batch, len(states), BATCH, jobs, tell)
-    return _summed(launches, length, principal, rows, runs, (ends, faces, times), partial)
+    return _summed(launches, length, principal, found.rows, runs, (ends, faces, times), partial)
 
 
 def _states(launches, length, principal):

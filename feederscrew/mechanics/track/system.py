@@ -63,7 +63,7 @@ def sliding(seat, axes, load, closed, floor, wall, course=AHEAD):
     acting, walls, across, turning = slide.motion(closed, np.asarray(wall, dtype=float))
     parting = slide.rates[..., 0] * across[..., None] + slide.rates[..., 1] * turning[..., None]
     friction = slide.drag * acting.normal(walls)[..., None]
-    return acting.solution(walls, across, turning, slide.inertia, friction, 0.0, floor, parting)
+    return acting.solution(walls, (across, turning), slide.inertia, friction, 0.0, floor, parting)
 
 
 def held(seat, axes, load, closed, ratio):
@@ -104,7 +104,7 @@ def held(seat, axes, load, closed, ratio):
     couple = np.zeros(walls.shape[:-1]) if all(closed) else 0.0 - dot(acting.yaws, walls)
     nothing = np.zeros(walls.shape[:-1])
     parting = _released(seat, axes, closed, couple)
-    return acting.solution(walls, nothing, nothing, np.zeros(3), friction, couple, mobilised, parting)
+    return acting.solution(walls, (nothing, nothing), np.zeros(3), friction, couple, mobilised, parting)
 
 
 def _mobilised(slip, force):
@@ -256,8 +256,9 @@ class _Acting:
         """Return the floor's normal force N, (...)."""
         return -(self.force[..., 2] + dot(self.pushes[..., 2], walls))
 
-    def solution(self, walls, across, turning, inertia, friction, couple, mobilised, parting):
+    def solution(self, walls, motion, inertia, friction, couple, mobilised, parting):
         """Return the record, with the moments of N that the moments about X and Y ask for."""
+        across, turning = motion
         about_x, about_y = (dot(self.pushes[..., place], walls) for place in (3, 4))
         ahead = about_y - inertia[1] * turning - friction[..., 0]
         beside = inertia[0] * turning - about_x - friction[..., 1]

@@ -98,7 +98,7 @@ def spare(study):
 def queue(study, run):
     """Return what the queue did, as a document."""
     found, seen = run.queue, outlet(study, run)
-    whole = found.leaving.sum()
+    whole = int(found.leaving.sum())
     return {
         "parts": found.parts,
         "on_track": found.on_track,
@@ -114,17 +114,18 @@ def queue(study, run):
         "touching": found.touching,
         "pressure_mn": found.pressure * 1e3,
         "largest_penetration_mm": found.depth / MM,
-        "profile": {
-            _name(run, k if k < len(found.leaving) - 1 else -1): float(n / whole)
-            for k, n in enumerate(found.leaving)
-            if n
-        },
+        "profile": {name: n / whole for name, n in _left(run, found.leaving)},
         "outlet": [dict(zip(seen, row)) for row in zip(*seen.values())],
         "apart": {
             name: {"deviation": deviation, "total_variation": total}
             for name, (deviation, total) in study.outlet(run).apart.items()
         },
     }
+
+
+def _left(run, leaving):
+    """Names of the orientations in which parts left, and how many in each; the last is none of the known."""
+    return [(_name(run, k if k < len(leaving) - 1 else -1), int(n)) for k, n in enumerate(leaving) if n]
 
 
 def landing(study, run):
@@ -140,11 +141,7 @@ def landing(study, run):
         "velocity_mm_s": found.velocity / MM_S,
         "largest_penetration_mm": found.depth / MM,
         "aspects": [dict(zip(seen, row)) for row in zip(*seen.values())],
-        "leaves": {
-            _name(run, k if k < len(found.leaving) - 1 else -1): int(n)
-            for k, n in enumerate(found.leaving)
-            if n
-        },
+        "leaves": dict(_left(run, found.leaving)),
     }
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from feederscrew.dropping import conditions, launch_file, toss_runs
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.dropping.launch_file import FACES, LaunchFile
-from feederscrew.dropping.rigid_body import principal_axes, shape_of_part
+from feederscrew.dropping.rigid_body import shape_of_part
 from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
@@ -132,14 +132,14 @@ def follow(
     read = launch_file.read(launches)
     aspects = find(part)
     found = ground(part, aspects)
-    shape, length = shape_of_part(part, found)
+    _, length = shape_of_part(part, found)
     given = {key: (own or {}).get(key) for key in ("restitution", "friction")}
     launch = conditions.launch_of("feed", length, given)
     surface = toss_runs.SurfaceRanges(launch.restitution, launch.friction)
     if before:
         before()
     result = toss_runs.follow(
-        shape, length, principal_axes(part.inertia)[1], found.rows, read, surface,
-        np.random.default_rng(seed), runs=runs or toss_runs.USUAL, jobs=jobs, progress=progress,
+        part, found, read, surface, np.random.default_rng(seed),
+        runs=runs or toss_runs.USUAL, jobs=jobs, progress=progress,
     )  # fmt: skip
     return TossStudy(part, aspects, read, surface, seed, result)
