@@ -14,6 +14,7 @@ from feederscrew.machine.stroke import greatest_amplitude
 
 CALM = 0.9  # throw number below which no part hops, with a reserve for the drive's own scatter
 HOPPING = (1.2, 1.5, 1.8)  # throw numbers where no tooling has to be met lying
+LIVELY = (1.2, 1.5)  # of the drives out of phase there: nearly twice as fast as below 1
 BANKS = tuple(np.radians((3.0, 0.0)))  # bring back to the wall what leaves it
 STEEP_BANKS = tuple(np.radians((8.0, 3.0)))  # hold there what rolls
 WORST = (0.6, 1.4)  # [1] of the nominal friction
@@ -118,10 +119,12 @@ def driven(made, velocity, *, hops=False):
 def _drives(made, hops):
     """Bowls whose drive is as strong as it may be, the simplest first."""
     plain, given = made.bowl, made.given
-    calm = [(CALM, *row) for row in STRAIGHT]
-    calm += [(throw, *STRAIGHT[0]) for throw in HOPPING] if hops else []
+    kinds = [(CALM, *row) for row in STRAIGHT]
+    kinds += [(throw, *STRAIGHT[0]) for throw in HOPPING] if hops else []
+    kinds += [(CALM, *row) for row in ELLIPTIC]
+    kinds += [(throw, *row) for throw in LIVELY for row in ELLIPTIC] if hops else []
     seen = set()
-    for throw, frequency, angle, phase in (*calm, *((CALM, *row) for row in ELLIPTIC)):
+    for throw, frequency, angle, phase in kinds:
         own = {"frequency": frequency, "vibration_angle": angle, "phase": phase}
         kept = {name: getattr(plain.drive, name) for name in own if f"drive.{name}" in given}
         drive = replace(plain.drive, **own | kept)

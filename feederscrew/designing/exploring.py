@@ -15,6 +15,7 @@ from feederscrew.tooling.hanging import neck
 
 EACH = 2  # parts of each orientation in a short trial
 MENDED = 3  # times that one proposal is mended
+LOST = 2  # trials of it in which nothing leaves as wanted, and it is given up
 LEAST_USE = 0.5  # of the best clean rate: an orientation that promises less is not tried
 SHORT = 5  # short trials where no orientation comes often enough for the target at any calm drive
 SCREENED = 6  # draws before a clean chain is proved
@@ -80,7 +81,7 @@ def _promise(search, made, ways, weights, row):
     if search.request.outcome != "lying" and neck(ways.lying[row]) is not None:
         return np.inf  # what hangs comes from several headings
     pitch = trying.GAP * float((weights * ways.lengths).sum())
-    return float(weights[row]) * calm_drive.speed(calm_drive.driven(made, np.inf)) / pitch
+    return float(weights[row]) * calm_drive.speed(calm_drive.driven(made, np.inf, hops=True)) / pitch
 
 
 def _proposed(search, made, ways, weights, row, how):
@@ -95,7 +96,8 @@ def _proposed(search, made, ways, weights, row, how):
 
 def _at(search, made, ways, weights, row, how, gain):
     """The chain for a drive that a share [1] asks for."""
-    bowl = calm_drive.driven(made, asked(search, ways, weights, gain))
+    hops = set(proposals.MET) <= set(how[1])
+    bowl = calm_drive.driven(made, asked(search, ways, weights, gain), hops=hops)
     bowl = replace(bowl, devices=search.plain.devices)
     return proposals.proposed(search.part, bowl, search.known.aspects, row, ways, search.request, how)
 
@@ -162,6 +164,7 @@ def offered(search, bowl):
 
 def _tried_out(search, made, proposal, weights):
     """Try a proposal and what mends it; the Candidate where one is clean and fast enough."""
+    lost = 0
     for _ in range(MENDED + 1):
         candidate = _screened(search, attempted(search, made, proposal, weights))
         if candidate.attempt.clean:
@@ -170,6 +173,10 @@ def _tried_out(search, made, proposal, weights):
                 yield candidate
             return
         search.failed.append(candidate)
+        if not candidate.attempt.efficiency > 0.0 and not candidate.proposal.hangs:
+            lost += 1
+        if lost == LOST:
+            break
         changed = proposals.better(proposal, candidate.tried, candidate.ways.lying, candidate.drawn)
         if changed is None or search.spent:
             break
@@ -202,7 +209,7 @@ def attempted(search, made, proposal, weights):
     ways = proposals.known_through(part, search.known.aspects, bowl)
     gain = float((weights * ways.leaving[:, ways.leaves_as[proposal.row]]).sum())
     velocity = asked(search, ways, weights, gain)
-    bowl = replace(calm_drive.driven(made, velocity, hops=not proposal.devices), devices=proposal.devices)
+    bowl = replace(calm_drive.driven(made, velocity, hops=proposal.may_hop), devices=proposal.devices)
     ways = arrivals.oriented(proposals.known_through(part, search.known.aspects, bowl), search.known.measured)
     name = ways.lying[proposal.row].name
     search.told(f"trial {len(search.attempts) + 1}: {name}, {proposal.step}")

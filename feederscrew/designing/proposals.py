@@ -15,10 +15,13 @@ from feederscrew.tooling.isolating.rails import RAIL
 ROWS = 6  # orientations for which chains are proposed, the most frequent first
 DROPS = ("wiper", "sorter", "cut_out")  # what is left out at first: drops alone
 SOLID = ("cut_out",)  # and then: holes of several corners, which a shop's tolerance soon spoils
+# all that parts meet: what a sensor sees and air blows off is left
+MET = tuple(sorted(name for name, kind in KINDS.items() if kind.proposed and name != "sorter"))
 # margin [m] to either side, what is left out, and how parts leave: in turn
 HOWS = (
-    (5e-4, DROPS, "any"), (5e-4, SOLID, "hanging"), (5e-4, SOLID, "lying"), (2.5e-4, DROPS, "any"),
-    (2.5e-4, SOLID, "hanging"), (2.5e-4, SOLID, "lying"), (2.5e-4, (), "any"),
+    (5e-4, DROPS, "any"), (5e-4, SOLID, "hanging"), (5e-4, MET, "lying"), (5e-4, SOLID, "lying"),
+    (2.5e-4, DROPS, "any"), (2.5e-4, SOLID, "hanging"), (2.5e-4, MET, "lying"), (2.5e-4, SOLID, "lying"),
+    (2.5e-4, (), "any"),
 )  # fmt: skip
 ENOUGH = 0.985  # purity at which a chain is not made longer
 VERDICTS = 3000  # of the search for holes: values that a shop's tolerance does not lose are found early
@@ -46,6 +49,11 @@ class Proposal:
     def hangs(self):
         """Whether parts leave hanging."""
         return any(cut.device.hangs for cut in self.cuts)
+
+    @property
+    def may_hop(self):
+        """Whether no device has to be met lying."""
+        return not any(one.met for one in self.devices)
 
     @property
     def chain(self):

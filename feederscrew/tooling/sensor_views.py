@@ -9,6 +9,7 @@ from feederscrew.geometry.polygons import turned
 
 FINE = 1e-4  # [m] between places of a border at which two are compared
 PLAIN = 1e-4  # of the part's size: corners that stand out by less are left out
+KEPT = 1e-6  # of an area, that closing its slits may lose by rounding
 SLIT = 2e-5  # [m] half the width of slits between facets that are closed
 
 
@@ -82,5 +83,16 @@ def area(points, faces, sees, resolution=0.0):
     a, b, c = corners.transpose(1, 0, 2)
     twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
     whole = shapely.union_all(shapely.polygons(corners[twice > 1e-14]))  # one side of it covers all
-    whole = whole.buffer(SLIT, join_style="mitre").buffer(-SLIT, join_style="mitre")
-    return whole.simplify(PLAIN * np.ptp(points, axis=0).max())
+    return _without_slits(whole).simplify(PLAIN * np.ptp(points, axis=0).max())
+
+
+def _without_slits(whole):
+    """An area without its slits: closing it loses nothing, so a width at which it does is not taken.
+
+    With some lengths of tiny borders the second offset comes out empty.
+    """
+    for width in (SLIT, 0.9 * SLIT, 1.1 * SLIT):
+        closed = whole.buffer(width, join_style="mitre").buffer(-width, join_style="mitre")
+        if closed.area >= (1.0 - KEPT) * whole.area:
+            return closed
+    return whole

@@ -52,6 +52,12 @@ def test_without_tooling_the_simplest_drive_may_hop():
     assert throw_number(calm) < 1.0 < throw_number(hops)
 
 
+def test_where_nothing_has_to_be_met_lying_a_drive_out_of_phase_may_hop_too():
+    calm, lively = (calm_drive.driven(plain(), 0.18, hops=hops) for hops in (False, True))
+    assert calm_drive.speed(calm) < 0.16 and calm_drive.speed(lively) >= 0.18
+    assert throw_number(calm) < 1.0 < throw_number(lively) <= max(calm_drive.LIVELY) + 1e-3
+
+
 def test_friction_is_scaled_in_every_place():
     bowl = bowls.default()
     rubbed = calm_drive.rubbed(bowl, 0.5).friction

@@ -1,6 +1,7 @@
 """What a trial denies changes the chain: drops before it, wider slots, values moved."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,8 +9,13 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import proposals, robust, trying
+from feederscrew.part import load
+from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
+from feederscrew.tooling import sensor_views
 from feederscrew.tooling.devices.kinds import made
+
+PARTS = Path(__file__).resolve().parents[2] / "parts"
 
 
 @pytest.fixture(scope="module")
@@ -76,3 +82,26 @@ def test_a_sensor_is_drawn_with_other_play_and_the_drawn_part_s_name(block):
     rng = np.random.default_rng(1)
     drawn = robust.drawn_bowl(replace(bowls.default(), devices=(sorter,)), ways.lying, rng).devices[0]
     assert drawn.like[:2] == sorter.like[:2] and 0.0 < abs(drawn.like[2] - 1e-3) <= robust.CUT
+
+
+def test_parts_may_hop_through_what_only_sees_and_blows(block):
+    _, ways, names = block
+    one = ways.lying[names["A@0"]]
+    sorter = made("sorter", "test", like=(one.aspect, one.heading, 1e-3), text="test")
+    gap = made("gap", "test", limit=9e-3, text="9 mm")
+    steeper = made("separation", "test", angle=-0.1, text="test")
+    seen = proposals.Proposal(0, (), (steeper, sorter), "test")
+    assert seen.may_hop and not replace(seen, before=(gap, sorter)).may_hop
+    assert [one.met for one in (sorter, gap, steeper)] == [False, True, False]
+
+
+def test_a_sensor_sees_something_of_every_drawn_part():
+    bracket = load(PARTS / "lbracket_30x20x15.stl")
+    other = robust.drawn_part(bracket, 1e-4, np.random.default_rng((1, 1)))
+    bowl = bowls.default()
+    ways = stream.orientations(other, find(other), bowl.track, (), bowl=bowl)
+    turned = next(
+        one for one in ways.lying if one.name == "B@264"
+    )  # closing its slits by 0.02 mm left nothing
+    assert sensor_views.outline(turned, "outline").area > 9.5e-5
+    assert min(sensor_views.outline(one, "side").area for one in ways.lying) > 5e-5

@@ -133,6 +133,13 @@ class Device:
         kind = type(self)
         return kind.span_on is not Device.span_on or kind.hole_on is not Device.hole_on
 
+    @property
+    def met(self):
+        """Whether parts meet it: a hole, a blade, a gate or an edge, and not air and light alone."""
+        kind = type(self)
+        gate, lower = kind.opening is not Device.opening, kind.lower is not Device.lower
+        return self.cuts or self.overhead or self.hangs or self.turns or gate or lower
+
     def opening(self, every, width):
         """Return the opening of a gate, in distances from the wall and heights [m]: shapely, or None.
 
