@@ -81,9 +81,12 @@ def sheets(store, rows):
 
 
 def _tile(store, row):
-    said = (
-        f"{row['orientation'] or '-'}: {rate(row)}" if row["status"] == DONE else f"failed: {row['reason']}"
-    )
+    if row["status"] != DONE:
+        said = _reason(row)
+    elif row["parts_per_minute"] is None and row.get("note"):
+        said = row["note"]
+    else:
+        said = f"{row['orientation'] or '-'}: {rate(row)}"
     return store.file(row["folder"], THUMBNAIL), row["folder"], said
 
 

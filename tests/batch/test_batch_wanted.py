@@ -63,6 +63,13 @@ def test_tiles_name_the_orientation_and_fill_sheets(count):
     sheets = list(summary.sheets(Store(), [made] * count))
     assert sheets[0][0] == (b"PNG", "block", "C@90: 12 / min")
     assert sum(map(len, sheets)) == count and len(sheets) == -(-count // summary.TILES)
+    card = {
+        **made,
+        "orientation": None,
+        "parts_per_minute": None,
+        "note": "a part card has no outline: no rate",
+    }
+    assert next(summary.sheets(Store(), [card]))[0][2] == "a part card has no outline: no rate"
 
 
 @pytest.mark.parametrize("advice", [shells.SPLIT, gate.CLOSE, gate.UNITE])
