@@ -99,7 +99,7 @@ def span(column, low, high, count, unit=1.0):
         Its name in tables, with its unit.
     low, high : float [SI]
     count : int
-    unit : float
+    unit : float [SI]
         SI units in one unit of the column.
 
     Returns

@@ -224,7 +224,7 @@ def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0):
 
     Returns
     -------
-    array of int
+    array of int [1]
         Places in ``REGIMES``.
     """
     where = (ratio, beta, alpha_minus_theta, climb)

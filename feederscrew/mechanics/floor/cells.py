@@ -22,7 +22,7 @@ def cells(posture, bowl, heading):
 
     Returns
     -------
-    dict of str to array
+    dict of str to array [SI, as each name says]
         ``acceleration_z_m_s2`` V'_z, NaN where the part has lost contact; ``alignment_acceleration_rad_s2``;
         ``throw_number``, above 1 where it hops; 'regime', places in ``REGIMES``.
     """

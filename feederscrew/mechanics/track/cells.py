@@ -64,7 +64,7 @@ def cells(posture, bowl, heading=None):
 
     Returns
     -------
-    dict of str to array
+    dict of str to array [SI, as each column's name says]
         Columns of the map, ``throw_number``, above 1 where it hops, and 'regime', places in ``REGIMES``; NaN
         where the part does not fit; no acceleration where it hops.
     """

@@ -74,7 +74,7 @@ def windows(rest, needed, static, samples=cycle.SAMPLES):
 
     Returns
     -------
-    list of (float, float, float)
+    list of (float [rad], float [rad], float [1])
         As ``cycle.settle`` takes them.
     """
     phase = cycle.phases(samples)

@@ -48,7 +48,7 @@ def distinct(rows):
 
     Parameters
     ----------
-    rows : (N, K) float
+    rows : (N, K) float [any]
         K up to 4. Finite; minus zero counts as zero.
 
     Returns

@@ -114,7 +114,7 @@ def weights(quantities):
 
     Returns
     -------
-    dict of str to (A,) or (F,) float
+    dict of str to (A,) or (F,) float [1]
         By the rules' names, in their order.
     """
     return {rule.name: rule.weigh(quantities) for rule in RULES if isinstance(quantities, rule.of)}

@@ -139,7 +139,7 @@ def simple(corners, where, kind):
 
     Returns
     -------
-    tuple of (float, float)
+    tuple of (float, float) [m]
 
     Raises
     ------
