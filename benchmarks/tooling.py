@@ -13,9 +13,11 @@ import numpy as np
 import shapely
 import waits
 
+from feederscrew.geometry import compiled
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling.devices.hole_shapes import polygon
 from feederscrew.tooling.foot import Footprint
+from feederscrew.tooling.kernel import ring
 
 RADIUS, DISTANCE, CORNERS = 0.15, 9e-3, 30
 TARGETS = {"one-number verdicts": 100_000, "polygon verdicts": 2_000}  # a second and core
@@ -87,19 +89,22 @@ def polygons(count, positions, rng):
 
 
 def one_number(count, rng):
-    from feederscrew.tooling.kernel import ring
+    @compiled.entry
+    def over_rings(foot, low, high, scratch, out):
+        for k in range(len(out)):
+            out[k] = ring.over_ring(foot, low[k], high[k], scratch)
 
     foot = feet.standing(foot_of(CORNERS), DISTANCE, RADIUS)
     widths = rng.uniform(0.002, 0.016, count)
     out = np.empty(count)
     work = feet.ring_scratch(foot)
-    ring.over_rings(foot, 0.0 * widths, RADIUS - widths, work, out)
+    over_rings(foot, 0.0 * widths, RADIUS - widths, work, out)
     start = time.process_time()
-    ring.over_rings(foot, 0.0 * widths, RADIUS - widths, work, out)
-    compiled = count / (time.process_time() - start)
-    told = judged("one-number verdicts", compiled)
+    over_rings(foot, 0.0 * widths, RADIUS - widths, work, out)
+    fast = count / (time.process_time() - start)
+    told = judged("one-number verdicts", fast)
     print(f"one-number verdicts (balcony), foot of {CORNERS} corners: {told}")
-    return compiled >= TARGETS["one-number verdicts"]
+    return fast >= TARGETS["one-number verdicts"]
 
 
 def main():

@@ -12,10 +12,6 @@ from feederscrew.part.record import Part
 from feederscrew.tooling.devices.base import Device
 
 SECTION = "verified"
-WORDS = (
-    "status", "wanted", "outcome", "target", "delivered", "delivered_low", "delivered_high", "purity", "jams",
-    "queue_seconds", "trial_parts", "draws", "draws_held", "seed", "version", "tried", "part", "bowl",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)

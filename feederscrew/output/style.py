@@ -2,7 +2,6 @@
 
 import io
 import re
-from pathlib import Path
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
 from matplotlib.figure import Figure
@@ -128,12 +127,7 @@ def method(name, place=0):
 
 
 def png(figure):
-    """Return the figure as PNG bytes, without a time or a version in them."""
+    """Return the figure as PNG bytes without a time or a version: the same figure gives the same bytes."""
     buffer = io.BytesIO()
     figure.canvas.print_png(buffer, metadata={"Software": None})  # savefig would draw it twice
     return buffer.getvalue()
-
-
-def save(figure, path):
-    """Write the figure as PNG; the same figure gives the same bytes."""
-    Path(path).write_bytes(png(figure))

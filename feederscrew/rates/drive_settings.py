@@ -16,7 +16,6 @@ STEPS = 241  # values of a knob that are looked at
 HIGHEST_THROW = 3.5  # beyond the best throw number, about 3, velocity falls and rests on chance
 HALVINGS = 45
 FASTEST = 20  # settings that are asked what they bring at most
-REACHED = 1e-6  # of the rate
 CLOSE = 0.01  # of the rate: no further step is made
 DECIDED = 0.03  # of the rate: as near as the parts that decide are asked for, which are known to 5 %
 WITHIN = 0.04  # of the rate: a setting gives it; what arrives is sampled, so that it jumps by a few per cent

@@ -68,13 +68,8 @@ class Rate(Shown):
     purity: float  # share of what leaves the bowl that is well oriented; NaN where nothing leaves
     row: int  # of the wanted orientation
     orientations: Orientations
-    jams: float = 0.0  # [1/s] parts that come to stand before a device
+    jams: float = 0.0  # [1/s] parts that come to stand before a device; the rate holds between jams only
     clearing: float = 0.0  # [s] in the mean, of those that a blade sweeps off the track
-
-    @property
-    def jammed(self):
-        """Whether parts come to stand: efficiency and rate hold between jams only."""
-        return self.jams > 0.0
 
 
 def wanted(part, aspects, track, name, heading=None):

@@ -3,13 +3,14 @@
 from types import SimpleNamespace
 
 import numpy as np
+import on_mesh
 import pytest
 import shapes
 from test_solid import RULES
 
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
-from feederscrew.solidbowl import cuts, on_mesh
+from feederscrew.solidbowl import cuts
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.materials import material
 from feederscrew.solidbowl.plan import Asked, plan

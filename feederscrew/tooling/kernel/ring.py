@@ -87,10 +87,3 @@ def canyon(foot, radius, farthest, scratch):
         else:
             high = middle
     return low
-
-
-@entry
-def over_rings(foot, low, high, scratch, out):
-    """Fill the margins [m] of a foot over many rings, (N,) each."""
-    for k in range(len(out)):
-        out[k] = over_ring(foot, low[k], high[k], scratch)
