@@ -4,8 +4,12 @@ SIZING = "tests/machine/test_sizing_rules.py"
 ROCKING = "tests/rates/test_rocking_noticed.py"
 HOLDING = "tests/tooling/test_holding_noticed.py"
 JUDGED = "tests/resting/test_judged_by_measurement.py"
-SIGNS = "tests/trial/test_trial_signs.py"
-QUEUE = "tests/trial/test_trial_queue.py"
+SLIDES = "tests/trial/test_trial_signs.py -k 'slides and 0.2'"
+STANDS = "tests/trial/test_trial_signs.py -k stand"
+BRAKES = "tests/trial/test_trial_signs.py -k 'brake and 0.7'"
+TURNS = "tests/trial/test_trial_signs.py -k air"
+APART = "tests/trial/test_trial_queue.py -k pushed_apart"
+ENTER = "tests/trial/test_trial_queue.py -k 'enter or wait'"
 ROLLED = "tests/dropping/test_drop_resistance.py"
 RECOMMENDED = "resting/rules/recommended.py"
 
@@ -44,16 +48,18 @@ NAMED = (
     (RECOMMENDED, "LAUNCHED = 0.11", "LAUNCHED = 0.1", JUDGED),
     (RECOMMENDED, "FLOOR = 0.1", "FLOOR = 0.125", JUDGED),
     (RECOMMENDED, "FLOOR = 0.1", "FLOOR = 0.08", JUDGED),
-    ("trial/kernel/pushes.py", "surface.friction[2 + int(slides)]", "surface.friction[int(slides)]", SIGNS),
+    ("trial/kernel/pushes.py", "surface.friction[2 + int(slides)]", "surface.friction[int(slides)]", SLIDES),
     ("trial/kernel/contact.py", "row[BACK] if ahead > 0.0 else row[AHEAD]",
-     "row[AHEAD] if ahead > 0.0 else row[BACK]", SIGNS),
-    ("trial/kernel/corners_met.py", "surface.friction[4]", "surface.friction[1]", SIGNS),
-    ("trial/kernel/pushes.py", "spin = forth", "spin = 0.0 * forth", SIGNS),
-    ("trial/kernel/pushes.py", "spin = forth", "spin = -forth", SIGNS),
-    ("trial/kernel/motion.py", "crowd.pairs[k, WANTED] = LIFT", "crowd.pairs[k, WANTED] = 0.0 * LIFT", QUEUE),
-    ("trial/kernel/motion.py", "crowd.pairs[k, WANTED] = LIFT", "crowd.pairs[k, WANTED] = -LIFT", QUEUE),
-    ("trial/queue.py", "2.0 * GAPS * self.rng", "GAPS * self.rng", QUEUE),
-    ("trial/queue.py", "min(end, 0.0) - gap - front", "min(end, 0.0) + gap - front", QUEUE),
+     "row[AHEAD] if ahead > 0.0 else row[BACK]", SLIDES),
+    ("trial/kernel/corners_met.py", "surface.friction[4]", "surface.friction[1]", BRAKES),
+    ("trial/kernel/pushes.py", "most = row[BACK] if a < 0.0 else row[AHEAD]",
+     "most = row[AHEAD] if a < 0.0 else row[BACK]", STANDS),
+    ("trial/kernel/pushes.py", "spin = forth", "spin = 0.0 * forth", TURNS),
+    ("trial/kernel/pushes.py", "spin = forth", "spin = -forth", TURNS),
+    ("trial/kernel/motion.py", "crowd.pairs[k, WANTED] = LIFT", "crowd.pairs[k, WANTED] = 0.0 * LIFT", APART),
+    ("trial/kernel/motion.py", "crowd.pairs[k, WANTED] = LIFT", "crowd.pairs[k, WANTED] = -LIFT", APART),
+    ("trial/queue.py", "2.0 * GAPS * self.rng", "GAPS * self.rng", ENTER),
+    ("trial/queue.py", "min(end, 0.0) - gap - front", "min(end, 0.0) + gap - front", ENTER),
     ("dropping/kernel/falling.py", "lever = steps.rolling", "pass", ROLLED),
     ("dropping/kernel/falling.py", "1.0 - lever * body", "1.0 - 2.0 * lever * body", ROLLED),
 )  # fmt: skip

@@ -11,6 +11,8 @@ from feederscrew.dropping.kernel import body
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import runs, shape, starts, stations, whereabouts
+from feederscrew.trial.arrays import crowd_of
+from feederscrew.trial.kernel import motion
 
 OWN = [
     "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",
@@ -91,3 +93,19 @@ def test_a_part_in_the_air_keeps_its_attitude_while_the_bowl_turns():
     inwards = np.array([-np.sin(theta), np.cos(theta), 0.0])
     axis = np.sin(track.bank) * inwards + np.array([0.0, 0.0, np.cos(track.bank)])
     np.testing.assert_allclose(rates, speed / track.radius * axis, rtol=0.01, atol=2e-3)
+
+
+@pytest.mark.parametrize(("ahead", "friction"), [(1.0, 0.4), (-1.0, 0.2)])
+@pytest.mark.parametrize("share", [0.3, 0.7])
+def test_a_part_comes_to_a_stand_as_soon_as_friction_has_taken_its_speed(ahead, friction, share):
+    bowl = still(climb=0.0, bank=0.0, radius=50.0)
+    known = runs.setting(SOLID, LENGTH, bowl)
+    every = orientations(PART, find(PART), bowl.track)
+    surface, step = runs.surface_of(known, stations.plain(bowl.track, every, 0.5)), known.floor.step
+    one = crowd_of(SOLID, surface, 1)
+    one.states[0], one.order[0], one.knowns[0] = lying(bowl, aside=5e-3), 0, 0
+    one.states[0, body.VX] = ahead * share * friction * step  # what friction takes in that share of a step
+    one.lasted[0] = one.made[0, -1] = -1.0  # nothing is known of a step before
+    motion.met(surface, SOLID, one, (0, 1), step)
+    found = motion.pushed(surface, SOLID, known.floor, one, (0, 1), 0.0, step)
+    assert found[2] == pytest.approx(share, rel=0.02)
