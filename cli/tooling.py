@@ -132,4 +132,4 @@ def tooling(part, aspect, rule, asked, cad, static, taken, bowl, pictures, out):
         out.say(*(one.sentence for one in tried if not one.faults))
         out.say(*tables.remarks(found, asked["efficiency"]))
         offers.write(folder, files.offers(found, settings, cad), pictures=pictures)
-        out.show(tables.summary(found), document, hidden=tables.HIDDEN, spare=tables.SPARE)
+        out.show(tables.summary(found, out.format), document, hidden=tables.HIDDEN, spare=tables.SPARE)

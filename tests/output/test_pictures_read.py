@@ -132,7 +132,7 @@ def test_the_point_of_the_bowl_among_the_curves_is_named():
     from feederscrew.studies.slide import slide as study
 
     found = study(read(), (0.3, 0.6))
-    labels = [text.get_text() for text in slide.curves(found.maps).axes[0].get_legend().get_texts()]
+    labels = [text.get_text() for text in slide.curves(found.maps).legends[0].get_texts()]
     assert slide.OWN in labels
 
 

@@ -18,7 +18,7 @@ from feederscrew import bowl as bowls
 from feederscrew.output import tables
 from feederscrew.output.aspects import tables as aspects_tables
 from feederscrew.output.page.as_html import html
-from feederscrew.output.page.blocks import Chapter, Page, Views
+from feederscrew.output.page.blocks import Chapter, Page, Table, Views
 from feederscrew.output.report import page
 from feederscrew.output.report.chapters import CHAPTERS
 from feederscrew.output.report.scene import over_cuts
@@ -168,6 +168,43 @@ def test_it_prints_on_a4(visit, text, tmp_path):
     boxes = {tuple(map(float, box.split())) for box in re.findall(rb"/MediaBox \[([\d. ]+)\]", paper)}
     assert len(boxes) == 1
     assert next(iter(boxes)) == pytest.approx((0.0, 0.0, 595.3, 841.9), abs=1.0)
+
+
+WIDER = """<script>
+window.addEventListener("load", () => {
+  const paper = document.documentElement.clientWidth, found = [];
+  for (const one of document.querySelectorAll("body *:not(.sheet *):not(.sheet)")) {
+    const box = one.getBoundingClientRect();
+    if (box.width > 0 && box.right > paper + 1) found.push(`${one.tagName}.${one.className}`);
+  }
+  document.title = JSON.stringify(found);
+});
+</script>
+</body>"""
+MACHINE = (
+    "change leaf_thickness_mm leaves natural_frequency_hz by_t_squared_hz above_drive gain stress_mpa".split()
+)
+
+
+def test_nothing_is_wider_than_the_paper(visit, text):
+    """Where something is, a browser prints all of the page smaller: letters of 9 pt come out with 5."""
+    table = Table(tables.frame({name: np.full(3, 124.5) for name in MACHINE}))
+    many = Table(tables.frame({f"p_rule_{k}": np.full(3, 12.34) for k in range(13)}))
+    tall = Table(tables.frame({"quantity": ["acceleration of the track"] * 40, "value": ["1.234 m/s2"] * 40}))
+    added = html(Page("wide", "", (Chapter((tall, table, table, many)),)))
+    for shown in (text, added):
+        printed = shown.replace("@media print {", "@media all {").replace("</body>", WIDER)
+        dom, _ = visit(printed, "--window-size=688,900", "--dump-dom")
+        assert json.loads(unescape(re.search(r"<title>(.*?)</title>", dom, re.S).group(1))) == []
+
+
+def test_what_stands_alone_has_the_whole_width():
+    small = Table(tables.frame({"quantity": ["a"] * 30, "value": ["b"] * 30}))
+    broad = Table(tables.frame({f"column_{k}": [1.0] for k in range(8)}))
+    assert "beside" not in html(Page("t", "", (Chapter((small, broad)),))).split("</style>")[1]
+    columns = html(Page("t", "", (Chapter((small, *[Table(tables.frame({"a": [1.0] * 9}))] * 3)),)))
+    assert columns.split('class="beside"')[1].count("<div>") == 2
+    assert columns.split("<div>")[2].count("<table>") == 3  # the short ones below each other
 
 
 def test_the_part_turns_over_the_cut(visit, case):

@@ -99,8 +99,8 @@ def test_the_surface_is_cut_and_carries_the_bowls_friction():
 
 def test_curves_are_4_28_for_each_angle():
     one, two = slide(10), slide(40)
-    axes = slide_plots.curves([one, two]).axes[0]
-    labels = [text.get_text() for text in axes.get_legend().get_texts()]
+    figure = slide_plots.curves([one, two])
+    axes, labels = figure.axes[0], [text.get_text() for text in figure.legends[0].get_texts()]
     assert labels == ["β = 10°", "β = 40°", "backward slip, this track", slide_plots.OWN]
     line = next(line for line in axes.lines if line.get_label() == "β = 40°")
     ratio, friction = line.get_xydata()[np.isfinite(line.get_ydata())].T

@@ -16,6 +16,7 @@ import trimesh
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
 from feederscrew.errors import FeederError
+from feederscrew.output.solid import pair
 from feederscrew.output.tooling import (
     bowl_file,
     drawing,
@@ -26,6 +27,7 @@ from feederscrew.output.tooling import (
     written_step,
     written_stl,
 )
+from feederscrew.output.tooling import tables as tooling_tables
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
@@ -182,6 +184,37 @@ def test_a_part_that_a_gate_stops_is_drawn_in_front_of_it(lying):
         x, y, _ = relief.placed(met, station).T
         ahead = bowl.track.radius * np.arctan2(x, bowl.track.radius - y)
         assert ahead.max() == pytest.approx(station.blade[:, 0].min(), abs=1e-6)
+
+
+def test_no_gate_hides_the_part_that_is_drawn_at_it(lying):
+    bowl, every = lying
+    gates = [device for device in bowl.devices if device.kind in ("wiper", "profile")]
+    for met in (tightest.passage(device, one, every) for device in gates for one in every):
+        section = relief.station_of(met, every)
+        body = relief.placed(met, section.stations[0]), met.orientation.posture.solid.faces
+        centre = 0.5 * (body[0].min(axis=0) + body[0].max(axis=0))
+        angle, half = met.angle(section.stations[0]), np.ptp(body[0], axis=0).max()
+        track = solid.solid(section)
+        (view,) = relief.clearest([track], [body], [centre], [angle], half)
+        share = pair.shown_share(track, body, centre, view, half)
+        former = pair.shown_share(track, body, centre, relief.camera_at(angle), half)
+        assert share >= max(former, 0.6)
+
+
+def test_a_picture_of_one_device_is_no_wider_than_what_it_shows(lying):
+    bowl, every = lying
+    shares = np.full(len(every), 1.0 / len(every))
+    wide = [figures.chain(bowl.devices[:count], every, shares).get_size_inches()[0] for count in (1, 2, 3)]
+    assert wide[0] < wide[1] <= wide[2]
+
+
+def test_a_table_of_polygons_fits_a_page():
+    text = "[[14.55 mm, 19.3 mm], [0 mm, 8.65 mm], [14.05 mm, 0.35 mm], [19.75 mm, 3.5 mm]]"
+    assert tooling_tables._short(text, 34) == "polygon of 4 corners"
+    assert tooling_tables._short("{from: 3.45 mm, to: 10.5 mm}", 34) == "{from: 3.45 mm, to: 10.5 mm}"
+    names = " ".join(f"A@{k}" for k in range(100, 120))
+    assert tooling_tables._few(names, 34) == "A@100 A@101 A@102 A@103 A@104 and 15 more"
+    assert tooling_tables._few("A@90, all of C", 34) == "A@90, all of C"
 
 
 def test_step_where_opencascade_is(lying):

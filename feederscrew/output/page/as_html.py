@@ -16,7 +16,10 @@ from feederscrew.output.page.numbers import cells
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
 CSS_DPI = 96  # pixels of a page to the inch
 HALF = 700  # [px] a broader picture is not put beside another
-NARROW = 8  # columns of a table that is put beside something else
+NARROW = 6  # columns of a table that is put beside something else
+MANY = 10  # columns of a table that is printed in smaller letters
+ALONE = 1.4  # times the size of a picture that has the whole width
+LINE, HEADING = 29, 70  # [px] about the height of a row of a table, and of its head
 SCRIPTS = ("three.js", "viewer.js")
 HINT = (
     "Drag a view to turn it, or use the arrow keys; double-click sets it back. "
@@ -104,13 +107,29 @@ def _beside(block):
     """Whether a block may stand beside another in a wide window: a picture or a small table."""
     if isinstance(block, kinds.Table):
         return len(block.frame) <= NARROW
-    return isinstance(block, kinds.Picture) and not block.printed
+    return isinstance(block, kinds.Picture) and not block.printed and _size(block)[0] <= HALF
 
 
 def _run(beside, blocks):
-    """Blocks that follow each other, in two columns if they may be."""
-    body = "\n".join(_block(block) for block in blocks)
-    return f'<div class="beside">\n{body}\n</div>' if beside else body
+    """Blocks that follow each other, in two columns of about the same height if they may be."""
+    blocks = list(blocks)
+    if not beside or len(blocks) == 1:
+        return "\n".join(map(_block, blocks))
+    heights = [_height(block) for block in blocks]
+    first = min(range(1, len(blocks)), key=lambda k: max(sum(heights[:k]), sum(heights[k:])))
+    halves = ("\n".join(map(_in_column, half)) for half in (blocks[:first], blocks[first:]))
+    return '<div class="beside">\n' + "\n".join(f"<div>\n{half}\n</div>" for half in halves) + "\n</div>"
+
+
+def _in_column(block):
+    return _picture(block) if isinstance(block, kinds.Picture) else _block(block)
+
+
+def _height(block):
+    """[px] about what a picture or a table takes in its column."""
+    if isinstance(block, kinds.Picture):
+        return _size(block)[1]
+    return HEADING + LINE * max(map(len, block.frame.values()), default=0)
 
 
 def _block(block):
@@ -127,7 +146,7 @@ def _block(block):
         case kinds.CsvSheet(file, text):
             return _sheet(file, text)
         case kinds.Picture():
-            return _picture(block)
+            return _picture(block, 1.0 if block.printed else ALONE)
         case kinds.Views():
             return _views(block)
         case kinds.Heading(text, anchor):
@@ -139,14 +158,19 @@ def _block(block):
     raise ValueError(f"{type(block).__name__} is not a block of a page")
 
 
-def _picture(picture):
-    """The picture at its own size or smaller; a broad one has the whole width."""
-    width, height = (round(pixels * CSS_DPI / DPI) for pixels in struct.unpack(">2I", picture.content[16:24]))
-    kind = "stand-in" if picture.printed else "broad" if width > HALF else "plain"
+def _picture(picture, scale=1.0):
+    """The picture at its own size or smaller; one that stands alone is larger."""
+    width, height = (round(scale * pixels) for pixels in _size(picture))
+    kind = "stand-in" if picture.printed else "plain"
     return (
         f'<figure id="{picture.file}" class="{kind}"><img src="{_data("image/png", picture.content)}" '
         f'width="{width}" height="{height}" alt="{escape(picture.alt)}"></figure>'
     )
+
+
+def _size(picture):
+    """Width and height of a picture at its own size [px of a page]."""
+    return [pixels * CSS_DPI / DPI for pixels in struct.unpack(">2I", picture.content[16:24])]
 
 
 def _list(lines, mark):
@@ -163,7 +187,7 @@ def _table(frame):
     lines = [
         f"<tr>{''.join(f'<td{m}>{escape(cell)}</td>' for m, cell in zip(marks, row))}</tr>" for row in rows
     ]
-    return _grid("", head, lines)
+    return _grid(' class="many"' if len(heads) > MANY else "", head, lines)
 
 
 def _sheet(file, text):

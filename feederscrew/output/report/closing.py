@@ -41,7 +41,6 @@ def repeat(case):
     hashes = tables.frame({"input": list(case.inputs), "sha256": list(case.inputs.values())})
     bowl = slide_tables.settings(case.settings).only(("key", "value", "from", "meaning"))
     chain = [f"device {device.kind} ({device.where})" for device in case.bowl.devices]
-    names, versions = zip(*_versions())
     return Chapter(
         (
             *((Code(case.command),) if case.command else ()),
@@ -52,8 +51,7 @@ def repeat(case):
             *((Notes(tuple(chain)),) if chain else ()),
             Text("The aspects to six digits, as feeder aspects writes them."),
             numbers(case),
-            Text("Versions."),
-            Table(tables.frame({"program": names, "version": versions})),
+            Text(f"Versions: {', '.join(map(' '.join, _versions()))}."),
         ),
     )
 

@@ -25,7 +25,7 @@ REGIMES = {  # colour and label; what a designer wants is the strongest
 HATCH = "#b4bcc3"
 LETTER = (0.0125, 0.055)  # width of a letter and height of a line, over the picture's
 SHADES = "cividis"
-OWN = "static friction of this bowl:\nit slips where a curve is above"
+OWN = "static friction of this bowl: it slips where a curve is above"
 HALO = [withStroke(linewidth=2.5, foreground="white")]
 LABEL = {"fontsize": 8.5, "color": style.INK, "path_effects": HALO, "zorder": 4}
 
@@ -140,7 +140,13 @@ def curves(slides):
         axes, first.ratio, first.friction, f"this bowl, G = {first.ratio:.3g}, μ = {first.friction:g}", drop=9
     )
     axes.plot([], [], color=style.ACCENT, linewidth=1.0, alpha=0.7, marker="o", label=OWN)
-    axes.legend(fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), labelcolor=style.INK)
+    figure.legend(
+        fontsize=8,
+        frameon=False,
+        loc="outside lower left",
+        labelcolor=style.INK,
+        ncols=min(len(slides), 3) + 1,
+    )
     return figure
 
 

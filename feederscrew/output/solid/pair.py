@@ -7,6 +7,7 @@ from feederscrew.output.solid.shading import EDGE, STEEL, Shot, averaged, edges,
 
 METAL = np.array([0.90, 0.91, 0.92])  # the track
 SAMPLES = 2  # rays a pixel, each way
+COARSE = 40  # rays each way to find out what is hidden
 THROUGH = 0.45  # of its colour: the part where something is in front of it
 
 
@@ -52,6 +53,24 @@ def picture(track, part, centre, camera, half, columns, rows):
     shape[edges(near, own, camera, step)[hidden]] = EDGE
     image[hidden] += THROUGH * (shape - image[hidden])
     return averaged(image, SAMPLES), frame, whole.size
+
+
+def shown_share(track, part, centre, camera, half):
+    """Return the share [1] of what is to be seen of a part that the track does not hide.
+
+    Parameters
+    ----------
+    track, part, centre, camera, half
+        As for ``picture``.
+    """
+    (ground, sides), (corners, faces) = track, part
+    whole = Rays(np.vstack([ground, corners]), np.vstack([sides, faces + len(ground)]), centre)
+    across = up = np.linspace(-half, half, COARSE) / whole.size
+    depths, _ = camera.cast(whole, across, up)
+    near, _ = _part_alone(part, centre, camera, whole.size, across, up)
+    there = np.isfinite(near)
+    seen = there & (near <= np.where(np.isfinite(depths), depths, np.inf) + 1e-3)
+    return float(seen.sum() / max(there.sum(), 1))
 
 
 def _part_alone(part, centre, camera, size, across, up):

@@ -17,14 +17,15 @@ from feederscrew.units import factor
 
 MM = factor("mm", "length")
 WIDTH = 1200  # pixels
-LEFT, COLUMN, ROW, HEAD, FOOT = 230, 300, 170, 118, 30  # pixels
+LEAST = 900  # pixels: room for the lines over the rows
+LEFT, COLUMN, ROW, HEAD, FOOT = 230, 300, 170, 134, 30  # pixels
 PASSES, FALLS = "#0072b2", "#d55e00"
 TRACK, AIR, PART, TOUCHING = "#e3e8ec", "#ffffff", "#9fb3c4", "#56697a"
 WIDEST = 420  # pixels of a column
 LINE = 17  # pixels between lines of text
 KEY = (
-    "from above: wall below, parts move to the right; light: part, dark: what touches the track, "
-    "outline: hull of the support, dot: weight"
+    "from above: wall below, parts move to the right",
+    "light: part, dark: what touches the track, outline: hull of the support, dot: weight",
 )
 LETTERS = 38  # of a line of text in the last column
 NARROW = 24  # the same in the first column
@@ -48,9 +49,9 @@ def chain(devices, every, shares, wanted=None):
     """
     shown = [device for device in devices if device.placed]
     rows = _rows(every, shares, wanted)
-    wide = max(WIDTH, LEFT + COLUMN * len(shown))
+    wide = max(LEAST, LEFT + min(max(COLUMN, (WIDTH - LEFT) / max(len(shown), 1)), WIDEST) * len(shown))
     page = style.page(wide, HEAD + ROW * len(rows) + FOOT)
-    column = min((wide - LEFT) / max(len(shown), 1), WIDEST)
+    column = (wide - LEFT) / max(len(shown), 1)
     title = "Each orientation where each device bears least" if wanted is None else (
         f"What lets {every[wanted].name} leave: each orientation where each device bears least"
     )  # fmt: skip
@@ -210,8 +211,8 @@ def _scale(every, rows, column):
 
 def _heading(page, title, missing):
     ink.text(page, 16, 26, title, size=11, weight="bold")
-    ink.text(page, 16, 50, KEY, size=8)
-    ink.text(page, 16, 68, missing, size=8)
+    for line, text in enumerate([*KEY, missing]):
+        ink.text(page, 16, 50 + LINE * line, text, size=8)
 
 
 def _told(page, top, one, share, found, is_wanted):

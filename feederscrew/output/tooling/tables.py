@@ -14,6 +14,7 @@ SPARE = (  # left out of a table for people that is too wide, the first ones fir
     ("mirror", "wall_distance_mm", "balcony_mm", "canyon_mm", "gap_mm"),
     ("height_mm",), ("length_mm", "width_mm"), ("steady",), ("purity",), ("left_over",),
 )  # fmt: skip
+WIDE = 34  # letters of a text in a table for people
 QUASI_STATIC = "quasi-static, until a trial confirms it"
 
 
@@ -67,8 +68,15 @@ def frame(study):
     return tables.frame({name: [row[name] for row in rows] for name in rows[0]})
 
 
-def summary(study):
-    """Return what is printed: every orientation, or the chain that isolates the one asked for."""
+def summary(study, format="csv"):
+    """Return what is printed: every orientation, or the chain that isolates the one asked for.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+    format : str
+        Of what is printed; a table says how many corners a polygon has, and the first names of many.
+    """
     if study.design is None:
         return frame(study)
     rows = [
@@ -83,8 +91,27 @@ def summary(study):
         }
         for cut in study.design.cuts
     ]
+    if format == "table":
+        rows = [
+            row | {"value": _short(row["value"], WIDE), "returns": _few(row["returns"], WIDE)} for row in rows
+        ]
     columns_of = "device value margin_pass_mm margin_reject_mm smallest_cut largest_cut returns".split()
     return tables.frame({name: [row[name] for row in rows] for name in columns_of})
+
+
+def _short(text, most):
+    """A device's value as it is, or how many corners its polygon has."""
+    corners = text.count("[") - 1
+    return f"polygon of {corners} corners" if corners > 1 and len(text) > most else text
+
+
+def _few(text, most):
+    """As many of some names as have room, and how many more there are."""
+    names = text.split(" ")
+    while len(names) > 1 and len(" ".join(names)) > most:
+        names.pop()
+    more = len(text.split(" ")) - len(names)
+    return " ".join(names) + (f" and {more} more" if more else "")
 
 
 def _returned(study, cut):

@@ -9,7 +9,7 @@ from feederscrew.trial import course
 
 LOOKS = {  # of each fate: colour, told apart by colour-blind eyes, line, and mark where the path ends
     "passed": ("#0072b2", "-", ""),
-    "turned": ("#009e73", "--", ""),
+    "turned": ("#009e73", "--", "D"),
     "returned": ("#d55e00", "-", "x"),
     "hanging": ("#cc79a7", "-", "v"),
     "stopped": ("#e69f00", "-", "s"),
@@ -81,11 +81,12 @@ def paths(run):
         for one, path in zip(riders, ride.paths):
             way, off = unrolled(path, radius)
             ended = ride.outcomes[list(riders).index(one)] != 1
-            fate = course.FATES[found.fates[one]] if ended else "passed"
+            fate = course.FATES[found.fates[one]]
+            fate = fate if ended or fate == "turned" else "passed"  # turned: it leaves so, here or further on
             colour, line, mark = LOOKS[fate]
             axes.plot(way / MM, off / MM, line, color=colour, linewidth=0.7, alpha=0.7)
-            if ended and len(way):
-                axes.plot(way[-1] / MM, off[-1] / MM, mark or "x", color=colour, markersize=4)
+            if len(way):
+                axes.plot(way[-1] / MM, off[-1] / MM, mark, color=colour, markersize=4)
             met.setdefault(fate, None)
             widest = max(widest, off.max(initial=0.0))
         title = f"{station.device.kind.replace('_', ' ')} {station.device.text}".strip()

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation, Slerp
 from feederscrew.output import style
 from feederscrew.output.columns import MM
 from feederscrew.output.solid import pair
-from feederscrew.output.tooling.relief import camera_at
+from feederscrew.output.tooling.relief import clearest
 from feederscrew.output.trial.section import section
 from feederscrew.output.trial.shown import shown
 
@@ -40,19 +40,21 @@ def stills(part, run):
     for row, ride in enumerate(rides):
         top = height - row * (HEAD + HEIGHT + CAPTION)
         page.text(EDGE, top - 30, ride.title(found), fontsize=11, fontweight="bold", color=style.INK)
-        for k, (time, place, turn) in enumerate(_chosen(ride.path, radius)):
+        moments = list(_chosen(ride.path, radius))
+        inwards = Rotation.from_matrix(found.principal).inv()
+        bodies = [(place + (turn * inwards).apply(points), part.faces) for _, place, turn in moments]
+        places = [place for _, place, _ in moments]
+        angles = [np.arctan2(place[0], run.bowl.track.radius - place[1]) for place in places]
+        views = clearest([track] * len(bodies), bodies, places, angles, VIEW * radius)
+        for k, ((time, place, _), body, view) in enumerate(zip(moments, bodies, views)):
             left = EDGE + k * (WIDTH + GAP)
             box = (left / width, (top - HEAD - HEIGHT) / height, WIDTH / width, HEIGHT / height)
             axes = figure.add_axes(box, xticks=[], yticks=[])
             axes.spines[:].set_color(style.FAINT)
-            corners = place + (turn * Rotation.from_matrix(found.principal).inv()).apply(points)
-            camera = camera_at(np.arctan2(place[0], run.bowl.track.radius - place[1]))
-            image, _, _ = pair.picture(
-                track, (corners, part.faces), place, camera, VIEW * radius, WIDTH, HEIGHT
-            )
+            image, _, _ = pair.picture(track, body, place, view, VIEW * radius, WIDTH, HEIGHT)
             axes.imshow(image, interpolation="nearest")
-            told = f"{time:.2f} s, {place[2] / MM:.1f} mm high"
-            page.text(left + 4, top - HEAD - HEIGHT - 16, told, fontsize=7, color=style.INK)
+            caption = f"{time:.2f} s, {place[2] / MM:.1f} mm high"
+            page.text(left + 4, top - HEAD - HEIGHT - 16, caption, fontsize=7, color=style.INK)
     return figure
 
 
