@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew.errors import ArgumentError
+from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
@@ -18,6 +20,7 @@ from feederscrew.tooling import clearing, sensor_views
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling.devices import hole_shapes
 from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.nozzles import Nozzles
 from feederscrew.tooling.falling_through import falls_through
 from feederscrew.tooling.foot import Footprint
 from feederscrew.tooling.holding import may_lay_aside
@@ -27,6 +30,7 @@ from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.verdicts import verdict
 
 BOWL = bowls.read(None, ("track.climb=0 deg", "track.bank=0 deg"))
+PARTS = Path(__file__).resolve().parents[2] / "parts"
 
 
 @pytest.mark.parametrize("friction", [0.1, 0.3, 0.6])
@@ -209,3 +213,16 @@ def test_a_drive_out_of_phase_clears_faster():
     known = clearing.along_blade(BOWL, sweep, 0.3)
     assert clearing.along_blade(ahead, sweep, 0.3) > 1.1 * known
     assert clearing.along_blade(against, sweep, 0.3) == 0.0
+
+
+def test_several_nozzles_meet_every_orientation_and_one_blows_at_the_lowest_centre_of_mass():
+    bracket = load(PARTS / "lbracket_30x20x15.stl")
+    every = orientations(bracket, find(bracket), bowls.default().track)
+    nozzles = Nozzles(2e-3, 3e5, count=4)
+    heights = nozzles.heights(every)
+    assert len(heights) == 4 and np.all(np.diff(heights) > 0.0)
+    assert 0.0 < heights[0] < 3e-3 < heights[-1] < max(one.height for one in every)  # its legs are 3 mm thick
+    assert min(nozzles.force(one, every) for one in every) > 0.5 * nozzles.thrust
+    lowest = min(one.posture.height for one in every)
+    assert Nozzles(2e-3, 3e5).heights(every) == pytest.approx([lowest])
+    assert Nozzles(2e-3, 3e5, 1e-3, 3).heights(every)[0] == 1e-3

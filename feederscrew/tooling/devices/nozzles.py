@@ -42,7 +42,7 @@ class Nozzles:
 
     diameter: float  # [m] of each
     pressure: float  # [Pa] at the nozzles, above the ambient
-    height: float = math.nan  # [m] of the lowest over the track; NaN: the lowest centre of mass
+    height: float = math.nan  # [m] of the lowest over the track; NaN: as `heights` says
     count: int = 1
 
     @property
@@ -51,11 +51,20 @@ class Nozzles:
         return thrust(self.diameter, self.pressure)
 
     def heights(self, every):
-        """Return their heights [m] over the track, (N,): the highest as far below the tallest orientation."""
-        low = self.height
+        """Return their heights [m] over the track, (N,), upwards.
+
+        Where nothing is said of it, one nozzle blows at the lowest centre of mass. Several blow where each
+        orientation has something before its centre of mass, as far as they are enough for that; the others
+        are spread between those and the top of the tallest.
+        """
+        low, top = self.height, max(one.height for one in every)
+        if math.isnan(low) and self.count > 1:
+            met = _meeting([_solid_at_middle(one) for one in every], 0.5 * self.diameter)
+            if len(met) <= self.count:
+                return _spread(met, top, self.count)
         if math.isnan(low):
             low = max(min(one.posture.height for one in every), 0.5 * self.diameter)
-        high = max(max(one.height for one in every) - low, low)
+        high = max(top - low, low)
         return np.linspace(low, high, self.count) if high > low else np.full(self.count, low)
 
     def force(self, one, every):
@@ -74,3 +83,29 @@ class Nozzles:
             Jet((place, 0.0, height), ACROSS, 0.5 * self.diameter, SPREAD, self.thrust, REACH, seconds)
             for height in self.heights(every)
         )
+
+
+def _solid_at_middle(one):
+    """From which height [m] to which the lowest goes that an orientation has at its centre of mass."""
+    upright = shapely.LineString([(0.0, -one.height), (0.0, 2.0 * one.height)])
+    spans = [piece.bounds for piece in shapely.get_parts(one.aside.intersection(upright))]
+    return min(((span[1], span[3]) for span in spans), default=(0.0, one.height))
+
+
+def _meeting(spans, radius):
+    """Return the fewest heights [m] of which each span (low, high) has one, a radius within its ends."""
+    found = []
+    for low, high in sorted(spans, key=lambda span: span[1]):
+        if not any(low <= height <= high for height in found):
+            found.append(max(high - radius, 0.5 * (low + high)))
+    return found
+
+
+def _spread(heights, top, count):
+    """Return some heights [m] and as many more as make a count, each amid the widest space up to a top."""
+    found = sorted(heights)
+    while len(found) < count:
+        spaces = np.diff([*found, top])
+        k = int(np.argmax(np.round(spaces, 9)))
+        found.insert(k + 1, found[k] + 0.5 * float(spaces[k]))
+    return np.array(found)

@@ -24,7 +24,7 @@ class Sorter(Device):
     resolution: float = math.nan  # [m] of the sensor; NaN: as common
     nozzle: float = BORE  # [m]
     pressure: float = PRESSURE  # [Pa] at the nozzle, above the ambient
-    height: float = math.nan  # [m] of the nozzle over the track; NaN: as low as the lowest centre of mass
+    height: float = math.nan  # [m] of the lowest nozzle over the track; NaN: low enough for the thinnest
     time: float = PULSE  # [s] of a pulse
     nozzles: float = 4.0  # one above the other
 
