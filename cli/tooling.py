@@ -103,7 +103,7 @@ def tooling(part, aspect, rule, asked, cad, static, taken, bowl, pictures, out):
     the bowl file lists already stay, and the design is found behind them.
 
     What is proposed is tried with a few parts of each orientation, of the table the best three, and both
-    verdicts are told; --static leaves that out.
+    verdicts are printed; --static leaves that out.
 
     With -o: tooling.csv, tooling.json and tooling.png; with an aspect also tooling.yaml, a bowl file with
     the devices for feeder rate, report and batch, tooling.dxf and tooling.svg, 1:1 in mm, unrolled and as

@@ -107,7 +107,7 @@ def found(sheet, values):
 
 
 def _bowl_now(bowl, acceleration, stroke, frequency):
-    """The bowl as it moves; None where the stroke cannot be told."""
+    """The bowl as it moves; None where the stroke is not known."""
     turning = frequency or bowl.drive.frequency
     if stroke is not None:
         return _moving(bowl, 0.5 * stroke, turning)
