@@ -49,6 +49,7 @@ class Stretch:
     cuts: tuple[TrackHole, ...]
     blades: tuple[TrackBlade, ...]
     drops: tuple[tuple[float, float], ...]  # s and height [m] of each step down
+    bends: tuple[tuple[float, float], ...]  # s [m] from which the track climbs otherwise, and how [rad]
     labels: tuple[tuple[float, float, str], ...]  # from, to [m] and label of each device
 
     @property
@@ -80,6 +81,12 @@ def stretch(track, devices, every):
         cuts=tuple(_cut(one, section.width, track.width) for one in stations if one.hole is not None),
         blades=tuple(_blade(one, track.width) for one in stations if one.blade is not None),
         drops=tuple((one.start + 0.5 * one.length, one.drop) for one in stations if one.drop > 0.0),
+        bends=tuple(
+            (one.start + slope.begin, slope.climb)
+            for one in stations
+            for slope in one.device.standing(track, every).slopes
+            if slope.climb is not None
+        ),
         labels=tuple((one.start, one.start + one.length, one.label) for one in stations),
     )
 

@@ -1,4 +1,4 @@
-"""What of the devices a solid with one bank and one climb can be made of."""
+"""What of the devices a solid with one bank can be made of."""
 
 from dataclasses import replace
 
@@ -22,18 +22,16 @@ def banked(track, devices, every):
     Raises
     ------
     FeederError
-        If a device changes the lean of the track further on, or leads it on beside a ledge.
+        If a device changes the bank of the track further on, or leads it on beside a ledge.
     """
     entry = True
     for device in devices:
         if not device.placed:
             continue
         for slope in device.standing(track, every).slopes:
-            if not entry or slope.climb is not None:
-                raise _refused(
-                    device, "changes the lean of the track, and a solid has one climb and one bank"
-                )
-            track = replace(track, bank=slope.bank)
+            if slope.bank is not None and not entry:
+                raise _refused(device, "changes the bank of the track, and a solid has one bank")
+            track = track if slope.bank is None else replace(track, bank=slope.bank)
         entry = entry and device.leans
         lower = device.lower(every)
         if lower is not None and lower[1] > 0.0:

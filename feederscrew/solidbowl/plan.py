@@ -19,6 +19,7 @@ DIP = 0.06  # [rad] the track begins so far below the floor: no edge where it gr
 CLEAR = 2e-3  # [m] more than a part needs, below rails
 BESIDE = 1e-3  # [m] of level floor beside the track
 NARROW = 0.75  # of the radius: no track is wider
+LOWEST = 10e-3  # [m] over the floor of a track that goes down
 TURN = 2.0 * np.pi
 
 
@@ -158,7 +159,7 @@ def plan(size, track, made_of, tooled, asked, *, extents):
         outlet=float(outlet),
         hanging=greatest + CLEAR if hangs else 0.0,
         headroom=tallest,
-        top=float(way.height(way.end)) + sum(d for _, d in way.drops) + max([tallest + ABOVE, *gates]),
+        top=way.highest + max([tallest + ABOVE, *gates]),
         hub=_hub(track, asked, lowest),
         bolts=asked.bolts,
         bolt=asked.bolt,
@@ -217,24 +218,49 @@ def _way(size, track, tooled, asked, stepped):
     """The way of the track, and where on it the tooled stretch begins."""
     needed = 0.0 if tooled is None else tooled.length + LEAD
     drops = () if tooled is None else tooled.drops
-    rise = np.tan(track.climb)
+    rise, gained = np.tan(track.climb), _gained(track, tooled, needed)
     round_once = TURN * track.radius
     free = round_once - track.width * np.sin(track.bank) / rise  # of track below, from where it rises
     falls = None if tooled is None or stepped is not None else tooled.falls
     most = np.inf if falls is None else free + needed - falls
     end = min(size.depth / rise, most, np.inf if stepped is None else stepped.most)
     if asked.outlet_height > 0.0:
-        end = (asked.outlet_height + sum(drop for _, drop in drops)) / rise
-        _check_height(asked.outlet_height, end, most, rise, drops)
+        end = needed + (asked.outlet_height - gained) / rise
+        _check_height(asked.outlet_height, end, most, rise * (most - needed) + gained)
         _check_floor(end, stepped, rise)
     first = end - needed
     if first < 0.0:
-        raise _too_short(asked.outlet_height, end, needed, rise, drops)
-    return Way(
+        raise _too_short(asked.outlet_height, end, needed, gained)
+    way = Way(
         radius=track.radius, climb=track.climb, bank=track.bank, end=float(end),
         drops=tuple((first + at, drop) for at, drop in drops),
+        bends=() if tooled is None else tuple((first + at, climb) for at, climb in tooled.bends),
         flare=0.0 if stepped is None else stepped.flare,
-    ), float(first)  # fmt: skip
+    )  # fmt: skip
+    _check_bends(way, stepped, round_once, 0.0 if tooled is None else tooled.tallest)
+    return way, float(first)
+
+
+def _gained(track, tooled, needed):
+    """Height [m] by which the track's end lies over the begin of the tooled stretch."""
+    if tooled is None:
+        return 0.0
+    stretch = Way(track.radius, track.climb, track.bank, needed, tooled.drops, tooled.bends)
+    return float(stretch.height(needed))
+
+
+def _check_bends(way, stepped, round_once, tallest):
+    if way.bends and stepped is not None:
+        what = f"{stepped.shape} steps outwards with a track of one climb, and a device gives it another"
+        raise FeederError("sizing.shape", what, "take cylinder")
+    if way.bends and way.lowest < LOWEST:
+        what = f"a device leads the track down to {1e3 * way.lowest:.3g} mm over the floor"
+        least = 1e3 * (float(way.height(way.end)) + LOWEST - way.lowest)
+        raise FeederError("devices", what, f"give a sizing.outlet_height of at least {least:.4g} mm")
+    free = way.lowest - float(way.risen(way.end - round_once))
+    if way.bends and way.end > round_once and free < tallest + ABOVE:
+        what = f"a device leads the track down to {1e3 * free:.3g} mm over the turn below"
+        raise FeederError("devices", what, "give a lower sizing.outlet_height, or a steeper track.climb")
 
 
 def _check_floor(end, stepped, rise):
@@ -244,9 +270,9 @@ def _check_floor(end, stepped, rise):
         raise FeederError("sizing.outlet_height", what, mend)
 
 
-def _too_short(height, end, needed, rise, drops):
+def _too_short(height, end, needed, gained):
     if height > 0.0:
-        least = needed * rise - sum(drop for _, drop in drops)
+        least = gained
         what = f"{1e3 * height:.4g} mm leaves {1e3 * end:.4g} mm of track"
         what += f", and the devices take {1e3 * needed:.4g} mm"
         return FeederError("sizing.outlet_height", what, f"give at least {1e3 * least:.4g} mm")
@@ -254,8 +280,7 @@ def _too_short(height, end, needed, rise, drops):
     return FeederError("devices", what, "take fewer, a larger sizing.depth, or a larger bowl")
 
 
-def _check_height(height, end, most, rise, drops):
+def _check_height(height, end, most, highest):
     if end > most:
-        highest = most * rise - sum(drop for _, drop in drops)
         what = f"{1e3 * height:.4g} mm puts a turn of the track below the cuts: what falls stays on it"
         raise FeederError("sizing.outlet_height", what, f"give at most {1e3 * highest:.4g} mm")

@@ -34,7 +34,8 @@ def slab(plan, kit):
     runs, way = [], plan.way
     borders = [way.rises(plan.width) - DIP * way.radius, *(at for at, _ in way.drops), way.end + plan.outlet]
     for start, end in itertools.pairwise(borders):
-        legs = [start, way.end, end] if start < way.end < end else [start, end]
+        breaks = [at for at in (*(at for at, _ in way.bends), way.end) if start < at < end]
+        legs = [start, *breaks, end]
         runs.append(kit.swept([_leg(plan, kit, leg, (start, end)) for leg in itertools.pairwise(legs)]))
     risers = [_riser(plan, kit, at, drop) for at, drop in way.drops]
     whole = kit.united([*runs, *risers]) if len(runs) > 1 else runs[0]
@@ -74,7 +75,8 @@ def _steps(plan, start, end):
 def _strips(plan):
     """Into how many strips the track is divided across, so that its twist stays within the chord."""
     way, inner = plan.way, plan.way.radius - plan.across
-    twist = way.radius * np.tan(way.climb) * np.pi / plan.segments * plan.across / (way.radius + inner)
+    steepest = max(abs(climb) for climb in (way.climb, *(climb for _, climb in way.bends)))
+    twist = way.radius * np.tan(steepest) * np.pi / plan.segments * plan.across / (way.radius + inner)
     return int(np.ceil(twist / (0.3 * plan.chord))) + 1
 
 

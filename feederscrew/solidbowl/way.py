@@ -24,6 +24,7 @@ class Way:
     bank: float  # [rad] down towards the wall
     end: float  # [m] s where the outlet begins: from there on the way is straight and level
     drops: tuple[tuple[float, float], ...] = ()  # s of each step of the track and its height [m]
+    bends: tuple[tuple[float, float], ...] = ()  # s from which the track climbs otherwise, and how [rad]
     flare: float = 0.0  # [1] by which the wall's radius grows over s
 
     def wall_radius(self, s):
@@ -60,7 +61,26 @@ class Way:
         """Return the height [m] of the track's surface over the floor's edge at lengths s, distances y."""
         s = np.asarray(s, float)
         fallen = sum((np.where(s >= at, drop, 0.0) for at, drop in self.drops), np.zeros(s.shape))
-        return np.tan(self.climb) * np.minimum(s, self.end) - fallen + np.sin(self.bank) * np.asarray(y)
+        return self.risen(np.minimum(s, self.end)) - fallen + np.sin(self.bank) * np.asarray(y)
+
+    def risen(self, s):
+        """Return by how much [m] the track climbs up to lengths s, its steps down left out."""
+        climbs = [self.climb, *(climb for _, climb in self.bends)]
+        found = np.tan(self.climb) * s
+        for (at, climb), before in zip(self.bends, climbs):
+            found = found + (np.tan(climb) - np.tan(before)) * np.maximum(s - at, 0.0)
+        return found
+
+    @property
+    def highest(self):
+        """Greatest height [m] of the track by the wall, its steps down left out."""
+        return float(max(self.risen(at) for at in (*(at for at, _ in self.bends), self.end)))
+
+    @property
+    def lowest(self):
+        """Least height [m] from the first other climb on."""
+        ends = [*(at for at, _ in self.bends), *(at for at, _ in self.drops), self.end]
+        return float(min(self.height(at) for at in ends))
 
     def places(self, s, y):
         """Return points (..., 3) [m] of the track's surface."""

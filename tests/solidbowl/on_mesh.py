@@ -99,7 +99,7 @@ def _unrolled(plan, body):
     ends = max(plan.first - BEFORE, 0.0), way.end + plan.outlet - 1e-3
     ring = [[ends[0], -0.5 * wall], [ends[1], -0.5 * wall], [ends[1], 1.2 * plan.width],
             [ends[0], 1.2 * plan.width]]  # fmt: skip
-    low = float(way.height(ends[0])) - 2.0 * plan.material.plate
+    low = min(float(way.height(at)) for at in ends) - 2.0 * plan.material.plate
     piece = body ^ facets.over(way, np.array(ring), low, plan.top + 1.0, 0.2 * plan.chord)
 
     def laid(points):

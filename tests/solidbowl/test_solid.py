@@ -94,6 +94,27 @@ def test_height_and_width_of_the_track_are_those_of_the_formula(bank, rng):
     np.testing.assert_allclose(widths, TRACK.width, rtol=0, atol=NEAR)
 
 
+def test_a_separation_leads_the_track_down_from_its_place_on():
+    chain = (made("separation", "b", angle=np.radians(-5.0), text="{climb: -5 deg}"), *CHAINS["gap"])
+    solid = body(planned(chain))
+    assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
+    plan, whole = solid.plan, facets.unplaced(solid)
+    ((bend, climb),) = plan.way.bends
+    top = np.tan(TRACK.climb) * bend
+    assert plan.first < bend < plan.way.end and climb == np.radians(-5.0)
+    for s in np.linspace(0.3 * bend, plan.way.end - 2e-3, 60):
+        formula = np.tan(TRACK.climb) * s if s < bend else top - np.tan(np.radians(5.0)) * (s - bend)
+        found = heights(plan, whole, s, 15e-3)
+        in_gap = any(a - 1e-3 < s - plan.first < b + 1e-3 for a, b in (cut.span for cut in plan.stretch.cuts))
+        assert in_gap or found == pytest.approx(formula, abs=NEAR)
+    assert measures(solid).outlet_height == pytest.approx(plan.outlet_height, abs=NEAR)
+    assert plan.top > top + 12e-3 and plan.outlet_height < top
+    asked = planned(chain, asked=Asked(outlet_height=0.04))
+    assert asked.outlet_height == pytest.approx(0.04, abs=1e-9)
+    with pytest.raises(FeederError, match=r"^devices: a device leads the track down to .* over the floor"):
+        planned(chain, asked=Asked(outlet_height=0.005))
+
+
 def test_what_is_measured_is_what_was_planned():
     solid = body(planned(CHAINS["canyon, slot"]))
     made, found = solid.plan, measures(solid)
@@ -303,8 +324,8 @@ def test_a_bank_at_the_entry_is_the_track_s_and_one_further_on_is_refused():
     with pytest.raises(FeederError) as fault:
         leaning.banked(TRACK, (gap, bank), [one])
     assert str(fault.value) == (
-        "devices: bank 6 deg: changes the lean of the track, and a solid has one climb and one bank - leave "
-        "it out of the bowl file of the solid"
+        "devices: bank 6 deg: changes the bank of the track, and a solid has one bank - leave it out of the "
+        "bowl file of the solid"
     )
 
 

@@ -19,7 +19,7 @@ def history(study):
     -------
     Figure
     """
-    figure = style.page(7.0, 3.0)
+    figure = style.figure(7.0, 3.0)
     axes = figure.add_axes((0.09, 0.17, 0.89, 0.78))
     places = np.arange(1, len(study.attempts) + 1)
     rates = [one.rate / PER_MINUTE for one in study.attempts]
