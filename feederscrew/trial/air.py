@@ -15,6 +15,7 @@ class Watch:
     """A sensor at its place, and which jets it sets off."""
 
     place: float  # [m] along the wall
+    nozzles: float  # [m] where those jets are
     sensor: object  # tooling.devices.pieces.Sensor
     jets: slice  # rows of the stage's jets
     seconds: float  # [s] for which those blow
@@ -53,8 +54,11 @@ def along(placed, track, every):
         rows += [_row(jet, start, level, track.radius, mass) for jet in standing.jets]
         if standing.sensor is not None:
             seconds = max((jet.seconds for jet in standing.jets), default=0.0)
+            own = slice(first, len(rows))
             watches.append(
-                Watch(start + standing.sensor.at, standing.sensor, slice(first, len(rows)), seconds)
+                Watch(
+                    start + standing.sensor.at, start + standing.jets[0].at[0], standing.sensor, own, seconds
+                )
             )
         slopes += [(start + slope.begin, slope.climb, slope.bank) for slope in standing.slopes]
     return Air(check.frozen(np.reshape(rows, (-1, jets.END + 1))), tuple(watches), tuple(slopes))

@@ -115,13 +115,13 @@ class PartsOnTrack:
     def blown_off(self, n):
         """Return whether part n is beyond the free edge, where the track does not hold it any more."""
         out = travel.across(self.surface, self.arrays.states[n])
-        return bool(out > self.stage.width / self.known.length + self.solid.radius)
+        return bool(out > self.stage.width / self.known.length + runs.OVER * self.solid.radius)
 
     def watch(self, lying, before, ways, turn):
         """Let sensors look at the parts whose centres of mass have come past them in a period.
 
-        What is nearer to a part than the sensor can tell is one with it. Jets that a part sets off blow from
-        the next period on, the ``turn``-th.
+        What is nearer to a part than the sensor can tell is one with it. Jets that a part sets off blow as
+        it comes to them at its speed, from the next period on, the ``turn``-th.
         """
         now = turn * self.period
         for watch in self.stage.air.watches:
@@ -129,8 +129,10 @@ class PartsOnTrack:
             for n in [n for n in lying if before[n] < place <= ways[n]]:
                 states = self.arrays.states[[n, *self.near(n, lying, watch.sensor.resolution)]]
                 if sensed_rides.blows_off(watch.sensor, self.known, states, self.level(watch.place)):
-                    self.surface.jets[watch.jets, jets.BEGIN] = now
-                    self.surface.jets[watch.jets, jets.END] = now + watch.seconds / self.known.unit
+                    left = max(watch.nozzles / self.known.length - ways[n], 0.0)
+                    begin = now + left / (ways[n] - before[n]) * self.period
+                    self.surface.jets[watch.jets, jets.BEGIN] = begin
+                    self.surface.jets[watch.jets, jets.END] = begin + watch.seconds / self.known.unit
 
     def near(self, n, lying, resolution):
         """Return the parts of a row that are one with part n for a sensor of some resolution [m]."""

@@ -17,6 +17,7 @@ from feederscrew.trial.kernel import crowd_records, travel
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = (
     travel.RUNNING, travel.PASSED, travel.RETURNED, travel.STANDS, travel.ROLLED,
 )  # fmt: skip
+OVER = 0.1  # of its size: a part whose centre of mass is so far over the free edge does not come back
 PERIOD, HOPPING = 48, 160  # steps of a period of the drive, and where parts hop
 SWEEPS, CONVERGED = 60, 1e-4  # of the contact solver: at most, and what a sweep may still change
 ONWARDS = 5e-3  # of the unit of length: a border goes on so far where its corner is not convex
@@ -195,7 +196,7 @@ def limits_of(known, station, limits):
         progress=limits[2] / known.length,
         back=(station.begin - limits[3]) / known.length,
         edge=station.width / known.length,
-        free=station.width / known.length + known.solid.radius,
+        free=station.width / known.length + OVER * known.solid.radius,
     )
 
 

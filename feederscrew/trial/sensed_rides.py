@@ -10,6 +10,8 @@ from feederscrew.tooling import sensor_views
 from feederscrew.trial import runs, whereabouts
 from feederscrew.trial.kernel import jets
 
+SLOW = 1e-3  # [m/s] below which a part stands
+
 
 def blows_off(sensor, known, states, level=0.0):
     """Return whether a sensor sees parts differ from what it wants by more than its play.
@@ -53,8 +55,8 @@ def _stepped(value, step):
 def past(known, station, *, limits, every, places):
     """Return the function that follows parts past one station, as `runs.past`, with what a sensor does.
 
-    As its centre of mass comes to the sensor a part is looked at; its jets blow from then on, as long as
-    their pulse is, if it differs. Without a sensor the station is one ride.
+    As its centre of mass comes to the sensor a part is looked at; if it differs, jets blow as it comes to
+    them at its mean speed, as long as their pulse is. Without a sensor the station is one ride.
     """
     if not station.air.watches:
         return runs.past(known, station, limits=limits, every=every, places=places)
@@ -70,7 +72,9 @@ def past(known, station, *, limits, every, places):
         now = times + there.seconds
         ride = still
         if blows_off(watch.sensor, known, there.states):
-            ride = runs.past(known, pulsed(station, watch, now[0]), **own)
+            speed = max((there.ways / there.seconds)[0], SLOW)
+            begin = now[0] + (watch.nozzles - watch.place) / speed
+            ride = runs.past(known, pulsed(station, watch, begin), **own)
         return _one(there, ride(there.states, now))
 
     return follow

@@ -31,7 +31,9 @@ def test_the_trial_blows_off_what_a_sorter_sees_differ():
     seen = course.course(PART, BOWL, EVERY, range(len(EVERY)), [sorter], parts=len(EVERY))
     for k, fate in zip(seen.entered, seen.fates):
         said = verdict(sorter, EVERY[k], EVERY)
-        assert said.sure and fate == (course.PASSED if said.passes else course.RETURNED), EVERY[k].name
+        tall = EVERY[k].length < 0.0051  # has turned half way round by then: the jet spins it along the track
+        others = (course.RETURNED, course.TURNED) if tall else (course.RETURNED,)
+        assert said.sure and fate in ((course.PASSED,) if said.passes else others), EVERY[k].name
 
 
 def test_a_steady_jet_and_a_steeper_way_do_in_the_trial_what_they_say():
@@ -120,3 +122,24 @@ def test_what_flies_past_the_outlet_on_its_way_off_the_track_has_not_left():
         state[body.VX : body.VX + 2] = -speed_out * np.sin(turn), speed_out * np.cos(turn)
         parts.lay(0, state)
         assert parts.slides_off(0) == off
+
+
+def test_jets_blow_as_a_part_comes_to_them_at_its_own_speed():
+    sorter = made("sorter", "here", **OWN)
+    bowl = replace(BOWL, devices=(sorter,))
+    line = crowd.crowded(bowl, EVERY, bowl.devices, 0.1)
+    solid, length, _ = solid_of(PART)
+    known = runs.setting(solid, length, bowl)
+    parts = crowd.PartsOnTrack(known, line, 1)
+    (watch,) = line.stage.air.watches
+    assert watch.nozzles > watch.place
+    across = next(one for one in EVERY if one.length < 0.0121 and one.height < 0.0051)
+    own = solid_of(PART)[2]
+    state = whereabouts.laid(across, own, length, BOWL.track, place=watch.place + 1e-3)
+    parts.lay(0, state)
+    now, moved = whereabouts.ways(state[None], known.radius), 4e-3 / length
+    parts.watch([0], now - moved, now, 7)
+    left = (watch.nozzles / length - now[0]) / moved  # in periods
+    assert parts.surface.jets[watch.jets, jets.BEGIN] == pytest.approx((7.0 + left) * parts.period)
+    blows = parts.surface.jets[watch.jets, jets.END] - parts.surface.jets[watch.jets, jets.BEGIN]
+    assert blows * known.unit == pytest.approx(watch.seconds)

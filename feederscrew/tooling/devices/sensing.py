@@ -14,6 +14,7 @@ VIEWS = ("outline", "side", "height")
 RESOLUTION = {"outline": 1e-4, "side": 1e-4, "height": 1e-3}  # [m] of a camera, of a fibre
 BORE, PRESSURE, PULSE = 2e-3, 3e5, 0.04  # [m], [Pa], [s] of each nozzle: 1.28 N, 0.051 N s
 REACTION = 0.01  # [s] of sensor and valve: 5 to 15 ms
+AHEAD = 0.01  # [m] from the sensor to the nozzles: a part is blown at as its middle comes to them
 
 
 @dataclass(frozen=True)
@@ -78,11 +79,11 @@ class Sorter(Device):
         return Nozzles(self.nozzle, self.pressure, self.height, round(self.nozzles))
 
     def standing(self, track, every):
-        """Return the nozzle in the wall, half a room behind its begin, and the sensor over it."""
+        """Return the sensor half a room behind its begin, and the nozzles in the wall behind it."""
         room = room_of(every)
         middle = 0.5 * room
         sensor = Sensor(middle, self.sees, self.wanted(every), self.like[2], self.blur)
-        return Standing(room, jets=self.jet.jets(middle, every, self.time), sensor=sensor)
+        return Standing(room + AHEAD, jets=self.jet.jets(middle + AHEAD, every, self.time), sensor=sensor)
 
     def gap(self, one, speed):
         """Return the free way [m] that it needs between parts that come with some speed [m/s]."""
