@@ -8,7 +8,7 @@ from feederscrew.designing import calm_drive, proposals, trying
 from feederscrew.designing.record import Attempt
 from feederscrew.designing.robust import denied, robust_run
 from feederscrew.designing.searching import Candidate
-from feederscrew.rates import arrivals
+from feederscrew.rates import arrivals, spacing
 from feederscrew.rates.tipping import FLAT
 from feederscrew.studies.rate import shares
 from feederscrew.tooling.hanging import neck
@@ -109,9 +109,12 @@ def _gain(search, made, proposal, weights):
     return float((weights * ways.leaving[:, ways.leaves_as[proposal.row]]).sum())
 
 
-def asked(search, ways, weights, gain):
-    """Return the velocity [m/s] that brings the target, with a reserve, at a share that leaves as wanted."""
-    pitch = trying.GAP * float((weights * ways.lengths).sum())
+def asked(search, ways, weights, gain, apart=0.0):
+    """Return the velocity [m/s] that brings the target, with a reserve, at a share that leaves as wanted.
+
+    Parts come in a row, ``apart`` [m] farther than they do by themselves where devices need that.
+    """
+    pitch = trying.GAP * float((weights * ways.lengths).sum()) + apart
     return search.reserve * search.request.target * pitch / max(gain, 1e-3)
 
 
@@ -208,8 +211,7 @@ def attempted(search, made, proposal, weights):
     bowl = replace(made.bowl, devices=proposal.devices)
     ways = proposals.known_through(part, search.known.aspects, bowl)
     gain = float((weights * ways.leaving[:, ways.leaves_as[proposal.row]]).sum())
-    velocity = asked(search, ways, weights, gain)
-    bowl = replace(calm_drive.driven(made, velocity, hops=proposal.may_hop), devices=proposal.devices)
+    bowl = replace(_at_velocity(search, made, proposal, ways, weights, gain), devices=proposal.devices)
     ways = arrivals.oriented(proposals.known_through(part, search.known.aspects, bowl), search.known.measured)
     name = ways.lying[proposal.row].name
     search.told(f"trial {len(search.attempts) + 1}: {name}, {proposal.step}")
@@ -229,6 +231,17 @@ def attempted(search, made, proposal, weights):
     )
     search.attempts.append(attempt)
     return Candidate(proposal, bowl, ways, weights, tried, attempt)
+
+
+def _at_velocity(search, made, proposal, ways, weights, gain):
+    """The bowl at the drive that brings the target, with the gaps that its devices need at that drive."""
+    apart = 0.0
+    for _ in range(2):
+        bowl = calm_drive.driven(made, asked(search, ways, weights, gain, apart), hops=proposal.may_hop)
+        apart = spacing.needed(proposal.devices, ways.lying, bowl)
+        if not apart > 0.0:
+            break
+    return bowl
 
 
 def _short(search, bowl, ways, weights, row):

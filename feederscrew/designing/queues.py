@@ -3,7 +3,7 @@
 from feederscrew.designing import trying
 from feederscrew.designing.record import NORMAL, PURE, FilledQueue
 
-FILLS = (("low", 6, 15.0), (NORMAL, 12, 30.0), ("high", 18, 15.0))  # name, parts, seconds
+FILLS = (("low", 6, 20.0), (NORMAL, 12, 60.0), ("high", 18, 20.0))  # name, parts, seconds
 
 
 def filled(part, bowl, aspects, known, shares, state, *, seed, whole=True, told=None):

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feederscrew.rates import stream
+from feederscrew.rates import spacing, stream
 from feederscrew.resting.aspects import Aspects
 from feederscrew.trial import course
 from feederscrew.trial.queue import queue_of
@@ -30,6 +30,7 @@ class Tried:
     velocity: float  # [m/s] mean of those that travel
     state: int  # the wanted one
     deepest: float  # [m]
+    apart: float = 0.0  # [m] free way between parts that the devices need
 
     @property
     def weights(self):
@@ -73,8 +74,8 @@ class Tried:
 
     @property
     def rate(self):
-        """Wanted parts [1/s] that such a bowl delivers, from a row with the usual gaps."""
-        pitch = GAP * float((self.shares * self.known.lengths).sum())
+        """Wanted parts [1/s] that such a bowl delivers, from a row with the gaps that its devices need."""
+        pitch = GAP * float((self.shares * self.known.lengths).sum()) + self.apart
         longest = GAP * float(self.known.states[self.state].length)
         return float(
             min(max(self.velocity, 0.0) / pitch * self.efficiency, max(self.velocity, 0.0) / longest)
@@ -133,6 +134,7 @@ def single(part, bowl, known, shares, row, *, rows, each, seed, jobs=1, before=N
         places=tuple(_places(seen, one) for one in own),
         velocity=float(moving.mean()) if len(moving) else 0.0,
         state=state, deepest=float(seen.depths.max(initial=0.0)),
+        apart=spacing.needed(bowl.devices, known.lying, bowl),
     )  # fmt: skip
 
 

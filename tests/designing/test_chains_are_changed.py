@@ -105,3 +105,10 @@ def test_a_sensor_sees_something_of_every_drawn_part():
     )  # closing its slits by 0.02 mm left nothing
     assert sensor_views.outline(turned, "outline").area > 9.5e-5
     assert min(sensor_views.outline(one, "side").area for one in ways.lying) > 5e-5
+
+
+def test_a_row_with_gaps_for_a_sensor_delivers_less(block):
+    _, ways, names = block
+    seen = tried(ways, {names["A@0"]}, (), (), names["A@0"])
+    wide = replace(seen, apart=1.2 * float((seen.shares * ways.lengths).sum()))
+    assert wide.rate == pytest.approx(0.5 * seen.rate)
