@@ -41,7 +41,7 @@ NAMED = (
     ("tooling/turning.py", "height * (1.0 - math.cos(tilt))\n    return _carr",
      "height * (1.0 + math.cos(tilt))\n    return _carr", HOLDING),
     ("tooling/turning.py", "foot.max(), foot.min(), one.posture",
-     "foot.min(), foot.max(), one.posture", HOLDING),
+     "foot.max(), foot.max(), one.posture", HOLDING),
     (RECOMMENDED, '"drop": 0.4', '"drop": 0.45', JUDGED),
     (RECOMMENDED, '"drop": 0.4', '"drop": 0.35', JUDGED),
     (RECOMMENDED, "LAUNCHED = 0.11", "LAUNCHED = 0.12", JUDGED),

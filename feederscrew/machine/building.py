@@ -1,13 +1,16 @@
 """A drive unit for a bowl of a given size, where the user has none: masses from sheet, springs by rule."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from feederscrew.bowl.direction import shares
+from feederscrew.bowl.record import Bowl, Machine, Sizing
+from feederscrew.machine.sizing import Size
 
 
-def machine_for(bowl, size, given):
+def machine_for(bowl: Bowl, size: Size, given: Any) -> Machine:
     """Return the machine under a bowl, what the user gave of it kept.
 
     Parameters
@@ -39,7 +42,7 @@ def machine_for(bowl, size, given):
     )
 
 
-def _bowl(radius, size, rules):
+def _bowl(radius: float, size: Size, rules: Sizing) -> Any:
     """Mass and inertia [kg], [kg m2]: of the solid, or of floor, wall and track of sheet with tooling."""
     if size.mass is not None:
         return size.mass, size.inertia
@@ -53,7 +56,7 @@ def _bowl(radius, size, rules):
     return float(extra * (floor + wall + track)), float(extra * inertia)
 
 
-def _spring_angle(wanted, radius, machine, rules):
+def _spring_angle(wanted: float, radius: float, machine: Machine, rules: Sizing) -> float:
     """Angle of the springs, in whole degrees, that moves the bowl at its track in a wanted direction."""
     rise, turn = shares(machine)
     angle = np.arctan(np.tan(wanted) * radius / machine.spring_radius * turn / rise)

@@ -1,5 +1,8 @@
 """What a designer must not overlook in a machine: each line says where, what and what to change."""
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
 
 from feederscrew import units
@@ -12,7 +15,7 @@ MM, MPA = 1e-3, 1e6
 APART = np.radians(0.5)  # angles this near are the same
 
 
-def remarks(sheet):
+def remarks(sheet: Any) -> tuple[str, ...]:
     """Return the remarks on a machine.
 
     Parameters
@@ -32,7 +35,7 @@ def remarks(sheet):
     return (*lines, *tipping, *speeds.remark(sheet.answer.velocity, sheet.bowl.sizing))
 
 
-def _hand(sheet):
+def _hand(sheet: Any) -> Iterator[FeederError]:
     if sheet.bowl.sizing.hand == "left":
         what = (
             "orientations and devices are judged for a right-handed track, of which this is the mirror image"
@@ -40,7 +43,7 @@ def _hand(sheet):
         yield FeederError("track.hand", what, "mirror the part's file too, unless it is its own mirror image")
 
 
-def _tuning(sheet):
+def _tuning(sheet: Any) -> Iterator[FeederError]:
     rules, drive = sheet.bowl.sizing, sheet.stroke.frequency
     natural, where = f"the natural frequency {sheet.springs.natural_frequency:.4g} Hz", "machine.leaves"
     better = f": {_named(sheet.sets)}" if sheet.sets else ""
@@ -56,15 +59,15 @@ def _tuning(sheet):
         yield FeederError(where, what, f"take leaves away, to come {window} above it{better}")
 
 
-def _named(sets):
+def _named(sets: Any) -> str:
     """The set of fewest leaves of each of the first thicknesses."""
-    first = {}
+    first: dict[float, str] = {}
     for one in sets:
         first.setdefault(one.thickness, f"{one.leaves} of {one.thickness / MM:g} mm")
     return " or ".join(list(first.values())[:3])
 
 
-def _banks(sheet):
+def _banks(sheet: Any) -> Iterator[FeederError]:
     leaves, banks = int(sheet.bowl.machine.leaves), int(sheet.bowl.sizing.banks)
     if sheet.has_machine and leaves % banks:
         near = leaves - leaves % banks
@@ -73,7 +76,7 @@ def _banks(sheet):
         yield FeederError("machine.leaves", what, f"take {some}, or give sizing.banks")
 
 
-def _throw(sheet):
+def _throw(sheet: Any) -> Iterator[FeederError]:
     """Tooling that cuts the track tells parts apart by how they lie: not those that fly over it."""
     over = [one.kind for one in sheet.bowl.devices if one.placed and not one.overhead]
     throw = sheet.answer.throw_number
@@ -84,7 +87,7 @@ def _throw(sheet):
         yield FeederError("drive.amplitude", what, mend)
 
 
-def _lowest(sheet):
+def _lowest(sheet: Any) -> Iterator[FeederError]:
     low, wanted = sheet.lowest, sheet.order.target
     if low.rate < wanted * (1.0 - 1e-6):
         there = f"{60.0 * low.rate:.3g}/min at {100.0 * low.level:.3g} % of the fill, {low.way}"
@@ -92,7 +95,7 @@ def _lowest(sheet):
         yield FeederError("target", what, "hold the level with a hopper, or lower the target")
 
 
-def _stress(sheet):
+def _stress(sheet: Any) -> Iterator[FeederError]:
     most = sheet.bowl.sizing.fatigue_stress
     if sheet.stress > most:
         beyond = f"beyond their fatigue stress {most / MPA:.4g} MPa"
@@ -100,7 +103,7 @@ def _stress(sheet):
         yield FeederError("machine.leaf_thickness", what, "take more and thinner leaves, or longer ones")
 
 
-def _stroke(sheet):
+def _stroke(sheet: Any) -> Iterator[FeederError]:
     most = greatest_amplitude(sheet.bowl)
     if sheet.bowl.drive.amplitude > most * (1.0 + 1e-9):
         there = (
@@ -110,7 +113,7 @@ def _stroke(sheet):
         yield FeederError("drive.amplitude", what, f"give at most {most / MM:.3g} mm, or a lower frequency")
 
 
-def _angle(sheet):
+def _angle(sheet: Any) -> Iterator[FeederError]:
     bowl = sheet.bowl
     by_springs = vibration_angle(bowl.machine, bowl.track.radius, bowl.track.climb)
     if sheet.has_machine and abs(by_springs - bowl.drive.vibration_angle) > APART:
@@ -119,7 +122,7 @@ def _angle(sheet):
         yield FeederError("drive.vibration_angle", what, "leave it out, to go by the springs")
 
 
-def _fill(sheet):
+def _fill(sheet: Any) -> Iterator[FeederError]:
     full, drive = sheet.emptying.natural_frequencies[0], sheet.stroke.frequency
     if sheet.detuning > 0.0 and full <= drive:
         holds = sheet.emptying.levels[sheet.emptying.natural_frequencies > drive].max(initial=0.0)
@@ -128,7 +131,7 @@ def _fill(sheet):
         yield FeederError("sizing.fill_height", what, mend)
 
 
-def _drift(sheet):
+def _drift(sheet: Any) -> Iterator[FeederError]:
     """What a bowl left alone does from full to empty."""
     speeds_left = np.maximum(sheet.velocities, 0.0)
     full, empty, rules = speeds_left[0], speeds_left[-1], sheet.bowl.sizing
@@ -148,7 +151,7 @@ def _drift(sheet):
         yield FeederError("drive.amplitude", f"{what}: the magnet strikes", mend)
 
 
-def _size(sheet):
+def _size(sheet: Any) -> Iterator[FeederError]:
     size = sheet.order.size
     rule, least = max(size.least.items(), key=lambda one: one[1])
     if size.diameter < least * (1.0 - 1e-9):

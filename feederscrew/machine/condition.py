@@ -1,12 +1,15 @@
 """What was measured at a machine beside what it should do, and what makes the difference."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
 from feederscrew import units
+from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError
 from feederscrew.machine.springs import gain
@@ -34,7 +37,7 @@ class MeasuredMachine:
     causes: tuple[str, ...]  # what is likely, a sentence each
 
 
-def read(text):
+def read(text: str) -> dict[str, float]:
     """Return what a user says was measured, {word: SI}.
 
     Parameters
@@ -65,7 +68,7 @@ def read(text):
     return found
 
 
-def found(sheet, values):
+def found(sheet: Any, values: dict[str, float]) -> MeasuredMachine:
     """Return a machine as it was found beside what it should do.
 
     Parameters
@@ -106,7 +109,9 @@ def found(sheet, values):
     return replace(one, causes=tuple(_causes(one, sheet, now)))
 
 
-def _bowl_now(bowl, acceleration, stroke, frequency):
+def _bowl_now(
+    bowl: Bowl, acceleration: float | None, stroke: float | None, frequency: float | None
+) -> Bowl | None:
     """The bowl as it moves; None where the stroke is not known."""
     turning = frequency or bowl.drive.frequency
     if stroke is not None:
@@ -114,15 +119,15 @@ def _bowl_now(bowl, acceleration, stroke, frequency):
     return None if acceleration is None else _moving(bowl, acceleration / (TURN * turning) ** 2, turning)
 
 
-def _moving(bowl, amplitude, frequency):
+def _moving(bowl: Bowl, amplitude: float, frequency: float) -> Bowl:
     return replace(bowl, drive=replace(bowl.drive, amplitude=amplitude, frequency=frequency))
 
 
-def _velocity(bowl):
+def _velocity(bowl: Bowl) -> float:
     return float(answer.cells(bowl)["velocity"])
 
 
-def _causes(one, sheet, now):
+def _causes(one: MeasuredMachine, sheet: Any, now: Bowl | None) -> Iterator[Any]:
     """What is likely, the first that would explain the most first."""
     told = list(_of_frequency(one, sheet))
     if now is not None and not told:
@@ -132,7 +137,7 @@ def _causes(one, sheet, now):
     yield from told
 
 
-def _of_frequency(one, sheet):
+def _of_frequency(one: MeasuredMachine, sheet: Any) -> Iterator[Any]:
     """Causes where acceleration and stroke do not belong together at the frequency of the drive."""
     if one.frequency is None:
         return
@@ -154,7 +159,7 @@ def _of_frequency(one, sheet):
     yield f"the drive runs at {one.frequency:.3g} Hz, not at {one.should['frequency']:.3g} Hz"
 
 
-def _of_stroke(one, sheet, ratio):
+def _of_stroke(one: MeasuredMachine, sheet: Any, ratio: float) -> Iterator[Any]:
     """Causes where the stroke is another one."""
     if abs(ratio - 1.0) <= APART:
         return
@@ -183,10 +188,10 @@ def _of_stroke(one, sheet, ratio):
     yield f"or the controller is set {100.0 * (ratio - 1.0):.0f} % too high - turn it down"
 
 
-def _tuned(wanted, drive, damping, ends):
+def _tuned(wanted: float, drive: float, damping: float, ends: tuple[float, float]) -> float | None:
     """Natural frequency [Hz] between two shares of the drive's at which a gain is reached; None for none."""
 
-    def miss(share):
+    def miss(share: float) -> float:
         return float(gain(drive, share * drive, damping)) - wanted
 
     low, high = ends

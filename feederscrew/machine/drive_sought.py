@@ -1,5 +1,6 @@
 """The drive and the leaves of a bowl that bring a rate from the full bowl to the empty one."""
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -7,8 +8,8 @@ import numpy as np
 from feederscrew.bowl.direction import vibration_angle
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.schema import BY_NAME
-from feederscrew.bowl.settings import default
-from feederscrew.machine import building, filling, throughput, tuning
+from feederscrew.bowl.settings import Setting, default
+from feederscrew.machine import building, filling, sizing, throughput, tuning
 from feederscrew.machine.stroke import stroke
 
 FULL_WAVE = 2.0
@@ -23,25 +24,25 @@ class Sought:
     """A bowl whose drive is sought."""
 
     bowl: Bowl  # with its track
-    size: object  # Size of it
-    settings: tuple  # that say what the user gave
+    size: sizing.Size  # of it
+    settings: tuple[Setting, ...]  # that say what the user gave
     target: float  # [1/s] counted parts
     bulk: float  # [kg/m3] of the parts' hulls
 
     @property
-    def fill(self):
+    def fill(self) -> filling.Fill:
         """A full bowl."""
         return filling.full(
             self.size.room or self.bowl.track.radius, self.size.depth, self.bulk, self.bowl.sizing
         )
 
 
-def given(settings, section=""):
+def given(settings: Iterable[Setting], section: str = "") -> set[str]:
     """Return the words of the keys of a section that the user gave, a set."""
     return {s.key.word for s in settings if s.given and s.key.section == section}
 
 
-def brought(sought, flow):
+def brought(sought: Sought, flow: Callable[[Bowl | None], throughput.Flow]) -> tuple[Bowl, throughput.Flow]:
     """Find the bowl whose drive brings the target, without the parts that this drive turns over.
 
     Parameters
@@ -70,7 +71,7 @@ def brought(sought, flow):
         now = own  # there are only so many orientations to turn over
 
 
-def _driven(sought, flow):
+def _driven(sought: Sought, flow: throughput.Flow) -> Bowl:
     """The bowl with machine, frequency and the smallest stroke that reaches the target."""
     plain, settings = sought.bowl, sought.settings
     angle_given = "vibration_angle" in given(settings, "drive")
@@ -92,7 +93,7 @@ def _driven(sought, flow):
     raise throughput.unreachable(sought.target, flow.parts, max(fastest))
 
 
-def _held(empty, sought, velocity, way):
+def _held(empty: Bowl, sought: Sought, velocity: float, way: str) -> Bowl | None:
     """The bowl with the smallest stroke whose lowest velocity, from full to empty, is enough, or None."""
     made, strokes = empty, np.ones(1)
     for _ in range(ROUNDS):
@@ -107,7 +108,7 @@ def _held(empty, sought, velocity, way):
     return made
 
 
-def _with(bowl, amplitude, settings):
+def _with(bowl: Bowl, amplitude: float, settings: Iterable[Setting]) -> Bowl:
     """The bowl at a stroke, on the leaves that tune it then, unless the user gave their number."""
     bowl = replace(bowl, drive=replace(bowl.drive, amplitude=amplitude))
     if "leaves" in given(settings, "machine"):
@@ -123,7 +124,7 @@ def _with(bowl, amplitude, settings):
     return replace(bowl, machine=machine)
 
 
-def _frequencies(bowl, settings):
+def _frequencies(bowl: Bowl, settings: Iterable[Setting]) -> tuple[float, ...]:
     """The drive's frequency as given; else that of the size, then the other wave of the mains."""
     if "frequency" in given(settings, "drive") or "supply" in given(settings, "machine"):
         return (bowl.drive.frequency,)

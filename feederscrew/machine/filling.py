@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew import check
+from feederscrew.bowl.record import Machine, Sizing
 from feederscrew.machine.springs import gain, springs
 
 LEVELS = 21  # of the curve, from full to empty
@@ -31,7 +32,7 @@ class Emptying:
     controlled: np.ndarray  # (N,) [1] the same under amplitude control, as far as the controller reaches
 
 
-def full(radius, depth, bulk, rules):
+def full(radius: float, depth: float, bulk: float, rules: Sizing) -> Fill:
     """Compute the fill of a full bowl.
 
     Parameters
@@ -51,13 +52,13 @@ def full(radius, depth, bulk, rules):
     return Fill(volume, mass, 0.5 * mass * radius**2)
 
 
-def loaded(machine, fill, share):
+def loaded(machine: Machine, fill: Fill, share: float) -> Machine:
     """Return the machine with a share [1] of a fill vibrating with its bowl."""
     mass = machine.bowl_mass + share * fill.mass
     return replace(machine, bowl_mass=mass, bowl_inertia=machine.bowl_inertia + share * fill.inertia)
 
 
-def emptying(machine, frequency, fill, rules):
+def emptying(machine: Machine, frequency: float, fill: Fill, rules: Sizing) -> Emptying:
     """Compute what becomes of the stroke as a bowl empties.
 
     Parameters

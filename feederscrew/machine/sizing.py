@@ -1,14 +1,18 @@
 """The bowl that a part needs: diameter, width and climb of the track, turns."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from feederscrew import check
-from feederscrew.bowl.record import Track
+from feederscrew.bowl.record import Sizing, Track
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import turned
 from feederscrew.mechanics.wall.stable_headings import headings
+from feederscrew.part.record import Part
+from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import posture
 
 STRAIGHT = Track(climb=0.0, bank=0.0, radius=1e3, width=1.0)  # [m] a wall without a bend
@@ -54,7 +58,7 @@ class SizedShape:
     length: float  # [m] along the wall
 
 
-def lying(part, aspects, wanted=None):
+def lying(part: Part, aspects: Aspects, wanted: tuple[str, float] | None = None) -> Lying:
     """Compute the room a part takes along a wall.
 
     Parameters
@@ -86,7 +90,7 @@ def lying(part, aspects, wanted=None):
     )
 
 
-def shape(part, aspects, track, wanted=None):
+def shape(part: Part, aspects: Aspects, track: Track, wanted: tuple[str, float] | None = None) -> SizedShape:
     """Return the wanted orientation on a track, or else the most frequent heading of the first aspect."""
     name = aspects.names[int(np.flatnonzero(aspects.stable)[0])] if wanted is None else wanted[0]
     stood = posture(part, aspects, name)
@@ -96,7 +100,16 @@ def shape(part, aspects, track, wanted=None):
     return SizedShape(outline, float(found.distances[row]), float(found.lengths[row]))
 
 
-def size(part, given, rules, *, sorts, diameter=None, width=None, climb=None):
+def size(
+    part: Lying,
+    given: str,
+    rules: Sizing,
+    *,
+    sorts: bool,
+    diameter: float | None = None,
+    width: float | None = None,
+    climb: float | None = None,
+) -> Size:
     """Compute the bowl that holds and carries a part.
 
     Parameters
@@ -133,7 +146,7 @@ def size(part, given, rules, *, sorts, diameter=None, width=None, climb=None):
     return Size(across, least, wide, play, bend, float(angle), depth, float(turns), float(pitch))
 
 
-def _climb(part, across, wide, rules):
+def _climb(part: Lying, across: float, wide: float, rules: Sizing) -> float:
     """The least climb [rad]: parts pass below the next turn, or below the slope that leads to it."""
     rise, way = rules.headroom * part.tallest + rules.sheet, np.pi * across
     if rules.shape != "cylinder":
@@ -142,7 +155,7 @@ def _climb(part, across, wide, rules):
     return max(rules.least_climb, np.arctan(rise / way))
 
 
-def _diameters(part, play, rules, width, sorts):
+def _diameters(part: Lying, play: float, rules: Sizing, width: float | None, sorts: bool) -> dict[str, float]:
     """The diameter that each rule asks for [m]; width and bend of the track hang on each other."""
     least = {
         "no bowl is smaller": rules.least_diameter,
@@ -165,7 +178,7 @@ def _diameters(part, play, rules, width, sorts):
     return least | {"width of the track": rules.diameter_per_width * wide}
 
 
-def _check_diameter(across, part, given, rules, *, fixed):
+def _check_diameter(across: float, part: Lying, given: str, rules: Sizing, *, fixed: bool) -> None:
     if np.isinf(across):
         what = f"needs {1e3 * part.width:.4g} mm of track and its play, more than track.width"
         raise FeederError(given, what, "widen the track, or leave track.width out")
@@ -178,11 +191,11 @@ def _check_diameter(across, part, given, rules, *, fixed):
         raise FeederError("track.radius", what, "leave it out, to have the bowl sized")
 
 
-def _nearest(rows, aspect, heading):
+def _nearest(rows: Sequence[Any], aspect: str, heading: float) -> Any:
     """The row of an aspect whose heading is nearest to one."""
     own = [row for row in rows if row[0] == aspect]
     return min(own, key=lambda row: abs((row[1] - heading + np.pi) % (2.0 * np.pi) - np.pi))
 
 
-def _rounded_up(value, step):
+def _rounded_up(value: float, step: float) -> float:
     return float(np.ceil(value / step - 1e-9) * step)

@@ -2,10 +2,12 @@
 
 import numpy as np
 
+from feederscrew.bowl.record import Sizing
+
 MM_S = 1e-3  # [m/s]
 
 
-def remark(velocity, rules):
+def remark(velocity: float, rules: Sizing | None) -> list[str]:
     """Return what is odd about a conveying velocity.
 
     Parameters

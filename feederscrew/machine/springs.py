@@ -5,10 +5,12 @@ between which the leaves leave one way to move: rise and turn together, in the d
 """
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from feederscrew.bowl.direction import shares
+from feederscrew.bowl.record import Machine
 
 POISSON = 0.3  # [1] of steel; the twist of a leaf depends on it through G / E = 1 / (2 (1 + nu))
 
@@ -27,7 +29,7 @@ class Springs:
     natural_frequency_held: float  # [Hz] without twist, the base held fast
 
 
-def springs(machine):
+def springs(machine: Machine) -> Springs:
     """Compute what the springs of a machine make of it.
 
     Parameters
@@ -53,13 +55,13 @@ def springs(machine):
     )
 
 
-def leaf_stiffness(machine):
+def leaf_stiffness(machine: Machine) -> float:
     """Return the stiffness of one leaf with both ends guided, E b t^3 / L^3 [N/m]."""
     ratio = machine.leaf_thickness / machine.leaf_length
     return machine.leaf_modulus * machine.leaf_width * ratio**3
 
 
-def leaf_stress(machine, amplitude):
+def leaf_stress(machine: Machine, amplitude: float) -> float:
     """Return the amplitude of bending stress in a leaf, 3 E t delta / L^2.
 
     Parameters
@@ -75,7 +77,7 @@ def leaf_stress(machine, amplitude):
     return 3.0 * machine.leaf_modulus * machine.leaf_thickness * amplitude / machine.leaf_length**2
 
 
-def upright_pull(force, machine):
+def upright_pull(force: float, machine: Machine) -> float:
     """Return the amplitude of the pull of an upright magnet that does what a force along the motion does [N].
 
     Parameters
@@ -92,7 +94,7 @@ def upright_pull(force, machine):
     return float(force / np.sin(machine.spring_angle))
 
 
-def twist(machine):
+def twist(machine: Machine) -> float:
     """Return by how much the twist of its leaves stiffens a bank, 1 + (G / 3 E) (L / r_s)^2 cos^2 psi [1].
 
     Notes
@@ -105,7 +107,7 @@ def twist(machine):
     return 1.0 + lever**2 / (6.0 * (1.0 + POISSON))
 
 
-def effective_mass(machine):
+def effective_mass(machine: Machine) -> float:
     """Return the mass that moves against the springs [kg].
 
     Parameters
@@ -123,17 +125,17 @@ def effective_mass(machine):
     return float(along + around)
 
 
-def held_fast(machine):
+def held_fast(machine: Machine) -> Machine:
     """Return the machine on a base that does not move."""
     return replace(machine, base_mass=1e12 * machine.bowl_mass, base_inertia=1e12 * machine.bowl_inertia)
 
 
-def natural_frequency(stiffness, mass):
+def natural_frequency(stiffness: float, mass: float) -> float:
     """Return sqrt(K / m) / (2 pi) [Hz]; arrays broadcast."""
     return np.sqrt(stiffness / mass) / (2.0 * np.pi)
 
 
-def gain(frequency, natural, damping):
+def gain(frequency: Any, natural: Any, damping: float) -> Any:
     """Return the stroke over that of the same force at rest.
 
     Parameters

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew.bowl.direction import direction, shares
+from feederscrew.bowl.record import Bowl, Machine, Track
 
 TURN = 2.0 * np.pi  # [rad]
 INNERMOST = 0.5  # of the track's radius, where the list of angles starts
@@ -25,7 +26,7 @@ class Stroke:
     vertical: float  # [m/s2] peak
 
 
-def stroke(bowl):
+def stroke(bowl: Bowl) -> Stroke:
     """Compute how a bowl moves.
 
     Parameters
@@ -54,7 +55,7 @@ def stroke(bowl):
     )
 
 
-def angles(machine, track):
+def angles(machine: Machine, track: Track) -> tuple[np.ndarray, np.ndarray]:
     """Return radii and the angle of the bowl's motion to the horizontal at each.
 
     Parameters
@@ -73,7 +74,7 @@ def angles(machine, track):
     return radii, direction(machine, radii)
 
 
-def greatest_amplitude(bowl):
+def greatest_amplitude(bowl: Bowl) -> float:
     """Return half the stroke that drives are built for at a frequency [m]."""
     rules = bowl.sizing
     by_acceleration = rules.greatest_acceleration * bowl.gravity / (TURN * bowl.drive.frequency) ** 2

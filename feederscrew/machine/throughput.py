@@ -1,10 +1,12 @@
 """The stroke that brings a wanted number of parts a minute."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from feederscrew import units
+from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.machine.stroke import greatest_amplitude
@@ -26,7 +28,14 @@ class Flow:
     length: float  # [m] mean length along the track of a part
 
 
-def flow(found, rule, *, target=None, gap=0.0, fill=1.0):
+def flow(
+    found: well_oriented.Orientations,
+    rule: str,
+    *,
+    target: tuple[str, float] | None = None,
+    gap: float = 0.0,
+    fill: float = 1.0,
+) -> Flow:
     """Compute how many parts a length of track delivers.
 
     Parameters
@@ -66,7 +75,9 @@ def flow(found, rule, *, target=None, gap=0.0, fill=1.0):
     return Flow(fill * share / (length + gap), share, length)
 
 
-def amplitude_for(bowl, velocity, strokes=ALONE):
+def amplitude_for(
+    bowl: Bowl, velocity: float, strokes: Any = ALONE
+) -> tuple[tuple[float, float] | None, tuple[float, float]]:
     """Return the smallest stroke from which on a part travels at least so fast.
 
     Parameters
@@ -104,7 +115,7 @@ def amplitude_for(bowl, velocity, strokes=ALONE):
     return (float(high), float(_speeds(bowl, high, strokes))), fastest
 
 
-def _first(amplitudes, fast, reach):
+def _first(amplitudes: np.ndarray, fast: np.ndarray, reach: float) -> Any:
     """The first place from which on all is fast up to ``reach`` times as far; else the first fast one."""
     places = np.flatnonzero(fast)
     for place in places:
@@ -114,11 +125,11 @@ def _first(amplitudes, fast, reach):
     return places[0] if places.size else None
 
 
-def steepest(bowl):
+def steepest(bowl: Bowl) -> float:
     """Return the climb up to which a part travels, the springs left as they are [rad]; NaN for none."""
     upright = bowl.drive.vibration_angle + bowl.track.climb
 
-    def travels(climb):
+    def travels(climb: float) -> bool:
         drive = replace(bowl.drive, vibration_angle=max(upright - climb, 0.0))
         there = replace(bowl, drive=drive, track=replace(bowl.track, climb=climb))
         return float(answer.cells(there)["velocity"]) > 0.0
@@ -132,7 +143,7 @@ def steepest(bowl):
     return low
 
 
-def unreachable(target, parts_per_metre, fastest):
+def unreachable(target: float, parts_per_metre: float, fastest: tuple[float, float]) -> ArgumentError:
     """Return the fault that no stroke brings so many parts, and what the most is."""
     minute = units.factor("/min", "rate")
     speed, amplitude = fastest
@@ -143,7 +154,7 @@ def unreachable(target, parts_per_metre, fastest):
     )
 
 
-def _speeds(bowl, amplitudes, strokes):
+def _speeds(bowl: Bowl, amplitudes: Any, strokes: Any) -> Any:
     """Slowest velocities of strokes as the bowl empties [m/s]; minus infinity where there is none.
 
     No stroke is beyond what drives are built for: there the magnet strikes.

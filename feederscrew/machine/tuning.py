@@ -1,7 +1,9 @@
 """Sets of leaf springs: what one leaf more or less does, and which sets tune a bowl to its drive."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from feederscrew.bowl.record import Machine, Sizing
 from feederscrew.machine.springs import gain, leaf_stress, natural_frequency, springs
 
 THICKNESSES = (1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3, 5e-3, 6e-3)  # [m] that makers stock
@@ -23,7 +25,9 @@ class LeafSet:
     stress: float  # [Pa] amplitude, at the stroke in use
 
 
-def leaf_set(machine, frequency, amplitude, *, leaves, thickness, name=""):
+def leaf_set(
+    machine: Machine, frequency: float, amplitude: float, *, leaves: int, thickness: float, name: str = ""
+) -> LeafSet:
     """Compute what other leaves of the same width and length do.
 
     Parameters
@@ -56,7 +60,7 @@ def leaf_set(machine, frequency, amplitude, *, leaves, thickness, name=""):
     )
 
 
-def changes(machine, frequency, amplitude, banks):
+def changes(machine: Machine, frequency: float, amplitude: float, banks: int) -> tuple[LeafSet, ...]:
     """Return the set in use beside a leaf more and less in each bank, and leaves 0.5 mm thicker.
 
     Parameters
@@ -81,7 +85,7 @@ def changes(machine, frequency, amplitude, banks):
     )
 
 
-def sets(machine, frequency, amplitude, rules):
+def sets(machine: Machine, frequency: float, amplitude: float, rules: Sizing) -> tuple[LeafSet, ...]:
     """Return the sets that put the natural frequency a few per cent above the drive.
 
     Parameters
@@ -106,7 +110,7 @@ def sets(machine, frequency, amplitude, rules):
     return tuple(one for one in found if rules.least_detuning <= one.detuning <= rules.greatest_detuning)
 
 
-def chosen(found, rules):
+def chosen(found: Sequence[LeafSet], rules: Sizing) -> LeafSet | None:
     """Return the set to build in: within its fatigue stress, with room for the fill, of a usual number.
 
     Parameters

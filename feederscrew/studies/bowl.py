@@ -285,5 +285,6 @@ def _sheet(
 def _velocities(bowl: Bowl, strokes: np.ndarray) -> np.ndarray:
     """Velocity at multiples of the bowl's stroke [m/s]; its stroke ends where the magnet would strike."""
     most = max(greatest_amplitude(bowl), bowl.drive.amplitude)
-    drive = replace(bowl.drive, amplitude=np.minimum(bowl.drive.amplitude * strokes, most))
+    each: Any = np.minimum(bowl.drive.amplitude * strokes, most)
+    drive = replace(bowl.drive, amplitude=each)
     return check.frozen(answer.cells(replace(bowl, drive=drive))["velocity"])
