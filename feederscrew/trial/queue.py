@@ -124,6 +124,7 @@ class _Queue:
         self.way, self.free, self.touch, self.depth = [], [], [], 0.0
         self.pressure, self.whole, self.first, self.most = np.zeros(len(self.windows)), 0, None, 0
         self.periods, self.waiting, self.deep = 0, list(range(parts)), solid.radius * length
+        self.coming = None  # drawn, without room yet
         self.enter()
         self.start = 0.0
 
@@ -133,16 +134,21 @@ class _Queue:
         return self.periods / self.bowl.drive.frequency
 
     def enter(self):
-        """Let waiting parts in at the end of the row, as long as there is room."""
+        """Let waiting parts in at the end of the row, as long as there is room.
+
+        What has no room yet is the next one to come: were another drawn for it, short ones would come more
+        often than they do.
+        """
         lying = np.flatnonzero(self.crowd.on)
         end = min((self.crowd.extents(n)[0] for n in lying), default=0.0)
         while self.waiting:
-            state, length = self.fresh()
+            self.coming = self.coming or self.fresh()
+            state, gap = self.coming
             rear, front, _ = whereabouts.extents(state, self.known.solid.corners, self.known.radius)
-            gap = 0.0 if self.poured else self.apart + 2.0 * GAPS * self.rng.random() * length
             place = min(end, 0.0) - gap - front
             if place + rear < self.track.start / self.known.length:
                 break
+            self.coming = None
             n = self.waiting.pop(0)
             self.crowd.lay(n, whereabouts.moved(state[None], place, self.known.radius)[0])
             self.mark[n], self.since[n], self.on_others[n] = place, self.time, False
@@ -150,19 +156,20 @@ class _Queue:
         self.most = max(self.most, int(self.crowd.on.sum()))
 
     def fresh(self):
-        """A part that is about to enter: its state at the place 0, and its length."""
+        """A part that is about to enter: its state at the place 0, and the free way before it."""
         k = min(int(np.searchsorted(self.chances, self.rng.random() * self.chances[-1])), len(self.every) - 1)
         one, track = self.every[k], self.bowl.track
         if not self.poured:
             play = starts.PLAY * self.rng.random()
             state = whereabouts.laid(one, self.principal, self.known.length, track, place=0.0)
             state = starts.clear(state, self.known.solid, track, self.known.length, play)
-            return state, one.length / self.known.length
+            gap = self.apart + 2.0 * GAPS * self.rng.random() * one.length / self.known.length
+            return state, gap
         radius, state = self.known.solid.radius, np.zeros(body.STATE)
         turn = self.rng.standard_normal(4)
         state[:3] = 0.0, radius * POURED, radius * POURED * (1.0 + self.rng.random())
         state[body.Q : body.Q + 4] = turn / np.sqrt((turn**2).sum())
-        return state, 2.0 * radius
+        return state, 0.0
 
     def ride(self, turn):
         """Move all for one period of the drive, and look what became of them."""

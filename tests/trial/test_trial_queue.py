@@ -219,3 +219,17 @@ def test_a_part_lies_on_its_aspect_at_any_heading():
         laid = [whereabouts.laid(replace(one, heading=turn), PRINCIPAL, LENGTH, BOWL.track, place=0.0)
                 for turn in (0.0, 1.0, 4.0)]  # fmt: skip
         assert [ASPECTS.names[row] for row in below.of(laid)] == [one.aspect] * 3
+
+
+def test_what_has_no_room_yet_comes_next_however_long_it_is():
+    even = np.full(len(EVERY), 1.0 / len(EVERY))
+    small = replace(BOWL, track=replace(BOWL.track, radius=0.15))
+    row = queue._Queue(PART, small, ASPECTS, EVERY, EVERY, even, 40, False, 5)
+    waits, came = row.coming, list(row.waiting)
+    assert waits is not None and came  # the row reaches back to where the track begins
+    for _ in range(20):
+        row.enter()
+        assert row.coming is waits and row.waiting == came
+    row.crowd.take(int(np.argmin(whereabouts.ways(row.crowd.arrays.states, row.known.radius))))
+    row.enter()
+    assert row.waiting != came
