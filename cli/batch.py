@@ -95,8 +95,8 @@ def _report(found, out):
     out.say(*(f"Error: {fault}" for fault in found.faults))
     if found.strangers:
         folders, one = counted(len(found.strangers), "folder"), len(found.strangers) == 1
-        told = f"{'is of a part' if one else 'are of parts'} not in this batch: {found.strangers[0]}"
-        out.warn(f"{folders} {told}{'' if one else ', ...'}")
+        text = f"{'is of a part' if one else 'are of parts'} not in this batch: {found.strangers[0]}"
+        out.warn(f"{folders} {text}{'' if one else ', ...'}")
     kept = f", {found.kept} of them as they were" if found.kept else ""
     out.say(f"Wrote {out.directory} ({counted(len(found.rows), 'part')}{kept}; open index.html)")
     out.show(summary.frame(found.rows), {"parts": list(found.rows)}, hidden=summary.HIDDEN)

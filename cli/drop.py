@@ -117,8 +117,8 @@ def _on_floor(part, launch, own, test, pictures, out):
     solid = out.part(part)
     with out.folder(solid.name, solid.inputs, columns.conditions(solid)) as folder:
         with waiting.bar(out, "drops") as bar:
-            told = {"progress": bar.reach, "before": lambda: waiting.drops(out)}
-            study = drop_study(solid, launch, own, **told, **test)
+            values = {"progress": bar.reach, "before": lambda: waiting.drops(out)}
+            study = drop_study(solid, launch, own, **values, **test)
         out.warn(*tables.remarks(study))
         offers.write(folder, files.offers(study), pictures=pictures)
     out.show(tables.counts(study), tables.document(study))

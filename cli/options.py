@@ -31,12 +31,12 @@ class Named(click.Option):
 
     def get_help_record(self, context):
         """The help with the names behind it."""
-        told = self.help
-        self.help = f"{told.removesuffix('.')}: {', '.join(self.names())}."
+        shown = self.help
+        self.help = f"{shown.removesuffix('.')}: {', '.join(self.names())}."
         try:
             return super().get_help_record(context)
         finally:
-            self.help = told
+            self.help = shown
 
 
 class Number(click.FloatRange):

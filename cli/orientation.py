@@ -92,8 +92,8 @@ def arriving(out, part, taken, rule):
 
     def found(bowl):
         if bowl not in known:
-            told = {} if known else telling(out)
-            known[bowl] = study.shares(part, bowl, **choice(taken), rule=rule, **told)
+            values = {} if known else telling(out)
+            known[bowl] = study.shares(part, bowl, **choice(taken), rule=rule, **values)
         return known[bowl]
 
     return found

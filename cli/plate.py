@@ -53,9 +53,9 @@ def run(part, plate, launch, own, test, pictures, out):
     inputs = solid.inputs | inputs
     with out.folder(solid.name, inputs, columns.conditions(solid) | values) as folder:
         with waiting.bar(out, "parts") as bar:
-            told = {"progress": bar.reach, "before": lambda: waiting.plate(out)}
+            document = {"progress": bar.reach, "before": lambda: waiting.plate(out)}
             study = plate_study(
-                solid, bowls, launch, own, names=names, seconds=plate["seconds"], **told, **test
+                solid, bowls, launch, own, names=names, seconds=plate["seconds"], **document, **test
             )
         out.say(*tables.summary(study))
         out.warn(*tables.remarks(study))

@@ -12,7 +12,7 @@ class Progress:
     Parameters
     ----------
     total : int or None
-        How many there are; None where that must be told first.
+        How many there are; None where that is not known yet.
     shown : bool
         False for nothing at all; nothing is shown either where stderr is not a terminal.
     what : str

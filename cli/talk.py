@@ -30,7 +30,7 @@ class Output:
     depfile: str | None = None  # of --depfile
     inputs: tuple[str, ...] = ()  # the files named on the command line
     options: dict[str, str] = field(default_factory=dict)  # of the command, by the argument they are
-    warnings: list[str] = field(default_factory=list)  # told so far, for run.json
+    warnings: list[str] = field(default_factory=list)  # said so far, for run.json
 
     @classmethod
     def of(cls, **options):
@@ -88,7 +88,7 @@ class Output:
 
     @contextlib.contextmanager
     def step(self, name):
-        """Time what happens inside; told with ``-v``."""
+        """Time what happens inside; said with ``-v``."""
         start = time.perf_counter()
         yield
         self.detail(f"{name}: {time.perf_counter() - start:.2f} s")

@@ -102,8 +102,8 @@ def tooling(part, aspect, rule, asked, cad, static, taken, bowl, pictures, out):
     devices, each with the smallest cut that still returns and the largest that still passes. Devices that
     the bowl file lists already stay, and the design is found behind them.
 
-    What is proposed is tried with a few parts of each orientation, of the table the best three, and both
-    verdicts are printed; --static leaves that out.
+    A few parts of each orientation are sent through what is proposed, of the table through the best
+    three. Both verdicts are printed. --static leaves the trial out.
 
     With -o: tooling.csv, tooling.json and tooling.png; with an aspect also tooling.yaml, a bowl file with
     the devices for feeder rate, report and batch, tooling.dxf and tooling.svg, 1:1 in mm, unrolled and as

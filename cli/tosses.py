@@ -31,9 +31,9 @@ def run(part, path, own, test, pictures, out):
     out = replace(out, command="drop launches")
     solid = out.part(part)
     with waiting.bar(out, "tosses") as bar:
-        told = {"progress": bar.reach, "before": lambda: waiting.drops(out)}
+        values = {"progress": bar.reach, "before": lambda: waiting.drops(out)}
         run = {"runs": test["drops"], "seed": test["seed"], "jobs": test["jobs"]}
-        study = tosses.follow(solid, path, own, **told, **run)
+        study = tosses.follow(solid, path, own, **values, **run)
     inputs = solid.inputs | {study.launches.source: study.launches.sha256}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
         out.warn(*toss_tables.remarks(study))

@@ -1,4 +1,4 @@
-"""What a person is told who must wait: for the compiler, and how far a long run is."""
+"""What is said to a person who must wait: for the compiler, and how far a long run is."""
 
 import click
 

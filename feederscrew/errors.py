@@ -53,7 +53,7 @@ class ArgumentError(ConfigError):
 
 
 class Faults(FeederError):
-    """All faults of one file, told in one go."""
+    """All faults of one file, reported together."""
 
     def __init__(self, faults: Iterable[FeederError]) -> None:
         Exception.__init__(self, "\n".join(str(fault) for fault in faults))

@@ -30,9 +30,9 @@ def page(store, rows):
     Page
     """
     failed = sum(row["status"] != DONE for row in rows)
-    told = counted(len(rows), "part") + (f", {failed} of them failed" if failed else "")
+    text = counted(len(rows), "part") + (f", {failed} of them failed" if failed else "")
     lines = tuple(_row(store, row) for row in rows)
-    return Page(told, "", (Chapter((Matrix(HEADINGS, lines, sortable=True), NUMBERS)),))
+    return Page(text, "", (Chapter((Matrix(HEADINGS, lines, sortable=True), NUMBERS)),))
 
 
 def _row(store, row):

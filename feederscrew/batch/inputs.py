@@ -111,7 +111,7 @@ def _fits(path, suffixes, kind):
 
 
 def _there(path):
-    """Return whether a file is meant: one that is there, or a link that leads nowhere, to be told of."""
+    """Return whether a file is meant: one that is there, or a link that leads nowhere, to be reported."""
     return path.is_file() or (path.is_symlink() and not path.exists())
 
 

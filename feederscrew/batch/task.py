@@ -115,14 +115,14 @@ def fingerprint(request, choices, sha256):
     str
         The same for the same input, options, program and libraries.
     """
-    told = {
+    values = {
         "part": sha256,
         "request": dataclasses.asdict(dataclasses.replace(request, line="")),
         "choices": dataclasses.asdict(choices),
         "version": __version__,
         "libraries": libraries(),
     }
-    return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
+    return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()
 
 
 def libraries():

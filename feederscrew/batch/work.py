@@ -132,5 +132,5 @@ def _answered(part, task, files):
     offers.write(files, drop_files.offers(study), pictures=choices.pictures)
     tally = study.result.tally
     first = int(np.argmax(tally.p))
-    told = {"drops": choices.drops, "drop_aspect": found.names[first], "p_drop": tally.p[first]}
-    return with_drops(found, study, launch_named(choices.launched)), told
+    values = {"drops": choices.drops, "drop_aspect": found.names[first], "p_drop": tally.p[first]}
+    return with_drops(found, study, launch_named(choices.launched)), values

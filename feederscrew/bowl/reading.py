@@ -1,4 +1,4 @@
-"""Bowl files and overrides, checked against the schema; every fault is told, each with its place."""
+"""Bowl files and overrides, checked against the schema; every fault is reported with its place."""
 
 import itertools
 from collections.abc import Iterable, Sequence
@@ -219,14 +219,14 @@ def _both(key: Key, other: Key | None, where: str, kind: type[ConfigError] = Con
 
 
 def _kinetic_above_static(given: dict[str, Setting]) -> list[ConfigError]:
-    """The faults of kinetic coefficients above static ones, each told at the last word on either."""
+    """The faults of kinetic coefficients above static ones, each reported at the last word on either."""
     held = {s.key.name: s for s in effective(given)}
-    told = []
+    listed = []
     for suffix in ("", "_backward"):
         static, kinetic = held[f"friction.static{suffix}"], held[f"friction.kinetic{suffix}"]
         if kinetic.value > static.value and (static.given or kinetic.given):
-            told.append(_above(static, kinetic))
-    return told
+            listed.append(_above(static, kinetic))
+    return listed
 
 
 def _above(static: Setting, kinetic: Setting) -> ConfigError:

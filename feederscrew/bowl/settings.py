@@ -119,8 +119,8 @@ def swept(settings: Sequence[Setting], values: Mapping[str, Any]) -> Bowl:
 
 def texts(settings: Sequence[Setting]) -> dict[str, str]:
     """Return the settings by key name as text, for run.json; without an optional section not given."""
-    told = {s.key.section for s in settings if s.given}
-    silent = [name for name in OPTIONAL if name not in told]
+    listed = {s.key.section for s in settings if s.given}
+    silent = [name for name in OPTIONAL if name not in listed]
     return {s.key.name: s.text for s in settings if s.key.section not in silent}
 
 

@@ -74,10 +74,10 @@ def fingerprint(bowl: Bowl) -> str:
     str
         Sixteen digits; the last digits of numbers do not count.
     """
-    told = [_told(getattr(bowl, name)) for name in ("drive", "friction", "track")]
-    told += [f"{bowl.restitution:.5g}", f"{bowl.gravity:.5g}"]
-    told += [_device(one) for one in bowl.devices]
-    return hashlib.sha256("\n".join(told).encode()).hexdigest()[:16]
+    listed = [_told(getattr(bowl, name)) for name in ("drive", "friction", "track")]
+    listed += [f"{bowl.restitution:.5g}", f"{bowl.gravity:.5g}"]
+    listed += [_device(one) for one in bowl.devices]
+    return hashlib.sha256("\n".join(listed).encode()).hexdigest()[:16]
 
 
 def _told(record: object) -> str:

@@ -81,7 +81,7 @@ def sweep(settings, workers=None):
 
 
 def compiled():
-    """Tell whether the compiled functions are already on disk, or numba is told not to compile."""
+    """Tell whether the compiled functions are already on disk, or numba is set not to compile."""
     return on_disk(_compiled())
 
 

@@ -239,16 +239,16 @@ def _before(proposal, others, wanted, every):
         sign = 1.0 if kind.bound == "lower" else -1.0
         values = sign * limits(kind, every)
         least = values[wanted].min()
-        told = [k for k in others if least - values[k] > LEAST_WINDOW]
-        room = least - max((values[k] for k in told), default=np.inf)
-        if told and np.isfinite(room) and (len(told), room) > best and kind.kind not in own:
-            best, chosen = (len(told), room), (kind, sign * (least - 0.5 * room), told)
+        listed = [k for k in others if least - values[k] > LEAST_WINDOW]
+        room = least - max((values[k] for k in listed), default=np.inf)
+        if listed and np.isfinite(room) and (len(listed), room) > best and kind.kind not in own:
+            best, chosen = (len(listed), room), (kind, sign * (least - 0.5 * room), listed)
     if chosen is None:
         return None
-    (kind, middle, told), room = chosen, best[1]
+    (kind, middle, listed), room = chosen, best[1]
     limit = float(np.round(middle / STEP) * STEP)
     device = kind("design", limit=limit, text=millimetres(limit))
-    must = np.array([k in told for k in range(len(every))])
+    must = np.array([k in listed for k in range(len(every))])
     ends = [
         kind("design", limit=limit + way, text=millimetres(limit + way)) for way in (-0.5 * room, 0.5 * room)
     ]

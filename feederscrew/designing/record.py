@@ -221,8 +221,8 @@ def _shortfalls(study):
             f"{minute * study.request.target:.3g}/min asked for"
         )
     if not purity >= PURE:
-        told = "nothing left the queue" if np.isnan(purity) else f"purity {100.0 * purity:.3g} %"
-        yield f"{told}, {100.0 * PURE:.3g} % are asked for"
+        text = "nothing left the queue" if np.isnan(purity) else f"purity {100.0 * purity:.3g} %"
+        yield f"{text}, {100.0 * PURE:.3g} % are asked for"
     if study.jams:
         yield f"{study.jams} jams in {study.queue_seconds:.3g} s of queue"
     if study.robust.share < DRAWS_HELD:

@@ -63,7 +63,7 @@ def fitting(function, half_edges, plain=None):
 
 
 def on_disk(function):
-    """Whether a compiled function is in the cache already, or numba is told not to compile."""
+    """Whether a compiled function is in the cache already, or numba is set not to compile."""
     return not hasattr(function, "stats") or any(
         Path(function.stats.cache_path or NOWHERE).glob(f"*{function.__name__}_{_fingerprint()}*.nbi")
     )
@@ -94,7 +94,7 @@ def _nothing():
 
 
 def _marked(function, **how):
-    """Note how a function is compiled, until numba is told of it."""
+    """Note how a function is compiled, until numba is asked to."""
     PENDING.append((function, how))
     if "numba" in sys.modules:  # an entry may stand above what it calls
         _register()

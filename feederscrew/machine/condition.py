@@ -129,12 +129,12 @@ def _velocity(bowl: Bowl) -> float:
 
 def _causes(one: MeasuredMachine, sheet: Any, now: Bowl | None) -> Iterator[Any]:
     """What is likely, the first that would explain the most first."""
-    told = list(_of_frequency(one, sheet))
-    if now is not None and not told:
-        told = list(_of_stroke(one, sheet, 2.0 * now.drive.amplitude / one.should["stroke"]))
-    if not told:
-        told = [f"the machine does what it should, within {100.0 * APART:.0f} %"]
-    yield from told
+    listed = list(_of_frequency(one, sheet))
+    if now is not None and not listed:
+        listed = list(_of_stroke(one, sheet, 2.0 * now.drive.amplitude / one.should["stroke"]))
+    if not listed:
+        listed = [f"the machine does what it should, within {100.0 * APART:.0f} %"]
+    yield from listed
 
 
 def _of_frequency(one: MeasuredMachine, sheet: Any) -> Iterator[Any]:

@@ -74,7 +74,7 @@ class ResultFolder:
         effective : dict or None
             The parameters that led to the numbers.
         warnings : sequence of str
-            As told.
+            As they were given.
         """
         record = {
             "version": __version__,

@@ -42,16 +42,16 @@ class _Writer(RendererAgg):
 
     def _fitted(self, text, prop):
         font, measured = get_font(findfont(prop)), super().get_text_width_height_descent
-        told = "".join(letter if font.get_char_index(ord(letter)) else _escape(letter) for letter in text)
-        told = LONG_WORD.sub(r"\1…\2", told)
+        sentence = "".join(letter if font.get_char_index(ord(letter)) else _escape(letter) for letter in text)
+        sentence = LONG_WORD.sub(r"\1…\2", sentence)
         size, page = (
-            measured(told, prop, False),
+            measured(sentence, prop, False),
             PAGE * max(self.width, self.height),
         )  # text may stand upright
         if size[0] <= page:
-            return told, size
-        told = told[: int(len(told) * page / size[0]) - 1] + "…"
-        return told, measured(told, prop, False)
+            return sentence, size
+        sentence = sentence[: int(len(sentence) * page / size[0]) - 1] + "…"
+        return sentence, measured(sentence, prop, False)
 
 
 def _escape(letter):

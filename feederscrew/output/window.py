@@ -64,9 +64,9 @@ def _widest(columns, names, most):
 def _naming(columns, width):
     """How many columns, the first ones, it takes to name a row."""
     for count in range(1, min(MOST_NAMING, len(columns)) + 1):
-        told = list(zip(*columns[:count]))
+        listed = list(zip(*columns[:count]))
         wide = sum(len(column[0]) + len(GAP) for column in columns[:count])
-        if len(set(told)) == len(told) and wide <= width // 2:
+        if len(set(listed)) == len(listed) and wide <= width // 2:
             return count
     return 1
 
@@ -90,9 +90,9 @@ def _broken(column, most):
     """The lines of each cell of a column, all of one width."""
     if len(column[0]) <= most:
         return [[cell] for cell in column]
-    told = [textwrap.wrap(cell, most, break_on_hyphens=False) or [""] for cell in column]
-    width = max(len(line) for lines in told for line in lines)
-    return [[line.ljust(width) for line in lines] for lines in told]
+    listed = [textwrap.wrap(cell, most, break_on_hyphens=False) or [""] for cell in column]
+    width = max(len(line) for lines in listed for line in lines)
+    return [[line.ljust(width) for line in lines] for lines in listed]
 
 
 def _in_lines(columns):

@@ -43,11 +43,11 @@ def part(file):
     if root.kind != "mapping":
         needed = ", ".join(key.word for key in CARD if key.required)
         raise ConfigError(root.where, "no 'key: value' line", f"write {needed}")
-    told = _mapping(root, CARD, faults)
-    aspects = _aspects(told.get("aspects"), faults)
-    printed = {key: _mapping(told[key], keys, faults) for key, keys in BLOCKS if key in told}
+    shown = _mapping(root, CARD, faults)
+    aspects = _aspects(shown.get("aspects"), faults)
+    printed = {key: _mapping(shown[key], keys, faults) for key, keys in BLOCKS if key in shown}
     faults += _strangers(root, printed, aspects)
-    inertia, said = _inertia(root, told.get("inertia"), faults)
+    inertia, said = _inertia(root, shown.get("inertia"), faults)
     documents.raise_all(faults)
     return Part(
         name=file.name,
@@ -57,8 +57,8 @@ def part(file):
         material="part card",
         density=None,
         volume=None,
-        mass=told["mass"],
-        centre_of_mass=check.frozen(np.array(told["centre_of_mass"])),
+        mass=shown["mass"],
+        centre_of_mass=check.frozen(np.array(shown["centre_of_mass"])),
         inertia=check.frozen(inertia),
         aspects=tuple(CardAspect(**aspect) for aspect in aspects),
         printed=printed or None,
@@ -73,14 +73,14 @@ def _mapping(node, keys, faults):
         faults.append(ConfigError(node.where, what, f"give it {', '.join(key.word for key in keys)}"))
         return {}
     known = {key.word: key for key in keys}
-    told = {}
+    values = {}
     for entry in node.entries:
         if entry.key not in known:
             what = f"unknown key {units.shown(entry.key)}"
             faults.append(ConfigError(entry.where, what, documents.hint(entry.key, list(known))))
             continue
         try:
-            told[entry.key] = _value(known[entry.key], entry.value)
+            values[entry.key] = _value(known[entry.key], entry.value)
         except ConfigError as fault:
             faults.append(fault)
     given = {entry.key for entry in node.entries}
@@ -88,7 +88,7 @@ def _mapping(node, keys, faults):
     if missing:
         what = f"without {' and '.join(key.word for key in missing)}"
         faults.append(ConfigError(node.where, what, f"add {missing[0].word}: {missing[0].example}"))
-    return told
+    return values
 
 
 def _value(key, node):
@@ -137,14 +137,14 @@ def _aspects(rows, faults):
         return []
     aspects, seen = [], {}
     for row in rows.items:
-        told = _mapping(row, ASPECT, faults)
-        name = told.get("aspect")
+        shown = _mapping(row, ASPECT, faults)
+        name = shown.get("aspect")
         if name in seen:
             what = f"aspect {units.shown(name)} is already in line {seen[name].rsplit(':', 2)[1]}"
             faults.append(ConfigError(row.where, what, "keep one of them"))
         elif name is not None:
             seen[name] = row.where
-        aspects.append(_keywords(told, row))
+        aspects.append(_keywords(shown, row))
     return aspects
 
 
@@ -161,11 +161,11 @@ def _strangers(root, printed, aspects):
     return [
         ConfigError(
             root.find(block).value.find("aspect").value.where,
-            f"{block}: the card lists no aspect {units.shown(told['aspect'])}",
+            f"{block}: the card lists no aspect {units.shown(shown['aspect'])}",
             f"known are {', '.join(map(str, names))}",
         )
-        for block, told in printed.items()
-        if "aspect" in told and told["aspect"] not in names
+        for block, shown in printed.items()
+        if "aspect" in shown and shown["aspect"] not in names
     ]
 
 
@@ -184,7 +184,7 @@ def _inertia(root, rows, faults):
         return upper, ()
     moments, _ = mass.principal(upper)
     if moments[0] <= 0.0 or moments[0] + moments[1] < moments[2] * (1.0 - ROUNDING):
-        told = ", ".join(f"{moment / units.factor('g mm2', 'inertia'):.4g}" for moment in moments)
-        what = f"no body has the principal moments {told} g mm2"
+        text = ", ".join(f"{moment / units.factor('g mm2', 'inertia'):.4g}" for moment in moments)
+        what = f"no body has the principal moments {text} g mm2"
         faults.append(ConfigError(where, what, "the largest must not exceed the sum of the others"))
     return upper, said

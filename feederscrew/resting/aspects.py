@@ -119,8 +119,8 @@ def find(part, *, as_published=False, unstable=False, exponent=None, launch=reco
     table = _geometry(groups, part) | {"forms": forms(groups, hull)}
     chances = _probabilities(table, as_published)
     order = _ranked(table, chances["csa"], part, moments)
-    names, told = naming.named([groups[k] for k in order], table["normals"][order], hull, part.names)
-    named = _named(names, table, chances, order, told)
+    names, result = naming.named([groups[k] for k in order], table["normals"][order], hull, part.names)
+    named = _named(names, table, chances, order, result)
     ground = by_class.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
     weighted = surface.EXPONENTS["hard"] if exponent is None else exponent
     return _answered(_tumbled(named, ground, part, weighted), launch, exponent)

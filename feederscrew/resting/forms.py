@@ -51,5 +51,5 @@ def said(found):
     if list(found) == [BALL]:
         return (ALONE,)
     rocks = dict.fromkeys(form for form in found if form in (OFF_CENTRE, WITH_A_FLAT))
-    told = (CENTRED,) if BALL in found else ()
-    return told + tuple(ROCKS.format(f"{'an' if form[0] == 'o' else 'a'} {form}") for form in rocks)
+    listed = (CENTRED,) if BALL in found else ()
+    return listed + tuple(ROCKS.format(f"{'an' if form[0] == 'o' else 'a'} {form}") for form in rocks)

@@ -221,5 +221,5 @@ def _of_card(part, aspects, row):
 
 def _analysis(part, block, name):
     """A card's data of the floor or the track, if they are of this aspect."""
-    told = (part.printed or {}).get(block, {})
-    return dict(told) if told.get("aspect") == name else {}
+    shown = (part.printed or {}).get(block, {})
+    return dict(shown) if shown.get("aspect") == name else {}

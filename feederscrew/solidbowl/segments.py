@@ -129,8 +129,8 @@ def _seams(made, size):
     _, counts, turn, extents = best
     if max(counts) > MOST:
         least = " x ".join(f"{1e3 * (high - low) / MOST:.4g}" for low, high in extents)
-        told = " x ".join(f"{1e3 * side:.4g}" for side in size)
-        what = f"{told} mm takes more than {MOST} segments in one direction"
+        sentence = " x ".join(f"{1e3 * side:.4g}" for side in size)
+        what = f"{sentence} mm takes more than {MOST} segments in one direction"
         raise FeederError("bed", what, f"give at least {least} mm, or a smaller bowl")
     return counts, turn, extents
 

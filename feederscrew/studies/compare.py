@@ -102,11 +102,11 @@ class SetsStudy(Shown):
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
-        told = [line for one in self.sets for line in one.measured.warnings(one.part)]
-        told += [line for one in self.feedings for line in one.measured.warnings(one.part)]
+        listed = [line for one in self.sets for line in one.measured.warnings(one.part)]
+        listed += [line for one in self.feedings for line in one.measured.warnings(one.part)]
         every: tuple[SetStudy | FeedingStudy, ...] = (*self.sets, *self.feedings)
-        told += [f"{one.part.source}: {line}" for one in every for line in one.aspects.warnings]
-        return tuple(dict.fromkeys(told))
+        listed += [f"{one.part.source}: {line}" for one in every for line in one.aspects.warnings]
+        return tuple(dict.fromkeys(listed))
 
 
 def compare(

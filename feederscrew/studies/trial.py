@@ -42,7 +42,7 @@ class TrialStudy(Shown):
     rule: str  # whose probabilities are taken
     seed: int
     runs: tuple[TrialRun, ...]  # one an amplitude; fewer after an interrupt
-    stopped: bool = False  # by the user, before the next of them told anything
+    stopped: bool = False  # by the user, before the next of them was done
     measured: profiles.Measured | None = None  # at the outlet of a bowl, to be set beside a queue's profile
 
     @property
@@ -78,16 +78,16 @@ class TrialStudy(Shown):
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
         first = self.runs[0]
-        told = [*strangers(first.bowl.devices, self.aspects.names), *self.aspects.warnings]
-        told += () if self.measured is None else self.measured.warnings(self.part)
+        listed = [*strangers(first.bowl.devices, self.aspects.names), *self.aspects.warnings]
+        listed += () if self.measured is None else self.measured.warnings(self.part)
         several = len(self.runs) > 1
         for run in self.runs:
             lead = f"amplitude {1e3 * run.bowl.drive.amplitude:.4g} mm: " if several else ""
-            told += [lead + one for one in run.remarks]
+            listed += [lead + one for one in run.remarks]
         if self.partial:
             parts = sum(len(run.course.entered) for run in self.runs)
-            told.append(f"partial: stopped after {parts} parts")
-        return tuple(told)
+            listed.append(f"partial: stopped after {parts} parts")
+        return tuple(listed)
 
 
 def trial(

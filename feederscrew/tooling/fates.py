@@ -45,17 +45,17 @@ class DeviceFlow:
         """(M, 1 + D) [m] by which most of it passes or fails each device; NaN: not known."""
         rows, reached = np.arange(len(self.starts)), self._reached
         found = [np.full(len(rows), np.nan)]
-        for step, told in enumerate(self.verdicts):
+        for step, shown in enumerate(self.verdicts):
             most = np.where(reached[step].sum(axis=1) > 0.0, reached[step].argmax(axis=1), rows)
-            found.append(np.array([np.nan if told[k] is None else told[k].margin for k in most]))
+            found.append(np.array([np.nan if shown[k] is None else shown[k].margin for k in most]))
         return check.frozen(np.column_stack(found))
 
     @cached_property
     def decided(self):
         """(M,) bool, whether statics tells what every device that it comes to does with it."""
         found = np.ones(len(self.starts), bool)
-        for reached, told in zip(self._reached, self.verdicts):
-            moved = np.array([one is not None and not one.decided for one in told])
+        for reached, shown in zip(self._reached, self.verdicts):
+            moved = np.array([one is not None and not one.decided for one in shown])
             found &= ~(reached[:, moved] > 0.0).any(axis=1)
         return check.frozen(found)
 
@@ -127,15 +127,15 @@ def course(devices, every, sigma=0.0):
     verdicts, ways, came = [], [], []
     for device in devices:
         came.append(tuple(here))
-        told = [verdict(device, one, every, sigma) for one in here]
-        ways.append([_way(device, k, one, found, states) for k, (one, found) in enumerate(zip(here, told))])
-        verdicts.append(told)
+        listed = [verdict(device, one, every, sigma) for one in here]
+        ways.append([_way(device, k, one, found, states) for k, (one, found) in enumerate(zip(here, listed))])
+        verdicts.append(listed)
         here = [device.onward(one) for one in here] + states[len(here) :]
         if device.hangs:
             here = [astride(one, device.span) for one in here]
     return DeviceFlow(
         states=tuple(states),
-        verdicts=tuple(tuple(told + [None] * (len(states) - len(told))) for told in verdicts),
+        verdicts=tuple(tuple(listed + [None] * (len(states) - len(listed))) for listed in verdicts),
         matrices=check.frozen(_matrices(ways, len(states))),
         devices=tuple(devices),
         came=tuple(came),

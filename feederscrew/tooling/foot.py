@@ -116,7 +116,7 @@ def scratch(foot, hole):
 def least(foot, hole, work=None, low=-np.inf, high=np.inf):
     """Return the least margin [m] of a foot over a hole's passage, and the shift [rad] where it is.
 
-    A margin below ``low`` may be told as any that is below it, one above ``high`` as any above.
+    A margin below ``low`` may be given as any that is below it, one above ``high`` as any above.
     """
     from feederscrew.tooling.kernel import passage
 
@@ -128,7 +128,7 @@ def least(foot, hole, work=None, low=-np.inf, high=np.inf):
 def unheld(foot, hole, work=None, enough=np.inf):
     """Return the longest way [m] over which a hole leaves a foot without support.
 
-    One longer than ``enough`` may be told as any that is longer.
+    One longer than ``enough`` may be given as any that is longer.
     """
     from feederscrew.tooling.kernel import unheld as kernel
 

@@ -160,10 +160,10 @@ def axes(every, principal):
         and one.posture.axis is not None
         and not np.isfinite(one.posture.rolling_circle)
     ]
-    told = {
+    values = {
         tuple(np.round(axis if axis[np.argmax(np.abs(axis))] > 0.0 else -axis, 4)): axis for axis in found
     }
-    return [vectors.unit(axis) for axis in told.values()]
+    return [vectors.unit(axis) for axis in values.values()]
 
 
 def rightly(leaving):

@@ -98,7 +98,7 @@ def _one(first, second):
     later, count = np.array(second.paths), int(np.isfinite(first.paths[0, :, 0]).sum())
     later[:, :, 0] += first.seconds[0]
     paths[:, count : count + later.shape[1]] = later
-    told = {one.name: getattr(second, one.name) for one in fields(runs.Runs)}
-    told |= {"seconds": first.seconds + second.seconds, "ways": first.ways + second.ways, "paths": paths}
-    told |= {name: np.maximum(getattr(first, name), getattr(second, name)) for name in ("depths", "gains")}
-    return runs.Runs(**told)
+    values = {one.name: getattr(second, one.name) for one in fields(runs.Runs)}
+    values |= {"seconds": first.seconds + second.seconds, "ways": first.ways + second.ways, "paths": paths}
+    values |= {name: np.maximum(getattr(first, name), getattr(second, name)) for name in ("depths", "gains")}
+    return runs.Runs(**values)

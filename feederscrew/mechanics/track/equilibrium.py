@@ -29,7 +29,7 @@ def exists(seat, bowl, phase=0.5 * np.pi):
     Returns
     -------
     bool
-        False also for a part card without a contact polygon, of which it cannot be told.
+        False also for a part card without a contact polygon, of which it is not known.
     """
     if len(seat.contact) == 0:
         return False

@@ -94,13 +94,13 @@ def card_seat(posture):
     FeederError
         If the card has no such data.
     """
-    told = (posture.printed or {}).get("track") or {}
-    missing = [word for word in ("wall_lever", "wall_lever_angle", "wall_x") if word not in told]
+    shown = (posture.printed or {}).get("track") or {}
+    missing = [word for word in ("wall_lever", "wall_lever_angle", "wall_x") if word not in shown]
     if missing:
         what = f"the card has no {missing[0]} for this aspect in its track block"
         mend = "choose the aspect that its track block names, or give the part as a mesh"
         raise FeederError(f"part card, aspect {posture.name}", what, mend)
-    lever, angle, (behind, ahead) = told["wall_lever"], told["wall_lever_angle"], told["wall_x"]
+    lever, angle, (behind, ahead) = shown["wall_lever"], shown["wall_lever_angle"], shown["wall_x"]
     beside, level = -lever * np.cos(angle), lever * np.sin(angle)
     return Seat(
         mass=posture.mass,

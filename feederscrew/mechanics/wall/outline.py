@@ -25,7 +25,7 @@ class Rests:
     distance: np.ndarray  # (M,) [m] from the foot to the wall along that direction
     share: np.ndarray  # (M,) [1] of the circle of directions that end there when pushed
     start: np.ndarray  # (M,) [rad] where that range of directions begins, counter-clockwise
-    rounded: bool = False  # the outline is round as far as can be told: every direction is as good
+    rounded: bool = False  # the outline is round as far as is known: every direction is as good
 
 
 def rests(outline, radius, merge=ROUND):

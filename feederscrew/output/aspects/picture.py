@@ -149,8 +149,8 @@ def _answer(axes, y, share, low, high):
     axes.barh(y, BAR * share, height=13, left=BARS, color=style.ANSWER)
     ends = [BARS + BAR * low, BARS + BAR * high]
     axes.plot(ends, [y, y], "|-", color=style.INK, linewidth=1.2, markersize=4)
-    told = f"{100.0 * share:.0f} % ({100.0 * low:.0f}–{100.0 * high:.0f})"
-    _number(axes, y, told, fontsize=6.5, fontweight="bold")
+    sentence = f"{100.0 * share:.0f} % ({100.0 * low:.0f}–{100.0 * high:.0f})"
+    _number(axes, y, sentence, fontsize=6.5, fontweight="bold")
 
 
 def _number(axes, y, text, **look):

@@ -50,10 +50,10 @@ def document(study):
 
 def remarks(study):
     """Return what a user must know of a calibration, a line each."""
-    told = []
+    listed = []
     for fit in study.fits:
         if fit.calibration.bounded:
-            told.append(f"{fit.name}: the counts leave the exponent open to one side")
+            listed.append(f"{fit.name}: the counts leave the exponent open to one side")
         if (p_value := fit.calibration.chi_square.p_value) < UNLIKELY:
-            told.append(f"{fit.name}: no exponent explains these counts (p {p_value:.2g})")
-    return told
+            listed.append(f"{fit.name}: no exponent explains these counts (p {p_value:.2g})")
+    return listed

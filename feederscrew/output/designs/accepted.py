@@ -25,10 +25,10 @@ def summary(lines):
 
 def document(lines):
     """Return the sheet as the JSON document."""
-    told = [one.agrees for one in lines if one.agrees is not None]
+    listed = [one.agrees for one in lines if one.agrees is not None]
     return {
-        "accepted": all(told),
-        "measured": len(told),
+        "accepted": all(listed),
+        "measured": len(listed),
         "lines": [
             {
                 "quantity": one.quantity,

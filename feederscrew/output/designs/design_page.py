@@ -48,9 +48,9 @@ def _sections(study, built):
             tuple(turnable.blocks(built.drawn and built.drawn.solid, study.part, built.why)), title="The bowl"
         )
     sheet = tables.acceptance(study)
-    told = Text("Computed values in, and empty cells for what is measured at the machine.")
+    shown = Text("Computed values in, and empty cells for what is measured at the machine.")
     blocks = (
-        told,
+        shown,
         Table(sheet),
         CsvSheet("acceptance.csv", text(sheet, "csv")),
         Heading("What to measure"),

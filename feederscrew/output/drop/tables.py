@@ -65,17 +65,17 @@ def document(study):
 
 def remarks(study):
     """Return what a user must know of a drop test, a line each."""
-    told, drops, tally, aim = [], study.drops, study.result.tally, study.result.aim
+    listed, drops, tally, aim = [], study.drops, study.result.tally, study.result.aim
     if study.result.drops.partial:
-        told.append(f"partial: stopped after {drops} drops")
+        listed.append(f"partial: stopped after {drops} drops")
     elif aim is not None and tally.widest > aim:
-        told.append(
+        listed.append(
             f"after {drops} drops the widest interval is {100.0 * tally.widest:.3g} % to either side, not "
             f"{100.0 * aim:.3g} % - give more `drops`, or a wider `until`"
         )
     if tally.unsettled:
-        told.append(f"{tally.unsettled} of {drops} drops came to rest on no aspect")
-    return told
+        listed.append(f"{tally.unsettled} of {drops} drops came to rest on no aspect")
+    return listed
 
 
 def title(study):

@@ -6,7 +6,7 @@ from feederscrew.dropping.launch_file import FACES
 from feederscrew.output import style
 from feederscrew.output.columns import MM
 
-LOOKS = (  # what is told of the upper side: label, marker, colour
+LOOKS = (  # what is computed of the upper side: label, marker, colour
     ("upper side as measured", "o", "#0072b2"),
     ("another upper side", "X", style.ACCENT),
     ("upper side not measured", "o", style.INK),
@@ -14,7 +14,7 @@ LOOKS = (  # what is told of the upper side: label, marker, colour
 
 
 def plan(study):
-    """Draw where each toss came to rest, from the place measured to the place told.
+    """Draw where each toss came to rest, from the place measured to the place computed.
 
     Parameters
     ----------
@@ -25,20 +25,20 @@ def plan(study):
     -------
     Figure
     """
-    told = study.result.places / MM
-    measured = study.launches.ends[: len(told)] / MM
+    shown = study.result.places / MM
+    measured = study.launches.ends[: len(shown)] / MM
     figure = style.figure(6.4, 5.6)
     median = np.nanmedian(study.off) / MM
-    title = f"{study.part.name}: {len(told)} tosses, median distance {median:.3g} mm"
+    title = f"{study.part.name}: {len(shown)} tosses, median distance {median:.3g} mm"
     axes = style.tidy(figure.add_subplot(), title=title, x="x [mm]", y="y [mm]")
     axes.set_aspect("equal")
-    axes.plot(*np.stack([measured, told]).transpose(2, 0, 1), color=style.FAINT, linewidth=0.8, zorder=1)
+    axes.plot(*np.stack([measured, shown]).transpose(2, 0, 1), color=style.FAINT, linewidth=0.8, zorder=1)
     kinds = _kinds(study)
     for kind, (label, marker, colour) in enumerate(LOOKS):
         chosen = kinds == kind
         if chosen.any():
             look = {"marker": marker, "color": colour, "s": 18, "linewidths": 0.0}
-            axes.scatter(*told[chosen].T, label=f"told, {label}", **look)
+            axes.scatter(*shown[chosen].T, label=f"computed, {label}", **look)
     axes.scatter(*measured.T, marker=".", s=6, color=style.INK, label="measured")
     figure.legend(loc="outside lower center", ncols=3, frameon=False, fontsize=8)
     return figure

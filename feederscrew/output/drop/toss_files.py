@@ -20,7 +20,7 @@ def offers(study):
         offer.document("tosses.json", toss_tables.document, study),
     ]
     if study.launches.ends is not None:
-        offered.append(offer.picture("tosses.png", "Places told and measured", _plan, study))
+        offered.append(offer.picture("tosses.png", "Places computed and measured", _plan, study))
     return offered
 
 

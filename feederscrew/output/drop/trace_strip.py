@@ -195,8 +195,8 @@ def _page(figure, laid, title):
     axes.set_axis_off()
     axes.set(xlim=(0, width), ylim=(0, height))
     axes.text(EDGE, height - 34, title, fontsize=13, fontweight="bold", color=style.INK, va="center")
-    told = f"grid on the plane: {laid.step / MM:g} mm; line: path of the centre of mass"
-    axes.text(EDGE, height - 66, told, fontsize=8, color=style.INK, va="center")
+    text = f"grid on the plane: {laid.step / MM:g} mm; line: path of the centre of mass"
+    axes.text(EDGE, height - 66, text, fontsize=8, color=style.INK, va="center")
     marks.scale_bar(axes, width - EDGE, height - 66, laid.pixel * laid.solid.size)
     return axes
 

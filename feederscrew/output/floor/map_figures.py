@@ -66,13 +66,13 @@ def regime_map(grid, column, *, title, labels, value, own=None, note=()):
 
 def _note(axes, lines):
     """Sentences under the title, each from a line of its own."""
-    told = [piece for line in lines for piece in textwrap.wrap(line, LETTERS)]
+    listed = [piece for line in lines for piece in textwrap.wrap(line, LETTERS)]
     axes.text(
-        0.0, 1.01, "\n".join(told), transform=axes.transAxes, fontsize=7.5, color=style.INK, va="bottom"
+        0.0, 1.01, "\n".join(listed), transform=axes.transAxes, fontsize=7.5, color=style.INK, va="bottom"
     )
     axes.set_title(
         axes.get_title(loc="left"), loc="left", fontsize=10, color=style.INK, fontweight="bold",
-        pad=6 + 10 * len(told),
+        pad=6 + 10 * len(listed),
     )  # fmt: skip
 
 

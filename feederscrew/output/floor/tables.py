@@ -104,10 +104,10 @@ def document(found, settings):
     dict
     """
     posture, bowl = found.posture, found.bowl
-    now, told = instant(found.now, posture, bowl), {}
+    now, values = instant(found.now, posture, bowl), {}
     if found.printed is not None:
-        told = {"instant": instant(found.printed, posture, bowl)}
-        told["difference"] = difference(told["instant"], now, found.terms)
+        values = {"instant": instant(found.printed, posture, bowl)}
+        values["difference"] = difference(values["instant"], now, found.terms)
     return {
         "part": found.part.name,
         "aspect": posture.name,
@@ -121,7 +121,7 @@ def document(found, settings):
         "as_published": found.printed is not None,
         "regime": regime(found.cycle.state),
         "instant": now,
-        **told,
+        **values,
         "mean_velocity_m_s": mean_velocity(found),
         "settled": found.course.settled,
         "cycle": over_cycle(found.cycle, found.course),
@@ -163,17 +163,17 @@ def difference(printed, complete, terms):
     Frame
     """
     rows = [(name, printed[name], complete[name], term) for name, term in terms.items()]
-    names, first, second, told = zip(*rows)
+    names, first, second, listed = zip(*rows)
     gap = np.array(first, dtype=float) - np.array(second, dtype=float)
     alike = np.abs(gap) <= 1e-9 * np.maximum(np.abs(first), np.abs(second))
-    told = ["-" if same else term for same, term in zip(alike, told)]
+    listed = ["-" if same else term for same, term in zip(alike, listed)]
     return tables.frame(
         {
             "quantity": names,
             "as_published": first,
             "complete": second,
             "difference": gap,
-            "omitted_term": told,
+            "omitted_term": listed,
         }
     )
 

@@ -77,10 +77,10 @@ def _one(axes, posture, found, row, track, size):
 
 
 def _caption(found, row):
-    told = f"{np.degrees(found.headings[row]):.4g}°   {100.0 * found.shares[row]:.1f} %"
+    text = f"{np.degrees(found.headings[row]):.4g}°   {100.0 * found.shares[row]:.1f} %"
     size = f"{found.lengths[row] / MM:.4g} long, {found.widths[row] / MM:.4g} wide [mm]"
     note = "falls off" if found.falls_off[row] else "overhangs" if found.overhangs[row] > 0.0 else "stays on"
-    return f"{told}\n{size}\n{note}"
+    return f"{text}\n{size}\n{note}"
 
 
 def _track(axes, distance, track, size):

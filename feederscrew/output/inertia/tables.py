@@ -21,9 +21,9 @@ def document(study):
     dict
         None where a part card is silent.
     """
-    told, balance = columns.part(study.part), study.balance
-    warnings = told.pop("warnings")
-    return told | {
+    shown, balance = columns.part(study.part), study.balance
+    warnings = shown.pop("warnings")
+    return shown | {
         "inertia_at_origin_g_mm2": balance.inertia_at_origin / G_MM2,
         "principal_moments_g_mm2": balance.moments / G_MM2,
         "principal_axes": balance.axes,
@@ -46,18 +46,18 @@ def rows(study):
     Frame
         Columns ``quantity`` and ``value``; NaN where a part card is silent.
     """
-    told = document(study)
+    shown = document(study)
     scalars = ("density_g_cm3", "mass_g", "volume_mm3", "hull_volume_mm3")
     listed = [
-        *((name, told[name]) for name in scalars),
-        *_vector(told["bounding_box_mm"], "bounding_box_{}_mm"),
-        *_vector(told["bounding_box_corner_mm"], "bounding_box_corner_{}_mm"),
-        *_vector(told["centre_of_mass_mm"], "centre_of_mass_{}_mm"),
-        *_matrix(told["inertia_g_mm2"], "inertia_{}_g_mm2"),
-        *_matrix(told["inertia_at_origin_g_mm2"], "inertia_at_origin_{}_g_mm2"),
-        *_vector(told["principal_moments_g_mm2"], "principal_moment_{}_g_mm2", "123"),
+        *((name, shown[name]) for name in scalars),
+        *_vector(shown["bounding_box_mm"], "bounding_box_{}_mm"),
+        *_vector(shown["bounding_box_corner_mm"], "bounding_box_corner_{}_mm"),
+        *_vector(shown["centre_of_mass_mm"], "centre_of_mass_{}_mm"),
+        *_matrix(shown["inertia_g_mm2"], "inertia_{}_g_mm2"),
+        *_matrix(shown["inertia_at_origin_g_mm2"], "inertia_at_origin_{}_g_mm2"),
+        *_vector(shown["principal_moments_g_mm2"], "principal_moment_{}_g_mm2", "123"),
     ]
-    for number, axis in zip("123", told["principal_axes"]):
+    for number, axis in zip("123", shown["principal_axes"]):
         listed += _vector(axis, f"principal_axis_{number}_{{}}")
     quantities, values = zip(*listed)
     return tables.frame({"quantity": quantities, "value": [np.nan if v is None else v for v in values]})

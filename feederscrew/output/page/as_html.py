@@ -233,7 +233,7 @@ def _entry(entry):
 
 def _views(views):
     player = PLAYER if views.plays else ""
-    figures = "\n".join(_view(views.of, place, *told, player) for place, told in enumerate(views.captions))
+    figures = "\n".join(_view(views.of, place, *shown, player) for place, shown in enumerate(views.captions))
     scene = json.dumps(views.scene, separators=(",", ":")).replace("<", "\\u003c")
     hint = views.hint or (PLAYED if views.plays else HINT)
     return (
@@ -255,14 +255,14 @@ def _view(of, place, name, kind, bars, player):
 
 
 def _bar(bar):
-    mark, line, told = "bar", "", f"{100.0 * bar.share:.1f} %"
+    mark, line, number = "bar", "", f"{100.0 * bar.share:.1f} %"
     if bar.interval:
         low, high = (100.0 * end for end in bar.interval)
         line = f'<u style="left:{low:.2f}%;width:{high - low:.2f}%"></u>'
-        mark, told = "bar answer", f"{100.0 * bar.share:.0f} % ({low:.0f}–{high:.0f})"
+        mark, number = "bar answer", f"{100.0 * bar.share:.0f} % ({low:.0f}–{high:.0f})"
     width = f'<b style="width:{100.0 * bar.share:.2f}%;background:{bar.colour}"></b>'
     return (
-        f'<div class="{mark}"><span>{escape(bar.label)}</span><i>{width}{line}</i><span>{told}</span></div>'
+        f'<div class="{mark}"><span>{escape(bar.label)}</span><i>{width}{line}</i><span>{number}</span></div>'
     )
 
 

@@ -81,21 +81,23 @@ def document(study):
 
 def remarks(study):
     """Return what a user must know of a test, a line each."""
-    told = []
+    listed = []
     for plate, name in zip(study.plates, study.names):
         where = _where(plate, name)
         if changing := _changing(study.aspects, plate):
-            told.append(f"{where}: the share of {', '.join(changing)} still changes; give a longer `seconds`")
+            listed.append(
+                f"{where}: the share of {', '.join(changing)} still changes; give a longer `seconds`"
+            )
         if plate.unsettled:
-            told.append(f"{where}: {plate.unsettled} of {plate.parts} parts lay on no aspect to the end")
+            listed.append(f"{where}: {plate.unsettled} of {plate.parts} parts lay on no aspect to the end")
         if plate.lost:
-            told.append(f"{where}: {counted(plate.lost, 'part')} could not be followed, not counted")
+            listed.append(f"{where}: {counted(plate.lost, 'part')} could not be followed, not counted")
         if 0 < plate.transitions < FEW:
             few = f"too few transitions ({plate.transitions}) for p_limit"
-            told.append(f"{where}: {few}; give more `drops` or `seconds`")
+            listed.append(f"{where}: {few}; give more `drops` or `seconds`")
     if study.partial:
-        told.append(f"partial: stopped after {counted(plate.parts, 'part')} on the plate of {where}")
-    return told
+        listed.append(f"partial: stopped after {counted(plate.parts, 'part')} on the plate of {where}")
+    return listed
 
 
 def notes(bowls):
@@ -128,8 +130,8 @@ def _labelled(study, columns):
 def _head(result, name, count):
     """The columns that say which plate a row is of."""
     drive = result.bowl.drive
-    told = {"bowl": name, "amplitude_mm": drive.amplitude / MM, "throw_number": result.throw_number}
-    return {key: [value] * count for key, value in told.items()}
+    values = {"bowl": name, "amplitude_mm": drive.amplitude / MM, "throw_number": result.throw_number}
+    return {key: [value] * count for key, value in values.items()}
 
 
 def _drive(aspects, result, name):

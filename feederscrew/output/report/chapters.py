@@ -44,8 +44,8 @@ def page(case, step=nullcontext, chapters=CHAPTERS):
     """
     part, bowl = case.part, case.path or "the default bowl"
     sections = (_chapter(case, *chapter, step) for chapter in chapters)
-    told = tuple(section for section in sections if section is not None)
-    return Page(part.name, f"{part.material}, in {bowl} · feeder {__version__}", told, "report")
+    listed = tuple(section for section in sections if section is not None)
+    return Page(part.name, f"{part.material}, in {bowl} · feeder {__version__}", listed, "report")
 
 
 def _chapter(case, anchor, title, compute, step):
@@ -54,7 +54,7 @@ def _chapter(case, anchor, title, compute, step):
         with step(title):
             found = compute(case)
     except FeederError as fault:
-        told = tuple(f"{title}: {line}" for line in fault.lines)
-        found = Chapter((Notes(fault.lines, loud=True),), warnings=told)
+        listed = tuple(f"{title}: {line}" for line in fault.lines)
+        found = Chapter((Notes(fault.lines, loud=True),), warnings=listed)
     gc.collect()  # figures hold themselves: they would pile up
     return None if found is None else replace(found, anchor=anchor, title=title)

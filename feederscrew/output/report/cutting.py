@@ -42,13 +42,13 @@ def trial(case):
         f"{len(run.course.entered)} parts of true shape, one at a time and their orientations in turn, on "
         "the track as it is cut while it vibrates; beside each orientation what the static rule says."
     )
-    told = Notes(tuple(trial_tables.summary(study)))
+    result = Notes(tuple(trial_tables.summary(study)))
     scene, captions = playback.scene(study.part, run)
     views = Views(scene, tuple((*one, ()) for one in captions), "trial-views", "Orientation", plays=True)
     matrix, paths, stills = (Picture(one.name, one.make(), one.alt) for one in trial_files.pictures(study))
     frame = trial_tables.frame(study)
     table = Table(tables_of.frame({name: frame[name] for name in TRIED}))
-    blocks = (lead, told, views, replace(stills, printed=True), table, matrix, paths)
+    blocks = (lead, result, views, replace(stills, printed=True), table, matrix, paths)
     return Chapter(blocks, warnings=study.warnings)
 
 
@@ -70,6 +70,8 @@ def _views(study):
         return
     part = study.orientations[0].posture.solid
     scene = over_cuts(part, [met for met, _ in shown], study.orientations)
-    yield Views(scene, tuple((met.orientation.name, told, ()) for met, told in shown), "cuts", "Orientation")
+    yield Views(
+        scene, tuple((met.orientation.name, result, ()) for met, result in shown), "cuts", "Orientation"
+    )
     offered = files.solid_picture(*given)
     yield Picture(offered.name, offered.make(), offered.alt, printed=True)

@@ -72,22 +72,22 @@ def floor(case):
     """Forces and regimes on the bowl's floor."""
     found, settings = case.floor, bowls.texts(case.settings)
     document = floor_tables.document(found, settings)
-    told = floor_tables.map_remarks(found)
+    result = floor_tables.map_remarks(found)
     offered = floor_files.offers(found, settings)
     pictures = _taken(offered, "floor_plan", "floor_frequency_amplitude", "floor_beta_friction")
     lead = Text(
         f"Aspect {found.posture.name}, heading {np.degrees(found.heading):.4g} deg, at the upper reversal of "
         "the drive; the maps show the same instant for other drives and other friction."
     )
-    lines = _notes(told + floor_tables.remarks(found))
+    lines = _notes(result + floor_tables.remarks(found))
     return Chapter((lead, *lines, Table(floor_tables.summary(document)), *pictures))
 
 
 def headings(case):
     """How the part lies along the wall."""
     study = case.headings
-    told = heading_tables.frame(study)
-    frame = tables.frame({shown: told[name] for name, shown in HEADINGS.items()})
+    result = heading_tables.frame(study)
+    frame = tables.frame({shown: result[name] for name, shown in HEADINGS.items()})
     lead = Text(
         "The directions in which the part is stable when pushed against the wall, the share of all "
         "directions of laying down that ends in each, and the room it takes."

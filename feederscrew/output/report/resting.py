@@ -37,8 +37,8 @@ UJ = units.factor("uJ", "energy")
 def the_part(case):
     """Mass properties and warnings."""
     part = case.part
-    told = inertia_tables.rows(case.inertia)
-    rows = [row for row in told.rows() if row["quantity"] in SHOWN]
+    result = inertia_tables.rows(case.inertia)
+    rows = [row for row in result.rows() if row["quantity"] in SHOWN]
     names = [" ".join(tables.heading(row["quantity"])).strip() for row in rows]
     facts = tables.frame({"quantity": names, "value": [row["value"] for row in rows]})
     facets = "a part card: published data, no shape" if part.vertices is None else f"{len(part.faces)} facets"

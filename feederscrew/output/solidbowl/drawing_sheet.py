@@ -70,16 +70,16 @@ def _above(paper, solid, found, scale):
     r = 0.5 * found.diameter / MM * scale
     low = at[1] - 0.5 * max(found.extent[:2]) / MM * scale - 6.0
     if plan.stairs is None:
-        told = f"Ø{found.diameter / MM:.4g}"
-        paper.dimension((at[0] - r, at[1]), (at[0] + r, at[1]), told, (0.0, low - at[1]))
+        text = f"Ø{found.diameter / MM:.4g}"
+        paper.dimension((at[0] - r, at[1]), (at[0] + r, at[1]), text, (0.0, low - at[1]))
     else:
         _radius(paper, plan, found, at, scale)
     _track_width(paper, plan, found, at, scale)
     circle = np.linspace(0.0, 2.0 * np.pi, 181)
     ring = 0.5 * plan.bolt_circle / MM * scale * np.column_stack([np.cos(circle), np.sin(circle)]) + at
     paper.lines([ring], THIN, linestyles="dashdot")
-    told = f"{plan.bolts} x Ø{plan.bolt / MM:.4g} on Ø{plan.bolt_circle / MM:.4g}, and one in the middle"
-    paper.text(25.0, 276.5, told, size=2.2)
+    text = f"{plan.bolts} x Ø{plan.bolt / MM:.4g} on Ø{plan.bolt_circle / MM:.4g}, and one in the middle"
+    paper.text(25.0, 276.5, text, size=2.2)
     paper.lines([[at - [r + 6, 0], at + [r + 6, 0]]], THIN, linestyles="dashdot")
     for side in (-1, 1):
         paper.text(at[0] + side * (r + 9.0), at[1] + 1.0, "A", size=3.5, ha="center", fontweight="bold")
@@ -101,8 +101,8 @@ def _track_width(paper, plan, found, at, scale):
     outward, r = np.array([np.cos(turn), np.sin(turn)]), 0.5 * found.diameter / MM * scale
     wide = found.track_width * np.cos(plan.way.bank) / MM * scale
     paper.lines([[at + outward * (r - wide - 7.0), at + outward * r]])
-    told = f"track {found.track_width / MM:.4g}"
-    paper.text(*(at + outward * (r - wide - 9.5)), told, size=2.2, ha="center", va="center")
+    text = f"track {found.track_width / MM:.4g}"
+    paper.text(*(at + outward * (r - wide - 9.5)), text, size=2.2, ha="center", va="center")
 
 
 def _cut(paper, solid, found, scale):
@@ -117,12 +117,12 @@ def _cut(paper, solid, found, scale):
     paper.dimension(
         (left, low), (left, low + found.height / MM * scale), f"{found.height / MM:.4g}", (-6.0, 0.0)
     )
-    foot, told = (right, at[1]), f"{found.outlet_height / MM:.4g}"
-    paper.dimension(foot, (right, at[1] + found.outlet_height / MM * scale), told, (6.0, 0.0))
+    foot, text = (right, at[1]), f"{found.outlet_height / MM:.4g}"
+    paper.dimension(foot, (right, at[1] + found.outlet_height / MM * scale), text, (6.0, 0.0))
     paper.text(190.0, 281.0, f"A-A  {named(scale)}", size=3.0, fontweight="bold")
     plate = solid.plan.material.plate / MM
-    told = f"wall {found.wall / MM:.3g}, floor {found.floor / MM:.3g}, track {plate:.3g}"
-    paper.text(at[0], low - 8.0, f"{told}; outlet {found.outlet_height / MM:.4g} over the floor's edge",
+    text = f"wall {found.wall / MM:.3g}, floor {found.floor / MM:.3g}, track {plate:.3g}"
+    paper.text(at[0], low - 8.0, f"{text}; outlet {found.outlet_height / MM:.4g} over the floor's edge",
                size=2.2, ha="center")  # fmt: skip
 
 
@@ -136,11 +136,11 @@ def _from_outside(paper, solid, found, scale):
     paper.lines(drawn, THIN * 1.6)
     low = at[1] + solid.vertices[:, 2].min() / MM * scale
     wide = 0.5 * found.diameter + found.wall
-    ends, told = np.array([-wide, wide]) / MM * scale + at[0], f"Ø{2.0 * wide / MM:.4g}"
+    ends, text = np.array([-wide, wide]) / MM * scale + at[0], f"Ø{2.0 * wide / MM:.4g}"
     if solid.plan.stairs is not None:
         ends = drawn[..., 0].min(), drawn[..., 0].max()
-        told = f"{(ends[1] - ends[0]) / scale:.4g}"
-    paper.dimension((ends[0], low), (ends[1], low), told, (0.0, -6.0))
+        text = f"{(ends[1] - ends[0]) / scale:.4g}"
+    paper.dimension((ends[0], low), (ends[1], low), text, (0.0, -6.0))
     paper.text(190.0, top + 3.0, f"towards the outlet  {named(scale)}", size=3.0, fontweight="bold")
 
 
@@ -185,8 +185,8 @@ def _unrolled(paper, solid):
         )
         paper.text(x + thick + 0.8, at[1] + 0.5 * wide, str(number), size=2.5, va="center")
     paper.dimension(at, at + [length, 0.0], f"{stretch.length / MM:.4g}", (0.0, -6.5), size=2.2)
-    told = f"{plan.width / MM:.4g}"
-    paper.dimension(at + [length, 0.0], at + [length, wide], told, (4.0, 0.0), size=2.2)
+    text = f"{plan.width / MM:.4g}"
+    paper.dimension(at + [length, 0.0], at + [length, wide], text, (4.0, 0.0), size=2.2)
     head = f"track unrolled  {named(scale)}: wall below, parts move to the right; its end lies "
     behind = (plan.way.end - plan.first - stretch.length) / MM
     paper.text(25.0, 127.0, f"{head}{behind:.4g} mm before the outlet", size=2.5, fontweight="bold")

@@ -24,16 +24,16 @@ def cuts(paper, study, at):
             start, end = one.start / MM, (one.start + one.thickness) / MM
             rows.append([str(len(rows)), one.label, f"{start:.5g}", f"{end:.5g}", CUT])
         for place, drop in stretch.drops:
-            told = f"step {drop / MM:.4g} mm down"
-            rows.append([str(len(rows)), told, f"{place / MM:.5g}", f"{place / MM:.5g}", CUT])
+            listed = f"step {drop / MM:.4g} mm down"
+            rows.append([str(len(rows)), listed, f"{place / MM:.5g}", f"{place / MM:.5g}", CUT])
     left = len(rows) - MOST
     rows = rows if left <= 0 else [*rows[: MOST - 1], ["", f"and {left + 1} more in bowl.json", "", "", ""]]
     low = paper.table(*at, [9.0, 90.0, 32.0, 32.0, 32.0], rows)
-    told = [
+    listed = [
         f"from and to: along the wall from the begin of the stretch; cuts {CUT}, everything else {GENERAL}",
         f"arcs are facets within {plan.chord / MM:.3g} mm; edges that parts meet: broken at most 0.05 mm",
     ]
-    for k, line in enumerate(told):
+    for k, line in enumerate(listed):
         paper.text(at[0], low - 4.0 - 3.6 * k, line, size=2.2)
 
 
@@ -54,8 +54,8 @@ def parts(paper, study, at):
     cut = study.solid.segments
     if cut is not None and cut.dowels:
         size = f"{cut.dowel / MM:.3g} x {cut.dowel_length / MM:.3g} mm"
-        told = f"dowels {size}, between {len(cut.pieces)} segments"
-        rows.append([str(len(rows)), str(cut.dowels), told])
+        text = f"dowels {size}, between {len(cut.pieces)} segments"
+        rows.append([str(len(rows)), str(cut.dowels), text])
     rows.append([str(len(rows)), str(plan.bolts + 1), f"bolts for holes of {plan.bolt / MM:.4g} mm"])
     rows.append([str(len(rows)), f"{under.leaves:.0f}", f"leaves {leaf} mm"])
     rows.append(

@@ -30,8 +30,8 @@ def blocks(solid, part, why=""):
     """
     if solid is None:
         return [Notes((f"the bowl as a solid: {why}",))] if why else []
-    told = f"{2.0 * solid.plan.way.radius / MM:.4g} mm, {solid.mass:.3g} kg as {solid.plan.material.name}"
-    return [Views(scene(solid, part), (("bowl", told, ()),), "solid-bowl", "The", hint=TURN)]
+    text = f"{2.0 * solid.plan.way.radius / MM:.4g} mm, {solid.mass:.3g} kg as {solid.plan.material.name}"
+    return [Views(scene(solid, part), (("bowl", text, ()),), "solid-bowl", "The", hint=TURN)]
 
 
 def scene(solid, part):

@@ -249,10 +249,10 @@ def _isolated(found):
     """Lines on what isolates an orientation, or why nothing does."""
     if found is None:
         return ["not asked for"]
-    told = textwrap.wrap(" and ".join(cut.device.kind for cut in found.cuts) or "no device", LETTERS)
+    result = textwrap.wrap(" and ".join(cut.device.kind for cut in found.cuts) or "no device", LETTERS)
     if found.isolated:
         margin = f"margin {found.margin / MM:.2f} mm" if np.isfinite(found.margin) else ""
-        return [*told, f"{100.0 * found.efficiency:.3g} % of the parts leave", margin]
+        return [*result, f"{100.0 * found.efficiency:.3g} % of the parts leave", margin]
     why = textwrap.shorten("; ".join(found.reasons), 4 * LETTERS, placeholder=" ...")
     return ["not isolated", *textwrap.wrap(why, LETTERS)]
 

@@ -102,8 +102,8 @@ def solid_picture(devices, every, shares, wanted):
 
         return relief.figure(devices, every, shares, wanted)
 
-    told = "The part over the cut: what passes, and the nearest that falls"
-    return offer.picture("tooling_3d.png", told, draw)
+    text = "The part over the cut: what passes, and the nearest that falls"
+    return offer.picture("tooling_3d.png", text, draw)
 
 
 def _drawn(kind, study):

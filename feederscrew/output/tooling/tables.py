@@ -20,16 +20,16 @@ QUASI_STATIC = "quasi-static, until a trial confirms it"
 
 def document(study):
     """Return a ToolingStudy as the JSON document."""
-    told = {
+    values = {
         **columns.part(study.part, study.aspects.warnings),
         "rule": study.rule,
         "margin_asked_mm": study.margin / MM,
         "orientations": orientations(study),
     }
     if study.design is None:
-        return told
+        return values
     one = study.orientations[study.wanted]
-    return told | {
+    return values | {
         "aspect": one.aspect,
         "heading_deg": one.heading / DEG,
         "isolated": study.design.isolated,
@@ -121,7 +121,7 @@ def _returned(study, cut):
         names.setdefault(one.aspect, set()).add(one.name)
     whole = [aspect for aspect, all_of in names.items() if all_of <= set(cut.returns)]
     single = " ".join(name for name in cut.returns if not any(name in names[aspect] for aspect in whole))
-    return ", ".join(told for told in (single, f"all of {', '.join(whole)}" if whole else "") if told)
+    return ", ".join(shown for shown in (single, f"all of {', '.join(whole)}" if whole else "") if shown)
 
 
 def remarks(study, efficiency=0.0):
@@ -235,11 +235,11 @@ def _turned(cut):
 
 def _turns(cut):
     """'turns A@0 to C@90 (80 %)': what a turning device does, for people."""
-    told = [
+    lines = [
         f"{start} to {end}" + ("" if share > 0.9995 else f" ({100.0 * share:.3g} %)")
         for start, end, share in cut.turns
     ]
-    return f"turns {', '.join(told)}; {QUASI_STATIC}" if told else ""
+    return f"turns {', '.join(lines)}; {QUASI_STATIC}" if lines else ""
 
 
 def _finite(value):

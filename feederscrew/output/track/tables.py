@@ -122,10 +122,10 @@ def document(found, settings):
     -------
     dict
     """
-    told = {}
+    values = {}
     if found.printed is not None:
-        told = {"instant": printed(found.printed), "difference": differences(found)}
-        told["omitted_terms"] = omitted_terms(found)
+        values = {"instant": printed(found.printed), "difference": differences(found)}
+        values["omitted_terms"] = omitted_terms(found)
     return {
         "part": found.part.name,
         "aspect": found.posture.name,
@@ -135,7 +135,7 @@ def document(found, settings):
         "as_published": found.printed is not None,
         "regime": regime(found.cycle.state),
         "instant": instant(found.now),
-        **told,
+        **values,
         "on_the_track": None if found.stands is None else found.stands.way,
         "on_the_track_said": None if found.stands is None else found.stands.said,
         "first_to_open": found.opening.contact,

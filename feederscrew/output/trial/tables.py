@@ -16,7 +16,7 @@ HIDDEN = ("fell_mm", "seconds")
 
 def document(study):
     """Return a TrialStudy as the JSON document: of the first amplitude, and of all where there are more."""
-    told = {
+    entries = {
         **columns.part(study.part, study.warnings),
         "rule": study.rule,
         "answer": study.answer,
@@ -26,9 +26,9 @@ def document(study):
         **_run(study, study.runs[0]),
     }
     if len(study.runs) > 1:
-        told["highest_amplitude_mm"] = study.highest / MM
-        told["drives"] = [_run(study, run) for run in study.runs]
-    return told
+        entries["highest_amplitude_mm"] = study.highest / MM
+        entries["drives"] = [_run(study, run) for run in study.runs]
+    return entries
 
 
 def _run(study, run):

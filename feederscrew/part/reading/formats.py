@@ -1,4 +1,4 @@
-"""Which format a part file has, told from its bytes; the name decides only where they do not."""
+"""Which format a part file has, recognised by its bytes; the name decides only where they do not."""
 
 import re
 from dataclasses import dataclass
@@ -78,7 +78,7 @@ def detect(data, suffix=""):
     kind = _marked(data, head) or _text(head, suffix)
     if kind:
         return kind, None
-    alien = next((told for mark, told in ALIENS if re.match(mark, head)), None)
+    alien = next((shown for mark, shown in ALIENS if re.match(mark, head)), None)
     if alien is None and (suffix == "stl" or (b"\0" in head and len(data) > HEADER)):
         return BINARY, None
     return None, alien or "is not a mesh: it has the marks of no known format"

@@ -56,8 +56,8 @@ def _honest(data, where):
     if count == whole and rest == 0:
         return data, ()
     if rest == 0 and (count in UNKNOWN_COUNTS or count < whole):
-        told = f"the header says {count} facets, the file has {whole}: all of them are read"
-        return _recounted(data, whole), (told,)
+        sentence = f"the header says {count} facets, the file has {whole}: all of them are read"
+        return _recounted(data, whole), (sentence,)
     if count == 0 or count > whole:
         promised = "an unknown number of" if count in UNKNOWN_COUNTS else f"{count}"
         raise MeshError(where, f"is cut short: {promised} facets announced, {whole} are there", AGAIN)

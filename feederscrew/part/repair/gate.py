@@ -130,10 +130,10 @@ def _precision(vertices, size, where, unit):
     step = float(np.spacing(np.float32(min(reach, 1e38))))
     if step <= BLURRED * size or not np.array_equal(vertices.astype(np.float32), vertices):
         return min(step, BLURRED * size), ()
-    told = f"lies {reach:.4g} {unit} from the origin, where single precision keeps {step:.2g} {unit}"
+    text = f"lies {reach:.4g} {unit} from the origin, where single precision keeps {step:.2g} {unit}"
     if step > LOST * size:
-        raise MeshError(where, f"{told}: its shape is lost", NEARER)
-    return step, (f"{told}: {NEARER}",)
+        raise MeshError(where, f"{text}: its shape is lost", NEARER)
+    return step, (f"{text}: {NEARER}",)
 
 
 def _opened(vertices, faces, edges, where, unit, allow_open):
@@ -149,9 +149,9 @@ def _opened(vertices, faces, edges, where, unit, allow_open):
             f"{_many(len(hole.rims), 'hole')}, the widest {hole.width:.3g} {unit} across at ({place})"
         )
         raise MeshError(where, what, CLOSE)
-    told = f"the surface is open: {_many(len(hole.rims), 'hole')} filled in for these numbers (`allow_open`)"
+    text = f"the surface is open: {_many(len(hole.rims), 'hole')} filled in for these numbers (`allow_open`)"
     solid = mass.solid(np.concatenate([vertices[faces], caps(vertices, hole.rims)]))
-    return solid, True, (), (told,)
+    return solid, True, (), (text,)
 
 
 def _closed(vertices, faces, edges, where, unit, allow_open):

@@ -43,8 +43,8 @@ def mended(vertices, faces, tolerance, where):
         edges = gate_edges.table(faces, len(vertices))
         if edges.paired:
             return vertices, faces, edges, said
-        vertices, faces, told = step(vertices, faces, edges, tolerance, where)
-        said += told
+        vertices, faces, shown = step(vertices, faces, edges, tolerance, where)
+        said += shown
         if not len(faces):
             raise MeshError(where, "encloses no volume", SOLID)
     edges = gate_edges.table(faces, len(vertices))
@@ -84,8 +84,8 @@ def _near_corners_joined(vertices, faces, edges, tolerance, where):
     moved = int((target != np.arange(len(target))).sum())
     if not moved:
         return vertices, faces, ()
-    told = f"joined {_many(moved, 'corner', 'corners')} that nearly met others"
-    return *weld.compacted(vertices, target[faces]), (told,)
+    text = f"joined {_many(moved, 'corner', 'corners')} that nearly met others"
+    return *weld.compacted(vertices, target[faces]), (text,)
 
 
 def _one_way_round(vertices, faces, edges, tolerance, where):

@@ -92,10 +92,10 @@ def calibrate_passes(passed, rejected, ways, shares, heights, radius):
     -----
     A device that all aspects pass alike says nothing of the exponent and is left out.
     """
-    told = _telling(ways, shares)
-    passed, rejected = (np.asarray(counts, float)[told] for counts in (passed, rejected))
-    came, on = np.asarray(ways)[:, told]
-    if not told.any() or np.ptp(heights[shares > 0.0]) <= SAME * heights.max():
+    shown = _telling(ways, shares)
+    passed, rejected = (np.asarray(counts, float)[shown] for counts in (passed, rejected))
+    came, on = np.asarray(ways)[:, shown]
+    if not shown.any() or np.ptp(heights[shares > 0.0]) <= SAME * heights.max():
         raise ValueError("the devices pass all aspects alike: the counts say nothing about the exponent")
 
     def fitted(exponent):

@@ -35,8 +35,8 @@ class Head:
     @property
     def reading(self):
         """What the part file is read with, as keywords of ``feederscrew.part.load``."""
-        told = {name: getattr(self, name) for name in ("units", "density", "centre_of_mass")}
-        return {name: value for name, value in told.items() if value}
+        values = {name: getattr(self, name) for name in ("units", "density", "centre_of_mass")}
+        return {name: value for name, value in values.items() if value}
 
 
 NO_HEAD = Head()
@@ -60,18 +60,18 @@ def parse(lines, where):
     faults : list of FeederError
         A key given twice or without a value, a launch or a digest that is none.
     """
-    told, faults = {}, []
+    values, faults = {}, []
     for number, line in lines:
         match = LINE.match(line.strip())
         key = match and match[1].lower().replace(" ", "_").replace("-", "_")
         if key not in KEYS:
             continue
-        fault = _fault(f"{where}:{number}", key, match[2], told)
+        fault = _fault(f"{where}:{number}", key, match[2], values)
         if fault:
             faults.append(fault)
         else:
-            told[key] = _cleaned(key, match[2])
-    return Head(**told), faults
+            values[key] = _cleaned(key, match[2])
+    return Head(**values), faults
 
 
 def _cleaned(key, value):

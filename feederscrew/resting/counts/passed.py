@@ -71,8 +71,8 @@ def understood(table, where, sha256):
     """
     columns = tuple(name.lower() for name in table.header[1:])
     if sorted(columns) != [PASSED, REJECTED]:
-        told = ", ".join(table.header[1:]) or "missing"
-        raise FeederError(f"{where}:{table.first}", f"the columns after device are {told:.60}", EXAMPLE)
+        result = ", ".join(table.header[1:]) or "missing"
+        raise FeederError(f"{where}:{table.first}", f"the columns after device are {result:.60}", EXAMPLE)
     faults, lines = Few(where), {}
     for number, row in table.rows:
         _judge(f"{where}:{number}", row, columns, lines, faults)

@@ -57,16 +57,18 @@ class Measured:
     @property
     def notes(self):
         """What the columns were taken for, a line a kind."""
-        told = {kind: [_told(p) for p in self.profiles if p.kind == kind] for kind in WHOLE}
-        return tuple(f"{self.source}: {kind}: {', '.join(names)}" for kind, names in told.items() if names)
+        document = {kind: [_told(p) for p in self.profiles if p.kind == kind] for kind in WHOLE}
+        return tuple(
+            f"{self.source}: {kind}: {', '.join(names)}" for kind, names in document.items() if names
+        )
 
 
 def of_another_part(source, head, part):
     """Say, a sentence each, where the head of a file was not written for a part."""
     if part.sha256.startswith(head.mesh):
         return ()
-    told = f"{source}: counted with another part file: its mesh is {head.mesh[:8]}"
-    return (f"{told}, that of {part.source} {part.sha256[:8]}",)
+    sentence = f"{source}: counted with another part file: its mesh is {head.mesh[:8]}"
+    return (f"{sentence}, that of {part.source} {part.sha256[:8]}",)
 
 
 def of_rules(aspects):

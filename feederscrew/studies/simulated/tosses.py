@@ -20,17 +20,17 @@ SURE = 0.95  # [1] from here on an answer is called sure
 
 @dataclass(frozen=True, eq=False)
 class Agreement(Shown):
-    """What was told of measured tosses, beside what happened."""
+    """What was computed of measured tosses, beside what happened."""
 
     tosses: int  # with an answer
-    told: float  # [1] share of them whose upper side was told
+    told: float  # [1] share of them whose upper side was right
     low: float  # [1] ends of its 95 % interval
     high: float
     at_release: float  # [1] share that the side nearest to the top at the launch tells
     expected: float  # [1] mean of ``p``: the share that was to be expected
     sure: int  # answers with a ``p`` of at least SURE
     sure_told: float | None  # [1] share of those that were right; None without any
-    median_off: float | None  # [m] from the place told to the one measured; None where none was measured
+    median_off: float | None  # [m] from the place computed to the one measured; None where none was measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class TossStudy(Shown):
 
     @property
     def p(self) -> np.ndarray:
-        """Share (N,) of the settled runs that end as told; NaN without any."""
+        """Share (N,) of the settled runs that end as computed; NaN without any."""
         found = self.result
         best = np.take_along_axis(found.shares, np.maximum(found.faces, 0)[:, None], axis=1)[:, 0]
         return np.where(found.faces >= 0, best, np.nan)
@@ -60,13 +60,13 @@ class TossStudy(Shown):
 
     @property
     def off(self) -> np.ndarray | None:
-        """Distance (N,) [m] from the place told to the one measured; None where none was measured."""
+        """Distance (N,) [m] from the place computed to the one measured; None where none was measured."""
         ends = self.launches.ends
         return None if ends is None else np.hypot(*(self.result.places - ends[: len(self.p)]).T)
 
     @property
     def agreement(self) -> Agreement | None:
-        """What was told beside what was measured; None where the file holds no upper sides."""
+        """What was computed beside what was measured; None where the file holds no upper sides."""
         if self.launches.faces is None:
             return None
         found, p = self.result, self.p

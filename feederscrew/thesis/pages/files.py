@@ -126,8 +126,8 @@ def statements(item):
 
 
 def _findings():
-    told = [_told(finding) for finding in FINDINGS]
-    return tables.frame({name: [each[name] for each in told] for name in told[0]})
+    lines = [_told(finding) for finding in FINDINGS]
+    return tables.frame({name: [each[name] for each in lines] for name in lines[0]})
 
 
 def _told(finding):

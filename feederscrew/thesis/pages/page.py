@@ -79,8 +79,8 @@ def shown(entry):
     text = f"{entry.published} → {digits(entry, entry.recomputed)}"
     if entry.verdict == DIFFERS:
         return f"{text} DIFFERS"
-    told = digits(entry, entry.explaining)
-    return text if told in ("", digits(entry, entry.recomputed)) else f"{text} ({told})"
+    result = digits(entry, entry.explaining)
+    return text if result in ("", digits(entry, entry.recomputed)) else f"{text} ({result})"
 
 
 def digits(entry, value):
@@ -161,8 +161,8 @@ def _chapter_4(items):
     """The findings that no table or figure carries."""
     carried = {id for item in items for id in item.findings}
     rest = [finding for finding in FINDINGS if finding.id not in carried or "4." in finding.where]
-    told = tuple((one.id, one.id, f"{one.where}. {one.what} {one.shown}") for one in rest)
-    return Text(CHAPTER_4), Links(told)
+    listed = tuple((one.id, one.id, f"{one.where}. {one.what} {one.shown}") for one in rest)
+    return Text(CHAPTER_4), Links(listed)
 
 
 def _errata(items):

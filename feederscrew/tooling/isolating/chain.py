@@ -99,9 +99,9 @@ def around():
 
 def _margin(device, one, every):
     """The margin [m] of an orientation at a device; NaN of one that comes to stand there."""
-    told = verdict(device, one, every)
-    stands = told.margin < 0.0 and device.fate(Meeting(one, every)) == STOPPED
-    return np.nan if stands else told.margin
+    document = verdict(device, one, every)
+    stands = document.margin < 0.0 and device.fate(Meeting(one, every)) == STOPPED
+    return np.nan if stands else document.margin
 
 
 def snapped(value, step, up):

@@ -105,14 +105,14 @@ def _cuts(given, devices):
     """Turning devices as cuts of a design, the second with what the first brings to it."""
     cuts, coming = [], given.coming
     for device in devices:
-        told = [verdict(device, one, given.every) for one in given.every]
+        listed = [verdict(device, one, given.every) for one in given.every]
         moved = [
             (given.every[k].name, given.every[onto].name, float(share))
-            for k, one in enumerate(told)
+            for k, one in enumerate(listed)
             for onto, share in one.onto
             if onto != k and coming[k] >= LEAST_SHARE
         ]
-        often = [one.margin for one, share in zip(told, coming) if share >= LEAST_SHARE]
+        often = [one.margin for one, share in zip(listed, coming) if share >= LEAST_SHARE]
         below, above = _around(_changes(given, type(device)), device.limit)
         cuts.append(
             Cut(

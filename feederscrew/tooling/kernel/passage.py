@@ -72,9 +72,9 @@ def least(foot, hole, scratch, low, high, out):
     hole : HoleEdges
     scratch : VerdictArrays
     low : float [m]
-        A margin below it is told as it is found, wherever it is lowest; minus infinity for none.
+        A margin below it is returned as it is found, wherever it is lowest; minus infinity for none.
     high : float [m]
-        A margin above it is told as any that is above; infinite for none.
+        A margin above it is returned as any that is above; infinite for none.
     out : (2,) float [m, rad]
         To be filled.
     """
@@ -142,7 +142,7 @@ def status(foot, hole, scratch, i):
 
 @compiled
 def _ends(foot, hole, scratch, low, high, active, out):
-    """Margins at both ends of a piece, told to ``out``, and how far any point moves between them."""
+    """Margins at both ends of a piece, written to ``out``, and how far any point moves between them."""
     first = _gather(foot, hole, scratch, low, active, True, scratch.points)
     before = inset_beside(scratch.points, first, foot, scratch.keep)
     second = _gather(foot, hole, scratch, high, active, True, scratch.others)
@@ -169,7 +169,7 @@ def _lower(out, margin, phi):
 def _within(foot, hole, scratch, i, out):
     """Look for a lower margin within a piece: some samples, then the golden section about the lowest.
 
-    Of the hull's sides only those that move count: the others are told at the ends.
+    Of the hull's sides only those that move count: the others are known at the ends.
     """
     keep_corners(foot, hole, scratch, i, foot.every)
     active = status(foot, hole, scratch, i)

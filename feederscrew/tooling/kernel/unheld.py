@@ -20,7 +20,7 @@ def longest(foot, hole, scratch, enough):
     hole : HoleEdges
     scratch : VerdictArrays
     enough : float [rad]
-        A longer turn is told as soon as it is so long; infinite to be told the longest.
+        A longer turn is returned as soon as it is so long; infinite for the longest.
     """
     best = turn = 0.0
     for i in range(passage._events(foot, hole, scratch) - 1):
