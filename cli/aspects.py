@@ -40,12 +40,13 @@ SURFACES = click.Choice(["soft", "medium", "hard"])
 def aspects(part, columns, graph, pictures, out, **chosen):
     """Example: feeder aspects parts/lbracket_30x20x15.stl --launch feed -o results
 
-    List the resting aspects of PART, equal ones joined into classes, with their geometry and
-    their probability by every rule, and what it takes to tip them.
+    List the resting aspects of PART, with equal ones joined into classes. Each has its geometry, its
+    probability by every rule, and what it takes to tip it.
 
-    p_recommended is the answer for --launch, which says what is done to the part (place: set down by
-    hand; drop: let fall; flip: spun as a coin; roll: cast or poured; feed: from a hopper into a bowl):
-    a drop test, until every share is known to 1 %. --rule closed gives a quick look without it.
+    p_recommended is the answer for --launch. It is a drop test until every share is known to 1 %.
+    --launch says what is done to the part: place (set down by hand), drop (let fall), flip (spun as a
+    coin), roll (cast or poured), feed (from a hopper into a bowl). --rule closed gives a quick look
+    without a drop test.
 
     PART is a mesh (STL, OBJ, PLY, OFF, GLB, 3MF, STEP), a part card (YAML), or - for standard
     input. With -o: aspects.csv, aspects.json, aspects.png, probabilities.png, names.yaml (for --names) and

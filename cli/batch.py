@@ -57,14 +57,16 @@ class Jobs(click.ParamType):
 def batch(ctx, sources, configs, overrides, rule, launch, drops, jobs, scheduler, resume, pictures, out):
     """Example: feeder batch parts/ --config bowl.yaml -o results/all --jobs 2
 
-    Compute every part in every bowl: its aspects, how it travels, and the rate of the orientation
-    that leaves the bowl most often, or of the aspect that a list asks for. How often parts lie on each
-    aspect is what arrives from the bowl's moving floor, as for `feeder rate`: one to five seconds a part.
-    A part that fails is reported, and the others go on; exit status 1 says that some failed.
+    Compute every part in every bowl: its aspects, how it travels, and a rate. The rate is that of the
+    orientation that leaves the bowl most often, or of the aspect that a list asks for. How often parts
+    lie on each aspect is what arrives from the bowl's moving floor, as for `feeder rate`. This takes
+    one to five seconds a part. A part that fails is reported, and the others go on. Exit status 1 says
+    that some failed.
 
-    PARTS are part files, folders of them, patterns ("parts/**/*.stl") and lists: a CSV whose first
-    line names its columns, out of part, units, density, centre_of_mass, names, aspect and config. -o DIR
-    gets summary.csv with a row a part, index.html, contact_sheet.png, and a folder a part in DIR/parts.
+    PARTS are part files, folders of them, patterns ("parts/**/*.stl") and lists. A list is a CSV whose
+    first line names its columns, out of part, units, density, centre_of_mass, names, aspect and config.
+    -o DIR gets summary.csv with a row a part, index.html, contact_sheet.png, and a folder a part in
+    DIR/parts.
     """
     ctx.with_resource(ended_within(PATIENCE))
     from feederscrew import batch as batches

@@ -73,19 +73,19 @@ def _of_the_solid(command):
 def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
     """Example: feeder bowl parts/lbracket_30x20x15.stl --target 60/min -o results
 
-    With PART and --target: diameter, track, climb, turns, fill, hopper, drive, stroke and leaf springs that
-    bring the rate through the devices of the bowl file, and the sheet that a quotation asks for.
+    With PART and --target: the diameter, track, climb, turns, fill, hopper, drive, stroke and leaf springs
+    that bring the rate through the devices of the bowl file. This is the sheet that a quotation asks for.
 
     Without PART: the machine of the bowl file (section 'machine'): natural frequency, gain, leaf stress,
     vibration angle over the radius, sets of leaves that tune it, and what it does from full to empty.
 
     With --measured: what the machine does now beside what it should at that fill, and the likely cause.
 
-    What the bowl file says of track, drive and machine is kept; section 'sizing' has the rules of thumb.
+    What the bowl file says of track, drive and machine is kept. Section 'sizing' has the rules of thumb.
     With -o: bowl.json, bowl.csv, bowl_angles.csv, bowl_leaves.csv, bowl_leaf_changes.csv,
-    bowl_emptying.csv and bowl.png. With --solid also bowl.stl and bowl.3mf, the bowl as one closed body
-    with its track, cuts, blades and outlet, bowl.pdf, a drawing sheet, and bowl_solid.png; its mass and
-    inertia then take the place of the estimate.
+    bowl_emptying.csv and bowl.png. --solid adds bowl.stl and bowl.3mf, the bowl as one closed body with
+    its track, cuts, blades and outlet. It also adds the drawing sheet bowl.pdf, and bowl_solid.png. The
+    mass and inertia of that body take the place of the estimate.
     """
     from feederscrew import bowl as bowls
     from feederscrew.output import columns, machine, offers, proof

@@ -14,12 +14,12 @@ from feederscrew_cli import grouped, options
 def calibrate(part, counts, out):
     """Example: feeder calibrate parts/lbracket_30x20x15.stl --with counts.csv
 
-    Fit the exponent of p_surface, quasi-static basin times (R - h)^exponent, to counts of PART by maximum
-    likelihood: the exponent with its 95 % interval, and whether it explains the counts (chi-square). Give
-    it to `feeder aspects --surface-exponent`.
+    Fit the exponent of p_surface to counts of PART by maximum likelihood. p_surface is the quasi-static
+    basin times (R - h)^exponent. Printed are the exponent with its 95 % interval, and whether it explains
+    the counts (chi-square). Give it to `feeder aspects --surface-exponent`.
 
-    The CSV is that of `feeder compare`: a line 'aspect,NAME,...', then one line an aspect; columns that
-    hold whole numbers are counts. With -o: calibrate.csv, calibrate.json and run.json.
+    The CSV is that of `feeder compare`: the line 'aspect,NAME,...', then one line an aspect. Columns
+    that hold whole numbers are counts. With -o: calibrate.csv, calibrate.json and run.json.
     """
     from feederscrew.output import columns, offers
     from feederscrew.output.calibrate import files, tables

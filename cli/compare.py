@@ -19,25 +19,27 @@ from feederscrew_cli import grouped, options, orientation, waiting
 def compare(sources, reading, counts, launch, as_published, pictures, out):
     """Example: feeder compare parts/arc_chute.yaml --with counts.csv -o results
 
-    How far what was measured on PART is from each rule, and from the rest: the deviation of the
-    thesis's Tables 3-12 and 3-13 (square root of the mean squared difference), the total variation,
-    and the chi-square test where there are counts.
+    How far your counts of PART are from each rule. Three measures: the deviation of the thesis's
+    Tables 3-12 and 3-13 (square root of the mean squared difference), the total variation, and for
+    counts the chi-square test.
 
-    The CSV opens with a line 'aspect,NAME,...'; then comes one line an aspect of the part, by the names
-    that `feeder aspects` gives, or one an orientation ('orientation,NAME,...', then 'A@180,...'). Whole
-    numbers are counts; else a column holds fractions that sum to 1 or percents that sum to 100. Lines that
-    begin with # are comments; above the table '# launch: roll', '# part: FILE' and other keys say what was
-    done (docs/counts.md). Aspects of which fewer than five are expected are joined for the test.
+    The CSV begins with the line 'aspect,NAME,...'. One line an aspect follows, by the names that
+    `feeder aspects` gives. It may also have one line an orientation: 'orientation,NAME,...', then
+    'A@180,...'. Whole numbers are counts. Other columns hold fractions that sum to 1, or percents that
+    sum to 100. Lines that begin with # are comments. Above the table, '# launch: roll', '# part: FILE'
+    and other keys say what was done (docs/counts.md). The test joins aspects of which fewer than five
+    are expected.
 
-    Without --with, every FILE is such a CSV whose head names its part: the total variation of each set
-    from each rule and from the recommended answer for the launch that was used (feeder compare
-    docs/measured/*.csv). With -o: compare.csv, compare.png and run.json.
+    Without --with, every FILE is such a CSV and its head names its part (feeder compare
+    docs/measured/*.csv). The table has the total variation of each set from each rule, and from the
+    recommended answer for its launch. With -o: compare.csv, compare.png and run.json.
 
-    A feeding test counts by device ('device,passed,rejected') and names its bowl ('# config: FILE'): the
-    share that passed each device beside what the static rules say, with both intervals (devices.csv).
+    A feeding test counts by device ('device,passed,rejected') and names its bowl ('# config: FILE').
+    The share that passed each device then stands beside what the static rules say, with both intervals
+    (devices.csv).
 
-    The acceptance.csv of `feeder design`, filled in at the machine, is read back: what agrees with what was
-    computed, line by line.
+    The acceptance.csv of `feeder design`, filled in at the machine, is read back: it says line by line
+    what agrees with what was computed.
     """
     from feederscrew.designing import accepting
 

@@ -28,8 +28,8 @@ WAYS = {1: "convey curve", 2: "convey map"}  # by how many keys are varied
 def convey(bowl, spans, curve, best_phase, pictures, out):
     """Example: feeder convey --config bowl.yaml --set drive.frequency="50 Hz" -o results
 
-    Integrate a part on the bowl's track exactly, from event to event: its velocity, how it slips
-    and hops, the limits and the margins to them, and what becomes of it when stroke, friction or
+    Integrate a part on the bowl's track exactly, from event to event. Printed are its velocity, how it
+    slips and hops, the limits and the margins to them. So is the velocity when stroke, friction or
     angle are a little off.
 
     With -o: convey.json and convey.png; with --vary, convey_curve or convey_map, .csv and .png; with

@@ -92,18 +92,18 @@ def _asked(command):
 def design(part, asked, rule, taken, jobs, bowl, pictures, out):
     """Example: feeder design parts/washer_m6.stl --target 40/min -o results
 
-    Which way up to feed PART, the chain of devices, the track and the drive: each proposal is tried, what
-    its trial denies is changed, and what gets through goes through a queue at low, normal and high fill and
-    through draws of part, friction, drive and cuts. The answer is one word, holds, falls short or none, with
-    what it stands on; what falls short says where, with the nearest that would hold.
+    Which way up to feed PART, the chain of devices, the track and the drive. Each proposal is tried, and
+    what its trial denies is changed. What gets through goes through a queue at low, normal and high fill,
+    and through draws of part, friction, drive and cuts. The answer is one of holds, falls short and none,
+    with the numbers it rests on. What falls short says where, with the nearest design that would hold.
 
-    What --config says of track, drive and friction is kept, and its devices stay before those of the design.
+    What --config says of track, drive and friction is kept. Its devices stay before those of the design.
     The same seed gives the same answer whatever the number of jobs. Ctrl-C gives the best so far, marked
     partial.
 
-    With -o: design.yaml, a bowl file that says what its trial showed, design.html, the page to hand on,
-    acceptance.csv, design_trials.csv, and the files of feeder tooling and feeder bowl, the bowl as a solid
-    among them.
+    With -o: design.yaml, a bowl file that says what its trial showed, and design.html, the page to hand on.
+    Also acceptance.csv, design_trials.csv, and the files of feeder tooling and feeder bowl, with the bowl as
+    a solid.
     """
     with held_back():
         from feederscrew import bowl as bowls

@@ -59,32 +59,32 @@ def conditions(command):
 def drop(part, launch, drops, until, seed, jobs, trace, launches, plate, pictures, out, **own):
     """Example: feeder drop parts/lbracket_30x20x15.stl --launch feed --until 1% -o results
 
-    Drop PART on a hard plane, again and again, each time from a launch drawn from the ranges of
-    --launch, which says what was done to the part (place: set down by hand; drop: let fall; flip: spun
-    as a coin; roll: cast or poured, tumble is its former name; feed: from a hopper into a bowl), or from
-    your own ranges, and count the aspects it comes to rest on.
+    Drop PART on a hard plane, again and again, and count the aspects it comes to rest on. Each launch is
+    drawn from the ranges of --launch, or from your own. --launch says what was done to the part: place
+    (set down by hand), drop (let fall), flip (spun as a coin), roll (cast or poured; its former name is
+    tumble), feed (from a hopper into a bowl).
 
-    p_drop is the share of the drops that settled: unsettled counts the others. p_drop_low and
-    p_drop_high are the 95 % interval of the sampling and the numerical error; p_gentle and p_violent the
-    shares among the third of the launches with the least and with the most energy. The same seed gives
-    the same counts whatever the number of jobs. Ctrl-C ends the test early: what is counted so far is
-    given, marked partial.
+    p_drop is the share of the drops that settled. unsettled counts the others. p_drop_low and
+    p_drop_high are the 95 % interval of the sampling and the numerical error. p_gentle and p_violent are
+    the shares among the third of the launches with the least and with the most energy. The same seed
+    gives the same counts whatever the number of jobs. Ctrl-C ends the test early: what is counted so far
+    is given, marked partial.
 
-    With -o: drop.csv, drop.json, drop.png and run.json; with --trace drop_traces.csv, where the part is
-    and how it is turned from launch to rest, and drop_trace.png, a strip of stills of the first traced
-    drop that tumbles and lies still (else that tumbles, else the first).
+    With -o: drop.csv, drop.json, drop.png and run.json. --trace adds drop_traces.csv, where the part is
+    and how it is turned from launch to rest. It also adds drop_trace.png, stills of the first traced drop
+    that tumbles and lies still (else that tumbles, else the first).
 
-    With --plate the plane vibrates with the drive of a bowl, whose restitution and friction hold unless
-    given: the share of the time parts lie on each aspect (p_plate, in the second half), where the rates
-    at which they change lead in the end (p_limit), and how fast they travel. With -o: plate.csv,
-    plate_drives.csv, plate_rates.csv, plate_time.csv, plate.json and plate.png.
+    With --plate the plane vibrates with the drive of a bowl. The bowl's restitution and friction hold
+    unless given. p_plate is the share of the time parts lie on each aspect, in the second half of the
+    test. p_limit is where the rates of change lead in the end. The velocity on each aspect stands beside
+    them. With -o: plate.csv, plate_drives.csv, plate_rates.csv, plate_time.csv, plate.json and plate.png.
 
-    With --launches each toss of a file is followed from its own state until it lies still: position,
-    quaternion w x y z, velocity and spin (in the part's axes), in SI units: the columns toss, x0_m to
-    z0_m, qw0 to qz0, vx0 to vz0, wx0 to wz0. face_up is the side of the part that points up at the end, x
-    and y are the place of its centre of mass, p is the share of the runs that end so while friction,
-    restitution and the state are changed by what is not known of them. Measured ends (xe_m, ye_m,
-    face_up_end) stand beside them. With -o: tosses.csv, tosses.json and tosses.png.
+    With --launches each toss of a file is followed from its own state until it lies still. The state is
+    position, quaternion w x y z, velocity and spin (in the part's axes), in SI units. Its columns are
+    toss, x0_m to z0_m, qw0 to qz0, vx0 to vz0, wx0 to wz0. face_up is the side of the part that points up
+    at the end. x and y are the place of its centre of mass. p is the share of the runs that end so while
+    friction, restitution and the state are changed by what is not known of them. Measured ends (xe_m,
+    ye_m, face_up_end) stand beside them. With -o: tosses.csv, tosses.json and tosses.png.
     """
     _fitting(until, trace, plate, out)
     if plate and launches:

@@ -19,10 +19,10 @@ from feederscrew_cli.angle import Angle
 def floor(part, aspect, heading, as_published, bowl, pictures, out):
     """Example: feeder floor parts/lbracket_30x20x15.stl --aspect A --heading 30deg -o results
 
-    Forces on PART resting on an aspect, its acceleration and turning, and where the normal force acts:
-    whether it sticks, slides, hops or tips, at the upper reversal and over a whole cycle.
+    Forces on PART resting on an aspect, its acceleration and turning, and where the normal force acts.
+    They say whether it sticks, slides, hops or tips, at the upper reversal and over a whole cycle.
 
-    PART is a mesh or a part card. The table gives the upper reversal, --format csv the cycle. With -o:
+    PART is a mesh or a part card. The table gives the upper reversal. --format csv gives the cycle. With -o:
     floor.json, the cycle, maps over (beta, mu) and (frequency, amplitude) as Figures 5-6 and 5-7, and
     theta'' over the heading, as CSV and PNG.
     """

@@ -14,12 +14,12 @@ from feederscrew_cli import grouped, options
 def headings(part, aspect, bowl, pictures, out):
     """Example: feeder headings parts/lbracket_30x20x15.stl --aspect A --set track.width="12 mm" -o results
 
-    The headings in which PART, resting on an aspect and pushed outward, is stable against the bowl wall: the
-    share of all directions that ends in each, the length it takes along the track, the width it needs, and
-    whether it falls off the track's free edge. A heading, its half turn and its mirror image are rows of
-    their own.
+    The headings in which PART, resting on an aspect and pushed outward, is stable against the bowl wall.
+    Each has the share of all directions that ends in it, the length it takes along the track and the
+    width it needs. A column says whether it falls off the track's free edge. A heading, its half turn
+    and its mirror image are rows of their own.
 
-    PART is a mesh. The wall has the bowl's radius; straight_wall_share is for a straight one. With -o:
+    PART is a mesh. The wall has the bowl's radius. straight_wall_share is for a straight wall. With -o:
     headings.csv, headings.json and a picture of each aspect from above.
     """
     from feederscrew.bowl import record, texts

@@ -16,13 +16,13 @@ def rate(part, aspect, heading, rule, gap, fill, taken, play, tolerance, bowl, o
     """Example: feeder rate parts/lbracket_30x20x15.stl --aspect A --config bowl.yaml
 
     Parts per minute in the wanted aspect and heading. The queue before the devices holds every
-    orientation that stays on the track: it offers velocity times fill over their mean pitch; delivered
+    orientation that stays on the track. It offers velocity times fill over their mean pitch. Delivered
     is what is offered times the efficiency, the share that leaves correctly oriented. What is returned,
     or falls off the track at its entry, is offered again.
 
     Devices are a list in the bowl file, in the order parts meet them: 'devices:' with lines such as
-    '- wiper: 6 mm', '- gap: 9 mm' or '- yield:' with the share that passes for each aspect below it;
-    feeder config init lists every kind. --play and --tolerance give the share that passes a device by
+    '- wiper: 6 mm' or '- gap: 9 mm'. Below '- yield:' stands the share of each aspect that passes.
+    `feeder config init` lists every kind. --play and --tolerance give the share that passes a device by
     its margin, instead of all or none.
 
     The shares of the aspects are, with --config, what lies at the track's entry: parts fed from a hopper

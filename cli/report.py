@@ -63,12 +63,12 @@ def _all(decorators):
 def report(part, bowl, taken, directory, format, quiet, verbose, **wanted):
     """Example: feeder report parts/lbracket_30x20x15.stl --config bowl.yaml -o results
 
-    Everything the other commands say of PART in a bowl: its aspects in 3-D views that can be turned, how
-    often it lands on each, how it tips, slides and travels, the reactions on the track and the rate, with
-    what the methods leave out and what it takes to get the numbers again. How often it lands on each aspect
-    is, with --config, what arrives from the bowl's own moving floor, as for `feeder rate`.
+    Everything the other commands say of PART in a bowl. The page shows its aspects in 3-D views that can be
+    turned, how often it lands on each, and how it tips, slides and travels. It has the reactions on the
+    track, the rate, the limitations and the inputs to reproduce it. With --config, how often it lands on
+    each aspect is what arrives from the bowl's own moving floor, as for `feeder rate`.
 
-    PART is a mesh or a part card. report.html needs no other file and no network; --format md writes
+    PART is a mesh or a part card. report.html needs no other file and no network. --format md writes
     report.md with its pictures beside it. A chapter that cannot be computed says why.
     """
     from feederscrew.bowl import record, texts, verified

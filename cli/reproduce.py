@@ -9,8 +9,8 @@ def reproduce(out):
     """Example: feeder reproduce -o results
 
     Compute every table (3-1 to 3-13) and figure (3-6 to 3-13, 5-1 to 5-7) of the thesis again and
-    set each number beside the printed one: exact to print, explained (by a named finding), or
-    differs; what was measured or read off a lost drawing is given, not checked.
+    set each number beside the printed one. A number is exact to print, explained (by a named finding),
+    or differs. What was measured or read off a lost drawing is given, not checked.
 
     With -o: DIR/thesis/ with a CSV for each item, a PNG for each figure, the findings, and one page
     to read from top to bottom, thesis.md and thesis.html.

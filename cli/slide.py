@@ -40,12 +40,12 @@ def slide(betas, as_published, bowl, pictures, out):
     """Example: feeder slide --beta 20 --set friction.static=0.4 -o results
 
     Map the limiting friction over alpha - theta (from the part's heading to the vibration) and the
-    acceleration ratio G = A w2/g, and what a part does there at the bowl's own friction: stick, slip
-    forward, backward or both ways within a cycle, or hop.
+    acceleration ratio G = A w2/g. A second map shows what a part does there at the bowl's own friction:
+    it sticks, slips forward, backward or both ways within a cycle, or hops.
 
-    mu_limit is the thesis's [4.27] for a level floor; mu_forward and mu_backward are the friction
-    that stops either slip on the bowl's track, whose smooth wall takes what is across it. Beyond
-    90 deg the drive points back and the two change places. The table sums up the bowl's own point;
+    mu_limit is the thesis's [4.27] for a level floor. mu_forward and mu_backward are the friction that
+    stops either slip on the bowl's track, whose smooth wall takes the force across it. Beyond 90 deg
+    the drive points back and the two change places. The table sums up the bowl's own point.
     --format csv prints every cell. With -o: slide.csv, a surface, contour lines and regimes for
     each angle, and curves over all, as PNG.
     """

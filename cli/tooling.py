@@ -96,18 +96,18 @@ def _asked(command):
 def tooling(part, aspect, rule, asked, cad, static, taken, bowl, pictures, out):
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
-    Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect:
-    every orientation with its share, its limits (least track width, greatest canyon and gap), the
-    devices that isolate it, their margin, the efficiency and the purity. With one: the chain of fewest
-    devices, each with the smallest cut that still returns and the largest that still passes. Devices that
-    the bowl file lists already stay, and the design is found behind them.
+    Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect, the
+    table has every orientation with its share and its limits (least track width, greatest canyon and
+    gap). It has the devices that isolate it, their margin, the efficiency and the purity. With an aspect,
+    it has the chain of fewest devices. Each has the smallest cut that still returns and the largest that
+    still passes. Devices that the bowl file already lists stay before the design.
 
     A few parts of each orientation are sent through what is proposed, of the table through the best
     three. Both verdicts are printed. --static leaves the trial out.
 
-    With -o: tooling.csv, tooling.json and tooling.png; with an aspect also tooling.yaml, a bowl file with
-    the devices for feeder rate, report and batch, tooling.dxf and tooling.svg, 1:1 in mm, unrolled and as
-    bent, and tooling.stl, the section of track to print.
+    With -o: tooling.csv, tooling.json and tooling.png. An aspect adds tooling.yaml, a bowl file with the
+    devices for feeder rate, report and batch. It adds tooling.dxf and tooling.svg, 1:1 in mm, unrolled and
+    as bent, and tooling.stl, the section of track to print.
     """
     from feederscrew import bowl as bowls
     from feederscrew.designing import own_trial

@@ -25,13 +25,13 @@ from feederscrew_cli.angle import Angle
 def track(part, aspect, heading, as_published, spans, bowl, pictures, out):
     """Example: feeder track parts/lbracket_30x20x15.stl --set track.bank="10 deg" -o results
 
-    Reactions on PART on the banked, climbing track against the bowl wall, its acceleration, the friction it
-    needs, which contact opens first and about which axis it then tips.
+    Reactions on PART on the banked, climbing track against the bowl wall, its acceleration and the
+    friction it needs. Also which contact opens first, and about which axis it then tips.
 
-    PART is a mesh or a part card. A heading is where the part is laid; pushed to the wall it turns to the
-    stable heading of that range (see `feeder headings`). The table gives the upper reversal, --format csv
-    the cycle, or with --vary the map. With -o: track.json, the cycle, a map over two bowl values and the part
-    from above and from behind, as CSV and PNG.
+    PART is a mesh or a part card. A heading says how the part is laid. Pushed to the wall, it turns to
+    the stable heading of that range (see `feeder headings`). The table gives the upper reversal.
+    --format csv gives the cycle, or with --vary the map. With -o: track.json, the cycle, a map over two
+    bowl values and the part from above and from behind, as CSV and PNG.
     """
     from feederscrew.bowl import ranges, record, texts
     from feederscrew.output import columns, offers

@@ -86,24 +86,25 @@ def _together(queue, **others):
 def trial(part, aspect, rule, taken, parts, landing, queued, amplitudes, seed, jobs, bowl, pictures, out):
     """Example: feeder trial parts/lbracket_30x20x15.stl --config tooling.yaml --parts 100 -o results
 
-    Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed,
-    while all of it vibrates with the drive: one part at a time, its orientations in turn. Each part
+    Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed.
+    The track vibrates with the drive. Parts go one at a time, their orientations in turn. Each part
     passes, is turned, returned, hangs, is stopped, rolls back or is stuck. Orientations count in the
-    shares in which they arrive: from the moving floor of the bowl file, or as --launch, --rule or a file
-    (docs/counts.md) says. Beside each stands what the static rule of feeder tooling says, and its margin;
-    those that do something else come first.
+    shares in which they arrive from the moving floor of the bowl file, or as --launch, --rule or a file
+    (docs/counts.md) says. Beside each stands what the static rule of feeder tooling says, and its
+    margin. Those that do something else come first.
 
-    --landing adds parts that fall onto the moving track as --launch says, anywhere over its width, and go
-    through the devices as they then lie, against the wall or not: by aspect, what became of them.
-    --amplitude gives the greatest drive at which the tooling still sorts. --queue adds parts that touch,
-    push and climb each other on the same track; what leaves or falls off enters again at the end of the
-    row, and parts per minute are then those it delivers. --with sets what a feeding test counted by aspect
-    (docs/counts.md) beside the profile at its outlet. The same seed gives the same numbers whatever the
-    number of jobs. Ctrl-C ends the trial early: what is finished is given, marked partial.
+    --landing adds parts that fall onto the moving track as --launch says, anywhere over its width. They
+    go through the devices as they then lie, against the wall or not. A table by aspect says what became
+    of them. --amplitude gives the greatest drive at which the tooling still sorts. --queue adds parts
+    that touch, push and climb each other on the same track. What leaves or falls off enters again at
+    the end of the row. Parts per minute are then those that the queue delivers. --with sets what a
+    feeding test counted by aspect (docs/counts.md) beside the profile at its outlet. The same seed
+    gives the same numbers whatever the number of jobs. Ctrl-C ends the trial early: what is finished is
+    given, marked partial.
 
     With -o: trial.csv, trial_stations.csv, trial.json, trial.png (orientations in and out),
-    trial_paths.png (paths from above), trial_stills.png and run.json; trial_landing.csv, and trial_outlet.csv
-    of a queue.
+    trial_paths.png (paths from above), trial_stills.png and run.json; trial_landing.csv, and
+    trial_outlet.csv of a queue.
     """
     with held_back():
         from feederscrew import bowl as bowls

@@ -23,12 +23,15 @@ from feederscrew_cli.quantity import Quantity
 def tune(part, target, aspect, heading, rule, gap, fill, taken, worst, bowl, out):
     """Example: feeder tune parts/lbracket_30x20x15.stl --aspect A --target 20/min
 
-    Every setting of amplitude, vibration angle or frequency alone that gives the target to 3 %, one-way
-    and gentle motions first, each with its regime, hardest impact, the margins to slip forward, slip
-    back and hop (below 0: beyond it), and the rate if friction is a fifth lower or higher.
-    Another drive lets other shares of the aspects arrive: each setting is found with its own, so that
-    `feeder rate` says the same of it. The rate is met at the bowl's friction, with --worst at the worst
-    of friction a fifth lower and higher and of every start; the table says which.
+    Every setting of amplitude, vibration angle or frequency alone that gives the target to 3 %. One-way
+    and gentle motions come first. Each has its regime, its hardest impact, and the margins to slip
+    forward, slip back and hop (below 0: beyond it). It also has the rate if friction is a fifth lower
+    or higher.
+
+    Another drive lets other shares of the aspects arrive. Each setting is found with its own shares, so
+    that `feeder rate` says the same of it. The rate is met at the bowl's friction. With --worst it is
+    met at the worst of friction a fifth lower and higher and of every start. The table says which.
+
     With -o: tune.csv and tune.json.
     """
     from feederscrew import bowl as bowls
