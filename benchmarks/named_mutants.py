@@ -24,6 +24,7 @@ NAMED = (
     ("rates/rocking.py", "(still - beside * other)", "(still + beside * other)", ROCKING),
     ("rates/rocking.py", "(still + other**2), 0.0)", "(still + beside**2), 0.0)", ROCKING),
     ("rates/rocking.py", "gains[1 if speed > 0.0 else 2]", "gains[2 if speed > 0.0 else 1]", ROCKING),
+    ("rates/rocking.py", "force[:, None] * inside", "force[:, None] / inside", ROCKING),
     ("rates/rocking.py", "SENSES = (0.0, 1.0, -1.0)", "SENSES = (0.0, -1.0, 1.0)", ROCKING),
     ("rates/rocking.py", "SETTLES, FOLLOWED = 12", "SETTLES, FOLLOWED = 1", ROCKING),
     ("rates/steadiness.py", "LANDINGS = 8", "LANDINGS = 1", ROCKING),
@@ -67,11 +68,13 @@ NAMED = (
 
 EQUIVALENT = {
     ("machine/sizing.py", "1e-09"): "any number between rounding and what is built tells a whole multiple",
-    ("machine/sizing.py", "SETTLED"): "a bound below every length that is printed",
-    ("machine/sizing.py", "ROUNDS"): "the search ends by itself long before",
-    ("rates/rocking.py", "SETTLES"): "the sliding repeats itself from the second period on",
-    ("rates/rocking.py", "FOLLOWED"): "what goes over does so within the first strokes, or never",
-    ("rates/rocking.py", "QUIET"): "a part that comes down so slowly is at rest within the same instant",
-    ("rates/tipping.py", "BESIDE"): "any width beyond every force's place: it tips over the ends alone",
+    ("machine/sizing.py", "SETTLED ="): "a bound below every length that is printed",
+    ("machine/sizing.py", "ROUNDS ="): "the search ends by itself long before",
+    (
+        "rates/rocking.py",
+        "SETTLES, FOLLOWED =",
+    ): "sliding repeats itself, and what goes over has, long before",
+    ("rates/rocking.py", "QUIET ="): "a part that comes down so slowly is at rest within the same instant",
+    ("rates/tipping.py", "BESIDE ="): "any width beyond every force's place: it tips over the ends alone",
 }
 """File and what stands in a changed line of it, and why no test can notice the change."""

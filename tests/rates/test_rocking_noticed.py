@@ -153,6 +153,18 @@ def test_it_may_land_at_any_time_of_the_period(monkeypatch, flat):
     assert len(starts) >= 8 and around.max() == around.min()
 
 
+def test_a_part_rocks_over_the_side_about_which_the_moment_is_greatest(monkeypatch):
+    """Not the one that the strongest force lies beyond: 20 at half a millimetre, 5 at three of them."""
+    contact = 1e-3 * np.array([[-3.0, -2.0], [5.0, -2.0], [5.0, 4.0], [-3.0, 4.0]])
+    force, offset = np.full(INSTANTS, 9.81), np.zeros((INSTANTS, 2))
+    force[:2], offset[0], offset[1] = [20.0, 5.0], [5.5e-3, 0.0], [0.0, -5e-3]
+    monkeypatch.setattr(rocking, "over_period", lambda *_: (force, offset))
+    found = rocking.rocker(SimpleNamespace(contact=contact, height=6e-3), lambda angle: angle, None)
+    assert (found.near, found.far) == pytest.approx((2e-3, 4e-3), rel=1e-9)
+    assert np.sin(found.spread) == pytest.approx(0.0, abs=1e-9)  # about the direction along the track
+    np.testing.assert_allclose(found.offset[:2], [0.0, 5e-3], atol=1e-12)
+
+
 def test_what_is_late_for_the_next_stroke_is_followed(monkeypatch):
     """Tilt, rate and pull of the weight make a parabola: late is what has not come down a stroke later."""
     monkeypatch.setattr(tipping, "goes_over", lambda *args: True)
