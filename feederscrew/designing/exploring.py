@@ -59,7 +59,7 @@ def _searched(search, made, ways, weights):
         for row in rows:
             if search.spent:
                 return
-            if _promise(search, made, ways, weights, row) < LEAST_USE * search.best_rate:
+            if _promise(search, made, ways, weights, row, how[2]) < _least(search):
                 continue
             avoided = None
             while avoided != search.avoided.get(row, ()) and not search.spent:
@@ -76,9 +76,15 @@ def _without(how, kinds):
     return margin, (*left_out, *kinds), outcome
 
 
-def _promise(search, made, ways, weights, row):
+def _least(search):
+    """Parts [1/s] that an orientation has to promise, if it is to be tried beside what is clean already."""
+    best, target = search.best_rate, search.request.target
+    return target if 0.0 < best < target else LEAST_USE * best
+
+
+def _promise(search, made, ways, weights, row, outcome="any"):
     """Parts [1/s] that an orientation brings at the fastest drive, were all others returned."""
-    if search.request.outcome != "lying" and neck(ways.lying[row]) is not None:
+    if "lying" not in (outcome, search.request.outcome) and neck(ways.lying[row]) is not None:
         return np.inf  # what hangs comes from several headings
     pitch = trying.GAP * float((weights * ways.lengths).sum())
     return float(weights[row]) * calm_drive.speed(calm_drive.driven(made, np.inf, hops=True)) / pitch

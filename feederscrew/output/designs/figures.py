@@ -20,7 +20,7 @@ def history(study):
     Figure
     """
     figure = style.figure(7.0, 3.0)
-    axes = figure.add_axes((0.09, 0.17, 0.89, 0.78))
+    axes = figure.add_subplot()
     places = np.arange(1, len(study.attempts) + 1)
     rates = [one.rate / PER_MINUTE for one in study.attempts]
     clean = [one.clean for one in study.attempts]
