@@ -208,6 +208,11 @@ def test_a_picture_of_one_device_is_no_wider_than_what_it_shows(lying):
     assert wide[0] < wide[1] <= wide[2]
 
 
+def test_a_device_without_a_margin_is_drawn_so():
+    assert ink.margin(Verdict(margin=np.nan, passes=1.0)) == "no margin"
+    assert ink.margin(Verdict(margin=2.8e-3, passes=1.0)) == "margin +2.80 mm"
+
+
 def test_a_table_of_polygons_fits_a_page():
     text = "[[14.55 mm, 19.3 mm], [0 mm, 8.65 mm], [14.05 mm, 0.35 mm], [19.75 mm, 3.5 mm]]"
     assert tooling_tables._short(text, 34) == "polygon of 4 corners"

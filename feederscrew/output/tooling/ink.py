@@ -32,7 +32,9 @@ def mm(area):
 
 
 def margin(verdict):
-    """Return the margin of a verdict in words."""
+    """Return the margin of a verdict in words; a device that only sets parts apart has none."""
+    if np.isnan(verdict.margin):
+        return "no margin"
     return f"margin {verdict.margin / MM:+.2f} mm" if verdict.sure else "not sure"
 
 
