@@ -12,6 +12,7 @@ from feederscrew.resting.rules.recommended import launch_named
 
 DRAWS = 11  # uniform numbers a drop takes: 3 attitude, 3 spin, 2 drift, fall, restitution, friction
 ANY, LEVEL, FLIP = "any", "horizontal", "in the greatest face"  # axes a launch spins about
+LEAN = np.radians(40.0)  # of FLIP's axis from the level, at most: see docs/resting.md
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ PRESETS = {
     )
 }
 """What was done to the part. place: set down by hand. drop: let fall without spin. flip: spun up by hand, as
-a coin, about an axis in the plane of its greatest face. roll: cast or poured over a table, spinning about a
+a coin, about an axis in the plane of its greatest face that the hand holds level to LEAN. roll: cast or poured over a table, spinning about a
 horizontal axis. feed: out of a hopper into a bowl. docs/resting.md says where each range comes from."""
 
 
@@ -117,9 +118,31 @@ def _turns(kind, shape, u):
         along = np.cross(shape.flat, np.eye(3)[np.argmin(np.abs(shape.flat))])
         along /= np.sqrt((along**2).sum())
         across = np.cross(shape.flat, along)
-        return attitude, np.cos(turn)[:, None] * along + np.sin(turn)[:, None] * across
+        axis = np.cos(turn)[:, None] * along + np.sin(turn)[:, None] * across
+        return _held_level(axis, u[:, :3])
     level = np.stack([np.cos(turn), np.sin(turn), np.zeros(len(u))], axis=1)
     return attitude, _in_body(attitude, level)
+
+
+def _held_level(axis, u):
+    """(N, 4) attitudes that turn axes of the body (N, 3) to LEAN from the level at most, and the axes.
+
+    An axis and its opposite are as likely: the one that is nearer to where it is turned to is taken.
+    """
+    rise, ahead = LEAN * (2.0 * u[:, 0] - 1.0), 2.0 * np.pi * u[:, 1]
+    level = np.cos(rise)
+    there = np.stack([level * np.cos(ahead), level * np.sin(ahead), np.sin(rise)], axis=1)
+    axis = np.where((axis * there).sum(axis=1)[:, None] < 0.0, -axis, axis)
+    brought = np.column_stack([1.0 + (axis * there).sum(axis=1), np.cross(axis, there)])
+    brought /= np.sqrt((brought**2).sum(axis=1))[:, None]
+    half = np.pi * u[:, 2]
+    return _after(brought, np.column_stack([np.cos(half), np.sin(half)[:, None] * axis])), axis
+
+
+def _after(p, q):
+    """(N, 4) quaternion of the turns q (N, 4), then p (N, 4)."""
+    whole = p[:, 0] * q[:, 0] - (p[:, 1:] * q[:, 1:]).sum(axis=1)
+    return np.column_stack([whole, p[:, :1] * q[:, 1:] + q[:, :1] * p[:, 1:] + np.cross(p[:, 1:], q[:, 1:])])
 
 
 def lowest_points(shape, attitudes):

@@ -5,15 +5,17 @@ from concurrent.futures import wait
 import drop_bodies
 import numpy as np
 import pytest
+import shapes
 from scipy.spatial.transform import Rotation
 from scipy.stats import binom
 
-from feederscrew.dropping import conditions, ensemble
+from feederscrew.dropping import conditions, drop_test, ensemble
 from feederscrew.dropping.ensemble import Aim, Drops, drop, tally, wilson
 from feederscrew.dropping.kernel.one_drop import UNSETTLED
-from feederscrew.dropping.launches import PRESETS, named, sample
+from feederscrew.dropping.launches import LEAN, PRESETS, named, sample
 from feederscrew.dropping.pool import gather
 from feederscrew.errors import ArgumentError, ConfigError
+from feederscrew.resting.aspects import find
 from feederscrew.resting.rules import recommended
 
 BOX, LENGTH = drop_bodies.box((1.0, 1.3, 1.7))
@@ -191,6 +193,33 @@ def test_a_flipped_part_spins_in_the_plane_of_its_greatest_face(rng):
     states = sample(PRESETS["flip"], BOX, 200, rng).states
     assert np.abs(BOX.flat) == pytest.approx([0.0, 0.0, 1.0])  # principal axes go from the longest side up
     assert np.abs(states[:, 10:] @ BOX.flat).max() < 1e-12
+
+
+def test_a_flip_is_held_level_to_its_lean_and_alike_all_round(rng):
+    """An axis that points anywhere stands as often as it lies: no thumb flips so."""
+    states = sample(PRESETS["flip"], BOX, 20000, rng).states
+    spin = Rotation.from_quat(states[:, [7, 8, 9, 6]]).apply(states[:, 10:])
+    size = np.linalg.norm(spin, axis=1)
+    assert 6.0 <= size.min() and size.max() <= 14.0
+    rise, ahead = np.arcsin(spin[:, 2] / size), np.arctan2(spin[:, 1], spin[:, 0])
+    assert np.abs(rise).max() <= LEAN and np.quantile(np.abs(rise), 0.5) == pytest.approx(LEAN / 2, rel=0.03)
+    assert np.abs([np.cos(ahead).mean(), np.sin(ahead).mean(), np.cos(2 * ahead).mean()]).max() < 0.03
+    around = np.arctan2(states[:, 11], states[:, 10])  # in the plane of the box's greatest face
+    assert np.abs([np.cos(around).mean(), np.sin(around).mean(), np.cos(2 * around).mean()]).max() < 0.03
+    turned = Rotation.from_quat(states[:, [7, 8, 9, 6]]).apply(BOX.flat)
+    side = np.cross(spin / size[:, None], [0.0, 0.0, 1.0])
+    phase = np.arctan2((turned * side).sum(axis=1), turned[:, 2])
+    assert np.abs([np.cos(phase).mean(), np.sin(phase).mean()]).max() < 0.03
+
+
+@pytest.mark.parametrize(("thick", "measured"), [(0.354, 0.132), (0.577, 0.41)])
+def test_thick_coins_flipped_by_hand(thick, measured):
+    """With an axis that points anywhere they were 0.12 and 0.32 on edge."""
+    part = shapes.part(shapes.cylinder(10.0, 20.0 * thick, 96))
+    aspects = find(part)
+    found = drop_test.test(part, aspects, "flip", dict.fromkeys(conditions.KEYS), drops=4000, seed=5)
+    edge = found.tally.p[np.abs(aspects.heights - 0.01) < 1e-4].sum()
+    assert edge == pytest.approx(measured, abs=0.03)
 
 
 def test_the_former_name_of_a_launch_is_known():
