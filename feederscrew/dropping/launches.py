@@ -51,8 +51,9 @@ PRESETS = {
     )
 }
 """What was done to the part. place: set down by hand. drop: let fall without spin. flip: spun up by hand, as
-a coin, about an axis in the plane of its greatest face that the hand holds level to LEAN. roll: cast or poured over a table, spinning about a
-horizontal axis. feed: out of a hopper into a bowl. docs/resting.md says where each range comes from."""
+a coin, about an axis in the plane of its greatest face, level to LEAN. roll: cast or poured
+over a table, spinning about a horizontal axis. feed: out of a hopper into a bowl. docs/resting.md says where
+each range comes from."""
 
 
 def named(name):
