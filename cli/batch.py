@@ -74,6 +74,7 @@ def batch(ctx, sources, configs, overrides, rule, launch, drops, jobs, scheduler
     if out.directory is None:
         raise click.UsageError("Missing option '-o' - say where the results go")
     requests = batches.gather(sources, configs, overrides)
+    out.warn(*dict.fromkeys(line for request in requests for line in request.conditions.warnings))
     workers = batches.crew(jobs, None if _typed(ctx, "jobs") else scheduler)
     choices = batches.Choices(rule=rule, drops=drops, launch=launch, pictures=pictures)
     with Progress(len(requests), not out.quiet) as progress:

@@ -7,6 +7,7 @@ from feederscrew.api.asked import Quantity
 from feederscrew.bowl import Bowl
 from feederscrew.designing.record import DesignStudy
 from feederscrew.part import Part
+from feederscrew.studies.rate import LEAST
 
 
 def design(
@@ -50,7 +51,7 @@ def design(
     from feederscrew.designing.record import DesignRequest
 
     request = DesignRequest(
-        target=asked.amount("target", target, "rate", 0.0),
+        target=asked.amount("target", target, "rate", LEAST),
         heading=asked.angle("heading", heading),
         tolerance=asked.amount("tolerance", tolerance, "length", 0.0),
         **search,

@@ -9,7 +9,7 @@ from feederscrew.bowl import Bowl
 from feederscrew.part import Part
 from feederscrew.rates.well_oriented import RECOMMENDED
 from feederscrew.studies.bowl import MachineSheet
-from feederscrew.studies.rate import RateStudy, Shares
+from feederscrew.studies.rate import LEAST, RateStudy, Shares
 from feederscrew.studies.tune import TuneStudy
 from feederscrew.tooling.devices.base import Device
 
@@ -133,7 +133,7 @@ def tune(
         solid,
         bowl,
         aspect,
-        asked.amount("target", target, "rate"),
+        asked.amount("target", target, "rate", LEAST),
         heading=asked.angle("heading", heading),
         rule=asked.rule(answer),
         gap=asked.amount("gap", answer.get("gap", 0.0), "length", 0.0),
@@ -177,7 +177,7 @@ def size_bowl(
     from feederscrew.studies.bowl import bowl as study
 
     own: dict[str, Any] = {"rule": rule, "gap": asked.amount("gap", gap, "length", 0.0), "fill": fill}
-    wanted = asked.amount("target", target, "rate")
+    wanted = asked.amount("target", target, "rate", LEAST)
     lies = asked.angle("heading", heading)
     solid = asked.a_part(part, mesh=True)
     return study(asked.settings(bowl), solid, wanted, aspect=aspect, heading=lies, **own)

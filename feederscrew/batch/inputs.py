@@ -135,7 +135,8 @@ def _conditions(path, overrides, faults, line):
         settings = bowls.settings(path, overrides)
         bowl = answer.conveying(bowls.record(settings))
         texts = tuple(bowls.texts(settings).items())
-        return Conditions(bowls.name(path), bowl, texts, given=path is not None)
+        made = bowls.by_machine(settings)
+        return Conditions(bowls.name(path), bowl, texts, given=path is not None, warnings=made)
     except FeederError as fault:
         faults += getattr(fault, "faults", [_placed(fault, path, line)])
         return None

@@ -25,6 +25,7 @@ class Conditions:
     bowl: Bowl
     texts: tuple[tuple[str, str], ...]  # key and value in effect, as text
     given: bool = False  # whether a bowl file was named
+    warnings: tuple[str, ...] = ()  # what a machine makes of its drive
 
 
 @dataclass(frozen=True)

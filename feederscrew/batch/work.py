@@ -86,7 +86,7 @@ def _results(task):
         | dict(request.conditions.texts)
         | {"rule": choices.rule, "drops": choices.drops, "launch": choices.launch or "fed"}
         | ({"names": request.names.source} if request.names else {}),
-        warnings=(*part.warnings, *found.warnings),
+        warnings=(*part.warnings, *request.conditions.warnings, *found.warnings),
         files=dict(files),  # who takes it need not import this module
     )
 

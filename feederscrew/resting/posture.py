@@ -114,11 +114,12 @@ def posture(part, aspects, name):
 
 
 def _row(part, aspects, name):
-    wanted = str(name).strip().casefold()
+    check.kind("aspect", name, str, "give the name of an aspect, 'A'")
+    wanted = name.strip().casefold()
     found = [row for row, known in enumerate(aspects.names) if known.casefold() == wanted]
     if not found:
         known = ", ".join(aspects.names)
-        raise FeederError(part.source, f"there is no aspect {str(name)[:20]!r}", f"choose one of {known}")
+        raise FeederError(part.source, f"there is no aspect {name[:20]!r}", f"choose one of {known}")
     return found[0]
 
 

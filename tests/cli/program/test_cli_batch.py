@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -45,6 +46,28 @@ def test_a_bad_part_is_one_line_and_status_1_and_resume_says_what_it_kept(run, t
     again = run(*call, "--resume")
     assert again.exit_code == 1
     assert "Wrote out (2 parts, 1 of them as they were; open index.html)\n" in again.stderr
+
+
+def test_a_batch_says_what_a_key_of_the_machine_makes_of_the_drive(run, tmp_path):
+    """One key turned 50 into 100 Hz, and 25 into 102 mm/s, without a word."""
+    (tmp_path / "m.yaml").write_text("machine:\n  leaves: 10\n")
+    call = ("batch", NUT, WASHER, "--rule", "csa", "--jobs", "1", "--no-pictures", "-o", "out")
+    done = run(*call, "--config", "m.yaml", "--format", "csv")
+    line = "machine.leaves: is given, so drive.frequency is 100 Hz by the machine, not 50 Hz"
+    assert done.stderr.count(f"Warning: {line}") == 1
+    rows = (tmp_path / "out/summary.csv").read_text().splitlines()[1:]
+    assert [line in row for row in rows] == [True, True]
+    assert "by the machine" not in run(*call).stderr
+
+
+def test_a_name_that_would_command_a_terminal_is_escaped_in_the_summary(run, tmp_path):
+    """A raw ESC stood in it."""
+    (tmp_path / "list.csv").write_text("part\n" + shutil.copy(NUT, tmp_path / "red\x1b[31m.stl").name + "\n")
+    call = ("batch", "list.csv", "--rule", "csa", "--jobs", "1", "--no-pictures", "-o", "out")
+    done = run(*call, "--format", "csv")
+    for text in (done.stdout, done.stderr, *(p.read_text() for p in (tmp_path / "out").rglob("*.csv"))):
+        assert "\x1b" not in text
+    assert "red\\x1b[31m.stl" in (tmp_path / "out/summary.csv").read_text()
 
 
 def test_drops_add_a_drop_test_with_a_seed_from_the_part(run, tmp_path):
