@@ -30,11 +30,10 @@ def finite_barriers(body):
 
 def with_critical_angle(body):
     """Geometric mean of the critical solid angle and the surface-weighted rule."""
-    critical = [
-        barriers.critical_solid_angle(f.polygon, f.height) * f.solid_angle / f.height
-        for f in body.ground.faces
-    ]
-    return np.sqrt(np.array(critical) * body.tips.shares * depth(body) ** 2)
+    faces = body.ground.faces
+    heights, angles = np.array([f.height for f in faces]), np.array([f.solid_angle for f in faces])
+    critical = barriers.critical_solid_angles([f.polygon for f in faces], heights) * angles / heights
+    return np.sqrt(critical * body.tips.shares * depth(body) ** 2)
 
 
 def splits(body):

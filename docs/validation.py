@@ -18,7 +18,7 @@ from feederscrew.studies.simulated.tosses import follow
 
 PAGE = Path(__file__).resolve().parent / "validation.md"
 MEASURED = PAGE.parent / "measured"
-SETS = {"cuboids": "cuboid_*", "cubes": "short_cube", "coin": "coin", "t shape": "t_shape"}
+SETS = {"cuboids": "cuboid_*", "cubes": "short_cube", "coin": "coin*", "t shape": "t_shape"}
 CARDS = {"magnet": "magnet", "arc chute": "arc_chute"}
 RULES = ("CSA", "STABILITY", "PMI")
 SIDE, MASS = 104.8, 0.37  # [mm], [kg] of the filmed cube

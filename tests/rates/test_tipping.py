@@ -147,6 +147,11 @@ def test_it_is_said_how_many_must_come_where_few_stay_on_the_track(monkeypatch):
         f"{100.0 * share:.2g} % of the parts at the entry stay on the track: this rate needs {come:,.0f} "
         "parts a minute there"
     )
+    parts = replace(study.rate.parts, low=0.0)
+    never = replace(study, rate=replace(study.rate, parts=parts))
+    assert [line for line in tables.remarks(never) if "at the entry" in line] == [
+        f"{said}, and is 0 if none stays"
+    ]
 
 
 def test_tune_gives_the_rate_that_rate_gives_at_each_setting():

@@ -190,9 +190,10 @@ def _scarce(study):
     if not 0.0 < share < SCARCE or not offered > 0.0:
         return []
     come = offered / share / PER_MINUTE
+    none = study.rate.parts.low == 0.0 < study.rate.velocity.low
     return [
         f"{100.0 * share:.2g} % of the parts at the entry stay on the track: this rate "
-        f"needs {come:,.0f} parts a minute there"
+        f"needs {come:,.0f} parts a minute there{', and is 0 if none stays' if none else ''}"
     ]
 
 
