@@ -29,7 +29,7 @@ rolling class: such that it holds 95 % of the shares in drop tests of made bodie
 (``benchmarks/accuracy.py`` prints it, with its coverage of bodies and sets left out)."""
 LAUNCHED = 0.11  # [1]
 """... of a drop test beside its sampling: what a new share, measured under a launch of that name, keeps
-within of what is simulated (from 15 shares of four series; the same benchmark)."""
+within of what is simulated (from 16 shares of four series; the same benchmark)."""
 FLOOR = 0.1  # [1] of that width that does not fall towards shares of 0 and 1
 
 
