@@ -207,3 +207,14 @@ def test_a_part_behind_a_blade_shines_through():
     colours = [image[30, 30], image[5, 5]]
     assert np.abs(colours[0] - colours[1]).max() > 0.04
     assert (np.abs(image - image[5, 5]).max(axis=2) > 0.02)[20:40, 20:40].all()
+
+
+def test_the_history_of_a_loop_can_be_read():
+    """Once it was 7 x 3 pixels."""
+    from types import SimpleNamespace
+
+    from feederscrew.output.designs import figures
+
+    attempts = [SimpleNamespace(rate=0.5 * k, clean=k > 1, wanted="A@0") for k in (1, 2)]
+    figure = figures.history(SimpleNamespace(attempts=attempts, request=SimpleNamespace(target=1.0)))
+    assert (figure.get_size_inches() * figure.dpi >= [600, 250]).all()
