@@ -216,12 +216,14 @@ _SENSOR = _mapping(
         nozzles=_quantity("count", "1", "20"),
     ),
 )
+_LEAD = _mapping(from_=_LENGTH, to=_LENGTH, length=_LENGTH, taper=_LENGTH)
 _DEVICES = {  # what is written after 'kind:', by the dimension of the kind
     "length": _LENGTH,
     "angle": _quantity("angle"),
     "climb": _mapping(climb=_quantity("angle")),
     "jet": _mapping(nozzle=_LENGTH, pressure=_quantity("pressure"), height=_LENGTH),
     "span": _mapping(from_=_LENGTH, to=_LENGTH),
+    "rails": _mapping(("lead_in",), from_=_LENGTH, to=_LENGTH, lead_in=_LEAD),
     "sensor": _SENSOR,
     "blade": {"anyOf": [_LENGTH, _BLADE]},
     "polygon": {"anyOf": [_POLYGON, _DRAWN]},

@@ -208,8 +208,7 @@ def widened(proposal, every):
         span = max(first - more, RAIL), last + more
         if more < STEP or span == cut.device.span or last - first > HELD * found.head:
             continue
-        text = f"{{from: {millimetres(span[0])}, to: {millimetres(span[1])}}}"
-        device = replace(cut.device, span=span, text=text)
+        device = cut.device.with_span(span)
         must = np.array([one.name in cut.returns for one in every])
         other = judged(every, proposal.row, device, must, cut.smallest, cut.largest)
         cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])

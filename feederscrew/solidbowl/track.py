@@ -147,9 +147,8 @@ def slots(plan, kit):
     """
     made = []
     for cut in _rails(plan):
-        (low, high), start = (cut.ring[:, 1].min(), cut.ring[:, 1].max()), plan.first + cut.span[0]
-        end = plan.way.end + plan.outlet + 5e-3
-        ring = np.array([[start, low], [end, low], [end, high], [start, high]])
+        ring = cut.ring + [plan.first, 0.0]
+        ring[cut.ring[:, 0] >= cut.span[1] - 1e-9, 0] = plan.way.end + plan.outlet + 5e-3
         heights = plan.way.height(ring[:, 0], ring[:, 1])
         deep = heights.min() - plan.material.plate - plan.hanging
         made.append(kit.over(plan.way, ring, deep, heights.max() + INTO, 0.2 * plan.chord))

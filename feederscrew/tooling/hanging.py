@@ -16,6 +16,9 @@ SLICES = 80  # along the part
 STEEP = np.radians(45.0)  # a part that stands or lies across the track does not go down by its shank
 ALIKE = np.cos(np.radians(5.0))  # parts that hang by the same head hang alike, however they lay before
 HANGING = "hanging"  # what the hanging pose is called, in place of an aspect
+SUNK = 0.38  # of the shank's radius: how far beyond a rail the middle of its tip has to lie ...
+STRAIGHT = 0.05  # of its diameter: ... unless its tip lies no farther aside than that from its weight
+BARE, FULL = 1.05, 0.9  # of the shank's and of its own width: where the underside of a head begins and ends
 SEATED = 0.1  # of the head's height: how much of a cone's underside counts as resting on the rails
 
 
@@ -24,7 +27,10 @@ class Neck:
     """Shank and head of a part, across its own long axis."""
 
     shank: float  # [m] greatest width of the stretch that holds the centre of mass and reaches to one end
-    head: float  # [m] of the other end
+    head: float  # [m] of the other end, in the way it is narrowest
+    widest: float  # [m] of that end, in any way it turns about the long axis
+    tip: float  # [m] from the foot of the centre of mass, inwards: the long axis at the shank's end
+    rise: float  # [1] of the head's underside from the shank outwards: 0 of a flat one, 1 of a cone of 90 deg
     down: np.ndarray  # (3,) [1] from head to shank, in the file's axes
 
 
@@ -95,15 +101,18 @@ def neck(one):
             head, shank = across[:k].max(), across[k:].max()
             found.append((head - shank, shank, head, sign, float(along[k])))
     step, shank, head, sign, end = max(found, default=(0.0, 0.0, 0.0, 1.0, 0.0))
-    head = min(head, _narrowest(one, sign * axis, end))
+    least, widest = _turned_about(one, sign * axis, end)
+    head = min(head, least)
     if not step > 0.0 or head <= shank:
         return None
-    down = np.einsum("ij,i->j", one.axes, sign * axis)
-    return Neck(float(shank), float(head), check.frozen(down))
+    down, tip = np.einsum("ij,i->j", one.axes, sign * axis), sign * axis[1] * max(sign * places)
+    between = (sign * places <= end) & (widths > BARE * shank) & (widths < FULL * head)
+    rise = float(between.sum() * np.ptp(places) / SLICES / (0.5 * step))
+    return Neck(float(shank), float(head), widest, float(tip), rise, check.frozen(down))
 
 
-def _narrowest(one, axis, end):
-    """Least width [m] of a head in any way it can turn about its axis: one that is flat turns edge on."""
+def _turned_about(one, axis, end):
+    """Least width and diameter [m] of a head that turns about its axis: one that is flat turns edge on."""
     solid = one.posture.solid
     points = vectors.product(solid.vertices - solid.centre_of_mass, one.axes.T)
     points = points[vectors.product(points, axis) <= end]
@@ -112,7 +121,8 @@ def _narrowest(one, axis, end):
     ring = outline(flat)
     along = sides(ring)
     along = along / np.hypot(*along.T)[:, None]
-    return min(float(np.ptp(cross(unit, ring))) for unit in along)
+    least = min(float(np.ptp(cross(unit, ring))) for unit in along)
+    return least, 2.0 * float(np.hypot(*ring.T).max())
 
 
 def head_first(one):
@@ -121,10 +131,35 @@ def head_first(one):
     return found is not None and vectors.dot(one.axes[0], found.down) < 0.0
 
 
-def hanging_margin(one, width):
-    """Return by how much [m] a slot of some width lets the shank down and holds the head; negative if not."""
+def hanging_margin(one, width, widest=None):
+    """Return by how much [m] a slot of some width lets the shank down and holds the head; negative if not.
+
+    The head is held where the slot is ``widest``, if that is another width.
+    """
+    found, widest = neck(one), width if widest is None else widest
+    return -np.inf if found is None else min(width - found.shank, found.head - widest)
+
+
+def tip_goes_down(one, near):
+    """Return whether the end of a shank that lies askew goes down beside the rail at the wall.
+
+    Parameters
+    ----------
+    one : Orientation
+    near : float [m]
+        From the wall: where the slot begins.
+
+    Notes
+    -----
+    A round end whose middle lies x beyond the rail's edge rests on it by a flank that leans by asin(x / r):
+    the less, the less it is pushed aside. In trials of four screws, six of each, those with up to 0.33 r
+    lay askew over the slot to its end, or some of them, and those with 0.39 r and more went down.
+    """
     found = neck(one)
-    return -np.inf if found is None else min(width - found.shank, found.head - width)
+    if found is None:
+        return False
+    beyond = one.distance + found.tip - near
+    return abs(found.tip) <= STRAIGHT * found.shank or beyond >= SUNK * 0.5 * found.shank
 
 
 def hung(one, span, known=()):

@@ -7,7 +7,7 @@ from feederscrew.tooling import drift, sensor_views, turning
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling.devices.base import STANDARD_GRAVITY, UNSURE, Verdict, share
 from feederscrew.tooling.falling_through import falls_through
-from feederscrew.tooling.hanging import Hanging, hanging_margin, head_first
+from feederscrew.tooling.hanging import Hanging, hanging_margin, head_first, tip_goes_down
 from feederscrew.tooling.holding import leans, may_lay_aside, may_lay_over, may_wedge, rides, widest
 
 WORN = 2.5e-4  # [m] what an opening holds by less does not hold a part up
@@ -151,13 +151,17 @@ class Meeting:
         """Return its margin [m] in an opening: ``gate_margin``."""
         return gate_margin(opening, self.one)
 
-    def held_by_head(self, width):
-        """Return by how much [m] a slot of some width lets its shank down and holds its head."""
-        return hanging_margin(self.one, width)
+    def held_by_head(self, width, widest=None):
+        """Return by how much [m] a slot of some width, or one at its widest, holds its head, not its shank."""
+        return hanging_margin(self.one, width, widest)
 
     def wedges(self, span):
         """Return whether its head, which comes first, may stick between rails as a wedge."""
         return self.one.grip > 0.0 and head_first(self.one) and may_wedge(self.one, span)
+
+    def goes_down(self, near):
+        """Return whether the tip of its shank goes down beside a rail that ends ``near`` [m] the wall."""
+        return self.one.grip <= 0.0 or tip_goes_down(self.one, near)
 
     def pitched(self):
         """Return how it turns over its leading edge: a Turn."""

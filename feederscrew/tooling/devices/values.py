@@ -83,12 +83,18 @@ def within(given, name, dimension, low, high):
 
 def span(entry):
     """Read {from: 2 mm, to: 5 mm}, as {'span': (m, m)}."""
-    given = mapping(entry, ("from", "to"), "write {from: 2 mm, to: 5 mm}")
+    return span_and(entry)[0]
+
+
+def span_and(entry, more=(), needed=()):
+    """Read {from: 2 mm, to: 5 mm} and entries that may or must be beside it: {'span': (m, m)}, and all by key."""
+    names = ("from", "to", *needed, *more)
+    given = mapping(entry, names, "write {from: 2 mm, to: 5 mm}", more)
     first, last = (_quantity(given[name].value, f"{entry.key} {name}", "length") for name in ("from", "to"))
     if not 0.0 <= first < last:
         what = f"{entry.key} runs from {given['from'].value.text} to {given['to'].value.text}"
         raise ConfigError(entry.value.where, what, "give from 0 mm or more to something larger")
-    return {"span": (first, last)}
+    return {"span": (first, last)}, given
 
 
 def shares(entry):

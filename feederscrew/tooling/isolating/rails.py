@@ -2,17 +2,23 @@
 
 import numpy as np
 
-from feederscrew.tooling.devices.hanging_rails import Rails
+from feederscrew.tooling.devices.hanging_rails import Rails, written
 from feederscrew.tooling.hanging import neck
 from feederscrew.tooling.isolating import chain
 from feederscrew.tooling.isolating.proposal import told, weights
 from feederscrew.tooling.verdicts import verdict
 
 PLAY, MOST = 4e-4, 6e-4  # [m] by which a slot is wider than the shank: 0.2 to 0.6 mm
-CLEAR = 2e-4  # [m] between a hanging head and the wall
+CLEAR = 4e-4  # [m] between a hanging head and the wall, wherever the shank stands in its slot
 # drops first, then what clears itself, then what sees
 STAGES: tuple[dict[str, bool], ...] = ({"clearing": False}, {}, {"sensed": True})
 RAIL = 1e-3  # [m] least width of a rail, and of the sheet it is cut from
+# a part that lies along the wall is askew: its shank's tip lies nearer to the wall than its weight, and has
+# to be over the slot. The lead-in reaches so far under it, in radii of the shank, and so much at least
+SINKS, WIDER = 0.5, 3e-4  # [1], [m]
+HELD = 4e-4  # [m] by which the lead-in is narrower than the head at least
+CONE = 0.5  # a head whose underside rises by more is one
+STRAIGHT, TAPER = 1.5, 1.0  # lengths of the part in which it goes down, and in which the slot narrows
 
 
 def design(given):
@@ -89,10 +95,27 @@ def _ends(one, device, step):
 
 def _rails(one, found, width, step):
     width = chain.snapped(width, step, up=True)
-    middle = max(one.distance - one.shift, 0.5 * found.head + CLEAR, 0.5 * width + RAIL)
+    middle = max(one.distance - one.shift, 0.5 * found.widest + CLEAR, 0.5 * width + RAIL)
     first = chain.snapped(middle - 0.5 * width, step, up=True)
     span = chain.fine(first), chain.fine(first + width)
-    if span[1] >= one.track.width - RAIL or not span[0] < one.distance - one.shift < span[1]:
+    lead = _lead(one, found, span, step)
+    if lead[1] >= one.track.width - RAIL or not lead[0] < one.distance - one.shift < lead[1]:
         return None
-    text = f"{{from: {chain.millimetres(span[0])}, to: {chain.millimetres(span[1])}}}"
-    return Rails(chain.WHERE, span=span, text=text)
+    return Rails(chain.WHERE, span=span, lead=lead, text=written(span, lead))
+
+
+def _lead(one, found, span, step):
+    """Lead-in [m] of a slot: from under the tip of a shank that lies askew to as far beyond its middle.
+
+    It is so narrow that a head with a flat underside rests on both rails wherever the shank stands in it:
+    with its shank at one rail and none under its head at the other, it hangs askew and stays. A cone does not.
+    """
+    tip = one.distance - one.shift + found.tip - SINKS * 0.5 * found.shank
+    near = max(min(tip, span[0] - WIDER), RAIL)
+    near = min(chain.snapped(near, step, up=True), span[0])
+    far = max(span[1] + WIDER, found.widest + 2.0 * CLEAR - near)  # its middle as clear of the wall
+    held = 0.2 if found.rise > CONE else 0.5
+    far = min(far, near + found.head - max(HELD, held * (found.head - found.shank)))
+    far = max(chain.snapped(far, step, up=False), span[1])
+    sizes = (chain.snapped(share * one.length, step, up=True) for share in (STRAIGHT, TAPER))
+    return tuple(chain.fine(size) for size in (near, far, *sizes))

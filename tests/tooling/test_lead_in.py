@@ -1,0 +1,70 @@
+"""The lead-in of rails: how it is written, drawn and judged, and that a screw that lies askew goes down it."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from feederscrew import bowl as bowls
+from feederscrew.errors import FeederError
+from feederscrew.part import load
+from feederscrew.studies import tooling, trial
+from feederscrew.tooling.hanging import neck
+from feederscrew.tooling.verdicts import verdict
+
+SCREW = Path(__file__).resolve().parents[2] / "parts/hexbolt_m8x25.stl"
+LEAD = "lead_in: {from: 3 mm, to: 12 mm, length: 40 mm, taper: 30 mm}"
+
+
+@pytest.fixture
+def devices(tmp_path):
+    def read(line, *settings):
+        (tmp_path / "b.yaml").write_text(f"devices:\n  - {line}\n")
+        return bowls.read(tmp_path / "b.yaml", settings)
+
+    return read
+
+
+def test_a_slot_begins_as_wide_as_its_lead_in_and_narrows(devices):
+    (rails,) = devices(f"rails: {{from: 4.4 mm, to: 11.45 mm, {LEAD}}}").devices
+    assert rails.lead == pytest.approx((3e-3, 12e-3, 40e-3, 30e-3))
+    ring = 1e3 * rails.outline_on(None, 0.2)
+    assert ring[:4] == pytest.approx(np.array([[0, 3], [40, 3], [70, 4.4], [200, 4.4]]))
+    assert ring[4:] == pytest.approx(np.array([[200, 11.45], [70, 11.45], [40, 12], [0, 12]]))
+    assert rails.told()["span_mm"] == pytest.approx([4.4, 11.45])
+    assert rails.told()["lead_in"]["taper_mm"] == pytest.approx(30.0)
+
+
+def test_rails_written_anew_are_read_as_they_were(devices):
+    (rails,) = devices(f"rails: {{from: 4.4 mm, to: 11.45 mm, {LEAD}}}").devices
+    wider = rails.with_span((2.5e-3, 12.5e-3))
+    (again,) = devices(f"rails: {wider.text}").devices
+    assert again.span == pytest.approx(wider.span)
+    assert again.lead == pytest.approx((2.5e-3, 12.5e-3, 40e-3, 30e-3))
+
+
+def test_a_lead_in_narrower_than_its_slot_is_refused(devices):
+    with pytest.raises(FeederError, match="lead_in is narrower than the slot - let it reach as far"):
+        devices(f"rails: {{from: 2.9 mm, to: 11.45 mm, {LEAD}}}")
+
+
+def test_a_shank_whose_tip_lies_on_the_rail_is_not_sure_to_go_down(devices):
+    part, bowl = load(SCREW), devices("rails: {from: 4.4 mm, to: 11.45 mm}")
+    study = tooling.tooling(part, bowl, rule="csa", verdicts=1, seconds=1e-3)
+    one = next(one for one in study.orientations if one.name == "A@188")
+    assert 1e3 * neck(one).tip == pytest.approx(-2.41, abs=0.05)  # nearer to the wall than its weight
+    narrow = verdict(bowl.devices[0], one, study.orientations)
+    wide = verdict(bowl.devices[0].with_span((4.4e-3, 11.45e-3), (3e-3, 11.45e-3, 0.05, 0.03)), one)
+    assert narrow.hangs and not narrow.sure
+    assert wide.hangs and wide.sure
+
+
+def test_the_screw_is_fed_between_rails_and_its_trial_agrees(devices):
+    part = load(SCREW)
+    design = tooling.tooling(part, bowls.read(None, []), "A", rule="csa").design
+    (rails,) = [cut.device for cut in design.cuts if cut.device.hangs]
+    assert 0.2e-3 < rails.span[1] - rails.span[0] - 6.643e-3 < 0.6e-3
+    assert rails.lead[0] < rails.span[0] and rails.lead[1] > rails.span[1]
+    run = trial.trial(part, [devices(f"rails: {rails.text}")], rule="csa", parts=10, jobs=1).runs[0]
+    rows = [k for k, one in enumerate(run.known.lying) if one.name in ("A@188", "A@354")]
+    assert run.counts[rows, 0].tolist() == run.tried[rows].tolist()
