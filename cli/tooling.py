@@ -102,18 +102,22 @@ def tooling(part, aspect, rule, asked, cad, static, taken, bowl, pictures, out):
     it has the chain of fewest devices. Each has the smallest cut that still returns and the largest that
     still passes. Devices that the bowl file already lists stay before the design.
 
-    A few parts of each orientation are sent through what is proposed, of the table through the best
-    three. Both verdicts are printed. --static leaves the trial out.
+    What is proposed is tried with a few parts of each orientation, of the table the best three, and what
+    the trial says comes first. Where it denies the chain of one orientation, up to two others are tried,
+    without one of its devices; --static leaves that out.
 
     With -o: tooling.csv, tooling.json and tooling.png. An aspect adds tooling.yaml, a bowl file with the
     devices for feeder rate, report and batch. It adds tooling.dxf and tooling.svg, 1:1 in mm, unrolled and
     as bent, and tooling.stl, the section of track to print.
     """
+    from functools import partial
+
     from feederscrew import bowl as bowls
     from feederscrew.designing import own_trial
     from feederscrew.output import columns, offers
     from feederscrew.output.tooling import files, tables
     from feederscrew.studies.tooling import tooling as study
+    from feederscrew.studies.tooling import tooling_without
 
     if cad:
         from feederscrew.output.tooling import written_step as steps
@@ -124,12 +128,15 @@ def tooling(part, aspect, rule, asked, cad, static, taken, bowl, pictures, out):
     record = bowls.record(settings)
     known = orientation.shares(out, solid, record, taken, rule)
     with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
+        given = {"known": known.aspects, "rule": rule, **asked}
         with Progress(None, not out.quiet, "orientations") as bar:
-            found = study(solid, record, aspect, known=known.aspects, rule=rule, told=bar.reach, **asked)
-        tried = () if static else own_trial.own_trials(found, before=lambda: waiting.trial(out))
-        document = tables.document(found) | {"trial": own_trial.document(tried)}
-        out.warn(*found.warnings, *(one.sentence for one in tried if one.faults))
-        out.say(*(one.sentence for one in tried if not one.faults))
-        out.say(*tables.remarks(found, asked["efficiency"]))
+            found = study(solid, record, aspect, told=bar.reach, **given)
+        if not static:
+            again = partial(tooling_without, part=solid, bowl=record, aspect=aspect, **given)
+            found = own_trial.own_trials(found, again, before=lambda: waiting.trial(out))
+        document = tables.document(found) | {"trial": own_trial.document(found.trials)}
+        denied, agreed = tables.trials(found)
+        out.warn(*found.warnings, *denied)
+        out.say(*agreed, *tables.remarks(found, asked["efficiency"]))
         offers.write(folder, files.offers(found, settings, cad), pictures=pictures)
         out.show(tables.summary(found, out.format), document, hidden=tables.HIDDEN, spare=tables.SPARE)

@@ -10,7 +10,9 @@ from feederscrew.errors import FeederError
 from feederscrew.rates import stream
 
 EACH = 2  # parts of each orientation
-BEST = 3  # designs of a table that are tried
+BEST = 3  # designs of a table that are tried, and of one orientation whose first ones are denied
+SEARCHES = 4  # designs that are looked for after a denied one
+KEPT = ("separation", "bank")  # devices that reject nothing: to leave them out makes no other chain
 OFTEN = 0.02  # [1] shares of the orientations that are tried, and the one that is wanted
 
 
@@ -19,6 +21,8 @@ class TriedDesign:
     """A chain of ``feeder tooling``, tried with a few parts of each orientation that comes often."""
 
     name: str  # of the orientation wanted
+    wanted: int  # its place among the orientations
+    devices: tuple[str, ...]  # of the chain, as a bowl file has them
     static_efficiency: float  # [1]
     efficiency: float  # [1] of those tried
     purity: float  # [1] NaN where nothing leaves
@@ -35,24 +39,56 @@ class TriedDesign:
         )
 
 
-def own_trials(study, *, seed=1, jobs=1, before=None):
+def own_trials(study, again=None, *, seed=1, jobs=1, before=None):
     """Try the chain of the orientation that was asked for, or the best three of a table.
 
     Parameters
     ----------
     study : ToolingStudy
+    again : callable, optional
+        Given kinds of devices, returns the same study without them: where the trial denies the chain of the
+        orientation that was asked for, the next best are tried, three in all.
     seed, jobs : int
     before : callable, optional
         Called before anything is compiled.
 
     Returns
     -------
-    tuple of TriedDesign
-        Without chains that isolate nothing.
+    ToolingStudy
+        With its ``trials``: of a chain that the trial confirms where one is found, else of the first. Chains
+        that isolate nothing are not tried.
     """
     known = [one for one in study.designs if one is not None and one.devices and one.efficiency > 0.0]
     best = sorted(known, key=lambda one: (-one.isolated, -one.efficiency, one.wanted))
-    return tuple(_tried(study, one, seed, jobs, before) for one in best[:BEST])
+    tried = tuple(_tried(study, one, seed, jobs, before) for one in best[:BEST])
+    first = replace(study, trials=tried)
+    if study.design is None or again is None or not tried or not tried[0].faults:
+        return first
+    for kinds in _ways_on(study.design):
+        other = again(kinds)
+        if not _isolates(other) or _devices(other.design) in [one.devices for one in tried]:
+            continue
+        tried = (*tried, _tried(other, other.design, seed, jobs, before))
+        if not tried[-1].faults:
+            return replace(other, trials=(tried[-1], *tried[:-1]))
+        if len(tried) == BEST:
+            break
+    return replace(first, trials=tried)
+
+
+def _isolates(study):
+    return study.design.isolated and bool(study.design.cuts) and study.design.efficiency > 0.0
+
+
+def _ways_on(found):
+    """Kinds of devices to do without: each of a chain alone, the last one first, then all of them."""
+    kinds = list(dict.fromkeys(cut.device.kind for cut in reversed(found.cuts)))
+    kinds = [kind for kind in kinds if kind not in KEPT]
+    return [*((kind,) for kind in kinds), *([tuple(kinds)] if len(kinds) > 1 else [])][:SEARCHES]
+
+
+def _devices(found):
+    return tuple(f"{device.kind}: {device.text}" for device in found.devices)
 
 
 def _tried(study, one, seed, jobs, before):
@@ -68,9 +104,11 @@ def _tried(study, one, seed, jobs, before):
             before=before,
         )  # fmt: skip
     except FeederError as fault:  # the bowl does not convey
-        return TriedDesign(name, one.efficiency, 0.0, np.nan, 0, (fault.what,))
+        return TriedDesign(name, one.wanted, _devices(one), one.efficiency, 0.0, np.nan, 0, (fault.what,))
     return TriedDesign(
         name=name,
+        wanted=one.wanted,
+        devices=_devices(one),
         static_efficiency=one.efficiency,
         efficiency=tried.efficiency,
         purity=tried.purity,
@@ -84,6 +122,7 @@ def document(tried):
     return [
         {
             "orientation": one.name,
+            "devices": list(one.devices),
             "efficiency_static": one.static_efficiency,
             "efficiency_tried": one.efficiency,
             "purity_tried": None if np.isnan(one.purity) else one.purity,

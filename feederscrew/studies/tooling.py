@@ -54,6 +54,16 @@ class ToolingStudy(Shown):
     shares: np.ndarray  # (M,) [1]
     designs: tuple[Design | None, ...]  # (M,) None where it was not asked for
     wanted: int | None  # the orientation asked for; None for all of them
+    trials: tuple[Any, ...] = ()  # designing.own_trial.TriedDesign of what was tried, that of `design` first
+
+    def trial_of(self, place):
+        """Return what the trial of an orientation's design said: its TriedDesign; None without one."""
+        return next((one for one in self.trials if one.wanted == place), None)
+
+    def isolates(self, place):
+        """Return whether an orientation is isolated: by the static rule, and not denied by its trial."""
+        found, tried = self.designs[place], self.trial_of(place)
+        return found.isolated and not (tried is not None and tried.faults)
 
     @property
     def design(self) -> Design | None:
@@ -170,6 +180,19 @@ def tooling(
         designs=tuple(designs),
         wanted=wanted,
     )
+
+
+def tooling_without(kinds, part, bowl, aspect, *, without=(), **asked):
+    """Return the study of an orientation with fewer kinds of devices, at once: no holes are searched.
+
+    Parameters
+    ----------
+    kinds : sequence of str
+        Not used, beside those of ``without``.
+    part, bowl, aspect, asked
+        As for ``tooling``.
+    """
+    return tooling(part, bowl, aspect, without=(*_listed(without), *kinds, "cut_out"), **asked)
 
 
 def asked_for(

@@ -152,7 +152,7 @@ class Meeting:
         return gate_margin(opening, self.one)
 
     def held_by_head(self, width, widest=None):
-        """Return by how much [m] a slot of some width, or one at its widest, holds its head, not its shank."""
+        """Return by how much [m] a slot of some width, at its widest, holds its head and not its shank."""
         return hanging_margin(self.one, width, widest)
 
     def wedges(self, span):

@@ -1,4 +1,4 @@
-"""The lead-in of rails: how it is written, drawn and judged, and that a screw that lies askew goes down it."""
+"""The lead-in of rails: written, drawn, judged, and tried with a screw that lies askew."""
 
 from pathlib import Path
 

@@ -47,4 +47,14 @@ def _head(study):
         f"# Tooling that lets aspect {one.aspect} at heading {one.name.partition('@')[2]} deg leave.",
         f"# Efficiency {100.0 * found.efficiency:.4g} %, purity {100.0 * found.purity:.4g} %, by "
         f"{study.answer}.",
+        *_tried(study.trial_of(study.wanted)),
     ]
+
+
+def _tried(trial):
+    """What the trial said, the first thing to know of a design that it denies."""
+    if trial is None:
+        return ["# By the static rule, not tried: see feeder trial."]
+    if trial.faults:
+        return [f"# DENIED by its trial: {'; '.join(trial.faults)}."]
+    return [f"# Of {trial.parts} parts tried {100.0 * trial.efficiency:.4g} % leave so."]

@@ -12,7 +12,7 @@ HIDDEN = ("reasons",)
 SPARE = (  # left out of a table for people that is too wide, the first ones first
     ("smallest_cut", "largest_cut"),
     ("mirror", "wall_distance_mm", "balcony_mm", "canyon_mm", "gap_mm"),
-    ("height_mm",), ("length_mm", "width_mm"), ("steady",), ("purity",), ("left_over",),
+    ("height_mm",), ("length_mm", "width_mm"), ("steady",), ("status",), ("purity",), ("left_over",),
 )  # fmt: skip
 WIDE = 34  # letters of a text in a table for people
 QUASI_STATIC = "quasi-static, until a trial confirms it"
@@ -32,7 +32,9 @@ def document(study):
     return values | {
         "aspect": one.aspect,
         "heading_deg": one.heading / DEG,
-        "isolated": study.design.isolated,
+        "isolated": study.isolates(study.wanted),
+        "status": status(study, study.wanted),
+        "isolated_static": study.design.isolated,
         "steady": study.design.steady,
         "efficiency": study.design.efficiency,
         "purity": study.design.purity,
@@ -55,7 +57,20 @@ def orientations(study):
     list of dict
     """
     rows = zip(study.orientations, study.shares, study.designs)
-    return [_row(one, share, found) for one, share, found in rows]
+    return [_row(one, share) | _designed(study, k, found) for k, (one, share, found) in enumerate(rows)]
+
+
+def status(study, place):
+    """Return what is known of an orientation's design, in one word.
+
+    'confirmed' or 'denied' by its trial; 'static' where none was made; 'none' where nothing isolates it.
+    """
+    tried = study.trial_of(place)
+    if tried is not None and tried.faults:
+        return "denied"
+    if not study.designs[place].isolated:
+        return "none"
+    return "static" if tried is None else "confirmed"
 
 
 def frame(study):
@@ -129,20 +144,41 @@ def remarks(study, efficiency=0.0):
     found = study.design
     if found is None:
         return [isolated(study, efficiency)]
-    one = study.orientations[study.wanted]
-    said = "is isolated" if found.isolated else "is not isolated"
-    lead = (
-        f"{one.name} {said}: {100.0 * found.efficiency:.3g} % of the parts offered leave so, "
-        f"{100.0 * found.purity:.4g} % of what leaves"
+    return [_lead(study, found), *found.reasons]
+
+
+def _lead(study, found):
+    """What becomes of the orientation asked for: what the trial says first."""
+    one, tried = study.orientations[study.wanted], study.trial_of(study.wanted)
+    shares = 100.0 * found.efficiency, 100.0 * found.purity
+    leave = "{:.3g} % of the parts offered leave so, {:.4g} % of what leaves".format(*shares)
+    if tried is not None and tried.faults:
+        return f"{one.name} is not isolated: {tried.sentence.partition(': ')[2]}"
+    if not found.isolated:
+        return f"{one.name} is not isolated: {leave}"
+    if tried is None:
+        return f"{one.name} is isolated: {leave}"
+    return (
+        f"{one.name} is isolated: {leave}; of {tried.parts} parts tried {100.0 * tried.efficiency:.3g} % do, "
+        "and the trial agrees"
     )
-    return [lead, *found.reasons]
+
+
+def trials(study):
+    """Return what the trials of other chains, or of a table's best, said: two lists, denied and confirmed."""
+    told = [one for k, one in enumerate(study.trials) if study.design is None or k]
+    if study.design is None:
+        said = [(one.faults, one.sentence) for one in told]
+    else:
+        said = [(one.faults, f"tried as well, {'; '.join(one.devices)}: {one.sentence}") for one in told]
+    return [text for faults, text in said if faults], [text for faults, text in said if not faults]
 
 
 def isolated(study, efficiency=0.0):
     """Say how many of the orientations that come often enough to matter can be isolated."""
     often = np.flatnonzero(study.shares >= LEAST_SHARE)
-    designs = [study.designs[k] for k in often if study.designs[k] is not None]
-    good = [one.isolated and one.efficiency >= efficiency for one in designs]
+    designed = [k for k in often if study.designs[k] is not None]
+    good = [study.isolates(k) and study.designs[k].efficiency >= efficiency for k in designed]
     asked = f" with an efficiency of {100.0 * efficiency:.3g} % or more" if efficiency > 0.0 else ""
     rarer = len(study.designs) - len(often)
     left_out = f" ({rarer} rarer not counted)" if rarer else ""
@@ -175,7 +211,7 @@ def _outcome(one, met):
     return passages_of.fate(one, met)
 
 
-def _row(one, share, found):
+def _row(one, share):
     return {
         "aspect": one.aspect,
         "heading_deg": one.heading / DEG,
@@ -188,16 +224,16 @@ def _row(one, share, found):
         "canyon_mm": one.canyon / MM,
         "gap_mm": one.gap / MM,
         "mirror": one.mirror or None,
-        **_designed(found),
     }
 
 
-def _designed(found):
+def _designed(study, place, found):
     if found is None:
-        names = ("isolated", "devices", "margin_mm", "steady", "efficiency", "purity", "left_over", "reasons")
+        names = "isolated status devices margin_mm steady efficiency purity left_over reasons".split()
         return dict.fromkeys(names)
     return {
-        "isolated": found.isolated,
+        "isolated": study.isolates(place),
+        "status": status(study, place),
         "devices": [cut.device.kind for cut in found.cuts],
         "margin_mm": found.margin / MM,
         "steady": found.steady if found.cuts else None,

@@ -26,7 +26,7 @@ class Rails(Device):
     meaning = (
         "slot between two rails, by their distances from the wall: headed parts whose centre of mass lies "
         "over it hang in it by the head from there on; what falls through is returned; with `lead_in: {from: "
-        "3 mm, to: 9 mm, length: 30 mm, taper: 20 mm}` it begins that wide, for parts that lie askew, and tapers"
+        "3 mm, to: 9 mm, length: 30 mm, taper: 20 mm}` it begins so wide, for parts that lie askew"
     )
     hangs = True
     picture = "above"

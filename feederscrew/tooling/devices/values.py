@@ -87,7 +87,7 @@ def span(entry):
 
 
 def span_and(entry, more=(), needed=()):
-    """Read {from: 2 mm, to: 5 mm} and entries that may or must be beside it: {'span': (m, m)}, and all by key."""
+    """Read {from: 2 mm, to: 5 mm} with more entries beside it: {'span': (m, m)}, and all by key."""
     names = ("from", "to", *needed, *more)
     given = mapping(entry, names, "write {from: 2 mm, to: 5 mm}", more)
     first, last = (_quantity(given[name].value, f"{entry.key} {name}", "length") for name in ("from", "to"))

@@ -108,7 +108,7 @@ def _lead(one, found, span, step):
     """Lead-in [m] of a slot: from under the tip of a shank that lies askew to as far beyond its middle.
 
     It is so narrow that a head with a flat underside rests on both rails wherever the shank stands in it:
-    with its shank at one rail and none under its head at the other, it hangs askew and stays. A cone does not.
+    with its shank at one rail and none under its head at the other it hangs askew and stays; a cone does not.
     """
     tip = one.distance - one.shift + found.tip - SINKS * 0.5 * found.shank
     near = max(min(tip, span[0] - WIDER), RAIL)

@@ -1,0 +1,82 @@
+"""What ``feeder tooling`` says of its own proposal: the trial comes first, and the next best are tried."""
+
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.designing import own_trial
+from feederscrew.output.tooling import bowl_file, tables
+from feederscrew.studies.tooling import tooling, tooling_without
+
+PART = shapes.part(shapes.box(20, 12, 5))
+
+
+@pytest.fixture(scope="module")
+def study():
+    return tooling(PART, bowls.read(None, []), "A", rule="csa", verdicts=1)
+
+
+@dataclass
+class Verdicts:
+    """Stands for the trial: denies as many chains as it is told."""
+
+    denials: int
+
+    def __call__(self, study, one, *_):
+        self.denials -= 1
+        faults = ("nothing leaves as wanted",) if self.denials >= 0 else ()
+        devices, name = own_trial._devices(one), study.orientations[one.wanted].name
+        return own_trial.TriedDesign(name, one.wanted, devices, one.efficiency, 0.0, np.nan, 6, faults)
+
+
+def tried(monkeypatch, study, denials):
+    monkeypatch.setattr(own_trial, "_tried", Verdicts(denials))
+
+    def again(kinds):
+        found = tooling_without(kinds, PART, study.bowl, "A", rule="csa", verdicts=1)
+        assert not {cut.device.kind for cut in found.design.cuts} & set(kinds)
+        return found
+
+    return own_trial.own_trials(study, again)
+
+
+def test_a_confirmed_design_is_said_to_isolate(monkeypatch, study):
+    found = tried(monkeypatch, study, 0)
+    assert tables.document(found)["status"] == "confirmed"
+    assert tables.document(found)["isolated"] is True
+    assert tables.remarks(found)[0].endswith("of 6 parts tried 0 % do, and the trial agrees")
+
+
+def test_what_the_trial_denies_is_not_isolated_and_the_next_best_are_tried(monkeypatch, study):
+    found = tried(monkeypatch, study, 3)
+    assert found.design is study.design
+    assert 2 <= len(found.trials) <= own_trial.BEST
+    told = tables.document(found)
+    assert (told["status"], told["isolated"], told["isolated_static"]) == ("denied", False, True)
+    assert found.isolates(found.wanted) is False
+    assert tables.remarks(found)[0].startswith(
+        f"{found.orientations[found.wanted].name} is not isolated: the"
+    )
+    assert "the trial denies it: nothing leaves as wanted" in tables.remarks(found)[0]
+    denied, agreed = tables.trials(found)
+    assert len(denied) == len(found.trials) - 1 and not agreed
+    assert all(text.startswith("tried as well, ") for text in denied)
+    assert "# DENIED by its trial: nothing leaves as wanted." in bowl_file.bowl_file(found, ())
+
+
+def test_the_next_best_that_holds_is_taken(monkeypatch, study):
+    found = tried(monkeypatch, study, 1)
+    assert found.design.devices != study.design.devices
+    assert not found.trials[0].faults and found.trials[1].faults
+    assert tables.document(found)["status"] == "confirmed"
+
+
+def test_without_a_trial_the_static_rule_is_named(study):
+    assert tables.document(study)["status"] == "static"
+    none = replace(study, designs=tuple(SimpleNamespace(isolated=False) for _ in study.designs))
+    assert tables.status(none, 0) == "none"
+    assert "# By the static rule, not tried: see feeder trial." in bowl_file.bowl_file(study, ())
