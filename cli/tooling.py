@@ -102,9 +102,9 @@ def tooling(part, aspect, rule, asked, cad, static, taken, bowl, pictures, out):
     it has the chain of fewest devices. Each has the smallest cut that still returns and the largest that
     still passes. Devices that the bowl file already lists stay before the design.
 
-    What is proposed is tried with a few parts of each orientation, of the table the best three, and what
-    the trial says comes first. Where it denies the chain of one orientation, up to two others are tried,
-    without one of its devices; --static leaves that out.
+    A few parts of each orientation are sent through what is proposed, of the table through the best
+    three. What that trial says comes first. Where it denies the chain of one orientation, up to two others
+    are tried, without one of its devices. --static leaves the trial out.
 
     With -o: tooling.csv, tooling.json and tooling.png. An aspect adds tooling.yaml, a bowl file with the
     devices for feeder rate, report and batch. It adds tooling.dxf and tooling.svg, 1:1 in mm, unrolled and

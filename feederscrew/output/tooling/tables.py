@@ -97,7 +97,7 @@ def summary(study, format="csv"):
     rows = [
         {
             "device": cut.device.kind,
-            "value": cut.device.text,
+            "value": cut.device.short,
             "margin_pass_mm": cut.margin_pass / MM,
             "margin_reject_mm": cut.margin_reject / MM,
             "smallest_cut": cut.smallest.text,

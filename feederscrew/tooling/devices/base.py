@@ -240,6 +240,11 @@ class Device:
         """'gap 9 mm': kind and value, the latter where it is one number."""
         return f"{self.kind} {self.text}" if math.isfinite(self.limit) else self.kind
 
+    @property
+    def short(self):
+        """Its value as a table has it."""
+        return self.text
+
     def beside(self, width):
         """Return the ConfigError of a hole that lies beside a track of some width [m]."""
         what = f"{self.kind} lies beside the track: {_told(width)}"

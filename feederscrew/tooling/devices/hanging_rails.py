@@ -99,6 +99,13 @@ class Rails(Device):
         margin = min(held, -over) if held > 0.0 else over
         return met.verdict(margin, hangs=margin >= 0.0 and over < 0.0)
 
+    @property
+    def short(self):
+        if not self.lead:
+            return self.text
+        near, far = (end / MM for end in self.lead[:2])
+        return f"{written(self.span)}, lead-in {near:.6g} to {far:.6g} mm"
+
     def told(self):
         if not self.lead:
             return super().told()
