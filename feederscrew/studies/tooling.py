@@ -56,14 +56,14 @@ class ToolingStudy(Shown):
     wanted: int | None  # the orientation asked for; None for all of them
     trials: tuple[Any, ...] = ()  # designing.own_trial.TriedDesign of what was tried, that of `design` first
 
-    def trial_of(self, place):
+    def trial_of(self, place: int) -> Any:
         """Return what the trial of an orientation's design said: its TriedDesign; None without one."""
         return next((one for one in self.trials if one.wanted == place), None)
 
-    def isolates(self, place):
+    def isolates(self, place: int) -> bool:
         """Return whether an orientation is isolated: by the static rule, and not denied by its trial."""
         found, tried = self.designs[place], self.trial_of(place)
-        return found.isolated and not (tried is not None and tried.faults)
+        return found is not None and found.isolated and not (tried is not None and tried.faults)
 
     @property
     def design(self) -> Design | None:
@@ -182,7 +182,15 @@ def tooling(
     )
 
 
-def tooling_without(kinds, part, bowl, aspect, *, without=(), **asked):
+def tooling_without(
+    kinds: Sequence[str],
+    part: Part,
+    bowl: Bowl,
+    aspect: str | None,
+    *,
+    without: str | Sequence[str] = (),
+    **asked: Any,
+) -> ToolingStudy:
     """Return the study of an orientation with fewer kinds of devices, at once: no holes are searched.
 
     Parameters
