@@ -4,7 +4,7 @@ import numpy as np
 
 from feederscrew.dropping.kernel import body
 from feederscrew.trial.kernel import contact, supports
-from feederscrew.trial.kernel.crowd_records import Crowd
+from feederscrew.trial.kernel.crowd_records import LISTS, Crowd
 
 CONTACTS = 96  # of a part with the track at a time
 PAIRS = 400  # contacts between parts at a time
@@ -26,7 +26,7 @@ def crowd_of(solid, surface, count):
     Crowd
     """
     corners, edges, plates = len(solid.corners), len(solid.edges), len(surface.plates)
-    pairs = 2 * PAIRS if count > 1 else 0
+    rims, pairs = len(solid.rims), 2 * PAIRS if count > 1 else 0
 
     def numbers(*shape):
         return np.zeros((count, *shape))
@@ -39,13 +39,16 @@ def crowd_of(solid, surface, count):
         tangents=numbers(2), leans=numbers(5), given=numbers(6), free=numbers(3), blown=numbers(7),
         rows=numbers(CONTACTS, contact.WIDTH), counts=places(),
         known=numbers(CONTACTS, 4), knowns=places(), lasted=np.full(count, -1.0),
-        made=np.full((count, 8), -1.0),
-        ends=places(plates, 4), verts=places(3, 2 * corners), sides=places(SIDES * corners + 100),
-        edges=places(NEAR, 3), posts=places(NEAR, 2), corners=places(NEAR, 3), walled=places(corners + 1),
+        made=np.full((count, 10), -1.0), made_at=numbers(3),
+        ends=places(plates, LISTS), verts=places(3, 2 * corners), heights=numbers(2 * corners),
+        sides=places(SIDES * corners + 100),
+        edges=places(NEAR, 3), edge_gaps=numbers(NEAR), posts=places(NEAR, 2), corners=places(NEAR, 3),
+        walled=places(corners + 1), wall_gaps=numbers(corners + 1),
         frame=np.zeros(12), shown=np.zeros((corners, 3)), seen=np.zeros(corners, np.int64),
-        spans=np.zeros((edges, 6)), blocks=np.zeros(edges, np.int64),
+        blocks=np.zeros(edges, np.int64),
         low=np.zeros(max(corners, CONTACTS), np.int64),
-        levels=np.zeros((corners + 2 * CONTACTS, supports.COLUMNS)),
+        rims=places(plates * rims, 2), rims_walled=places(rims + 1),
+        levels=np.zeros((corners + 8 * rims + 2 * CONTACTS, supports.COLUMNS)),
         best=np.zeros((supports.WAYS + 1, 2)), near=np.zeros(max(len(surface.borders), 1), np.int64),
         close=np.zeros(max(len(surface.borders), 1), np.int64),
         box=np.zeros(6),

@@ -8,7 +8,7 @@ from feederscrew import check
 from feederscrew.geometry.compiled import on_disk
 from feederscrew.trial import air, runs, sensed_rides, staging, stations, whereabouts
 from feederscrew.trial.arrays import crowd_of
-from feederscrew.trial.kernel import jets, travel
+from feederscrew.trial.kernel import crowd_records, jets, travel
 
 TAIL = 1.2  # of the part's size: track behind the outlet, on which a whole part still lies as it leaves
 
@@ -90,7 +90,9 @@ class PartsOnTrack:
     def lay(self, n, state):
         """Put part n onto the track."""
         self.arrays.states[n] = state
-        self.arrays.made[n, -1] = self.arrays.lasted[n] = -1.0  # no list of it holds, no impulse is known
+        self.arrays.made[n, crowd_records.REACHES] = self.arrays.lasted[
+            n
+        ] = -1.0  # no list of it holds, no impulse is known
         self.arrays.blown[n, jets.AGAIN] = -1.0  # nor what blows on it
         self.on[n] = True
 

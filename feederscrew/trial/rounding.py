@@ -1,36 +1,60 @@
-"""Round sides that are round: points between the corners of the circles in which a part rolls."""
+"""Round sides that are round: the circles of a part's hull, which touch as circles."""
+
+from typing import NamedTuple
 
 import numpy as np
 
 from feederscrew import check
 from feederscrew.geometry import vectors
-from feederscrew.trial.shape import boxes, on_hull, together
+from feederscrew.trial.shape import alone, boxes, on_hull, together
 
-FINE = np.radians(2.0)  # between two points of a circle that touches
-COARSEST = np.radians(45.0)  # corners further apart belong to a polygon, as of a hexagon's head
+FINE = np.radians(6.0)  # between two corners of a circle, for what it touches the borders of cuts with
+COARSEST = np.radians(45.0)  # corners further apart belong to a polygon, as of a hexagon's head, ...
+CLOSE = np.radians(10.0)  # ... and about an axis on which the part does not roll, these
 LEAST = 9  # corners of a circle
 ALIKE = 2e-3  # of the unit of length: corners that far apart may be of one circle
+ALONG = 1.0 - 1e-6  # [1] cosine between axes that are one
 
 
 def rounded(solid, axes):
-    """Return a part whose circles about some axes touch with points of their own, not with facets.
+    """Return a part whose circles touch surfaces as circles, not with facets.
 
     Parameters
     ----------
     solid : TrueSolid
     axes : (N, 3) float [1]
-        About which it rolls, in the axes of the solid.
+        About which it rolls, in the axes of the solid; circles about its principal axes are looked for, too,
+        of nearer corners.
 
     Returns
     -------
     TrueSolid
-        The chords between the corners stay as edges; they lie inside the circles.
+        With these circles, and with points between corners of them that are far apart. The chords between
+        the corners stay as edges; they lie inside the circles.
     """
-    made = [between(solid.corners, axis) for axis in axes]
-    points = np.concatenate([np.empty((0, 3)), *(found for found, _ in made)])
+    straight = [one for one in np.eye(3) if not any(abs(vectors.dot(one, axis)) > ALONG for axis in axes)]
+    made = [(axis, COARSEST) for axis in axes] + [(axis, CLOSE) for axis in straight]
+    found = [ring for axis, gap in made for ring in circles(solid.corners, axis, gap)]
+    found = [ring for ring in found if solid.outer[ring.corners].mean() > 0.5]
+    if not found:
+        return solid
+    solid = _with_points(solid, found)
+    ringed = np.zeros(len(solid.corners), bool)
+    for ring in found:
+        ringed[ring.corners] = True
+    ringed[len(solid.corners) - sum(len(ring.points) for ring in found) :] = True
+    rims = np.array([[*ring.centre, *ring.axis, ring.radius] for ring in found])
+    return solid._replace(
+        rims=check.frozen(rims), ringed=check.frozen(ringed), **alone(solid.corners, ringed)
+    )
+
+
+def _with_points(solid, rings):
+    """A part with further corners, the points of its circles."""
+    points = np.concatenate([ring.points for ring in rings])
     if not len(points):
         return solid
-    ends = np.concatenate([found for _, found in made])
+    ends = np.concatenate([ring.ends for ring in rings])
     count, more = len(solid.corners), len(points)
     far = np.array([np.argmax(vectors.length(solid.corners - point)) for point in points])
     own = np.column_stack([ends, far])
@@ -49,39 +73,48 @@ def rounded(solid, axes):
     )
 
 
-def between(corners, axis):
-    """Return points on the circles of corners about an axis through the origin.
+class Circle(NamedTuple):
+    """A circle through corners of a part; P points between them."""
+
+    corners: np.ndarray  # int, which corners
+    centre: np.ndarray  # (3,)
+    axis: np.ndarray  # (3,) [1]
+    radius: float
+    points: np.ndarray  # (P, 3) between neighbouring corners that are further apart than FINE
+    ends: np.ndarray  # (P, 2) int, those corners
+
+
+def circles(corners, axis, gap=COARSEST):
+    """Return the circles (a list of Circle) through corners, about an axis through the origin.
 
     Parameters
     ----------
     corners : (C, 3) float [L]
     axis : (3,) float [1]
-
-    Returns
-    -------
-    points : (P, 3) float [L]
-        Between neighbouring corners of a circle.
-    ends : (P, 2) int
-        Those corners.
+    gap : float [rad]
+        Neighbouring corners further apart are of a polygon.
     """
     across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
     across = vectors.unit(across)
     aside = np.cross(axis, across)
     along, x, y = (vectors.product(corners, one) for one in (axis, across, aside))
     away, turn = np.hypot(x, y), np.arctan2(y, x)
-    points, ends = [np.empty((0, 3))], [np.empty((0, 2), int)]
+    found = []
     for ring in _rings(along, away):
         ring = ring[np.argsort(turn[ring])]
         gaps = np.diff(turn[ring], append=turn[ring[0]] + 2.0 * np.pi)
-        if len(ring) < LEAST or gaps.max() > COARSEST:
+        if len(ring) < LEAST or gaps.max() > gap:
             continue
-        for k, gap in enumerate(gaps):
-            steps = int(np.ceil(gap / FINE))
-            at = turn[ring[k]] + gap * np.arange(1, steps)[:, None] / steps
-            circle = np.cos(at) * across + np.sin(at) * aside
-            points.append(along[ring].mean() * axis + away[ring].max() * circle)
+        centre, radius = along[ring].mean() * axis, away[ring].max()
+        points, ends = [np.empty((0, 3))], [np.empty((0, 2), int)]
+        for k, wide in enumerate(gaps):
+            steps = int(np.ceil(wide / FINE))
+            at = turn[ring[k]] + wide * np.arange(1, steps)[:, None] / steps
+            points.append(centre + radius * (np.cos(at) * across + np.sin(at) * aside))
             ends.append(np.tile([ring[k], ring[(k + 1) % len(ring)]], (steps - 1, 1)))
-    return np.concatenate(points), np.concatenate(ends)
+        between = np.concatenate(points), np.concatenate(ends)
+        found.append(Circle(ring, centre, np.array(axis, float), float(radius), *between))
+    return found
 
 
 def _rings(along, away):

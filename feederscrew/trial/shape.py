@@ -34,6 +34,10 @@ class TrueSolid(NamedTuple):
     corner_blocks: np.ndarray  # (ceil(C / BLOCK), 6) least and greatest place of so many corners
     edge_blocks: np.ndarray  # (ceil(E / BLOCK), 6) the same of edges
     face_blocks: np.ndarray  # (ceil(T / BLOCK), 6) and of triangles
+    rims: np.ndarray  # (K, 7) circles of its hull that touch as circles: centre, axis, radius
+    ringed: np.ndarray  # (C,) bool, corners on them
+    singles: np.ndarray  # (S,) int, corners of the hull that are on no circle, grouped
+    single_blocks: np.ndarray  # (ceil(S / BLOCK), 6) least and greatest place of so many
     inertia: np.ndarray  # (3,) principal moments at mass 1
     radius: float  # largest distance of a corner
 
@@ -75,7 +79,6 @@ def solid_of(part):
     corners = check.frozen(corners[order])
     order = together(corners[place[part.faces]].mean(axis=1))
     triangles, normals = place[part.faces][order], normals[order]
-    grouped = together(corners[: touches.sum()])
     firsts, beside = neighbours(triangles, int(touches.sum()))
     return (
         TrueSolid(
@@ -88,9 +91,7 @@ def solid_of(part):
             beside=check.frozen(beside),
             triangles=check.frozen(triangles),
             normals=check.frozen(normals),
-            outer=check.frozen(on_hull(corners[: touches.sum()])),
-            grouped=check.frozen(grouped),
-            corner_blocks=check.frozen(boxes(corners[grouped][:, None])),
+            **_found_by(corners[: touches.sum()]),
             edge_blocks=check.frozen(boxes(corners[place[ends]])),
             face_blocks=check.frozen(boxes(corners[triangles])),
             inertia=check.frozen(moments / (part.mass * length**2)),
@@ -125,6 +126,23 @@ def onwards(corners, place, ends, hollow):
     """
     length = vectors.length(corners[place[ends[:, 1]]] - corners[place[ends[:, 0]]])
     return np.where(np.isin(ends, hollow), ONWARDS / length[:, None], 0.0)
+
+
+def _found_by(corners):
+    """How corners (C, 3) [L] are found near something; none is on a circle yet."""
+    none, grouped = np.zeros(len(corners), bool), together(corners)
+    return {
+        "outer": check.frozen(on_hull(corners)), "grouped": check.frozen(grouped),
+        "corner_blocks": check.frozen(boxes(corners[grouped][:, None])),
+        "rims": check.frozen(np.zeros((0, 7))), "ringed": check.frozen(none), **alone(corners, none),
+    }  # fmt: skip
+
+
+def alone(corners, ringed):
+    """Return ``singles``, ``single_blocks`` of corners (C, 3) [L] of which some are on circles, (C,) bool."""
+    own = np.flatnonzero(on_hull(corners) & ~ringed)
+    own = own[together(corners[own])] if len(own) else own
+    return {"singles": check.frozen(own), "single_blocks": check.frozen(boxes(corners[own][:, None]))}
 
 
 def on_hull(corners):

@@ -7,7 +7,9 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
+from feederscrew.conveying import answer
 from feederscrew.dropping.launches import named
+from feederscrew.geometry import vectors
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies import rate
@@ -24,6 +26,7 @@ from feederscrew.trial import (
     stations,
     whereabouts,
 )
+from feederscrew.trial.kernel import circles_met
 
 OWN = [
     "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",
@@ -176,10 +179,36 @@ def test_a_round_side_touches_with_points_on_its_circle():
     axis = np.eye(3)[np.argmax(np.abs(solid.inertia - np.median(solid.inertia)))]
     fine = rounding.rounded(solid, [axis])
     across = fine.corners - np.einsum("ci,i->c", fine.corners, axis)[:, None] * axis
-    assert len(fine.corners) == 2 * 24 * 8  # 15 degrees in parts of at most 2
+    assert len(fine.corners) == 2 * 24 * 3  # 15 degrees in parts of at most 6
+    assert fine.ringed.all() and not len(fine.singles)
+    np.testing.assert_allclose(fine.rims[:, 6] * length, 5e-3, rtol=1e-5)
+    np.testing.assert_allclose(np.sort(vectors.product(fine.rims[:, :3], axis)) * length, [-4e-3, 4e-3])
     np.testing.assert_allclose(np.linalg.norm(across, axis=1) * length, 5e-3, rtol=1e-5)
     np.testing.assert_array_equal(fine.vertices[fine.triangles], solid.vertices[solid.triangles])
-    assert len(rounding.rounded(shape.solid_of(PART)[0], [axis]).corners) == 8  # a box has no circle
+    box = rounding.rounded(shape.solid_of(PART)[0], [axis])
+    assert len(box.corners) == 8 and not len(box.rims)  # a box has no circle
+
+
+def test_a_circle_touches_at_its_lowest_point_and_lying_flat_furthest_out():
+    rim = np.array([0.0, 0.0, 0.5, 0.0, 0.0, 1.0, 2.0])  # about z, half over the middle, of radius 2
+    for tilt in (0.0, 0.3, np.pi / 2):
+        c, s = np.cos(tilt), np.sin(tilt)
+        frame = np.array([c, 0.0, s, 0.0, 1.0, 0.0, -s, 0.0, c, 0.0, 0.0, 3.0])
+        low, sine = circles_met.lowest(frame, rim)
+        turn = np.linspace(0.0, 2.0 * np.pi, 2001)
+        circle = np.column_stack([2.0 * np.cos(turn), 2.0 * np.sin(turn), np.full(2001, 0.5)])
+        assert low == pytest.approx(
+            (vectors.product(circle, frame[6:9])).min() + 3.0, abs=1e-5
+        ) and sine == pytest.approx(s)
+
+
+def test_a_washer_lies_on_a_few_points_of_its_rim():
+    washer, bowl = load("parts/washer_m6.stl"), bowls.read(None, [])
+    every = orientations(washer, find(washer), bowl.track)
+    flat = next(k for k, one in enumerate(every) if one.height < 2e-3)
+    seen = course.course(washer, bowl, every, [flat], (), parts=1)
+    assert seen.fates[0] == course.PASSED and seen.depths[0] < 1e-5 and seen.gains[0] < 1e-6
+    assert seen.velocities[0] == pytest.approx(answer.answer(bowl).velocity, rel=0.05)
 
 
 def test_a_bridge_stands_on_its_legs():

@@ -52,18 +52,25 @@ def levers(row, turn, inertia, spot):
     masses(row)
 
 
-@apart
+@compiled
 def put(crowd, n, solid, spot, normal, gap, rub, key):
     """Add a contact of part n at a spot (3,) [L] in its axes, with a normal (3,) [1] in the bowl's frame."""
     count = crowd.counts[n]
     if count >= crowd.rows.shape[1]:
         return
     row = crowd.rows[n, count]
-    axes(row, crowd.tangents[n], normal)
-    levers(row, crowd.turns[n], solid.inertia, spot)
+    row[TOWARDS], row[TOWARDS + 1], row[TOWARDS + 2] = normal
     row[GAP], row[RUB], row[KEY] = gap, rub, key
     row[SPOT], row[SPOT + 1], row[SPOT + 2] = spot
+    _filled(row, crowd.tangents[n], crowd.turns[n], solid.inertia)
     crowd.counts[n] = count + 1
+
+
+@apart
+def _filled(row, tangent, turn, inertia):
+    """Write axes, levers, rates and masses of a contact with its normal and spot."""
+    axes(row, tangent, (row[TOWARDS], row[TOWARDS + 1], row[TOWARDS + 2]))
+    levers(row, turn, inertia, (row[SPOT], row[SPOT + 1], row[SPOT + 2]))
 
 
 @compiled

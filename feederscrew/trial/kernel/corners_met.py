@@ -10,15 +10,17 @@ import math
 
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import apart, compiled
-from feederscrew.trial.kernel import contact, edges_met, near, plate_views, supports
+from feederscrew.trial.kernel import circles_met, contact, edges_met, near, plate_views, supports
 from feederscrew.trial.kernel.contact import GAP, KINDS, SPOT, put
 from feederscrew.trial.kernel.crowd_records import (
     CORNERS,
     DEPTH,
     EDGES,
     LEAN,
+    MOVED,
     NORMAL,
     POSTS,
+    RIMS,
     ROUNDED,
     RUBS,
     VERTS,
@@ -33,10 +35,10 @@ AS_FAR = 4.0  # times its depth: a deeper contact is none where so near to it an
 @apart
 def found(surface, solid, crowd, n, reach):
     """Find every contact of part n within ``reach`` [L]; its turn and tangent are of its place."""
-    if not near.hold(crowd, solid, n, reach):
+    if not near.hold(surface, solid, crowd, n, reach):
         near.look_around(surface, solid, crowd, n, reach)
     crowd.counts[n] = 0
-    if crowd.walled[n, 0]:
+    if crowd.walled[n, 0] or crowd.rims_walled[n, 0]:
         _on_wall(surface, solid, crowd, n, reach)
     for k in range(len(surface.plates)):
         fewer = max(k - 1, 0)
@@ -44,6 +46,7 @@ def found(surface, solid, crowd, n, reach):
             crowd.ends[n, k, VERTS] == crowd.ends[n, fewer, VERTS]
             and crowd.ends[n, k, EDGES] == crowd.ends[n, fewer, EDGES]
             and crowd.ends[n, k, POSTS] == crowd.ends[n, fewer, POSTS]
+            and crowd.ends[n, k, RIMS] == crowd.ends[n, fewer, RIMS]
             and crowd.ends[n, k, CORNERS] == crowd.ends[n, fewer, CORNERS]
         ):
             continue
@@ -51,6 +54,7 @@ def found(surface, solid, crowd, n, reach):
         begun = crowd.counts[n]
         _dips(surface, solid, crowd, n, k)
         lying = _corners_on(surface, solid, crowd, n, k, reach)
+        lying = circles_met.rims_on(surface, solid, crowd, n, k, reach, lying)
         lying = edges_met.edges_on(surface, solid, crowd, n, k, reach, lying)
         edges_met.edges_on_posts(surface, solid, crowd, n, k, reach)
         lying = edges_met.faces_on(surface, solid, crowd, n, k, reach, lying)
@@ -64,7 +68,10 @@ def _on_wall(surface, solid, crowd, n, reach):
     """Add contacts with the wall, a cone in the track's frame where that is banked."""
     state, turn, lows = crowd.states[n], crowd.turns[n], 0
     lean, up, radius = crowd.leans[n, LEAN], crowd.leans[n, LEAN + 1], surface.radius
+    far = crowd.made[n, MOVED] + reach
     for m in range(1, crowd.walled[n, 0] + 1):
+        if crowd.wall_gaps[n, m] > far:
+            continue
         p = solid.corners[crowd.walled[n, m]]
         x = turn[0] * p[0] + turn[1] * p[1] + turn[2] * p[2]
         y = turn[3] * p[0] + turn[4] * p[1] + turn[5] * p[2]
@@ -74,6 +81,7 @@ def _on_wall(surface, solid, crowd, n, reach):
             place = crowd.tangents[n, 0] * x + crowd.tangents[n, 1] * y, z
             key = -KINDS * (1 + crowd.walled[n, m])
             lows = supports.add(crowd.levels, lows, place, gap, p, key)
+    lows = circles_met.rims_on_wall(surface, solid, crowd, n, reach, lows)
     for m in range(supports.outermost(crowd.levels, crowd.best, lows)):
         row = crowd.levels[m]
         p = row[supports.SPOT], row[supports.SPOT + 1], row[supports.SPOT + 2]
@@ -129,7 +137,10 @@ def _dips(surface, solid, crowd, n, k):
 def _corners_on(surface, solid, crowd, n, k, reach):
     """Add contacts of the part's corners with a plate's sides and back; how many lie on its surface."""
     plate, frame, lows = surface.plates[k], crowd.frame, 0
+    far = crowd.made[n, MOVED] + reach
     for m in range(first_of(crowd, n, k, VERTS), crowd.ends[n, k, VERTS]):
+        if crowd.heights[n, m] > far:
+            continue
         corner = crowd.verts[n, 0, m]
         p = solid.corners[corner]
         c = frame[6] * p[0] + frame[7] * p[1] + frame[8] * p[2] + frame[11]
@@ -143,7 +154,7 @@ def _corners_on(surface, solid, crowd, n, k, reach):
                 put(crowd, n, solid, (p[0], p[1], p[2]), normal, -plate[DEPTH] - c, plate[RUBS], key)
         else:
             on_top = _by_borders(surface, solid, crowd, n, k, (m, reach, a, b, c))
-        if on_top:
+        if on_top and not solid.ringed[corner]:
             lows = supports.add(crowd.levels, lows, (a, b), c, p, KINDS * (corner + 1e6 * k))
     return lows
 

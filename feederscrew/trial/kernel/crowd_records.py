@@ -14,7 +14,8 @@ RUBS, BOX = 16, 17  # its own friction, NaN for that of the track; least and gre
 NORMAL, BEND, END, BEFORE = 4, 6, 7, 8  # of a border: normal; a convex corner at its start; the drawing's end
 ONWARDS = 10  # ... how far it goes on in the solid before its start and behind its end (2)
 LEAN = 3  # how the track leans where a part is: gravity (3), then the bowl's axis (2)
-VERTS, EDGES, POSTS, CORNERS = range(4)  # lists of what of a part is near a plate
+REACHES, MOVED, FREE = 7, 8, 9  # of what is noted as lists are made
+VERTS, EDGES, POSTS, CORNERS, RIMS, LISTS = range(6)  # lists of what of a part is near a plate
 
 
 class Surface(NamedTuple):
@@ -69,18 +70,25 @@ class Crowd(NamedTuple):
     known: np.ndarray  # (N, R, 4) of the step before: which contact, its impulses
     knowns: np.ndarray  # (N,) int, of them
     lasted: np.ndarray  # (N,) that step; negative where its impulses are not to be begun with
-    made: np.ndarray  # (N, 8) place and attitude at which the lists were made, and how far off they reach
-    ends: np.ndarray  # (N, P, 4) int, where the candidates of each plate end in the lists
+    # (N, 10) place and attitude at which the lists were made, how far off they reach, how far it has moved
+    # since, how far along the track it may go
+    made: np.ndarray
+    made_at: np.ndarray  # (N, 3) tangent of the wall there, and how far from the axis
+    ends: np.ndarray  # (N, P, LISTS) int, where the candidates of each plate end in the lists
     verts: np.ndarray  # (N, 3, ...) int, corners near a plate, and where their borders begin and end
+    heights: np.ndarray  # (N, ...) of those corners over the plate, as the lists were made
     sides: np.ndarray  # (N, ...) int, those borders
     edges: np.ndarray  # (N, ..., 3) int, edges near a border: edge, border, front or back
+    edge_gaps: np.ndarray  # (N, ...) how far from the border, as the lists were made
     posts: np.ndarray  # (N, ..., 2) int, edges near what runs straight back from a border's start
     corners: np.ndarray  # (N, ..., 3) int, faces near a border's start: border, front or back, face
+    rims: np.ndarray  # (N, ..., 2) int, circles near a plate's surface, and whether no border is near
+    rims_walled: np.ndarray  # (N, K + 1) int, how many circles are near the wall, and which
     walled: np.ndarray  # (N, C + 1) int, how many corners are near the wall, and which
+    wall_gaps: np.ndarray  # (N, C + 1) and how far from the wall, as the lists were made
     frame: np.ndarray  # (12,) how a plate sees a part, or a part another: rotation and place
     shown: np.ndarray  # (C, 3) corners as a plate, or another part, sees them
     seen: np.ndarray  # (C,) int, which corners those are
-    spans: np.ndarray  # (E, 6) both ends of edges as a plate sees them
     blocks: np.ndarray  # (E,) int, of which blocks of edges
     low: np.ndarray  # (C,) int
     levels: np.ndarray  # (L, 7) contacts that push one way, of `supports`

@@ -10,6 +10,8 @@ from feederscrew.trial.kernel.crowd_records import (
     CORNERS,
     DEPTH,
     EDGES,
+    LAST,
+    MOVED,
     NORMAL,
     ONWARDS,
     POSTS,
@@ -19,6 +21,10 @@ from feederscrew.trial.kernel.crowd_records import (
 from feederscrew.trial.kernel.plate_views import DEEP, PARALLEL, SLANT, in_body, in_bowl, placed
 
 LEVEL = 0.7  # [1] of a normal against a plate's front: one that lies flatter stops a part
+SUNK = (
+    0.01  # in units of the part's length: what is deeper in something as the lists are made is not followed
+)
+ON = 0.9  # [1] cosine between borders of which one goes on from the other nearly straight
 ONE = 1e-2  # edges that touch so near to each other, with ...
 ALIKE = 0.995  # [1] ... normals so alike, are one contact
 
@@ -27,6 +33,17 @@ ALIKE = 0.995  # [1] ... normals so alike, are one contact
 def first_of(crowd, n, k, which):
     """Return where the candidates of a plate begin in a list of a part's."""
     return crowd.ends[n, k - 1, which] if k else 0
+
+
+@compiled
+def _dip(surface, plate, crowd, k):
+    """How deep corners of the part come beside a border or one that goes on from it nearly straight."""
+    low, n = crowd.dips[k], surface.borders[k]
+    if k + 1 < plate[LAST]:
+        m = surface.borders[k + 1]
+        if m[0] == n[2] and m[1] == n[3] and n[NORMAL] * m[NORMAL] + n[NORMAL + 1] * m[NORMAL + 1] > ON:
+            low = min(low, crowd.dips[k + 1])
+    return low
 
 
 @compiled
@@ -61,7 +78,10 @@ def _put_edge(crowd, n, solid, at, normal, gap, rub, key):
 def edges_on(surface, solid, crowd, n, k, reach, lying):
     """Add contacts of edges with a plate's borders within ``reach`` [L]; return how many carry it."""
     plate, frame = surface.plates[k], crowd.frame
+    far = crowd.made[n, MOVED] + reach + SUNK
     for m in range(first_of(crowd, n, k, EDGES), crowd.ends[n, k, EDGES]):
+        if crowd.edge_gaps[n, m] > far:
+            continue
         edge, border = crowd.edges[n, m, 0], surface.borders[crowd.edges[n, m, 1]]
         back = crowd.edges[n, m, 2] > 0
         i, j = solid.corners[solid.edges[edge, 0]], solid.corners[solid.edges[edge, 1]]
@@ -71,7 +91,9 @@ def edges_on(surface, solid, crowd, n, k, reach, lying):
             c, f = -plate[DEPTH] - c, -plate[DEPTH] - f
         ends = (-solid.onwards[edge, 0], 1.0 + solid.onwards[edge, 1])
         share, u, v, w, gap = crossing((a, b, c), (d - a, e - b, f - c), ends, border, reach)
-        if gap == math.inf or (w < LEVEL and min(c, f, crowd.dips[crowd.edges[n, m, 1]]) > -plate[ROUNDED]):
+        if gap == math.inf or (
+            w < LEVEL and min(c, f, _dip(surface, plate, crowd, crowd.edges[n, m, 1])) > -plate[ROUNDED]
+        ):
             continue
         if back:
             w = -w
@@ -141,7 +163,8 @@ def edges_on_posts(surface, solid, crowd, n, k, reach):
         height = c + share * (f - c)
         if gap == math.inf or not -plate[DEPTH] < height < 0.0:
             continue
-        if min(height, crowd.dips[crowd.posts[n, m, 1]]) > -plate[ROUNDED]:
+        low = min(height, _dip(surface, plate, crowd, crowd.posts[n, m, 1]))
+        if low > -plate[ROUNDED] or gap < low:  # it is nearer to the surface
             continue
         x, y, z = in_body(frame, u, v, 0.0)
         if _between(solid, edge, x, y, z):
@@ -196,7 +219,10 @@ def faces_on(surface, solid, crowd, n, k, reach, lying):
             f = crowd.corners[n, m, 2]
             t, v = solid.normals[f], solid.vertices[solid.triangles[f, 0]]
             off = (x - v[0]) * t[0] + (y - v[1]) * t[1] + (z - v[2]) * t[2]
-            if -DEEP < off < reach and abs(off) < abs(best) and plate_views.within(solid, f, x, y, z, 0.0):
+            nearer = (
+                -DEEP < off < reach and abs(off) < abs(best) and plate_views.within(solid, f, x, y, z, 0.0)
+            )
+            if nearer and _points_to(surface, solid, crowd, plate, (k_border, back, f)):
                 best, face = off, f
             m += 1
         if face >= 0:
@@ -206,27 +232,42 @@ def faces_on(surface, solid, crowd, n, k, reach, lying):
 
 
 @compiled
-def _put_face(surface, solid, crowd, n, k, what, lying):
-    """Add the contact of a face of the part with a corner, if the corner points to it; as ``edges_on``."""
-    plate, frame = surface.plates[k], crowd.frame
-    k_border, back, face, x, y, z, gap = what
-    t, border = solid.normals[face], surface.borders[k_border]
-    u = -(frame[0] * t[0] + frame[1] * t[1] + frame[2] * t[2])
-    v = -(frame[3] * t[0] + frame[4] * t[1] + frame[5] * t[2])
-    w = -(frame[6] * t[0] + frame[7] * t[1] + frame[8] * t[2])
+def _seen_against(frame, t):
+    """The normal of a face of the part as a plate sees it, away from the plate."""
+    return (
+        -(frame[0] * t[0] + frame[1] * t[1] + frame[2] * t[2]),
+        -(frame[3] * t[0] + frame[4] * t[1] + frame[5] * t[2]),
+        -(frame[6] * t[0] + frame[7] * t[1] + frame[8] * t[2]),
+    )
+
+
+@compiled
+def _points_to(surface, solid, crowd, plate, which):
+    """Whether a border's corner points to a face of the part: which border, front or back, which face."""
+    (k_border, back, face), frame = which, crowd.frame
+    u, v, w = _seen_against(frame, solid.normals[face])
     out = -w if back else w
-    if out < -SLANT or not _before_corner(border, u, v):
-        return lying
+    if out < -SLANT or not _before_corner(surface.borders[k_border], u, v):
+        return False
     if out < LEVEL:
-        low = crowd.dips[k_border]
+        low = _dip(surface, plate, crowd, k_border)
         for e in range(3):
             p = solid.vertices[solid.triangles[face, e]]
             c = frame[6] * p[0] + frame[7] * p[1] + frame[8] * p[2] + frame[11]
             low = min(low, -plate[DEPTH] - c if back else c)
-        if low > -plate[ROUNDED]:
-            return lying
+        return low <= -plate[ROUNDED]
+    return True
+
+
+@compiled
+def _put_face(surface, solid, crowd, n, k, what, lying):
+    """Add the contact of a face of the part with a corner; as ``edges_on``."""
+    plate = surface.plates[k]
+    k_border, back, face, x, y, z, gap = what
+    u, v, w = _seen_against(crowd.frame, solid.normals[face])
     key = 6.0 + back + KINDS * (face + 1e6 * k_border)
     if w > supports.LEVEL:
+        border = surface.borders[k_border]
         return supports.add(crowd.levels, lying, (border[0], border[1]), gap, (x, y, z), key)
     put(crowd, n, solid, (x, y, z), in_bowl(plate, u, v, w), gap, plate[RUBS], key)
     return lying

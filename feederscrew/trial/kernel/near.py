@@ -8,26 +8,51 @@ import math
 
 from feederscrew.dropping.kernel.body import Q, X, Y, Z
 from feederscrew.geometry.compiled import apart, compiled
-from feederscrew.trial.kernel.crowd_records import BOX, DEPTH, END, FIRST, LAST, LEAN, VERTS
+from feederscrew.trial.kernel import circles_met
+from feederscrew.trial.kernel.crowd_records import (
+    BOX,
+    DEPTH,
+    END,
+    FIRST,
+    FREE,
+    FRONT,
+    LAST,
+    LISTS,
+    MOVED,
+    REACHES,
+    RIMS,
+    VERTS,
+)
 from feederscrew.trial.kernel.near_borders import BLOCK, near_edges, near_faces
-from feederscrew.trial.kernel.plate_views import DEEP, beside, inside, off_wall, placed, seen_by
+from feederscrew.trial.kernel.near_wall import near_wall
+from feederscrew.trial.kernel.plate_views import DEEP, beside, inside, placed, seen_by
 
+ALONG = 0.25  # so far, in units of its length, along a bare track its lists hold
 AROUND, FURTHER = 0.02, 3.0  # how far around a part is looked, at least, and times how far contacts are
-SIDED = 4  # where it is counted how many borders near corners there are
+SIDED = 6  # where it is counted how many borders near corners there are
 
 
 @compiled
-def hold(crowd, solid, n, reach):
+def hold(surface, solid, crowd, n, reach):
     """Say whether the lists of a part still hold for contacts ``reach`` [L] ahead."""
     state, made = crowd.states[n], crowd.made[n]
-    square = turned = other = 0.0
-    for k in range(3):
-        square += (state[k] - made[k]) ** 2
-    for k in range(4):
-        turned += (state[Q + k] - made[3 + k]) ** 2
-        other += (state[Q + k] + made[3 + k]) ** 2
-    moved = math.sqrt(square) + 2.1 * solid.radius * math.sqrt(min(turned, other))
-    return moved + reach < made[7]
+    x, y = state[X] - made[X], state[Y] - made[Y]
+    square, c, s = x * x + y * y, 1.0, 0.0
+    if square < made[FREE] * made[FREE]:  # along the bare track, turned about its axis, it sees the same
+        back, new = crowd.made_at[n], crowd.tangents[n]
+        c, s = back[0] * new[0] + back[1] * new[1], back[0] * new[1] - back[1] * new[0]
+        off = (state[X] * new[1]) + (surface.radius - state[Y]) * new[0] - back[2]
+        square = off * off
+    square += (state[Z] - made[Z]) ** 2
+    half = math.sqrt(0.5 + 0.5 * c)
+    p, q = half, 0.5 * s / half
+    w, x, y = p * made[3] - q * made[6], p * made[4] - q * made[5], p * made[5] + q * made[4]
+    z = p * made[6] + q * made[3]
+    a, b, c, d = state[Q], state[Q + 1], state[Q + 2], state[Q + 3]
+    turned = (a - w) ** 2 + (b - x) ** 2 + (c - y) ** 2 + (d - z) ** 2
+    other = (a + w) ** 2 + (b + x) ** 2 + (c + y) ** 2 + (d + z) ** 2
+    made[MOVED] = math.sqrt(square) + 2.1 * solid.radius * math.sqrt(min(turned, other))
+    return made[MOVED] + reach < made[REACHES]
 
 
 @apart
@@ -39,47 +64,23 @@ def look_around(surface, solid, crowd, n, reach):
         made[k] = state[k]
     for k in range(4):
         made[3 + k] = state[Q + k]
-    made[7] = margin
-    _near_wall(surface, solid, crowd, n, margin)
-    for e in range(4):
+    made[REACHES], made[MOVED] = margin, 0.0
+    for k in range(2):
+        crowd.made_at[n, k] = crowd.tangents[n, k]
+    crowd.made_at[n, 2] = state[X] * crowd.tangents[n, 1] + (surface.radius - state[Y]) * crowd.tangents[n, 0]
+    near_wall(surface, solid, crowd, n, margin)
+    for e in range(LISTS):
         crowd.low[e] = 0  # how many are in each list
+    made[FREE] = ALONG
     for k in range(len(surface.plates)):
         plate = surface.plates[k]
         seen_by(plate, state, crowd.turns[n], crowd.frame)
-        if _meets(plate, crowd.frame, solid.radius + margin):
+        if _meets(plate, crowd.frame, solid.radius + margin + ALONG):
+            if plate[FRONT + 2] < 1.0 or _round_it(solid, crowd, plate, surface.borders, margin + ALONG):
+                made[FREE] = 0.0
             _near_plate(surface, solid, crowd, n, k, margin)
-        for e in range(4):
+        for e in range(LISTS):
             crowd.ends[n, k, e] = crowd.low[e]
-
-
-@compiled
-def _near_wall(surface, solid, crowd, n, margin):
-    state, count = crowd.states[n], 0
-    x, y = state[X], surface.radius - state[Y]
-    if math.sqrt(x * x + y * y) + solid.radius > (surface.radius - margin) * crowd.leans[n, LEAN + 1]:
-        for j in range(len(solid.corner_blocks)):
-            block = solid.corner_blocks[j]
-            p = 0.5 * (block[0] + block[3]), 0.5 * (block[1] + block[4]), 0.5 * (block[2] + block[5])
-            x, y, z = block[3] - p[0], block[4] - p[1], block[5] - p[2]
-            if _off_wall(surface, crowd, n, p) > margin + math.sqrt(x * x + y * y + z * z):
-                continue
-            for m in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.grouped))):
-                k = solid.grouped[m]
-                p = solid.corners[k, 0], solid.corners[k, 1], solid.corners[k, 2]
-                if solid.outer[k] and _off_wall(surface, crowd, n, p) < margin:
-                    count += 1
-                    crowd.walled[n, count] = k
-    crowd.walled[n, 0] = count
-
-
-@compiled
-def _off_wall(surface, crowd, n, p):
-    """How far a point of a body is from the wall."""
-    state, turn = crowd.states[n], crowd.turns[n]
-    x = state[X] + turn[0] * p[0] + turn[1] * p[1] + turn[2] * p[2]
-    y = state[Y] + turn[3] * p[0] + turn[4] * p[1] + turn[5] * p[2]
-    z = state[Z] + turn[6] * p[0] + turn[7] * p[1] + turn[8] * p[2]
-    return off_wall(surface, crowd.leans[n], x, y, z)
 
 
 @compiled
@@ -96,13 +97,43 @@ def _meets(plate, frame, far):
 def _near_plate(surface, solid, crowd, n, k, margin):
     """Add what of a part is near one plate; ``crowd.frame`` is how that sees it."""
     plate = surface.plates[k]
-    corners = _seen_corners(solid, crowd, plate, margin)
-    blocks = _seen_edges(solid, crowd, plate, margin)
-    nears, every = _near_borders(plate, surface.borders, crowd.box, margin, crowd.near)
+    nears = every = blocks = 0
+    if _round_it(solid, crowd, plate, surface.borders, margin):
+        blocks = _seen_edges(solid, crowd, plate, margin)
+        nears, every = _near_borders(plate, surface.borders, crowd.box, margin, crowd.near)
+    corners = _seen_corners(solid, crowd, plate, margin, nears == 0)
+    _near_rims(surface, solid, crowd, n, k, every, margin)
     _near_corners(surface, solid, crowd, n, k, (nears, every, corners), margin)
     for m in range(nears):
         near_edges(surface, solid, crowd, n, plate, (crowd.near[m], blocks), margin)
     near_faces(surface, solid, crowd, n, plate, nears, margin)
+
+
+@compiled
+def _round_it(solid, crowd, plate, borders, margin):
+    """Whether any border of a plate comes into the box of a ball around the part."""
+    box, far, found = crowd.box, solid.radius, False
+    for e in range(2):
+        box[2 * e], box[2 * e + 1] = crowd.frame[9 + e] - far, crowd.frame[9 + e] + far
+    for k in range(int(plate[FIRST]), int(plate[LAST])):
+        found = found or _comes(borders[k], box, margin)
+    return found
+
+
+@compiled
+def _near_rims(surface, solid, crowd, n, k, every, margin):
+    """Add the circles near a plate's surface, if no border is near only those that it is below."""
+    plate, plain = surface.plates[k], every == 0
+    for m in range(len(solid.rims)):
+        low, _ = circles_met.lowest(crowd.frame, solid.rims[m])
+        if not -DEEP - margin < low < margin:
+            continue
+        a, b, _ = placed(crowd.frame, solid.rims[m])
+        if plain and not inside(surface.borders, int(plate[FIRST]), int(plate[LAST]), a, b):
+            continue
+        count = crowd.low[RIMS]
+        crowd.rims[n, count, 0], crowd.rims[n, count, 1] = m, plain
+        crowd.low[RIMS] = count + 1
 
 
 @compiled
@@ -116,15 +147,25 @@ def _level(frame, block):
 
 
 @compiled
-def _seen_corners(solid, crowd, plate, margin):
-    """Write which corners are as high as a plate, and where it sees them; how many."""
+def _seen_corners(solid, crowd, plate, margin, plain):
+    """Write which corners are as high as a plate, and where it sees them; how many.
+
+    Where no border is near, ``plain``, only those of the hull that are on no circle: no others touch it.
+    """
+    if plain:
+        return _seen_of(solid, crowd, plate, margin, solid.singles, solid.single_blocks)
+    return _seen_of(solid, crowd, plate, margin, solid.grouped, solid.corner_blocks)
+
+
+@compiled
+def _seen_of(solid, crowd, plate, margin, which, blocks):
     count, top, bottom = 0, margin, -plate[DEPTH] - margin
-    for j in range(len(solid.corner_blocks)):
-        low, high = _level(crowd.frame, solid.corner_blocks[j])
+    for j in range(len(blocks)):
+        low, high = _level(crowd.frame, blocks[j])
         if low > top or high < bottom:
             continue
-        for m in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.grouped))):
-            k = solid.grouped[m]
+        for m in range(BLOCK * j, min(BLOCK * (j + 1), len(which))):
+            k = which[m]
             a, b, c = placed(crowd.frame, solid.corners[k])
             if bottom <= c <= top:
                 crowd.seen[count] = k
@@ -135,25 +176,26 @@ def _seen_corners(solid, crowd, plate, margin):
 
 @compiled
 def _seen_edges(solid, crowd, plate, margin):
-    """Write which blocks of edges come to a plate's height, where it sees those, and their box; how many."""
-    box, count, top, bottom = crowd.box, 0, margin, -plate[DEPTH] - margin
-    for e in range(3):
+    """Write which blocks of edges come to a plate's height, and their box; how many."""
+    box, frame, count, top, bottom = crowd.box, crowd.frame, 0, margin, -plate[DEPTH] - margin
+    for e in range(2):
         box[2 * e], box[2 * e + 1] = math.inf, -math.inf
     for j in range(len(solid.edge_blocks)):
-        low, high = _level(crowd.frame, solid.edge_blocks[j])
+        block = solid.edge_blocks[j]
+        low, high = _level(frame, block)
         if low > top + DEEP or high < bottom - DEEP:
             continue
         crowd.blocks[count] = j
         count += 1
-        for m in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.edges))):
-            p = placed(crowd.frame, solid.corners[solid.edges[m, 0]])
-            q = placed(crowd.frame, solid.corners[solid.edges[m, 1]])
-            for e in range(3):
-                crowd.spans[m, e], crowd.spans[m, 3 + e] = p[e], q[e]
-            if min(p[2], q[2]) <= top and max(p[2], q[2]) >= bottom:
-                for e in range(2):
-                    box[2 * e] = min(box[2 * e], p[e], q[e])
-                    box[2 * e + 1] = max(box[2 * e + 1], p[e], q[e])
+        if low > top or high < bottom:
+            continue
+        for e in range(2):
+            middle, half = frame[9 + e], 0.0
+            for i in range(3):
+                middle += 0.5 * frame[3 * e + i] * (block[i] + block[3 + i])
+                half += 0.5 * abs(frame[3 * e + i]) * (block[3 + i] - block[i])
+            box[2 * e] = min(box[2 * e], middle - half)
+            box[2 * e + 1] = max(box[2 * e + 1], middle + half)
     return count
 
 
@@ -205,12 +247,11 @@ def _near_corners(surface, solid, crowd, n, k, found, margin):
             if not inside(surface.borders, int(plate[FIRST]), int(plate[LAST]), a, b):
                 continue
         for m in range(begin, end):
-            if nears or solid.outer[crowd.seen[m]]:
-                _near_corner(surface, crowd, n, k, (m, few, plain), margin)
+            _near_corner(surface, solid, crowd, n, k, (m, few, plain), margin)
 
 
 @compiled
-def _near_corner(surface, crowd, n, k, which, margin):
+def _near_corner(surface, solid, crowd, n, k, which, margin):
     """Add a corner with the borders near it, of the few that come near to those around it."""
     plate, borders, (m, few, plain) = surface.plates[k], surface.borders, which
     a, b, c = crowd.shown[m, 0], crowd.shown[m, 1], crowd.shown[m, 2]
@@ -221,7 +262,7 @@ def _near_corner(surface, crowd, n, k, which, margin):
             crowd.sides[n, sides] = crowd.close[e]
             sides += 1
     if sides == begun:
-        if -plate[DEPTH] + DEEP + margin < c < -DEEP - margin:
+        if -plate[DEPTH] + DEEP + margin < c and (c < -DEEP - margin or solid.ringed[crowd.seen[m]]):
             return
         if not plain and not inside(borders, int(plate[FIRST]), int(plate[LAST]), a, b):
             return
@@ -231,4 +272,5 @@ def _near_corner(surface, crowd, n, k, which, margin):
             begun,
             sides,
         )
+        crowd.heights[n, count] = c
         crowd.low[VERTS], crowd.low[SIDED] = count + 1, sides

@@ -1,8 +1,10 @@
 """Compiled lists of which edges and faces of a part are near borders, block by block of them."""
 
+import math
+
 from feederscrew.geometry.compiled import compiled
 from feederscrew.trial.kernel.crowd_records import BEND, CORNERS, DEPTH, EDGES, POSTS
-from feederscrew.trial.kernel.plate_views import DEEP, in_body, within
+from feederscrew.trial.kernel.plate_views import DEEP, in_body, placed, within
 
 BLOCK = 16  # corners, edges, or faces, that have a box together
 
@@ -45,11 +47,12 @@ def near_edges(surface, solid, crowd, n, plate, found, margin):
             if _apart(box, solid.edge_blocks[j]):
                 continue
             for m in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.edges))):
-                p, q = crowd.spans[m, :3], crowd.spans[m, 3:]
+                p = placed(crowd.frame, solid.corners[solid.edges[m, 0]])
+                q = placed(crowd.frame, solid.corners[solid.edges[m, 1]])
                 if what == 2:
                     _add_post(crowd, n, m, k, _past(p, q, border, wide) and _between(p, q, depth, margin))
                 else:
-                    _add_edge(crowd, n, (m, k, what), _may_cross(p, q, border, level, wide))
+                    _add_edge(crowd, n, (m, k, what), _between_lines(p, q, border, level), wide)
 
 
 @compiled
@@ -59,11 +62,12 @@ def _between(p, q, depth, margin):
 
 
 @compiled
-def _add_edge(crowd, n, found, meets):
+def _add_edge(crowd, n, found, off, wide):
     count = crowd.low[EDGES]
-    if meets and count < crowd.edges.shape[1]:
+    if off < wide and count < crowd.edges.shape[1]:
         for e in range(3):
             crowd.edges[n, count, e] = found[e]
+        crowd.edge_gaps[n, count] = off
         crowd.low[EDGES] = count + 1
 
 
@@ -76,8 +80,8 @@ def _add_post(crowd, n, m, k, meets):
 
 
 @compiled
-def _may_cross(p, q, border, level, wide):
-    """Whether an edge and a border, at a level of its plate, come as near to each other as that."""
+def _between_lines(p, q, border, level):
+    """How far apart an edge and a border, at a level of its plate, are."""
     a, b, c = q[0] - p[0], q[1] - p[1], q[2] - p[2]
     u, v = border[2] - border[0], border[3] - border[1]
     x, y, z = p[0] - border[0], p[1] - border[1], p[2] - level
@@ -90,7 +94,7 @@ def _may_cross(p, q, border, level, wide):
         place = min(max(place, 0.0), 1.0)
         share = min(max((place * ef - ex) / ee, 0.0), 1.0)
     x, y, z = x + share * a - place * u, y + share * b - place * v, z + share * c
-    return x * x + y * y + z * z < wide * wide
+    return math.sqrt(x * x + y * y + z * z)
 
 
 @compiled

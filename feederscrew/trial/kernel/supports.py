@@ -12,6 +12,7 @@ PLACE, GAP, SPOT, KEY, COLUMNS = 0, 2, 3, 6, 7
 WAYS, FALL = 6, 100.0  # contacts are kept in so many directions, a lower one rather than one further out
 COSINES = tuple(math.cos(2.0 * math.pi * m / WAYS) for m in range(WAYS // 2))
 SINES = tuple(math.sin(2.0 * math.pi * m / WAYS) for m in range(WAYS // 2))
+ONE = 0.02  # so near to each other two are one: it is the lower
 LEVEL = 1.0 - 1e-5  # [1] of a normal against a surface's: less than it looks around parts tilt so
 
 
@@ -33,7 +34,9 @@ def outermost(levels, best, count):
     ``best`` has WAYS + 1 rows in which it works.
     """
     if count <= WAYS + 1:
-        return count
+        for m in range(count):
+            best[m, 1] = m
+        return _moved(levels, best, _spread(levels, best, count))
     half = WAYS // 2
     for m in range(WAYS + 1):
         best[m, 0] = -math.inf
@@ -44,7 +47,7 @@ def outermost(levels, best, count):
             off = COSINES[m] * x + SINES[m] * y
             _better(best[m], off - fall, n)
             _better(best[half + m], -off - fall, n)
-    return _foremost(levels, best)
+    return _moved(levels, best, _spread(levels, best, _each_once(best)))
 
 
 @compiled
@@ -54,8 +57,27 @@ def _better(row, score, n):
 
 
 @compiled
-def _foremost(levels, best):
-    """Move the rows named in ``best`` before the others, each once; how many."""
+def _spread(levels, best, kept):
+    """Leave out of the rows in ``best`` what is as near as ONE to a lower one; how many there are then."""
+    count = 0
+    for m in range(kept):
+        row, own = levels[int(best[m, 1])], True
+        for e in range(kept):
+            other = levels[int(best[e, 1])]
+            x, y = row[PLACE] - other[PLACE], row[PLACE + 1] - other[PLACE + 1]
+            if x * x + y * y < ONE * ONE and e != m:
+                own = own and (row[GAP] < other[GAP] or (row[GAP] == other[GAP] and m < e))
+        if own:
+            best[WAYS - count, 0] = best[m, 1]
+            count += 1
+    for m in range(count):
+        best[m, 1] = best[WAYS - m, 0]
+    return count
+
+
+@compiled
+def _each_once(best):
+    """Leave out of the rows in ``best`` what is there already; how many there are then."""
     kept = 0
     for m in range(WAYS + 1):
         first, own = int(best[m, 1]), True
@@ -64,6 +86,12 @@ def _foremost(levels, best):
         if own:
             best[kept, 1] = first
             kept += 1
+    return kept
+
+
+@compiled
+def _moved(levels, best, kept):
+    """Move the rows named in ``best`` before the others; how many."""
     for m in range(kept):  # the smallest first: none is moved before its turn
         least = m
         for e in range(m + 1, kept):

@@ -6,6 +6,7 @@ from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VY, X, Y, Z
 from feederscrew.geometry.compiled import apart, compiled, entry
 from feederscrew.trial.kernel import jets, motion, pairs
+from feederscrew.trial.kernel.crowd_records import REACHES
 
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = range(5)  # STANDS gets on no more, ROLLED went back
 TIME, MOVED, SUNK, WON, NOTES = 0, 1, 2, 3, 4  # what a run notes: time, way, depth, energy; how many
@@ -55,7 +56,7 @@ def over(surface, solid, floor, crowd, island, time, notes):
 def travel(surface, limits, solid, floor, crowd, time, every, path, notes):
     """Follow the one part of a crowd until it passed, dropped out or its time [sqrt(L/g)] is up."""
     state, dt, begun, start = crowd.states[0], floor.step, time, way(surface, crowd.states[0])
-    crowd.lasted[0] = crowd.made[0, 7] = crowd.blown[0, jets.AGAIN] = -1.0
+    crowd.lasted[0] = crowd.made[0, REACHES] = crowd.blown[0, jets.AGAIN] = -1.0
     crowd.knowns[0] = 0
     steps, noted, outcome = math.ceil(limits.longest / dt), 0, RUNNING
     often, mark, level = math.ceil(limits.patience / dt), start, state[Z]
