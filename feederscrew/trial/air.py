@@ -21,6 +21,28 @@ class Watch:
     seconds: float  # [s] for which those blow
 
 
+class Pulses:
+    """Pulses of some jets that are set off, each for one part: they blow one after the other."""
+
+    def __init__(self):
+        self.spans = []  # (begin, end) of each, those that are over left out
+
+    def set_off(self, begin, seconds):
+        """Let the jets blow from a time on, for so long."""
+        self.spans.append((begin, begin + seconds))
+
+    def next(self, now):
+        """Return when the jets next blow, from and to; what overlaps is one pulse, and (inf, inf) none."""
+        self.spans = sorted(span for span in self.spans if span[1] > now)
+        if not self.spans:
+            return np.inf, np.inf
+        begin, end = self.spans[0]
+        for other in self.spans[1:]:
+            if other[0] <= end:
+                end = max(end, other[1])
+        return begin, end
+
+
 @dataclass(frozen=True, eq=False)
 class Air:
     """What blows and leans along a stretch of track."""

@@ -10,6 +10,7 @@ from feederscrew.trial import air, runs, sensed_rides, staging, stations, wherea
 from feederscrew.trial.arrays import crowd_of
 from feederscrew.trial.kernel import crowd_records, jets, travel
 
+PERIODS = 8  # over which a sensor takes the speed of a part: within one it may hop or be pushed
 TAIL = 1.2  # of the part's size: track behind the outlet, on which a whole part still lies as it leaves
 
 
@@ -86,14 +87,16 @@ class PartsOnTrack:
         self.surface = runs.surface_of(known, track.stage)
         self.arrays, self.on = crowd_of(known.solid, self.surface, count), np.zeros(count, bool)
         self.period = 2.0 * np.pi / known.floor.rate
+        self.passed = np.full((PERIODS, count), np.nan)  # ways of each, of the last periods
+        self.pulses = [air.Pulses() for _ in track.stage.air.watches]
 
     def lay(self, n, state):
         """Put part n onto the track."""
         self.arrays.states[n] = state
-        self.arrays.made[n, crowd_records.REACHES] = self.arrays.lasted[
-            n
-        ] = -1.0  # no list of it holds, no impulse is known
+        # no list of it holds, and no impulse is known
+        self.arrays.made[n, crowd_records.REACHES] = self.arrays.lasted[n] = -1.0
         self.arrays.blown[n, jets.AGAIN] = -1.0  # nor what blows on it
+        self.passed[:, n] = np.nan
         self.on[n] = True
 
     def take(self, n):
@@ -123,18 +126,24 @@ class PartsOnTrack:
         """Let sensors look at the parts whose centres of mass have come past them in a period.
 
         What is nearer to a part than the sensor can tell is one with it. Jets that a part sets off blow as
-        it comes to them at its speed, from the next period on, the ``turn``-th.
+        it comes to them at its mean speed of the last periods, from the next one on, the ``turn``-th.
         """
+        self.passed = np.roll(self.passed, 1, axis=0)
+        self.passed[0] = before
         now = turn * self.period
-        for watch in self.stage.air.watches:
+        for watch, pulses in zip(self.stage.air.watches, self.pulses):
             place = watch.place / self.known.length
             for n in [n for n in lying if before[n] < place <= ways[n]]:
                 states = self.arrays.states[[n, *self.near(n, lying, watch.sensor.resolution)]]
                 if sensed_rides.blows_off(watch.sensor, self.known, states, self.level(watch.place)):
                     left = max(watch.nozzles / self.known.length - ways[n], 0.0)
-                    begin = now + left / (ways[n] - before[n]) * self.period
-                    self.surface.jets[watch.jets, jets.BEGIN] = begin
-                    self.surface.jets[watch.jets, jets.END] = begin + watch.seconds / self.known.unit
+                    pulses.set_off(now + left / self.speed(n, ways[n]), watch.seconds / self.known.unit)
+            self.surface.jets[watch.jets, jets.BEGIN : jets.END + 1] = pulses.next(now)
+
+    def speed(self, n, way):
+        """Return the mean speed of part n, that is at a way now, over the last periods."""
+        known = self.passed[np.isfinite(self.passed[:, n]), n]
+        return (way - known[-1]) / (len(known) * self.period)
 
     def near(self, n, lying, resolution):
         """Return the parts of a row that are one with part n for a sensor of some resolution [m]."""

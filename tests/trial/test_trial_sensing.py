@@ -143,3 +143,36 @@ def test_jets_blow_as_a_part_comes_to_them_at_its_own_speed():
     assert parts.surface.jets[watch.jets, jets.BEGIN] == pytest.approx((7.0 + left) * parts.period)
     blows = parts.surface.jets[watch.jets, jets.END] - parts.surface.jets[watch.jets, jets.BEGIN]
     assert blows * known.unit == pytest.approx(watch.seconds)
+
+
+def test_pulses_for_two_parts_blow_for_both():
+    pulses = air.Pulses()
+    assert pulses.next(0.0) == (np.inf, np.inf)
+    pulses.set_off(2.0, 1.0)
+    pulses.set_off(1.0, 0.5)  # sensed later, there sooner
+    assert pulses.next(0.5) == (1.0, 1.5)
+    assert pulses.next(1.2) == (1.0, 1.5)  # goes on
+    assert pulses.next(1.6) == (2.0, 3.0)
+    pulses.set_off(2.5, 1.0)
+    assert pulses.next(1.6) == (2.0, 3.5)  # one that begins within another makes it longer
+    assert pulses.next(3.5) == (np.inf, np.inf)
+
+
+def test_a_part_that_is_held_up_as_it_is_seen_is_blown_at_by_its_mean_speed():
+    sorter = made("sorter", "here", **OWN)
+    bowl = replace(BOWL, devices=(sorter,))
+    line = crowd.crowded(bowl, EVERY, bowl.devices, 0.1)
+    solid, length, own = solid_of(PART)
+    known = runs.setting(solid, length, bowl)
+    parts = crowd.PartsOnTrack(known, line, 1)
+    (watch,) = line.stage.air.watches
+    across = next(one for one in EVERY if one.length < 0.0121 and one.height < 0.0051)
+    parts.lay(0, whereabouts.laid(across, own, length, BOWL.track, place=watch.place))
+    place, moved = np.array([watch.place / length]), 2e-3 / length
+    for step in range(3, 0, -1):  # three periods of 2 mm, then one of 0.2 mm past the sensor
+        parts.watch([0], place - (step + 0.05) * moved, place - (step - 0.95) * moved, 10 - step)
+    parts.watch([0], place - 0.05 * moved, place + 0.05 * moved, 10)
+    mean = 3.1 * moved / (4 * parts.period)
+    left = watch.nozzles / length - (place[0] + 0.05 * moved)
+    begin = 10 * parts.period + left / mean
+    assert parts.surface.jets[watch.jets, jets.BEGIN] == pytest.approx(begin)
