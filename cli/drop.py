@@ -65,10 +65,12 @@ def drop(part, launch, drops, until, seed, jobs, trace, launches, plate, picture
     tumble), feed (from a hopper into a bowl).
 
     p_drop is the share of the drops that settled. unsettled counts the others. p_drop_low and
-    p_drop_high are the 95 % interval of the sampling and the numerical error. p_gentle and p_violent are
-    the shares among the third of the launches with the least and with the most energy. The same seed
-    gives the same counts whatever the number of jobs. Ctrl-C ends the test early: what is counted so far
-    is given, marked partial.
+    p_drop_high are the 95 % interval. It holds the sampling, the numerical error and what the name of a
+    launch leaves open. p_gentle and p_violent are the shares among the third of the launches with the
+    least and with the most energy. p_restitution is how far the spread of restitution moves the share.
+    One value of --restitution scatters by 16 %, as filmed impacts do, and widens the interval; 0.3:0.3
+    is exactly 0.3. The same seed gives the same counts whatever the number of jobs. Ctrl-C ends the
+    test early: what is counted so far is given, marked partial.
 
     With -o: drop.csv, drop.json, drop.png and run.json. --trace adds drop_traces.csv, where the part is
     and how it is turned from launch to rest. It also adds drop_trace.png, stills of the first traced drop

@@ -45,6 +45,11 @@ def launch_of(preset, length, texts, gravity=GRAVITY):
     return named(preset).but(**ranges)
 
 
+def single(text):
+    """Return a number [1] as typed, if it is one value and no range such as '0.3:0.3'; else None."""
+    return None if text is None or ":" in text else _read("restitution", text, "number")
+
+
 def described(launch, length, gravity=GRAVITY):
     """Return the name and ranges of a launch in the units of the shop, for documents.
 

@@ -30,6 +30,7 @@ class Result(Shown):
     heights: np.ndarray  # (A,) [m] of the centre of mass on each class; over the true circle of a round side
     aim: float | None = None  # [1] half-width the intervals were to reach
     traces: tuple[DropTrace, ...] = ()  # of the first drops
+    single: float | None = None  # [1] restitution given as one value, which scatters as that of impacts does
 
 
 def test(
@@ -86,7 +87,8 @@ def test(
     width = None if until is None else conditions.share(until, "until")
     found = ground(part, aspects)
     shape, length = shape_of_part(part, found)
-    launch = conditions.launch_of(preset, length, own)
+    launch, single = conditions.launch_of(preset, length, own), conditions.single(own.get("restitution"))
+    launch = launch if single is None else launch.scattering()
     if before:
         before()
     count = len(aspects.names)
@@ -99,12 +101,12 @@ def test(
         jobs=jobs,
         progress=progress,
     )
-    counted = ensemble.tally(dropped, found.rows, count)
+    counted = ensemble.tally(dropped, found.rows, count, surface=own.get("restitution") is not None)
     starts = sample(launch, shape, min(traced, len(dropped.faces)), np.random.default_rng(seed))
     traces = follow(shape, length, principal_axes(part.inertia)[1], starts, dropped, found.rows)
     described = conditions.described(launch, length)
     heights = check.frozen(_heights(shape, length, found.rows, aspects.heights))
-    return Result(described, seed, found, dropped, counted, heights, width, traces)
+    return Result(described, seed, found, dropped, counted, heights, width, traces, single)
 
 
 def _heights(shape, length, rows, heights):

@@ -16,6 +16,7 @@ BATCH = 250  # drops a core takes at a time
 ROUND = 8 * BATCH  # drops between two looks at the intervals, whatever the number of jobs
 MOST = 1_000_000  # drops at which ``until`` gives up
 NORMAL = 1.959963984540054  # two-sided 95 % point
+GROUPS = 4  # of drops, by restitution
 NUMERICAL = 0.01  # [1] what steps and tolerances may move a share of a half: 0.009 seen, docs/resting.md
 
 
@@ -26,6 +27,7 @@ class Drops:
     faces: np.ndarray  # (N,) face each rests on, UNSETTLED for none
     times: np.ndarray  # (N,) in units of sqrt(L / g)
     energies: np.ndarray  # (N,) of the launch, in units of m g L
+    restitutions: np.ndarray  # (N,)
     partial: bool  # stopped by the user before all were done
 
 
@@ -42,6 +44,7 @@ class Tally(Shown):
     widest: float  # [1] half the longest of Wilson's intervals: the sampling alone
     gentle: np.ndarray  # (A,) [1] among the third of the drops launched with the least energy
     violent: np.ndarray  # (A,) [1] ... with the most
+    restitution: np.ndarray  # (A,) [1] half the 95 % interval that the spread of restitution makes by itself
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +107,7 @@ def drop(shape, launch, rng, *, count=None, aim=None, jobs=1, steps=None, progre
     return Drops(*(check.frozen(np.concatenate(column)) for column in zip(*done)), interrupted)
 
 
-def tally(drops, rows, count):
+def tally(drops, rows, count, *, surface=False):
     """Count drops by class.
 
     Parameters
@@ -114,6 +117,9 @@ def tally(drops, rows, count):
         Class of each face.
     count : int
         Classes.
+    surface : bool
+        Restitution is the user's own: what its spread does is in the interval. That of a launch's name has it
+        already, in what the name leaves open.
 
     Returns
     -------
@@ -127,7 +133,10 @@ def tally(drops, rows, count):
     ends = [shares(counted(drops.faces[part], rows, count)) for part in (order[:third], order[-third:])]
     ends, p = [np.nan_to_num(end) for end in ends], shares(counts)
     possible = np.bincount(rows, minlength=count) > 0
-    known = launched(p, _wider(counts, low, -1.0), _wider(counts, high, 1.0), possible & bool(settled))
+    moved = _moved_by(drops.restitutions, drops.faces, rows, count)
+    asked = moved if surface else 0.0
+    ends_known = (_wider(counts, low, -1.0, asked), _wider(counts, high, 1.0, asked))
+    known = launched(p, *ends_known, possible & bool(settled))
     return Tally(
         counts=check.frozen(counts),
         unsettled=total - settled,
@@ -138,6 +147,7 @@ def tally(drops, rows, count):
         widest=half_width(low, high),
         gentle=check.frozen(ends[0]),
         violent=check.frozen(ends[1]),
+        restitution=check.frozen(moved),
     )
 
 
@@ -152,13 +162,28 @@ def shares(counts):
     return counts / total if total else np.full(len(counts), np.nan)
 
 
-def _wider(counts, end, way):
-    """(A,) end of Wilson's interval moved out by the numerical error, both as independent errors."""
+def _moved_by(values, faces, rows, count):
+    """(A,) [1] half the 95 % interval of a share that values (N,) of the drops make, beyond their sampling.
+
+    In groups of like values the shares differ by more than samples of one share do: that excess is theirs.
+    """
+    groups = np.array_split(np.argsort(values, kind="stable"), GROUPS)
+    counts = np.array([counted(faces[group], rows, count) for group in groups])
+    settled = counts.sum(axis=1, keepdims=True)
+    if not settled.all() or np.ptp(values) == 0.0:
+        return np.zeros(count)
+    found, p = counts / settled, counts.sum(axis=0) / settled.sum()
+    sampled = (1.0 - 1.0 / GROUPS) * p * (1.0 - p) * (1.0 / settled).mean()
+    return NORMAL * np.sqrt(np.maximum(((found - p) ** 2).mean(axis=0) - sampled, 0.0))
+
+
+def _wider(counts, end, way, moved):
+    """(A,) end of Wilson's interval moved out by numerical error and restitution, as independent errors."""
     p = shares(counts)
     if not counts.any():
         return end
     numerical = 4.0 * NUMERICAL * p * (1.0 - p)
-    return np.clip(p + way * np.hypot(end - p, numerical), 0.0, 1.0)
+    return np.clip(p + way * np.hypot(np.hypot(end - p, numerical), moved), 0.0, 1.0)
 
 
 def wilson(counts, total):
@@ -210,14 +235,14 @@ def _rounds(batch, starts, count, aim, tell, begin):
 
 
 def _batch(shape, steps, starts, part):
-    """Faces, times and energies of some drops."""
+    """Faces, times, energies and restitutions of some drops."""
     energies = starts.energies[part]
     faces, times = np.full(len(energies), kernel.UNSETTLED), np.zeros(len(energies))
     kernel.settle_all(
         shape, kernel.scratch(shape), starts.states[part], starts.restitutions[part],
         starts.frictions[part], steps, faces, times,
     )  # fmt: skip
-    return faces, times, energies
+    return faces, times, energies, starts.restitutions[part]
 
 
 def _unheard(*told):

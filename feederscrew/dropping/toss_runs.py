@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from feederscrew import check
 from feederscrew.dropping.kernel import body, one_drop
 from feederscrew.dropping.launch_file import FACES
-from feederscrew.dropping.launches import lowest_points
+from feederscrew.dropping.launches import RESTITUTION, lowest_points
 from feederscrew.dropping.pool import in_batches
 from feederscrew.dropping.rigid_body import principal_axes, shape_of_part
 from feederscrew.errors import FeederError
@@ -18,9 +18,6 @@ USUAL = 64  # runs of each toss
 BATCH = 4  # tosses a core takes at a time
 DRAWS = 11  # normal numbers a run takes: 3 velocity, 3 spin, 3 attitude, restitution, friction
 SUNK = 0.02  # [1] of the part's length: a launch may begin so far below the plane, by the error of its pose
-RESTITUTION = 0.16
-"""Relative standard deviation of the restitution of single impacts of one body on one surface: 1,718 filmed
-impacts have the quartiles 0.53, 0.60, 0.66, and half of that width is 0.67 standard deviations."""
 FRICTION = 0.2  # relative standard deviation of a coefficient of friction (assumption)
 
 

@@ -126,7 +126,7 @@ def test_progress_of_an_aim_ends_at_what_was_needed():
 def test_a_tally_counts_every_drop_once():
     faces = np.array([0, 1, 2, 5, UNSETTLED, 4, 0, 3, UNSETTLED])
     energies = np.arange(9.0)
-    counted = tally(Drops(faces, np.zeros(9), energies, False), ROWS, 3)
+    counted = tally(Drops(faces, np.zeros(9), energies, np.zeros(9), False), ROWS, 3)
     assert counted.counts.tolist() == [3, 2, 2] and counted.unsettled == 2
     assert counted.p == pytest.approx([3 / 7, 2 / 7, 2 / 7]) and counted.unsettled_share == pytest.approx(
         2 / 9
@@ -136,14 +136,14 @@ def test_a_tally_counts_every_drop_once():
 
 
 def test_a_tally_of_drops_that_never_settle_knows_nothing():
-    counted = tally(Drops(np.full(4, UNSETTLED), np.zeros(4), np.zeros(4), False), ROWS, 3)
+    counted = tally(Drops(np.full(4, UNSETTLED), *np.zeros((3, 4)), False), ROWS, 3)
     assert np.isnan(counted.p).all() and counted.unsettled == 4 and counted.unsettled_share == 1.0
     assert counted.low.tolist() == [0.0] * 3 and counted.high.tolist() == [1.0] * 3
 
 
 def test_the_interval_holds_the_numerical_error_beside_the_sampling():
     faces = np.tile([0, 2], 200_000)
-    counted = tally(Drops(faces, np.zeros(len(faces)), np.zeros(len(faces)), False), ROWS, 3)
+    counted = tally(Drops(faces, *np.zeros((3, len(faces))), False), ROWS, 3)
     known = np.hypot(ensemble.NUMERICAL, counted.widest)
     assert counted.high[0] - 0.5 == pytest.approx(np.hypot(known, recommended.LAUNCHED), rel=1e-3)
     rare = recommended.LAUNCHED * recommended.shape(0.0)
@@ -233,6 +233,31 @@ def test_attitudes_are_uniform(rng):
     down = Rotation.from_quat(q[:, [1, 2, 3, 0]]).inv().apply([0.0, 0.0, 1.0]).T
     assert np.abs(down.mean(axis=1)).max() < 0.02
     assert down @ down.T / len(q) == pytest.approx(np.eye(3) / 3.0, abs=0.01)
+
+
+def test_what_restitution_moves_is_in_the_interval_of_an_own_surface():
+    """The share of a face goes from 0.3 to 0.7 as restitution does from 0 to 1."""
+    rng, count = np.random.default_rng(5), 40_000
+    restitutions = rng.random(count)
+    faces = np.where(rng.random(count) < 0.3 + 0.4 * restitutions, 0, 1)
+    drops = Drops(faces, np.zeros(count), np.zeros(count), restitutions, False)
+    plain, own = tally(drops, np.array([0, 1]), 2), tally(drops, np.array([0, 1]), 2, surface=True)
+    told = 1.96 * 0.4 * np.sqrt((1.0 - 1.0 / 16.0) / 12.0)
+    assert plain.restitution == pytest.approx([told, told], rel=0.05)
+    assert (own.high - own.p) ** 2 - (plain.high - plain.p) ** 2 == pytest.approx(
+        plain.restitution**2, rel=1e-6
+    )
+    still = tally(
+        Drops(faces, np.zeros(count), np.zeros(count), rng.random(count), False), np.array([0, 1]), 2
+    )
+    assert (still.restitution < 0.012).all()
+
+
+@pytest.mark.parametrize("value, half", [(0.0, 0.0), (0.5, 0.1386), (0.95, 0.05), (1.0, 0.0)])
+def test_one_value_of_restitution_becomes_a_range_of_the_deviation_of_impacts(value, half):
+    low, high = PRESETS["feed"].but(restitution=(value, value)).scattering().restitution
+    assert (low, high) == pytest.approx((value - half, value + half), abs=1e-4)
+    assert PRESETS["feed"].scattering() == PRESETS["feed"]
 
 
 def test_own_conditions_replace_the_presets():

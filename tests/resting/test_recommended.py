@@ -17,7 +17,9 @@ BOTH = np.array([True, True])
 
 def tally(faces, energies):
     """Counts of drops that ended on the faces given, launched with the energies given."""
-    drops = ensemble.Drops(np.array(faces), np.zeros(len(faces)), np.array(energies, float), False)
+    drops = ensemble.Drops(
+        np.array(faces), np.zeros(len(faces)), np.array(energies, float), np.zeros(len(faces)), False
+    )
     return ensemble.tally(drops, np.array([0, 1]), 2)
 
 

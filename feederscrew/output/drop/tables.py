@@ -1,5 +1,7 @@
 """Drop tests as a table and as a document."""
 
+import numpy as np
+
 from feederscrew.output import tables
 from feederscrew.output.columns import MM
 from feederscrew.output.drop import trace_tables
@@ -30,6 +32,7 @@ def counts(study):
             "p_drop_high": tally.high,
             "p_gentle": tally.gentle,
             "p_violent": tally.violent,
+            "p_restitution": tally.restitution,
             "unsettled_share": [tally.unsettled_share] * len(aspects.names),
             **partial,
         }
@@ -73,9 +76,22 @@ def remarks(study):
             f"after {drops} drops the widest interval is {100.0 * tally.widest:.3g} % to either side, not "
             f"{100.0 * aim:.3g} % - give more `drops`, or a wider `until`"
         )
+    if study.result.single is not None:
+        listed.append(_scatter(study))
     if tally.unsettled:
         listed.append(f"{tally.unsettled} of {drops} drops came to rest on no aspect")
     return listed
+
+
+def _scatter(study):
+    """What becomes of one value of restitution, and of the intervals."""
+    tally, (low, high) = study.result.tally, study.result.launch["restitution"]
+    ends = np.stack([tally.p - tally.low, tally.high - tally.p])
+    wider = ends - np.sqrt(np.maximum(ends**2 - tally.restitution**2, 0.0))
+    return (
+        f"restitution {study.result.single:g} scatters from {low:.3g} to {high:.3g}, as impacts do: "
+        f"an interval reaches {100.0 * wider.max():.2g} % further for it"
+    )
 
 
 def title(study):

@@ -28,6 +28,7 @@ COLUMNS = [
     "p_drop_high",
     "p_gentle",
     "p_violent",
+    "p_restitution",
     "unsettled_share",
 ]
 
@@ -98,6 +99,17 @@ def test_own_conditions_are_told(run, stl):
     assert told["launch"]["name"] == "own"
     assert told["launch"]["height_mm"] == pytest.approx([20.0, 20.0])
     assert told["launch"]["friction"] == [0.3, 0.3]
+
+
+def test_one_value_of_restitution_scatters_and_says_what_that_does(run, stl):
+    done = run("drop", stl, "--drops", 400, "--restitution", "0.5", "--format", "json")
+    assert document(done)["launch"]["restitution"] == pytest.approx([0.361436, 0.638564])
+    assert re.search(
+        r"restitution 0\.5 scatters from 0\.361 to 0\.639, .* reaches [\d.]+ % further", done.stderr
+    )
+    exact = run("drop", stl, "--drops", 400, "--restitution", "0.5:0.5", "--format", "json")
+    assert document(exact)["launch"]["restitution"] == [0.5, 0.5] and "scatters" not in exact.stderr
+    assert {row["p_restitution"] for row in document(exact)["aspects"]} == {0.0}
 
 
 @pytest.mark.parametrize(
@@ -266,7 +278,7 @@ def test_an_interrupt_is_held_back_and_then_heard():
 
 def test_a_partial_test_is_labelled():
     tally = SimpleNamespace(unsettled=0, widest=0.03)
-    result = SimpleNamespace(drops=SimpleNamespace(partial=True), tally=tally, aim=0.01)
+    result = SimpleNamespace(drops=SimpleNamespace(partial=True), tally=tally, aim=0.01, single=None)
     stopped = SimpleNamespace(drops=250, result=result)
     assert tables.remarks(stopped) == ["partial: stopped after 250 drops"]
 
