@@ -22,6 +22,7 @@ CLIMB = 3.0  # [deg]
 ANGLES, FRICTIONS, RESTITUTIONS = (20, 30, 40), (0.2, 0.4, 0.6, 0.8), (0.0, 0.2)
 FRICTION = 0.3  # of the settings that stand for their numbers
 COUPLINGS = np.geomspace(0.02, 1.0, 25)
+MARKS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0)  # on the axis of couplings
 MAP_THROWS = np.linspace(0.2, 7.0, 35)
 STEEPNESSES, REBOUNDS = (0.0, 0.25), (0.0, 0.3)
 PHASE_COUPLINGS = (0.035, 0.088, 0.12, 0.18, 0.29, 0.46)
@@ -111,11 +112,15 @@ def picture(rows):
             lines = axes.contour(COUPLINGS, MAP_THROWS, panels[i, j], [0.0], colors=style.INK, linewidths=0.8)
             axes.clabel(lines, fmt="zero", fontsize=7)
             axes.set_xscale("log")
+            axes.set_xticks(MARKS, [f"{mark:g}" for mark in MARKS])
+            axes.set_xticks([], minor=True)
     for axes in grid[-1]:
         axes.set_xlabel("friction times tan(vibration angle)")
     for axes in grid[:, 0]:
         axes.set_ylabel("throw number")
-    figure.colorbar(mesh, ax=grid, label="velocity over the plate's greatest speed along the track")
+    bar = figure.colorbar(mesh, ax=grid)
+    bar.set_label("velocity over the plate's greatest speed along the track", fontsize=8, color=style.INK)
+    bar.ax.tick_params(labelsize=8, labelcolor=style.INK)
     return style.png(figure)
 
 

@@ -6,6 +6,7 @@ import re
 from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
 from matplotlib.figure import Figure
 from matplotlib.font_manager import findfont, get_font
+from matplotlib.patheffects import withStroke
 
 from feederscrew.output import DPI
 from feederscrew.resting.rules import registry
@@ -19,6 +20,7 @@ PAGE = 0.95  # [1] of it that one line may take
 LONG_WORD = re.compile(r"(\S{24})\S{24,}(\S{20})")  # a name of more than 67 letters, its middle left out
 LEVEL = 50  # letters that stand side by side under an axis
 SPARE = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
+HALO = [withStroke(linewidth=2.5, foreground="white")]  # of letters over hatching or colours
 
 
 class _Writer(RendererAgg):

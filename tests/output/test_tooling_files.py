@@ -5,6 +5,7 @@ import itertools
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import ezdxf
@@ -171,6 +172,14 @@ def test_texts_of_the_pictures_do_not_meet(lying, isolated):
         width, height = figure.canvas.get_width_height()
         assert all(box.x0 >= 0 and box.x1 <= width and box.y0 >= 0 and box.y1 <= height for box in boxes)
         assert not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2))
+
+
+def test_what_the_bare_track_returns_has_a_picture_too(lying):
+    bowl, every = lying
+    off = [replace(one, falls_off=True) for one in every]
+    page = figures.chain(bowl.devices, off, np.full(len(off), 1.0 / len(off)))
+    assert len(page.axes) == len(off)
+    assert sum(text.get_text() == "comes to no device" for text in page.texts) == len(off)
 
 
 def test_a_part_that_a_gate_stops_is_drawn_in_front_of_it(lying):

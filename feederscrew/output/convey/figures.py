@@ -212,7 +212,9 @@ def _throws(axes, grid):
     if levels:
         x, y = grid.first.shown, grid.second.shown
         lines = axes.contour(x, y, throw, levels, colors=style.INK, linewidths=0.8, linestyles="--")
-        axes.clabel(lines, fmt=lambda level: f"k = {level:.2g} ({_throw_name(level)})", fontsize=7)
+        texts = axes.clabel(lines, fmt=lambda level: f"k = {level:.2g} ({_throw_name(level)})", fontsize=7)
+        for text in texts:
+            text.set_path_effects(style.HALO)
 
 
 def _throw_name(level):

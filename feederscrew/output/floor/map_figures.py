@@ -157,7 +157,8 @@ def _throws(axes, grid):
     if len(levels):
         x, y, shown = grid.first.shown, grid.second.shown, np.ma.masked_invalid(throw)
         lines = axes.contour(x, y, shown, levels, colors=style.INK, linewidths=0.8, linestyles="--", zorder=5)
-        axes.clabel(lines, fmt=lambda level: f"k = {level:g}", fontsize=7)
+        for text in axes.clabel(lines, fmt=lambda level: f"k = {level:g}", fontsize=7):
+            text.set_path_effects(style.HALO)
 
 
 def _own_point(axes, own):

@@ -4,7 +4,6 @@ import matplotlib
 import numpy as np
 from matplotlib.colors import to_rgba_array
 from matplotlib.patches import Patch
-from matplotlib.patheffects import withStroke
 from scipy import ndimage
 
 from feederscrew.output import style
@@ -26,8 +25,7 @@ HATCH = "#b4bcc3"
 LETTER = (0.0125, 0.055)  # width of a letter and height of a line, over the picture's
 SHADES = "cividis"
 OWN = "static friction of this bowl: it slips where a curve is above"
-HALO = [withStroke(linewidth=2.5, foreground="white")]
-LABEL = {"fontsize": 8.5, "color": style.INK, "path_effects": HALO, "zorder": 4}
+LABEL = {"fontsize": 8.5, "color": style.INK, "path_effects": style.HALO, "zorder": 4}
 
 
 def surface(slide):

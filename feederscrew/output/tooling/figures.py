@@ -66,6 +66,8 @@ def chain(devices, every, shares, wanted=None):
         _told(page, top, every[k], shares[k], found, k == wanted)
         for step, one in enumerate(found):
             _cell(page, (LEFT + step * column, top, column, ROW), one, size)
+        if every[k].returned:
+            _bare(page, (LEFT, top, column, ROW), every[k], size)
     return page
 
 
@@ -117,6 +119,12 @@ def _cell(page, box, found, size):
         _ahead(axes, found.orientation, found.opening, colour)
     word = "hangs" if found.verdict.hangs else "passes" if good else f"is {found.fate}"
     ink.text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, {ink.margin(found.verdict)}", colour=colour)
+
+
+def _bare(page, box, one, size):
+    """One orientation that the bare track returns: it comes to no device."""
+    _above(_axes(page, box, size, True), one, None, None, FALLS)
+    ink.text(page, box[0] + 8, box[1] + ROW - 12, "comes to no device", colour=FALLS)
 
 
 def _turned(page, axes, found, box, colour):
