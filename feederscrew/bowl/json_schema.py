@@ -193,7 +193,8 @@ def _mapping(optional: Sequence[str] = (), **values: dict[str, Any]) -> dict[str
 
 
 _DRAWN = _mapping(dxf={"type": "string"}, layer={"type": ["string", "number"]})
-_LIKE = _mapping(of={"type": "string", "pattern": "^.+@.+$"}, play=_LENGTH)
+_NAMED = {"type": "string", "pattern": "^.+@.+$"}
+_LIKE = _mapping(of=_NAMED, play=_LENGTH)
 _BLADE = _mapping(
     ("sweep", "friction", "contour"),
     clearance=_LENGTH,
@@ -203,7 +204,7 @@ _BLADE = _mapping(
 )
 _SENSOR = _mapping(
     ("sees", "resolution", "jet"),
-    of={"type": "string", "pattern": "^.+@.+$"},
+    of={"anyOf": [_NAMED, {"type": "array", "minItems": 1, "items": _NAMED}]},
     play=_LENGTH,
     sees={"enum": ["outline", "side", "height"]},
     resolution=_LENGTH,

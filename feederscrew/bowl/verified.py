@@ -87,8 +87,9 @@ def _told(record: object) -> str:
 def _device(one: Device) -> str:
     limit = f"{one.limit:.5g}" if math.isfinite(one.limit) else "-"
     flat = [end for pair in one.corners for end in pair]
-    numbers = " ".join(f"{end:.5g}" for end in (*one.span, *flat, *one.like[1:]))
-    return f"{one.kind} {limit} {one.like[:1]} {numbers}"
+    others = [end for other in one.also for end in other]
+    numbers = " ".join(f"{end:.5g}" for end in (*one.span, *flat, *one.like[1:], *others[1::2]))
+    return f"{one.kind} {limit} {(*one.like[:1], *others[::2])} {numbers}"
 
 
 def verified(path: str | PathLike[str] | None) -> Verified | None:

@@ -102,8 +102,7 @@ def _proposed(search, made, ways, weights, row, how):
 
 def _at(search, made, ways, weights, row, how, gain):
     """The chain for a drive that a share [1] asks for."""
-    hops = set(proposals.MET) <= set(how[1])
-    bowl = calm_drive.driven(made, asked(search, ways, weights, gain), hops=hops)
+    bowl = calm_drive.driven(made, asked(search, ways, weights, gain), hops=proposals.meets_nothing(how))
     bowl = replace(bowl, devices=search.plain.devices)
     return proposals.proposed(search.part, bowl, search.known.aspects, row, ways, search.request, how)
 

@@ -19,7 +19,8 @@ SOLID = ("cut_out",)  # and then: holes of several corners, which a shop's toler
 MET = tuple(sorted(name for name, kind in KINDS.items() if kind.proposed and name != "sorter"))
 # margin [m] to either side, what is left out, and how parts leave: in turn
 HOWS = (
-    (5e-4, DROPS, "any"), (5e-4, SOLID, "hanging"), (5e-4, MET, "lying"), (5e-4, SOLID, "lying"),
+    (5e-4, DROPS, "any"), (5e-4, SOLID, "hanging"), (5e-4, MET, "hanging"),
+    (5e-4, MET, "lying"), (5e-4, SOLID, "lying"),
     (2.5e-4, DROPS, "any"), (2.5e-4, SOLID, "hanging"), (2.5e-4, MET, "lying"), (2.5e-4, SOLID, "lying"),
     (2.5e-4, (), "any"),
 )  # fmt: skip
@@ -59,6 +60,12 @@ class Proposal:
     def chain(self):
         """The devices as a bowl file has them."""
         return tuple(f"{one.kind}: {one.text}" for one in self.devices)
+
+
+def meets_nothing(how):
+    """Return whether a way of proposing, one of HOWS, leaves parts nothing to meet but track and air."""
+    _, left_out, outcome = how
+    return outcome == "lying" and set(MET) <= set(left_out)
 
 
 def promising(known, shares, request):

@@ -69,22 +69,24 @@ def _named(devices, every, drawn):
     made = []
     for device in devices:
         if device.like:
-            one = drawn[matched(_meant(device, every), drawn)]
-            device = replace(device, like=(one.aspect, one.heading, *device.like[2:]))
+            meant = [_meant(named, every) for named in (device.like[:2], *device.also)]
+            found = [drawn[matched(one, drawn)] for one in meant]
+            first, *others = ((one.aspect, one.heading) for one in found)
+            device = replace(device, like=(*first, *device.like[2:]), also=tuple(others))
         made.append(device)
     return tuple(made)
 
 
-def _meant(device, every):
-    """The orientation that a device names."""
-    aspect, heading, *_ = device.like
+def _meant(named, every):
+    """The orientation of an aspect and heading [rad]."""
+    aspect, heading = named
     own = [one for one in every if one.aspect.casefold() == aspect.casefold()]
     return min(own, key=lambda one: abs(math.remainder(one.heading - heading, 2.0 * math.pi)))
 
 
 def opening(device, every):
     """Return the corners (K, 2) [m] of a gate that is given by an orientation and its play."""
-    grown = _meant(device, every).seen.buffer(device.like[2])
+    grown = _meant(device.like[:2], every).seen.buffer(device.like[2])
     return tuple(map(tuple, shapely.get_coordinates(grown.exterior)[:-1].tolist()))
 
 

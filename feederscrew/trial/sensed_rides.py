@@ -14,7 +14,7 @@ SLOW = 1e-3  # [m/s] below which a part stands
 
 
 def blows_off(sensor, known, states, level=0.0):
-    """Return whether a sensor sees parts differ from what it wants by more than its play.
+    """Return whether a sensor sees parts differ from all that it wants by more than its play.
 
     Parameters
     ----------
@@ -29,16 +29,17 @@ def blows_off(sensor, known, states, level=0.0):
     -------
     bool
     """
-    wanted, fine = sensor.wanted, sensor.resolution
+    fine = sensor.resolution
     if sensor.sees == "height":
         top = max(_spots(known, state, states[0])[:, 2].max() for state in states) - level
-        return bool(abs(_stepped(top, fine) - wanted.height) > sensor.play)
+        return all(abs(_stepped(top, fine) - one.height) > sensor.play for one in sensor.wanted)
     spots = np.concatenate([_spots(known, state, states[0]) for state in states])
     faces = np.concatenate(
         [known.solid.triangles + k * len(known.solid.vertices) for k in range(len(states))]
     )
     seen = sensor_views.area(spots - [0.0, 0.0, level], faces, sensor.sees, fine)
-    return bool(sensor_views.apart(seen, sensor_views.outline(wanted, sensor.sees)) > sensor.play)
+    known_ones = (sensor_views.outline(one, sensor.sees) for one in sensor.wanted)
+    return all(sensor_views.apart(seen, outline) > sensor.play for outline in known_ones)
 
 
 def _spots(known, state, first):

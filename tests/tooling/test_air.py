@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,14 +10,17 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.errors import Faults
+from feederscrew.part import load
 from feederscrew.rates import spacing
 from feederscrew.resting.aspects import find
+from feederscrew.studies import tooling
 from feederscrew.tooling import drift
-from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.kinds import KINDS, made
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.orientations import orientations, speed, travelling
 from feederscrew.tooling.verdicts import Meeting, verdict
 
+PARTS = Path(__file__).resolve().parents[2] / "parts"
 BOWL = bowls.read(None, ["track.width=30 mm"])
 PART = shapes.part(shapes.box(20, 12, 5))
 EVERY = travelling(orientations(PART, find(PART), BOWL.track), BOWL)
@@ -102,3 +106,41 @@ def test_they_are_read_as_written(tmp_path):
     bank, steep, jet = bowls.read(path, []).devices
     assert (bank.angle, steep.angle) == pytest.approx(np.radians([6.0, -4.0]))
     assert (jet.nozzle, jet.pressure, jet.height) == pytest.approx((2e-3, 2e4, 8e-3))
+
+
+def test_a_sorter_of_two_orientations_passes_both(tmp_path):
+    bolt = load(PARTS / "hexbolt_m8x25.stl")
+    every = travelling(orientations(bolt, find(bolt), BOWL.track), BOWL)
+    along = [one for one in every if one.length > 0.025 and one.height < 0.02]
+    first, second = (
+        along[0],
+        max(along, key=lambda one: abs(math.sin(0.5 * (one.heading - along[0].heading)))),
+    )
+    names = [f"{one.aspect}@{math.degrees(one.heading):.6g}" for one in (first, second)]
+
+    def read(of):
+        line = f"devices:\n  - sorter: {{of: {of}, play: 1 mm, sees: outline}}\n"
+        (tmp_path / "b.yaml").write_text(line)
+        return bowls.read(tmp_path / "b.yaml").devices[0]
+
+    one, both = read(names[0]), read(f"[{', '.join(names)}]")
+    assert verdict(one, first, every).passes == 1.0 and verdict(one, second, every).passes == 0.0
+    assert verdict(both, first, every).passes == verdict(both, second, every).passes == 1.0
+    rest = [other for other in every if all(other is not kept for kept in along)]
+    assert rest and all(verdict(both, other, every).passes < 1.0 for other in rest)
+    again = both.with_play(2e-3, "2 mm")
+    assert again.text == f"{{of: [{', '.join(names)}], play: 2 mm, sees: outline}}"
+    assert len(both.standing(BOWL.track, every).sensor.wanted) == 2
+
+
+def test_a_screw_that_hangs_is_seen_head_first_and_thread_first():
+    """Both ways along the track end in the same slot: the sensor before it lets both pass."""
+    screw = load(PARTS.parent / "docs/tutorial/countersunk_m4x12.stl")
+    steep = bowls.read(None, ["track.bank=8 deg", "track.width=15 mm"])
+    met = [name for name, kind in KINDS.items() if kind.proposed and name != "sorter"]
+    own = {"heading": np.radians(350.93), "outcome": "hanging", "without": met}
+    found = tooling.tooling(screw, steep, "A", **own)
+    devices = [cut.device for cut in found.design.cuts]
+    kinds = [device.kind for device in devices]
+    assert kinds == ["separation", "sorter", "rails"]
+    assert len(devices[1].also) == 1 and found.design.isolated

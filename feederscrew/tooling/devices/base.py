@@ -55,6 +55,7 @@ class Device:
     span: tuple[float, ...] = ()  # [m] from the wall
     corners: tuple[tuple[float, float], ...] = ()  # [m] of a hole unrolled, of an opening (y, z)
     like: tuple[str, float, float] | tuple[()] = ()  # of an opening: aspect, heading [rad], play [m]
+    also: tuple[tuple[str, float], ...] = ()  # of a sensor: other aspects and headings [rad] beside it
     text: str = ""  # its value as written
 
     kind: ClassVar[str] = "track"  # what it is called in a bowl file

@@ -58,7 +58,7 @@ class Sensor:
 
     at: float  # [m] x
     sees: str  # 'outline' from above, 'side' from the bowl's axis, or 'height'
-    wanted: object  # Orientation
+    wanted: tuple  # of Orientation: what is like any of them passes
     play: float  # [m] what is seen to differ by less passes
     resolution: float  # [m] to which it sees
 

@@ -34,7 +34,8 @@ class Sorter(Device):
     example = "{of: A@90, play: 0.5 mm, sees: outline}"
     meaning = (
         "sensor and pulse of air: passes what is seen to differ from an orientation by less than play, blows "
-        "the rest off the free edge; sees outline (from above), side or height; resolution: 0.1 mm and "
+        "the rest off the free edge; of may be a list, [A@90, A@270]: what is like any of them passes; "
+        "sees outline (from above), side or height; resolution: 0.1 mm and "
         "jet: {nozzle: 2 mm, pressure: 3 bar, height: 4 mm, time: 40 ms, "
         "nozzles: 4} may follow; parts must come with gaps"
     )
@@ -53,25 +54,34 @@ class Sorter(Device):
         return RESOLUTION[self.sees] if math.isnan(self.resolution) else self.resolution
 
     @classmethod
-    def around(cls, one, margin, where):
-        """Return the sorters of an orientation, with the play [m] by which what they pass may differ."""
-        like = {view: (one.aspect, one.heading, float(margin) + RESOLUTION[view]) for view in VIEWS}
-        return [cls(where, like=like[view], sees=view) for view in VIEWS]
+    def around(cls, one, margin, where, unlike=lambda view: ()):
+        """Return the sorters of an orientation, with the play [m] by which what they pass may differ.
+
+        Those that ``unlike`` gives for a view are named beside it: they pass too, though they look otherwise.
+        """
+        made = []
+        for view in VIEWS:
+            also = tuple((other.aspect, other.heading) for other in unlike(view))
+            like = one.aspect, one.heading, float(margin) + RESOLUTION[view]
+            made.append(cls(where, like=like, sees=view, also=also))
+        return made
 
     def with_play(self, play, text):
         """Return the same sorter with other play [m], written as some text."""
         aspect, heading, _ = self.like
-        written = f"{{of: {aspect}@{np.degrees(heading):.6g}, play: {text}, sees: {self.sees}}}"
+        names = [f"{name}@{np.degrees(turn):.6g}" for name, turn in ((aspect, heading), *self.also)]
+        named_ones = names[0] if len(names) == 1 else f"[{', '.join(names)}]"
+        written = f"{{of: {named_ones}, play: {text}, sees: {self.sees}}}"
         return replace(self, like=(aspect, heading, float(play)), text=written)
 
     def differs(self, met):
-        """Return by how much [m] an orientation is seen to differ from the wanted one."""
-        return met.differs(self.wanted(met.every), self.sees)
+        """Return by how much [m] an orientation is seen to differ from the nearest of the wanted ones."""
+        return min(met.differs(one, self.sees) for one in self.wanted(met.every))
 
     def wanted(self, every):
-        """Return the orientation that it passes."""
-        aspect, heading, _ = self.like
-        return every[named.place_of(every, aspect, heading, self.where, f"{self.kind} names")]
+        """Return the orientations that it passes."""
+        said = self.where, f"{self.kind} names"
+        return tuple(every[named.place_of(every, *one, *said)] for one in (self.like[:2], *self.also))
 
     @property
     def jet(self):

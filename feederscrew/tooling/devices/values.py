@@ -44,10 +44,13 @@ def blade(entry):
 
 
 def sensor(entry, views):
-    """Read {of: A@90, play: 0.5 mm, sees: outline, resolution: 0.1 mm, jet: {nozzle: 2 mm}}."""
+    """Read {of: A@90, play: 0.5 mm, sees: outline, resolution: 0.1 mm, jet: {nozzle: 2 mm}}.
+
+    What is named may be a list: the first is ``like``, the others ``also``.
+    """
     names, more = ("of", "play", "sees", "resolution", "jet"), ("sees", "resolution", "jet")
     given = mapping(entry, names, "write {of: A@90, play: 0.5 mm, sees: outline}", more)
-    found = {"like": _like(given)}
+    found = _any_of(given)
     if "sees" in given:
         node = given["sees"].value
         found["sees"] = node.text.strip()
@@ -123,15 +126,34 @@ def opening(entry):
 
 def _like(given):
     """Aspect, heading [rad] and play [m] of an orientation that is named."""
-    name, at, turn = given["of"].value.text.partition("@")
+    return (*_orientation(given["of"].value), _play(given))
+
+
+def _any_of(given):
+    """The first orientation of those named with its play, as 'like', and the others as 'also'."""
+    node = given["of"].value
+    if node.kind != "list":
+        return {"like": _like(given)}
+    if not node.items:
+        raise ConfigError(node.where, "of names no orientation", "write aspect@heading, as A@90")
+    first, *others = (_orientation(item) for item in node.items)
+    return {"like": (*first, _play(given)), "also": tuple(others)}
+
+
+def _orientation(node):
+    """Aspect and heading [rad] of an orientation, as A@90."""
+    name, at, turn = node.text.partition("@")
     if not at or not name.strip():
-        what = f"{units.shown(given['of'].value.text)} is not an orientation"
-        raise ConfigError(given["of"].value.where, what, "write aspect@heading, as A@90")
-    heading = _parsed(f"{turn.strip().removesuffix('deg')} deg", given["of"].value.where, "heading", "angle")
+        what = f"{units.shown(node.text)} is not an orientation"
+        raise ConfigError(node.where, what, "write aspect@heading, as A@90")
+    return name.strip(), _parsed(f"{turn.strip().removesuffix('deg')} deg", node.where, "heading", "angle")
+
+
+def _play(given):
     play = _quantity(given["play"].value, "play", "length")
     if play < 0.0:
         raise ConfigError(given["play"].value.where, "play is negative", "give 0 mm or more")
-    return name.strip(), heading, play
+    return play
 
 
 def simple(corners, where, kind):

@@ -78,9 +78,14 @@ def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=Fals
         device = kind.proposal(WHERE, limit)
         if limit > 0.0 and device.acts(every[wanted].track):
             found[device] = np.array([_margin(device, one, every) for one in every])
+
+    def unlike(view):
+        others = [every[k] for k in same if k != wanted]
+        return [one for one in others if Meeting(one).differs(every[wanted], view) > margin]
+
     for kind in around() if sensed else ():
         if wishes.allows(kind.kind):
-            for device in kind.around(every[wanted], margin, WHERE):
+            for device in kind.around(every[wanted], margin, WHERE, unlike):
                 found[device] = np.array([_margin(device, one, every) for one in every])
     return found
 

@@ -142,10 +142,6 @@ def _separated(given, cuts):
     first = next((k for k, cut in enumerate(cuts) if cut.device.gap(one, one.speed) > 0.0), None)
     if steeper is None or first is None or any(device.leans for device in given.before):
         return tuple(cuts)
-    if any(
-        cut.device.hangs for cut in cuts
-    ):  # on a steeper way a head that comes first has no time to turn down
-        return tuple(cuts)
     return (*cuts[:first], Cut(steeper, np.nan, np.nan, steeper, steeper, ()), *cuts[first:])
 
 

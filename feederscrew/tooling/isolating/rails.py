@@ -62,7 +62,8 @@ def design(given):
 
 def _before(given, passed, same, stage):
     """Cuts before the rails that return what they neither let hang nor return, and which those return."""
-    found = chain.candidates(given.every, given.wanted, given.margin, given.wishes, **stage)
+    alike = np.flatnonzero(same & given.often)
+    found = chain.candidates(given.every, given.wanted, given.margin, given.wishes, same=alike, **stage)
     found = {
         device: some for device, some in found.items() if (some[same & given.often] >= given.margin).all()
     }
@@ -70,7 +71,7 @@ def _before(given, passed, same, stage):
     if not devices:
         return (), passed & ~same
     must = [some & ~passed for some in chain.shared_out(found, devices, given.margin)]
-    cuts = chain.placed(given.every, given.wanted, devices, must, step=given.wishes.step)
+    cuts = chain.placed(given.every, given.wanted, devices, must, step=given.wishes.step, same=alike)
     return cuts, np.any([np.zeros(len(passed), bool), *must], axis=0)
 
 
