@@ -206,7 +206,7 @@ _SENSOR = _mapping(
     ("sees", "resolution", "jet"),
     of={"anyOf": [_NAMED, {"type": "array", "minItems": 1, "items": _NAMED}]},
     play=_LENGTH,
-    sees={"enum": ["outline", "side", "height"]},
+    sees={"enum": ["outline", "side", "height", "relief"]},
     resolution=_LENGTH,
     jet=_mapping(
         ("nozzle", "pressure", "height", "time", "nozzles"),

@@ -10,6 +10,8 @@ from feederscrew.geometry.polygons import turned
 FINE = 1e-4  # [m] between places of a border at which two are compared
 PLAIN = 1e-4  # of the part's size: corners that stand out by less are left out
 KEPT = 1e-6  # of an area, that closing its slits may lose by rounding
+GRID = 1e-6  # [m] to which sections are rounded: where facets meet they meet
+NOTHING = 1e-7  # [m] of what is not there
 SLIT = 2e-5  # [m] half the width of slits between facets that are closed
 
 
@@ -20,7 +22,8 @@ def difference(one, other, sees):
     ----------
     one, other : Orientation
     sees : str
-        'outline' from above, 'side' from the bowl's axis, or 'height'.
+        'outline' from above, 'side' from the bowl's axis, 'height', or 'relief' along the line over which
+        the other one's centre of mass goes.
 
     Returns
     -------
@@ -30,7 +33,10 @@ def difference(one, other, sees):
     """
     if sees == "height":
         return abs(one.height - other.height)
-    return 0.0 if one is other else apart(outline(one, sees), outline(other, sees))
+    if one is other:
+        return 0.0
+    line = other.distance
+    return apart(outline(one, sees, line), outline(other, sees, line))
 
 
 def apart(first, second):
@@ -45,21 +51,23 @@ def _reach(area, other):
 
 
 @functools.lru_cache(maxsize=512)
-def outline(one, sees):
+def outline(one, sees, line=0.0):
     """Return the area that a sensor sees of an orientation [m]: ahead from its front, and from its side.
 
     Parameters
     ----------
     one : Orientation
     sees : str
-        'outline' from above, or 'side' from the bowl's axis.
+        'outline' from above, 'side' from the bowl's axis, or 'relief'.
+    line : float [m]
+        From the wall, along which it sees the relief.
     """
     points, faces = one.posture.surface, one.posture.solid.faces
     plan = turned(points[:, :2], one.heading)
-    return area(np.column_stack([plan, points[:, 2]]), faces, sees)
+    return area(np.column_stack([plan + [0.0, one.distance], points[:, 2]]), faces, sees, line=line)
 
 
-def area(points, faces, sees, resolution=0.0):
+def area(points, faces, sees, resolution=0.0, line=0.0):
     """Return the area that a sensor sees of a body.
 
     Parameters
@@ -71,12 +79,16 @@ def area(points, faces, sees, resolution=0.0):
         As for ``outline``.
     resolution : float [m]
         Of the sensor: corners are seen at multiples of it.
+    line : float [m]
+        As for ``outline``.
 
     Returns
     -------
     shapely geometry
         Its front and, from above, the side nearest to the wall at 0.
     """
+    if sees == "relief":
+        return _relief(points[faces], line, resolution)
     seen = points[:, :2] if sees == "outline" else points[:, [0, 2]]
     seen = seen - [seen[:, 0].max(), seen[:, 1].min() if sees == "outline" else 0.0]
     corners = (np.round(seen / resolution) * resolution if resolution > 0.0 else seen)[faces]
@@ -84,6 +96,31 @@ def area(points, faces, sees, resolution=0.0):
     twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
     whole = shapely.union_all(shapely.polygons(corners[twice > 1e-14]))  # one side of it covers all
     return _without_slits(whole).simplify(PLAIN * np.ptp(points, axis=0).max())
+
+
+def _relief(facets, line, resolution):
+    """The area below what a laser over a line along the wall sees of facets (F, 3, 3): from its front, up."""
+    off = facets[:, :, 1] - line
+    crossing = (off.min(axis=1) < 0.0) & (off.max(axis=1) >= 0.0)
+    facets, off = facets[crossing], off[crossing]
+    if not len(facets):
+        return shapely.box(-NOTHING, 0.0, 0.0, NOTHING)
+    ends = []
+    for facet, away in zip(facets, off):  # two of its sides cross the line
+        sides = [(k, (k + 1) % 3) for k in range(3) if (away[k] < 0.0) != (away[(k + 1) % 3] < 0.0)]
+        ends.append([_at(facet[a], facet[b], away[a], away[b]) for a, b in sides])
+    ends = np.array(ends)[:, :, [0, 2]]
+    ends = ends - [ends[:, :, 0].max(), 0.0]
+    ends = np.round(ends / resolution) * resolution if resolution > 0.0 else ends
+    ends[:, :, 1] = np.maximum(ends[:, :, 1], 0.0)
+    low = np.stack([ends[:, :, 0], np.zeros(ends.shape[:2])], axis=2)
+    below = shapely.polygons(np.concatenate([ends, low[:, ::-1]], axis=1))
+    return shapely.union_all(below[shapely.area(below) > 1e-14], grid_size=GRID)
+
+
+def _at(first, last, before, beyond):
+    """Where the way from one corner to another crosses a line, by how far they are from it."""
+    return first + (last - first) * (before / (before - beyond))
 
 
 def _without_slits(whole):

@@ -37,9 +37,13 @@ def blows_off(sensor, known, states, level=0.0):
     faces = np.concatenate(
         [known.solid.triangles + k * len(known.solid.vertices) for k in range(len(states))]
     )
-    seen = sensor_views.area(spots - [0.0, 0.0, level], faces, sensor.sees, fine)
-    known_ones = (sensor_views.outline(one, sensor.sees) for one in sensor.wanted)
-    return all(sensor_views.apart(seen, outline) > sensor.play for outline in known_ones)
+    spots = spots - [0.0, 0.0, level]
+
+    def differs(one):
+        seen = sensor_views.area(spots, faces, sensor.sees, fine, one.distance)
+        return sensor_views.apart(seen, sensor_views.outline(one, sensor.sees, one.distance))
+
+    return all(differs(one) > sensor.play for one in sensor.wanted)
 
 
 def _spots(known, state, first):

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapes
+import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew.errors import Faults
@@ -14,7 +15,7 @@ from feederscrew.part import load
 from feederscrew.rates import spacing
 from feederscrew.resting.aspects import find
 from feederscrew.studies import tooling
-from feederscrew.tooling import drift
+from feederscrew.tooling import drift, sensor_views
 from feederscrew.tooling.devices.kinds import KINDS, made
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.orientations import orientations, speed, travelling
@@ -144,3 +145,30 @@ def test_a_screw_that_hangs_is_seen_head_first_and_thread_first():
     kinds = [device.kind for device in devices]
     assert kinds == ["separation", "sorter", "rails"]
     assert len(devices[1].also) == 1 and found.design.isolated
+
+
+def test_a_laser_over_the_middle_tells_an_open_end_from_a_closed_one():
+    """A cap's ends have the same outline from everywhere: only its hollow, seen from above, tells them."""
+    cap = load(PARTS / "cap_14x10.stl")
+    every = travelling(orientations(cap, find(cap), BOWL.track), BOWL)
+    ends = [one for one in every if one.height < 0.0101]
+    assert len(ends) == 2
+    met = Meeting(ends[0], every)
+    assert met.differs(ends[1], "outline") < 1e-6 and met.differs(ends[1], "side") < 1e-6
+    assert met.differs(ends[1], "relief") > 4e-3 and met.differs(ends[0], "relief") == 0.0
+    sorter = made("sorter", "here", like=(ends[0].aspect, ends[0].heading, 5e-4), sees="relief")
+    assert [verdict(sorter, one, every).passes for one in ends] == [1.0, 0.0]
+
+
+def test_the_relief_of_a_wedge_is_that_of_its_section():
+    """Right under the line: 10 mm long, 2 mm high at its rear and 6 mm at its front; beside it nothing."""
+    wedge = np.array(
+        [[0, 0, 0], [10, 0, 0], [10, 8, 0], [0, 8, 0], [0, 0, 2], [10, 0, 6], [10, 8, 6], [0, 8, 2.0]]
+    )
+    body = trimesh.convex.convex_hull(1e-3 * wedge)
+    wedge, faces = body.vertices, body.faces
+    seen = sensor_views.area(wedge, faces, "relief", line=3e-3)
+    assert seen.bounds == pytest.approx((-0.01, 0.0, 0.0, 6e-3)) and seen.area == pytest.approx(40e-6)
+    coarse = sensor_views.area(wedge, faces, "relief", 4e-3, 3e-3)
+    assert set(np.round(1e3 * np.array(coarse.exterior.coords)[:, 1])) <= {0.0, 4.0, 8.0}
+    assert sensor_views.area(wedge, faces, "relief", line=9e-3).area < 1e-12

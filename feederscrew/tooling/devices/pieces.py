@@ -57,7 +57,7 @@ class Sensor:
     """What looks at each part as its centre of mass comes to a place, and sets off the pulsed jets."""
 
     at: float  # [m] x
-    sees: str  # 'outline' from above, 'side' from the bowl's axis, or 'height'
+    sees: str  # 'outline' from above, 'side' from the bowl's axis, 'height' or 'relief'
     wanted: tuple  # of Orientation: what is like any of them passes
     play: float  # [m] what is seen to differ by less passes
     resolution: float  # [m] to which it sees

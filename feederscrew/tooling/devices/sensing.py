@@ -10,8 +10,8 @@ from feederscrew.tooling.devices.base import MM, RETURNED, Device, room_of
 from feederscrew.tooling.devices.nozzles import SPREAD, Nozzles
 from feederscrew.tooling.devices.pieces import Sensor, Standing
 
-VIEWS = ("outline", "side", "height")
-RESOLUTION = {"outline": 1e-4, "side": 1e-4, "height": 1e-3}  # [m] of a camera, of a fibre
+VIEWS = ("outline", "side", "height", "relief")
+RESOLUTION = {"outline": 1e-4, "side": 1e-4, "height": 1e-3, "relief": 1e-4}  # [m] camera, fibre, laser
 BORE, PRESSURE, PULSE = 2e-3, 3e5, 0.04  # [m], [Pa], [s] of each nozzle: 1.28 N, 0.051 N s
 REACTION = 0.01  # [s] of sensor and valve: 5 to 15 ms
 AHEAD = 0.01  # [m] from the sensor to the nozzles: a part is blown at as its middle comes to them
@@ -35,7 +35,8 @@ class Sorter(Device):
     meaning = (
         "sensor and pulse of air: passes what is seen to differ from an orientation by less than play, blows "
         "the rest off the free edge; of may be a list, [A@90, A@270]: what is like any of them passes; "
-        "sees outline (from above), side or height; resolution: 0.1 mm and "
+        "sees outline (from above), side, height or relief (heights under a laser along the middle); "
+        "resolution: 0.1 mm and "
         "jet: {nozzle: 2 mm, pressure: 3 bar, height: 4 mm, time: 40 ms, "
         "nozzles: 4} may follow; parts must come with gaps"
     )
