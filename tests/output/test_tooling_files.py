@@ -217,6 +217,19 @@ def test_a_picture_of_one_device_is_no_wider_than_what_it_shows(lying):
     assert wide[0] < wide[1] <= wide[2]
 
 
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("{of: A@187.672, play: 8.45 mm, sees: height}", "of A@187.672, play 8.45 mm, sees height"),
+        ("{from: 4.4 mm, to: 11.45 mm}, lead-in 2.9 to 12.7 mm", "4.4 to 11.45 mm, lead-in 2.9 to 12.7 mm"),
+        ("18.85 mm", "18.85 mm"),
+        ("[[0 mm, 0 mm], [12 mm, 3 mm], [14 mm, 9 mm]]", "polygon of 3 corners"),
+    ],
+)
+def test_a_value_in_a_table_has_no_marks_of_a_bowl_file(text, shown):
+    assert tooling_tables._short(text, tooling_tables.WIDE) == shown
+
+
 def test_a_device_without_a_margin_is_drawn_so():
     assert ink.margin(Verdict(margin=np.nan, passes=1.0)) == "no margin"
     assert ink.margin(Verdict(margin=2.8e-3, passes=1.0)) == "margin +2.80 mm"

@@ -1,5 +1,7 @@
 """Orientations and chains of devices as tables and as a document, in the units of the shop."""
 
+import re
+
 import numpy as np
 
 from feederscrew.output import columns, tables
@@ -14,6 +16,7 @@ SPARE = (  # left out of a table for people that is too wide, the first ones fir
     ("mirror", "wall_distance_mm", "balcony_mm", "canyon_mm", "gap_mm"),
     ("height_mm",), ("length_mm", "width_mm"), ("steady",), ("status",), ("purity",), ("left_over",),
 )  # fmt: skip
+SPAN = re.compile(r"\{from: ([\d.]+) mm, to: ([\d.]+) mm\}")
 WIDE = 34  # letters of a text in a table for people
 QUASI_STATIC = "quasi-static, until a trial confirms it"
 
@@ -90,7 +93,8 @@ def summary(study, format="csv"):
     ----------
     study : ToolingStudy
     format : str
-        Of what is printed; a table says how many corners a polygon has, and the first names of many.
+        Of what is printed. A table has values without the marks of a bowl file; it says how many corners a
+        polygon has, and the first names of many.
     """
     if study.design is None:
         return frame(study)
@@ -115,9 +119,11 @@ def summary(study, format="csv"):
 
 
 def _short(text, most):
-    """A device's value as it is, or how many corners its polygon has."""
+    """A device's value without the marks of a bowl file, or how many corners its polygon has."""
     corners = text.count("[") - 1
-    return f"polygon of {corners} corners" if corners > 1 and len(text) > most else text
+    if corners > 1 and len(text) > most:
+        return f"polygon of {corners} corners"
+    return re.sub(r"[{}:]", "", SPAN.sub(r"\1 to \2 mm", text))
 
 
 def _few(text, most):
