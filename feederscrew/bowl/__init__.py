@@ -1,4 +1,7 @@
-"""The bowl: its record, its schema and its YAML."""
+"""The bowl: its record, its schema and its YAML.
+
+Source of its keys, bounds and rules of thumb: docs/bowl_file.md.
+"""
 
 import hashlib
 from collections.abc import Iterable

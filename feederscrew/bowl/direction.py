@@ -1,4 +1,7 @@
-"""Direction in which leaf springs move a bowl, over its radius."""
+"""Direction in which leaf springs move a bowl, over its radius.
+
+Source: a rigid bowl on inclined leaves moves as a screw; docs/bowl.md, "How it is computed".
+"""
 
 from typing import Any
 

@@ -1,4 +1,7 @@
-"""What the drop kernel needs to know of a part, without dimensions."""
+"""What the drop kernel needs to know of a part, without dimensions.
+
+Source: Newton and Euler for a rigid body; docs/resting.md, "The drop test".
+"""
 
 from dataclasses import replace
 from typing import NamedTuple

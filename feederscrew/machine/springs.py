@@ -2,6 +2,9 @@
 
 The base stands on soft rubber feet, taken as free. Every formula is of small motions of two rigid bodies
 between which the leaves leave one way to move: rise and turn together, in the direction of the springs.
+
+Source: leaves clamped at both ends (Euler and Bernoulli), two masses on a spring; docs/bowl.md,
+"How it is computed".
 """
 
 from dataclasses import dataclass, replace

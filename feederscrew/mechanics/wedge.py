@@ -4,6 +4,8 @@ The bowl moves along the tangent of its track and along its own axis, whatever t
 weight and every impact press a part down square to the tangent, and floor and wall share that. Per unit of it
 the floor carries 1 / cos(bank) and an upright wall tan(bank), at every instant of the cycle; both press at
 the same times, and a part leaves both at once. Left out is the centripetal force.
+
+Source: the balance of forces in a wedge with Coulomb's friction; docs/conveying.md.
 """
 
 from dataclasses import replace

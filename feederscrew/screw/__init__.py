@@ -15,6 +15,8 @@ chasles       displacement to finite twist and back
 reciprocal    reciprocal screws, contact reactions and tipping axes
 euler         momentum screw, dual Euler equation, spatial triangle
 notation      one screw in the four notations of the literature
+
+Source: the thesis by the numbers of its equations; docs/screws.md and docs/equations.md.
 """
 
 from feederscrew.screw.angle_between import dual_angle

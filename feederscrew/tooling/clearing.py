@@ -1,4 +1,7 @@
-"""How a blade clears itself: what stands before it slides along its face off the free edge."""
+"""How a blade clears itself: what stands before it slides along its face off the free edge.
+
+Source: docs/tooling.md, "What becomes of a part that does not pass".
+"""
 
 import functools
 import math

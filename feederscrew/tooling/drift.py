@@ -1,4 +1,7 @@
-"""Sideways drift of parts on a vibrating track, and the force that moves one off it."""
+"""Sideways drift of parts on a vibrating track, and the force that moves one off it.
+
+Source: averaged Coulomb friction on a vibrating surface; docs/tooling.md.
+"""
 
 import math
 

@@ -1,4 +1,7 @@
-"""What holds a part at a device or lays it over, beside its foot: a blade, sides of a slot, the wall."""
+"""What holds a part at a device or lays it over, beside its foot: a blade, sides of a slot, the wall.
+
+Source: balances of moments with Coulomb's friction; docs/tooling.md, section 1.
+"""
 
 import math
 

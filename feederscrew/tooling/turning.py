@@ -5,6 +5,8 @@ makes it turn inwards. Either way the direction that is down moves on a great ci
 centre of mass stands over a corner or edge of the hull, its barrier; beyond it the part rolls down, and comes
 to lie on the face below. It stays there if what is left of its momentum lifts it over no further edge: else,
 and between what cannot turn and what must, momentum decides, and only a trial tells.
+
+Source: docs/tooling.md, section 4; barriers as in docs/resting.md.
 """
 
 import functools

@@ -238,7 +238,7 @@ def test_a_device_without_a_margin_is_drawn_so():
 def test_a_table_of_polygons_fits_a_page():
     text = "[[14.55 mm, 19.3 mm], [0 mm, 8.65 mm], [14.05 mm, 0.35 mm], [19.75 mm, 3.5 mm]]"
     assert tooling_tables._short(text, 34) == "polygon of 4 corners"
-    assert tooling_tables._short("{from: 3.45 mm, to: 10.5 mm}", 34) == "{from: 3.45 mm, to: 10.5 mm}"
+    assert tooling_tables._short("{from: 3.45 mm, to: 10.5 mm}", 34) == "3.45 to 10.5 mm"
     names = " ".join(f"A@{k}" for k in range(100, 120))
     assert tooling_tables._few(names, 34) == "A@100 A@101 A@102 A@103 A@104 and 15 more"
     assert tooling_tables._few("A@90, all of C", 34) == "A@90, all of C"

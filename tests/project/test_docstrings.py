@@ -25,6 +25,8 @@ ENTRY = re.compile(
     r"^(?:[a-z_, ]+ : .*\b(?:float|array_like)\b|\(.*\) float\b|float\b)"
 )  # a line of Parameters or Returns
 MARK = re.compile(r"# eqs?\. (\[[^]]+\])")  # a step that follows a numbered equation
+SOURCE = re.compile(r"^References$|^Source\b|\beqs?\. [\[(]", re.MULTILINE)
+PAGE = re.compile(r'(docs/\w+\.md)(?:,\s"([^"]+)")?')
 NOT_QUANTITIES = (
     "np.any",
     "np.all",
@@ -81,6 +83,15 @@ def told(node, doc):
     return bool(UNIT.search(doc)) and all(map(UNIT.search, entries))
 
 
+def sourced(name, doc):
+    """Whether a function, its module or a folder around it names a paper, an equation or a page."""
+    parts = name.split(".")
+    files = [ROOT.joinpath(*parts[:-1]).with_suffix(".py")]
+    files += [ROOT.joinpath(*parts[:count], "__init__.py") for count in range(1, len(parts) - 1)]
+    docs = [ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "" for path in files]
+    return any(map(SOURCE.search, [doc, *docs]))
+
+
 @pytest.fixture(scope="module")
 def known():
     every = [(name, node, source, ast.get_docstring(node) or "") for name, node, source in functions()]
@@ -95,6 +106,22 @@ def test_what_computes_says_the_unit_of_each_quantity(known):
     able = [(name, told(node, doc)) for name, node, _, doc in known if computes(node, doc)]
     assert len(able) > 300
     assert [name for name, fine in able if not fine] == []
+
+
+def test_what_computes_has_a_source(known):
+    """In its own docstring, in that of its module, or in that of a folder around it."""
+    without = [name for name, node, _, doc in known if computes(node, doc) and not sourced(name, doc)]
+    assert [
+        name for name in without if not name.startswith("conveying.")
+    ] == []  # its page: docs/conveying.md
+
+
+def test_a_page_that_is_a_source_is_there_with_its_section():
+    texts = [path.read_text(encoding="utf-8") for path in ROOT.rglob("*.py")]
+    named = {one for text in texts for one in PAGE.findall(text)}
+    assert len(named) > 8
+    for page, section in named:
+        assert not section or section in (ROOT.parent / page).read_text(encoding="utf-8"), (page, section)
 
 
 def test_a_line_on_an_array_says_its_shape(known):

@@ -13,6 +13,9 @@ ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 PAGES = sorted([ROOT / "README.md", *DOCS.glob("*.md")])
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#([^)\s]+))?\)")
+MEASURED = re.compile(
+    r"as\s+measured|measured\s+(?:sets?|toss|cuboid|column)|(?:was|were)\s+measured", re.IGNORECASE
+)
 ARCHITECTURE = (DOCS / "architecture.md").read_text()
 
 
@@ -46,6 +49,26 @@ def test_every_link_of_a_page_leads_somewhere(page):
         path = page.parent / target
         assert path.exists(), f"{page.name} leads to {target}"
         assert not anchor or anchor in anchors(path), f"{page.name} leads to {target}#{anchor}"
+
+
+def test_what_says_that_it_was_measured_leads_to_the_sets():
+    """In each section of a page; code blocks speak of the reader's own measurements."""
+    silent, found = [], 0
+    for page in PAGES:
+        if page.name in ("validation.md", "commands.md", "bowl_file.md"):
+            continue
+        for section in re.split(r"^(?=## )", page.read_text(), flags=re.MULTILINE):
+            if MEASURED.search(re.sub(r"```.*?```", "", section, flags=re.DOTALL)):
+                found += 1
+                silent += [] if "validation.md" in section else [(page.name, section.split("\n")[0])]
+    assert found > 5 and silent == []
+
+
+def test_every_measured_set_is_on_the_page_of_validation():
+    text = (DOCS / "validation.md").read_text()
+    stems = {path.stem for path in (DOCS / "measured").rglob("*.csv") if "example" not in path.parts}
+    titles = {"arc_chute": "## Arc Chute", "magnet": "## Magnet"}
+    assert [stem for stem in sorted(stems) if titles.get(stem, stem) not in text] == []
 
 
 def test_no_page_names_the_host_of_a_package_registry():

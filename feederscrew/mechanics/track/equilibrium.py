@@ -3,6 +3,8 @@
 The balance at rest takes the least friction, all along the track and the same share of its limit at every
 contact. Where that would need more than there is, friction across the track, up and down the wall, or more
 of it at one end of the part than at the other may still hold it.
+
+Source: Coulomb's cones as a linear programme; docs/mechanics.md.
 """
 
 import numpy as np

@@ -4,6 +4,8 @@ All is per unit of mass, with the height h of the centre of mass as unit of leng
 normal force N does, which keeps the equations linear in N, its moments N d_x and N d_y, and R1 and R2 of the
 wall. Without N in the forces along X and Y, and without N d_x and N d_y in the moment about Z, they are those
 of a motion in the plane of the floor: two forces and a turning moment of the load and of each wall contact.
+
+Source: the thesis, wrench equations of chapter 5; docs/equations.md, docs/mechanics.md.
 """
 
 from dataclasses import dataclass

@@ -1,4 +1,7 @@
-"""Air: the thrust of a nozzle, what of it meets a part, and the steady jet."""
+"""Air: the thrust of a nozzle, what of it meets a part, and the steady jet.
+
+Source: isentropic flow through a nozzle; docs/tooling.md.
+"""
 
 import math
 from dataclasses import dataclass
