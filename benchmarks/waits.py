@@ -78,7 +78,7 @@ class Row:
     def verdict(self):
         """Whether the target holds."""
         if self.target is None:
-            return "told"
+            return "no target"
         return verdict(self.figure >= self.target if self.more else self.figure <= self.target)
 
 

@@ -3,6 +3,7 @@
 import contextlib
 import shutil
 import sys
+import textwrap
 import time
 from dataclasses import dataclass, field
 
@@ -13,6 +14,7 @@ from feederscrew_cli import argument_names
 from feederscrew_cli.interrupt import held_back
 
 FORMATS = ("table", "csv", "json")
+PAGE = 100  # letters of a line that people read, at most
 FOLDER = ("-o", "--output")
 PLACES = ("directory", "depfile")  # options that name what is written, not what is read
 
@@ -54,11 +56,12 @@ class Output:
             self.say(f"Warning: {text}")
 
     def say(self, *texts):
-        """Each text as a line on stderr, unless ``-q``."""
+        """Each text as a line on stderr, folded where that is a terminal, unless ``-q``."""
+        width = min(shutil.get_terminal_size().columns, PAGE) if sys.stderr.isatty() else None
         for text in texts:
             if not self.quiet:
                 with contextlib.suppress(OSError):  # a full disk under stderr must not cost the answer
-                    click.echo(printable(self._named(text)), err=True)
+                    click.echo(folded(printable(self._named(text)), width), err=True)
 
     def _named(self, text):
         return argument_names.translated(text, self.options)
@@ -158,6 +161,14 @@ class Output:
             )
         self.depend(folder.path / name for name in sorted(folder.staged))
         self.say(f"Wrote {folder.path} ({', '.join(sorted(folder.staged))}, run.json)")
+
+
+def folded(text, width):
+    """Return a text in lines of so many letters, what follows set in; as it stands without a width."""
+    if width is None or len(text) <= width:
+        return text
+    whole = {"break_long_words": False, "break_on_hyphens": False}
+    return textwrap.fill(text, width, subsequent_indent="  ", **whole)
 
 
 def _window():

@@ -1,5 +1,7 @@
 """The figures of a design from what was counted, against closed forms."""
 
+import re
+
 import numpy as np
 import pytest
 import shapes
@@ -11,6 +13,7 @@ from feederscrew.designing.record import (
     FilledQueue,
     RobustRun,
 )
+from feederscrew.output.designs import design_page
 
 PART = shapes.part(shapes.box(10, 10, 10))
 
@@ -41,6 +44,15 @@ def test_it_holds_only_where_nothing_is_missing():
     assert "purity 88.9 %, 98 % are asked for" in study(queue(right=40)).why
     assert "18 of 20 draws of part, friction and drive sort: A@0 is lost" in study(queue(), held=18).why
     assert "of the 40/min asked for" in study(queue(right=30, left=30, returned=20)).why
+
+
+def test_each_chapter_of_the_page_to_hand_on_says_something_and_is_reached():
+    page = design_page.page(study(queue()))
+    chapters = dict(re.findall(r'<section id="(\w+)">\n<h2>.*?</h2>(.*?)</section>', page, re.DOTALL))
+    assert list(chapters) == ["answer", "loop", "proof", "acceptance"]
+    assert "Status: holds" in chapters["answer"] and "20 of 20 draws sort" in chapters["proof"]
+    assert all("<table" in chapters[name] for name in ("answer", "proof", "acceptance"))
+    assert re.findall(r'<a href="#(\w*)">', page)[:4] == list(chapters)
 
 
 def test_no_jam_is_at_most_three_in_the_time_it_was_looked_for():

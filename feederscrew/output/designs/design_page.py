@@ -33,30 +33,30 @@ def page(study, built=None):
 
 def _sections(study, built):
     d = tables.document(study)
-    yield Chapter(_answer(study, d), tiles=_tiles(d), warnings=study.warnings, title="The answer")
+    answer = tuple(_answer(study, d))
+    yield Chapter(answer, _tiles(d), study.warnings, anchor="answer", title="The answer")
     history = tables.attempts(study)
     picture = Picture("design_history.png", png(figures.history(study)), "Each short trial of the loop")
     lead = Text(
         "Each line is one short trial: a chain on its bowl, every orientation that comes often enough. What "
         "the trial denies is changed in the next."
     )
-    yield Chapter((lead, Table(history), picture) if study.attempts else (lead,), title="The loop")
+    tried = (lead, Table(history), picture) if study.attempts else (lead,)
+    yield Chapter(tried, anchor="loop", title="The loop")
     if study.queues:
-        yield Chapter(_proof(study, d), title="The proof")
+        yield Chapter(tuple(_proof(study, d)), anchor="proof", title="The proof")
     if built is not None and study.bowl is not None:
-        yield Chapter(
-            tuple(turnable.blocks(built.drawn and built.drawn.solid, study.part, built.why)), title="The bowl"
-        )
+        shown = tuple(turnable.blocks(built.drawn and built.drawn.solid, study.part, built.why))
+        yield Chapter(shown, anchor="bowl", title="The bowl")
     sheet = tables.acceptance(study)
-    shown = Text("Computed values in, and empty cells for what is measured at the machine.")
     blocks = (
-        shown,
+        Text("Computed values, with empty cells for what is measured at the machine."),
         Table(sheet),
         CsvSheet("acceptance.csv", text(sheet, "csv")),
         Heading("What to measure"),
         Notes(MEASURE),
     )
-    yield Chapter(blocks, title="Acceptance sheet")
+    yield Chapter(blocks, anchor="acceptance", title="Acceptance sheet")
 
 
 def _answer(study, d):

@@ -25,12 +25,21 @@ def history(study):
     rates = [one.rate / PER_MINUTE for one in study.attempts]
     clean = [one.clean for one in study.attempts]
     colours = [CLEAN if good else DENIED for good in clean]
-    axes.bar(places, rates, color=colours)
-    axes.axhline(study.request.target / PER_MINUTE, color="black", linewidth=0.8, label="asked for")
+    style.tidy(axes, x="trial", y="parts per minute", grid="y")
+    bars = axes.bar(
+        places, rates, color=colours, edgecolor="white", hatch=["" if good else "//" for good in clean]
+    )
+    target = study.request.target / PER_MINUTE
+    line = axes.axhline(target, color=style.INK, linewidth=1.2, linestyle="--", label="asked for")
     for place, rate, one in zip(places, rates, study.attempts):
         axes.text(place, rate, one.wanted, ha="center", va="bottom", fontsize=7)
-    axes.set_xlabel("trial; green: only what is wanted leaves, and nothing stays")
-    axes.set_ylabel("parts per minute")
     axes.set_xticks(places)
-    axes.legend(frameon=False, fontsize=8)
+    axes.set_ylim(0.0, 1.12 * max([target, *rates]))
+    named = {True: "only what is wanted leaves, and nothing stays", False: "denied"}
+    handles = [bars[clean.index(good)] for good in named if good in clean]
+    labels = [named[good] for good in named if good in clean]
+    axes.legend(
+        [line, *handles], ["asked for", *labels], frameon=False, fontsize=8, labelcolor=style.INK,
+        loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3,
+    )  # fmt: skip
     return figure
