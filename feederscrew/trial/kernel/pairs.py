@@ -9,6 +9,7 @@ import math
 from feederscrew.dropping.kernel.body import X
 from feederscrew.geometry.compiled import apart, compiled
 from feederscrew.trial.kernel.contact import GAP, IMPULSE, MASS, axes, levers
+from feederscrew.trial.kernel.near_borders import BLOCK
 from feederscrew.trial.kernel.plate_views import PARALLEL, SLANT, within
 
 DEEP = 0.04  # how deep in each other parts are looked for, in units of their length
@@ -121,17 +122,31 @@ def _rests(crowd, solid, k, n):
 
 
 @compiled
-def _face(crowd, solid, faces, k, reach):
+def _face(crowd, solid, blocks, k, reach):
     """Triangle that a corner touches, the least deep of those it may, and the gap; -1 for none."""
-    a, b, c = crowd.shown[k, 0], crowd.shown[k, 1], crowd.shown[k, 2]
+    p = crowd.shown[k]
+    a, b, c = p[0], p[1], p[2]
     best, found = -DEEP, -1
-    for f in range(faces):
-        m = crowd.faces[f]
-        n, first = solid.normals[m], solid.vertices[solid.triangles[m, 0]]
-        off = (a - first[0]) * n[0] + (b - first[1]) * n[1] + (c - first[2]) * n[2]
-        if best < off < reach and within(solid, m, a, b, c, BESIDE) and _rests(crowd, solid, k, n):
-            best, found = off, m
+    for f in range(blocks):
+        block = crowd.faces[f]
+        if _off(solid.face_blocks[block], p, p, reach + DEEP):
+            continue
+        for m in range(block * BLOCK, min((block + 1) * BLOCK, len(solid.triangles))):
+            n, first = solid.normals[m], solid.vertices[solid.triangles[m, 0]]
+            off = (a - first[0]) * n[0] + (b - first[1]) * n[1] + (c - first[2]) * n[2]
+            if best < off < reach and within(solid, m, a, b, c, BESIDE) and _rests(crowd, solid, k, n):
+                best, found = off, m
     return found, best
+
+
+@compiled
+def _off(box, p, q, reach):
+    """Whether the box around two points lies farther than ``reach`` from another, along one of the axes."""
+    for e in range(3):
+        least, most = min(p[e], q[e]), max(p[e], q[e])
+        if least > box[3 + e] + reach or most < box[e] - reach:
+            return True
+    return False
 
 
 @compiled
@@ -164,18 +179,12 @@ def _near_corners(crowd, solid, reach):
 
 
 @compiled
-def _near_faces(crowd, solid, reach):
-    """Write which faces of the second part come into ``crowd.box``; how many."""
-    box, count = crowd.box, 0
-    for m in range(len(solid.triangles)):
-        t = solid.triangles[m]
-        p, q, r = solid.vertices[t[0]], solid.vertices[t[1]], solid.vertices[t[2]]
-        meets = True
-        for e in range(3):
-            if min(p[e], q[e], r[e]) > box[3 + e] + reach or max(p[e], q[e], r[e]) < box[e] - reach:
-                meets = False
-        if meets:
-            crowd.faces[count] = m
+def _near_blocks(blocks, box, reach, found):
+    """Write which blocks of the second part's faces, or of its edges, come to a box; how many."""
+    count = 0
+    for m in range(len(blocks)):
+        if not _off(blocks[m], box[:3], box[3:], reach):
+            found[count] = m
             count += 1
     return count
 
@@ -188,10 +197,10 @@ def corners_on(crowd, solid, i, j, reach, count):
     nears = _near_corners(crowd, solid, reach)
     if nears == 0:
         return count
-    faces = _near_faces(crowd, solid, reach + DEEP)
+    blocks = _near_blocks(solid.face_blocks, crowd.box, reach + DEEP, crowd.faces)
     for c in range(nears):
         k = crowd.low[c]
-        m, gap = _face(crowd, solid, faces, k, reach)
+        m, gap = _face(crowd, solid, blocks, k, reach)
         if m >= 0:
             n, p = solid.normals[m], crowd.shown[k]
             count = _touch(crowd, solid, (i, j), (p[0], p[1], p[2]), (n[0], n[1], n[2]), gap, count)
@@ -231,17 +240,20 @@ def edges_on(crowd, solid, i, j, reach, count):
     for m in range(nears):
         _taken_in(crowd.box, crowd.shown[solid.edges[crowd.ours[m], 0]])
         _taken_in(crowd.box, crowd.shown[solid.edges[crowd.ours[m], 1]])
-    fars = 0
+    blocks = 0
     if nears:
-        fars = _near_edges(solid, solid.corners, crowd.box[:3], crowd.box[3:], reach, crowd.theirs)
+        blocks = _near_blocks(solid.edge_blocks, crowd.box, reach, crowd.theirs)
     for m in range(nears):
         k = crowd.ours[m]
         p, q = crowd.shown[solid.edges[k, 0]], crowd.shown[solid.edges[k, 1]]
-        for f in range(fars):
-            n = crowd.theirs[f]
-            r, s = solid.corners[solid.edges[n, 0]], solid.corners[solid.edges[n, 1]]
-            if not _beside(p, q, r, s, reach):
-                count = _cross(crowd, solid, i, j, k, n, p, q, r, s, reach, count)
+        for f in range(blocks):
+            block = crowd.theirs[f]
+            if _off(solid.edge_blocks[block], p, q, reach):
+                continue
+            for n in range(block * BLOCK, min((block + 1) * BLOCK, len(solid.edges))):
+                r, s = solid.corners[solid.edges[n, 0]], solid.corners[solid.edges[n, 1]]
+                if not _beside(p, q, r, s, reach):
+                    count = _cross(crowd, solid, i, j, k, n, p, q, r, s, reach, count)
     return count
 
 
