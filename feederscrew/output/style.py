@@ -21,6 +21,7 @@ LONG_WORD = re.compile(r"(\S{24})\S{24,}(\S{20})")  # a name of more than 67 let
 LEVEL = 50  # letters that stand side by side under an axis
 SPARE = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
 HALO = [withStroke(linewidth=2.5, foreground="white")]  # of letters over hatching or colours
+RIM = [withStroke(linewidth=1.1, foreground="#22303c")]  # of white letters over light colours
 
 
 class _Writer(RendererAgg):

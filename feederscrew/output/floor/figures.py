@@ -87,7 +87,7 @@ def cycle(found, course, title):
     lower.axhline(0, color=plots.INK, linewidth=0.8)
     lower.text(
         2, course.mean / MM, f" mean on a level floor {course.mean / MM:.3g} mm/s",
-        fontsize=8, color=MOTION, va="bottom",
+        fontsize=8, color=MOTION, va="bottom", path_effects=plots.HALO,
     )  # fmt: skip
     for axes in (upper, lower):
         phase_axis(axes)

@@ -119,7 +119,8 @@ def _values(figure, axes, data, label, covered):
     open_to_view = np.ma.masked_invalid(np.where(covered, np.nan, shown))
     if min(shown.shape) > 1 and open_to_view.count() and np.ptp(open_to_view.compressed()) > 0.0:
         lines = axes.contour(x, y, open_to_view, 8, colors="white", linewidths=0.6, zorder=2)
-        axes.clabel(lines, fmt="%g", fontsize=6.5)
+        for text in axes.clabel(lines, fmt="%g", fontsize=6.5):
+            text.set_path_effects(style.RIM)
 
 
 def _region(axes, grid, name):

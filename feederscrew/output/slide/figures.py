@@ -25,6 +25,7 @@ HATCH = "#b4bcc3"
 LETTER = (0.0125, 0.055)  # width of a letter and height of a line, over the picture's
 SHADES = "cividis"
 OWN = "static friction of this bowl: it slips where a curve is above"
+OWN = "this bowl"
 LABEL = {"fontsize": 8.5, "color": style.INK, "path_effects": style.HALO, "zorder": 4}
 
 
@@ -243,7 +244,7 @@ def _levels(axes, slide):
         for place, (level, shade) in enumerate(zip(LEVELS, _shades(len(LEVELS))))
         if abs(level - slide.friction) > NEAR * level
     }
-    lines[slide.friction] = (style.ACCENT, 1.8, 60, f"this bowl's μ = {slide.friction:g}")
+    lines[slide.friction] = (style.ACCENT, 1.8, 60, f"{OWN}'s μ = {slide.friction:g}")
     levels = [level for level in sorted(lines) if np.nanmin(friction) < level < np.nanmax(friction)]
     if not levels:
         return
@@ -252,7 +253,9 @@ def _levels(axes, slide):
     places = [(at, slide.level_line(level, np.radians(at))) for level, at in zip(levels, degrees)]
     named = [place for place in places if place[1] < y[-1]]
     if named:
-        axes.clabel(drawn, fmt=dict(zip(levels, texts)), fontsize=7, manual=named)
+        for text in axes.clabel(drawn, fmt=dict(zip(levels, texts)), fontsize=7, manual=named):
+            if not text.get_text().startswith(OWN):
+                text.set_color(style.INK)
 
 
 def _dress_3d(axes, slide, top):
