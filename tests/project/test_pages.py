@@ -71,6 +71,21 @@ def test_every_measured_set_is_on_the_page_of_validation():
     assert [stem for stem in sorted(stems) if titles.get(stem, stem) not in text] == []
 
 
+def sentences(page):
+    """The sentences of a page's paragraphs and lists: no headings, tables, code or targets of links."""
+    text = re.sub(r"```.*?```|<!--.*?-->", "\n\n", page.read_text(), flags=re.DOTALL)
+    text = re.sub(r"\]\([^)]*\)", "]", text)
+    text = re.sub(r"^\s*(?:\|.*|#.*)$", "", text, flags=re.MULTILINE)
+    for block in re.split(r"\n\s*\n|\n(?=\s*(?:[-*]|\d+\.) )", text):
+        yield from re.split(r"(?<=[.!?:])\s+(?=[A-Z`*\[(\d])", " ".join(block.split()))
+
+
+def test_few_sentences_of_the_pages_are_longer_than_thirty_words():
+    pages = [page for page in PAGES if page.name != "commands.md"]
+    long = [one for page in pages for one in sentences(page) if len(re.findall(r"\S*\w\S*", one)) > 30]
+    assert len(long) <= 40, sorted(long, key=len)[-5:]  # 265 once
+
+
 def test_no_page_names_the_host_of_a_package_registry():
     for page in [*PAGES, *(ROOT / "feederscrew").rglob("*.md")]:
         assert not re.search(r"https?://[^\s)>\]]*(npm|pypi|debian)", page.read_text()), page

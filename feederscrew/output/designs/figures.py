@@ -32,7 +32,7 @@ def history(study):
     target = study.request.target / PER_MINUTE
     line = axes.axhline(target, color=style.INK, linewidth=1.2, linestyle="--", label="asked for")
     for place, rate, one in zip(places, rates, study.attempts):
-        axes.text(place, rate, one.wanted, ha="center", va="bottom", fontsize=7)
+        axes.text(place, rate, one.wanted, ha="center", va="bottom", fontsize=7 if len(rates) < 12 else 5.5)
     axes.set_xticks(places)
     axes.set_ylim(0.0, 1.12 * max([target, *rates]))
     named = {True: "only what is wanted leaves, and nothing stays", False: "denied"}
