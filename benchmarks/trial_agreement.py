@@ -4,10 +4,12 @@ Example: python benchmarks/trial_agreement.py 20            (trials of each orie
          python benchmarks/trial_agreement.py 20 dowel_6x20
          python benchmarks/trial_agreement.py 6 made        (parts on which no rule was found)
          python benchmarks/trial_agreement.py 4 drawn:100-119   (parts of a generator, by seeds)
+         python benchmarks/trial_agreement.py 3 each:100-111    (the same parts, one device of each kind)
          python benchmarks/trial_agreement.py 6 some/part.stl
 
 For each part the chain that ``feeder tooling`` finds for the most frequent orientation that needs one, in the
-bowl of the defaults. Shares are those of the centroid solid angle, so that no drop test is needed.
+bowl of the defaults. With ``each`` one device of each kind instead, at a value between those that two
+orientations need, by the seed. Shares are those of the centroid solid angle, so that no drop test is needed.
 """
 
 import sys
@@ -19,11 +21,14 @@ import numpy as np
 from feederscrew import bowl as bowls
 from feederscrew.part import load
 from feederscrew.studies import tooling, trial
+from feederscrew.tooling.devices.kinds import KINDS
+from feederscrew.tooling.isolating.chain import limits
 from feederscrew.trial import course, result
 
 sys.path.insert(0, str(Path(__file__).parent))
 import trial_parts
 
+SINGLE = ("gap", "canyon", "narrowed_track", "wiper", "cut_out")
 RULE, VERDICTS = "csa", 3000  # whose shares; of a search for holes
 PARTS = Path(__file__).parent.parent / "parts"
 NAMES = (
@@ -52,6 +57,48 @@ def chain(part, folder):
     path = Path(folder) / f"{part.name}.yaml"
     path.write_text("devices:\n" + "".join(lines))
     return bowls.read(path, []), nearest[1]
+
+
+def single(part, seed, folder):
+    """One bowl for each kind of device that drops parts or sweeps them off, and what it is."""
+    first = tooling.tooling(part, bowls.read(None, []), rule=RULE, verdicts=1, seconds=1e-3)
+    every = [one for one in first.orientations if not one.returned]
+    rng, path = np.random.default_rng((24, 1, seed)), Path(folder) / f"{part.name}.yaml"
+    for kind in SINGLE:
+        text = _hole(every, rng) if kind == "cut_out" else _between(kind, every, rng)
+        if text:
+            path.write_text(f"devices:\n  - {kind}: {text}\n")
+            yield bowls.read(path, []), "none"
+
+
+def _between(kind, every, rng):
+    """A value midway between those that two orientations just pass; none where all need the same."""
+    values = np.unique(np.round(limits(KINDS[kind], every), 5))
+    values = values[np.isfinite(values) & (values > 0.0)]
+    if len(values) < 2:
+        return ""
+    k = rng.integers(len(values) - 1)
+    text = f"{1e3 * values[k : k + 2].mean():.2f} mm"
+    return text if kind != "wiper" else f"{{clearance: {text}, sweep: 30 deg}}"
+
+
+def _hole(every, rng):
+    """A hole of four corners, two of them along the wall."""
+    length, width = 1e3 * max(one.length for one in every), 1e3 * max(one.width for one in every)
+    high = width * rng.uniform(0.4, 1.1)
+    low = max(0.0, high - width * rng.uniform(0.3, 1.1))
+    long, lean = length * rng.uniform(0.4, 1.3), length * rng.uniform(0.0, 0.3)
+    corners = [(0.0, low), (long, low), (long - min(lean, 0.5 * long), high), (0.0, high)]
+    return "[" + ", ".join(f"[{x:.2f} mm, {y:.2f} mm]" for x, y in corners) + "]"
+
+
+def bowls_of(part, name, each):
+    """Bowls in which a part is tried, and the orientation each is for."""
+    with tempfile.TemporaryDirectory() as folder:
+        if each:
+            yield from single(part, int(name.removeprefix("drawn_")), folder)
+        else:
+            yield chain(part, folder)
 
 
 def rows(run):
@@ -88,31 +135,36 @@ def names_of(words):
     for word in words or NAMES:
         if word == "made":
             yield from trial_parts.NAMES
-        elif word.startswith("drawn:"):
-            first, last = map(int, word.removeprefix("drawn:").split("-"))
+        elif word.startswith(("drawn:", "each:")):
+            first, last = map(int, word.partition(":")[2].split("-"))
             yield from (f"drawn_{seed}" for seed in range(first, last + 1))
         else:
             yield word
 
 
+def tried(part, bowl, count):
+    """So many trials of every orientation of a part in a bowl."""
+    known = trial.arriving(part, bowl, rule=RULE)
+    every = len(trial.stream.orientations(part, known.aspects, bowl.track).lying)
+    return trial.trial(part, [bowl], rule=RULE, parts=count * every, jobs=1, known=known).runs[0]
+
+
 def main():
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 6
     total = held = asked = 0
+    each = any(word.startswith("each:") for word in sys.argv[2:])
     for name in names_of(sys.argv[2:]):
         part = part_of(name)
-        with tempfile.TemporaryDirectory() as folder:
-            bowl, wanted = chain(part, folder)
-            known = trial.arriving(part, bowl, rule=RULE)
-            every = len(trial.stream.orientations(part, known.aspects, bowl.track).lying)
-            run = trial.trial(part, [bowl], rule=RULE, parts=count * every, jobs=1, known=known).runs[0]
-        devices = ", ".join(f"{device.kind} {device.text}" for device in bowl.devices)
-        print(f"{name}: {devices}; wanted {wanted}")
-        print("\n".join(rows(run)), flush=True)
-        margin = np.abs(np.nan_to_num(run.margin, nan=0.0))
-        clear = run.sure & (margin > result.CLEAR)
-        total, asked = total + every, asked + int(clear.sum())
-        held += int((clear & kept(run)).sum())
-        print(f"so far {total} orientations, {asked} clear, {held} of them as the rule says", flush=True)
+        for bowl, wanted in bowls_of(part, name, each):
+            run = tried(part, bowl, count)
+            devices = ", ".join(f"{device.kind} {device.text}" for device in bowl.devices)
+            print(f"{name}: {devices}; wanted {wanted}")
+            print("\n".join(rows(run)), flush=True)
+            margin = np.abs(np.nan_to_num(run.margin, nan=0.0))
+            clear = run.sure & (margin > result.CLEAR)
+            total, asked = total + len(clear), asked + int(clear.sum())
+            held += int((clear & kept(run)).sum())
+            print(f"so far {total} orientations, {asked} clear, {held} of them as the rule says", flush=True)
     print(f"{total} orientations, {asked} with a margin beyond 0.25 mm, {held} of them as the rule says")
 
 

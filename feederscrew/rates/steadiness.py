@@ -8,12 +8,13 @@ from feederscrew.geometry.polygons import convex, inset
 from feederscrew.mechanics.cycle import phases
 from feederscrew.mechanics.floor.balance import HOP
 from feederscrew.mechanics.track import balance
-from feederscrew.mechanics.track.frame import seat
 from feederscrew.rates.rocking import Rocker, goes_over, over_period
-from feederscrew.rates.tipping import FLAT, plain
+from feederscrew.rates.tipping import FLAT, plain, seated
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling import touching
-from feederscrew.tooling.orientations import gyration, speed
+from feederscrew.tooling.falling_through import lets_go
+from feederscrew.tooling.holding import may_turn_and_lie_over
+from feederscrew.tooling.orientations import gyration, rolls_across, speed
 
 INSTANTS = 12  # of one period
 LANDINGS = 8  # instants of the period at which it comes to lie on the far edge
@@ -37,7 +38,7 @@ def steady(devices, lying, bowl, margin):
     Returns
     -------
     (M,) bool
-        True also where that is not known: a part that rolls or hops, a drive that is not straight.
+        True also where that is not known: a part that hops, a drive that is not straight.
 
     Notes
     -----
@@ -51,25 +52,68 @@ def steady(devices, lying, bowl, margin):
     return np.array([not known or _steady(devices, one, bowl, margin) for one in lying], dtype=bool)
 
 
+def gone(devices, lying, passes):
+    """Return which orientations the first device that does not let them pass is sure to get rid of.
+
+    Parameters
+    ----------
+    devices : sequence of Device
+    lying : sequence of Orientation
+        M of them.
+    passes : (M, 1 + D) float [1]
+        Share that the track and each device let pass.
+
+    Returns
+    -------
+    (M,) bool
+        True also of what no device returns.
+    """
+    found = np.ones(len(lying), dtype=bool)
+    for row, (one, shares) in enumerate(zip(lying, np.asarray(passes)[:, 1:])):
+        first = next((k for k, share in enumerate(shares) if share < 0.5), None)
+        if first is not None and not one.returned:
+            device = devices[first]
+            turned = device.face is not None and may_turn_and_lie_over(one, device.limit)
+            found[row] = lets_go(device, one) and not turned
+    return found
+
+
 def _steady(devices, one, bowl, margin):
     """Whether one orientation is steady at every device."""
-    if one.returned or one.touching is None or one.kind != FLAT:
+    if one.returned or one.touching is None:
         return True
-    place = seat(one.posture, one.heading, one.touching, bowl.track.bank)
+    if one.kind != FLAT and rolls_across(one):
+        return not any(_takes(device, one) for device in _met(devices))
+    place = seated(one, bowl.track.bank)
     if (balance.motion(place, bowl, phases(INSTANTS)).state == HOP).any():
         return True
     force, offset = over_period(place, bowl)
-    for device in devices:
-        if device.turns or device.hangs:  # behind it, it does not come as it lies
-            break
-        if not device.carries:
-            continue
+    for device in _met(devices):
         span, hole = device.span_on(one.track), device.hole_on(one.track)
         if span is not None and not _keeps_down(one, span, offset, margin):
             return False
         if hole is not None and not _keeps_upright(one, hole, place, force, offset, bowl):
             return False
     return True
+
+
+def _met(devices):
+    """Those that leave less of a foot, as far as parts come to them as they lie."""
+    for device in devices:
+        if device.turns or device.hangs:
+            break
+        if device.carries:
+            yield device
+
+
+def _takes(device, one):
+    """Whether a device takes anything from what carries an orientation."""
+    span, hole = device.span_on(one.track), device.hole_on(one.track)
+    if span is not None:
+        (first, last), radius = span, one.track.radius
+        high = radius - first if first > 0.0 else 2.0 * radius
+        return feet.over_ring(one.standing, max(radius - last, 0.0), high) <= one.margin - SAME
+    return hole is not None and feet.least(one.standing, hole)[0] <= one.margin - SAME
 
 
 def _keeps_down(one, span, offset, margin):

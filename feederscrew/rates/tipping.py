@@ -151,7 +151,7 @@ def _one(one, bowl):
     """Whether one orientation tips, how far a stroke tilts it, from where it goes on, if it goes over."""
     if one.falls_off or one.touching is None or (one.kind != FLAT and rolls_across(one)):
         return _NEVER
-    place, phase = _seat(one, bowl.track.bank), phases(INSTANTS)
+    place, phase = seated(one, bowl.track.bank), phases(INSTANTS)
     rest = balance.motion(place, bowl, phase)
     if (rest.state == HOP).any() or not (rest.state == TIP).any():
         return _NEVER
@@ -171,8 +171,11 @@ def _one(one, bowl):
     return True, float(tilt), float(lean), bool(over)
 
 
-def _seat(one, bank):
-    """How it lies; one that rolls tips over the ends of its line only, so its contact is wide beside that."""
+def seated(one, bank):
+    """Return how an orientation lies on a track of some bank [rad], a Seat.
+
+    One that rolls tips over the ends of its line only, so its contact is wide beside that.
+    """
     place = seat(one.posture, one.heading, one.touching, bank)
     if one.kind == FLAT:
         return place

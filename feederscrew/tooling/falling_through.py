@@ -4,14 +4,20 @@ import functools
 
 import numpy as np
 import shapely
+import shapely.affinity
 
 from feederscrew.geometry.polygons import outline
+from feederscrew.tooling import between_edges
+from feederscrew.tooling.devices.hole_shapes import BEHIND
 
 AZIMUTHS, TILTS = 8, 10  # ways it can tip: about level axes all round, by steps up to a right angle
 CLEAR = 2.5e-4  # [m] a hole is larger than the shadow that goes through it, all round
 BEYOND = 0.1  # [m] a hole that is open at the track's free edge goes on so far
 SQUARE = 1e-9  # of its own box: what less a hole covers, it is still a rectangle
 PLAIN = 2e-4  # of the part's size: corners of a shadow that stand out by less are left out
+LONG = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
+FAR, ONE_LINE = 10.0, 1e-6  # [m] along any hole; half the width of a line across which it is measured
+PLACES, PIECES = 200, 8  # along a hole at which a part is tried; of a side of its outline
 
 
 def falls_through(one, cut):
@@ -36,6 +42,78 @@ def falls_through(one, cut):
     if hole.is_empty:
         return False
     return any(_fits(shadow, hole) for shadow in _shadows(one))
+
+
+def lets_go(device, one):
+    """Return whether what a device cuts away lets an orientation go for certain that it does not carry.
+
+    Parameters
+    ----------
+    device : Device
+    one : Orientation
+        That travels.
+
+    Returns
+    -------
+    bool
+        Whether the part goes over the free edge, or through a hole along the track as it lies, or down
+        between two edges where no tilt of it can rest on them. True of a device that cuts nothing.
+    """
+    cut = device.outline_on(one.track, LONG * float(np.hypot(one.length, max(one.width, one.height))))
+    if cut is None or _over_the_edge(device, one.track):
+        return True
+    span = device.span_on(one.track)
+    if span is None:
+        return falls_through(one, cut) and _drops_between(one, cut)
+    return fits_as_it_lies(one, cut) or (falls_through(one, cut) and _slips(one, span))
+
+
+def fits_as_it_lies(one, cut):
+    """Return whether an orientation fits through a hole as it lies, somewhere on its way over it.
+
+    Parameters
+    ----------
+    one, cut
+        As for ``falls_through``.
+    """
+    hole = shapely.make_valid(_open(np.asarray(cut, float), one.track.width))
+    behind = shapely.affinity.translate(hole, 0.0, -BEHIND) if hole.bounds[1] <= 0.0 else hole
+    hole = hole.union(behind).buffer(-CLEAR, join_style="mitre")
+    border = shapely.segmentize(shapely.linearrings(one.outline), one.length / PIECES)
+    ahead, beside = shapely.get_coordinates(border).T
+    middle, radius = one.track.radius - one.distance, one.track.radius
+    away = np.hypot(ahead, middle - beside)
+    lies = np.column_stack([radius * np.arctan2(ahead, middle - beside), radius - away])
+    if hole.is_empty or np.ptp(lies[:, 0]) > hole.bounds[2] - hole.bounds[0]:
+        return False
+    shifts = np.linspace(hole.bounds[0] - lies[:, 0].min(), hole.bounds[2] - lies[:, 0].max(), PLACES)
+    shapely.prepare(hole)
+    return any(hole.covers(shapely.Polygon(lies + [shift, 0.0])) for shift in shifts)
+
+
+def _over_the_edge(device, track):
+    """Whether what is cut away goes on over the free edge all along."""
+    span = device.span_on(track)
+    return span is not None and span[1] >= track.extent - 1e-9
+
+
+def _slips(one, span):
+    """Whether no tilt of a part rests on both sides of a hole along the track, over which it slides on."""
+    seen = shapely.affinity.translate(one.seen, -one.distance, -one.posture.height)
+    near = max(span[0], 0.0)
+    return not between_edges.may_rest(seen, span[1] - near, 0.0, span[0] <= 0.0)
+
+
+def _drops_between(one, cut):
+    """Whether no tilt of a part ahead rests on both edges across the track of a hole as wide as the part."""
+    hole = shapely.make_valid(_open(np.asarray(cut, float), one.track.width))
+    low, high = one.distance + one.outline[:, 1].min(), one.distance + one.outline[:, 1].max()
+    least = min(
+        hole.intersection(shapely.box(-FAR, y - ONE_LINE, FAR, y + ONE_LINE)).area / (2.0 * ONE_LINE)
+        for y in np.linspace(max(low, ONE_LINE), high - ONE_LINE, PIECES)
+    )
+    seen = shapely.affinity.translate(one.aside, 0.0, -one.posture.height)
+    return least > 0.0 and not between_edges.may_rest(seen, least, one.grip)
 
 
 def _open(cut, width):

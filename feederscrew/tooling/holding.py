@@ -66,15 +66,42 @@ def may_lay_aside(one, low, sweep):
     Over a side of the foot, b from the weight and with its normal at an angle a to that push, the part tips
     where mu z cos(a) > b, z the height of the edge.
     """
+    found = _foot_sides(one)
+    if found is None:
+        return True
+    away, reach = found
+    push = away[:, 1] * math.cos(sweep) - away[:, 0] * math.sin(sweep)
+    return bool((one.grip * low * push > reach).any())
+
+
+def may_turn_and_lie_over(one, low):
+    """Return whether a swept blade may lay a part over once it has turned along the face.
+
+    Parameters
+    ----------
+    one : Orientation
+        That travels.
+    low : float [m]
+        Height of the blade's edge.
+
+    Notes
+    -----
+    What slides along a blade turns until a side of it lies there, whichever comes: the push of
+    ``may_lay_aside`` is then square to some side of the foot, and tips it over the nearest where mu z > b.
+    """
+    found = _foot_sides(one)
+    return found is None or bool((one.grip * low > found[1]).any())
+
+
+def _foot_sides(one):
+    """Normals (K, 2) of the sides of a foot and their distances (K,) [m] from its weight; None of a line."""
     hull = shapely.MultiPoint(one.foot.corners).convex_hull
     if hull.geom_type != "Polygon":
-        return True
+        return None
     corners = shapely.get_coordinates(shapely.geometry.polygon.orient(hull))
     sides = np.diff(corners, axis=0)
     away = np.column_stack([sides[:, 1], -sides[:, 0]]) / np.hypot(*sides.T)[:, None]
-    reach = away[:, 0] * corners[:-1, 0] + away[:, 1] * corners[:-1, 1]
-    push = away[:, 1] * math.cos(sweep) - away[:, 0] * math.sin(sweep)
-    return bool((one.grip * low * push > reach).any())
+    return away, away[:, 0] * corners[:-1, 0] + away[:, 1] * corners[:-1, 1]
 
 
 def may_wedge(one, span):

@@ -11,6 +11,7 @@ from feederscrew.trial import whereabouts
 
 ALIKE = 0.05  # of the part's size: a part whose outline is off by more lies in no known orientation
 DIRECTIONS = 160
+ASKEW = np.radians(np.linspace(-10.0, 10.0, 11))  # by which a part may lie turned on the track and be known
 SWINGS = np.cos(np.radians(40.0))  # a part below the track that is no further from upright hangs
 OTHER = -1  # orientation: none of the known
 
@@ -18,6 +19,7 @@ OTHER = -1  # orientation: none of the known
 class Looks:
     """Tells in which orientation a part lies, by how far it reaches in many directions.
 
+    One that lies turned by up to 10 deg, as a part that has just left a device may, is in the nearest.
     Parts that hang swing and turn about the vertical: they are known by what of them is up.
     """
 
@@ -30,10 +32,10 @@ class Looks:
         }
         self.low = 0.5 * min(one.posture.height for one in every if not isinstance(one, Hanging)) / length
         self.radius, self.near = radius / length, ALIKE * solid.radius
-        self.known = np.array([self._standing(one, length) for one in every])
+        self.known = np.array([[self._standing(one, length, by) for by in ASKEW] for one in every])
 
-    def _standing(self, one, length):
-        c, s = np.cos(one.heading), np.sin(one.heading)
+    def _standing(self, one, length, by):
+        c, s = np.cos(one.heading + by), np.sin(one.heading + by)
         turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
         corners = one.posture.corners - np.array([0.0, 0.0, one.posture.height])
         return vectors.product(vectors.product(corners, turn.T) / length, self.directions.T).max(axis=0)
@@ -47,7 +49,7 @@ class Looks:
         level = whereabouts.moved(state[None], -place * self.radius, self.radius)[0]
         seen = vectors.product(self.corners, whereabouts.matrix(level).T)
         reach = vectors.product(seen, self.directions.T).max(axis=0)
-        off = np.abs(self.known - reach).max(axis=1)
+        off = np.abs(self.known - reach).max(axis=2).min(axis=1)
         best = int(np.argmin(off))
         if self.ups and state[2] < self.low:
             up = {k: float(vectors.dot(whereabouts.matrix(level)[2], one)) for k, one in self.ups.items()}

@@ -9,7 +9,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.rates import rocking
 from feederscrew.rates.rocking import INSTANTS, Rocker, goes_over
-from feederscrew.rates.tipping import _seat
+from feederscrew.rates.tipping import seated
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import gyration, orientations
 
@@ -62,7 +62,7 @@ def test_a_pin_on_the_track_rocks_with_its_own_inertia():
     """The gyration about a side is that of the box; near and far sides are half its width away."""
     part, bowl = shapes.part(shapes.box(10, 10, 40)), bowls.read(None, [])
     upright = next(one for one in orientations(part, find(part), bowl.track) if one.height > 0.03)
-    found = rocking.rocker(_seat(upright, 0.0), lambda angle: gyration(upright, angle), bowl)
+    found = rocking.rocker(seated(upright, 0.0), lambda angle: gyration(upright, angle), bowl)
     assert (found.near, found.far) == pytest.approx((5e-3, 5e-3), rel=1e-9)
     assert found.spread == pytest.approx((0.01**2 + 0.04**2) / 12.0, rel=1e-9)
     assert np.all(found.force >= 0.0) and found.force.mean() == pytest.approx(9.81, rel=0.02)

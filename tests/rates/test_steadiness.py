@@ -62,12 +62,21 @@ def test_beside_an_edge_along_the_track_the_force_stays_within_what_is_left(upri
     assert is_steady(upright, kind, limits[1], margin=1.0)  # which takes nothing from it
 
 
-def test_nothing_is_said_behind_rails_of_what_rolls_or_of_a_drive_that_is_not_followed(upright):
+def test_nothing_is_said_behind_rails_or_of_a_drive_that_is_not_followed(upright):
     limit = upright.gap - 0.01e-3
     rails, gap = made("rails", "test", span=(0.1, 0.11)), made("gap", "test", limit=limit)
     assert steady([rails, gap], [upright], BOWL, CLEAR).all()
     assert not steady([gap, rails], [upright], BOWL, CLEAR).any()
-    assert is_steady(replace(upright, kind="rolling"), "gap", limit)
     assert is_steady(replace(upright, touching=None), "gap", limit)
     for more in ("drive.amplitude=0.5 mm", "drive.second_harmonic=0.3"):
         assert is_steady(upright, "gap", limit, bowls.read(None, ["track.radius=100 m", more]))
+
+
+def test_what_rolls_along_the_track_rocks_over_a_gap_as_what_is_flat_does(upright):
+    """What rolls across it is not followed: only what takes nothing from it leaves it as it is."""
+    along = replace(upright, kind="rolling", posture=replace(upright.posture, axis=np.array([1.0, 0.0])))
+    across = replace(along, posture=replace(along.posture, axis=np.array([0.0, 1.0])))
+    for carried, steadily in ((0.01e-3, False), (2e-3, True)):
+        assert is_steady(along, "gap", upright.gap - carried) == steadily
+        assert not is_steady(across, "gap", upright.gap - carried)
+    assert is_steady(across, "canyon", 0.0)
