@@ -26,7 +26,7 @@ def trial(out):
     from feederscrew.trial import runs
 
     if not runs.compiled():
-        out.say("Compiling the trial's kernel, once on this machine: about fifteen seconds.")
+        out.say("Compiling the trial's kernel, once on this machine: about a minute.")
 
 
 def queue(out):
@@ -34,7 +34,7 @@ def queue(out):
     from feederscrew.trial import crowd
 
     if not crowd.compiled():
-        out.say("Compiling the queue's kernel, once on this machine: about fifteen seconds.")
+        out.say("Compiling the queue's kernel, once on this machine: about a minute.")
 
 
 def conveying(out):

@@ -3,12 +3,14 @@
 import difflib
 import math
 import os
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, BinaryIO
 
 import yaml
 
-from feederscrew.errors import ConfigError, Faults
+from feederscrew.errors import ConfigError, Faults, FeederError
 from feederscrew.units import shown
 
 LARGEST = 200_000  # [bytes]: a bowl file or part card has a few hundred; parsing time grows with size
@@ -26,7 +28,7 @@ class Node:
     entries: tuple["Entry", ...] = ()  # of a mapping, in order, duplicates left out
     items: tuple["Node", ...] = ()  # of a list
 
-    def find(self, key):
+    def find(self, key: str) -> "Entry | None":
         """Return the entry of a mapping under this key, or None."""
         return next((entry for entry in self.entries if entry.key == key), None)
 
@@ -40,7 +42,7 @@ class Entry:
     value: Node
 
 
-def read(path):
+def read(path: str | os.PathLike[str]) -> tuple[Node, list[FeederError]]:
     """Return the tree of a YAML file.
 
     Parameters
@@ -65,7 +67,7 @@ def read(path):
     return load(content(path, LARGEST, "a YAML file"), str(path))
 
 
-def found_as(kind, path):
+def found_as(kind: Callable[[Path], bool], path: str | os.PathLike[str]) -> bool:
     """Return whether a path (str or Path) is of a kind, such as Path.is_dir; not if the system refuses it."""
     try:
         return kind(Path(path))
@@ -73,7 +75,9 @@ def found_as(kind, path):
         return False
 
 
-def content(path, most, wanted, kind=ConfigError):
+def content(
+    path: str | os.PathLike[str], most: int, wanted: str, kind: type[FeederError] = ConfigError
+) -> bytes | bytearray:
     """Return the bytes of a file.
 
     Parameters
@@ -111,7 +115,7 @@ def content(path, most, wanted, kind=ConfigError):
         raise kind(path, f"cannot be read ({reason})", "check the path and its permissions") from None
 
 
-def upto(file, most):
+def upto(file: BinaryIO, most: int) -> bytes | bytearray:
     """Read a binary file up to one byte more than is of use, without a buffer of that size.
 
     Parameters
@@ -137,12 +141,12 @@ def upto(file, most):
     return bytes(data) if len(data) <= most else data
 
 
-def _next(file, left):
+def _next(file: BinaryIO, left: int) -> bytes:
     """The next piece of a stream of which so many bytes are still of use; empty at its end or beyond."""
     return file.read(min(PIECE, left + 1)) if left >= 0 else b""
 
 
-def _size(file):
+def _size(file: BinaryIO) -> int:
     """Bytes of a regular file; 0 of a stream."""
     try:
         return os.fstat(file.fileno()).st_size
@@ -150,7 +154,7 @@ def _size(file):
         return 0
 
 
-def load(text, name):
+def load(text: str | bytes | bytearray, name: str) -> tuple[Node, list[FeederError]]:
     """Return the tree of a YAML text.
 
     Parameters
@@ -173,7 +177,7 @@ def load(text, name):
     """
     if len(text) > LARGEST:
         raise ConfigError(name, f"has more than {LARGEST // 1000} kB", "name a YAML file of settings")
-    text = decoded(text, name) if isinstance(text, bytes) else text
+    text = text if isinstance(text, str) else decoded(text, name)
     builder = _Builder(name)
     try:
         root = builder.document(yaml.parse(text, Loader=yaml.SafeLoader))
@@ -186,7 +190,7 @@ def load(text, name):
     return root, builder.faults
 
 
-def decoded(data, name):
+def decoded(data: bytes | bytearray, name: str) -> str:
     """Return the bytes of a text file as text; raises ConfigError with the line that is not UTF-8."""
     try:
         return data.decode("utf-8-sig")
@@ -196,16 +200,16 @@ def decoded(data, name):
         raise ConfigError(f"{name}:{line}", what, "save the file as UTF-8 text") from None
 
 
-def raise_all(faults):
+def raise_all(faults: Iterable[FeederError]) -> None:
     """Raise every fault of a file in one go, in the order of its lines, the first of each place."""
-    first = {}
+    first: dict[str, FeederError] = {}
     for fault in faults:
         first.setdefault(str(fault.where), fault)
     if first:
         raise Faults(sorted(first.values(), key=_position))
 
 
-def hint(word, known):
+def hint(word: str, known: Iterable[str]) -> str:
     """Return how to mend an unknown word: the nearest known one, or the list of them."""
     folded = {name.lower(): name for name in known}
     near = difflib.get_close_matches(word.lower(), folded, n=1, cutoff=0.6)
@@ -215,10 +219,10 @@ def hint(word, known):
 class _Builder:
     """Turns parser events into nodes, noting what a settings file has no use for."""
 
-    def __init__(self, name):
-        self.name, self.faults = name, []
+    def __init__(self, name: str) -> None:
+        self.name, self.faults = name, list[FeederError]()
 
-    def document(self, events):
+    def document(self, events: Iterator[Any]) -> Node:
         """Return the one document of the stream."""
         root = None
         for event in events:
@@ -230,7 +234,7 @@ class _Builder:
             raise ConfigError(self.name, "is empty", "write at least one 'key: value' line")
         return root
 
-    def node(self, event, events, depth):
+    def node(self, event: Any, events: Iterator[Any], depth: int) -> Node:
         if depth > DEEPEST:
             raise self.fault(event, f"is nested deeper than {DEEPEST} levels", "write it flatter")
         self.note_extras(event)
@@ -240,11 +244,9 @@ class _Builder:
             return Node(self.where(event), "list", items=self.items(events, depth))
         return Node(self.where(event), "text", text=getattr(event, "value", ""))
 
-    def entries(self, events, depth):
-        found = {}
-        for event in events:
-            if isinstance(event, yaml.MappingEndEvent):
-                return tuple(found.values())
+    def entries(self, events: Iterator[Any], depth: int) -> tuple[Entry, ...]:
+        found: dict[str, Entry] = {}
+        while not isinstance(event := next(events), yaml.MappingEndEvent):
             key = self.node(event, events, depth + 1)
             value = self.node(next(events), events, depth + 1)
             if key.kind != "text":
@@ -253,19 +255,19 @@ class _Builder:
                 self.faults.append(self.duplicate(key, found[key.text]))
             else:
                 found[key.text] = Entry(key.text, key.where, value)
+        return tuple(found.values())
 
-    def items(self, events, depth):
-        found = []
-        for event in events:
-            if isinstance(event, yaml.SequenceEndEvent):
-                return tuple(found)
+    def items(self, events: Iterator[Any], depth: int) -> tuple[Node, ...]:
+        found: list[Node] = []
+        while not isinstance(event := next(events), yaml.SequenceEndEvent):
             found.append(self.node(event, events, depth + 1))
+        return tuple(found)
 
-    def duplicate(self, key, first):
+    def duplicate(self, key: Node, first: Entry) -> ConfigError:
         line = first.where.rsplit(":", 2)[1]
         return ConfigError(key.where, f"key {shown(key.text)} is already in line {line}", "keep one of them")
 
-    def note_extras(self, event):
+    def note_extras(self, event: Any) -> None:
         """Note what a plain settings file has no use for: aliases, anchors and tags."""
         if isinstance(event, yaml.AliasEvent):
             self.note(event, f"alias {shown('*' + event.anchor)} is not allowed", "write the value itself")
@@ -274,24 +276,24 @@ class _Builder:
         elif event.tag is not None:
             self.note(event, f"tag {shown(event.tag)} is not allowed", "write the value alone")
 
-    def note(self, event, what, mend):
+    def note(self, event: Any, what: str, mend: str) -> None:
         self.faults.append(self.fault(event, what, mend))
 
-    def fault(self, event, what, mend):
+    def fault(self, event: Any, what: str, mend: str) -> ConfigError:
         return ConfigError(self.where(event), what, mend)
 
-    def where(self, event):
+    def where(self, event: Any) -> str:
         return f"{self.name}:{event.start_mark.line + 1}:{event.start_mark.column + 1}"
 
 
-def _syntax(name, error):
+def _syntax(name: str, error: Any) -> ConfigError:
     mark = error.problem_mark or error.context_mark
     where = f"{name}:{mark.line + 1}:{mark.column + 1}" if mark else name
     what = " ".join(f"is not YAML ({error.problem or error.context})".split())
     return ConfigError(where, what, "check the colons, quotes and indentation here")
 
 
-def _position(fault):
+def _position(fault: FeederError) -> tuple[float, ...]:
     """Sort key of a fault: line and column of a file; what is in no file comes last, in its order."""
     numbers = str(fault.where).rsplit(":", 2)[1:]
     in_file = len(numbers) == 2 and all(number.isdecimal() for number in numbers)
