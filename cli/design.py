@@ -126,6 +126,7 @@ def design(part, asked, rule, taken, jobs, bowl, pictures, out):
             told=out.say, before=lambda: waiting.trial(out),
         )  # fmt: skip
         document = tables.document(found)
-        out.warn(*found.warnings)
-        offers.write(folder, files.offers(found, settings, beside.built(found, settings)), pictures=pictures)
+        made = beside.built(found, settings)
+        out.warn(*found.warnings, *([f"no solid of the bowl is made: {made.why}"] if made.why else []))
+        offers.write(folder, files.offers(found, settings, made), pictures=pictures)
         out.show(tables.summary(found), document)

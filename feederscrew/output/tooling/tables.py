@@ -158,6 +158,8 @@ def _lead(study, found):
     one, tried = study.orientations[study.wanted], study.trial_of(study.wanted)
     shares = 100.0 * found.efficiency, 100.0 * found.purity
     leave = "{:.3g} % of the parts offered leave so, {:.4g} % of what leaves".format(*shares)
+    if not found.efficiency > 0.0:
+        leave = "none of the parts offered leaves so"
     if tried is not None and tried.faults:
         return f"{one.name} is not isolated: {tried.sentence.partition(': ')[2]}"
     if not found.isolated:

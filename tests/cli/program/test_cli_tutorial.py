@@ -27,14 +27,15 @@ def test_the_jobs_of_the_tutorial(tmp_path, monkeypatch):
         assert done.exit_code == 0, f"{line}: {done.output}"
         assert done.stdout.split("\n")[0].split() == shown.split("\n")[0].split(), line
         told.append(done.stdout)
-    assert len(told) == 8
+    assert len(told) == 9
     screw, terminal = (
-        dict(re.split(r"  +", row, maxsplit=1) for row in told[k].splitlines()) for k in (2, 6)
+        dict(re.split(r"  +", row, maxsplit=1) for row in told[k].splitlines()) for k in (2, 7)
     )
     assert float(screw["correctly oriented parts per minute"].split()[0]) > 60.0
     for job in (screw, terminal):
         assert float(job["purity, correctly oriented of what leaves [%]"]) == 100.0
-    fates = {row.split()[0]: row.split() for row in told[7].splitlines()}
-    assert fates["A"] and "yes" not in told[7].split()  # no orientation against the static rule
+    for job in (told[3], told[8]):
+        fates = {row.split()[0]: row.split() for row in job.splitlines()}
+        assert fates["A"] and "yes" not in job.split()  # no orientation against the static rule
     for name in ("countersunk_m4x12", "ring_terminal"):
         assert {path.name for path in (tmp_path / "build/tutorial" / name).iterdir()} > FILES
