@@ -17,6 +17,7 @@ SPARE = (  # left out of a table for people that is too wide, the first ones fir
     ("height_mm",), ("length_mm", "width_mm"), ("steady",), ("status",), ("purity",), ("left_over",),
 )  # fmt: skip
 SPAN = re.compile(r"\{from: ([\d.]+) mm, to: ([\d.]+) mm\}")
+HEADING = re.compile(r"@(\d+\.\d+)")  # [deg] of an orientation that a device names
 WIDE = 34  # letters of a text in a table for people
 QUASI_STATIC = "quasi-static, until a trial confirms it"
 
@@ -123,7 +124,8 @@ def _short(text, most):
     corners = text.count("[") - 1
     if corners > 1 and len(text) > most:
         return f"polygon of {corners} corners"
-    return re.sub(r"[{}:]", "", SPAN.sub(r"\1 to \2 mm", text))
+    text = HEADING.sub(lambda found: f"@{float(found[1]):.0f}", SPAN.sub(r"\1 to \2 mm", text))
+    return re.sub(r"[][{}:]", "", text)
 
 
 def _few(text, most):
