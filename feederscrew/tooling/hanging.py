@@ -7,7 +7,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.geometry import vectors
-from feederscrew.geometry.polygons import cross, outline, sides
+from feederscrew.geometry.polygons import convex, cross, outline, sides
 from feederscrew.tooling import touching
 from feederscrew.tooling.foot import Footprint
 from feederscrew.tooling.orientations import Orientation
@@ -118,6 +118,8 @@ def _turned_about(one, axis, end):
     points = points[vectors.product(points, axis) <= end]
     across = vectors.unit(np.array([-axis[1], axis[0], 0.0]))
     flat = np.column_stack([vectors.product(points, across), vectors.product(points, np.cross(axis, across))])
+    if len(convex(flat)) < 3:  # the head ends in an edge: it is as narrow as that
+        return 0.0, 0.0
     ring = outline(flat)
     along = sides(ring)
     along = along / np.hypot(*along.T)[:, None]
