@@ -220,7 +220,7 @@ def test_a_picture_of_one_device_is_no_wider_than_what_it_shows(lying):
 @pytest.mark.parametrize(
     ("text", "shown"),
     [
-        ("{of: A@187.672, play: 8.45 mm, sees: height}", "of A@187.672, play 8.45 mm, sees height"),
+        ("{of: A@187.672, play: 8.45 mm, sees: height}", "of A@188, play 8.45 mm, sees height"),
         ("{from: 4.4 mm, to: 11.45 mm}, lead-in 2.9 to 12.7 mm", "4.4 to 11.45 mm, lead-in 2.9 to 12.7 mm"),
         ("18.85 mm", "18.85 mm"),
         ("[[0 mm, 0 mm], [12 mm, 3 mm], [14 mm, 9 mm]]", "polygon of 3 corners"),
