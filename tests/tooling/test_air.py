@@ -143,7 +143,8 @@ def test_a_screw_that_hangs_is_seen_head_first_and_thread_first():
     found = tooling.tooling(screw, steep, "A", **own)
     devices = [cut.device for cut in found.design.cuts]
     kinds = [device.kind for device in devices]
-    assert kinds == ["separation", "sorter", "rails"]
+    assert kinds == ["separation", "sorter", "separation", "rails"]
+    assert devices[2].angle == pytest.approx(steep.track.climb, abs=1e-6)  # time to turn down
     assert len(devices[1].also) == 1 and found.design.isolated
 
 

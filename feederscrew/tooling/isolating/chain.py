@@ -77,7 +77,7 @@ def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=Fals
         limit = snapped(values[first] + (-margin if lower else margin), wishes.step, up=not lower)
         device = kind.proposal(WHERE, limit)
         if limit > 0.0 and device.acts(every[wanted].track):
-            found[device] = np.array([_margin(device, one, every) for one in every])
+            found[device] = np.array([margin_at(device, one, every) for one in every])
 
     def unlike(view):
         others = [every[k] for k in same if k != wanted]
@@ -86,7 +86,7 @@ def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=Fals
     for kind in around() if sensed else ():
         if wishes.allows(kind.kind):
             for device in kind.around(every[wanted], margin, WHERE, unlike):
-                found[device] = np.array([_margin(device, one, every) for one in every])
+                found[device] = np.array([margin_at(device, one, every) for one in every])
     return found
 
 
@@ -102,8 +102,8 @@ def around():
     return [kind for kind in KINDS.values() if kind.proposed and hasattr(kind, "around")]
 
 
-def _margin(device, one, every):
-    """The margin [m] of an orientation at a device; NaN of one that comes to stand there."""
+def margin_at(device, one, every):
+    """Return the margin [m] of an orientation at a device; NaN of one that comes to stand there."""
     document = verdict(device, one, every)
     stands = document.margin < 0.0 and device.fate(Meeting(one, every)) == STOPPED
     return np.nan if stands else document.margin
@@ -254,7 +254,7 @@ def _surest(every, must, at, middle, near, by=UNSURE):
     """The device of a value midway, or as near to that as it still returns what it has to, by a margin."""
 
     def returns(device):
-        return all(_margin(device, one, every) < -by for one, some in zip(every, must) if some)
+        return all(margin_at(device, one, every) < -by for one, some in zip(every, must) if some)
 
     if returns(at(middle)):
         return at(middle)

@@ -137,12 +137,24 @@ def told(given, cuts, returned, same=None, late=False):
 
 
 def _separated(given, cuts):
-    """Cuts with a stretch that separates parts before the first of them that needs gaps."""
+    """Cuts with a stretch that separates parts before the first of them that needs gaps.
+
+    Before rails the track climbs as it did: on a steeper way a head that comes first has no time to turn down.
+    """
     steeper, one = given.wishes.separation, given.every[given.wanted]
     first = next((k for k, cut in enumerate(cuts) if cut.device.gap(one, one.speed) > 0.0), None)
     if steeper is None or first is None or any(device.leans for device in given.before):
         return tuple(cuts)
-    return (*cuts[:first], Cut(steeper, np.nan, np.nan, steeper, steeper, ()), *cuts[first:])
+    climb = one.track.climb
+    slower = replace(steeper, angle=climb, text=f"{{climb: {np.degrees(climb):.6g} deg}}")
+    last = next((k for k, cut in enumerate(cuts) if cut.device.hangs), len(cuts))
+    back = (_plain_cut(slower),) if last < len(cuts) else ()
+    return (*cuts[:first], _plain_cut(steeper), *cuts[first:last], *back, *cuts[last:])
+
+
+def _plain_cut(device):
+    """A stretch of track as a Cut: it passes all."""
+    return Cut(device, np.nan, np.nan, device, device, ())
 
 
 def _with_stops(given, flow, cuts):

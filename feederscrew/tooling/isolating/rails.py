@@ -43,7 +43,10 @@ def design(given):
     if not same[wanted]:
         return None
     margins = np.array([one.margin for one in found])
-    gone = (margins <= -margin) | ~given.stays | (given.coming <= 0.0)
+    falls = np.array(
+        [chain.margin_at(device, one, every) <= -margin for one in every]
+    )  # what stands does not
+    gone = falls | ~given.stays | (given.coming <= 0.0)
     passed = gone | same
     for stage in STAGES:
         if not stage.get("sensed") or given.wishes.allows("sorter"):
