@@ -139,7 +139,7 @@ def told(given, cuts, returned, same=None, late=False):
 def _separated(given, cuts):
     """Cuts with a stretch that separates parts before the first of them that needs gaps.
 
-    Before rails the track climbs as it did: on a steeper way a head that comes first has no time to turn down.
+    Before rails the track climbs as it did: where it falls, a head that comes first has no time to turn down.
     """
     steeper, one = given.wishes.separation, given.every[given.wanted]
     first = next((k for k, cut in enumerate(cuts) if cut.device.gap(one, one.speed) > 0.0), None)
