@@ -30,6 +30,12 @@ REQUEST = (  # what shall leave, and what may be used
         help="Heading of that aspect.  [default: the one that delivers most]",
     ),
     click.option(
+        "--up",
+        default="",
+        metavar="NAME,...",
+        help="Aspects that count as one, whatever their heading: A,B.",
+    ),
+    click.option(
         "--outcome",
         type=click.Choice(["any", "lying", "hanging"]),
         default="any",
@@ -71,7 +77,8 @@ REQUEST = (  # what shall leave, and what may be used
     ),
 )
 REQUESTED = (
-    "target", "aspect", "heading", "outcome", "without", "diameter", "tolerance", "budget", "draws", "seed",
+    "target", "aspect", "heading", "up", "outcome", "without", "diameter", "tolerance", "budget", "draws",
+    "seed",
 )  # fmt: skip
 
 
@@ -114,9 +121,7 @@ def design(part, asked, rule, taken, jobs, bowl, pictures, out):
 
     solid, settings = out.part(part), bowls.settings(**bowl)
     record, effective = bowls.record(settings), columns.conditions(solid) | bowls.texts(settings)
-    request = DesignRequest(
-        **asked | {"without": options.listed(asked["without"])}, rule=rule, jobs=jobs or os.cpu_count()
-    )
+    request = DesignRequest(**asked, rule=rule, jobs=jobs or os.cpu_count())
     named = any(value is not None for value in taken.values())
     known = orientation.shares(out, solid, record, taken, rule) if named else None
     inputs = solid.inputs | (known.inputs if known else {}) | bowls.identity(bowl["path"])

@@ -161,7 +161,6 @@ MORE = {
     "cli.trial.trial": 13,
     "cli.tune.tune": 11,
     "designing.queues.filled": 9,
-    "designing.robust._draw": 9,
     "designing.robust.robust_run": 10,
     "designing.trying.queue": 9,
     "designing.trying.single": 10,

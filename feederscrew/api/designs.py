@@ -39,7 +39,8 @@ def design(
     tolerance : str or float [m]
         Of the part's size, to either side.
     **search
-        aspect, outcome, without, diameter, rule, budget, draws, seed, jobs: as for ``feeder design``.
+        aspect, up, outcome, without, diameter, rule, budget, draws, seed, jobs: as for ``feeder design``;
+        up and without are names, 'A,B' or a list.
 
     Returns
     -------

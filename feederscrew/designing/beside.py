@@ -14,6 +14,7 @@ from feederscrew.studies import solidbowl
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.tooling.isolating import proposal as static
+from feederscrew.tooling.isolating.chain import Wishes
 
 DRIVE = (
     ("frequency", 1.0, "Hz"),
@@ -28,7 +29,7 @@ TRACK = (
 )
 
 
-def tooled(part, bowl, aspects, ways, weights, proposal, rule, margin):
+def tooled(part, bowl, aspects, ways, weights, proposal, request, margin):
     """Return a chain as `feeder tooling` would have found it; None without one.
 
     Parameters
@@ -42,7 +43,7 @@ def tooled(part, bowl, aspects, ways, weights, proposal, rule, margin):
     weights : (M,) float [1]
         In which they come.
     proposal : Proposal
-    rule : str
+    request : DesignRequest
     margin : float [m]
 
     Returns
@@ -51,11 +52,15 @@ def tooled(part, bowl, aspects, ways, weights, proposal, rule, margin):
     """
     if not proposal.cuts:
         return None
-    given = static.task(ways.lying, weights, proposal.row, margin, 1.0, proposal.before)
-    same = np.array([ways.leaves_as[k] == ways.leaves_as[proposal.row] for k in range(len(weights))])
+    given = static.task(
+        ways.lying, weights, proposal.row, margin, 1.0, proposal.before, wishes=Wishes(up=request.up)
+    )
+    same = np.isin(ways.leaves_as, proposal.states(ways))
     found = static.told(given, proposal.cuts, ways.through < 0.5, same)
     designs = tuple(found if k == proposal.row else None for k in range(len(weights)))
-    return ToolingStudy(part, bowl, aspects, rule, margin, ways.lying, weights, designs, proposal.row)
+    return ToolingStudy(
+        part, bowl, aspects, request.rule, margin, ways.lying, weights, designs, proposal.row, request.up
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ from feederscrew.designing.searching import Candidate
 from feederscrew.rates import arrivals, spacing
 from feederscrew.rates.tipping import FLAT
 from feederscrew.studies.rate import shares
+from feederscrew.studies.tooling import may_be_up
 from feederscrew.tooling.hanging import neck
 
 EACH = 2  # parts of each orientation in a short trial
@@ -31,6 +32,7 @@ def candidates(search):
     search : Search
         Its ``passed`` and ``failed`` are filled.
     """
+    may_be_up(search.part, _aspects(search), search.request.up)
     for bank in _banks(search, _aspects(search)):
         made = calm_drive.section(
             search.part,
@@ -87,12 +89,18 @@ def _promise(search, made, ways, weights, row, outcome="any"):
     if "lying" not in (outcome, search.request.outcome) and neck(ways.lying[row]) is not None:
         return np.inf  # what hangs comes from several headings
     pitch = trying.GAP * float((weights * ways.lengths).sum())
-    return float(weights[row]) * calm_drive.speed(calm_drive.driven(made, np.inf, hops=True)) / pitch
+    fastest = calm_drive.speed(calm_drive.driven(made, np.inf, hops=True))
+    return _share(search, ways, weights, row) * fastest / pitch
+
+
+def _share(search, ways, weights, row):
+    """Share [1] in which an orientation comes, with those that count as it."""
+    return float(weights[[row, *proposals.alike(ways.lying, row, search.request.up)]].sum())
 
 
 def _proposed(search, made, ways, weights, row, how):
     """A chain for one orientation at the drive that its share asks for; None where there is none."""
-    gain = float(weights[row])
+    gain = _share(search, ways, weights, row)
     found = _at(search, made, ways, weights, row, how, gain)
     more = 0.0 if found is None else _gain(search, made, found, weights)
     if more > SLOWER * gain:
@@ -111,7 +119,7 @@ def _gain(search, made, proposal, weights):
     """Share of the parts that leaves as wanted, as the static rule says [1]."""
     bowl = replace(made.bowl, devices=proposal.devices)
     ways = proposals.known_through(search.part, search.known.aspects, bowl)
-    return float((weights * ways.leaving[:, ways.leaves_as[proposal.row]]).sum())
+    return trying.gain(ways, weights, proposal.states(ways))
 
 
 def asked(search, ways, weights, gain, apart=0.0):
@@ -198,8 +206,9 @@ def _screened(search, candidate):
         return candidate
     request = search.request
     drawn = robust_run(
-        search.part, candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.row,
-        draws=min(SCREENED, request.draws), tolerance=request.tolerance, seed=request.seed, jobs=request.jobs,
+        search.part, candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.rows,
+        draws=min(SCREENED, request.draws), tolerance=request.tolerance,
+        seed=request.seed, jobs=request.jobs,
     )  # fmt: skip
     if drawn.partial:
         raise KeyboardInterrupt
@@ -215,12 +224,12 @@ def attempted(search, made, proposal, weights):
     part = search.part
     bowl = replace(made.bowl, devices=proposal.devices)
     ways = proposals.known_through(part, search.known.aspects, bowl)
-    gain = float((weights * ways.leaving[:, ways.leaves_as[proposal.row]]).sum())
+    gain = trying.gain(ways, weights, proposal.states(ways))
     bowl = replace(_at_velocity(search, made, proposal, ways, weights, gain), devices=proposal.devices)
     ways = arrivals.oriented(proposals.known_through(part, search.known.aspects, bowl), search.known.measured)
     name = ways.lying[proposal.row].name
     search.told(f"trial {len(search.attempts) + 1}: {name}, {proposal.step}")
-    tried = _short(search, bowl, ways, weights, proposal.row)
+    tried = _short(search, bowl, ways, weights, proposal)
     attempt = Attempt(
         wanted=ways.states[tried.state].name,
         chain=proposal.chain,
@@ -249,16 +258,17 @@ def _at_velocity(search, made, proposal, ways, weights, gain):
     return bowl
 
 
-def _short(search, bowl, ways, weights, row):
+def _short(search, bowl, ways, weights, proposal):
     """The short trial: what is wanted first; where none of it leaves, the others are not tried."""
-    request = search.request
+    request, rows = search.request, trying.often(weights, (proposal.row,))
     own = {"seed": request.seed, "jobs": request.jobs, "before": search.before}
-    rows = trying.often(weights, (row,))
-    right = set(trying.wanted_rows(ways, int(ways.leaves_as[row])))
-    first = [k for k in rows if k in right] or [row]
-    tried = trying.single(search.part, bowl, ways, weights, row, rows=first, each=EACH, **own)
+    right = set(trying.wanted_rows(ways, proposal.states(ways)))
+    first = [k for k in rows if k in right] or [proposal.row]
+    tried = trying.single(search.part, bowl, ways, weights, proposal.rows, rows=first, each=EACH, **own)
     others = [k for k in rows if k not in first]
     if not tried.efficiency > 0.0 or not others:
         return tried
     each = EACH if len(others) <= trying.FEW else 1
-    return tried.joined(trying.single(search.part, bowl, ways, weights, row, rows=others, each=each, **own))
+    return tried.joined(
+        trying.single(search.part, bowl, ways, weights, proposal.rows, rows=others, each=each, **own)
+    )

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from feederscrew.designing import beside, calm_drive, exploring, nearest, proposals, queues, risks
+from feederscrew.designing import beside, calm_drive, exploring, nearest, proposals, queues, risks, trying
 from feederscrew.designing.record import DRAWS_HELD, RATE_KEPT, DesignStudy
 from feederscrew.designing.robust import robust_run
 from feederscrew.designing.searching import Search
@@ -111,15 +111,15 @@ def _proved(search, candidate, *, whole):
     study = _unproved(search, candidate, known)
     search.told(f"draws: {candidate.attempt.wanted}, {request.draws} of part, friction, drive and cuts")
     tested = robust_run(
-        part, bowl, ways, weights, row, draws=request.draws, tolerance=request.tolerance, seed=request.seed,
-        jobs=request.jobs,
+        part, bowl, ways, weights, candidate.proposal.rows, draws=request.draws,
+        tolerance=request.tolerance, seed=request.seed, jobs=request.jobs,
     )  # fmt: skip
     study = replace(study, robust=tested, partial=tested.partial)
     if tested.partial or not (whole or tested.share >= DRAWS_HELD):
         return study
     search.told(f"queue: {candidate.attempt.wanted}, {', '.join(candidate.proposal.chain) or 'no device'}")
     found = queues.filled(
-        part, bowl, known.aspects, ways, weights, candidate.tried.state, seed=request.seed, whole=whole,
+        part, bowl, known.aspects, ways, weights, candidate.tried.states, seed=request.seed, whole=whole,
         told=search.told,
     )  # fmt: skip
     said = risks.risks(ways.lying[row], bowl.friction.kinetic, found)
@@ -129,20 +129,20 @@ def _proved(search, candidate, *, whole):
 def _unproved(search, candidate, known):
     """The design before anything of it is proved."""
     bowl, ways, weights = candidate.bowl, candidate.ways, candidate.weights
-    rule, margin = search.request.rule, proposals.HOWS[-1][0]
+    request, margin = search.request, proposals.HOWS[-1][0]
     return DesignStudy(
         part=search.part,
-        request=search.request,
+        request=request,
         bowl=bowl,
-        wanted=candidate.attempt.wanted,
+        wanted=" or ".join((candidate.attempt.wanted, *request.up)),
         turn=candidate.proposal.row,
         cuts=candidate.proposal.cuts,
         before=candidate.proposal.before,
         attempts=tuple(search.attempts),
-        source=known.aspects.source(rule),
+        source=known.aspects.source(request.rule),
         static_rate=_static(search, candidate),
         tooling=beside.tooled(
-            search.part, bowl, known.aspects, ways, weights, candidate.proposal, rule, margin
+            search.part, bowl, known.aspects, ways, weights, candidate.proposal, request, margin
         ),
     )
 
@@ -155,7 +155,7 @@ def whole(study):
 def _static(search, candidate):
     """Wanted parts [1/s] that the static rule promises."""
     ways, weights = candidate.ways, candidate.weights
-    gain = float((weights * ways.leaving[:, candidate.tried.state]).sum())
+    gain = trying.gain(ways, weights, candidate.tried.states)
     return calm_drive.speed(candidate.bowl) * gain / float((weights * ways.lengths).sum())
 
 

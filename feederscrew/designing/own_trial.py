@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.designing import trying
+from feederscrew.designing.proposals import alike
 from feederscrew.designing.robust import denied
 from feederscrew.errors import FeederError
 from feederscrew.rates import stream
@@ -100,8 +101,8 @@ def _tried(study, one, seed, jobs, before):
     rows = [k for k in trying.often(shares, (one.wanted,)) if shares[k] >= OFTEN or k == one.wanted]
     try:
         tried = trying.single(
-            study.part, bowl, ways, shares, one.wanted, rows=rows, each=EACH, seed=seed, jobs=jobs,
-            before=before,
+            study.part, bowl, ways, shares, (one.wanted, *alike(ways.lying, one.wanted, study.up)), rows=rows,
+            each=EACH, seed=seed, jobs=jobs, before=before,
         )  # fmt: skip
     except FeederError as fault:  # the bowl does not convey
         return TriedDesign(name, one.wanted, _devices(one), one.efficiency, 0.0, np.nan, 0, (fault.what,))

@@ -40,11 +40,21 @@ class Proposal:
     cuts: tuple  # of Cut
     before: tuple  # of Device
     step: str  # why it is tried
+    same: tuple = ()  # rows that count as it
 
     @property
     def devices(self):
         """Every device along the track."""
         return (*self.before, *(cut.device for cut in self.cuts))
+
+    def states(self, known):
+        """Return the states in which what is wanted leaves, its own first."""
+        return trying.wanted_states(known, self.rows)
+
+    @property
+    def rows(self):
+        """The wanted row, and those that count as it."""
+        return (self.row, *self.same)
 
     @property
     def hangs(self):
@@ -62,6 +72,16 @@ class Proposal:
         return tuple(f"{one.kind}: {one.text}" for one in self.devices)
 
 
+def alike(lying, row, up):
+    """Return the rows beside a wanted one that count as it: those of aspects that may be up too."""
+    names = _folded(up)
+    return tuple(k for k, one in enumerate(lying) if k != row and one.aspect.casefold() in names)
+
+
+def _folded(names):
+    return {name.strip().casefold() for name in names}
+
+
 def meets_nothing(how):
     """Return whether a way of proposing, one of HOWS, leaves parts nothing to meet but track and air."""
     _, left_out, outcome = how
@@ -71,9 +91,10 @@ def meets_nothing(how):
 def promising(known, shares, request):
     """Return rows (R,) of the orientations worth a try: those asked for, the most frequent first."""
     rows = [k for k in trying.often(shares) if not known.lying[k].returned]
-    if request.aspect is not None:
-        own = [k for k in rows if known.lying[k].aspect.casefold() == request.aspect.strip().casefold()]
-        rows = own or [k for k, one in enumerate(known.lying) if one.aspect == request.aspect.strip()]
+    names = {request.aspect.strip()} if request.aspect is not None else set(request.up)
+    if names:
+        asked = [k for k, one in enumerate(known.lying) if one.aspect.casefold() in _folded(names)]
+        rows = [k for k in rows if k in asked] or (asked if request.aspect is not None else [])
     if request.heading is not None and rows:
         away = [abs(np.angle(np.exp(1j * (known.lying[k].heading - request.heading)))) for k in rows]
         rows = [rows[int(np.argmin(away))]]
@@ -87,8 +108,9 @@ def bare(known, shares, request, devices):
         return None
     leaving = (shares[:, None] * known.leaving).sum(axis=0)
     best = max(rows, key=lambda k: leaving[known.leaves_as[k]])
-    pure = leaving[known.leaves_as[best]] / max(leaving.sum(), 1e-300)
-    return Proposal(best, (), tuple(devices), "no device") if pure >= 0.97 else None
+    made = Proposal(best, (), tuple(devices), "no device", alike(known.lying, best, request.up))
+    pure = trying.gain(known, shares, made.states(known)) / max(leaving.sum(), 1e-300)
+    return made if pure >= 0.97 else None
 
 
 def proposed(part, bowl, aspects, row, known, request, how):
@@ -119,12 +141,13 @@ def proposed(part, bowl, aspects, row, known, request, how):
     found = tooling(
         part, bowl, one.aspect, heading=one.heading, rule=request.rule, margin=margin, known=aspects,
         seed=request.seed, verdicts=VERDICTS, outcome=outcome, without=without,
-        purity=ENOUGH,
+        purity=ENOUGH, up=request.up,
     ).design  # fmt: skip
     if found is None or not found.efficiency > 0.0 or not (found.cuts or found.before):
         return None
     cuts = tuple(rounded(cut, known.lying, row) for cut in found.cuts)
-    made = Proposal(row, cuts, tuple(found.before), f"proposed with margins of {millimetres(margin)}")
+    step = f"proposed with margins of {millimetres(margin)}"
+    made = Proposal(row, cuts, tuple(found.before), step, alike(known.lying, row, request.up))
     if found.isolated:
         return made
     through = known_through(part, aspects, replace(bowl, devices=made.devices))
@@ -136,7 +159,7 @@ def _guarded_stops(proposal, through, rule):
     stops = (through.stops.sum(axis=1) > 0.0) & (np.nan_to_num(through.rules[rule]) >= trying.SELDOM)
     if not stops.any():
         return proposal
-    wanted = trying.wanted_rows(through, int(through.leaves_as[proposal.row]))
+    wanted = trying.wanted_rows(through, proposal.states(through))
     return _before(proposal, list(np.flatnonzero(stops)), wanted, through.lying)
 
 
@@ -192,7 +215,7 @@ def better(proposal, tried, every, drawn=None):
     drawn : RobustRun, optional
         Draws that deny what the trial itself does not.
     """
-    right = set(trying.wanted_rows(tried.known, tried.state))
+    right = set(trying.wanted_rows(tried.known, tried.states))
     lost = any(k in right and tried.right[n] < tried.parts[n] for n, k in enumerate(tried.rows))
     if drawn is not None:
         return widened(proposal, every) if "lost" in drawn.worst else None
@@ -228,7 +251,7 @@ def guarded(proposal, tried, every):
 
     Only devices through which what they reject falls are taken: a queue hardly notices them.
     """
-    wanted = trying.wanted_rows(tried.known, tried.state)
+    wanted = trying.wanted_rows(tried.known, tried.states)
     wrong = [k for n, k in enumerate(tried.rows) if tried.wrong[n] or tried.held[n]]
     return _before(proposal, [k for k in wrong if k not in wanted], wanted, every)
 
@@ -264,7 +287,7 @@ def _before(proposal, others, wanted, every):
 
 def lost_at(tried, kind):
     """Return whether the wanted orientation ends at a device of a kind."""
-    right = set(trying.wanted_rows(tried.known, tried.state))
+    right = set(trying.wanted_rows(tried.known, tried.states))
     ends = [tried.places[n] for n, k in enumerate(tried.rows) if k in right]
     return any(name.endswith(f"at {kind}") for one in ends for name in one)
 

@@ -6,7 +6,7 @@ from feederscrew.designing.record import NORMAL, PURE, FilledQueue
 FILLS = (("low", 6, 20.0), (NORMAL, 12, 60.0), ("high", 18, 20.0))  # name, parts, seconds
 
 
-def filled(part, bowl, aspects, known, shares, state, *, seed, whole=True, told=None):
+def filled(part, bowl, aspects, known, shares, states, *, seed, whole=True, told=None):
     """Follow a queue at each fill.
 
     Parameters
@@ -17,7 +17,7 @@ def filled(part, bowl, aspects, known, shares, state, *, seed, whole=True, told=
     aspects : Aspects
     known : Orientations
     shares : (M,) float [1]
-    state : int
+    states : sequence of int
         In which parts are wanted to leave.
     seed : int
     whole : bool
@@ -35,7 +35,7 @@ def filled(part, bowl, aspects, known, shares, state, *, seed, whole=True, told=
         if told:
             told(f"queue of {parts} at {name} fill, {seconds:g} s")
         seen = trying.queue(part, bowl, aspects, known, shares, parts=parts, seconds=seconds, seed=seed)
-        found.append(_told(name, seen, state))
+        found.append(_told(name, seen, states))
         if seen.partial or not (whole or _holds(found[-1])):
             break
     return tuple(found)
@@ -46,14 +46,14 @@ def _holds(one):
     return not one.jams and one.right >= PURE * one.left - 1
 
 
-def _told(name, seen, state):
+def _told(name, seen, states):
     return FilledQueue(
         fill=name,
         parts=seen.parts,
         seconds=seen.seconds,
         counted=seen.counted,
         delivered=seen.delivered,
-        right=int(seen.leaving[state]),
+        right=int(sum(seen.leaving[k] for k in states)),
         left=int(seen.leaving.sum()),
         returned=seen.returned,
         jams=seen.jams,

@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
-from feederscrew.studies.tooling import ToolingStudy
+from feederscrew.studies.tooling import ToolingStudy, listed
 from feederscrew.tooling.devices.base import Device
 
 OUTCOMES = ("any", "lying", "hanging")
@@ -23,6 +23,7 @@ class DesignRequest:
     target: float  # [1/s]
     aspect: str | None = None
     heading: float | None = None  # [rad]
+    up: tuple[str, ...] = ()  # aspects that count as the one wanted, whatever their heading
     outcome: str = "any"  # of OUTCOMES
     without: tuple[str, ...] = ()  # kinds of device that shall not be used
     diameter: tuple[float, float] | None = None  # [m] least and greatest
@@ -32,6 +33,10 @@ class DesignRequest:
     draws: int = 20
     seed: int = 1
     jobs: int = 1
+
+    def __post_init__(self):
+        for name in ("up", "without"):  # names may come as a text
+            object.__setattr__(self, name, listed(getattr(self, name)))
 
 
 @dataclass(frozen=True)

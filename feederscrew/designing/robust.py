@@ -154,7 +154,7 @@ def matched(one, every):
     return min(range(len(every)), key=lambda k: away(every[k]))
 
 
-def robust_run(part, bowl, known, shares, row, *, draws, tolerance, seed, jobs=1, told=None):
+def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, seed, jobs=1, told=None):
     """Try draws of part, friction, drive and cuts.
 
     Parameters
@@ -165,8 +165,8 @@ def robust_run(part, bowl, known, shares, row, *, draws, tolerance, seed, jobs=1
     known : Orientations
         Of the nominal part in that bowl; M of them.
     shares : (M,) float [1]
-    row : int
-        The wanted orientation.
+    wanted : int or sequence of int
+        The wanted orientation, and others that count as it.
     draws : int
     tolerance : float [m]
         Of the part.
@@ -183,7 +183,9 @@ def robust_run(part, bowl, known, shares, row, *, draws, tolerance, seed, jobs=1
     held, wrong, speeds, done = 0, Counter(), [], 0
     try:
         for draw in range(draws):
-            faults, speed = _draw(part, bowl, known, shares, row, tolerance, seed, draw, jobs)
+            faults, speed = _draw(
+                part, bowl, known, shares, np.atleast_1d(wanted), tolerance, (seed, draw), jobs
+            )
             held, done = held + (not faults), draw + 1
             wrong.update(set(faults))
             speeds.append(speed)
@@ -196,32 +198,32 @@ def robust_run(part, bowl, known, shares, row, *, draws, tolerance, seed, jobs=1
     return RobustRun(done, held, worst, float(min(speeds, default=np.nan)), partial=done < draws)
 
 
-def _draw(part, bowl, known, shares, row, tolerance, seed, draw, jobs):
+def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs):
     """What goes wrong in one draw, and the velocity there."""
-    rng = np.random.default_rng((seed, draw))
+    rng = np.random.default_rng(seed)
     other = drawn_part(part, tolerance, rng)
     driven = drawn_bowl(bowl, known.lying, rng)
-    chosen = _rows(known, shares, row, rng)
+    chosen = _rows(known, shares, wanted, rng)
     try:
         aspects = find(other)
         bare = stream.orientations(other, aspects, bowl.track, (), bowl=driven)
         driven = replace(driven, devices=_named(driven.devices, known.lying, bare.lying))
         ways = stream.along(bare.lying, aspects, driven.devices, bowl=driven)
         rows = [matched(known.lying[k], ways.lying) for k in chosen]
+        alike = [matched(known.lying[k], ways.lying) for k in wanted] if len(wanted) > 1 else []
         even = np.full(len(ways.lying), 1.0 / len(ways.lying))
         tried = trying.single(
-            other, driven, ways, even, rows[0], rows=list(dict.fromkeys(rows)), each=1, jobs=jobs,
-            seed=seed + draw,
+            other, driven, ways, even, [rows[0], *alike], rows=list(dict.fromkeys(rows)), each=1, jobs=jobs,
+            seed=sum(seed),
         )  # fmt: skip
     except FeederError as fault:  # the drawn bowl does not convey, or the part does not fit
         return [fault.what], 0.0
     return faults(tried), tried.velocity
 
 
-def _rows(known, shares, row, rng):
+def _rows(known, shares, rows, rng):
     """The wanted orientation, and parts as they come."""
-    state = int(known.leaves_as[row])
-    wanted = trying.wanted_rows(known, state) or [row]
+    wanted = trying.wanted_rows(known, trying.wanted_states(known, rows)) or [rows[0]]
     likely = np.where([k in wanted for k in range(len(shares))], shares + 1e-12, 0.0)
     first = int(rng.choice(len(shares), p=likely / likely.sum()))
     more = rng.choice(len(shares), OTHERS, p=shares / shares.sum())
@@ -230,7 +232,7 @@ def _rows(known, shares, row, rng):
 
 def faults(tried):
     """Return what goes wrong in a short trial, a sentence each: (what is lost, stopped or carried, where)."""
-    found, right = [], set(trying.wanted_rows(tried.known, tried.state))
+    found, right = [], set(trying.wanted_rows(tried.known, tried.states))
     for place, k in enumerate(tried.rows):
         name = tried.known.lying[k].name
         if k in right or tried.right[place]:
@@ -248,7 +250,7 @@ def denied(tried):
     """Say what a short trial denies: what leaves or stays though rejected, and what is lost in the main."""
     if not tried.efficiency > 0.0:
         yield "nothing leaves as wanted"
-    right = set(trying.wanted_rows(tried.known, tried.state))
+    right = set(trying.wanted_rows(tried.known, tried.states))
     for one in faults(tried):
         name = one.split(" ", 1)[0]
         place = next(n for n, k in enumerate(tried.rows) if tried.known.lying[k].name == name)

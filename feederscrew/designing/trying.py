@@ -29,6 +29,7 @@ class Tried:
     places: tuple[dict[str, int], ...]  # (R,) of those that did not leave: 'returned at gap' and how many
     velocity: float  # [m/s] mean of those that travel
     state: int  # the wanted one
+    states: tuple[int, ...]  # all that count as it
     deepest: float  # [m]
     apart: float = 0.0  # [m] free way between parts that the devices need
 
@@ -76,15 +77,33 @@ class Tried:
     def rate(self):
         """Wanted parts [1/s] that such a bowl delivers, from a row with the gaps that its devices need."""
         pitch = GAP * float((self.shares * self.known.lengths).sum()) + self.apart
-        longest = GAP * float(self.known.states[self.state].length)
+        longest = GAP * float(np.mean([self.known.states[k].length for k in self.states]))
         return float(
             min(max(self.velocity, 0.0) / pitch * self.efficiency, max(self.velocity, 0.0) / longest)
         )
 
 
-def wanted_rows(known, state):
-    """Return the rows that leave in a state as the static rule says."""
-    return [k for k in range(len(known.lying)) if known.leaving[k, state] > 0.5]
+def wanted_states(known, rows):
+    """Return the states in which some rows leave, the first one first.
+
+    Parameters
+    ----------
+    known : Orientations
+    rows : sequence of int
+        The wanted one first; others that count as it, of which those that are returned add no state.
+    """
+    others = [k for k in rows[1:] if known.leaving[k].max() > 0.5]
+    return tuple(dict.fromkeys(int(known.leaves_as[k]) for k in (rows[0], *others)))
+
+
+def wanted_rows(known, states):
+    """Return the rows that leave in one of some states as the static rule says."""
+    return [k for k in range(len(known.lying)) if known.leaving[k, list(states)].sum() > 0.5]
+
+
+def gain(known, shares, states):
+    """Return the share [1] of what comes that leaves in one of some states, as the static rule says."""
+    return float((shares[:, None] * known.leaving[:, list(states)]).sum())
 
 
 def often(shares, rows=()):
@@ -93,7 +112,7 @@ def often(shares, rows=()):
     return [int(k) for k in order if shares[k] >= SELDOM or k in rows]
 
 
-def single(part, bowl, known, shares, row, *, rows, each, seed, jobs=1, before=None):
+def single(part, bowl, known, shares, wanted, *, rows, each, seed, jobs=1, before=None):
     """Try parts one at a time.
 
     Parameters
@@ -104,8 +123,8 @@ def single(part, bowl, known, shares, row, *, rows, each, seed, jobs=1, before=N
     known : Orientations
         On its track, through its devices; M of them.
     shares : (M,) float [1]
-    row : int
-        The wanted orientation.
+    wanted : int or sequence of int
+        The wanted orientation, and others that count as it.
     rows : sequence of int
         Those to be tried.
     each : int
@@ -118,7 +137,7 @@ def single(part, bowl, known, shares, row, *, rows, each, seed, jobs=1, before=N
     -------
     Tried
     """
-    rows, state = np.asarray(rows, int), int(known.leaves_as[row])
+    rows, states = np.asarray(rows, int), wanted_states(known, np.atleast_1d(wanted))
     seen = course.course(
         part, bowl, known.lying, rows, bowl.devices, parts=each * len(rows), poses=known.states,
         leaves=course.rightly(known.leaving), seed=seed, jobs=jobs, before=before,
@@ -126,14 +145,15 @@ def single(part, bowl, known, shares, row, *, rows, each, seed, jobs=1, before=N
     out, whole = seen.orientations[-1], np.isin(seen.fates, (course.PASSED, course.TURNED))
     own = [seen.entered == k for k in rows]
     count = [[int((one & some).sum()) for one in own] for some in (
-        np.ones(len(whole), bool), whole & (out == state), whole & (out != state), np.isin(seen.fates, HELD),
+        np.ones(len(whole), bool), whole & np.isin(out, states), whole & ~np.isin(out, states),
+        np.isin(seen.fates, HELD),
     )]  # fmt: skip
     moving = seen.velocities[np.isfinite(seen.velocities) & (seen.velocities > 0.0)]
     return Tried(
         known, shares, rows, *(np.array(one) for one in count),
         places=tuple(_places(seen, one) for one in own),
         velocity=float(moving.mean()) if len(moving) else 0.0,
-        state=state, deepest=float(seen.depths.max(initial=0.0)),
+        state=states[0], states=states, deepest=float(seen.depths.max(initial=0.0)),
         apart=spacing.needed(bowl.devices, known.lying, bowl),
     )  # fmt: skip
 

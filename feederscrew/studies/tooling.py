@@ -54,6 +54,7 @@ class ToolingStudy(Shown):
     shares: np.ndarray  # (M,) [1]
     designs: tuple[Design | None, ...]  # (M,) None where it was not asked for
     wanted: int | None  # the orientation asked for; None for all of them
+    up: tuple[str, ...] = ()  # aspects that count as the one wanted
     trials: tuple[Any, ...] = ()  # designing.own_trial.TriedDesign of what was tried, that of `design` first
 
     def trial_of(self, place: int) -> Any:
@@ -179,6 +180,7 @@ def tooling(
         shares=shares,
         designs=tuple(designs),
         wanted=wanted,
+        up=may_use.up,
     )
 
 
@@ -200,7 +202,7 @@ def tooling_without(
     part, bowl, aspect, asked
         As for ``tooling``.
     """
-    return tooling(part, bowl, aspect, without=(*_listed(without), *kinds, "cut_out"), **asked)
+    return tooling(part, bowl, aspect, without=(*listed(without), *kinds, "cut_out"), **asked)
 
 
 def asked_for(
@@ -218,28 +220,28 @@ def asked_for(
     if outcome not in OUTCOMES:
         raise ArgumentError("outcome", f"{outcome!r} is unknown", f"choose {', '.join(OUTCOMES)}")
     check.argument("step", step, FINE)
-    kinds = _listed(without)
+    kinds = listed(without)
     for kind in kinds:
         if kind not in KINDS:
             raise ArgumentError("without", f"unknown device {shown(kind)}", hint(kind, list(KINDS)))
-    wishes = Wishes(outcome, kinds, float(step), _aspects(part, found, up), float(cutter))
+    wishes = Wishes(outcome, kinds, float(step), may_be_up(part, found, up), float(cutter))
     return replace(wishes, separation=_separation(bowl, wishes))
 
 
-def _listed(names: str | Sequence[str]) -> tuple[str, ...]:
-    """Names of a list, or of a text with commas."""
+def listed(names: str | Sequence[str]) -> tuple[str, ...]:
+    """Return the names of a list, or of a text with commas."""
     names = names.split(",") if isinstance(names, str) else names
     return tuple(name.strip() for name in names if name.strip())
 
 
-def _aspects(part: Part, found: Aspects, up: str | Sequence[str]) -> tuple[str, ...]:
-    """Names of aspects that may be up as well, checked."""
+def may_be_up(part: Part, found: Aspects, up: str | Sequence[str]) -> tuple[str, ...]:
+    """Return the names of aspects that may be up as well, checked."""
     known = {name.casefold() for name in found.names}
-    for name in _listed(up):
+    for name in listed(up):
         if name.casefold() not in known:
             mend = f"choose one of {', '.join(found.names)}"
             raise ArgumentError("up", f"{part.name} has no aspect {shown(name)}", mend)
-    return _listed(up)
+    return listed(up)
 
 
 def _separation(bowl: Bowl, wishes: Wishes) -> Device | None:

@@ -33,7 +33,7 @@ def tried(ways, right, wrong, held, row):
     return trying.Tried(
         ways, np.full(count, 1.0 / count), np.arange(count), np.full(count, 2), *own,
         places=tuple({"stopped at gap": 2} if k in held else {} for k in range(count)), velocity=0.05,
-        state=row, deepest=0.0,
+        state=row, states=(row,), deepest=0.0,
     )  # fmt: skip
 
 
@@ -54,6 +54,27 @@ def test_nothing_is_changed_where_nothing_tells_them_apart(block):
     _, ways, names = block
     proposal = proposals.Proposal(names["A@0"], (), (), "no device")
     assert proposals.better(proposal, tried(ways, {names["A@0"]}, (), (), names["A@0"]), ways.lying) is None
+
+
+def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one(block):
+    part, ways, names = block
+    along, across = names["A@0"], names["A@90"]
+    assert proposals.alike(ways.lying, along, ()) == ()
+    same = proposals.alike(ways.lying, along, ("a",))
+    assert (
+        along not in same and across in same and len(same) == sum(one.aspect == "A" for one in ways.lying) - 1
+    )
+    states = trying.wanted_states(ways, (along, *same))
+    assert states[0] == ways.leaves_as[along] and ways.leaves_as[across] in states
+    shares = np.arange(1.0, len(ways.lying) + 1.0)
+    assert trying.gain(ways, shares, states) == pytest.approx(shares[[along, *same]].sum())
+    bowl = bowls.default()
+    one = {"rows": (along, across), "each": 1, "seed": 1}
+    alone = trying.single(part, bowl, ways, shares, along, **one)
+    both = trying.single(part, bowl, ways, shares, (along, *same), **one)
+    assert (list(alone.right), list(alone.wrong)) == ([1, 0], [0, 1])
+    assert (list(both.right), list(both.wrong)) == ([1, 1], [0, 0])
+    assert robust.faults(alone) and not robust.faults(both)
 
 
 def test_what_is_lost_at_a_device_is_noted(block):

@@ -17,6 +17,7 @@ def document(study):
         **columns.part(study.part, study.warnings),
         "status": study.status,
         "wanted": study.wanted,
+        "up": list(study.request.up),
         "outcome": study.outcome,
         "target_per_minute": study.request.target / PER_MINUTE,
         "delivered_per_minute": rates[0] / PER_MINUTE,

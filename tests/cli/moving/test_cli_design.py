@@ -16,24 +16,37 @@ FIELDS = {
 }  # fmt: skip
 
 
-@pytest.fixture(scope="module")
-def designed(tmp_path_factory):
-    """The design of a cube with short queues: its document and its folder."""
+def designed_block(folder, size, *more):
+    """The document of a block's design, with short queues."""
     from click.testing import CliRunner
 
     from feederscrew_cli.main import feeder
 
-    folder = tmp_path_factory.mktemp("design")
-    shapes.box(10, 10, 10).export(folder / "cube.stl")
+    shapes.box(*size).export(folder / "cube.stl")
     patch = pytest.MonkeyPatch()
     patch.setattr(queues, "FILLS", (("low", 2, 0.5), ("normal", 4, 2.0)))
-    line = ["design", folder / "cube.stl", "--target", "40/min", "--draws", "2", "--jobs", "1", "-o", folder]
+    line = ["design", folder / "cube.stl", "--target", "40/min", "--draws", "2", "--jobs", "1", *more]
     try:
         done = CliRunner().invoke(feeder, [*map(str, line), "--format", "json", "--no-pictures"])
     finally:
         patch.undo()
     assert done.exit_code == 0, done.output
-    return json.loads(done.stdout), folder / "cube"
+    return json.loads(done.stdout)
+
+
+@pytest.fixture(scope="module")
+def designed(tmp_path_factory):
+    """The design of a cube: its document and its folder."""
+    folder = tmp_path_factory.mktemp("design")
+    return designed_block(folder, (10, 10, 10), "-o", folder), folder / "cube"
+
+
+def test_a_block_that_may_lie_along_or_across_needs_no_sensor(tmp_path):
+    document = designed_block(tmp_path, (14, 10, 2), "--up", "a")
+    assert (document["status"], document["up"]) == ("holds", ["a"])
+    assert "sorter" not in str(document["chain"])
+    assert document["wanted"].startswith("A@") and document["wanted"].endswith(" or a")
+    assert document["purity"] == 1.0
 
 
 def test_a_cube_needs_no_device_and_the_contract_is_kept(designed):
