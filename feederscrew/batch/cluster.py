@@ -15,6 +15,7 @@ from feederscrew.errors import ArgumentError, FeederError
 PATIENCE = 20  # [s] for a scheduler to answer and for a first worker
 AHEAD = 2  # tasks sent for each thread of the cluster, so that none waits
 POLL = 0.05  # [s] between looks at what has come
+AT_WORK = ("pending", "lost")  # what a worker had done that died is done again by another
 ADDRESS = re.compile(r"((tcp|tls|ucx|wss?)://)?[^\s/]+:\d+/?")
 AGAIN = "see to it, then start this command again with `resume`: what is finished is kept"
 
@@ -95,7 +96,8 @@ class Cluster:
             if not running:
                 return
             for future in self._finished(client, running):
-                yield self._outcome(future, running.pop(future))
+                if future.status not in AT_WORK:  # not lost with its worker while another was put in place
+                    yield self._outcome(future, running.pop(future))
 
     def _finished(self, client, running):
         """Wait for those that have come, at least one."""
@@ -112,7 +114,7 @@ class Cluster:
         if future.status == "finished":
             with self._attended():
                 return future.result()
-        if future.status in ("cancelled", "lost"):
+        if future.status == "cancelled":
             raise self._fault("the scheduler is lost")
         return Outcome.failed(task, f"{_first_line(future.exception())} - try it alone", final=False)
 

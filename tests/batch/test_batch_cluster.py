@@ -66,6 +66,52 @@ def test_a_cluster_gives_the_bytes_of_the_processes_even_if_it_loses_a_worker(tm
     assert tree(tmp_path / "there") == tree(tmp_path / "here")
 
 
+class Held:
+    """A future as the client of a cluster shows it."""
+
+    def __init__(self, task):
+        self.task, self.status = task, "finished"
+
+    def done(self):
+        return self.status == "finished"
+
+    def cancelled(self):
+        return self.status == "cancelled"
+
+    def result(self):
+        return self.task
+
+
+class Clients:
+    """A client whose second future is lost with its worker when the first has been taken."""
+
+    status = "running"
+
+    def __init__(self):
+        self.held = []
+
+    def nthreads(self):
+        return {"one": 1}
+
+    def submit(self, job, task, pure):
+        self.held.append(Held(task))
+        return self.held[-1]
+
+
+def test_what_a_worker_had_done_before_it_died_is_waited_for_again(monkeypatch):
+    """Two results have come; while the first is put in place the worker that holds the other dies."""
+    client = Clients()
+    gathered = batch.Cluster("tcp://127.0.0.1:1")._gathered(client, iter("ab"))
+    assert next(gathered) == "a"
+    client.held[1].status = "lost"
+
+    def done_again(_):
+        client.held[1].status = "finished"
+
+    monkeypatch.setattr("feederscrew.batch.cluster.time.sleep", done_again)
+    assert list(gathered) == ["b"]
+
+
 def test_a_lost_scheduler_is_one_line_and_what_is_finished_is_kept(tmp_path, three):  # noqa: F811
     with cluster(tmp_path, workers=1) as (address, running), pytest.raises(FeederError) as fault:
         ran(three, tmp_path / "out", workers=batch.Cluster(address), tell=lambda kept: running[0].kill())
