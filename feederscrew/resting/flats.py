@@ -6,9 +6,9 @@ from feederscrew.geometry.graphs import components
 from feederscrew.resting.basins.landscape import SMOOTH, angle
 
 ONE_PLANE = np.radians(0.2)  # between triangles of one facet
-LARGER = (
-    1.5  # times the bend about most facets of a side: a facet between sharper bends was not cut by chance
-)
+LARGER = 1.5  # times the bend round most of a side: a facet between sharper bends was not cut by chance
+OUTSIDE = 1.2  # times the bend that 95 % of a side do not exceed: such a facet is alone
+MOST = 0.95  # of a side, by area
 
 
 def meant(hull, basins):
@@ -22,8 +22,9 @@ def meant(hull, basins):
     Returns
     -------
     (B,) bool
-        Where even the gentlest bend round the sink's facet is ``LARGER`` than that round most of the side, by
-        area: a facet of a tessellated ball or cylinder is not, a flat cut into it is.
+        Where even the gentlest bend round the sink's facet is ``LARGER`` than that round half of the side, by
+        area, or ``OUTSIDE`` of that round ``MOST`` of it: a facet of a tessellated ball or cylinder is not, a
+        flat cut into it is.
     """
     first, second = basins.pairs.T
     bends = angle(hull.normals[first], hull.normals[second])
@@ -34,15 +35,16 @@ def meant(hull, basins):
         np.minimum.at(gentlest, facets[side[border]], bends[border])
     sides = components(*basins.pairs[bends < SMOOTH].T, len(hull.triangles))[1]
     about = gentlest[facets]
-    usual = _medians(about, hull.areas, sides)
-    return (about > LARGER * usual[sides])[basins.sinks] & np.isfinite(about[basins.sinks])
+    half, most = (_quantiles(about, hull.areas, sides, share) for share in (0.5, MOST))
+    limit = np.minimum(LARGER * half, OUTSIDE * most)
+    return (about > limit[sides])[basins.sinks] & np.isfinite(about[basins.sinks])
 
 
-def _medians(values, weights, owners):
-    """(N,) medians of (T,) values by weight, of each owner."""
+def _quantiles(values, weights, owners, share):
+    """(N,) quantiles of (T,) values by weight, of each owner."""
     order = np.lexsort((values, owners))
     mass = np.cumsum(weights[order])
     last = np.flatnonzero(np.append(np.diff(owners[order]) != 0, True))
     whole = mass[last]
     begun = np.concatenate([[0.0], whole[:-1]])
-    return values[order][np.searchsorted(mass, 0.5 * (begun + whole))]
+    return values[order][np.searchsorted(mass, begun + share * (whole - begun))]

@@ -78,14 +78,36 @@ def test_the_ends_of_a_coarse_capsule_are_one_class_however_it_is_turned(seed):
         assert turned.faces.tolist() == before.faces.tolist() == [1, 2]
 
 
+def ball_with_a_flat(radius, half, rings, sections):
+    """Triangles [mm] of a ball with a flat that spans a half-angle [rad] from the middle."""
+    turn = np.linspace(0.0, np.pi - half, rings)
+    profile = [(radius * np.cos(t), radius * np.sin(t)) for t in turn]
+    profile[0] = (radius, 0.0)
+    return round_bodies.revolved([(-radius * np.cos(half), 0.0), *profile[::-1]], sections)
+
+
+@pytest.mark.parametrize(("degrees", "rings", "sections"), [(11.3, 12, 23), (15.37, 11, 19), (8.86, 18, 31)])
+def test_a_flat_hardly_wider_than_the_facets_of_a_regular_ball_is_one(degrees, rings, sections):
+    """'Off-centre ball, 100 %': its bend is no 1.5 of theirs, but nothing else of the ball comes near it."""
+    half = np.radians(degrees)
+    found = find(solid(ball_with_a_flat(5.0, half, rings, sections)))
+    assert sorted(found.kinds) == ["flat", "rolling"]
+    share = found.probabilities["quasistatic"][found.kinds.index("flat")]
+    assert share == pytest.approx(0.5 * (1.0 - np.cos(half)), rel=0.05)
+
+
+@pytest.mark.parametrize("sections", [20, 23, 32])
+def test_a_ball_without_a_flat_has_none(sections):
+    turn = np.linspace(0.0, np.pi, sections // 2 + 1)
+    profile = [(-5.0 * np.cos(t), 5.0 * np.sin(t)) for t in turn]
+    profile[0], profile[-1] = (-5.0, 0.0), (5.0, 0.0)
+    assert find(solid(round_bodies.revolved(profile, sections))).kinds == ("rolling",)
+
+
 @pytest.mark.parametrize(("radius", "flat"), [(5.0, 1.4), (10.0, 2.8)])
 def test_a_ball_with_a_small_flat_rests_on_it(radius, flat):
     """'Off-centre ball, 100 %': the flat was taken for one more facet of the ball."""
-    end = np.arccos(-np.sqrt(1.0 - (flat / radius) ** 2))
-    turn = np.linspace(0.0, end, 24)
-    profile = [(radius * np.cos(t), radius * np.sin(t)) for t in turn]
-    profile[0] = (radius, 0.0)
-    found = find(solid(round_bodies.revolved([(radius * np.cos(end), 0.0), *profile[::-1]], 24)))
+    found = find(solid(ball_with_a_flat(radius, np.arcsin(flat / radius), 24, 24)))
     assert found.forms == ("ball with a flat", "flat")
     share = 0.5 * (1.0 - np.sqrt(1.0 - (flat / radius) ** 2))  # of the sphere, about its middle
     np.testing.assert_allclose(found.probabilities["quasistatic"][1], share, rtol=0.03, atol=0.0)
