@@ -6,6 +6,8 @@ from feederscrew.designing import beside, calm_drive, exploring, nearest, propos
 from feederscrew.designing.record import DRAWS_HELD, RATE_KEPT, DesignStudy
 from feederscrew.designing.robust import robust_run
 from feederscrew.designing.searching import Search
+from feederscrew.dropping.plate.drive import throw_number
+from feederscrew.trial.result import TrialRun
 
 PROVED = 3  # designs that go through draws and queue
 
@@ -134,17 +136,24 @@ def _unproved(search, candidate, known):
         part=search.part,
         request=request,
         bowl=bowl,
-        wanted=" or ".join((candidate.attempt.wanted, *request.up)),
+        wanted=_counting(candidate.attempt.wanted, request),
         turn=candidate.proposal.row,
         cuts=candidate.proposal.cuts,
         before=candidate.proposal.before,
         attempts=tuple(search.attempts),
         source=known.aspects.source(request.rule),
         static_rate=_static(search, candidate),
+        trials=tuple(TrialRun(bowl, throw_number(bowl), ways, weights, one) for one in candidate.tried.seen),
         tooling=beside.tooled(
             search.part, bowl, known.aspects, ways, weights, candidate.proposal, request, margin
         ),
     )
+
+
+def _counting(name, request):
+    """The name of what leaves, with the aspects that count as it."""
+    others = [one for one in request.up if one.casefold() != name.partition("@")[0].casefold()]
+    return " or ".join((name, *others))
 
 
 def whole(study):

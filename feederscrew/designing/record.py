@@ -9,6 +9,7 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
 from feederscrew.studies.tooling import ToolingStudy, listed
 from feederscrew.tooling.devices.base import Device
+from feederscrew.trial.result import TrialRun
 
 OUTCOMES = ("any", "lying", "hanging")
 HOLDS, FALLS_SHORT, NONE = "holds", "falls short", "none"
@@ -131,6 +132,7 @@ class DesignStudy:
     tooling: ToolingStudy | None = None  # the chain as `feeder tooling` knows it; None without one
     source: str = ""  # whose shares were taken
     static_rate: float = 0.0  # [1/s] that the static rule promises
+    trials: tuple[TrialRun, ...] = ()  # its short trial: what is wanted, then the others
 
     @property
     def devices(self):

@@ -32,6 +32,7 @@ class Tried:
     states: tuple[int, ...]  # all that count as it
     deepest: float  # [m]
     apart: float = 0.0  # [m] free way between parts that the devices need
+    seen: tuple = ()  # of Course: what was followed
 
     @property
     def weights(self):
@@ -71,6 +72,7 @@ class Tried:
             places=(*self.places, *other.places),
             velocity=float(np.mean(speeds)) if speeds else 0.0,
             deepest=max(self.deepest, other.deepest),
+            seen=(*self.seen, *other.seen),
         )
 
     @property
@@ -154,7 +156,7 @@ def single(part, bowl, known, shares, wanted, *, rows, each, seed, jobs=1, befor
         places=tuple(_places(seen, one) for one in own),
         velocity=float(moving.mean()) if len(moving) else 0.0,
         state=states[0], states=states, deepest=float(seen.depths.max(initial=0.0)),
-        apart=spacing.needed(bowl.devices, known.lying, bowl),
+        apart=spacing.needed(bowl.devices, known.lying, bowl), seen=(seen,),
     )  # fmt: skip
 
 

@@ -2,10 +2,22 @@
 
 from feederscrew.output.designs import figures, tables
 from feederscrew.output.page.as_html import html
-from feederscrew.output.page.blocks import Chapter, CsvSheet, Heading, Notes, Page, Picture, Table, Text, Tile
+from feederscrew.output.page.blocks import (
+    Chapter,
+    CsvSheet,
+    Heading,
+    Notes,
+    Page,
+    Picture,
+    Table,
+    Text,
+    Tile,
+    Views,
+)  # fmt: skip
 from feederscrew.output.solidbowl import turnable
 from feederscrew.output.style import png
 from feederscrew.output.tables import text
+from feederscrew.output.trial import playback
 
 MEASURE = (
     "Stroke: the sticker on the rim shows it peak to peak; below the computed one, raise the controller, and "
@@ -43,6 +55,8 @@ def _sections(study, built):
     )
     tried = (lead, Table(history), picture) if study.attempts else (lead,)
     yield Chapter(tried, anchor="loop", title="The loop")
+    if study.trials:
+        yield Chapter(tuple(_played(study)), anchor="trial", title="The trial")
     if study.queues:
         yield Chapter(tuple(_proof(study, d)), anchor="proof", title="The proof")
     if built is not None and study.bowl is not None:
@@ -79,6 +93,14 @@ def _tiles(d):
         ),
         Tile("jams", f"{d['jams']}", f"in {d['queue_seconds']:.3g} s of queue"),
     )
+
+
+def _played(study):
+    yield Text(
+        "One part that passes the device that decides and one that does not, as the short trial had them."
+    )
+    scene, captions = playback.scene(study.part, *study.trials)
+    yield Views(scene, tuple((*one, ()) for one in captions), "trial-views", "Orientation", plays=True)
 
 
 def _proof(study, d):

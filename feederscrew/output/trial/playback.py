@@ -15,14 +15,15 @@ ABOVE = 1.5  # of the part's radius: how high the wall is
 STILL, AFTER = 0.05, 0.3  # [mm], [s] a part that moves no more than that to the end is left out after so long
 
 
-def scene(part, run):
+def scene(part, *tried):
     """What the viewer plays: one part that passes a device and one that does not.
 
     Parameters
     ----------
     part : Part
         With a mesh.
-    run : TrialRun
+    *tried : TrialRun
+        Of the same bowl.
 
     Returns
     -------
@@ -33,7 +34,7 @@ def scene(part, run):
     captions : list of (str, str)
         What each pose is, and what becomes of it.
     """
-    rides, found = shown(run), run.course
+    rides, run, found = shown(*tried), tried[0], tried[0].course
     seen = meshes.viewed(part, relief.VIEW)
     cut = section(found.stations[rides[0].place], run.bowl.track, ABOVE * seen["radius"] * MM)
     paths = [_path(ride.path, found.principal) for ride in rides]

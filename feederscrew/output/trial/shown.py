@@ -23,22 +23,34 @@ class ShownRide:
         return f"{self.orientation} at {where}: {self.fate.replace('_', ' ')}"
 
 
-def shown(run):
+def shown(*tried):
     """Return one part that passes and one that does not, at the device that decides.
 
     Parameters
     ----------
-    run : TrialRun
+    *tried : TrialRun
+        Of the same bowl: the device is that of the first of them that loses a part.
 
     Returns
     -------
     list of ShownRide
         One of them, where all do the same.
     """
-    place = _station(run.course)
-    ride = run.course.rides[place]
-    passes = ride.outcomes == runs.PASSED
-    return [_of(run, place, int(np.flatnonzero(which)[0])) for which in (passes, ~passes) if which.any()]
+    losing = next((run for run in tried if _loses(run.course)), tried[0])
+    place = _station(losing.course)
+    found = []
+    for wanted in (True, False):
+        ways = [
+            (run, np.flatnonzero((run.course.rides[place].outcomes == runs.PASSED) == wanted))
+            for run in tried
+        ]
+        found += [_of(run, place, int(which[0])) for run, which in ways if len(which)][:1]
+    return found
+
+
+def _loses(found):
+    """Whether a part gets no farther than one of the devices."""
+    return any((ride.outcomes != runs.PASSED).any() for ride in found.rides[1:])
 
 
 def _station(found):
