@@ -40,12 +40,16 @@ def shown(*tried):
     place = _station(losing.course)
     found = []
     for wanted in (True, False):
-        ways = [
-            (run, np.flatnonzero((run.course.rides[place].outcomes == runs.PASSED) == wanted))
-            for run in tried
-        ]
+        ways = [(run, _which(run.course, place, wanted)) for run in tried]
         found += [_of(run, place, int(which[0])) for run, which in ways if len(which)][:1]
     return found
+
+
+def _which(found, place, passes):
+    """The parts that pass a station, or those that come to it and do not; none where none comes so far."""
+    if place >= len(found.rides):
+        return ()
+    return np.flatnonzero((found.rides[place].outcomes == runs.PASSED) == passes)
 
 
 def _loses(found):
