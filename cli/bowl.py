@@ -108,9 +108,11 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
         found = (
             study.bowl(settings, solid, target, **wanted, solid=shape) if solid else study.machine(settings)
         )
-        out.warn(*found.remarks, *proof.warnings(bowls.verified(path), solid, bowls.record(settings)))
+        tried, record = bowls.verified(path), bowls.record(settings)
+        out.warn(*found.remarks, *proof.warnings(tried, solid, record))
         offers.write(folder, machine.offers(found), pictures=pictures)
-        out.show(tables.summary(found), tables.document(found))
+        document = proof.beside(tables.document(found), tried, solid, record)
+        out.show(tables.summary(found, tried if proof.holds(tried, solid, record) else None), document)
 
 
 def _found(bowl, measured, out):

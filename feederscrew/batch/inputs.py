@@ -136,7 +136,9 @@ def _conditions(path, overrides, faults, line):
         bowl = answer.conveying(bowls.record(settings))
         texts = tuple(bowls.texts(settings).items())
         made = bowls.by_machine(settings)
-        return Conditions(bowls.name(path), bowl, texts, given=path is not None, warnings=made)
+        return Conditions(
+            bowls.name(path), bowl, texts, given=path is not None, warnings=made, tried=bowls.verified(path)
+        )
     except FeederError as fault:
         faults += getattr(fault, "faults", [_placed(fault, path, line)])
         return None

@@ -8,7 +8,7 @@ import numpy as np
 
 from feederscrew.batch.task import DONE, THUMBNAIL, Outcome
 from feederscrew.errors import FeederError
-from feederscrew.output import columns, offers, tables
+from feederscrew.output import columns, offers, proof, tables
 from feederscrew.output.aspects import files as aspects_files
 from feederscrew.output.batch import contact_sheet
 from feederscrew.output.convey import tables as convey_tables
@@ -86,7 +86,7 @@ def _results(task):
         | dict(request.conditions.texts)
         | {"rule": choices.rule, "drops": choices.drops, "launch": choices.launch or "fed"}
         | ({"names": request.names.source} if request.names else {}),
-        warnings=(*part.warnings, *request.conditions.warnings, *found.warnings),
+        warnings=(*part.warnings, *request.conditions.warnings, *found.warnings, *_tried(part, request)),
         files=dict(files),  # who takes it need not import this module
     )
 
@@ -104,13 +104,19 @@ def _rate(part, found, task, files):
         return {"note": "a part card has no outline: no rate"}
     conditions, rule = task.request.conditions, task.choices.rule
     study = rate(part, conditions.bowl, task.request.aspect, rule=rule, known=Shares(found))
-    document = rate_tables.document(study)
+    document = proof.beside(rate_tables.document(study), conditions.tried, part, conditions.bowl)
     offers.write(files, rate_files.offers(study))
     wanted = ("aspect", "heading_deg", "pitch_mm", "p_orientation", "passes_devices")
     rates = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
     way = study.rate.orientations.lying[study.rate.row].name
     named = {"orientation": way, "rule": rule, "answer": study.answer}
     return named | {name: document[name] for name in (*wanted, *rates)}
+
+
+def _tried(part, request):
+    """What the bowl file says of its trial."""
+    conditions = request.conditions
+    return proof.warnings(conditions.tried, part, conditions.bowl)
 
 
 def _answered(part, task, files):

@@ -28,6 +28,12 @@ def holds(verified, part, bowl):
     return verified is not None and not any(verified.void(part, bowl, __version__))
 
 
+def leads(document):
+    """Return whether a document's rate is that of its trial, and not that of the rule."""
+    tried = document.get("verified")
+    return bool(tried) and document["parts_per_minute"] == tried["parts_per_minute"]
+
+
 def beside(document, verified, part, bowl):
     """Return a document with the trial's figures beside its own; the lower rate leads.
 
@@ -46,6 +52,8 @@ def beside(document, verified, part, bowl):
     """
     if not holds(verified, part, bowl):
         return document if verified is None else document | {"verified": None}
+    if "parts_per_minute" not in document:
+        return document
     known = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
     tried = dict(zip(known, (end / PER_MINUTE for end in (verified.delivered, verified.low, verified.high))))
     own = {name: document[name] for name in known if name in document}

@@ -96,9 +96,7 @@ def _tiles(d):
 
 
 def _played(study):
-    yield Text(
-        "One part that passes the device that decides and one that does not, as the short trial had them."
-    )
+    yield Text("Parts of the short trial at the device that decides.")
     scene, captions = playback.scene(study.part, *study.trials)
     yield Views(scene, tuple((*one, ()) for one in captions), "trial-views", "Orientation", plays=True)
 

@@ -8,20 +8,24 @@ PER_MINUTE, LITRE = units.factor("/min", "rate"), units.factor("l", "volume")
 GRAM, GRAM_CM3 = units.factor("g", "mass"), units.factor("g/cm3", "density")
 
 
-def quotation(study):
+def quotation(study, tried=None):
     """Return the lines that a maker asks for: part, rate, orientation, bowl, drive.
 
     Parameters
     ----------
     study : MachineSheet
         With an order.
+    tried : Verified, optional
+        What a trial of the bowl file has shown.
 
     Returns
     -------
     list of dict
         'quantity' and 'value', both text.
     """
-    return _lines([*_part(study), *_rates(study), *_bowl(study), *_drive(study), *_springs(study)])
+    return _lines(
+        [*_part(study), *_tried(tried), *_rates(study), *_bowl(study), *_drive(study), *_springs(study)]
+    )
 
 
 def machine(study):
@@ -40,6 +44,16 @@ def _part(study):
     yield "material, density [g/cm3]", f"{part.material}, {part.mass / part.volume / GRAM_CM3:.4g}"
     yield "mass [g], volume [mm3]", f"{part.mass / GRAM:.4g}, {part.volume / MM**3:.5g}"
     yield "size [mm]", f"{size}; at most {room.longest / MM:.4g} along the wall, {room.tallest / MM:.4g} high"
+
+
+def _tried(found):
+    """What a trial has delivered, before what is computed."""
+    if found is not None:
+        ends = ", ".join(f"{end / PER_MINUTE:.4g}" for end in (found.low, found.high))
+        yield (
+            "rate as its trial showed [1/min]",
+            f"{found.delivered / PER_MINUTE:.4g} ({ends}): {found.status}",
+        )
 
 
 def _box(part):

@@ -190,7 +190,7 @@ def emptying(study):
     return tables.frame({name: np.asarray(values) for name, values in columns.items()})
 
 
-def summary(study):
-    """Return the record as a frame for people: the quotation sheet, or the machine."""
-    rows = sheets.quotation(study) if study.order is not None else sheets.machine(study)
+def summary(study, tried=None):
+    """Return the record as a frame for people: the quotation sheet, with what was tried, or the machine."""
+    rows = sheets.quotation(study, tried) if study.order is not None else sheets.machine(study)
     return tables.frame({name: [row[name] for row in rows] for name in ("quantity", "value")})

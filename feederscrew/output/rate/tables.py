@@ -79,6 +79,7 @@ def summary(document):
     d = document
     rows = [
         ("correctly oriented parts per minute", _with_range(d, "parts_per_minute")),
+        *_both(d),
         ("aspect and heading", f"{d['aspect']} at {d['heading_deg']:.4g} deg"),
         ("velocity [mm/s]", _with_range(d, "velocity_mm_s")),
         ("parts offered per minute", _with_range(d, "offered_per_minute")),
@@ -95,6 +96,14 @@ def summary(document):
         [("time a part swept off blocks the track [s]", f"{d['clearing_s']:.3g}")] if d["clearing_s"] else []
     )
     return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
+
+
+def _both(document):
+    """Lines of the trial and of the rule, where the bowl file has a trial that holds."""
+    tried = document.get("verified")
+    if tried:
+        yield "of these as its trial showed", _with_range(tried, "parts_per_minute")
+        yield "of these as the rule says", f"{document['parts_per_minute_static']:.4g}"
 
 
 def remarks(study):

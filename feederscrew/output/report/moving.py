@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew.output import tables
+from feederscrew.output import proof, tables
 from feederscrew.output.convey import figures as convey_plots
 from feederscrew.output.convey import files as convey_files
 from feederscrew.output.convey import tables as convey_tables
@@ -114,7 +114,8 @@ def track(case):
 def rate(case):
     """Well-oriented parts a minute."""
     found = case.rate
-    document = rate_tables.document(found)
+    tried = bowls.verified(case.path)
+    document = proof.beside(rate_tables.document(found), tried, case.part, case.bowl)
     lead = Text(
         "The chain from velocity to rate; the range in brackets is over all starts, friction a fifth "
         "off and the interval of the shares. The second table has what the track and each device do "
@@ -123,7 +124,7 @@ def rate(case):
     return Chapter(
         (lead, Table(rate_tables.summary(document)), Table(_passing(found, document["orientations"]))),
         tiles=(_rate_tile(document),),
-        warnings=(*rate_tables.remarks(found), *found.warnings),
+        warnings=(*rate_tables.remarks(found), *found.warnings, *proof.warnings(tried, case.part, case.bowl)),
     )
 
 
@@ -164,6 +165,10 @@ def _rate_tile(document):
     low, high = (number(document[f"parts_per_minute_{end}"], SHORT) for end in ("low", "high"))
     share = f"{percent(document['p_orientation'])} % of drops"
     what = f"{document['aspect']} at {document['heading_deg']:.3g} deg, {share}"
+    if proof.leads(document):
+        what = (
+            f"as its trial showed; the rule says {number(document['parts_per_minute_static'], SHORT)}; {what}"
+        )
     return Tile(
         "leaves correctly oriented",
         f"{number(document['parts_per_minute'], SHORT)} a minute",

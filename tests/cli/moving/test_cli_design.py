@@ -1,6 +1,8 @@
 """``feeder design`` from the command line, and what other commands make of its bowl file."""
 
+import csv
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -120,3 +122,27 @@ def test_the_acceptance_sheet_is_read_back_filled_in(designed, run):
     Path("odd.csv").write_text("\n".join([rows[0], rows[1].rsplit(",", 2)[0] + ",many,"]) + "\n")
     odd = run("compare", "odd.csv")
     assert "measured is 'many', not a number - write a number alone" in odd.stderr
+
+
+def test_report_bowl_and_batch_lead_with_a_trial_that_delivers_less(designed, run):
+    _, folder = designed
+    text = (folder / "design.yaml").read_text()
+    for word, rate in (("delivered", 5), ("delivered_low", 4), ("delivered_high", 6)):
+        text = re.sub(rf"  {word}: .*", f"  {word}: {rate}/min", text)
+    Path("slow.yaml").write_text(text)
+    part, own = folder.parent / "cube.stl", ("--config", "slow.yaml")
+    run("report", part, *own, "--format", "md", "-o", "paper")
+    page = next(Path("paper").rglob("report.md")).read_text()
+    assert "5.00 a minute" in page and "as its trial showed; the rule says" in page
+    assert "its trial delivers 5/min (4 to 6)" in page
+    line = ("bowl", part, "--target", "40/min", "--format", "json", "--config")
+    sized, rule = (json.loads(run(*line, path).stdout) for path in ("slow.yaml", folder / "design.yaml"))
+    assert sized["parts_per_minute"] == pytest.approx(5.0)
+    assert sized["parts_per_minute_static"] == rule["parts_per_minute_static"] > 5.0
+    shown = run("bowl", part, "--target", "40/min", *own).stdout
+    assert "rate as its trial showed [1/min]" in shown and "5 (4, 6): holds" in shown
+    run("batch", part, *own, "--no-pictures", "-o", "many")
+    (row,) = csv.DictReader(Path("many/summary.csv").read_text().splitlines())
+    assert (
+        float(row["parts_per_minute"]) == pytest.approx(5.0) and "its trial delivers 5/min" in row["warnings"]
+    )
