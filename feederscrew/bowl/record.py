@@ -54,6 +54,19 @@ class Track:
 
 
 @dataclass(frozen=True)
+class Unbalance:
+    """What of a bowl's mass does not lie evenly about its axis; Z from the upper ends of the leaves."""
+
+    moment: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [kg m] mass times the place of its centre
+    upright: tuple[float, float] = (0.0, 0.0)  # [kg m2] inertia about X and Y there
+    products: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [kg m2] mass times yz, xz and xy
+    turns: float = 1.0  # [1] 1 where it turns counter-clockwise as it rises, -1 of a left hand
+
+
+EVEN = Unbalance()  # nothing of it is known
+
+
+@dataclass(frozen=True)
 class Machine:
     """What is under the bowl: two masses on inclined leaf springs."""
 
@@ -70,6 +83,7 @@ class Machine:
     leaves: float  # of all banks together
     damping: float  # [1] of the critical one
     supply: float  # [Hz] at which the supply drives the bowl
+    unbalance: Unbalance = EVEN  # known of a bowl that is a solid
 
 
 @dataclass(frozen=True)

@@ -100,8 +100,15 @@ def built(study, settings):
         sheet = machines.machine(bowls.settings(None, (*kept, *own, stroke, *under)))
     except FeederError as fault:
         return Built(why=str(fault))
-    drawn = None if sized.solid is None else replace(sheet, order=sized.order, solid=sized.solid)
-    return Built(sheet, drawn, why)
+    return Built(sheet, _drawn(sheet, sized), why)
+
+
+def _drawn(sheet, sized):
+    """The sheet with the solid, and how its mass lies about the axis; None without one."""
+    if sized.solid is None:
+        return None
+    under = replace(sheet.bowl.machine, unbalance=sized.bowl.machine.unbalance)
+    return replace(sheet, bowl=replace(sheet.bowl, machine=under), order=sized.order, solid=sized.solid)
 
 
 def _sized(settings, study):

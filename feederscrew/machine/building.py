@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew.bowl.direction import shares
-from feederscrew.bowl.record import Bowl, Machine, Sizing
+from feederscrew.bowl.record import EVEN, Bowl, Machine, Sizing, Unbalance
 from feederscrew.machine.sizing import Size
 
 
@@ -35,6 +35,7 @@ def machine_for(bowl: Bowl, size: Size, given: Any) -> Machine:
         "spring_radius": rules.spring_radius * radius,
     }
     made = replace(bowl.machine, **{name: value for name, value in guess.items() if name not in given})
+    made = replace(made, unbalance=_unbalance(size, made))
     if "spring_angle" in given:
         return made
     return replace(
@@ -54,6 +55,23 @@ def _bowl(radius: float, size: Size, rules: Sizing) -> Any:
     inertia = 0.5 * floor * radius**2 + wall * radius**2 + 0.5 * track * (radius**2 + inside**2)
     extra = 1.0 + rules.tooling_mass
     return float(extra * (floor + wall + track)), float(extra * inertia)
+
+
+def _unbalance(size: Size, made: Machine) -> Unbalance:
+    """How the mass of the solid lies, in the measure of a mass and an inertia that the user gave."""
+    if size.mass is None or size.inertia is None:
+        return EVEN
+    heavy, own = made.bowl_mass / size.mass, size.unbalance
+    x, y, z = own.moment
+    inert = made.bowl_inertia / size.inertia
+    xx, yy = own.upright
+    yz, xz, xy = own.products
+    return replace(
+        own,
+        moment=(heavy * x, heavy * y, heavy * z),
+        upright=(inert * xx, inert * yy),
+        products=(inert * yz, inert * xz, inert * xy),
+    )
 
 
 def _spring_angle(wanted: float, radius: float, machine: Machine, rules: Sizing) -> float:

@@ -12,6 +12,7 @@ from feederscrew.machine import speeds
 from feederscrew.machine.stroke import greatest_amplitude
 
 MM, MPA = 1e-3, 1e6
+UNEVEN = 0.05  # of the stroke round a bowl, that parts show
 APART = np.radians(0.5)  # angles this near are the same
 
 
@@ -28,11 +29,24 @@ def remarks(sheet: Any) -> tuple[str, ...]:
     """
     found = [*_tuning(sheet), *_banks(sheet), *_stress(sheet), *_stroke(sheet), *_angle(sheet)]
     found += [*_throw(sheet), *_fill(sheet), *_drift(sheet)]
+    found += [*_rocking(sheet)]
     if sheet.order is not None:
         found += [*_lowest(sheet), *_size(sheet), *_hand(sheet)]
     lines = [str(one) for one in found]
     tipping = () if sheet.order is None else sheet.order.tipping
     return (*lines, *tipping, *speeds.remark(sheet.answer.velocity, sheet.bowl.sizing))
+
+
+def _rocking(sheet: Any) -> Iterator[FeederError]:
+    if sheet.rocking is None:
+        return
+    as_is, balanced = sheet.rocking
+    if as_is.greatest - as_is.least > UNEVEN:
+        weight, angle = sheet.solid.balance
+        low, high, rest = (100.0 * (one - 1.0) for one in (as_is.least, as_is.greatest, balanced.greatest))
+        what = f"its stroke differs by {low:+.2g} to {high:+.2g} % round the bowl, whose mass lies to a side"
+        there = f"{1e3 * weight:.3g} g on the wall at {np.degrees(angle):.0f} deg"
+        yield FeederError("the bowl as a solid", what, f"put {there}: at most {rest:.2g} % are left")
 
 
 def _hand(sheet: Any) -> Iterator[FeederError]:

@@ -54,8 +54,14 @@ def full(radius: float, depth: float, bulk: float, rules: Sizing) -> Fill:
 
 def loaded(machine: Machine, fill: Fill, share: float) -> Machine:
     """Return the machine with a share [1] of a fill vibrating with its bowl."""
-    mass = machine.bowl_mass + share * fill.mass
-    return replace(machine, bowl_mass=mass, bowl_inertia=machine.bowl_inertia + share * fill.inertia)
+    around, own = share * fill.inertia, machine.unbalance
+    upright = own.upright[0] + 0.5 * around, own.upright[1] + 0.5 * around  # spread flat over the floor
+    return replace(
+        machine,
+        bowl_mass=machine.bowl_mass + share * fill.mass,
+        bowl_inertia=machine.bowl_inertia + around,
+        unbalance=replace(own, upright=upright),
+    )
 
 
 def emptying(machine: Machine, frequency: float, fill: Fill, rules: Sizing) -> Emptying:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import check
-from feederscrew.bowl.record import Sizing, Track
+from feederscrew.bowl.record import EVEN, Sizing, Track, Unbalance
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import turned
 from feederscrew.mechanics.wall.stable_headings import headings
@@ -46,6 +46,7 @@ class Size:
     pitch: float  # [m] rise of one turn
     mass: float | None = None  # [kg] of the bowl, where it is known from its solid
     inertia: float | None = None  # [kg m2] of the same about its axis
+    unbalance: Unbalance = EVEN  # of the same
     room: float | None = None  # [m] radius of its inside at the bottom, where its solid steps outwards
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from feederscrew.bowl.direction import shares
 from feederscrew.bowl.record import Machine
+from feederscrew.machine import unbalanced
 
 POISSON = 0.3  # [1] of steel; the twist of a leaf depends on it through G / E = 1 / (2 (1 + nu))
 
@@ -26,6 +27,7 @@ class Springs:
     stiffness: float  # [N/m] of all leaves, their twist included
     twist: float  # [1] stiffness with twist over that without
     effective_mass: float  # [kg] that moves against the springs
+    effective_mass_centred: float  # [kg] were the centre of mass on the axis
     effective_mass_held: float  # [kg] the same with the base held fast
     natural_frequency: float  # [Hz]
     natural_frequency_without_twist: float  # [Hz]
@@ -45,12 +47,13 @@ def springs(machine: Machine) -> Springs:
     """
     leaf = leaf_stiffness(machine)
     plain, twisted = machine.leaves * leaf, twist(machine)
-    mass, held = effective_mass(machine), effective_mass(held_fast(machine))
+    mass, held = effective_mass(machine), centred_mass(held_fast(machine))
     return Springs(
         leaf_stiffness=leaf,
         stiffness=plain * twisted,
         twist=twisted,
         effective_mass=mass,
+        effective_mass_centred=centred_mass(machine),
         effective_mass_held=held,
         natural_frequency=natural_frequency(plain * twisted, mass),
         natural_frequency_without_twist=natural_frequency(plain, mass),
@@ -112,6 +115,17 @@ def twist(machine: Machine) -> float:
 
 def effective_mass(machine: Machine) -> float:
     """Return the mass that moves against the springs [kg].
+
+    Parameters
+    ----------
+    machine : Machine
+        Of a bowl whose centre of mass may be known to lie off its axis.
+    """
+    return centred_mass(machine) if unbalanced.is_even(machine) else unbalanced.effective_mass(machine)
+
+
+def centred_mass(machine: Machine) -> float:
+    """Return the mass that moves against the springs [kg] where the centre of mass is on the axis.
 
     Parameters
     ----------

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import shapely
 
+from feederscrew.bowl.record import Unbalance
 from feederscrew.errors import FeederError
 from feederscrew.part import mass
 from feederscrew.solidbowl import facets, stairs, track
@@ -29,13 +30,30 @@ class BowlSolid:
     gates: tuple[tuple[str, np.ndarray, np.ndarray], ...]  # name, vertices and faces of each part of its own
     volume: float  # [m3]
     mass: float  # [kg] gates included
-    inertia: float  # [kg m2] about the axis
+    tensor: np.ndarray  # (3, 3) [kg m2] inertia about its centre of mass
     centre: np.ndarray  # (3,) [m]
     falls: dict = field(default_factory=dict)  # where what falls through each cut comes to lie
     turns_of_sheet: float = 0.0  # that the sheet has, and the solid may not have room for
     riders: tuple = ()  # (Orientation, s [m]) of parts along its track, to draw
     segments: Segments | None = None  # where it is cut to fit a printer
     step: object = None  # exact_file.StepFile, where it was asked for
+
+    @property
+    def inertia(self):
+        """Inertia [kg m2] about the axis."""
+        return float(self.tensor[2, 2] + self.mass * (self.centre[0] ** 2 + self.centre[1] ** 2))
+
+    @property
+    def unbalance(self):
+        """How its mass lies about the axis, over its underside: that lies on the leaves."""
+        place = self.centre - [0.0, 0.0, self.plan.underside]
+        about = mass.shifted(self.tensor, self.mass, place)
+        return Unbalance(
+            moment=tuple(map(float, self.mass * place)),
+            upright=(float(about[0, 0]), float(about[1, 1])),
+            products=(float(-about[1, 2]), float(-about[0, 2]), float(-about[0, 1])),
+            turns=-1.0 if self.plan.left else 1.0,
+        )
 
     @property
     def balance(self):
@@ -47,6 +65,13 @@ class BowlSolid:
     def balanced_at(self):
         """Radius [m] at which that weight is: of the wall's outer face."""
         return self.plan.way.radius + self.plan.material.wall
+
+    @property
+    def weight(self):
+        """The weight as mass [kg] and place (3,) [m] over the underside, as high as the centre of mass."""
+        kilograms, angle = self.balance
+        x, y = self.balanced_at * np.cos(angle), self.balanced_at * np.sin(angle)
+        return kilograms, (float(x), float(y), float(self.centre[2] - self.plan.underside))
 
     @property
     def remarks(self):
@@ -83,15 +108,20 @@ def body(plan):
         (name, *whole_surface.mesh(facets.placed_as(one, mirrored=plan.left, turned=plan.turned)))
         for name, one in gates
     )
-    parts = [found, *(mass.solid(v[f]) for _, v, f in extra)]
-    weights = np.array([plan.material.density * one.volume for one in parts])
-    total = float(weights.sum())
+    total, centre, inertia = _weighed(plan, [found, *(mass.solid(v[f]) for _, v, f in extra)])
+    return BowlSolid(plan, vertices, faces, extra, float(found.volume), total, inertia, centre)
+
+
+def _weighed(plan, parts):
+    """Mass [kg], centre (3,) [m] and inertia (3, 3) [kg m2] about it of a bowl with its gates."""
+    density = plan.material.density
+    weights = [density * one.volume for one in parts]
+    total = float(sum(weights))
     centre = sum(w * one.centre for w, one in zip(weights, parts)) / total
     inertia = sum(
-        plan.material.density * one.inertia[2, 2] + w * (one.centre[0] ** 2 + one.centre[1] ** 2)
-        for w, one in zip(weights, parts)
+        mass.shifted(density * one.inertia, w, one.centre - centre) for w, one in zip(weights, parts)
     )
-    return BowlSolid(plan, vertices, faces, extra, float(found.volume), total, float(inertia), centre)
+    return total, centre, inertia
 
 
 def pieces(plan, kit=facets):

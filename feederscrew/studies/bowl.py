@@ -17,6 +17,7 @@ from feederscrew.errors import ArgumentError
 from feederscrew.machine import checks, drive_sought, filling, sizing, throughput, tuning
 from feederscrew.machine.springs import Springs, gain, leaf_stress, springs, upright_pull
 from feederscrew.machine.stroke import Stroke, angles, greatest_amplitude, stroke
+from feederscrew.machine.unbalanced import Rocking, both
 from feederscrew.part.record import Part
 from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.tipping import remark
@@ -92,6 +93,11 @@ class MachineSheet(Shown):
         """What must not be overlooked, a tuple of str."""
         own = () if self.solid is None else self.solid.remarks
         return (*checks.remarks(self), *own)
+
+    @property
+    def rocking(self) -> tuple[Rocking, Rocking] | None:
+        """Stroke round the bowl where its track ends, as it is and with its weight; None without a solid."""
+        return None if self.solid is None else both(self.bowl, self.solid)
 
     @property
     def _asked(self) -> Order:

@@ -156,9 +156,8 @@ def solid(
     if asked.step:
         made = replace(made, step=exact_file.step_file(made))
     own = {"depth": made.plan.outlet_height, "turns": made.plan.turns, "room": made.plan.room}
-    return replace(size, **own, mass=made.mass, inertia=made.inertia), replace(
-        made, riders=_riders(made.plan, bowl.devices, coming, counted)
-    )
+    size = replace(size, **own, mass=made.mass, inertia=made.inertia, unbalance=made.unbalance)
+    return size, replace(made, riders=_riders(made.plan, bowl.devices, coming, counted))
 
 
 def of_sheet(sheet: Any, settings: Sequence[Setting], aspects: Aspects) -> BowlSolid | None:

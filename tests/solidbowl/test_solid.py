@@ -8,11 +8,15 @@ import pytest
 import shapely
 from scipy.spatial import cKDTree
 
+from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Track
 from feederscrew.bowl.schema import BY_NAME
 from feederscrew.bowl.settings import effective, record
 from feederscrew.errors import FeederError
+from feederscrew.machine.building import machine_for
 from feederscrew.machine.sizing import Size
+from feederscrew.machine.springs import centred_mass, springs
+from feederscrew.machine.unbalanced import rocking
 from feederscrew.output.solidbowl import printing
 from feederscrew.solidbowl import cuts, facets, leaning, riding, segments
 from feederscrew.solidbowl.closed_body import body
@@ -146,6 +150,37 @@ def test_the_weight_that_balances_it_brings_its_centre_over_the_axis():
     at = solid.balanced_at * np.array([np.cos(angle), np.sin(angle)])
     np.testing.assert_allclose(solid.mass * solid.centre[:2] + weight * at, 0.0, rtol=0, atol=1e-12)
     assert 0.01 < weight / solid.mass < 0.1
+
+
+@pytest.mark.parametrize("left", [False, True])
+def test_the_springs_know_where_its_mass_lies(left, rng):
+    """Against moments of points in the body; a left hand rocks as its mirror image does."""
+    solid = body(planned(CHAINS["gap"], asked=Asked(left=left)))
+    size = Size(
+        0.3, {}, 0.02, 0.0, 0.0, 0.06, 0.05, 1.5, 0.05,
+        mass=solid.mass, inertia=solid.inertia, unbalance=solid.unbalance,
+    )  # fmt: skip
+    bowl = bowls.read(None, ())
+    under = machine_for(bowl, size, set())
+    assert under.unbalance == solid.unbalance and under.unbalance.turns == (-1.0 if left else 1.0)
+    corners = solid.vertices[solid.faces] - [0.0, 0.0, solid.plan.underside]
+    weights = np.linalg.det(corners) / 6.0 * solid.plan.material.density
+    at = corners.sum(axis=1) / 4.0
+    np.testing.assert_allclose(under.unbalance.moment, weights @ at, rtol=1e-9)
+    assert springs(under).effective_mass < centred_mass(under)
+    heavier = machine_for(replace(bowl, machine=replace(bowl.machine, bowl_mass=9.0)), size, {"bowl_mass"})
+    np.testing.assert_allclose(heavier.unbalance.moment, 9.0 / solid.mass * (weights @ at), rtol=1e-9)
+    as_is, balanced = rocking(under, 0.15, 0.05), rocking(under, 0.15, 0.05, solid.weight)
+    assert 1.001 < balanced.greatest < as_is.greatest < 1.02
+    mirrored = replace(
+        under.unbalance,
+        moment=tuple(np.multiply(under.unbalance.moment, [1, -1, 1])),
+        products=tuple(np.multiply(under.unbalance.products, [-1, 1, -1])),
+        turns=-under.unbalance.turns,
+    )
+    other = rocking(replace(under, unbalance=mirrored), 0.15, 0.05)
+    assert other.angle == pytest.approx(2.0 * np.pi - as_is.angle)
+    assert other.greatest == pytest.approx(as_is.greatest, rel=1e-12)
 
 
 def test_a_left_hand_is_the_mirror_image():

@@ -1,5 +1,7 @@
 """The sheet of a machine and the sheet that a quotation asks for: one line a quantity, in plain text."""
 
+import numpy as np
+
 from feederscrew import units
 
 MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
@@ -164,11 +166,26 @@ def _springs(study):
     plain = f"without twist {made.natural_frequency_without_twist:.4g}"
     yield "natural frequency [Hz]", f"{made.natural_frequency:.4g} ({plain})"
     yield "above the drive [%], gain", f"{100 * study.detuning:.3g}, {study.gain:.3g}"
+    yield from _rocking(study)
     most = study.bowl.sizing.fatigue_stress / MPA
     yield from _other_leaves(study)
     yield "leaf stress [MPa]", f"{study.stress / MPA:.3g} (bears {most:.4g})"
     pull = f"{study.magnet:.3g} upright about a mean of {study.magnet:.3g}"
     yield "force of the magnet [N]", f"{pull}; {study.force:.3g} along the motion"
+
+
+def _rocking(study):
+    """Where the centre of mass of a solid is, and what that does to the stroke round it."""
+    if study.rocking is None:
+        return
+    x, y, z = study.solid.centre / MM
+    yield "centre of mass [mm]", f"{np.hypot(x, y):.3g} from the axis, {z:.3g} over the floor's edge"
+    as_is, balanced = (
+        f"{100 * (one.least - 1.0):+.2g} to {100 * (one.greatest - 1.0):+.2g}" for one in study.rocking
+    )
+    weight, angle = study.solid.balance
+    said = f"with {weight / GRAM:.3g} g on the wall at {angle / DEG:.0f} deg {balanced}"
+    yield "stroke round the bowl [%]", f"{as_is}; {said}"
 
 
 def shared(study):

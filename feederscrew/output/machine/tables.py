@@ -39,6 +39,21 @@ def document(study):
         "emptying": emptying(study),
         "remarks": list(study.remarks),
         **({} if study.solid is None else solids.document(study.solid)),
+        **({} if study.rocking is None else _rocking(study)),
+    }
+
+
+def _rocking(study):
+    """The stroke round the bowl over its mean, as the solid is and with the weight that balances it."""
+    as_is, balanced = study.rocking
+    return {
+        "stroke_round_least": as_is.least,
+        "stroke_round_greatest": as_is.greatest,
+        "stroke_round_greatest_at_deg": as_is.angle / DEG,
+        "balanced_stroke_round_least": balanced.least,
+        "balanced_stroke_round_greatest": balanced.greatest,
+        "effective_mass_balanced_kg": balanced.effective_mass,
+        "effective_mass_centred_kg": study.springs.effective_mass_centred,
     }
 
 
