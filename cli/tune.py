@@ -50,7 +50,8 @@ def tune(part, target, aspect, heading, rule, gap, fill, taken, worst, bowl, out
             progress=waiting.told(out, "settings"),
             heading=heading, rule=rule, gap=gap, fill=fill, worst=worst,
         )  # fmt: skip
-        tried = proof.warnings(bowls.verified(bowl["path"]), solid, record)
-        out.warn(*found.warnings, *tables.remarks(found), *tried)
+        tried = bowls.verified(bowl["path"])
+        out.warn(*found.warnings, *tables.remarks(found), *proof.warnings(tried, solid, record))
         offers.write(folder, files.offers(found))
-        out.show(tables.shown(found, out.format), tables.document(found))
+        document = proof.beside(tables.document(found), tried, solid, record)
+        out.show(tables.shown(found, out.format), document)

@@ -40,7 +40,7 @@ def beside(document, verified, part, bowl):
     Parameters
     ----------
     document : dict
-        With ``parts_per_minute`` and its ends.
+        With ``parts_per_minute`` and its ends, or without a rate.
     verified : Verified or None
     part : Part
     bowl : Bowl
@@ -52,26 +52,25 @@ def beside(document, verified, part, bowl):
     """
     if not holds(verified, part, bowl):
         return document if verified is None else document | {"verified": None}
-    if "parts_per_minute" not in document:
-        return document
     known = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
     tried = dict(zip(known, (end / PER_MINUTE for end in (verified.delivered, verified.low, verified.high))))
+    document = document | {"verified": _block(verified, tried)}
     own = {name: document[name] for name in known if name in document}
+    if not own:
+        return document
     lead = tried if tried["parts_per_minute"] <= own["parts_per_minute"] else own
-    return (
-        document
-        | {name: lead[name] for name in own}
-        | {
-            "parts_per_minute_static": own["parts_per_minute"],
-            "verified": {
-                "status": verified.status,
-                "wanted": verified.wanted,
-                **tried,
-                "purity": verified.purity,
-                "jams": verified.jams,
-                "queue_seconds": verified.queue_seconds,
-                "draws": verified.draws,
-                "draws_held": verified.held,
-            },
-        }
-    )
+    led = {name: lead[name] for name in own}
+    return document | led | {"parts_per_minute_static": own["parts_per_minute"]}
+
+
+def _block(verified, tried):
+    return {
+        "status": verified.status,
+        "wanted": verified.wanted,
+        **tried,
+        "purity": verified.purity,
+        "jams": verified.jams,
+        "queue_seconds": verified.queue_seconds,
+        "draws": verified.draws,
+        "draws_held": verified.held,
+    }

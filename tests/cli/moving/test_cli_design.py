@@ -141,6 +141,10 @@ def test_report_bowl_and_batch_lead_with_a_trial_that_delivers_less(designed, ru
     assert sized["parts_per_minute_static"] == rule["parts_per_minute_static"] > 5.0
     shown = run("bowl", part, "--target", "40/min", *own).stdout
     assert "rate as its trial showed [1/min]" in shown and "5 (4, 6): holds" in shown
+    tuned = json.loads(
+        run("tune", part, "--aspect", "A", "--target", "20/min", *own, "--format", "json").stdout
+    )
+    assert tuned["verified"]["parts_per_minute"] == pytest.approx(5.0) and "parts_per_minute" not in tuned
     run("batch", part, *own, "--no-pictures", "-o", "many")
     (row,) = csv.DictReader(Path("many/summary.csv").read_text().splitlines())
     assert (
