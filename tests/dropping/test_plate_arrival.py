@@ -1,6 +1,7 @@
 """What a bowl's own floor delivers, and when that is not settled."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -98,3 +99,27 @@ def test_the_parts_that_choose_the_spell_are_followed_once(monkeypatch):
     monkeypatch.undo()
     whole = arrival.arrival(part, find(part), plate(0.2), drops=found.shaken.parts)
     assert (whole.p == found.p).all()
+
+
+def test_on_a_floor_that_throws_parts_as_many_are_followed_as_the_share_needs(monkeypatch):
+    """The cap at a throw number of 1.7: 800 parts at 82 % are known to 2.7 % only."""
+    part, bowl = shapes.part(shapes.box(8.0, 12.0, 20.0)), plate(0.4)
+    runs = []
+
+    def test(*_, drops, seconds, pace, **__):
+        runs.append((drops, seconds, pace.done))
+        error = np.array([0.4, 0.4, 0.0]) / np.sqrt(drops)
+        seen = SimpleNamespace(error=error, plate_low=np.full(3, 0.3), plate_high=np.full(3, 0.4))
+        return [bowl_test.Shaken(bowl, {}, 1.7, drops, seconds, seen, 0, False, rides="kept")]
+
+    def judged(run):
+        return arrival.Arrival(0, 0, 0, run.seconds == arrival.SPELLS[1], "", run)
+
+    for name, count in (("FIRST", 400), ("LONGEST", 800), ("MOST", 4000)):
+        monkeypatch.setattr(arrival, name, count)
+    monkeypatch.setattr(bowl_test, "test", test)
+    monkeypatch.setattr(arrival, "judged", judged)
+    arrival.arrival(part, find(part), bowl)
+    short, long = arrival.SPELLS
+    assert runs == [(400, short, None), (800, long, None), (1600, long, "kept")]
+    assert 1.96 * 0.4 / np.sqrt(1600) <= arrival.WIDTH < 1.96 * 0.4 / np.sqrt(1200)

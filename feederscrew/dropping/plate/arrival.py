@@ -5,13 +5,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew import check
-from feederscrew.dropping.ensemble import half_width
+from feederscrew.dropping.ensemble import NORMAL, half_width
 from feederscrew.dropping.plate import bowl_test, drive
 from feederscrew.dropping.plate.occupancy import Occupancy
 
 LAUNCH = "feed"
 SPELLS = (0.5, 2.0)  # [s] on the floor: the longer one where the shorter decides nothing
-FIRST, MOST, LONGEST = 400, 4000, 800  # parts that choose the spell; that are followed for each, at most
+FIRST, LONGEST = 400, 800  # parts that choose the spell; that show whether the longer one decides
+MOST = 4000  # parts that are followed, where time or rates decide
 WIDTH = 0.02  # [1] half the widest 95 % interval of a share at which enough parts are followed
 PACE = bowl_test.Pace(coarse=3.0, settling=40.0, kick=4.0)
 """For shares alone, not velocities. Of 2,400 parts of eight real kinds on the default floor 8 that were
@@ -53,8 +54,8 @@ def arrival(part, aspects, bowl, *, drops=None, seed=1, jobs=1, progress=None):
     bowl : Bowl
         Its drive, restitution and kinetic friction.
     drops : int, optional
-        Parts to follow; without it as many as make every share known to WIDTH, at most MOST, or LONGEST on
-        a floor that must be followed for the longer spell.
+        Parts to follow; without it as many as make every share known to WIDTH, at most MOST, or LONGEST where
+        the longer spell decides nothing.
     seed, jobs : int
     progress : function, optional
         As in ``bowl_test.test``; it starts again for a longer spell.
@@ -70,20 +71,21 @@ def arrival(part, aspects, bowl, *, drops=None, seed=1, jobs=1, progress=None):
     KeyboardInterrupt
         If the user stops it before anything is known.
     """
-    found = None
+    found, last = None, 0.0
     for count, seconds, pace in _runs(bowl, drops):
-        if found is not None and not _wanted(found, count, seconds):
+        if found is not None and seconds == last:
+            count = count or enough(found)
+            pace = replace(pace, done=found.shaken.rides)
+        if found is not None and not _wanted(found, last, count, seconds):
             continue
         own = {"drops": count, "seconds": seconds, "seed": seed, "jobs": jobs, "progress": progress}
-        if found is not None and seconds == SPELLS[0]:
-            pace = replace(pace, done=found.shaken.rides)
         try:
             shaken = bowl_test.test(part, aspects, [bowl], LAUNCH, {}, pace=pace, **own)[0]
         except KeyboardInterrupt:
             if found is None:
                 raise
             return _without_rides(replace(found, shaken=replace(found.shaken, partial=True)))
-        found = judged(shaken)
+        found, last = judged(shaken), seconds
         if shaken.partial:
             break
     return _without_rides(found)
@@ -115,8 +117,25 @@ def steps_needed(hull, bowl):
     return (max(SPELLS) / unit + PACE.settling) / longest
 
 
+def enough(found):
+    """Return how many parts make every share known to WIDTH, by how they differed from part to part.
+
+    Parameters
+    ----------
+    found : Arrival
+
+    Returns
+    -------
+    int
+        At most MOST.
+    """
+    width, parts = NORMAL * found.shaken.occupancy.error.max(), found.shaken.parts
+    rounds = np.ceil(parts * (width / WIDTH) ** 2 / bowl_test.ROUND)
+    return int(min(MOST, rounds * bowl_test.ROUND))
+
+
 def _runs(bowl, drops):
-    """Parts, seconds and pace of the runs there may be, in their order."""
+    """Parts (None: as many as are enough), seconds and pace of the runs there may be, in their order."""
     pace = PACE if drive.throw_number(bowl) < 1.0 else replace(PACE, settling=THROWN)
     if drops is not None:
         return [(drops, seconds, pace) for seconds in SPELLS]
@@ -124,14 +143,16 @@ def _runs(bowl, drops):
     return [
         (FIRST, SPELLS[0], replace(pace, keep=True)),
         (MOST, SPELLS[0], adaptive),
-        (LONGEST, SPELLS[1], adaptive),
+        (LONGEST, SPELLS[1], replace(adaptive, keep=True)),
+        (None, SPELLS[1], pace),
     ]
 
 
-def _wanted(found, count, seconds):
-    """Whether another run is needed after what was found: of more parts, or for longer."""
-    longer = seconds > SPELLS[0]
-    return longer if not found.settled else not longer and not found.sure and count > found.shaken.parts
+def _wanted(found, last, count, seconds):
+    """Whether another run is needed after what was found in the last one: of more parts, or for longer."""
+    if seconds > last:
+        return not found.settled
+    return found.settled and not found.sure and count > found.shaken.parts
 
 
 def judged(shaken):

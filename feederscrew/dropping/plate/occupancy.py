@@ -26,6 +26,7 @@ class Occupancy:
     plate: np.ndarray  # (A,) [1] share of the time, in the second half
     plate_low: np.ndarray  # (A,) [1]
     plate_high: np.ndarray
+    error: np.ndarray  # (A,) [1] standard error of that share, from part to part
     limit: np.ndarray  # (A,) [1] share to which the rates lead in the end; NaN where too little was seen
     limit_low: np.ndarray  # (A,) [1]
     limit_high: np.ndarray
@@ -67,19 +68,22 @@ def occupancy(faces, places, rows, count, period, rng):
     -----
     A rate is the number of transitions over the time spent; its interval is that of a Poisson count
     (F. Garwood, Biometrika 28, 437-442, 1936). The interval of a share of time is Wilson's for so many
-    parts, which is too wide where a part changes often. ``limit`` is the mean over DRAWS of all rates, each
-    from a Gamma distribution of its count (with PRIOR) and time, of where they lead from the last look on;
-    a class in which no time was spent is left out, as nothing is known of how it is left.
+    parts, which is too wide where a part changes often: ``error`` knows of that. ``limit`` is the mean over
+    DRAWS of all rates, each from a Gamma distribution of its count (with PRIOR) and time, of where they lead
+    from the last look on; a class in which no time was spent is left out, as nothing is known of how it is
+    left.
     """
     held = lasting(faces)
     classes = np.where(held == UNSETTLED, count, np.asarray(rows)[held])  # one more for parts not yet down
     inside = classes[:, :, None] == np.arange(count)
     counts, times = _moves(held, classes, count), period * inside[:, :-1].sum(axis=(0, 1))
-    half = inside[:, inside.shape[1] // 2 :].mean(axis=(0, 1))
+    each = inside[:, inside.shape[1] // 2 :].mean(axis=1)
+    half = each.mean(axis=0)
     low, high = wilson(half * len(held), len(held))
     limit, ends = _limits(counts, times, inside[:, -1].mean(axis=0), rng)
     found = {
         "start": _first(classes, count), "plate": half, "plate_low": low, "plate_high": high,
+        "error": each.std(axis=0) / np.sqrt(len(each)),
         "limit": limit, "limit_low": ends[0], "limit_high": ends[1], "changing": _changing(inside),
         "counts": counts, "times": times, "course": inside.mean(axis=0),
         **_rates(counts, times), **_velocities(places, inside, period),
