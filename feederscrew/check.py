@@ -60,9 +60,13 @@ def kind(name: str, value: object, wanted: type | tuple[type, ...], mend: str) -
         What to give: 'give a part, as load returns it'.
     """
     if not isinstance(value, wanted):
-        has_article = isinstance(value, (int, float, str, type(None), list))
-        said = f"{value!r:.40}" if has_article else f"a {type(value).__name__}"
-        raise ArgumentError(name, f"is {said}", mend)
+        raise ArgumentError(name, f"is {_said(value)}", mend)
+
+
+def _said(value: object) -> str:
+    """A value as a line shows it; of a record its class."""
+    plain = isinstance(value, (int, float, str, type(None), list))
+    return f"{value!r:.40}" if plain else f"a {type(value).__name__}"
 
 
 def frozen(array: Any) -> np.ndarray:
@@ -94,7 +98,7 @@ def argument(name: str, value: Any, low: float = -np.inf, high: float = np.inf) 
     try:
         number = float(value)
     except (TypeError, ValueError):
-        raise ArgumentError(name, f"is {value!r:.40}, not a number", "give a number") from None
+        raise ArgumentError(name, f"is {_said(value)}, not a number", "give a number") from None
     if low <= number <= high and np.isfinite(number):
         return number
     ends = [f"from {low:g}"] if np.isfinite(low) else []

@@ -31,7 +31,7 @@ class ProbabilitySource(TypedDict, total=False):
     launch: str  # on a floor at rest: 'place', 'drop', 'flip', 'roll' or 'feed'
     probabilities: Path  # a file of counts in place of an answer of ours
     fed: int  # parts onto the moving floor of the bowl; until the shares are known to 2 % without it
-    fed_seed: int  # of these parts, 1 without it
+    seed: int  # of these parts, 1 without it
     known: Shares  # as ``shares`` returned it: nothing is computed again
 
 
@@ -168,12 +168,11 @@ def answered(part: Part, bowl: Bowl, asked: ProbabilitySource) -> Shares:
         own.pop(name, None)
     own["rule"] = rule(asked)
     known = own.pop("known", None)
-    if strange := sorted(set(own) - {"rule", "launch", "probabilities", "fed", "fed_seed"}):
-        raise TypeError(f"unexpected keyword argument {strange[0]!r}")
+    _understood(own, ("rule", "launch", "probabilities", "fed", "seed"))
     if own.get("probabilities") is not None:
         a_file("probabilities", own["probabilities"])
     own["fed"] = count("fed", own.get("fed"))
-    own["seed"] = count("fed_seed", own.pop("fed_seed", 1), 0)
+    own["seed"] = count("seed", own.pop("seed", 1), 0)
     if known is None:
         return shares(part, bowl, **own)
     check.kind("known", known, Shares, "give what shares returned")
@@ -182,8 +181,7 @@ def answered(part: Part, bowl: Bowl, asked: ProbabilitySource) -> Shares:
 
 def settings(asked: BowlFile) -> tuple[Any, ...]:
     """Return the settings of a bowl file with overrides."""
-    if strange := sorted(set(asked) - {"path", "overrides"}):
-        raise TypeError(f"unexpected keyword argument {strange[0]!r}")
+    _understood(asked, ("path", "overrides"))
     path = asked.get("path")
     path = None if path is None else a_file("path", path)
     return bowls.settings(path, overrides(asked.get("overrides", ())))
@@ -194,6 +192,12 @@ def overrides(given: object) -> tuple[str, ...]:
     if isinstance(given, str):
         return (given,)
     return several("overrides", given, str, "give texts, 'drive.frequency=50 Hz'")
+
+
+def _understood(given: Mapping[str, object], names: Sequence[str]) -> None:
+    """Raise the TypeError of a keyword that is not one of some names, and say those."""
+    if strange := sorted(set(given) - set(names)):
+        raise TypeError(f"unexpected keyword argument {strange[0]!r} - known here are {listed(names)}")
 
 
 def _typed(name: str, value: Condition) -> str | None:

@@ -24,7 +24,7 @@ def shares(part: Part, bowl: Bowl, **answer: Unpack[ProbabilitySource]) -> Share
     part : Part
     bowl : Bowl
     **answer
-        rule, launch, probabilities, fed, fed_seed: whose probabilities are taken, see ``rate``.
+        rule, launch, probabilities, fed, seed: whose probabilities are taken, see ``rate``.
 
     Returns
     -------
@@ -67,7 +67,7 @@ def rate(
         launch : what is done to the part on a floor at rest: 'place', 'drop', 'flip', 'roll' or 'feed';
             without it parts are fed onto the moving floor of the bowl.
         probabilities : file of counts whose shares are taken.
-        fed, fed_seed : how many are fed; without it as many as make every share known to 2 %.
+        fed, seed : how many are fed, and their seed; without ``fed`` until every share is known to 2 %.
         known : what ``shares`` returned, in place of all of them.
 
     Returns

@@ -1,6 +1,7 @@
 """Arguments of the library that cannot be used: one line that names the argument, never an answer."""
 
 import inspect
+import json
 import math
 from dataclasses import replace
 
@@ -33,6 +34,9 @@ LAUNCHES = "give one of place, drop, flip, roll, feed"
         (lambda part: fs.drop(part, seed=-1), "seed: is -1 - give a number from 0"),
         (lambda part: fs.drop(part, jobs=0), "jobs: is 0 - give a number from 1"),
         (lambda part: fs.size_bowl(part, 0), "target: is 0 - give a number from 1e-06"),
+        (lambda part: fs.size_bowl(part, BOWL), "target: is a Bowl, not a number - give a number"),
+        (lambda part: fs.rate(part, BOWL, "C", seed=-1), "seed: is -1 - give a number from 0"),
+        (lambda part: fs.rate(part, BOWL, "C", fed=0), "fed: is 0 - give a number from 1"),
         (lambda part: fs.design(part, 0), "target: is 0 - give a number from 1e-06"),
         (lambda part: fs.tune(part, BOWL, "C", -3), "target: is -3 - give a number from 1e-06"),
         (lambda part: fs.tune(part, BOWL, None, 1), "aspect: is None - give the name of an aspect, 'A'"),
@@ -57,6 +61,40 @@ def test_an_argument_that_cannot_be_used_is_named(part, call, line):
     with pytest.raises(fs.FeederError) as caught:
         call(part)
     assert str(caught.value) == line
+
+
+@pytest.mark.parametrize(
+    "call",
+    [lambda part, **own: fs.rate(part, BOWL, "C", **own), lambda part, **own: fs.shares(part, BOWL, **own)],
+)
+def test_a_keyword_that_is_unknown_is_named_with_those_that_are_known(part, call):
+    known = "rule, launch, probabilities, fed and seed"
+    with pytest.raises(TypeError, match=f"^unexpected keyword argument 'sed' - known here are {known}"):
+        call(part, sed=2)
+
+
+def test_the_seed_of_the_parts_on_the_floor_is_that_of_the_command(part, run):
+    """It was called fed_seed here, and --seed there."""
+    part_file = "block.stl"
+    shapes.box(8.0, 12.0, 20.0).export(part_file)
+    found = [fs.rate(part, BOWL, "A", fed=60, seed=seed) for seed in (1, 2)]
+    assert found[0].parts.value != found[1].parts.value
+    call = (
+        "rate",
+        part_file,
+        "--aspect",
+        "A",
+        "--set",
+        "track.width=40 mm",
+        "--fed",
+        "60",
+        "--format",
+        "json",
+    )
+    for seed, one in enumerate(found, start=1):
+        said = json.loads(run(*call, "--seed", seed).stdout)
+        assert said["answer"] == one.answer == f"fed onto the moving floor, 60 parts, seed {seed}"
+        assert said["parts_per_minute"] == pytest.approx(60.0 * one.parts.value, rel=1e-9)
 
 
 def test_a_bowl_keeps_what_its_file_lists(part, tmp_path):
