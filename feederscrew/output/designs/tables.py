@@ -128,8 +128,9 @@ def summary(study):
         ),
         ("jams", f"{d['jams']} in {d['queue_seconds']:.4g} s of queue" + _hourly(d)),
         ("draws that sort", f"{d['robust']['held']} of {d['robust']['draws']}"),
-        ("devices", ", ".join(f"{one['device']}: {one['value']}" for one in d["chain"]) or "none"),
     ]
+    chain = [f"{one['device']}: {one['value']}" for one in d["chain"]] or ["none"]
+    rows += [(f"device {k}", one) for k, one in enumerate(chain, start=1)]
     if d["bowl"]:
         rows += [(name.replace("_", " "), f"{value:.4g}") for name, value in d["bowl"].items()]
     rows += [("risk", one) for one in d["risks"]]

@@ -39,3 +39,20 @@ def test_the_jobs_of_the_tutorial(tmp_path, monkeypatch):
         assert fates["A"] and "yes" not in job.split()  # no orientation against the static rule
     for name in ("countersunk_m4x12", "ring_terminal"):
         assert {path.name for path in (tmp_path / "build/tutorial" / name).iterdir()} > FILES
+
+
+def test_both_jobs_are_designed_by_one_command_each():
+    """Designs take minutes: `make docs` runs them; here their lines are read as the command reads them."""
+    blocks = re.findall(
+        r"```console designed\n\$ feeder design (.*)\n((?:(?!```).*\n)*)```", PAGE.read_text()
+    )
+    command, wanted = feeder.get_command(None, "design"), []
+    for line, shown in blocks:
+        words = shlex.split(line.replace("docs/", f"{PAGE.parent}/"))
+        asked = command.make_context("design", words).params
+        told = dict(re.split(r"  +", row, maxsplit=1) for row in shown.splitlines())
+        low = float(told["delivered in the queue [1/min]"].partition("(")[2].split()[0])
+        assert told["status"] == "holds" and low >= 0.9 * 60.0 * asked["target"]
+        assert float(told["asked for [1/min]"]) == pytest.approx(60.0 * asked["target"])
+        wanted.append(asked["outcome"])
+    assert wanted == ["hanging", "lying"]
