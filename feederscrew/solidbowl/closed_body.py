@@ -144,8 +144,8 @@ def _floor(plan, kit):
     edge = []
     if plan.stairs is not None:
         outer = inner + INTO
-        inside = shapely.Point(0.0, 0.0).buffer(inner - 0.7 * INTO)
-        edge = [kit.prism(shapely.Polygon(stairs.floor_edge(plan)).difference(inside), low, 0.0)]
+        inside = kit.drum(inner - 0.7 * INTO, low - INTO, INTO, plan.segments)
+        edge = [kit.without(kit.patch(stairs.floor_edge(plan, kit), low, 0.0), [inside])]
     top = [(outer, 0.0), (inner, 0.0), (0.0, plan.dome)]
     if plan.material.flat:
         return [kit.turned([(0.0, low), (outer, low), *top], plan.segments), *edge]

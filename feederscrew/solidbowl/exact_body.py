@@ -92,6 +92,18 @@ def plank(area, thickness, axes, foot):
     return made[0] if len(made) == 1 else united(made)
 
 
+def patch(ring, low, high):
+    """Return a body within a closed curve through places (K, 2) [m], between two heights [m]."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeWire
+
+    half = len(ring) // 2
+    wire = BRepBuilderAPI_MakeWire()
+    for places in (ring[: half + 1], np.vstack([ring[half:], ring[:1]])):
+        level = np.column_stack([places, np.full(len(places), low)])
+        wire.Add(exact_faces.edge(level / MM))
+    return exact_faces.drawn([wire.Wire()], [0.0, 0.0, (high - low) / MM])
+
+
 def over(way, ring, low, high, chord):
     """Return a body over a ring (K, 2) [m] of lengths and distances along a way, between two heights [m]."""
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeWire

@@ -106,7 +106,14 @@ def side(way, one, other, z):
     places = [[*place, z] for place in way.plan(s, y) / MM]
     if arc:
         return BRepBuilderAPI_MakeEdge(GC_MakeArcOfCircle(*map(point, places)).Value()).Edge()
-    return BRepBuilderAPI_MakeEdge(curve(*spline(np.array(places)))).Edge()
+    return edge(np.array(places))
+
+
+def edge(places):
+    """Return a spline through places (M, 3) [mm] as an edge."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+
+    return BRepBuilderAPI_MakeEdge(curve(*spline(places))).Edge()
 
 
 def spline(places):

@@ -96,6 +96,11 @@ def prism(area, low, high):
     return Manifold.extrude(flat, (high - low) / MM).translate((0.0, 0.0, low / MM))
 
 
+def patch(ring, low, high):
+    """Return a body within a closed curve through places (K, 2) [m], between two heights [m]."""
+    return prism(shapely.Polygon(ring), low, high)
+
+
 def over(way, ring, low, high, chord):
     """Return a body over a ring (K, 2) [m] of lengths and distances along a way, between two heights [m]."""
     return prism(way.laid(ring, chord), low, high)
@@ -180,6 +185,14 @@ def unplaced(made):
     whole = Manifold(Mesh64(made.vertices / MM, made.faces.astype(np.uint64)))
     whole = whole.rotate((0.0, 0.0, -float(np.degrees(made.plan.turned))))
     return whole.mirror((0.0, 1.0, 0.0)) if made.plan.left else whole
+
+
+def as_planned(plan, points):
+    """Return points (N, 3) [m] of a bowl's files right-handed, with its outlet at the angle 0."""
+    c, s = np.cos(plan.turned), np.sin(plan.turned)
+    x, y, z = np.asarray(points).T
+    flat = c * x + s * y, c * y - s * x
+    return np.column_stack([flat[0], -flat[1] if plan.left else flat[1], z])
 
 
 def below(body, place, deep=10.0):

@@ -250,17 +250,29 @@ def _gained(track, tooled, needed):
 
 
 def _check_bends(way, stepped, round_once, tallest):
-    if way.bends and stepped is not None:
-        what = f"{stepped.shape} steps outwards with a track of one climb, and a device gives it another"
-        raise FeederError("sizing.shape", what, "take cylinder")
     if way.bends and way.lowest < LOWEST:
         what = f"a device leads the track down to {1e3 * way.lowest:.3g} mm over the floor"
         least = 1e3 * (float(way.height(way.end)) + LOWEST - way.lowest)
         raise FeederError("devices", what, f"give a sizing.outlet_height of at least {least:.4g} mm")
+    if way.bends and stepped is not None:
+        _check_beside(way, stepped)
+        return
     free = way.lowest - float(way.risen(way.end - round_once))
     if way.bends and way.end > round_once and free < tallest + ABOVE:
         what = f"a device leads the track down to {1e3 * free:.3g} mm over the turn below"
         raise FeederError("devices", what, "give a lower sizing.outlet_height, or a steeper track.climb")
+
+
+def _check_beside(way, stepped):
+    """Raise the fault of a track that goes down too near to the turn before, beside which it lies."""
+    last = np.array([*(at for at, _ in way.bends), way.end])
+    free = float((way.risen(last) - way.risen(way.at(way.angle(last) - TURN))).min())
+    if free < stepped.needed:
+        what = f"a device leads the track down to {1e3 * free:.4g} mm over the turn before"
+        mend = (
+            f"{1e3 * stepped.needed:.4g} mm are needed: give a steeper track.climb, or sizing.shape: cylinder"
+        )
+        raise FeederError("devices", what, mend)
 
 
 def _check_floor(end, stepped, rise):

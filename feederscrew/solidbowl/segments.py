@@ -8,6 +8,8 @@ import shapely
 from feederscrew import units
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.solidbowl import facets
+from feederscrew.solidbowl.plan import TURN
+from feederscrew.solidbowl.track import fillet
 from feederscrew.tooling import whole_surface
 
 MOST = 6  # segments in one direction
@@ -17,6 +19,8 @@ SHARE = 0.5  # of the wall: diameter of a dowel
 LAND = 0.8  # of its diameter: solid round a dowel
 APART = 25e-3  # [m] between dowels
 GRID = 1.5e-3  # [m] at which places for dowels are looked for
+NEAR = 1e-3  # [m] of a surface
+PLACES = "floor", "wall", "track", "outlet"  # what may hang over
 MM = 1e-3
 
 
@@ -217,9 +221,34 @@ def overhangs(made):
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = 0.5 * np.sqrt((across**2).sum(axis=1))
     down = -across[:, 2] > (np.sqrt(0.5) + 1e-6) * 2.0 * area
-    high = corners[..., 2].min(axis=1) > made.vertices[:, 2].min() + 1e-4
-    r = np.hypot(*corners.mean(axis=1)[:, :2].T)
-    inner, outer = plan.way.radius - plan.across - 1e-4, plan.way.radius + plan.material.wall
-    where = {"floor": r < inner, "track": (r >= inner) & (r < outer), "outlet": r >= outer}
-    found = {name: float(area[down & high & at].sum()) for name, at in where.items()}
+    high = corners[..., 2].max(axis=1) > made.vertices[:, 2].min() + 1e-4
+    where = _where(plan, facets.as_planned(plan, corners.mean(axis=1)))
+    found = {name: float(area[down & high & (where == name)].sum()) for name in PLACES}
     return {name: one for name, one in found.items() if one > 1e-4}
+
+
+def _by_the_outlet(plan, places):
+    """Whether places (N, 3) [m] belong to what is straight beyond the end of the track: (N,) bool."""
+    (x, y, z), far = places.T, plan.way.radius - plan.across - plan.material.wall
+    high = z > plan.outlet_height - 2.0 * plan.material.plate - fillet(plan) - plan.hanging
+    return (y > -NEAR) & (x > far - NEAR) & high
+
+
+def _where(plan, places):
+    """What of a bowl places (N, 3) [m] belong to, outlet at the angle 0: words (N,)."""
+    way, (x, y, z) = plan.way, places.T
+    r, theta = np.hypot(x, y), np.arctan2(y, x)
+    behind = theta - TURN * (theta > 0.0) - TURN * np.arange(int(plan.turns) + 2)[:, None]
+    s = way.at(behind)  # of each turn of the track that is there
+    inwards = (way.wall_radius(s) - r) / np.cos(way.bank)
+    above = z - way.height(s, inwards)
+    deep = -(plan.material.plate + plan.across + plan.hanging)
+    beside = (inwards > -NEAR) & (inwards < plan.width + NEAR)
+    on_track = (beside & (above > deep) & (above < NEAR)).any(axis=0)
+    lowest = float(way.wall_radius(way.rises(plan.width)))
+    kinds = [
+        _by_the_outlet(plan, places),
+        on_track,
+        (r < plan.ring + NEAR) | ((z < NEAR) & (r < lowest)),
+    ]
+    return np.select(kinds, ["outlet", "track", "floor"], "wall")

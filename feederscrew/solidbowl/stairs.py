@@ -17,9 +17,11 @@ CYLINDER, STEPPED, CONICAL = SHAPES = ("cylinder", "stepped", "conical")
 TURN = 2.0 * np.pi
 BESIDE = 1e-3  # [m] by which the next turn stands further out than the track is wide
 SLOPE, SURE = np.radians(40.0), np.radians(5.0)  # least slope, and how much steeper than parts hold still on
+PRINTED = np.radians(45.5)  # a slope that needs no support
 FLOOR = 0.5  # of the bowl's radius: no floor is smaller
 LIFT = 3e-4  # [m] by which the wall ends higher than the floor below it
 ABOVE = 5e-3  # [m] of upright wall over the tallest part
+SMOOTH = 16  # places in a quarter turn that a curve is led through
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,11 @@ class Stairs:
     below: float  # of upright wall below the last turn, at least
     most: float  # length of track that the bowl has room for
 
+    @property
+    def needed(self):
+        """Least rise of a turn [m]: upright wall over the turn before, slope, upright wall below."""
+        return self.upright + self.step * float(np.tan(self.slope)) + self.below
+
     def sections(self, way, theta, low):
         """Return the corners (M, K, 2) [m] of the wall's inner side: radius and height, from below upwards.
 
@@ -46,11 +53,11 @@ class Stairs:
             Height below which no wall is needed.
         """
         last = way.at(-TURN * np.arange(1, 100))
-        turns = int(np.argmax(np.tan(way.climb) * last < low)) + 1
+        turns = int(np.argmax(way.risen(last) < low)) + 1
         rows, lower = [], []
         for k in range(turns, -1, -1):
             s = way.at(np.asarray(theta) - TURN * k)
-            lower = np.column_stack([way.wall_radius(s), np.tan(way.climb) * s])
+            lower = np.column_stack([way.wall_radius(s), way.risen(s)])
             rows.append(lower)
         corners = []
         for foot, above in itertools.pairwise(rows):
@@ -93,7 +100,7 @@ def stairs(track, made_of, tooled, asked, extents):
     flare = -np.log1p(-step / track.radius) / TURN
     tallest = float(max(extents)) if tooled is None else tooled.tallest
     hangs = tooled is not None and any(cut.hangs for cut in tooled.cuts)
-    slope = max(SLOPE, float(np.arctan(asked.friction)) + SURE)
+    slope = max(SLOPE if made_of.supported else PRINTED, float(np.arctan(asked.friction)) + SURE)
     pitch = np.tan(track.climb) * step / flare
     below = 3.0 * made_of.plate + (float(max(extents)) + ABOVE if hangs else 0.0)
     if asked.shape == CONICAL:
@@ -132,24 +139,34 @@ def shell(plan, kit):
     -------
     list of bodies [mm]
     """
-    way, halves = plan.way, (-TURN, -0.5 * TURN, 0.0)
-    found = []
-    for start, end in itertools.pairwise(halves):
-        theta = np.linspace(start, end, plan.segments // 2 + 1 if not kit.SMOOTH else 33)
-        inner = plan.stairs.sections(way, theta, plan.underside - 2e-3)
-        inner = np.concatenate([inner, inner[:, -1:]], axis=1)
-        inner[:, -1, 1] = plan.top
-        outer = inner + [plan.material.wall, 0.0]
-        outer[:, 1:-2, 1] -= plan.material.wall
-        outer[:, 0::3, 1] = np.where(
-            np.arange(outer.shape[1])[0::3] > 0, outer[:, 0::3, 1], inner[:, 0::3, 1]
-        )
-        sections = np.concatenate([outer, inner[:, ::-1]], axis=1)
-        sine = np.where(theta == -TURN, 0.0, np.sin(theta))  # the two ends meet there
-        towards = np.stack([np.cos(theta), sine], axis=-1)
-        frames = np.stack([np.zeros_like(towards), towards], axis=1)
-        found.append(kit.swept([(sections, frames)]))
-    return [kit.above(kit.united(found), plan.underside + LIFT), _end(plan, kit)]
+    quarters = -TURN, -0.75 * TURN, -0.5 * TURN, -0.25 * TURN, 0.0
+    legs = [_leg(plan, kit, start, end) for start, end in itertools.pairwise(quarters)]
+    halves = [kit.swept(legs[:2]), kit.swept(legs[2:])]
+    return [kit.above(one, plan.underside + LIFT) for one in (kit.united(halves), _end(plan, kit))]
+
+
+def _leg(plan, kit, start, end):
+    """Sections and frames of a quarter of the wall."""
+    theta = np.linspace(start, end, (SMOOTH if kit.SMOOTH else plan.segments // 4) + 1)
+    inner = plan.stairs.sections(plan.way, theta, plan.underside - 2e-3)
+    inner = np.concatenate([inner, inner[:, -1:]], axis=1)
+    inner[:, -1, 1] = plan.top
+    outer = inner + [plan.material.wall, 0.0]
+    outer[:, 1:-2, 1] -= plan.material.wall
+    outer[:, 0::3, 1] = np.where(np.arange(outer.shape[1])[0::3] > 0, outer[:, 0::3, 1], inner[:, 0::3, 1])
+    kept = _corners(plan.stairs, inner.shape[1])
+    sections = np.concatenate([outer[:, kept], inner[:, kept[::-1]]], axis=1)
+    sine = np.where(theta == -TURN, 0.0, np.sin(theta))  # the two ends meet there
+    towards = np.stack([np.cos(theta), sine], axis=-1)
+    return sections, np.stack([np.zeros_like(towards), towards], axis=1)
+
+
+def _corners(steps, count):
+    """Which corners of a section are none of the track's own: an edge on its surface cuts badly."""
+    last = count - 1
+    if steps.shape == CONICAL:
+        return [0, last - 1, last]  # the feet of all turns lie on one line
+    return [k for k in range(count) if k % 3 or k in (0, last)]
 
 
 def _end(plan, kit):
@@ -167,9 +184,9 @@ def _end(plan, kit):
     return kit.plank(shapely.Polygon(ring), plan.material.wall, axes, [0.0, 0.0, 0.0])
 
 
-def floor_edge(plan):
+def floor_edge(plan, kit):
     """Return the edge (K, 2) [m] of the floor, within the wall, seen from above."""
-    theta = np.linspace(-TURN, 0.0, plan.segments + 1)[:-1]
+    theta = np.linspace(-TURN, 0.0, (64 if kit.SMOOTH else plan.segments) + 1)[:-1]
     inner = plan.stairs.sections(plan.way, theta, plan.underside - 2e-3)
     r = np.array([np.interp(0.0, one[:, 1], one[:, 0]) for one in inner]) + 0.3 * plan.material.wall
     return np.column_stack([r * np.cos(theta), r * np.sin(theta)])

@@ -10,6 +10,7 @@ INTO = 1e-3  # [m] by which one piece reaches into another
 ARC = 6  # facets of a fillet
 THROUGH = 1.05  # its radius over its distance from the wall: it crosses the wall, and does not touch it
 YOKE = 6e-3  # [m] thickness of what carries the inner rail from below
+QUARTER = 0.5 * np.pi  # [rad] of a curved face: a longer one takes long to cut
 SPAN = 0.1  # [rad] of a curve between two places that it is led through
 
 
@@ -34,7 +35,8 @@ def slab(plan, kit):
     runs, way = [], plan.way
     borders = [way.rises(plan.width) - DIP * way.radius, *(at for at, _ in way.drops), way.end + plan.outlet]
     for start, end in itertools.pairwise(borders):
-        breaks = [at for at in (*(at for at, _ in way.bends), way.end) if start < at < end]
+        turned = way.at(-QUARTER * np.arange(1.0, 100.0)) if kit.SMOOTH else ()
+        breaks = sorted(at for at in (*(at for at, _ in way.bends), way.end, *turned) if start < at < end)
         legs = [start, *breaks, end]
         runs.append(kit.swept([_leg(plan, kit, leg, (start, end)) for leg in itertools.pairwise(legs)]))
     risers = [_riser(plan, kit, at, drop) for at, drop in way.drops]

@@ -9,7 +9,6 @@ import numpy as np
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.settings import Setting
-from feederscrew.errors import ArgumentError
 from feederscrew.machine.sizing import Size
 from feederscrew.part.record import Part
 from feederscrew.rates import stream
@@ -18,7 +17,6 @@ from feederscrew.solidbowl import cuts, exact_body, exact_file, leaning, riding,
 from feederscrew.solidbowl.closed_body import BowlSolid, body
 from feederscrew.solidbowl.materials import STEEL, material
 from feederscrew.solidbowl.plan import CHORD, Asked, BowlPlan, plan
-from feederscrew.solidbowl.stairs import CYLINDER
 from feederscrew.solidbowl.ways_down import ways_down
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.hanging import hung, neck
@@ -60,7 +58,7 @@ def asked(
         return None
     rules = bowls.record(settings).sizing
     if step:
-        _check_step(rules.shape)
+        exact_body.check()
     given = {s.key.name for s in settings if s.given}
     return Asked(
         chord=chord,
@@ -78,14 +76,6 @@ def asked(
         step=step,
         bed=None if bed is None else segments.bed(bed),
     )
-
-
-def _check_step(shape: str) -> None:
-    """Raise the fault of a bowl that STEP cannot be made of."""
-    exact_body.check()
-    if shape != CYLINDER:
-        what = f"a {shape} wall and its track are not united by OpenCASCADE in useful time"
-        raise ArgumentError("step", what, "take bowl.stl or bowl.3mf, or sizing.shape: cylinder")
 
 
 def in_material(bowl: Bowl, asked: Asked | None) -> Bowl:

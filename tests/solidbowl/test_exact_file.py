@@ -31,3 +31,16 @@ def test_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "OCP.STEPControl", None)
     with pytest.raises(FeederError, match=r"^step: needs OpenCASCADE, which is not installed - pip install"):
         exact_body.check()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("shape", "chain"), [("stepped", "gap"), ("conical", "none")])
+def test_a_wall_that_steps_outwards_is_the_bowl_of_the_facets(shape, chain):
+    pytest.importorskip("OCP.STEPControl")
+    track = replace(TRACK, climb=np.radians(4.5))
+    made = body(planned(CHAINS[chain], track=track, asked=Asked(shape=shape), turns=0.9))
+    found = step_file(made)
+    assert found.volume == pytest.approx(made.volume, rel=1.5e-3)
+    assert found.volume > made.volume
+    assert found.off < 1e-7
+    assert found.faces["cones"] == 2 and found.faces["ruled"] >= 40

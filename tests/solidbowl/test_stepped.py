@@ -11,7 +11,10 @@ from feederscrew.solidbowl import facets
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.measuring import heights, measures, track_width
 from feederscrew.solidbowl.plan import Asked
+from feederscrew.solidbowl.segments import overhangs
+from feederscrew.solidbowl.track import fillet
 from feederscrew.solidbowl.ways_down import ways_down
+from feederscrew.tooling.devices.kinds import made
 
 STEEP = replace(TRACK, climb=np.radians(4.5))
 STEPPED = Asked(shape="stepped")
@@ -25,24 +28,24 @@ def stepped():
 def test_one_closed_body_of_its_measures(stepped):
     assert closed(stepped) == pytest.approx(stepped.volume * 1e9, rel=1e-6)
     assert len(facets.placed(stepped).decompose()) == 1
-    found, made = measures(stepped), stepped.plan
+    found, own = measures(stepped), stepped.plan
     assert found.diameter == pytest.approx(0.3, abs=NEAR)
-    assert found.wall == pytest.approx(made.material.wall, abs=NEAR)
-    assert found.floor == pytest.approx(made.material.floor, abs=NEAR)
-    assert found.outlet_height == pytest.approx(made.outlet_height, abs=NEAR)
-    assert made.turns > 1.5
+    assert found.wall == pytest.approx(own.material.wall, abs=NEAR)
+    assert found.floor == pytest.approx(own.material.floor, abs=NEAR)
+    assert found.outlet_height == pytest.approx(own.outlet_height, abs=NEAR)
+    assert own.turns > 1.5
 
 
 def test_height_width_and_wall_are_those_of_the_formula(stepped, rng):
     """On a helix of one climb whose foot runs on a cone: r = R + flare (s - end), z = s tan(climb)."""
-    made, whole = stepped.plan, facets.unplaced(stepped)
-    s, y = rng.uniform(0.05, made.first, 80), rng.uniform(3e-4, TRACK.width - 3e-4, 80)
-    found = np.array([heights(made, whole, *one) for one in zip(s, y)])
+    own, whole = stepped.plan, facets.unplaced(stepped)
+    s, y = rng.uniform(0.05, own.first, 80), rng.uniform(3e-4, TRACK.width - 3e-4, 80)
+    found = np.array([heights(own, whole, *one) for one in zip(s, y)])
     np.testing.assert_allclose(found, np.tan(STEEP.climb) * s, rtol=0, atol=NEAR)
     for one in s[:20]:
-        assert track_width(made, whole, one) == pytest.approx(TRACK.width, abs=NEAR)
-        place = made.way.places(one, 5e-3) + [0.0, 0.0, 2e-3]
-        theta = made.way.angle(one)
+        assert track_width(own, whole, one) == pytest.approx(TRACK.width, abs=NEAR)
+        place = own.way.places(one, 5e-3) + [0.0, 0.0, 2e-3]
+        theta = own.way.angle(one)
         met = facets.first_met(whole, place, place + 0.1 * np.array([np.cos(theta), np.sin(theta), 0.0]))
         assert met[0] == pytest.approx(5e-3, abs=NEAR)
 
@@ -56,8 +59,10 @@ def test_each_turn_lies_beside_the_one_before(stepped):
 
 def test_what_falls_comes_back_to_the_turn_before(stepped):
     assert set(ways_down(stepped).values()) == {"the turn of the track before"}
-    short = planned(CHAINS["gap"], track=STEEP, asked=replace(STEPPED, outlet_height=0.05))
-    assert ways_down(body(short)) == {"gap ": "the floor"}
+    short = planned(CHAINS["gap"], track=STEEP, asked=replace(STEPPED, outlet_height=0.03))
+    made_short = body(short)
+    assert ways_down(made_short) == {"gap ": "the floor"}
+    assert made_short.vertices[:, 2].min() == pytest.approx(short.underside, abs=1e-9)
 
 
 def test_a_slope_on_which_parts_hold_still_is_refused(stepped):
@@ -69,10 +74,10 @@ def test_a_slope_on_which_parts_hold_still_is_refused(stepped):
 def test_a_cone_is_closed_and_its_track_that_of_the_formula():
     solid = body(planned(track=STEEP, asked=Asked(shape="conical"), turns=1.8))
     assert closed(solid) > 0.0
-    made, whole = solid.plan, facets.unplaced(solid)
+    own, whole = solid.plan, facets.unplaced(solid)
     for s in (0.2, 0.7, 1.2):
-        assert heights(made, whole, s, 8e-3) == pytest.approx(np.tan(STEEP.climb) * s, abs=NEAR)
-        assert track_width(made, whole, s) == pytest.approx(TRACK.width, abs=1e-3)
+        assert heights(own, whole, s, 8e-3) == pytest.approx(np.tan(STEEP.climb) * s, abs=NEAR)
+        assert track_width(own, whole, s) == pytest.approx(TRACK.width, abs=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -99,3 +104,51 @@ def test_faults(track, asked, devices, line):
     with pytest.raises(FeederError) as fault:
         planned(devices, track=track, asked=asked)
     assert str(fault.value) == line
+
+
+def down(angle):
+    return (made("separation", "b", angle=np.radians(angle), text=f"{{climb: {angle} deg}}"), *CHAINS["gap"])
+
+
+def test_the_wall_goes_down_with_the_track_behind_a_separation():
+    solid = body(planned(down(-4.0), track=replace(TRACK, climb=np.radians(5.5)), asked=STEPPED, turns=1.8))
+    assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
+    plan, whole = solid.plan, facets.unplaced(solid)
+    ((bend, _),) = plan.way.bends
+    for s in np.linspace(bend - 0.05, plan.first + plan.stretch.cuts[0].span[0] - 1e-3, 30):
+        after = max(s - bend, 0.0)
+        formula = np.tan(np.radians(5.5)) * (s - after) - np.tan(np.radians(4.0)) * after
+        assert heights(plan, whole, s, 5e-3) == pytest.approx(formula, abs=NEAR)
+        place, theta = plan.way.places(s, 5e-3) + [0.0, 0.0, 2e-3], plan.way.angle(s)
+        met = facets.first_met(whole, place, place + 0.1 * np.array([np.cos(theta), np.sin(theta), 0.0]))
+        assert met[0] == pytest.approx(5e-3, abs=NEAR)
+    assert set(ways_down(solid).values()) == {"the turn of the track before"}
+
+
+def test_a_separation_that_leaves_no_room_for_the_slope():
+    line = (
+        r"^devices: a device leads the track down to .* mm over the turn before - 43.62 mm are needed: give"
+    )
+    with pytest.raises(FeederError, match=line):
+        planned(down(-20.0), track=STEEP, asked=STEPPED, turns=1.8)
+
+
+def test_a_printed_slope_needs_no_support():
+    track = replace(TRACK, climb=np.radians(6.0))
+    hang = {
+        name: overhangs(body(planned(CHAINS["gap"], track=track, asked=STEPPED, name=name)))
+        for name in ("pla", "steel")
+    }
+    assert hang["pla"]["wall"] < 0.1 * hang["steel"]["wall"]
+    for shape, names in (("cylinder", ["track", "outlet"]), ("conical", ["wall", "track", "outlet"])):
+        found = overhangs(body(planned(track=track, asked=Asked(shape=shape, left=True), name="pla")))
+        assert list(found) == names
+
+
+def test_the_track_hangs_over_from_its_chamfer_to_its_edge():
+    solid = body(planned(name="pla"))
+    plan, way = solid.plan, solid.plan.way
+    inner, outer = way.radius - plan.across, way.radius - fillet(plan)
+    from_floor = way.end - plan.material.plate / np.tan(way.climb)  # before, its underside is in the floor
+    area = 0.5 * (outer**2 - inner**2) * from_floor / way.radius
+    assert overhangs(solid)["track"] == pytest.approx(area, rel=0.02)

@@ -14,6 +14,7 @@ ROOM = 134.0  # [mm] of paper for the bowl across
 HIGH = 56.0  # and upright, in each of two views
 TOP, BETWEEN = 276.0, 21.0  # [mm] where the upper of them begins, and from its foot to the lower one
 STRIP = 205.0, 26.0  # [mm] of paper for the unrolled track
+NARROW = 5.0  # [mm] of paper: a cut that has no room for its number
 FRAME = 20.0, 10.0, 410.0, 287.0
 
 
@@ -82,7 +83,7 @@ def _above(paper, solid, found, scale):
     paper.text(25.0, 276.5, text, size=2.2)
     paper.lines([[at - [r + 6, 0], at + [r + 6, 0]]], THIN, linestyles="dashdot")
     for side in (-1, 1):
-        paper.text(at[0] + side * (r + 9.0), at[1] + 1.0, "A", size=3.5, ha="center", fontweight="bold")
+        paper.text(at[0] + side * (r + 5.0), at[1] + 1.2, "A", size=3.0, ha="center", fontweight="bold")
     paper.text(25.0, 281.0, f"from above  {named(scale)}", size=3.0, fontweight="bold")
 
 
@@ -176,7 +177,9 @@ def _unrolled(paper, solid):
             ring[ring[:, 0] >= cut.span[1] - 1e-9, 0] = stretch.length
         ring = laid(ring)
         paper.axes.fill(*ring.T, facecolor="white", edgecolor="#d55e00", linewidth=THICK)
-        paper.text(*ring.mean(axis=0), str(number), size=2.5, ha="center", va="center")
+        narrow = np.ptp(ring[:, 0]) < NARROW
+        place = (ring[:, 0].max() + 0.8, ring[:, 1].mean()) if narrow else ring.mean(axis=0)
+        paper.text(*place, str(number), size=2.5, ha="left" if narrow else "center", va="center")
     for number, blade in enumerate(stretch.blades, start=len(stretch.cuts) + 1):
         x = at[0] + blade.start / MM * scale
         thick = max(blade.thickness / MM * scale, 0.4)
@@ -186,7 +189,7 @@ def _unrolled(paper, solid):
         paper.text(x + thick + 0.8, at[1] + 0.5 * wide, str(number), size=2.5, va="center")
     paper.dimension(at, at + [length, 0.0], f"{stretch.length / MM:.4g}", (0.0, -6.5), size=2.2)
     text = f"{plan.width / MM:.4g}"
-    paper.dimension(at + [length, 0.0], at + [length, wide], text, (4.0, 0.0), size=2.2)
+    paper.dimension(at + [length, 0.0], at + [length, wide], text, (6.0, 0.0), size=2.2)
     head = f"track unrolled  {named(scale)}: wall below, parts move to the right; its end lies "
     behind = (plan.way.end - plan.first - stretch.length) / MM
     paper.text(25.0, 127.0, f"{head}{behind:.4g} mm before the outlet", size=2.5, fontweight="bold")
