@@ -54,6 +54,31 @@ def test_a_file_of_the_defaults_is_the_defaults(run, block, tmp_path):
     assert rates[0] == rates[1] == pytest.approx(60.0 * found.parts.value, rel=1e-9)
 
 
+@pytest.mark.parametrize("command", ["rate", "headings", "track", "floor"])
+def test_a_file_of_the_defaults_changes_no_command_and_no_file(run, block, command):
+    """Of a part whose orientation is left open; all that is printed and every table."""
+    run("config", "init", "defaults.yaml")
+    found = []
+    for folder, own in (("without", ()), ("with", ("--config", "defaults.yaml"))):
+        call = (command, block, "--format", "csv", "-o", folder, *own)
+        done = run(*call) if command == "rate" else run(*call, "--no-pictures")
+        assert done.exit_code == 0, done.output
+        tables = {path.name: path.read_bytes() for path in Path(folder).rglob("*.csv")}
+        found.append((done.stdout, tables))
+    assert found[0][1] and found[0] == found[1]
+
+
+def test_a_batch_with_a_file_of_the_defaults_is_the_batch_without(run, block):
+    run("config", "init", "defaults.yaml")
+    rows = []
+    for folder, own in (("without", ()), ("with", ("--config", "defaults.yaml"))):
+        call = ("batch", block, "-o", folder, "--no-pictures", "--jobs", "1", *own)
+        (row,) = told(run, *call)["parts"]
+        rows.append({name: value for name, value in row.items() if name != "config"})
+    assert rows[0]["parts_per_minute"] > 0.0
+    assert rows[0] == rows[1]
+
+
 @pytest.mark.thorough
 def test_parts_are_fed_onto_the_floor_until_the_shares_are_known(run, block):
     shares = [told(run, "rate", block, "--aspect", "A", "--seed", seed) for seed in ("1", "2")]
