@@ -18,7 +18,7 @@ from fuzz import mutate, readers, together
 
 ROOT = Path(__file__).parent.parent.parent
 PATIENCE = 10.0  # [s] of computing for one input
-STUCK = 60.0  # [s] on the clock, for one that waits without end
+STUCK = 60.0  # [s] on the clock without computing, for one that waits without end
 MEMORY = 768 << 10  # [kB] for a file under 1 MB; the program itself takes the rest of a gigabyte
 CARD = str(ROOT / "parts/magnet.yaml")
 PLAN = {  # seeds, how the damaged file is called, and what reads it
@@ -117,7 +117,7 @@ def run(cases):
         process, line = child
         line.send(case)
         try:
-            fault = line.recv() if line.poll(STUCK) else f"no answer in {STUCK:g} s"
+            fault = answer(process.pid, line)
         except EOFError:
             process.join()
             hung = process.exitcode == -signal.SIGPROF
@@ -132,6 +132,26 @@ def run(cases):
         child[1].close()
         child[0].join()
     return faults
+
+
+def answer(pid, line):
+    """What a process says of its case; a fault where it has stood still, however slow a busy machine is."""
+    before = None
+    while not line.poll(STUCK):
+        computed = _computed(pid)
+        if computed == before:
+            return f"no answer in {STUCK:g} s"
+        before = computed
+    return line.recv()
+
+
+def _computed(pid):
+    """Ticks that a process has computed for, of itself and for the system; None where nobody says."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return None
+    return int(fields[11]) + int(fields[12])
 
 
 @functools.cache
