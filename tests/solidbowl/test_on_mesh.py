@@ -69,3 +69,31 @@ def test_a_part_ends_on_the_mesh_as_on_the_analytic_track(ridden):
     np.testing.assert_array_equal(seen[1].ended, seen[0].ended)
     assert list(seen[0].fates) == [course.PASSED, course.RETURNED]  # along the wall and across it
     assert (seen[1].depths < 2.5e-4).all()
+
+
+OTHERS = {
+    "a plate over a gap": (shapes.box(16.0, 10.0, 3.0), "wiper: 6 mm", "gap: 9 mm", 20, 0),
+    "a block on a banked track": (shapes.box(*BLOCK), "wiper: 8 mm", "narrowed_track: 8 mm", 24, 6),
+}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_other_parts_end_on_the_mesh_as_on_the_analytic_track(name, tmp_path):
+    part, *devices, width, bank = OTHERS[name]
+    path = tmp_path / "bowl.yaml"
+    path.write_text("devices:\n" + "".join(f"  - {one}\n" for one in devices))
+    bowl = bowls.read(path, [*OWN, f"track.width={width} mm", f"track.bank={bank} deg"])
+    part = shapes.part(part)
+    every = orientations(part, find(part), bowl.track)
+    size, extents = SimpleNamespace(diameter=0.3, depth=0.05), np.ptp(np.asarray(part.vertices), axis=0)
+    tooled = cuts.stretch(bowl.track, bowl.devices, every)
+    made = body(plan(size, bowl.track, material("steel", RULES), tooled, Asked(), extents=extents))
+    found, stations = on_mesh.ridden(made, bowl, every)
+    assert np.degrees(found.track.bank) == pytest.approx(bank, abs=0.1)
+    rows = tuple(range(min(4, len(every))))
+    seen = [
+        course.course(part, own, every, rows, some, parts=len(rows), seed=3)
+        for own, some in ((bowl, bowl.devices), (found, stations))
+    ]
+    np.testing.assert_array_equal(seen[1].fates, seen[0].fates)
+    assert len(set(seen[0].fates)) > 1  # not one and the same for all
