@@ -167,6 +167,14 @@ def test_the_springs_know_where_its_mass_lies(left, rng):
     weights = np.linalg.det(corners) / 6.0 * solid.plan.material.density
     at = corners.sum(axis=1) / 4.0
     np.testing.assert_allclose(under.unbalance.moment, weights @ at, rtol=1e-9)
+    second = np.einsum("t,tki,tkj->ij", weights, corners, corners)
+    second = (
+        second + np.einsum("t,ti,tj->ij", weights, 4.0 * at, 4.0 * at)
+    ) / 20.0  # of tetrahedra from there
+    yz, xz, xy = under.unbalance.products
+    np.testing.assert_allclose([yz, xz, xy], [second[1, 2], second[0, 2], second[0, 1]], rtol=1e-6)
+    about = np.trace(second) - np.diag(second)
+    np.testing.assert_allclose([*under.unbalance.upright, solid.inertia], about, rtol=1e-9)
     assert springs(under).effective_mass < centred_mass(under)
     heavier = machine_for(replace(bowl, machine=replace(bowl.machine, bowl_mass=9.0)), size, {"bowl_mass"})
     np.testing.assert_allclose(heavier.unbalance.moment, 9.0 / solid.mass * (weights @ at), rtol=1e-9)

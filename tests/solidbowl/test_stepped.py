@@ -122,6 +122,8 @@ def test_the_wall_goes_down_with_the_track_behind_a_separation():
         place, theta = plan.way.places(s, 5e-3) + [0.0, 0.0, 2e-3], plan.way.angle(s)
         met = facets.first_met(whole, place, place + 0.1 * np.array([np.cos(theta), np.sin(theta), 0.0]))
         assert met[0] == pytest.approx(5e-3, abs=NEAR)
+        foot = plan.stairs.sections(plan.way, [theta], plan.underside)[0, -1]
+        assert foot == pytest.approx([plan.way.wall_radius(s), formula], abs=1e-9)
     assert set(ways_down(solid).values()) == {"the turn of the track before"}
 
 
