@@ -10,6 +10,8 @@ import shapely
 from feederscrew import check
 from feederscrew.designing import trying
 from feederscrew.designing.record import RobustRun
+from feederscrew.dropping.launches import RESTITUTION
+from feederscrew.dropping.toss_runs import scattered
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
 from feederscrew.part.hull import convex_hull
@@ -23,7 +25,7 @@ OTHERS = 3  # parts tried in each draw beside the wanted one, as they come
 
 
 def drawn_bowl(bowl, every, rng):
-    """Return a bowl with other friction, drive and cuts.
+    """Return a bowl with other friction, restitution, drive and cuts.
 
     Parameters
     ----------
@@ -42,7 +44,11 @@ def drawn_bowl(bowl, every, rng):
     friction = replace(friction, **{k: None if v is None else v * rubbed for k, v in values.items()})
     drive = replace(bowl.drive, amplitude=bowl.drive.amplitude * driven)
     devices = tuple(_drawn_device(one, every, rng) for one in bowl.devices)
-    return replace(bowl, friction=friction, drive=drive, devices=devices)
+    (own,) = rng.spawn(1)
+    bounce = scattered((bowl.restitution, bowl.restitution), RESTITUTION, own.standard_normal(1))
+    return replace(
+        bowl, friction=friction, drive=drive, devices=devices, restitution=min(float(bounce[0]), 1.0)
+    )
 
 
 def _drawn_device(device, every, rng):

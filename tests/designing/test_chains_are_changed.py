@@ -105,6 +105,15 @@ def test_a_sensor_is_drawn_with_other_play_and_the_drawn_part_s_name(block):
     assert drawn.like[:2] == sorter.like[:2] and 0.0 < abs(drawn.like[2] - 1e-3) <= robust.CUT
 
 
+def test_a_drawn_bowl_bounces_parts_as_filmed_impacts_scatter(block):
+    _, ways, _ = block
+    bowl = bowls.default()
+    drawn = [robust.drawn_bowl(bowl, ways.lying, np.random.default_rng((1, k))) for k in range(200)]
+    share = np.array([one.restitution for one in drawn]) / bowl.restitution
+    assert share.std() == pytest.approx(0.16, abs=0.015) and share.mean() == pytest.approx(1.0, abs=0.03)
+    assert len({one.friction.kinetic for one in drawn}) == 200
+
+
 def test_parts_may_hop_through_what_only_sees_and_blows(block):
     _, ways, names = block
     one = ways.lying[names["A@0"]]
