@@ -8,6 +8,7 @@ NOT_EXACT = (
     "the fillet below the track is six ruled strips",
     "slanted edges of cuts are splines",
 )
+WALL = "the wall is no surface of revolution: it is ruled between splines through 16 places a quarter turn"
 MM, DEG = factor("mm", "length"), factor("deg", "angle")
 
 
@@ -53,17 +54,18 @@ def document(solid):
         "separate_parts": [name for name, _, _ in solid.gates],
         "overhangs_mm2": {name: area / MM**2 for name, area in overhangs(solid).items()},
         **({} if solid.segments is None else _segments(solid.segments)),
-        **({} if solid.step is None else {"step": _step(solid.step)}),
+        **({} if solid.step is None else {"step": _step(solid)}),
     }
 
 
-def _step(found):
+def _step(solid):
     """What the STEP file was found to be when it was opened again."""
+    found, leans = solid.step, solid.plan.stairs is not None
     return {
         "volume_mm3": found.volume / MM**3,
         "faces": found.faces,
         "track_off_mm": found.off / MM,
-        "not_exact": list(NOT_EXACT),
+        "not_exact": [*NOT_EXACT, *([WALL] if leans else [])],
     }
 
 
