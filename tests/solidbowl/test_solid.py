@@ -84,7 +84,7 @@ def test_of_other_material(name):
     assert solid.mass == pytest.approx(solid.volume * solid.plan.material.density)
 
 
-@pytest.mark.parametrize("bank", [0.0, 8.0])
+@pytest.mark.parametrize("bank", [0.0, 20.0])
 def test_height_and_width_of_the_track_are_those_of_the_formula(bank, rng):
     solid = body(planned(track=replace(TRACK, bank=np.radians(bank), climb=np.radians(4.0))))
     made, whole = solid.plan, facets.unplaced(solid)
@@ -93,6 +93,7 @@ def test_height_and_width_of_the_track_are_those_of_the_formula(bank, rng):
     found = np.array([heights(made, whole, *one) for one in zip(s, y)])
     formula = np.tan(made.way.climb) * s + y * np.sin(made.way.bank)
     np.testing.assert_allclose(found, formula, rtol=0, atol=NEAR)
+    np.testing.assert_allclose(made.way.height(s, y), formula, rtol=0, atol=1e-12)
     within = s[(s > 0.1) & (s < made.way.end - 0.05)]
     widths = np.array([track_width(made, whole, one) for one in within])
     np.testing.assert_allclose(widths, TRACK.width, rtol=0, atol=NEAR)
