@@ -1,6 +1,7 @@
 """The figures of a design from what was counted, against closed forms."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,12 +9,16 @@ import shapes
 from scipy.stats import binom
 
 from feederscrew.designing.record import (
+    Attempt,
     DesignRequest,
     DesignStudy,
     FilledQueue,
     RobustRun,
 )
-from feederscrew.output.designs import design_page
+from feederscrew.output import tables as tables_of
+from feederscrew.output.designs import design_page, tables
+from feederscrew.output.page import blocks
+from feederscrew.output.page.as_html import html
 
 PART = shapes.part(shapes.box(10, 10, 10))
 
@@ -53,6 +58,33 @@ def test_each_chapter_of_the_page_to_hand_on_says_something_and_is_reached():
     assert "Status: holds" in chapters["answer"] and "20 of 20 draws sort" in chapters["proof"]
     assert all("<table" in chapters[name] for name in ("answer", "proof", "acceptance"))
     assert re.findall(r'<a href="#(\w*)">', page)[:4] == list(chapters)
+
+
+def test_no_line_of_the_answer_is_longer_than_a_hundred_letters():
+    long = "its leading side rises from the track by 17.6 deg only, and friction holds up to 31 deg " * 2
+    lines = tables_of.text(tables.summary(study(queue(), risks=(long,))), "table").splitlines()
+    assert max(map(len, lines)) <= 100
+    assert " ".join(" ".join(lines).split()).count(long.strip()) == 1
+
+
+def test_the_page_names_the_devices_of_a_trial_and_leaves_their_dimensions_to_the_file():
+    chain = (
+        "separation: {climb: -6 deg}",
+        "gap: 9.5 mm",
+        "cut_out: [[1 mm, 2 mm], [3 mm, 4 mm], [5 mm, 1 mm]]",
+    )
+    tried = Attempt("A@0", chain, "proposed", 0.0, 0.1, 8, 0.4, 1.0, 0.0, 1.0, ())
+    one = study(queue(), attempts=(tried,))
+    assert tables.short_attempts(one)["chain"][0] == "separation, gap 9.5 mm, cut_out"
+    assert tables.attempts(one)["chain"][0] == ", ".join(chain)
+
+
+def test_what_no_picture_stands_in_for_is_printed():
+    """The bowl of a design on paper: its view, as the page has no picture of it."""
+    view = blocks.Views({"poses": []}, (("bowl", "", ()),), "solid-bowl", "The")
+    for printed in (False, True):
+        page = blocks.Page("a", "", (blocks.Chapter((replace(view, printed=printed),)),))
+        assert ('class="turnable on-paper"' in html(page)) == printed
 
 
 def test_no_jam_is_at_most_three_in_the_time_it_was_looked_for():

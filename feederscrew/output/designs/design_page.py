@@ -47,11 +47,11 @@ def _sections(study, built):
     d = tables.document(study)
     answer = tuple(_answer(study, d))
     yield Chapter(answer, _tiles(d), study.warnings, anchor="answer", title="The answer")
-    history = tables.attempts(study)
+    history = tables.short_attempts(study)
     picture = Picture("design_history.png", png(figures.history(study)), "Each short trial of the loop")
     lead = Text(
         "Each line is one short trial: a chain on its bowl, every orientation that comes often enough. What "
-        "the trial denies is changed in the next."
+        "the trial denies is changed in the next. design_trials.csv has the dimensions of each device."
     )
     tried = (lead, Table(history), picture) if study.attempts else (lead,)
     yield Chapter(tried, anchor="loop", title="The loop")
@@ -66,7 +66,7 @@ def _sections(study, built):
     blocks = (
         Text("Computed values, with empty cells for what is measured at the machine."),
         Table(sheet),
-        CsvSheet("acceptance.csv", text(sheet, "csv")),
+        CsvSheet("acceptance.csv", text(sheet, "csv"), shown=False),
         Heading("What to measure"),
         Notes(MEASURE),
     )
@@ -75,7 +75,9 @@ def _sections(study, built):
 
 def _answer(study, d):
     yield Text(f"Status: {study.status}." + (f" {study.why}." if study.why else ""))
-    yield Table(tables.summary(study))
+    yield Table(tables.two_columns(tables.outcome(d)))
+    if d["bowl"]:
+        yield Table(tables.two_columns(tables.dimensions(d)))
     if study.risks:
         yield Notes(tuple(study.risks), loud=True)
 
@@ -98,7 +100,9 @@ def _tiles(d):
 def _played(study):
     yield Text("Parts of the short trial at the device that decides.")
     scene, captions = playback.scene(study.part, *study.trials)
-    yield Views(scene, tuple((*one, ()) for one in captions), "trial-views", "Orientation", plays=True)
+    yield Views(
+        scene, tuple((*one, ()) for one in captions), "trial-views", "Orientation", plays=True, printed=True
+    )
 
 
 def _proof(study, d):

@@ -1,5 +1,7 @@
 """Designs as documents and tables, in the units of the shop."""
 
+import textwrap
+
 import numpy as np
 
 from feederscrew import units
@@ -8,6 +10,8 @@ from feederscrew.output import columns, tables
 
 PER_MINUTE = units.factor("/min", "rate")
 MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
+
+WIDTH = 62  # letters of a value that is printed beside its name
 
 
 def document(study):
@@ -106,13 +110,42 @@ def attempts(study):
     return tables.frame({name: [row[name] for row in rows] for name in names})
 
 
+def short_attempts(study):
+    """Return the history as a page has room for it: of each device its kind, and one number if it has one."""
+    history = attempts(study)
+    chains = [", ".join(map(_brief, one.chain)) or "none" for one in study.attempts]
+    return tables.frame({name: chains if name == "chain" else history[name] for name in history})
+
+
+def _brief(device):
+    kind, _, value = device.partition(": ")
+    return kind if value.startswith(("{", "[")) else f"{kind} {value}"
+
+
 def summary(study):
-    """Return what is printed: the answer first, then what it stands on."""
+    """Return what is printed: the answer first, then what it stands on; long lines go on in the next row."""
     d = document(study)
-    rows = [("status", d["status"])]
-    if d["why"]:
-        rows.append(("why", d["why"]))
-    rows += [
+    why = [("why", d["why"])] if d["why"] else []
+    first, *rows = outcome(d)
+    rows = [first, *why, *rows, *dimensions(d), *(("risk", one) for one in d["risks"])]
+    rows.append(("trials, parts", f"{len(d['attempts'])}, {d['trial_parts']}"))
+    return two_columns([line for row in rows for line in _folded(*row)])
+
+
+def two_columns(rows):
+    """Return rows of a name and a value as a frame."""
+    return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
+
+
+def _folded(name, value):
+    lines = textwrap.wrap(value, WIDTH, break_long_words=False, break_on_hyphens=False) or [""]
+    return [(name, lines[0]), *(("", line) for line in lines[1:])]
+
+
+def outcome(d):
+    """Return rows of what a design's document says of the answer and of its devices."""
+    rows = [
+        ("status", d["status"]),
         ("leaves as", d["wanted"] or "-"),
         ("asked for [1/min]", f"{d['target_per_minute']:.4g}"),
         (
@@ -130,12 +163,13 @@ def summary(study):
         ("draws that sort", f"{d['robust']['held']} of {d['robust']['draws']}"),
     ]
     chain = [f"{one['device']}: {one['value']}" for one in d["chain"]] or ["none"]
-    rows += [(f"device {k}", one) for k, one in enumerate(chain, start=1)]
-    if d["bowl"]:
-        rows += [(name.replace("_", " "), f"{value:.4g}") for name, value in d["bowl"].items()]
-    rows += [("risk", one) for one in d["risks"]]
-    rows.append(("trials, parts", f"{len(d['attempts'])}, {d['trial_parts']}"))
-    return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
+    return rows + [(f"device {k}", one) for k, one in enumerate(chain, start=1)]
+
+
+def dimensions(d):
+    """Return rows of what a design's document says of the bowl and its drive."""
+    bowl = d["bowl"] or {}
+    return [(" ".join(tables.heading(name)).strip(), f"{value:.4g}") for name, value in bowl.items()]
 
 
 def _hourly(d):

@@ -143,8 +143,8 @@ def _block(block):
             return f"<pre>{escape(text)}</pre>"
         case kinds.Table(frame):
             return _table(frame)
-        case kinds.CsvSheet(file, text):
-            return _sheet(file, text)
+        case kinds.CsvSheet(file, text, shown):
+            return _sheet(file, text) if shown else _saved(file, text)
         case kinds.Picture():
             return _picture(block, 1.0 if block.printed else ALONE)
         case kinds.Views():
@@ -195,9 +195,13 @@ def _sheet(file, text):
     head, *rows = csv.reader(io.StringIO(text))
     heads = "".join(f"<th>{escape(name)}</th>" for name in head)
     lines = [f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows]
-    link = f'<a download="{file}" href="{_data("text/csv", tables.encoded(text))}">Save {file}</a>'
     marks = f' class="sheet" id="{file}"'
-    return f"{_grid(marks, heads, lines)}\n<p>{link}</p>"
+    return f"{_grid(marks, heads, lines)}\n{_saved(file, text)}"
+
+
+def _saved(file, text):
+    """A link that saves the file."""
+    return f'<p><a download="{file}" href="{_data("text/csv", tables.encoded(text))}">Save {file}</a></p>'
 
 
 def _grid(marks, head, lines):
@@ -236,8 +240,9 @@ def _views(views):
     figures = "\n".join(_view(views.of, place, *shown, player) for place, shown in enumerate(views.captions))
     scene = json.dumps(views.scene, separators=(",", ":")).replace("<", "\\u003c")
     hint = views.hint or (PLAYED if views.plays else HINT)
+    kind = "turnable on-paper" if views.printed else "turnable"
     return (
-        f'<div id="{views.name}" hidden class="turnable">\n<p class="quiet">{hint}</p>\n'
+        f'<div id="{views.name}" hidden class="{kind}">\n<p class="quiet">{hint}</p>\n'
         f'<div class="{"views played" if views.plays else "views"}">\n{figures}\n</div>\n</div>\n'
         f'<script type="application/json" class="scene" data-views="{views.name}">{scene}</script>'
     )

@@ -38,10 +38,11 @@ class Table:
 
 @dataclass(frozen=True)
 class CsvSheet:
-    """A CSV file cell by cell, to copy from or to save."""
+    """A CSV file to save; cell by cell to copy from, unless a table beside it shows the same."""
 
     file: str
     csv: str
+    shown: bool = True
 
 
 @dataclass(frozen=True)
@@ -74,6 +75,7 @@ class Views:
     of: str = "Aspect"  # what the captions name
     plays: bool = False  # each has a path that the part moves along
     hint: str = ""  # what one can do with it, where it is not the part on a face
+    printed: bool = False  # also on paper: no picture stands in for it
 
 
 @dataclass(frozen=True)

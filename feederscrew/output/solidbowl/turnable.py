@@ -31,7 +31,7 @@ def blocks(solid, part, why=""):
     if solid is None:
         return [Notes((f"the bowl as a solid: {why}",))] if why else []
     text = f"{2.0 * solid.plan.way.radius / MM:.4g} mm, {solid.mass:.3g} kg as {solid.plan.material.name}"
-    return [Views(scene(solid, part), (("bowl", text, ()),), "solid-bowl", "The", hint=TURN)]
+    return [Views(scene(solid, part), (("bowl", text, ()),), "solid-bowl", "The", hint=TURN, printed=True)]
 
 
 def scene(solid, part):
