@@ -34,7 +34,9 @@ def filled(part, bowl, aspects, known, shares, states, *, seed, whole=True, told
     for name, parts, seconds in FILLS:
         if told:
             told(f"queue of {parts} at {name} fill, {seconds:g} s")
-        seen = trying.queue(part, bowl, aspects, known, shares, parts=parts, seconds=seconds, seed=seed)
+        seen = trying.queue(
+            part, bowl, aspects, known, shares, states, parts=parts, seconds=seconds, seed=seed
+        )
         found.append(_told(name, seen, states))
         if seen.partial or not (whole or _holds(found[-1])):
             break

@@ -229,7 +229,7 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs):
 
 def _rows(known, shares, rows, rng):
     """The wanted orientation, and parts as they come."""
-    wanted = trying.wanted_rows(known, trying.wanted_states(known, rows)) or [rows[0]]
+    wanted = trying.wanted_rows(known, trying.wanted_states(known, rows)[:1]) or [rows[0]]
     likely = np.where([k in wanted for k in range(len(shares))], shares + 1e-12, 0.0)
     first = int(rng.choice(len(shares), p=likely / likely.sum()))
     more = rng.choice(len(shares), OTHERS, p=shares / shares.sum())
@@ -237,11 +237,15 @@ def _rows(known, shares, rows, rng):
 
 
 def faults(tried):
-    """Return what goes wrong in a short trial, a sentence each: (what is lost, stopped or carried, where)."""
-    found, right = [], set(trying.wanted_rows(tried.known, tried.states))
+    """Return what goes wrong in a short trial, a sentence each: (what is lost, stopped or carried, where).
+
+    What counts as the wanted one and comes back is a loss of parts a minute only.
+    """
+    found, right = [], set(trying.wanted_rows(tried.known, tried.states[:1]))
+    alike = set(trying.wanted_rows(tried.known, tried.states)) - right
     for place, k in enumerate(tried.rows):
         name = tried.known.lying[k].name
-        if k in right or tried.right[place]:
+        if k in right or (tried.right[place] and k not in alike):
             if tried.right[place] < tried.parts[place]:
                 where = ", ".join(tried.places[place]) or "turned"
                 found.append(f"{name} is lost ({where})")

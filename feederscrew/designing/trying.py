@@ -6,6 +6,7 @@ import numpy as np
 
 from feederscrew.rates import spacing, stream
 from feederscrew.resting.aspects import Aspects
+from feederscrew.tooling.hanging import Hanging
 from feederscrew.trial import course
 from feederscrew.trial.queue import queue_of
 
@@ -103,6 +104,25 @@ def wanted_rows(known, states):
     return [k for k in range(len(known.lying)) if known.leaving[k, list(states)].sum() > 0.5]
 
 
+def counted(known, states):
+    """Return the poses in which parts may be found; of an aspect that counts beside another at any heading.
+
+    Parameters
+    ----------
+    known : Orientations
+        S states.
+    states : sequence of int
+        The wanted one, and others that count as it.
+
+    Returns
+    -------
+    tuple of Orientation
+        S of them.
+    """
+    names = {known.states[k].aspect for k in states[1:] if not isinstance(known.states[k], Hanging)}
+    return tuple(replace(one, any_heading=one.aspect in names) for one in known.states)
+
+
 def gain(known, shares, states):
     """Return the share [1] of what comes that leaves in one of some states, as the static rule says."""
     return float((shares[:, None] * known.leaving[:, list(states)]).sum())
@@ -141,7 +161,7 @@ def single(part, bowl, known, shares, wanted, *, rows, each, seed, jobs=1, befor
     """
     rows, states = np.asarray(rows, int), wanted_states(known, np.atleast_1d(wanted))
     seen = course.course(
-        part, bowl, known.lying, rows, bowl.devices, parts=each * len(rows), poses=known.states,
+        part, bowl, known.lying, rows, bowl.devices, parts=each * len(rows), poses=counted(known, states),
         leaves=course.rightly(known.leaving), seed=seed, jobs=jobs, before=before,
     )  # fmt: skip
     out, whole = seen.orientations[-1], np.isin(seen.fates, (course.PASSED, course.TURNED))
@@ -171,9 +191,9 @@ def _places(seen, own):
     return found
 
 
-def queue(part, bowl, aspects: Aspects, known, shares, *, parts, seconds, seed, progress=None):
-    """Follow a queue; as ``trial.queue.queue_of``."""
+def queue(part, bowl, aspects: Aspects, known, shares, states, *, parts, seconds, seed):
+    """Follow a queue of which some states are wanted; as ``trial.queue.queue_of``."""
     return queue_of(
-        part, bowl, aspects, known.lying, known.states, shares, parts=parts, seconds=seconds, seed=seed,
-        progress=progress,
+        part, bowl, aspects, known.lying, counted(known, states), shares, parts=parts, seconds=seconds,
+        seed=seed,
     )  # fmt: skip

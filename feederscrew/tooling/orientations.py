@@ -49,6 +49,7 @@ class Orientation:
     swing: float = 0.0  # [m/s] amplitude of the track's velocity along it
     wall_grip: float = 0.0  # [1] friction of the wall
     climbs: float = 0.0  # [m] height of an edge that the speed of the drive lifts it over
+    any_heading: bool = False  # on that aspect it is known however it is turned
 
     @property
     def name(self):

@@ -12,6 +12,7 @@ from feederscrew.trial import whereabouts
 ALIKE = 0.05  # of the part's size: a part whose outline is off by more lies in no known orientation
 DIRECTIONS = 160
 ASKEW = np.radians(np.linspace(-10.0, 10.0, 11))  # by which a part may lie turned on the track and be known
+ROUND = np.radians(np.arange(0.0, 360.0, 2.0))  # the same where any heading of its aspect will do
 SWINGS = np.cos(np.radians(40.0))  # a part below the track that is no further from upright hangs
 OTHER = -1  # orientation: none of the known
 
@@ -19,7 +20,8 @@ OTHER = -1  # orientation: none of the known
 class Looks:
     """Tells in which orientation a part lies, by how far it reaches in many directions.
 
-    One that lies turned by up to 10 deg, as a part that has just left a device may, is in the nearest.
+    One that lies turned by up to 10 deg, as a part that has just left a device may, is in the nearest. Where
+    any heading of an aspect counts, one on that aspect is in the nearest of its orientations.
     Parts that hang swing and turn about the vertical: they are known by what of them is up.
     """
 
@@ -33,6 +35,11 @@ class Looks:
         self.low = 0.5 * min(one.posture.height for one in every if not isinstance(one, Hanging)) / length
         self.radius, self.near = radius / length, ALIKE * solid.radius
         self.known = np.array([[self._standing(one, length, by) for by in ASKEW] for one in every])
+        self.turned = {
+            k: np.array([self._standing(one, length, by) for by in ROUND])
+            for k, one in enumerate(every)
+            if one.any_heading
+        }
 
     def _standing(self, one, length, by):
         c, s = np.cos(one.heading + by), np.sin(one.heading + by)
@@ -54,7 +61,14 @@ class Looks:
         if self.ups and state[2] < self.low:
             up = {k: float(vectors.dot(whereabouts.matrix(level)[2], one)) for k, one in self.ups.items()}
             return max((k for k in up if up[k] > SWINGS), key=up.get, default=OTHER)
-        return best if off[best] < self.near else OTHER
+        return best if off[best] < self.near else self._turned(reach)
+
+    def _turned(self, reach):
+        """The orientation of which any heading counts that it lies in, turned the least; OTHER where none."""
+        away = np.minimum(ROUND, 2.0 * np.pi - ROUND)
+        off = {k: np.abs(one - reach).max(axis=1) for k, one in self.turned.items()}
+        by = {k: float(away[one < self.near].min(initial=np.inf)) for k, one in off.items()}
+        return min((k for k in by if np.isfinite(by[k])), key=by.get, default=OTHER)
 
 
 class AspectsBelow:

@@ -77,6 +77,19 @@ def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one(block):
     assert robust.faults(alone) and not robust.faults(both)
 
 
+def test_of_what_counts_as_the_wanted_one_a_loss_is_no_fault_but_a_stop_is(block):
+    _, ways, names = block
+    along, across = names["A@0"], names["A@90"]
+    states = trying.wanted_states(ways, (along, across))
+    lost = replace(tried(ways, {along}, (), (), along), states=states)
+    assert not robust.faults(lost)
+    assert robust.faults(replace(lost, right=0 * lost.right))  # the wanted one itself has to leave
+    stays = replace(tried(ways, {along}, (), {across}, along), states=states)
+    assert robust.faults(stays) == ["A@90 stays (stopped at gap)"]
+    carried = replace(tried(ways, {along}, {across}, (), along), states=states)
+    assert robust.faults(carried) == [f"A@90{robust.CARRIED}"]
+
+
 def test_what_is_lost_at_a_device_is_noted(block):
     _, ways, names = block
     seen = tried(ways, (), (), {names["A@0"]}, names["A@0"])
