@@ -160,7 +160,6 @@ MORE = {
     "cli.tooling.tooling": 10,
     "cli.trial.trial": 13,
     "cli.tune.tune": 11,
-    "designing.queues.filled": 9,
     "designing.robust.robust_run": 10,
     "designing.trying.queue": 9,
     "designing.trying.single": 10,

@@ -120,12 +120,16 @@ def _proved(search, candidate, *, whole):
     if tested.partial or not (whole or tested.share >= DRAWS_HELD):
         return study
     search.told(f"queue: {candidate.attempt.wanted}, {', '.join(candidate.proposal.chain) or 'no device'}")
-    found = queues.filled(
-        part, bowl, known.aspects, ways, weights, candidate.tried.states, seed=request.seed, whole=whole,
-        told=search.told,
-    )  # fmt: skip
-    said = risks.risks(ways.lying[row], bowl.friction.kinetic, found)
-    return replace(study, queues=found, risks=said, partial=any(one.partial for one in found))
+    line = queues.FollowedRow(
+        part, bowl, known.aspects, ways, weights, candidate.tried.states, request.seed, search.told
+    )
+    study = _queued(study, queues.filled(line, whole=whole))
+    study = _queued(study, queues.longer(line, study))
+    return replace(study, risks=risks.risks(ways.lying[row], bowl.friction.kinetic, study.queues))
+
+
+def _queued(study, found):
+    return replace(study, queues=found, partial=any(one.partial for one in found))
 
 
 def _unproved(search, candidate, known):

@@ -110,7 +110,7 @@ def bare(known, shares, request, devices):
     best = max(rows, key=lambda k: leaving[known.leaves_as[k]])
     made = Proposal(best, (), tuple(devices), "no device", alike(known.lying, best, request.up))
     pure = trying.gain(known, shares, made.states(known)) / max(leaving.sum(), 1e-300)
-    return made if pure >= 0.97 else None
+    return made if pure >= ENOUGH else None
 
 
 def proposed(part, bowl, aspects, row, known, request, how):

@@ -1,29 +1,55 @@
 """The queue at low, normal and high fill, as a buyer accepts a feeder."""
 
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from feederscrew.bowl.record import Bowl
 from feederscrew.designing import trying
-from feederscrew.designing.record import NORMAL, PURE, FilledQueue
+from feederscrew.designing.record import NORMAL, PURE, RATE_KEPT, FilledQueue
+from feederscrew.dropping.ensemble import wilson
+from feederscrew.part.record import Part
+from feederscrew.rates.stream import Orientations
+from feederscrew.resting.aspects import Aspects
 
 FILLS = (("low", 6, 20.0), (NORMAL, 12, 60.0), ("high", 18, 20.0))  # name, parts, seconds
+MORE = 3  # times as long again at normal fill, at most, where that decides
+ADDED = ("seconds", "counted", "delivered", "right", "left", "returned", "jams", "climbs")
 
 
-def filled(part, bowl, aspects, known, shares, states, *, seed, whole=True, told=None):
+@dataclass(frozen=True, eq=False)
+class FollowedRow:
+    """Parts in a row along one track, and how they are followed."""
+
+    part: Part
+    bowl: Bowl  # with its devices
+    aspects: Aspects
+    known: Orientations  # M of them
+    shares: np.ndarray  # (M,) [1] in which they come
+    states: tuple[int, ...]  # in which parts are wanted to leave
+    seed: int
+    told: Callable | None = None  # called with what is being followed, a sentence
+
+    def followed(self, fill, parts, seconds, seed):
+        """Return the FilledQueue of so many parts in so many seconds."""
+        if self.told:
+            self.told(f"queue of {parts} at {fill} fill, {seconds:g} s")
+        seen = trying.queue(
+            self.part, self.bowl, self.aspects, self.known, self.shares, self.states, parts=parts,
+            seconds=seconds, seed=seed,
+        )  # fmt: skip
+        return _counted(fill, seen, self.states)
+
+
+def filled(row, *, whole=True):
     """Follow a queue at each fill.
 
     Parameters
     ----------
-    part : Part
-    bowl : Bowl
-        With its devices.
-    aspects : Aspects
-    known : Orientations
-    shares : (M,) float [1]
-    states : sequence of int
-        In which parts are wanted to leave.
-    seed : int
+    row : FollowedRow
     whole : bool
         Whether it goes on after a fill that jams or is not pure.
-    told : callable, optional
-        Called with what is being followed, a sentence.
 
     Returns
     -------
@@ -32,15 +58,65 @@ def filled(part, bowl, aspects, known, shares, states, *, seed, whole=True, told
     """
     found = []
     for name, parts, seconds in FILLS:
-        if told:
-            told(f"queue of {parts} at {name} fill, {seconds:g} s")
-        seen = trying.queue(
-            part, bowl, aspects, known, shares, states, parts=parts, seconds=seconds, seed=seed
-        )
-        found.append(_told(name, seen, states))
-        if seen.partial or not (whole or _holds(found[-1])):
+        found.append(row.followed(name, parts, seconds, row.seed))
+        if found[-1].partial or not (whole or _holds(found[-1])):
             break
     return tuple(found)
+
+
+def longer(row, study):
+    """Follow the queue at normal fill for longer, where that decides what a minute cannot tell.
+
+    How long is settled beforehand, so that it does not end when it happens to look well.
+
+    Parameters
+    ----------
+    row : FollowedRow
+    study : DesignStudy
+        With its queues.
+
+    Returns
+    -------
+    tuple of FilledQueue
+        Those of the study, that at normal fill with what was seen since.
+    """
+    found, count = study.queues, minutes(study)
+    place = next((k for k, one in enumerate(found) if one.fill == NORMAL), 0)
+    for k in range(1, count + 1):
+        _, parts, seconds = next(one for one in FILLS if one[0] == NORMAL)
+        joined = _joined(found[place], row.followed(NORMAL, parts, seconds, row.seed + k))
+        found = (*found[:place], joined, *found[place + 1 :])
+        if joined.partial:
+            break
+    return found
+
+
+def minutes(study):
+    """Return for how many times as long again a queue is to be followed: 0 where that decides nothing.
+
+    The rate is undecided where it would hold with the same shares of more parts; purity, where what is
+    asked for lies in its interval.
+    """
+    found, need = study.queues, RATE_KEPT * study.request.target
+    if len(found) < len(FILLS) or study.jams or study.partial or study.normal is None:
+        return 0
+    right, left, back = (sum(getattr(one, name) for one in found) for name in ("right", "left", "returned"))
+    own, rate = study.normal, study.delivered[0]
+    if not right:
+        return 0
+    kept = [1.0 + k * own.seconds / study.queue_seconds for k in range(MORE + 1)]  # times as many parts
+    lows = [float(wilson([right * more], (left + back) * more)[0][0]) for more in kept]
+    share = right / (left + back)
+    enough = [k for k, low in enumerate(lows) if rate * low / share >= need]
+    if not enough or float(wilson([right], left)[1][0]) < PURE:
+        return 0
+    return enough[0] if right >= PURE * left else MORE
+
+
+def _joined(first, second):
+    """Both as one queue."""
+    sums = {name: getattr(first, name) + getattr(second, name) for name in ADDED}
+    return replace(first, **sums, partial=second.partial)
 
 
 def _holds(one):
@@ -48,7 +124,7 @@ def _holds(one):
     return not one.jams and one.right >= PURE * one.left - 1
 
 
-def _told(name, seen, states):
+def _counted(name, seen, states):
     return FilledQueue(
         fill=name,
         parts=seen.parts,

@@ -8,6 +8,7 @@ import pytest
 import shapes
 from scipy.stats import binom
 
+from feederscrew.designing import queues
 from feederscrew.designing.record import (
     Attempt,
     DesignRequest,
@@ -49,6 +50,45 @@ def test_it_holds_only_where_nothing_is_missing():
     assert "purity 88.9 %, 98 % are asked for" in study(queue(right=40)).why
     assert "18 of 20 draws of part, friction and drive sort: A@0 is lost" in study(queue(), held=18).why
     assert "of the 40/min asked for" in study(queue(right=30, left=30, returned=20)).why
+
+
+def fills(right, left, returned, **more):
+    """Queues at each fill; those at low and high fill are a sixth of it."""
+    few = [(name, parts, right // 6, right // 6, returned // 6) for name, parts, _ in queues.FILLS]
+    few[1] = ("normal", 12, right, left, returned)
+    return tuple(
+        FilledQueue(name, parts, seconds, seconds, float(leaves), good, leaves, back, more.get("jams", 0), 0)
+        for (name, parts, good, leaves, back), (_, _, seconds) in zip(few, queues.FILLS, strict=True)
+    )
+
+
+def test_a_queue_is_followed_for_longer_only_where_that_decides():
+    def asked(*counts, **more):
+        return queues.minutes(study(queue(), queues=fills(*counts, **more)))
+
+    assert asked(43, 43, 182) == 2  # 43 a minute, at least 34, of which 36 are needed
+    assert asked(60, 60, 182) == 0  # holds as it is
+    assert asked(37, 37, 182) == 0  # what is so near to it is not told apart in four minutes
+    assert asked(43, 43, 182, jams=1) == 0
+    assert asked(59, 61, 182) == queues.MORE  # 97.5 % pure, at most 99.3
+    assert asked(54, 61, 182) == 0
+
+
+def test_what_is_followed_for_longer_is_one_queue_of_other_seeds():
+    seeds = []
+
+    class Known(queues.FollowedRow):
+        def followed(self, fill, parts, seconds, seed):
+            seeds.append((fill, parts, seconds, seed))
+            return FilledQueue(fill, parts, seconds, 58.0, 40.0, 40, 41, 180, 0, 1)
+
+    row = Known(PART, None, None, None, None, (0,), seed=7)
+    found = queues.longer(row, study(queue(), queues=fills(43, 43, 182)))
+    assert seeds == [("normal", 12, 60.0, 8), ("normal", 12, 60.0, 9)]
+    low, normal, high = found
+    assert (low.seconds, normal.seconds, high.seconds) == (20.0, 180.0, 20.0)
+    assert (normal.counted, normal.delivered, normal.climbs) == (60.0 + 2 * 58.0, 123.0, 2)
+    assert (normal.right, normal.left, normal.returned) == (123, 125, 542)
 
 
 def test_each_chapter_of_the_page_to_hand_on_says_something_and_is_reached():

@@ -15,7 +15,7 @@ from feederscrew.geometry import vectors
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import looks, runs, shape, stations, whereabouts
+from feederscrew.trial import looks, rounding, runs, shape, stations, whereabouts
 
 BOWL = bowls.read(
     None,
@@ -217,3 +217,26 @@ def test_nothing_passes_the_edges_below_the_surface(block, axes, place, speed, l
         inside = max(inside, float((half - np.abs(own)).min(axis=1).max()))
     assert ride.ways[0] < 3e-4  # [m] of the last 2 ms, of 4e-4 without the edge
     assert inside < 5e-5
+
+
+def test_a_round_part_is_held_where_the_free_edge_cuts_off_the_lowest_of_its_circle():
+    track = replace(BOWL.track, climb=0.0)
+    bowl = replace(BOWL, track=track, drive=replace(BOWL.drive, amplitude=0.0))
+    pin = shapes.part(shapes.cylinder(1.62, 6.0, 24))
+    solid, length, principal = shape.solid_of(pin)
+    known = runs.setting(rounding.rounded(solid, [np.eye(3)[0]]), length, bowl)
+    stage = stations.plain(track, orientations(pin, find(pin), track), 1.0)
+    turn, lowest = np.radians(50.0), []
+    for beyond in np.linspace(-0.03, 0.03, 13):  # [mm] that the lowest of its end lies beyond the edge
+        along, aside = [np.cos(turn), np.sin(turn), 0.0], np.array([-np.sin(turn), np.cos(turn), 0.0])
+        for roll in np.radians([1.0, 4.0, 7.0, 10.0, 13.0]):
+            across = np.cos(roll) * aside + [0.0, 0.0, np.sin(roll)]
+            state = np.zeros(body.STATE)
+            axes = np.column_stack([across, np.cross(along, across), along])
+            state[body.Q : body.Q + 4] = whereabouts.quaternion(axes @ principal)
+            state[:3] = np.array([0.0, 60.0 + beyond - 3.0 * np.sin(turn), 1.62]) * 1e-3 / length
+            ride = runs.ride(
+                known, stage, state[None], np.zeros(1), limits=(0.02, 1.0, 0.0, 1.0), every=1.0, places=1
+            )
+            lowest.append(1e3 * length * ride.states[0][body.Z])
+    assert min(lowest) > 1.62 - 0.02  # [mm]: its facets lie 0.014 mm inside the circle

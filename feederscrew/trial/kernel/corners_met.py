@@ -147,14 +147,15 @@ def _corners_on(surface, solid, crowd, n, k, reach):
         if c > reach or c < -plate[DEPTH] - reach:
             continue
         a, b, c = placed(frame, p)
+        alone = not solid.ringed[corner]  # else its circle touches, unless a border is near
         if crowd.verts[n, 1, m] == crowd.verts[n, 2, m]:
             on_top = c > -DEEP
             if plate[DEPTH] + c < DEEP and _foremost(solid, corner, -frame[6], -frame[7], -frame[8]):
                 normal, key = in_bowl(plate, 0.0, 0.0, -1.0), 1.0 + KINDS * (corner + 1e6 * k)
                 put(crowd, n, solid, (p[0], p[1], p[2]), normal, -plate[DEPTH] - c, plate[RUBS], key)
         else:
-            on_top = _by_borders(surface, solid, crowd, n, k, (m, reach, a, b, c))
-        if on_top and not solid.ringed[corner]:
+            on_top, alone = _by_borders(surface, solid, crowd, n, k, (m, reach, a, b, c)), True
+        if on_top and alone:
             lows = supports.add(crowd.levels, lows, (a, b), c, p, KINDS * (corner + 1e6 * k))
     return lows
 
