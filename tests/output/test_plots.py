@@ -121,3 +121,14 @@ def test_tidy_labels_an_axes():
     axes = style.tidy(style.figure().add_subplot(), title="t", x="x [mm]", y="y [N]", grid="none")
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("x [mm]", "y [N]")
     assert not axes.spines["top"].get_visible()
+
+
+def test_the_rules_are_told_apart_without_their_colours():
+    axes = bars.answered(NAMES, ANSWER, PROFILES).axes[0]
+    marks = [line.get_marker() for line in axes.lines if line.get_label() in map(rule_label, PROFILES)]
+    assert len(set(marks)) == len(PROFILES) > 1
+    assert len(bars.MARKS) >= len(registry.NAMES)
+
+
+def rule_label(name):
+    return style.method(name)[0]

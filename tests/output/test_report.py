@@ -11,7 +11,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from feederscrew.errors import FeederError
-from feederscrew.output import tables
+from feederscrew.output import style, tables
 from feederscrew.output.page import blocks, numbers
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
@@ -313,3 +313,12 @@ def test_the_rate_says_whose_probabilities_it_takes(bracket):
     case = report(bracket, None, ())
     (tile,) = page(case, chapters=[chapter for chapter in CHAPTERS if chapter[0] == "rate"]).tiles
     assert tile.note.endswith(f"({case.rate.answer})") and case.rate.answer != "recommended"
+
+
+@pytest.mark.parametrize("height, tall", [(2.0, False), (8.0, True)])
+def test_a_picture_much_taller_than_wide_is_not_put_beside_a_table(height, tall):
+    """On paper it may have a page; at the height of the others nobody could read it."""
+    picture = blocks.Picture("a.png", style.png(style.figure(4.0, height)), "")
+    frame = tables.frame({"quantity": ["a"], "value": ["b"]})
+    text = html(blocks.Page("a", "", (blocks.Chapter((blocks.Table(frame), picture)),)))
+    assert ('<div class="beside">' in text, 'class="plain tall"' in text) == (not tall, tall)

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import ezdxf
 import numpy as np
@@ -25,6 +26,7 @@ from feederscrew.output.tooling import (
     files,
     ink,
     relief,
+    tables,
     written_step,
     written_stl,
 )
@@ -263,3 +265,18 @@ def test_a_margin_that_is_none_is_not_printed_as_a_number():
     assert ink.margin(Verdict(1.0, 1.234e-3)) == "margin +1.23 mm"
     assert ink.margin(Verdict(0.0, -2e-3)) == "margin -2.00 mm"
     assert ink.margin(Verdict(0.0, -UNSURE)) == "not sure"
+
+
+def test_a_verdict_that_is_not_sure_has_no_margin_on_the_page():
+    """Its margin is a mark of 2e-6 mm, not a length."""
+    wiper = SimpleNamespace(kind="wiper")
+    met = [
+        [SimpleNamespace(verdict=Verdict(0.0, margin), fate="stopped", device=wiper)]
+        for margin in (-2e-3, -UNSURE)
+    ]
+    orientations = [SimpleNamespace(name=name) for name in ("E@0", "E@90")]
+    table = tables.passages(
+        SimpleNamespace(orientations=orientations, passages=met, shares=[0.5, 0.5], devices=[wiper])
+    )
+    assert table["wiper_1_mm"][0] == pytest.approx(-2.0) and not table["wiper_1_mm"][1] < np.inf
+    assert list(table["outcome"]) == ["stopped by wiper", "stopped by wiper, not sure"]

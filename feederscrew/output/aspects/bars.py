@@ -9,6 +9,7 @@ NARROW, WIDE = 5.2, 12.0  # [in] limits of the figure's width
 GROUP = 1.0  # [in] of paper an aspect gets beside the recommended answer
 THICK, ASIDE = 0.3, 0.22  # [1] of a group: width of the recommended answer's bar, its way to the left
 FIRST, LAST = 0.0, 0.36  # [1] of a group: where the marks of the rules begin and end
+MARKS = "osD^vPX*<>hp"  # of the rules: who does not see their colours tells them apart by shape
 ANSWERED = "recommended, with interval"
 BROAD, FEW, MANY = 6.0, 3, 5  # [in] width from which a legend has many columns, and how many
 UPRIGHT = 0.31  # [in] below this width of a bar its number stands on end
@@ -68,7 +69,8 @@ def answered(names, answer, profiles, title=""):
     steps = np.linspace(FIRST, LAST, len(profiles))
     for place, (step, (name, values)) in enumerate(zip(steps, profiles.items())):
         label, colour = style.method(name, place)
-        axes.plot(places + step, 100.0 * np.asarray(values), "o", markersize=3.6, color=colour, label=label)
+        look = {"marker": MARKS[place % len(MARKS)], "markersize": 4.2, "linestyle": "none", "color": colour}
+        axes.plot(places + step, 100.0 * np.asarray(values), label=label, **look)
     style.named_ticks(axes, places, names)
     axes.tick_params(axis="x", length=0)
     axes.set_xlim(-0.55, len(names) - 0.45)

@@ -19,6 +19,7 @@ HALF = 700  # [px] a broader picture is not put beside another
 NARROW = 6  # columns of a table that is put beside something else
 MANY = 10  # columns of a table that is printed in smaller letters
 ALONE = 1.4  # times the size of a picture that has the whole width
+TALL = 1.5  # times its width: the height from which a picture has a page of paper to itself
 LINE, HEADING = 29, 70  # [px] about the height of a row of a table, and of its head
 SCRIPTS = ("three.js", "viewer.js")
 HINT = (
@@ -107,7 +108,10 @@ def _beside(block):
     """Whether a block may stand beside another in a wide window: a picture or a small table."""
     if isinstance(block, kinds.Table):
         return len(block.frame) <= NARROW
-    return isinstance(block, kinds.Picture) and not block.printed and _size(block)[0] <= HALF
+    if not isinstance(block, kinds.Picture) or block.printed:
+        return False
+    width, height = _size(block)
+    return width <= HALF and height <= TALL * width
 
 
 def _run(beside, blocks):
@@ -162,6 +166,7 @@ def _picture(picture, scale=1.0):
     """The picture at its own size or smaller; one that stands alone is larger."""
     width, height = (round(scale * pixels) for pixels in _size(picture))
     kind = "stand-in" if picture.printed else "plain"
+    kind += " tall" if height > TALL * width else ""
     return (
         f'<figure id="{picture.file}" class="{kind}"><img src="{_data("image/png", picture.content)}" '
         f'width="{width}" height="{height}" alt="{escape(picture.alt)}"></figure>'

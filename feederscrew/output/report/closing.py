@@ -40,7 +40,6 @@ def repeat(case):
     """The inputs: command, files, bowl values, versions, and the table of aspects to the last digit."""
     hashes = tables.frame({"input": list(case.inputs), "sha256": list(case.inputs.values())})
     bowl = slide_tables.settings(case.settings).only(("key", "value", "from", "meaning"))
-    chain = [f"device {device.kind} ({device.where})" for device in case.bowl.devices]
     return Chapter(
         (
             *((Code(case.command),) if case.command else ()),
@@ -48,7 +47,6 @@ def repeat(case):
             Table(hashes),
             Text("The bowl: every value in effect and where it came from."),
             Table(bowl),
-            *((Notes(tuple(chain)),) if chain else ()),
             Text("The aspects to six digits, as feeder aspects writes them."),
             numbers(case),
             Text(f"Versions: {', '.join(map(' '.join, _versions()))}."),

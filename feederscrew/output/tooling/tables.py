@@ -210,14 +210,19 @@ def passages(study):
     rows = list(zip(study.orientations, study.passages))
     named = {"orientation": [one.name for one, _ in rows], "p_of all parts": study.shares}
     for place, device in enumerate(study.devices):
-        margins = [met[place].verdict.margin / MM if place < len(met) else None for _, met in rows]
+        margins = [_margin(met[place].verdict) if place < len(met) else None for _, met in rows]
         named[f"{device.kind}_{place + 1}_mm"] = margins
     return tables.frame(named | {"outcome": [_outcome(one, met) for one, met in rows]})
 
 
+def _margin(verdict):
+    return verdict.margin / MM if verdict.sure else None
+
+
 def _outcome(one, met):
     if met and met[-1].verdict.passes <= 0.0:
-        return f"{met[-1].fate} by {met[-1].device.kind}"
+        doubt = "" if met[-1].verdict.sure else ", not sure"
+        return f"{met[-1].fate} by {met[-1].device.kind}{doubt}"
     return passages_of.fate(one, met)
 
 
