@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew.geometry.polygons import outline, turned
 
-LOW = 1e-6  # of the part's height: corners so low lie on the track
+LOW = 0.01  # of the part's height: corners so little above the lowest lie on the track
 
 
 def leading_wedge(one):
@@ -24,7 +24,7 @@ def leading_wedge(one):
     points = one.posture.surface
     ahead = turned(points[:, :2], one.heading)[:, 0]
     ring = outline(np.column_stack([ahead, points[:, 2]]))  # counter-clockwise: forward along the track
-    low = ring[:, 1] <= LOW * one.height
+    low = ring[:, 1] <= ring[:, 1].min() + LOW * one.height  # no corner of a round side is quite down
     first = int(np.argmax(np.where(low, ring[:, 0], -np.inf)))
     run, rise = ring[(first + 1) % len(ring)] - ring[first]
     return math.atan2(rise, run)

@@ -1,6 +1,7 @@
 """What may go wrong between parts, against angles that are drawn."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -35,6 +36,15 @@ def test_it_may_shingle_where_friction_holds_on_the_leading_side(keel):
     (said,) = risks.risks(keel[20], 0.6, ())
     assert "may shingle: its leading side rises from the track by 20 deg only" in said
     assert risks.risks(keel[20], np.tan(np.radians(19.0)), ()) == ()
+
+
+def test_a_part_no_corner_of_which_is_quite_down_has_a_leading_side_all_the_same():
+    """As of a screw on its two circles, whose corners lie 3 um over the track."""
+    corners = np.array([[x, y, z] for x in (-4e-3, 4e-3) for y in (-1e-3, 1e-3) for z in (0.0, 6e-3)])
+    one = SimpleNamespace(
+        posture=SimpleNamespace(surface=corners + [0.0, 0.0, 3.2e-6]), heading=0.0, height=6e-3
+    )
+    assert risks.leading_wedge(one) == pytest.approx(0.5 * np.pi)
 
 
 def test_what_climbed_in_the_queue_is_said(keel):
