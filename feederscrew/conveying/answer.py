@@ -150,7 +150,10 @@ def cells(bowl):
 
 
 def greatest_speed(bowl):
-    """Return A w [m/s], of the first harmonic."""
+    """Return A w [m/s], of the first harmonic.
+
+    Source: the derivative of the motion; docs/conveying.md, "The model".
+    """
     return bowl.drive.amplitude * 2.0 * np.pi * bowl.drive.frequency
 
 

@@ -8,6 +8,8 @@ from feederscrew import check
 def throw_of_flight(periods):
     """Return the throw number at which a part that does not rebound flies for a given time.
 
+    Source: Sloot and Kruyt 1996, by the parabola between two impacts; docs/conveying.md, "The model".
+
     Parameters
     ----------
     periods : float [1 period]

@@ -18,6 +18,8 @@ def inwards(bowl):
 def at_radius(bowl, radius):
     """Return the bowl as a part feels it nearer to its axis.
 
+    Source: a bowl that moves as a screw, tan(angle) r = const; docs/bowl.md, "How it is computed".
+
     Parameters
     ----------
     bowl : Bowl

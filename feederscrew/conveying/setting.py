@@ -31,6 +31,8 @@ class OperatingPoint(NamedTuple):
 def plain(ratio, angle, climb, friction, restitution=0.0):
     """Return a track with one coefficient of friction, as most closed forms assume.
 
+    Source: docs/conveying.md, "The model".
+
     Parameters
     ----------
     ratio : float [1]

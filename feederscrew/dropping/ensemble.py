@@ -213,7 +213,10 @@ def wilson(counts, total):
 
 
 def half_width(low, high):
-    """Return half the longest of the intervals from ``low`` (A,) to ``high`` (A,) [1]."""
+    """Return half the longest of the intervals from ``low`` (A,) to ``high`` (A,) [1].
+
+    Source: docs/resting.md, "The drop test".
+    """
     return float(0.5 * (high - low).max())
 
 

@@ -158,7 +158,10 @@ def shape_of_part(part, found):
 
 
 def principal_axes(inertia):
-    """Return the principal moments (3,) [any], ascending, and their axes, columns of a rotation (3, 3)."""
+    """Return the principal moments (3,) [any], ascending, and their axes, columns of a rotation (3, 3).
+
+    Source: the eigenvectors of the inertia matrix.
+    """
     moments, principal = vectors.eigen(inertia)
     return moments, principal * np.sign(vectors.determinant(principal))
 

@@ -179,6 +179,8 @@ def _circle(a, b, c):
 def true_heights(rims, edges, sinks, heights, radius):
     """Return heights of the centre of mass on sinks, strips between rims as the round side they stand for.
 
+    Source: own; docs/resting.md, "The drop test".
+
     Parameters
     ----------
     rims : Rims
@@ -245,6 +247,8 @@ def _tangent_height(ends, offset, radius):
 
 def true_tops(rims, edges, saddles, tops, radius):
     """Return heights of the centre of mass over saddles, chords of a rim as the circle they stand for.
+
+    Source: own; docs/resting.md, "The drop test".
 
     Parameters
     ----------

@@ -35,6 +35,8 @@ class Emptying:
 def full(radius: float, depth: float, bulk: float, rules: Sizing) -> Fill:
     """Compute the fill of a full bowl.
 
+    Source: the keys of the section ``sizing``, each with its own; docs/bowl.md.
+
     Parameters
     ----------
     radius, depth : float [m]
@@ -66,6 +68,8 @@ def loaded(machine: Machine, fill: Fill, share: float) -> Machine:
 
 def emptying(machine: Machine, frequency: float, fill: Fill, rules: Sizing) -> Emptying:
     """Compute what becomes of the stroke as a bowl empties.
+
+    Source: docs/bowl.md, "Why it feeds 220 for half a minute and then 165".
 
     Parameters
     ----------

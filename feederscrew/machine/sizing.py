@@ -62,6 +62,8 @@ class SizedShape:
 def lying(part: Part, aspects: Aspects, wanted: tuple[str, float] | None = None) -> Lying:
     """Compute the room a part takes along a wall.
 
+    Source: docs/bowl.md, "1. The part, and the rate".
+
     Parameters
     ----------
     part : Part
@@ -112,6 +114,9 @@ def size(
     climb: float | None = None,
 ) -> Size:
     """Compute the bowl that holds and carries a part.
+
+    Source: a published bowl generator and the keys of ``sizing``;
+    docs/bowl.md, "1. The part, and the rate".
 
     Parameters
     ----------

@@ -62,13 +62,18 @@ def springs(machine: Machine) -> Springs:
 
 
 def leaf_stiffness(machine: Machine) -> float:
-    """Return the stiffness of one leaf with both ends guided, E b t^3 / L^3 [N/m]."""
+    """Return the stiffness of one leaf with both ends guided, E b t^3 / L^3 [N/m].
+
+    Source: Euler and Bernoulli's beam; docs/bowl.md, "How it is computed".
+    """
     ratio = machine.leaf_thickness / machine.leaf_length
     return machine.leaf_modulus * machine.leaf_width * ratio**3
 
 
 def leaf_stress(machine: Machine, amplitude: float) -> float:
     """Return the amplitude of bending stress in a leaf, 3 E t delta / L^2.
+
+    Source: Euler and Bernoulli's beam; docs/bowl.md, "How it is computed".
 
     Parameters
     ----------
@@ -86,6 +91,8 @@ def leaf_stress(machine: Machine, amplitude: float) -> float:
 def upright_pull(force: float, machine: Machine) -> float:
     """Return the amplitude of the pull of an upright magnet that does what a force along the motion does [N].
 
+    Source: equal work of two forces along one motion.
+
     Parameters
     ----------
     force : float [N]
@@ -102,6 +109,8 @@ def upright_pull(force: float, machine: Machine) -> float:
 
 def twist(machine: Machine) -> float:
     """Return by how much the twist of its leaves stiffens a bank, 1 + (G / 3 E) (L / r_s)^2 cos^2 psi [1].
+
+    Source: Saint-Venant's torsion of a thin strip, G b t^3 / 3; docs/bowl.md, "How it is computed".
 
     Notes
     -----
@@ -127,6 +136,8 @@ def effective_mass(machine: Machine) -> float:
 def centred_mass(machine: Machine) -> float:
     """Return the mass that moves against the springs [kg] where the centre of mass is on the axis.
 
+    Source: the kinetic energy of two free bodies; docs/bowl.md, "How it is computed".
+
     Parameters
     ----------
     machine : Machine
@@ -148,12 +159,17 @@ def held_fast(machine: Machine) -> Machine:
 
 
 def natural_frequency(stiffness: float, mass: float) -> float:
-    """Return sqrt(K / m) / (2 pi) [Hz]; arrays broadcast."""
+    """Return sqrt(K / m) / (2 pi) [Hz]; arrays broadcast.
+
+    Source: the harmonic oscillator.
+    """
     return np.sqrt(stiffness / mass) / (2.0 * np.pi)
 
 
 def gain(frequency: Any, natural: Any, damping: float) -> Any:
     """Return the stroke over that of the same force at rest.
+
+    Source: the harmonic oscillator with viscous damping, forced.
 
     Parameters
     ----------

@@ -38,6 +38,8 @@ def flow(
 ) -> Flow:
     """Compute how many parts a length of track delivers.
 
+    Source: docs/bowl.md, "1. The part, and the rate".
+
     Parameters
     ----------
     found : Orientations

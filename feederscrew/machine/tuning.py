@@ -30,6 +30,8 @@ def leaf_set(
 ) -> LeafSet:
     """Compute what other leaves of the same width and length do.
 
+    Source: ``springs``; docs/bowl.md, "3. The machine".
+
     Parameters
     ----------
     machine : Machine

@@ -62,6 +62,8 @@ def is_even(machine: Machine) -> bool:
 def effective_mass(machine: Machine) -> float:
     """Return the mass [kg] that moves against the springs, of a bowl whose centre may be off its axis.
 
+    Source: own; two bodies that move in a screw; docs/bowl.md, "How it is computed".
+
     Parameters
     ----------
     machine : Machine
@@ -78,6 +80,8 @@ def effective_mass(machine: Machine) -> float:
 
 def rocking(machine: Machine, radius: float, height: float, weight: Any = None) -> Rocking:
     """Compute how the stroke of a bowl differs round its axis.
+
+    Source: own; two bodies that move in a screw; docs/bowl.md, "How it is computed".
 
     Parameters
     ----------

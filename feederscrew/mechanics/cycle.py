@@ -39,6 +39,9 @@ def phases(samples=SAMPLES):
 def settle(acceleration, windows, period, samples=SAMPLES):
     """Follow a part from rest until its velocity repeats every period.
 
+    Source: docs/mechanics.md, "The floor"; the mean agrees with the two-burst velocity of
+    docs/conveying.md.
+
     Parameters
     ----------
     acceleration : callable
@@ -74,6 +77,8 @@ def settle(acceleration, windows, period, samples=SAMPLES):
 
 def swing(acceleration, period):
     """Return the velocity of a part that nothing brings to rest, as one that rolls: a swing about zero.
+
+    Source: the integral of a harmonic acceleration; docs/mechanics.md, "The floor".
 
     Parameters
     ----------

@@ -59,7 +59,10 @@ def plain(bowl):
 
 
 def acceleration_ratio(amplitude, frequency, gravity):
-    """Return G = A w^2 / g [1], from half stroke [m], frequency [Hz] and gravity [m/s2]."""
+    """Return G = A w^2 / g [1], from half stroke [m], frequency [Hz] and gravity [m/s2].
+
+    Source: the thesis, section 4.3, in which it stands as A w^2 / g.
+    """
     return amplitude * (2.0 * np.pi * np.asarray(frequency)) ** 2 / gravity
 
 
@@ -112,7 +115,10 @@ def published_ratio(friction, beta, alpha_minus_theta=0.0):
 
 
 def throw_number(ratio, beta, climb=0.0):
-    """Return k = G sin(beta) / cos(climb) [1], whatever the bank; the part hops where it is above 1."""
+    """Return k = G sin(beta) / cos(climb) [1], whatever the bank; the part hops where it is above 1.
+
+    Source: the normal force of eq. [4.14] at the upper reversal, set to zero on a climbing track.
+    """
     return ratio * np.sin(beta) / np.cos(climb)
 
 
@@ -122,13 +128,18 @@ def hops(ratio, beta, climb=0.0):
 
 
 def hop_ratio(beta, climb=0.0):
-    """Return G [1] from which the part hops; infinite for beta = 0, where nothing lifts it."""
+    """Return G [1] from which the part hops; infinite for beta = 0, where nothing lifts it.
+
+    Source: the normal force of eq. [4.14] at the upper reversal, set to zero.
+    """
     with np.errstate(divide="ignore", over="ignore"):
         return np.cos(climb) / np.sin(beta)
 
 
 def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0):
     """Return the least static friction at which a part never slips forward, up the track.
+
+    Source: Coulomb's law at the reversals; on a level floor eq. [4.28].
 
     Parameters
     ----------
@@ -155,6 +166,8 @@ def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0):
 def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0):
     """Return the least static friction at which a part never slips back, down the track.
 
+    Source: Coulomb's law at the reversals, by the two forces of the module.
+
     Parameters
     ----------
     ratio : array_like [1]
@@ -173,6 +186,8 @@ def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0):
 
 def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0):
     """Return G from which a part of a given static friction slips forward.
+
+    Source: ``forward_limit`` solved for G.
 
     Parameters
     ----------
@@ -194,6 +209,8 @@ def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0):
 def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0):
     """Return G from which a part of a given static friction slips back.
 
+    Source: ``backward_limit`` solved for G.
+
     Parameters
     ----------
     friction : array_like [1]
@@ -213,6 +230,8 @@ def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0):
 
 def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0):
     """Return what a part does within one cycle.
+
+    Source: the limits above; docs/mechanics.md, "The floor".
 
     Parameters
     ----------

@@ -18,6 +18,8 @@ from feederscrew.bowl.record import Friction
 def effective(friction, wall, bank):
     """Return the friction of the level track that holds a part as floor and wall together do.
 
+    Source: docs/conveying.md, "The model".
+
     Parameters
     ----------
     friction, wall : array_like [1]
@@ -34,7 +36,10 @@ def effective(friction, wall, bank):
 
 
 def of_floor(friction, wall, bank):
-    """Return the coefficient of the floor that makes, with the wall, an effective one: the inverse [1]."""
+    """Return the coefficient of the floor that makes, with the wall, an effective one: the inverse [1].
+
+    Source: ``effective`` solved for the floor.
+    """
     return friction * np.cos(bank) - wall * np.sin(bank)
 
 

@@ -77,6 +77,8 @@ def passing(flow, shares):
 def passing_ends(flow, low, high):
     """Return the least and the greatest share that passes if every aspect's share lies within its ends.
 
+    Source: a linear programme over a simplex with bounds; docs/conveying.md, "Commands".
+
     Parameters
     ----------
     flow : (2, D, A) float [1]

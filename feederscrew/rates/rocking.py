@@ -110,6 +110,8 @@ def goes_over(rocker, period, start=0):
 def over_period(place, bowl):
     """Return what the track does to a part over a settled period.
 
+    Source: Housner 1963, the rocking block; docs/trial.md, "What other parts said of the rules".
+
     Parameters
     ----------
     place : Seat

@@ -33,6 +33,8 @@ def queued(found, row, rule, gap, fill):
 def efficiency(found, row, rule):
     """Return the share of the parts offered, which are on the track, that leave in the orientation of a row.
 
+    Source: docs/conveying.md, "Commands".
+
     Parameters
     ----------
     found : Orientations
@@ -64,5 +66,8 @@ def fed(found, row):
 
 
 def fed_share(found, row):
-    """Return the share (M,) [1] of each orientation that leaves in the state of a wanted row."""
+    """Return the share (M,) [1] of each orientation that leaves in the state of a wanted row.
+
+    Source: docs/conveying.md, "Commands".
+    """
     return np.where(found.rolls_back, 0.0, found.leaving[:, found.leaves_as[row]])

@@ -10,6 +10,8 @@ from feederscrew.tooling.orientations import speed
 def needed(chain, lying, bowl):
     """Return the free way [m] between parts at the track's entry that the devices need.
 
+    Source: own; docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     chain : sequence of Device

@@ -24,6 +24,8 @@ SAME = 1e-9  # [m] a device that leaves this much less of the support takes noth
 def steady(devices, lying, bowl, margin):
     """Return which orientations the drive leaves lying on what a chain of devices leaves of their feet.
 
+    Source: own; docs/trial.md, "What other parts said of the rules".
+
     Parameters
     ----------
     devices : sequence of Device

@@ -125,6 +125,8 @@ def velocity(bowl):
 def rate(found, speed, target, rule, *, gap=0.0, fill=1.0):
     """Return well-oriented parts leaving a bowl.
 
+    Source: docs/conveying.md, "Commands".
+
     Parameters
     ----------
     found : Orientations
@@ -219,6 +221,8 @@ def _probability(found, row, rule):
 
 def parts_per_metre(found, target, rule, *, gap=0.0, fill=1.0):
     """Return well-oriented parts on a length of track, which velocity turns into a rate.
+
+    Source: docs/conveying.md, "Commands".
 
     Parameters
     ----------

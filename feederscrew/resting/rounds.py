@@ -11,6 +11,8 @@ WITHIN = 1e-6  # of the line of contact: how near its end a corner belongs to it
 def height(polygon, axis, flat):
     """Return the height of the centre of mass over the line on which a round side rolls.
 
+    Source: docs/resting.md, "Exact tumbling".
+
     Parameters
     ----------
     polygon : (K, 3) float [m]

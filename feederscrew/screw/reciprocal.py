@@ -94,6 +94,8 @@ def reactions(wrenches, external):
 
     Each equals -(external o t_i) / (w_i o t_i) with t_i of ``tipping_twists``.
 
+    Source: reciprocal screws, Ball 1900; docs/screws.md, "Contacts: reciprocal screws".
+
     Parameters
     ----------
     wrenches : Wrench of shape (..., 6)

@@ -16,6 +16,8 @@ STILL = 1e-6  # [m/s] what slides more slowly does not leave
 def limit(friction):
     """Return the sweep [rad] below which a face of some friction clears itself.
 
+    Source: 90 deg less the angle of friction; docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     friction : float [1]
@@ -30,6 +32,8 @@ def limit(friction):
 
 def seconds(device, one, bowl):
     """Return how long [s] an orientation that a device returns blocks the track; 0 of what drops at once.
+
+    Source: docs/tooling.md, "1. The method".
 
     Parameters
     ----------
@@ -50,6 +54,8 @@ def seconds(device, one, bowl):
 @functools.lru_cache(maxsize=64)
 def along_blade(bowl, sweep, friction):
     """Return the mean velocity [m/s] towards the free edge of a point mass before a swept face.
+
+    Source: docs/tooling.md, "1. The method".
 
     Parameters
     ----------

@@ -13,6 +13,8 @@ HALVINGS = 60
 def speed(push, friction, swing, gravity=STANDARD_GRAVITY):
     """Return the velocity [m/s] at which a steady sideways push moves what slips on a vibrating track.
 
+    Source: v = a pi V / (2 mu g ln(4 V / v)); docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     push : float [m/s2]
@@ -52,6 +54,8 @@ def speed(push, friction, swing, gravity=STANDARD_GRAVITY):
 
 def force_to_clear(one, wide, height):
     """Return the least sideways force [N] that takes an orientation off the track as it passes.
+
+    Source: docs/tooling.md, "1. The method".
 
     Parameters
     ----------

@@ -102,6 +102,8 @@ class DeviceFlow:
 def course(devices, every, sigma=0.0):
     """Return what becomes of every orientation along a chain of devices.
 
+    Source: a chain of conditional shares; docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     devices : sequence of Device

@@ -117,6 +117,8 @@ def least(foot, hole, work=None, low=-np.inf, high=np.inf):
     """Return the least margin [m] of a foot over a hole's passage, and the shift [rad] where it is.
 
     A margin below ``low`` may be given as any that is below it, one above ``high`` as any above.
+
+    Source: docs/tooling.md, "1. The method".
     """
     from feederscrew.tooling.kernel import passage
 
@@ -148,14 +150,20 @@ def _hull(x, y):
 
 
 def over_ring(foot, low, high):
-    """Return the margin [m] of a foot on a track without what lies between two radii [m] about the axis."""
+    """Return the margin [m] of a foot on a track without what lies between two radii [m] about the axis.
+
+    Source: docs/tooling.md, "1. The method".
+    """
     from feederscrew.tooling.kernel import ring
 
     return float(ring.over_ring(foot, low, high, ring_scratch(foot)))
 
 
 def balcony(foot, radius):
-    """Return the least width of track [m] that carries a foot; infinite where none does."""
+    """Return the least width of track [m] that carries a foot; infinite where none does.
+
+    Source: docs/tooling.md, "1. The method".
+    """
     from feederscrew.tooling.kernel import ring
 
     return float(ring.balcony(foot, radius, _extent(foot, radius), ring_scratch(foot)))

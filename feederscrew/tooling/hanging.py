@@ -137,6 +137,8 @@ def hanging_margin(one, width, widest=None):
     """Return by how much [m] a slot of some width lets the shank down and holds the head; negative if not.
 
     The head is held where the slot is ``widest``, if that is another width.
+
+    Source: docs/tooling.md, "1. The method".
     """
     found, widest = neck(one), width if widest is None else widest
     return -np.inf if found is None else min(width - found.shank, found.head - widest)

@@ -258,7 +258,10 @@ def _greatest(one):
 
 
 def gyration(one, angle):
-    """Return the square of the radius of gyration [m2] about a level axis at an angle [rad] to the track."""
+    """Return the square of the radius of gyration [m2] about a level axis at an angle [rad] to the track.
+
+    Source: Steiner's theorem about a level axis.
+    """
     inertia, turn = one.posture.inertia, angle - one.heading
     c, s = np.cos(turn), np.sin(turn)
     moment = c * c * inertia[0, 0] + s * s * inertia[1, 1] + 2.0 * s * c * inertia[0, 1]

@@ -70,6 +70,8 @@ def over_step(one, every, height):
     grow evenly with the height. So it does where the face on which it lands may not hold it: half of the
     parts are taken to go on over the next edge.
 
+    Source: docs/tooling.md, "4. Turning parts over".
+
     Parameters
     ----------
     one : Orientation
@@ -109,6 +111,8 @@ def beyond_ledge(one, every, width):
     passed its barrier by then, wherever the edge is below its foot, it turns over. If it does not pass it
     with what is left of the momentum of the fall, it slides down and lies as before, unless what it has still
     to fall is enough to pitch it over on its way.
+
+    Source: docs/tooling.md, "4. Turning parts over".
 
     Parameters
     ----------

@@ -53,13 +53,19 @@ def steps_of(floor, coarse=1.0):
 
 
 def throw_number(bowl):
-    """Return the level floor's greatest downward acceleration over gravity [1], as of a track."""
+    """Return the level floor's greatest downward acceleration over gravity [1], as of a track.
+
+    Source: the normal force of eq. [4.14] at the upper reversal; docs/conveying.md, "The model".
+    """
     if bowl.drive.amplitude == 0.0:
         return 0.0
     return float(answer.throw_number(replace(bowl, track=replace(bowl.track, climb=0.0, bank=0.0))))
 
 
 def kick_of(floor, times):
-    """Return the energy [m g L] of a point at so many ``times`` that of the floor's quickest motion."""
+    """Return the energy [m g L] of a point at so many ``times`` that of the floor's quickest motion.
+
+    Source: docs/resting.md, "On the vibrating plate".
+    """
     quickest = floor.rate * math.hypot(floor.along, floor.up) * (1.0 + 2.0 * abs(floor.second))
     return times * 0.5 * quickest**2

@@ -100,6 +100,8 @@ def lasting(faces):
 def limit_of(rates, start):
     """Return the shares to which transitions lead in the end.
 
+    Source: the stationary distribution of a Markov chain; docs/resting.md, "On the vibrating plate".
+
     Parameters
     ----------
     rates : (..., A, A) float [1/s]

@@ -41,6 +41,8 @@ class FloorMotion:
 def drive_force(posture, bowl, heading, phase=UPPER_REVERSAL):
     """Return the inertial force of the vibration on a part, as (..., 3) [N] along x', y', z.
 
+    Source: d'Alembert's force of the harmonic motion, in the thesis's floor wrench, eq. [4.13].
+
     Parameters
     ----------
     posture : Posture
@@ -178,7 +180,10 @@ def regime(states):
 
 
 def stable_heading(posture, bowl):
-    """Return the heading [rad] to which the drive turns the part at the upper reversal; NaN for none."""
+    """Return the heading [rad] to which the drive turns the part at the upper reversal; NaN for none.
+
+    Source: the sign of the alignment acceleration, eq. [4.17].
+    """
     if not np.isfinite(posture.offset) or posture.offset == 0.0:
         return np.full(np.shape(bowl.drive.direction), np.nan)[()]
     return bowl.drive.direction + (0.0 if posture.offset > 0.0 else np.pi)

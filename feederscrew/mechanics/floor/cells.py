@@ -12,6 +12,8 @@ REGIMES = STATES  # a regime code is a place in this list
 def cells(posture, bowl, heading):
     """Return the upper reversal for arrays of bowl settings.
 
+    Source: ``balance.motion``, cell by cell.
+
     Parameters
     ----------
     posture : Posture

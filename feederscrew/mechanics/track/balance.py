@@ -45,6 +45,8 @@ class TrackMotion:
 def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=False):
     """Return what a part on the track does at one phase of the vibration.
 
+    Source: ``system.sliding`` and ``system.held``; docs/mechanics.md, "The track".
+
     Parameters
     ----------
     seat : Seat
@@ -91,6 +93,8 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
 
 def needed_at_rest(seat, bowl, phase):
     """Return friction over normal force that holds a part at rest, (..., 3) [1]: floor and walls.
+
+    Source: Coulomb's law for the reactions of ``system.held``; docs/mechanics.md, "The track".
 
     Parameters
     ----------

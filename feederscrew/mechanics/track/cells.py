@@ -54,6 +54,8 @@ def seated(posture, bowl, heading=None):
 def cells(posture, bowl, heading=None):
     """Return the upper reversal at every cell of a map.
 
+    Source: ``balance.motion``, cell by cell.
+
     Parameters
     ----------
     posture : Posture

@@ -151,6 +151,8 @@ def frame(bowl, walls):
 def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False):
     """Return weight, drive and centrifugal force on the part, all at its centre of mass.
 
+    Source: the loads of eq. [4.29], with the centrifugal force of docs/mechanics.md, "The track".
+
     Parameters
     ----------
     seat : Seat
@@ -176,7 +178,10 @@ def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False):
 
 
 def bank_without_radial_friction(seat):
-    """Return the bank [rad] at which the wall's reaction passes through the centre of mass: R3 is zero."""
+    """Return the bank [rad] at which the wall's reaction passes through the centre of mass: R3 is zero.
+
+    Source: eqs. [4.33] and [4.35] with R3 = 0; docs/mechanics.md, "The track".
+    """
     return float(np.mean(np.arctan2(seat.walls[:, 2], -seat.walls[:, 1])))
 
 

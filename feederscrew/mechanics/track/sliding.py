@@ -20,6 +20,8 @@ BEYOND = 1e9  # [1] friction in place of one that is not finite
 def acceleration(seat, bowl, axes, least):
     """Return the acceleration of a sliding part as a function of phase, speed and sense.
 
+    Source: ``system.sliding``, which is linear in the load.
+
     Parameters
     ----------
     seat : Seat
@@ -61,6 +63,8 @@ def acceleration(seat, bowl, axes, least):
 
 def windows(rest, needed, static, samples=cycle.SAMPLES):
     """Return the phases at which a part at rest breaks loose.
+
+    Source: Coulomb's law on the reactions of ``system.held``; docs/mechanics.md, "The track".
 
     Parameters
     ----------

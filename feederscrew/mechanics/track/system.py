@@ -71,6 +71,8 @@ def sliding(seat, axes, load, closed, floor, wall, course=AHEAD):
 def held(seat, axes, load, closed, ratio):
     """Return the reactions of a part at rest: least friction, one share of its limit at every contact.
 
+    Source: the equations of ``sliding`` with a choice of friction; docs/mechanics.md, "The track".
+
     Parameters
     ----------
     seat, axes, load, closed
@@ -152,6 +154,8 @@ def _released(seat, axes, closed, couple):
 
 def wall_use(seat, axes, load, closed, floor, ahead, course, turns):
     """Return friction over normal force at the only closed wall contact of a part that starts to turn.
+
+    Source: the equations of ``sliding`` with one wall contact.
 
     Parameters
     ----------

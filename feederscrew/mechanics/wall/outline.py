@@ -31,6 +31,8 @@ class Rests:
 def rests(outline, radius, merge=ROUND):
     """Return how an outline can lie against a wall.
 
+    Source: own; docs/mechanics.md, "Headings".
+
     Parameters
     ----------
     outline : (J, 2) float [m]

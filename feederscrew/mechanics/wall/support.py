@@ -31,6 +31,8 @@ def reaches(found, posture, track):
 def falls(posture, reach, track):
     """Return whether the weight's line meets the surface beyond what the track supports, at its free edge.
 
+    Source: own; docs/mechanics.md, "Headings".
+
     Parameters
     ----------
     posture : Posture

@@ -77,7 +77,10 @@ def _between(basins, pairs):
 
 
 def rises(tips):
-    """Return the lift (B, 2) [m] of the centre of mass on the way from the first face and from the second."""
+    """Return the lift (B, 2) [m] of the centre of mass on the way from the first face and from the second.
+
+    Source: docs/resting.md, "Barriers and the tipping graph".
+    """
     return np.maximum(tips.tops[:, None] - tips.heights[tips.pairs], 0.0)
 
 
@@ -90,6 +93,8 @@ def barriers(tips):
 
 def tip_angles(polygons, heights):
     """Return the tilt of the floor at which a part that does not slide tips over an edge of its contact.
+
+    Source: docs/resting.md, "Barriers and the tipping graph".
 
     Parameters
     ----------
@@ -109,6 +114,8 @@ def tip_angles(polygons, heights):
 
 def line_tip_angle(polygon, normal, axis, height):
     """Return the tilt of the floor at which a rolling part tips over an end of its line of contact.
+
+    Source: docs/resting.md, "Barriers and the tipping graph".
 
     Parameters
     ----------
@@ -131,7 +138,10 @@ def line_tip_angle(polygon, normal, axis, height):
 
 
 def tilt_over(height, top):
-    """Return the tilt [rad] that brings a centre of mass at ``height`` [m] over a saddle at ``top`` [m]."""
+    """Return the tilt [rad] that brings a centre of mass at ``height`` [m] over a saddle at ``top`` [m].
+
+    Source: docs/resting.md, "Barriers and the tipping graph".
+    """
     return np.arctan2(np.sqrt(np.maximum(top**2 - height**2, 0.0)), height)
 
 

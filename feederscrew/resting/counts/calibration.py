@@ -70,6 +70,8 @@ def calibrate(counts, shares, heights, radius):
 def calibrate_passes(passed, rejected, ways, shares, heights, radius):
     """Fit the exponent of surface_shares to what passed the devices of a bowl, by maximum likelihood.
 
+    Source: maximum likelihood with a profile interval; docs/resting.md, "Surface-weighted tumbling".
+
     Parameters
     ----------
     passed, rejected : (D,) float [1]

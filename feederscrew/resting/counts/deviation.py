@@ -54,6 +54,8 @@ def deviation(first, second):
 def total_variation(first, second):
     """Return half the sum of absolute differences: the share of parts that would have to land elsewhere.
 
+    Source: half the L1 distance of two distributions.
+
     Parameters
     ----------
     first, second : (A,) float [1]
@@ -137,6 +139,8 @@ def chi_square_between(first, second):
 
 def chi_square_passes(passed, rejected, expected, estimated=0):
     """Test whether parts that passed several devices may come from given shares (one binomial a device).
+
+    Source: Pearson's chi-square; docs/resting.md, "Surface-weighted tumbling".
 
     Parameters
     ----------

@@ -12,6 +12,8 @@ LEVELS = 200  # of energy, between the part's highest way to stand and the lowes
 def hop_shares(tips, radius):
     """Return the shares in which hops of falling energy leave a part on its faces.
 
+    Source: own; docs/resting.md, "The cascade of hops".
+
     Parameters
     ----------
     tips : Tipping

@@ -61,6 +61,8 @@ def launch_named(name):
 def closed_form(chances, stable, kinds, launch, own=None):
     """Return the answer of the closed form for a launch, with its calibrated interval.
 
+    Source: own; docs/resting.md, "The recommended answer".
+
     Parameters
     ----------
     chances : dict of str to (A,) float [1]
@@ -91,6 +93,8 @@ def closed_form(chances, stable, kinds, launch, own=None):
 
 def tempered(chances, share):
     """Return exact tumbling and the cascade of hops as one: their weighted geometric mean.
+
+    Source: own; docs/resting.md, "The recommended answer".
 
     Parameters
     ----------
@@ -140,6 +144,8 @@ def dropped(tally, launch):
 
 def launched(p, low, high, possible):
     """Return the ends of an interval of simulated shares with what the name of a launch leaves open.
+
+    Source: own; docs/resting.md, "The recommended answer".
 
     Parameters
     ----------

@@ -18,6 +18,8 @@ def named(exponent):
 def surface_weights(shares, heights, radius, exponent):
     """Return the shares of a part that bounces before it settles, not normalised.
 
+    Source: own; docs/resting.md, "Surface-weighted tumbling".
+
     Parameters
     ----------
     shares : (F,) float [1]
@@ -51,6 +53,9 @@ def surface_weights(shares, heights, radius, exponent):
 
 
 def surface_shares(shares, heights, radius, exponent):
-    """Return ``surface_weights`` (F,) [1] that sum to 1."""
+    """Return ``surface_weights`` (F,) [1] that sum to 1.
+
+    Source: own; docs/resting.md, "Surface-weighted tumbling".
+    """
     weights = surface_weights(shares, heights, radius, exponent)
     return weights / weights.sum()

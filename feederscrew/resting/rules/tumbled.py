@@ -8,6 +8,8 @@ from feederscrew.resting.basins.barriers import critical_solid_angles
 def quasistatic(tips):
     """Return the share of the attitudes from which a part let go without speed ends on each face.
 
+    Source: docs/resting.md, "Exact tumbling".
+
     Parameters
     ----------
     tips : Tipping

@@ -275,7 +275,10 @@ def _told(width):
 
 
 def share(margin, sigma):
-    """Return the share that passes at a margin [m], its standard deviation being ``sigma`` [m]."""
+    """Return the share that passes at a margin [m], its standard deviation being ``sigma`` [m].
+
+    Source: the normal distribution of what a margin scatters by.
+    """
     if sigma > 0.0:
         return 0.5 * math.erfc(-margin / (sigma * math.sqrt(2.0)))
     return float(margin >= -CLOSE)

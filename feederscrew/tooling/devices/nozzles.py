@@ -21,6 +21,8 @@ ACROSS = (0.0, 1.0, 0.0)  # straight across the track
 def thrust(diameter, pressure):
     """Return the thrust [N] of a nozzle.
 
+    Source: the ideal nozzle, choked beyond a ratio of pressures; docs/validation.md, "Air jet".
+
     Parameters
     ----------
     diameter : float [m]
