@@ -64,7 +64,7 @@ def batch(ctx, sources, configs, overrides, rule, launch, drops, jobs, scheduler
     that some failed.
 
     PARTS are part files, folders of them, patterns ("parts/**/*.stl") and lists. A list is a CSV whose
-    first line names its columns, out of part, units, density, centre_of_mass, names, aspect and config.
+    first line names its columns: part, units, density, centre_of_mass, names, aspect and config, or some.
     -o DIR gets summary.csv with a row a part, index.html, contact_sheet.png, and a folder a part in
     DIR/parts.
     """

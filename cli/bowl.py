@@ -76,10 +76,11 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
     With PART and --target: the diameter, track, climb, turns, fill, hopper, drive, stroke and leaf springs
     that bring the rate through the devices of the bowl file. This is the sheet that a quotation asks for.
 
-    Without PART: the machine of the bowl file (section 'machine'): natural frequency, gain, leaf stress,
-    vibration angle over the radius, sets of leaves that tune it, and what it does from full to empty.
+    Without PART, the machine of the bowl file (section 'machine') is computed: natural frequency, gain, leaf
+    stress and vibration angle over the radius. Sets of leaves that tune it follow, and what it does from
+    full to empty.
 
-    With --measured: what the machine does now beside what it should at that fill, and the likely cause.
+    --measured sets what the machine does now beside what it should at that fill, and names the likely cause.
 
     What the bowl file says of track, drive and machine is kept. Section 'sizing' has the rules of thumb.
     With -o: bowl.json, bowl.csv, bowl_angles.csv, bowl_leaves.csv, bowl_leaf_changes.csv,

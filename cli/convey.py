@@ -32,9 +32,9 @@ def convey(bowl, spans, curve, best_phase, pictures, out):
     slips and hops, the limits and the margins to them. So is the velocity when stroke, friction or
     angle are a little off.
 
-    With -o: convey.json and convey.png; with --vary, convey_curve or convey_map, .csv and .png; with
-    --bowl, the curve over the radius in convey_radius.csv and .png, or drawn into the map; with
-    --best-phase, convey_phase.json, .csv and .png.
+    With -o: convey.json and convey.png. --vary adds convey_curve or convey_map, .csv and .png. --bowl adds
+    the curve over the radius, convey_radius.csv and .png, or draws it into the map. --best-phase adds
+    convey_phase.json, .csv and .png.
     """
     from feederscrew import bowl as bowls
 

@@ -9,8 +9,8 @@ from feederscrew_cli import grouped
 def doctor():
     """Example: feeder doctor
 
-    Print the versions of Python and of every library, which extras are there (and the line that
-    installs one that is not), where compiled kernels are kept, and how to turn on completion.
+    Print the versions of Python and of every library, and which extras are there. Of one that is not, the
+    line that installs it is printed. Then where compiled kernels are kept, and how to turn on completion.
     """
     from feederscrew_cli import health
 

@@ -84,8 +84,8 @@ def drop(part, launch, drops, until, seed, jobs, trace, launches, plate, picture
     With --launches each toss of a file is followed from its own state until it lies still. The state is
     position, quaternion w x y z, velocity and spin (in the part's axes), in SI units. Its columns are
     toss, x0_m to z0_m, qw0 to qz0, vx0 to vz0, wx0 to wz0. face_up is the side of the part that points up
-    at the end. x and y are the place of its centre of mass. p is the share of the runs that end so while
-    friction, restitution and the state are changed by what is not known of them. Measured ends (xe_m,
+    at the end. x and y are the place of its centre of mass. p is the share of the runs that end so.
+    In these, friction, restitution and the state vary by what is not known of them. Measured ends (xe_m,
     ye_m, face_up_end) stand beside them. With -o: tosses.csv, tosses.json and tosses.png.
     """
     _fitting(until, trace, plate, out)

@@ -25,9 +25,9 @@ def rate(part, aspect, heading, rule, gap, fill, taken, play, tolerance, bowl, o
     `feeder config init` lists every kind. --play and --tolerance give the share that passes a device by
     its margin, instead of all or none.
 
-    The shares of the aspects are, with --config, what lies at the track's entry: parts fed from a hopper
-    onto the moving floor of that bowl until time or the rates of change settle it. Else they are the
-    recommended answer for --launch, those of --rule, or those of a file (docs/counts.md).
+    With --config the shares of the aspects are those of what lies at the track's entry. Parts are fed from
+    a hopper onto the moving floor of that bowl until the shares settle. Else they are the recommended
+    answer for --launch, those of --rule, or those of a file (docs/counts.md).
     With -o: rate.json and orientations.csv, what each device does with each orientation.
     """
     from feederscrew import bowl as bowls

@@ -70,7 +70,7 @@ def solutions(bowl, target, density, *, rough=None, worst=False, progress=None):
     worst : bool
         Reach the target at the slowest of every start, here and for friction a fifth lower and higher.
     progress : function, optional
-        Told how many settings are found out, and of how many.
+        Called with how many settings are found, and of how many.
 
     Returns
     -------

@@ -171,7 +171,7 @@ def compare_sets(
     launch, as_published
         As for ``compare``.
     progress : function, optional
-        Told after every file how many are done of how many.
+        Called after every file with how many are done, and of how many.
 
     Returns
     -------

@@ -138,7 +138,7 @@ def trial(
     jobs : int
         Cores to use; the outcome does not depend on it.
     progress : callable, optional
-        Told how many are done of how many.
+        Called with how many are done, and of how many.
     before : callable, optional
         Called before anything is compiled.
 

@@ -85,7 +85,7 @@ def tune(
     rough : function, optional
         The same of FEW parts, which leads to a setting.
     progress : function, optional
-        Told how many settings are found out, and of how many.
+        Called with how many settings are found, and of how many.
 
     Returns
     -------

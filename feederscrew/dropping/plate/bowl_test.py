@@ -103,7 +103,7 @@ def test(
     before : function, optional
         Called once all inputs are found right, before anything is compiled.
     progress : function, optional
-        Told after every batch how many parts are done, on all plates together, and how many there will be.
+        Called after every batch with the parts done, on all plates together, and how many there will be.
 
     Returns
     -------

@@ -68,7 +68,7 @@ def plate(
     jobs : int
         Cores to use; the outcome does not depend on it.
     progress : function, optional
-        Told after every batch how many parts are done, on all plates together, and how many there will be.
+        Called after every batch with the parts done, on all plates together, and how many there will be.
     before : function, optional
         Called once all inputs are found right, before anything is compiled.
 

@@ -115,7 +115,7 @@ def follow(
     jobs : int
         Cores to use; the answer does not depend on it.
     progress : function, optional
-        Told how many tosses are done, and of how many.
+        Called with how many tosses are done, and of how many.
     before : function, optional
         Called once all inputs are found right, before anything is compiled.
 

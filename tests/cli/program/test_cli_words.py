@@ -110,3 +110,14 @@ def test_the_help_of_a_command_lists_each_option_once_in_groups(run, name):
     assert "\n  PART" not in said and "\n  [PART]" not in said, "an argument is no option"
     long = isinstance(command, grouped.Grouped) and len(shown) >= grouped.LONG
     assert "\nOutput:\n" in said or not long
+
+
+@pytest.mark.parametrize("name", list(feeder.commands))
+def test_a_help_text_has_sentences_of_thirty_words_at_most(name):
+    """Lists of choices aside, which stand after a colon."""
+    command = feeder.commands[name]
+    texts = [command.help or "", *(getattr(option, "help", None) or "" for option in command.params)]
+    paragraphs = [words(one) for text in texts for one in re.split(r"\n\s*\n", text)]
+    sentences = [one for text in paragraphs for one in re.split(r"(?<=[.!?])\s+(?=[A-Za-z`(-])", text)]
+    long = [one for one in sentences if len(re.findall(r"\S*\w\S*", one.split(": ")[0])) > 30]
+    assert sentences and long == []
