@@ -17,7 +17,7 @@ from feederscrew.solidbowl.plan import Asked
 def test_what_is_opened_again_is_the_bowl():
     pytest.importorskip("OCP.STEPControl")
     asked, track = Asked(left=True, outlet_angle=0.5), replace(TRACK, bank=np.radians(6.0))
-    made = body(planned(CHAINS["narrowed and rails"], track=track, asked=asked))
+    made = body(planned(CHAINS["narrowed and rails"], track=track, asked=asked, turns=0.6))
     found = step_file(made)
     assert found.data.startswith(b"ISO-10303-21;") and b"'bowl'" in found.data
     assert found.volume == pytest.approx(made.volume, rel=1e-3)
