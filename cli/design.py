@@ -75,10 +75,11 @@ REQUEST = (  # what shall leave, and what may be used
         show_default=True,
         help="Seed of everything that is drawn.",
     ),
+    click.option("--jobs", type=click.IntRange(1, 256), metavar="N", help="Cores to use.  [default: all]"),
 )
 REQUESTED = (
     "target", "aspect", "heading", "up", "outcome", "without", "diameter", "tolerance", "budget", "draws",
-    "seed",
+    "seed", "jobs",
 )  # fmt: skip
 
 
@@ -89,14 +90,14 @@ def _asked(command):
 
 @grouped.command(short_help="From a part and a rate to a bowl that its own trial confirms.")
 @options.part
+@click.argument("others", metavar="[PART...]", nargs=-1, type=options.FILE)
 @_asked
 @options.rule
 @orientation.taken
-@click.option("--jobs", type=click.IntRange(1, 256), metavar="N", help="Cores to use.  [default: all]")
 @options.bowl
 @options.pictures
 @options.output
-def design(part, asked, rule, taken, jobs, bowl, pictures, out):
+def design(part, others, asked, rule, taken, bowl, pictures, out):
     """Example: feeder design parts/washer_m6.stl --target 40/min -o results
 
     Which way up to feed PART, the chain of devices, the track and the drive. Each proposal is tried, and
@@ -108,30 +109,87 @@ def design(part, asked, rule, taken, jobs, bowl, pictures, out):
     The same seed gives the same answer whatever the number of jobs. Ctrl-C gives the best so far, marked
     partial.
 
+    Of several parts each is designed for one track and one chain of devices, as far as they go: what is
+    changed from one to the next is listed in family/changeover.csv. Each has its own folder.
+
     With -o: design.yaml, a bowl file that says what its trial showed, and design.html, the page to hand on.
     Also acceptance.csv, design_trials.csv, and the files of feeder tooling and feeder bowl, with the bowl as
     a solid.
     """
     with held_back():
         from feederscrew import bowl as bowls
-        from feederscrew.designing import beside, loop
+        from feederscrew.designing import loop
         from feederscrew.designing.record import DesignRequest
-        from feederscrew.output import columns, offers
-        from feederscrew.output.designs import files, tables
+        from feederscrew.output.designs import tables
 
-    solid, settings = out.part(part), bowls.settings(**bowl)
-    record, effective = bowls.record(settings), columns.conditions(solid) | bowls.texts(settings)
-    request = DesignRequest(**asked, rule=rule, jobs=jobs or os.cpu_count())
+    settings = bowls.settings(**bowl)
+    record, given = bowls.record(settings), {s.key.name for s in settings if s.given}
+    request = DesignRequest(**asked | {"jobs": asked["jobs"] or os.cpu_count()}, rule=rule)
     named = any(value is not None for value in taken.values())
+    search = {"told": out.say, "before": lambda: waiting.trial(out)}
+    if others:
+        _of_one_part(asked, taken, part)
+        parts = [out.part(part | {"source": source}) for source in (part["source"], *others)]
+        _family(out, parts, (record, given, request), search, (settings, bowl["path"], pictures))
+        return
+    solid = out.part(part)
     known = orientation.shares(out, solid, record, taken, rule) if named else None
     inputs = solid.inputs | (known.inputs if known else {}) | bowls.identity(bowl["path"])
-    with out.folder(solid.name, inputs, effective) as folder:
-        found = loop.design(
-            solid, record, {s.key.name for s in settings if s.given}, request, known=known,
-            told=out.say, before=lambda: waiting.trial(out),
-        )  # fmt: skip
-        document = tables.document(found)
-        made = beside.built(found, settings)
-        out.warn(*found.warnings, *([f"no solid of the bowl is made: {made.why}"] if made.why else []))
-        offers.write(folder, files.offers(found, settings, made), pictures=pictures)
-        out.show(tables.summary(found), document)
+    with _folder(out, solid, inputs, settings) as folder:
+        found = loop.design(solid, record, given, request, known=known, **search)
+        _written(out, folder, found, settings, pictures)
+        out.show(tables.summary(found), tables.document(found))
+
+
+OF_ONE = (
+    "aspect",
+    "heading",
+    "up",
+    "probabilities",
+    "names",
+    "centre_of_mass",
+)  # options that tell of a part
+
+
+def _of_one_part(*groups):
+    """Refuse options that are of one part where there are several."""
+    for name in OF_ONE:
+        if any(group.get(name) not in (None, "", ()) for group in groups):
+            raise click.UsageError(f"--{name.replace('_', '-')} is of one part - design that one alone")
+
+
+def _folder(out, solid, inputs, settings):
+    from feederscrew import bowl as bowls
+    from feederscrew.output import columns
+
+    return out.folder(solid.name, inputs, columns.conditions(solid) | bowls.texts(settings))
+
+
+def _written(out, folder, found, settings, pictures):
+    """What one design leaves in its folder."""
+    from feederscrew.designing import beside
+    from feederscrew.output import offers
+    from feederscrew.output.designs import files
+
+    made = beside.built(found, settings)
+    out.warn(*found.warnings, *([f"no solid of the bowl is made: {made.why}"] if made.why else []))
+    offers.write(folder, files.offers(found, settings, made), pictures=pictures)
+
+
+def _family(out, parts, asked, search, written):
+    """Several parts for one bowl."""
+    from feederscrew import bowl as bowls
+    from feederscrew.designing import families
+    from feederscrew.output import offers
+    from feederscrew.output.designs import family
+
+    settings, path, pictures = written
+    families.named_apart(parts)
+    found = families.family(parts, *asked, **search)
+    for one in found.members:
+        with _folder(out, one.part, one.part.inputs | bowls.identity(path), settings) as folder:
+            _written(out, folder, one, settings, pictures)
+    inputs = {name: value for part in parts for name, value in part.inputs.items()}
+    with out.folder("family", inputs | bowls.identity(path), bowls.texts(settings)) as folder:
+        offers.write(folder, family.offers(found), pictures=pictures)
+        out.show(family.summary(found), family.document(found))

@@ -1,17 +1,19 @@
 """From a part and a rate to a bowl that its own trial confirms."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from feederscrew.api import asked
 from feederscrew.api.asked import Quantity
 from feederscrew.bowl import Bowl
+from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import DesignStudy
 from feederscrew.part import Part
 from feederscrew.studies.rate import LEAST
 
 
 def design(
-    part: Part,
+    part: Part | Sequence[Part],
     target: Quantity,
     bowl: Bowl | None = None,
     *,
@@ -20,13 +22,13 @@ def design(
     heading: Quantity | None = None,
     tolerance: Quantity = "0.1 mm",
     **search: Any,
-) -> DesignStudy:
+) -> DesignStudy | FamilyStudy:
     """Design a bowl for a part and a rate and try it, as ``feeder design``.
 
     Parameters
     ----------
-    part : Part
-        From a mesh.
+    part : Part or sequence of Part
+        From meshes. Several share one bowl as far as they can.
     target : str or float [1/s]
         Parts that shall leave, '60/min'.
     bowl : Bowl, optional
@@ -45,9 +47,11 @@ def design(
     Returns
     -------
     DesignStudy
-        Its ``status`` is one of three words; its ``bowl`` has the devices.
+        Its ``status`` is one of three words; its ``bowl`` has the devices. Of several parts a FamilyStudy:
+        its ``members``, whether all is ``shared``, and the worst ``status``.
     """
     from feederscrew import bowl as bowls
+    from feederscrew.designing.families import family
     from feederscrew.designing.loop import design as study
     from feederscrew.designing.record import DesignRequest
 
@@ -58,4 +62,6 @@ def design(
         **search,
     )
     plain = bowls.default() if bowl is None else asked.a_bowl(bowl)
+    if not isinstance(part, Part):
+        return family([asked.a_part(one, mesh=True) for one in part], plain, given, request)
     return study(asked.a_part(part, mesh=True), plain, given, request, known=known)

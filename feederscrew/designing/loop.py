@@ -58,11 +58,11 @@ def design(part, plain, given, request, *, known=None, told=None, before=None):
 def _best(search, proofs):
     """The best design so far, as far as it was proved."""
     studies = [study for study, _ in proofs]
-    return max(studies, key=_merit, default=None) or _without(search)
+    return max(studies, key=merit, default=None) or _without(search)
 
 
-def _merit(study):
-    """What is better: holds, then clean, then the most parts."""
+def merit(study):
+    """Return what of two designs is the better one: holds, then clean, then the most parts."""
     return study.status == "holds", study.jams == 0, study.robust.share, study.delivered[1]
 
 
@@ -74,7 +74,7 @@ def _settled(proofs):
 
 def _prove(search, candidate, proofs):
     """Prove a design as far as it holds; where it lacks nothing but parts a minute, a faster one too."""
-    study = _proved(search, candidate, whole=False)
+    study = proved(search, candidate, whole=False)
     proofs.append((study, candidate))
     if nearest.only_slow(study):
         short = RATE_KEPT * search.request.target / study.delivered[1]
@@ -82,7 +82,7 @@ def _prove(search, candidate, proofs):
         made = calm_drive.PlainBowl(replace(candidate.bowl, devices=()), search.given, None)
         other = exploring.attempted(search, made, candidate.proposal, candidate.weights)
         if other.bowl.drive != candidate.bowl.drive and other.attempt.clean:
-            proofs.append((_proved(search, other, whole=False), other))
+            proofs.append((proved(search, other, whole=False), other))
 
 
 def _make_whole(search, proofs):
@@ -90,7 +90,7 @@ def _make_whole(search, proofs):
     if any(study.status == "holds" or study.partial for study, _ in proofs):
         return
     if proofs:
-        study, candidate = max(proofs, key=lambda one: _merit(one[0]))
+        study, candidate = max(proofs, key=lambda one: merit(one[0]))
         if whole(study):
             return
     else:
@@ -102,11 +102,11 @@ def _make_whole(search, proofs):
             order, key=lambda one: (one.attempt.clean, -len(one.attempt.faults), one.attempt.rate)
         )
     proofs[:] = [one for one in proofs if one[1] is not candidate]
-    proofs.append((_proved(search, candidate, whole=True), candidate))
+    proofs.append((proved(search, candidate, whole=True), candidate))
 
 
-def _proved(search, candidate, *, whole):
-    """The design with its draws and its queue; unless ``whole``, only as far as it holds."""
+def proved(search, candidate, *, whole):
+    """Return the design with its draws and its queue; unless ``whole``, only as far as it holds."""
     request, part = search.request, search.part
     known, candidate = exploring.at_its_drive(search, candidate)
     bowl, ways, weights, row = candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.row

@@ -129,7 +129,7 @@ def summary(study):
     first, *rows = outcome(d)
     rows = [first, *why, *rows, *dimensions(d), *(("risk", one) for one in d["risks"])]
     rows.append(("trials, parts", f"{len(d['attempts'])}, {d['trial_parts']}"))
-    return two_columns([line for row in rows for line in _folded(*row)])
+    return two_columns([line for row in rows for line in folded(*row)])
 
 
 def two_columns(rows):
@@ -137,7 +137,8 @@ def two_columns(rows):
     return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
 
 
-def _folded(name, value):
+def folded(name, value):
+    """Return rows of a name and the lines of a long value."""
     lines = textwrap.wrap(value, WIDTH, break_long_words=False, break_on_hyphens=False) or [""]
     return [(name, lines[0]), *(("", line) for line in lines[1:])]
 

@@ -1,0 +1,127 @@
+"""Several parts for one bowl: one chain where one suits all, else what is changed."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.designing import families
+from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
+from feederscrew.errors import FeederError
+from feederscrew.output.designs import family
+from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.isolating.chain import Cut
+
+SMALL, LARGE = shapes.part(shapes.box(10, 8, 4), "small"), shapes.part(shapes.box(14, 11, 6), "large")
+BOWL = bowls.default()
+
+
+def cut(kind, value, low, high):
+    """A device of a design whose value [mm] may lie between two others."""
+    first, least, most = (
+        made(kind, "design", limit=1e-3 * one, text=f"{one:g} mm") for one in (value, low, high)
+    )
+    return Cut(first, 5e-4, 5e-4, least, most, ())
+
+
+def design(part, *cuts, bowl=BOWL, held=20):
+    """A design that holds, of some cuts."""
+    queue = FilledQueue("normal", 12, 60.0, 60.0, 45.0, 45, 45, 5, 0, 0)
+    own = replace(bowl, devices=tuple(one.device for one in cuts))
+    return DesignStudy(
+        part, DesignRequest(0.5), own, "A@0", 0, cuts=cuts, robust=RobustRun(20, held, ""), queues=(queue,)
+    )
+
+
+@pytest.mark.parametrize(
+    ("windows", "common"),
+    [
+        (((4.0, 3.0, 5.0), (4.5, 3.5, 6.0)), [4e-3]),  # the first one's own
+        (((4.0, 3.0, 5.0), (4.5, 4.2, 6.0)), [4.5e-3]),  # the second one's
+        (((4.0, 3.0, 5.0), (5.5, 4.6, 6.0)), [4.8e-3]),  # the middle of 4.6 to 5
+        (((4.0, 5.0, 3.0), (5.5, 6.0, 4.6)), [4.8e-3]),  # ends the other way round
+        (((4.0, 3.0, 5.0), (5.5, 5.1, 6.0)), None),
+    ],
+)
+def test_a_value_suits_all_where_their_windows_meet(windows, common):
+    found = families.common_limits([[cut("gap", *one)] for one in windows])
+    assert found == (common if common is None else pytest.approx(common))
+
+
+def test_what_has_no_number_is_common_only_where_it_is_the_same():
+    first, second = (made("separation", "design", text=f"{{climb: {deg} deg}}") for deg in (-6, -9))
+    one, other = (Cut(device, 0.0, 0.0, device, device, ()) for device in (first, second))
+    assert families.common_limits([[one], [one]]) == [None]
+    assert families.common_limits([[one], [other]]) is None
+
+
+def test_one_track_and_one_chain_are_shared_whatever_the_drive():
+    slow = replace(BOWL, drive=replace(BOWL.drive, amplitude=0.5 * BOWL.drive.amplitude))
+    gap = cut("gap", 4.0, 3.0, 5.0)
+    study = families.FamilyStudy((design(SMALL, gap), design(LARGE, gap, bowl=slow)))
+    assert study.shared and study.status == "holds"
+    (row,) = family.document(study)["changeover"]
+    assert (row["what"], row["how"]) == ("drive.amplitude", "set") and set(row["values"]) == {
+        "small",
+        "large",
+    }
+    wide = replace(BOWL, track=replace(BOWL.track, width=1.5 * BOWL.track.width))
+    other = families.FamilyStudy((design(SMALL, gap), design(LARGE, gap, bowl=wide, held=10)))
+    assert not other.shared and other.status == "falls short"
+    assert [row["what"] for row in family.document(other)["changeover"]] == ["track.width"]
+
+
+def test_what_is_swapped_is_listed_device_by_device():
+    chains = (cut("gap", 4.0, 3.0, 5.0),), (cut("gap", 6.0, 5.5, 7.0), cut("canyon", 9.0, 8.0, 10.0))
+    study = families.FamilyStudy((design(SMALL, *chains[0]), design(LARGE, *chains[1])))
+    rows = family.changeover(study)
+    assert rows == {
+        "what": ["gap 1", "canyon 1"], "how": ["swapped", "swapped"], "small": ["4 mm", "-"],
+        "large": ["6 mm", "9 mm"],
+    }  # fmt: skip
+    assert not study.shared
+    said = dict(zip(*family.summary(study).values(), strict=True))
+    assert said["one bowl for all"] == "no" and said["swapped: gap 1"] == "4 mm; 6 mm"
+
+
+class Loop:
+    """Stands for the search: what it is asked is noted, and what it finds is given."""
+
+    def __init__(self, *found):
+        self.found, self.asked = list(found), []
+
+    def __call__(self, part, plain, given, request, **more):
+        self.asked.append((part.name, plain.track, set(given), request.without))
+        return self.found.pop(0)
+
+
+def test_the_widest_is_designed_first_and_its_kinds_are_offered_to_the_others(monkeypatch):
+    gap, other = cut("gap", 4.0, 3.0, 5.0), cut("gap", 4.5, 4.2, 6.0)
+    known = SimpleNamespace(orientations=())
+    loop = Loop(*(replace(design(*one), tooling=known) for one in ((LARGE, other), (SMALL, gap))))
+    tried = []
+
+    def again(study, cuts, *more, **named):
+        tried.append((study.part.name, [one.device.limit for one in cuts]))
+        return replace(study, cuts=tuple(cuts), bowl=replace(study.bowl, devices=(cuts[0].device,)))
+
+    monkeypatch.setattr(families.loop, "design", loop)
+    monkeypatch.setattr(families, "again", again)
+    monkeypatch.setattr(families.proposals, "moved", lambda one, limit, every, row: replace(
+        one, device=made("gap", "design", limit=limit, text=f"{1e3 * limit:g} mm")))  # fmt: skip
+    study = families.family([SMALL, LARGE], BOWL, {"drive.phase"}, DesignRequest(0.5, without=("wiper",)))
+    (first, common, given, _), (second, track, more, without) = loop.asked
+    assert (first, second) == ("large", "small") and given == {"drive.phase", "track.radius", "track.width"}
+    assert common.width > 14e-3 and track == BOWL.track  # that of the first one's design
+    assert more == given | {"track.bank", "track.climb"}
+    assert "gap" not in without and {"wiper", "canyon", "sorter"} <= set(without)
+    assert study.shared and [one.part.name for one in study.members] == ["small", "large"]
+    assert tried == [("small", pytest.approx([4.5e-3]))]  # the other one holds at that value already
+
+
+def test_parts_of_one_name_are_refused():
+    for names in ((SMALL, SMALL), (SMALL, replace(LARGE, name="Family"))):
+        with pytest.raises(FeederError, match=r"results would be written over - rename a file$"):
+            families.named_apart(names)
