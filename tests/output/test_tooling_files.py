@@ -214,9 +214,21 @@ def test_no_gate_hides_the_part_that_is_drawn_at_it(lying):
 
 def test_a_picture_of_one_device_is_no_wider_than_what_it_shows(lying):
     bowl, every = lying
-    shares = np.full(len(every), 1.0 / len(every))
-    wide = [figures.chain(bowl.devices[:count], every, shares).get_size_inches()[0] for count in (1, 2, 3)]
+    few, shares = every[: figures.LONG], np.full(len(every), 1.0 / len(every))
+    wide = [figures.chain(bowl.devices[:count], few, shares).get_size_inches()[0] for count in (1, 2, 3)]
     assert wide[0] < wide[1] <= wide[2]
+
+
+def test_many_orientations_stand_in_two_panels(lying):
+    """A page of one column of them was three times as high as wide."""
+    bowl, every = lying
+    assert len(every) > figures.LONG
+    page = figures.chain(bowl.devices[:1], every, np.full(len(every), 1.0 / len(every)))
+    named = {text.get_text(): text.get_position() for text in page.texts}
+    places = {round(named[one.name][0], 3) for one in every}
+    assert len(places) == 2 and min(y for _, y in named.values()) > 0.0
+    wide, high = page.get_size_inches()
+    assert high < 1.5 * wide
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ import numpy as np
 from feederscrew.output import style
 from feederscrew.output.designs.tables import PER_MINUTE
 
+FEWEST = 8  # trials there is room for: a single one is a bar, not a block
 CLEAN, DENIED = "#009e73", style.ACCENT
 
 
@@ -34,6 +35,7 @@ def history(study):
     for place, rate, one in zip(places, rates, study.attempts):
         axes.text(place, rate, one.wanted, ha="center", va="bottom", fontsize=7 if len(rates) < 12 else 5.5)
     axes.set_xticks(places)
+    axes.set_xlim(0.4, max(len(places), FEWEST) + 0.6)
     axes.set_ylim(0.0, 1.12 * max([target, *rates]))
     named = {True: "only what is wanted leaves, and nothing stays", False: "denied"}
     handles = [bars[clean.index(good)] for good in named if good in clean]

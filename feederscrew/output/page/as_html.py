@@ -20,6 +20,7 @@ NARROW = 6  # columns of a table that is put beside something else
 MANY = 10  # columns of a table that is printed in smaller letters
 ALONE = 1.4  # times the size of a picture that has the whole width
 TALL = 1.5  # times its width: the height from which a picture has a page of paper to itself
+BROAD = 1000  # [px] width from which a picture that is high as well takes half a page of paper
 LINE, HEADING = 29, 70  # [px] about the height of a row of a table, and of its head
 SCRIPTS = ("three.js", "viewer.js")
 HINT = (
@@ -166,7 +167,7 @@ def _picture(picture, scale=1.0):
     """The picture at its own size or smaller; one that stands alone is larger."""
     width, height = (round(scale * pixels) for pixels in _size(picture))
     kind = "stand-in" if picture.printed else "plain"
-    kind += " tall" if height > TALL * width else ""
+    kind += " tall" if height > TALL * width else " broad" if width > BROAD and height > 0.7 * width else ""
     return (
         f'<figure id="{picture.file}" class="{kind}"><img src="{_data("image/png", picture.content)}" '
         f'width="{width}" height="{height}" alt="{escape(picture.alt)}"></figure>'

@@ -2,6 +2,7 @@
 
 import platform
 from importlib import metadata
+from pathlib import Path
 
 from feederscrew import __version__
 from feederscrew.output import tables
@@ -40,16 +41,18 @@ def repeat(case):
     """The inputs: command, files, bowl values, versions, and the table of aspects to the last digit."""
     hashes = tables.frame({"input": list(case.inputs), "sha256": list(case.inputs.values())})
     bowl = slide_tables.settings(case.settings).only(("key", "value", "from", "meaning"))
+    origins = [Path(origin).name for origin in bowl["from"]]  # the inputs have their folders
+    bowl = tables.frame({name: origins if name == "from" else bowl[name] for name in bowl})
     return Chapter(
         (
             *((Code(case.command),) if case.command else ()),
             Text("The same program and inputs give this page again, byte for byte."),
             Table(hashes),
+            Text(f"Versions: {', '.join(map(' '.join, _versions()))}."),
             Text("The bowl: every value in effect and where it came from."),
             Table(bowl),
             Text("The aspects to six digits, as feeder aspects writes them."),
             numbers(case),
-            Text(f"Versions: {', '.join(map(' '.join, _versions()))}."),
         ),
     )
 

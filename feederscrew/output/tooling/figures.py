@@ -22,6 +22,7 @@ LEFT, COLUMN, ROW, HEAD, FOOT = 230, 300, 170, 134, 30  # pixels
 PASSES, FALLS = "#0072b2", "#d55e00"
 TRACK, AIR, PART, TOUCHING = "#e3e8ec", "#ffffff", "#9fb3c4", "#56697a"
 WIDEST = 420  # pixels of a column
+LONG, BROAD = 9, 2200  # rows from which there are two panels of them, if no more pixels wide than so
 LINE = 17  # pixels between lines of text
 KEY = (
     "from above: wall below, parts move to the right",
@@ -50,24 +51,30 @@ def chain(devices, every, shares, wanted=None):
     shown = [device for device in devices if device.placed]
     rows = _rows(every, shares, wanted)
     wide = max(LEAST, LEFT + min(max(COLUMN, (WIDTH - LEFT) / max(len(shown), 1)), WIDEST) * len(shown))
-    page = style.page(wide, HEAD + ROW * len(rows) + FOOT)
+    panels = 2 if len(rows) > LONG and 2 * wide <= BROAD else 1
+    high = -(-len(rows) // panels)
+    page = style.page(panels * wide, HEAD + ROW * high + FOOT)
     column = (wide - LEFT) / max(len(shown), 1)
     title = "Each orientation where each device bears least" if wanted is None else (
         f"What lets {every[wanted].name} leave: each orientation where each device bears least"
     )  # fmt: skip
     _heading(page, title, _missing(every, rows, shares))
-    for place, device in enumerate(shown):
-        ink.text(page, LEFT + place * column + 8, HEAD - 22, _device(device, place), weight="bold")
+    for panel in range(panels):
+        for place, device in enumerate(shown):
+            left = panel * wide + LEFT + place * column + 8
+            ink.text(page, left, HEAD - 22, _device(device, place), weight="bold")
     size = _scale(every, rows, column)
     for place, k in enumerate(rows):
-        top = HEAD + place * ROW
+        panel, line = divmod(place, high)
+        left, top = panel * wide, HEAD + line * ROW
         found = tightest.until_returned(shown, every[k], every)
-        ink.rule(page, top)
-        _told(page, top, every[k], shares[k], found, k == wanted)
+        if panel == 0:
+            ink.rule(page, top)
+        _told(page, (left + 16, top), every[k], shares[k], found, k == wanted)
         for step, one in enumerate(found):
-            _cell(page, (LEFT + step * column, top, column, ROW), one, size)
+            _cell(page, (left + LEFT + step * column, top, column, ROW), one, size)
         if every[k].returned:
-            _bare(page, (LEFT, top, column, ROW), every[k], size)
+            _bare(page, (left + LEFT, top, column, ROW), every[k], size)
     return page
 
 
@@ -223,20 +230,21 @@ def _heading(page, title, missing):
         ink.text(page, 16, 50 + LINE * line, text, size=8)
 
 
-def _told(page, top, one, share, found, is_wanted):
+def _told(page, at, one, share, found, is_wanted):
     """What becomes of an orientation, at the left of its row."""
+    left, top = at
     if all(passage.verdict.passes > 0.0 for passage in found):
         word = tightest.fate(one, found)
         colour = PASSES if word.startswith("leaves") else FALLS
     else:
         word, colour = f"{found[-1].fate} by {found[-1].device.kind.replace('_', ' ')}", FALLS
-    ink.text(page, 16, top + 30, one.name, size=12, weight="bold", colour=colour)
-    ink.text(page, 16, top + 52, f"{100.0 * share:.3g} % of the parts")
+    ink.text(page, left, top + 30, one.name, size=12, weight="bold", colour=colour)
+    ink.text(page, left, top + 52, f"{100.0 * share:.3g} % of the parts")
     lines = textwrap.wrap(word, NARROW)
     for line, text in enumerate(lines):
-        ink.text(page, 16, top + 52 + (1 + line) * LINE, text, colour=colour)
+        ink.text(page, left, top + 52 + (1 + line) * LINE, text, colour=colour)
     if is_wanted:
-        ink.text(page, 16, top + 52 + (1 + len(lines)) * LINE, "wanted", weight="bold")
+        ink.text(page, left, top + 52 + (1 + len(lines)) * LINE, "wanted", weight="bold")
 
 
 def _measured(page, top, one, share):
