@@ -218,3 +218,7 @@ def test_the_history_of_a_loop_can_be_read():
     attempts = [SimpleNamespace(rate=0.5 * k, clean=k > 1, wanted="A@0") for k in (1, 2)]
     figure = figures.history(SimpleNamespace(attempts=attempts, request=SimpleNamespace(target=1.0)))
     assert (figure.get_size_inches() * figure.dpi >= [600, 250]).all()
+
+
+def test_phases_of_a_cycle_are_told_apart_without_their_colours():
+    assert len({convey.PHASE_LINES[name] for name in ("forward", "backward", "flight")}) == 3

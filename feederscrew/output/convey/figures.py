@@ -14,6 +14,7 @@ from feederscrew.units import factor
 MM_S = factor("mm/s", "velocity")
 PHASE_COLOURS = {"stick": "#5c6b78", "forward": "#009e73", "backward": "#d55e00", "flight": "#0072b2"}
 PLATE = "#aab4bd"
+PHASE_LINES = {"stick": "-", "forward": "-", "backward": "--", "flight": ":"}
 REGIMES = {  # colour and label; what a designer wants is the strongest
     "stick": ("#eef2f5", "sticks"),
     "forward": ("#79bfa4", "slips forward only"),
@@ -154,7 +155,8 @@ def _by_phase(axes, trace, way):
         inside = trace.phase == place
         if inside.any():
             shown = np.where(inside, way, np.nan)
-            axes.plot(trace.time, shown, color=PHASE_COLOURS[name], linewidth=1.6, label=f"part: {name}")
+            look = {"color": PHASE_COLOURS[name], "linestyle": PHASE_LINES[name], "linewidth": 1.6}
+            axes.plot(trace.time, shown, label=f"part: {name}", **look)
 
 
 def _velocity(figure, axes, grid):

@@ -3,6 +3,9 @@
 import numpy as np
 
 from feederscrew.output import style
+from feederscrew.output.aspects.bars import MARKS
+
+STEP = 0.09  # of a group: from the whisker to the mark of a rule, and from there to the next
 
 
 def counts(title, aspects, tally, rules):
@@ -26,7 +29,9 @@ def counts(title, aspects, tally, rules):
     bars(axes, places, tally)
     for place, (name, values) in enumerate(rules.items()):
         label, colour = style.method(name, place)
-        axes.plot(places, 100.0 * values, ls="none", marker="_", ms=16, mew=2, color=colour, label=label)
+        beside = places + STEP * (place + 1)  # of the whisker, which stands in the middle
+        look = {"marker": MARKS[place % len(MARKS)], "ms": 5, "mec": "white", "mew": 0.6, "color": colour}
+        axes.plot(beside, 100.0 * values, ls="none", label=label, **look)
     style.named_ticks(axes, places, aspects.names)
     figure.legend(loc="outside lower center", ncols=min(len(rules) + 2, 6), frameon=False, fontsize=8)
     return figure
@@ -38,5 +43,5 @@ def bars(axes, places, tally):
     high = 100.0 * np.maximum(tally.gentle, tally.violent)
     axes.bar(places, high - low, 0.8, bottom=low, color=style.FAINT, label="gentle to violent launches")
     error = 100.0 * np.stack([tally.p - tally.low, tally.high - tally.p])
-    axes.bar(places, 100.0 * tally.p, 0.4, color=style.INK, alpha=0.75, label="drops")
+    axes.bar(places, 100.0 * tally.p, 0.4, color=style.ANSWER, label="drops")
     axes.errorbar(places, 100.0 * tally.p, error, fmt="none", ecolor=style.INK, capsize=4, linewidth=1.0)
