@@ -1,12 +1,13 @@
 """``feeder design``."""
 
+import contextlib
 import os
 
 import click
 
 from feederscrew_cli import grouped, options, orientation, quantity, waiting
 from feederscrew_cli.angle import Angle
-from feederscrew_cli.interrupt import held_back
+from feederscrew_cli.interrupt import held_back, noted
 from feederscrew_cli.quantity import Quantity
 from feederscrew_cli.span import Span
 
@@ -126,19 +127,31 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
     record, given = bowls.record(settings), {s.key.name for s in settings if s.given}
     request = DesignRequest(**asked | {"jobs": asked["jobs"] or os.cpu_count()}, rule=rule)
     named = any(value is not None for value in taken.values())
-    search = {"told": out.say, "before": lambda: waiting.trial(out)}
     if others:
         _of_one_part(asked, taken, part)
         parts = [out.part(part | {"source": source}) for source in (part["source"], *others)]
-        _family(out, parts, (record, given, request), search, (settings, bowl["path"], pictures))
+        _family(out, parts, (record, given, request), (settings, bowl["path"], pictures))
         return
     solid = out.part(part)
     known = orientation.shares(out, solid, record, taken, rule) if named else None
     inputs = solid.inputs | (known.inputs if known else {}) | bowls.identity(bowl["path"])
     with _folder(out, solid, inputs, settings) as folder:
-        found = loop.design(solid, record, given, request, known=known, **search)
+        with _stoppable(out) as search:
+            found = loop.design(solid, record, given, request, known=known, **search)
         _written(out, folder, found, settings, pictures)
         out.show(tables.summary(found), tables.document(found))
+
+
+@contextlib.contextmanager
+def _stoppable(out):
+    """What tells of a search, and ends it where a Ctrl-C was dropped while something loaded."""
+    with noted() as again:
+
+        def told(text):
+            again()
+            out.say(text)
+
+        yield {"told": told, "before": lambda: waiting.trial(out)}
 
 
 OF_ONE = (
@@ -176,7 +189,7 @@ def _written(out, folder, found, settings, pictures):
     offers.write(folder, files.offers(found, settings, made), pictures=pictures)
 
 
-def _family(out, parts, asked, search, written):
+def _family(out, parts, asked, written):
     """Several parts for one bowl."""
     from feederscrew import bowl as bowls
     from feederscrew.designing import families
@@ -185,7 +198,8 @@ def _family(out, parts, asked, search, written):
 
     settings, path, pictures = written
     families.named_apart(parts)
-    found = families.family(parts, *asked, **search)
+    with _stoppable(out) as search:
+        found = families.family(parts, *asked, **search)
     for one in found.members:
         with _folder(out, one.part, one.part.inputs | bowls.identity(path), settings) as folder:
             _written(out, folder, one, settings, pictures)

@@ -34,6 +34,32 @@ def held_back():
 
 
 @contextlib.contextmanager
+def noted():
+    """Note Ctrl-C beside letting it through; gives a function that lets it through again.
+
+    A library that is loading may drop it: whoever works on asks now and then.
+    """
+    caught = []
+    if threading.current_thread() is not threading.main_thread():
+        yield lambda: None
+        return
+
+    def catch(*told):
+        caught.append(told)
+        raise KeyboardInterrupt
+
+    def again():
+        if caught:
+            raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGINT, catch)
+    try:
+        yield again
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@contextlib.contextmanager
 def ended_within(seconds):
     """Let Ctrl-C end the program within so many seconds [s], from any moment of the block.
 

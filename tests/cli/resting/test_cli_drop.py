@@ -263,6 +263,18 @@ def test_an_interrupt_before_the_first_drop_leaves_nothing(run, stl, tmp_path, m
     assert done.stderr.strip() == "Stopped." and not (tmp_path / "results").exists()
 
 
+def test_an_interrupt_that_a_library_drops_is_heard_at_the_next_word():
+    before = signal.getsignal(signal.SIGINT)
+    with interrupt.noted() as again:
+        again()
+        with contextlib.suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+            pytest.fail("nothing was raised")
+        with pytest.raises(KeyboardInterrupt):
+            again()
+    assert signal.getsignal(signal.SIGINT) is before
+
+
 def test_an_interrupt_is_held_back_and_then_heard():
     done = []
     with pytest.raises(KeyboardInterrupt), interrupt.held_back():
