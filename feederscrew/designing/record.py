@@ -219,6 +219,8 @@ def _shortfalls(study):
     minute, (purity, _) = 60.0, study.purity
     low = study.delivered[1]
     if study.bowl is None:
+        if study.partial:
+            yield "stopped before a design was proved"
         for one in study.attempts[:3]:
             yield f"{one.wanted}: {', '.join(one.faults[:3]) or 'nothing leaves'}"
         return

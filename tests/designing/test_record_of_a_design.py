@@ -52,6 +52,11 @@ def test_it_holds_only_where_nothing_is_missing():
     assert "of the 40/min asked for" in study(queue(right=30, left=30, returned=20)).why
 
 
+def test_what_was_stopped_early_says_so():
+    none = DesignStudy(PART, DesignRequest(1.0), None, None, None, partial=True)
+    assert (none.status, none.why) == ("none", "stopped before a design was proved")
+
+
 def fills(right, left, returned, **more):
     """Queues at each fill; those at low and high fill are a sixth of it."""
     few = [(name, parts, right // 6, right // 6, returned // 6) for name, parts, _ in queues.FILLS]
