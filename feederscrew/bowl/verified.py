@@ -32,6 +32,7 @@ class Verified:
     version: str
     part: str  # sha256 of its file
     bowl: str  # of ``fingerprint``
+    up: str = ""  # aspects that counted as the wanted one, whatever their heading: 'A, B'
 
     def void(self, part: Part | None, bowl: Bowl, version: str) -> Iterator[str]:
         """Say what has changed since, a sentence each; nothing where the block still holds.
@@ -54,9 +55,10 @@ class Verified:
     def sentence(self) -> str:
         """What the trial showed, in a sentence."""
         minute = units.factor("/min", "rate")
+        counted = f", {self.up} at any heading counted in: a rule counts one orientation" if self.up else ""
         return (
             f"its trial delivers {self.delivered / minute:.4g}/min ({self.low / minute:.3g} "
-            f"to {self.high / minute:.3g}) of {self.wanted}, purity {100.0 * self.purity:.3g} %, "
+            f"to {self.high / minute:.3g}) of {self.wanted}{counted}, purity {100.0 * self.purity:.3g} %, "
             f"{self.jams} jams in {self.queue_seconds:.3g} s of queue, "
             f"{self.held} of {self.draws} draws sort: {self.status}"
         )
@@ -116,7 +118,7 @@ def verified(path: str | PathLike[str] | None) -> Verified | None:
             text["status"], text["wanted"], target, delivered, low, high,
             float(text["purity"]), int(text["jams"]),
             units.quantity(text["queue_seconds"], "time"), int(text["draws"]), int(text["draws_held"]),
-            text["version"], text["part"], text["bowl"],
+            text["version"], text["part"], text["bowl"], text.get("up", ""),
         )  # fmt: skip
     except (KeyError, ValueError, units.QuantityError):
         return None

@@ -8,6 +8,7 @@ import pytest
 import shapes
 from scipy.stats import binom
 
+from feederscrew import bowl as bowls
 from feederscrew.designing import queues
 from feederscrew.designing.record import (
     Attempt,
@@ -17,7 +18,7 @@ from feederscrew.designing.record import (
     RobustRun,
 )
 from feederscrew.output import tables as tables_of
-from feederscrew.output.designs import design_page, tables
+from feederscrew.output.designs import design_file, design_page, tables
 from feederscrew.output.page import blocks
 from feederscrew.output.page.as_html import html
 
@@ -25,8 +26,6 @@ PART = shapes.part(shapes.box(10, 10, 10))
 
 
 def study(queue, held=20, **more):
-    from feederscrew import bowl as bowls
-
     known = {"robust": RobustRun(20, held, "A@0 is lost"), "queues": (queue,), **more}
     return DesignStudy(PART, DesignRequest(40.0 / 60.0), bowls.default(), "A@0", 0, **known)
 
@@ -50,6 +49,13 @@ def test_it_holds_only_where_nothing_is_missing():
     assert "purity 88.9 %, 98 % are asked for" in study(queue(right=40)).why
     assert "18 of 20 draws of part, friction and drive sort: A@0 is lost" in study(queue(), held=18).why
     assert "of the 40/min asked for" in study(queue(right=30, left=30, returned=20)).why
+
+
+def test_the_bowl_file_says_what_counted_as_one(tmp_path):
+    for up, said in (((), "of A@0, purity"), (("A", "B"), "of A@0, A, B at any heading counted in: a rule")):
+        made = replace(study(queue()), request=DesignRequest(40.0 / 60.0, up=up))
+        (tmp_path / "design.yaml").write_text(design_file.bowl_file(made, ()))
+        assert said in bowls.verified(tmp_path / "design.yaml").sentence
 
 
 def test_what_was_stopped_early_says_so():

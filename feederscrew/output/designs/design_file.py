@@ -70,6 +70,8 @@ def _verified(study):
     value, low, high = (f"{rate / PER_MINUTE:.4g}/min" for rate in study.delivered)
     yield "status", study.status
     yield "wanted", study.wanted
+    if study.request.up:
+        yield "up", f'"{", ".join(study.request.up)}"'
     yield "outcome", study.outcome
     yield "target", f"{study.request.target / PER_MINUTE:.6g}/min"
     yield "delivered", value

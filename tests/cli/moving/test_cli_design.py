@@ -68,6 +68,7 @@ def test_the_bowl_file_reads_back_as_what_was_tried(designed):
     assert 2e3 * bowl.drive.amplitude == pytest.approx(document["bowl"]["peak_to_peak_mm"], rel=1e-9)
     assert 2e3 * bowl.track.radius == pytest.approx(document["bowl"]["diameter_mm"], rel=1e-9)
     assert 60.0 * tried.delivered == pytest.approx(document["delivered_per_minute"], rel=1e-3)
+    assert f"of {document['wanted']}, purity" in tried.sentence
     page = (folder / "design.html").read_text()
     assert document["status"] in page and 'id="trial"' in page and "trial-views" in page
     assert (folder / "acceptance.csv").read_text().startswith("quantity,fill,computed,low,high,unit,measured")
