@@ -95,4 +95,4 @@ def _over_files(sources, launch, as_published, pictures, out):
     with out.folder("measured", study.inputs) as folder:
         offers.write(folder, sets.offers(study), pictures=pictures)
     for shown in sets.shown(study, out.format):
-        out.show(shown, sets.document(study))
+        out.show(shown, sets.document(study), spare=sets.SPARE)

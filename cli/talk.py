@@ -109,7 +109,8 @@ class Output:
             shown, left_out = tables.to_page(shown, spare)
             if left_out:
                 self.say(f"Left out of the table: {', '.join(left_out)}; --format csv prints them too")
-        click.echo(tables.text(shown, self.format, _window()), nl=False)
+        width = _window() or (tables.PAGE if spare else None)
+        click.echo(tables.text(shown, self.format, width), nl=False)
 
     def json(self, document):
         """Print a document as JSON."""

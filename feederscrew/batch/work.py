@@ -99,7 +99,7 @@ def travel(conditions):
 
 
 def _rate(part, found, task, files):
-    """Rate the aspect wanted, else the orientation that leaves most often, for the summary."""
+    """Rate the aspect wanted, else the orientation that leaves most often; why, where the rate is 0."""
     if part.vertices is None:
         return {"note": "a part card has no outline: no rate"}
     conditions, rule = task.request.conditions, task.choices.rule
@@ -110,7 +110,9 @@ def _rate(part, found, task, files):
     rates = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
     way = study.rate.orientations.lying[study.rate.row].name
     named = {"orientation": way, "rule": rule, "answer": study.answer}
-    return named | {name: document[name] for name in (*wanted, *rates)}
+    why = "; ".join(rate_tables.remarks(study)) if document["parts_per_minute"] <= 0.0 else ""
+    noted = {"note": why} if why else {}
+    return named | noted | {name: document[name] for name in (*wanted, *rates)}
 
 
 def _tried(part, request):

@@ -10,6 +10,7 @@ from feederscrew.part.record import Part
 from feederscrew.studies.tooling import ToolingStudy, listed
 from feederscrew.tooling.devices.base import Device
 from feederscrew.trial.result import TrialRun
+from feederscrew.units import counted
 
 OUTCOMES = ("any", "lying", "hanging")
 HOLDS, FALLS_SHORT, NONE = "holds", "falls short", "none"
@@ -233,7 +234,7 @@ def _shortfalls(study):
         text = "nothing left the queue" if np.isnan(purity) else f"purity {100.0 * purity:.3g} %"
         yield f"{text}, {100.0 * PURE:.3g} % are asked for"
     if study.jams:
-        yield f"{study.jams} jams in {study.queue_seconds:.3g} s of queue"
+        yield f"{counted(study.jams, 'jam')} in {study.queue_seconds:.3g} s of queue"
     if study.robust.share < DRAWS_HELD:
         worst = f": {study.robust.worst}" if study.robust.worst else ""
         yield f"{study.robust.held} of {study.robust.draws} draws of part, friction and drive sort{worst}"

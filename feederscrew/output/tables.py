@@ -125,7 +125,8 @@ def text(frame, format, width=None):
     format : str
         ``'table'`` or ``'csv'``.
     width : int, optional
-        Letters of a line of the window; a wider table is folded, its first column at the head of each piece.
+        Letters of a line of the window. Texts of a wider table go on below; where that is not enough, it is
+        folded, its first column at the head of each piece.
 
     Returns
     -------
@@ -242,7 +243,12 @@ def is_share(name):
 def _aligned(frame, width):
     """Columns side by side: texts to the left, numbers with their points in one line."""
     columns = {name: _column(name, column) for name, column in frame.items()}
-    pieces = [list(columns.values())] if width is None or not columns else window.folded(columns, width)
+    if width is None or not columns:
+        pieces = [list(columns.values())]
+    else:
+        texts = [name for name, column in frame.items() if not is_numeric(column)]
+        beside = window.narrowed(columns, texts, width)
+        pieces = window.folded(columns, width) if beside is None else [beside]
     return "\n".join("".join(f"{line}\n" for line in _lines(piece) if line) for piece in pieces)
 
 

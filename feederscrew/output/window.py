@@ -3,6 +3,7 @@
 import textwrap
 
 GAP, LEAST = "  ", 12  # between columns; letters that a column always has
+SLENDER = 20  # letters of a column of texts that is never made narrower so that the others fit beside it
 MOST_NAMING = 3  # columns that name a row, at most
 
 
@@ -33,6 +34,34 @@ def folded(columns, width):
             pieces.append([*head])
         pieces[-1] += added
     return [_in_lines(piece) for piece in pieces]
+
+
+def narrowed(columns, texts, width):
+    """Make the widest columns of texts narrower until all stand side by side.
+
+    Parameters
+    ----------
+    columns : dict of str to list of str
+        Cells of one width by the name of the column, in order.
+    texts : collection of str
+        Names of the columns that may go on below.
+    width : int
+        Letters of a line.
+
+    Returns
+    -------
+    list of list of str or None
+        Columns that fit, texts too long going on below; None where that takes columns too narrow to read.
+    """
+    wide = {name: len(cells[0]) for name, cells in columns.items()}
+    excess = sum(wide.values()) + len(GAP) * (len(wide) - 1) - width
+    while excess > 0:
+        widest = max(texts, key=wide.get, default=None)
+        if widest is None or wide[widest] <= SLENDER:
+            return None
+        wide[widest] -= 1
+        excess -= 1
+    return _in_lines([_broken(cells, wide[name]) for name, cells in columns.items()])
 
 
 def spared(wide, spare, width):

@@ -209,6 +209,16 @@ def test_the_row_is_what_the_commands_say(run):
     )
 
 
+def test_a_rate_of_zero_says_why(tmp_path):
+    (tmp_path / "low.yaml").write_text("devices:\n  - wiper: 1 mm\n")
+    (request,) = asked(NUT, configs=[str(tmp_path / "low.yaml")])
+    row = works.work(of(request)).row
+    assert row["parts_per_minute"] == 0.0
+    assert row["note"] == "wiper (1 mm) rejects the orientation you want; rate is 0"
+    (request,) = asked(NUT)
+    assert "note" not in works.work(of(request)).row
+
+
 def test_a_bug_on_one_part_is_a_reason_and_no_more(monkeypatch):
     monkeypatch.setattr(works, "shares", lambda *given, **named: 1 / 0)
     outcome = works.work(of(asked(NUT)[0]))

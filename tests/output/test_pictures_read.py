@@ -64,6 +64,14 @@ def test_a_way_of_the_tipping_graph_is_drawn_once_with_its_head():
     assert "0.5" in [text.get_text() for text in figure.axes[0].texts]
 
 
+def test_two_ways_as_easy_as_each_other_both_stand_out():
+    """The bracket's B and C are mirror images: the lifts into them differ by rounding."""
+    same = [Transition(0, 1, 1e-3, np.zeros(3)), Transition(0, 2, 1e-3 * (1 + 1e-9), np.zeros(3))]
+    figure = graph.graph("nut", ["A", "B", "C"], [*same, Transition(1, 2, 1e-3, np.zeros(3))], np.ones(3) / 3)
+    texts = figure.axes[0].texts
+    assert [text.get_color() for text in texts if text.get_text() == "1"] == [style.ACCENT] * 3
+
+
 def test_a_thumbnail_shows_the_aspect_that_is_named():
     found = find(NUT)
     first, other = (contact_sheet.thumbnail(NUT, found, name) for name in ("A", "C"))

@@ -123,7 +123,25 @@ def test_a_long_text_goes_on_below_where_the_window_ends():
     lines = tables.text(frame, "table", 50).splitlines()
     assert max(map(len, lines)) <= 50
     assert [word for line in lines for word in line.split() if word.startswith("word")] == reason.split()
-    assert any(line.split() == ["b.stl", "none"] for line in lines)
+    assert any(
+        line.split() == ["b.stl", "none", "2"] for line in lines
+    )  # beside it, not in a piece of its own
+
+
+def test_a_table_a_little_too_wide_stays_whole_and_its_texts_go_on_below():
+    frame = tables.frame(
+        {
+            "device": ["sorter", "rails"],
+            "value": ["of A@188, A@354, play 8.4 mm, sees outline", "4.4 to 11.45 mm"],
+        }
+        | {"margin_pass_mm": [8.3, 0.4073], "returns": ["A@90, all of B, C", "A@90, all of C"]}
+    )
+    head, units, *lines = tables.text(frame, "table", 70).splitlines()
+    assert head.split() == ["device", "value", "margin", "pass", "returns"]
+    assert max(map(len, [head, units, *lines])) <= 70 and len(lines) == 3
+    start = head.index("value")
+    said = " ".join(line[start:].split("  ")[0] for line in lines[:2])
+    assert said == frame["value"][0] and lines[2].startswith("rails")
 
 
 def test_a_quantity_and_its_value_fit_a_terminal_whole():

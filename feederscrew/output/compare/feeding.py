@@ -1,6 +1,6 @@
 """Feeding tests beside the static rules, as tables and documents."""
 
-import numpy as np
+from pathlib import Path
 
 from feederscrew.output import offers as offer
 from feederscrew.output import tables
@@ -41,10 +41,14 @@ def frame(studies):
 
 
 def printed(studies):
-    """Return the table for people: without the rules, three digits behind the point."""
-    found = frame(studies).without(_rules(studies))
-    shares = [name for name in found if name.startswith(("measured", "predicted"))]
-    return tables.frame(found | {name: np.round(found[name].astype(float), 3) for name in shares})
+    """Return the table for people: without the rules, each share with its interval, files without folders."""
+    found = frame(studies)
+    columns = found.only(("set", "device", "passed", "rejected"))
+    columns["set"] = [Path(name).name for name in found["set"]]
+    for name in ("measured", "predicted"):
+        ends = zip(found[name], found[f"{name}_low"], found[f"{name}_high"])
+        columns[name] = ["{:.3f} ({:.3f} to {:.3f})".format(*three) for three in ends]
+    return tables.frame(columns | {"agrees": found["agrees"]})
 
 
 def hidden(study):

@@ -9,6 +9,13 @@ from feederscrew.output import tables
 from feederscrew.output.compare import feeding
 
 DARK = 0.3  # [1] total variation drawn in the darkest shade
+SPARE = (
+    ("QUASISTATIC",),
+    ("CRSA",),
+    ("BARRIER",),
+    ("HOPS",),
+    ("STABILITY",),
+)  # left out first of a wide table
 ROW, COLUMN = 0.24, 0.78  # [in] of a cell of the picture
 
 
@@ -52,12 +59,20 @@ def frame(study):
 
 
 def printed(study):
-    """Return the same for people: fewer columns, whole numbers as such, three digits behind the point."""
+    """Return the same for people: fewer columns, whole numbers as such, three digits behind the point.
+
+    Of the rules those in ``SPARE`` are left out where a line would have more letters than a page.
+    """
     made = frame(study)
     columns = {"set": made["set"], "launch": made["launch"], "parts": _whole(made["parts"])}
     known = zip(_whole(made["inside"]), made["aspects"])
     columns["inside"] = [None if some is None else f"{some} of {all}" for some, all in known]
-    return tables.frame(columns | {name: np.round(made[name].astype(float), 3) for name in study.answers})
+    return tables.frame(columns | {name: _three(made[name]) for name in study.answers})
+
+
+def _three(values):
+    """Numbers as texts with three digits behind the point; None where there is none."""
+    return [None if np.isnan(value) else f"{value:.3f}" for value in values.astype(float)]
 
 
 def _whole(values):

@@ -1,5 +1,6 @@
 """A design on one page to hand on: the answer first, then what it stands on."""
 
+from feederscrew.designing import record
 from feederscrew.output.designs import figures, tables
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import (
@@ -74,12 +75,23 @@ def _sections(study, built):
 
 
 def _answer(study, d):
-    yield Text(f"Status: {study.status}." + (f" {study.why}." if study.why else ""))
+    yield Text(_said(study))
     yield Table(tables.two_columns(tables.outcome(d)))
     if d["bowl"]:
         yield Table(tables.two_columns(tables.dimensions(d)))
     if study.risks:
         yield Notes(tuple(study.risks), loud=True)
+
+
+def _said(study):
+    """What the status says, in a sentence: what is missing, or what all was reached."""
+    if study.status != record.HOLDS:
+        return f"Status: {study.status}. {study.why}."
+    least, draws = 60.0 * record.RATE_KEPT * study.request.target, 100.0 * record.DRAWS_HELD
+    return (
+        f"Status: {study.status}. The lower end of the rate is at least {least:.3g} a minute, the purity at "
+        f"least {100.0 * record.PURE:.3g} %; nothing jams, and at least {draws:.3g} % of the draws sort."
+    )
 
 
 def _tiles(d):

@@ -11,13 +11,14 @@ MOST = 12  # aspects a picture can show
 CLEAR = 4.0  # [pt] between an arrow and a disc
 BEND = 0.12  # of an arrow, so that there and back lie apart
 SPOTS = (0.36, 0.3, 0.42, 0.24, 0.48, 0.54, 0.6, 0.66, 0.72)  # of the way: where the lift may be written
-LETTER = (0.032, 0.085)  # width and height of one, over the ring's radius
+LETTER = (0.041, 0.109)  # width and height of one, over the ring's radius
 DISC = (0.22, 0.22)  # half a disc, over the ring's radius
 FRAMED = 4200.0  # [pt2] square about the disc behind a drawn aspect
 HALF = 0.15  # width of a drawn aspect, over the ring's diameter
 PICTURE = (160, 120)  # [px] of it
 LETTERS = 2  # of a name that fits into a disc
 PALE = "#9ba3aa"  # of ways that are not the easiest
+SAME = 1.001  # of the lowest lift out of a disc, up to which another is as easy
 REACH = 1.45  # of the picture, where the ring of discs has radius 1
 
 
@@ -59,7 +60,7 @@ def graph(title, names, ways, shares, drawn=None):
     note = (
         "below each aspect: the share of all attitudes from which the part, let go without speed, ends on it"
     )
-    axes.text(0.0, -REACH, note, ha="center", va="bottom", fontsize=7, color=style.INK)
+    axes.text(0.0, -REACH, note, ha="center", va="bottom", fontsize=8, color=style.INK)
     axes.set_xlim(-REACH, REACH)
     axes.set_ylim(-REACH, REACH)
     axes.set_aspect("equal")
@@ -95,7 +96,7 @@ def _framed(axes, picture, text, place):
     half = HALF * np.array([1.0, picture.shape[0] / picture.shape[1]])
     low, high = place - half + [0.0, 0.03], place + half + [0.0, 0.03]
     axes.imshow(picture, extent=(low[0], high[0], low[1], high[1]), zorder=4, interpolation="antialiased")
-    look = {"ha": "center", "va": "top", "color": style.INK, "fontsize": 8, "fontweight": "bold", "zorder": 5}
+    look = {"ha": "center", "va": "top", "color": style.INK, "fontsize": 9, "fontweight": "bold", "zorder": 5}
     axes.annotate(text, place - [0.0, half[1] - 0.02], **look)
 
 
@@ -118,7 +119,7 @@ def _arrows(axes, ways, places, sizes, names):
     taken = [(*place, max(DISC[0], _half(names[k])[0]), DISC[1]) for k, place in places.items()]
     for (start, end), lift in sorted(between.items(), key=lambda item: -item[1]):  # the easy ones on top
         ends = (places[start], sizes[start]), (places[end], sizes[end])
-        taken.append(arrow(axes, *ends, lift, lift <= lowest[start], taken))
+        taken.append(arrow(axes, *ends, lift, lift <= SAME * lowest[start], taken))
 
 
 def arrow(axes, begin, end, lift, easiest, taken=()):
@@ -143,7 +144,7 @@ def arrow(axes, begin, end, lift, easiest, taken=()):
     (start, from_size), (end, to_size) = begin, end
     colour, text = style.ACCENT if easiest else PALE, _shown(lift)
     box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
-    look = {"ha": "center", "va": "center", "fontsize": 7, "zorder": 5, "bbox": box}
+    look = {"ha": "center", "va": "center", "fontsize": 9, "zorder": 5, "bbox": box}
     look["color"] = style.ACCENT if easiest else style.INK
     if np.allclose(start, end):
         axes.annotate(text, 1.32 * start, **look)

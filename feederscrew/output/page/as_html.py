@@ -170,7 +170,7 @@ def _picture(picture, scale=1.0):
     kind += " tall" if height > TALL * width else " broad" if width > BROAD and height > 0.7 * width else ""
     return (
         f'<figure id="{picture.file}" class="{kind}"><img src="{_data("image/png", picture.content)}" '
-        f'width="{width}" height="{height}" alt="{escape(picture.alt)}"></figure>'
+        f'width="{width}" height="{height}" style="--own: {width}px" alt="{escape(picture.alt)}"></figure>'
     )
 
 

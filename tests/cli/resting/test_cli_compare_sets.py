@@ -57,7 +57,10 @@ def test_each_set_is_compared_with_every_answer(run, files, tmp_path):
 
 def test_for_people_and_for_programs(run, files):
     some = [path for path in files if path.stem in ("short_cube", "t_shape")]
-    table = run("compare", *some).stdout.splitlines()
+    done = run("compare", *some)
+    table = done.stdout.splitlines()
+    assert max(map(len, table)) <= 100 and "Left out of the table: QUASISTATIC" in done.stderr  # 146 once
+    assert "recommended" in table[0] and "PMI" in table[0]
     assert table[0].split()[:4] == ["set", "launch", "parts", "inside"] and len(table) == 3
     told = json.loads(run("compare", *some, "--format", "json").stdout)
     cube = told["sets"][0]
@@ -72,7 +75,8 @@ def test_another_mesh_than_the_one_counted_is_a_warning(run, files, tmp_path):
     (tmp_path / "c.csv").write_text(text)
     done = run("compare", "c.csv")
     assert done.exit_code == 0
-    (line,) = done.stderr.splitlines()
+    line, left_out = done.stderr.splitlines()
+    assert left_out.startswith("Left out of the table: ")
     assert line.startswith("Warning: c.csv: counted with another part file: its mesh is ff5f7fbd, that of ")
     old = run("compare", cube.parent / "short_cube.stl", "--with", "c.csv")
     assert line in old.stderr.splitlines() and old.exit_code == 0
@@ -133,6 +137,8 @@ def test_a_feeding_test_stands_beside_the_static_rules(run, tmp_path):
     assert float(rows[2]["predicted"]) == pytest.approx(p[8] + p[12], abs=1e-5)  # 20 mm does not pass
     assert float(rows[0]["predicted"]) == pytest.approx(p[8] / (p[8] + p[12]), abs=1e-5)
     assert float(rows[0]["measured"]) == pytest.approx(0.88) and rows[1]["agrees"] == "True"
+    shown = run("compare", "c.csv").stdout.splitlines()
+    assert max(map(len, shown)) <= 100 and "0.880 (0.802 to 0.930)" in shown[1]
     many = json.loads(run("compare", "c.csv", "--format", "json").stdout)
     assert many["sets"] == [] and many["feeding_tests"][0]["config"] == "bowl.yaml"
     fitted = json.loads(run("calibrate", "block.stl", "--with", "c.csv", "--format", "json").stdout)
