@@ -46,6 +46,8 @@ class Answer(Shown):
 def settings(bowl):
     """Return what the kernel needs of a bowl.
 
+    Source: docs/conveying.md, "The model"; the bank is reckoned as friction by ``wedge.level``.
+
     Parameters
     ----------
     bowl : Bowl

@@ -21,6 +21,8 @@ def later(zeros, now):
 def slip_end(a, angle, speed):
     """Return the first angle of this period at which a slip ends.
 
+    Source: own; docs/conveying.md, "How it is computed".
+
     Parameters
     ----------
     a : Harmonic
@@ -70,6 +72,8 @@ def _stop(arc, speed, low, high, steepest):
 
 def landing(lift, angle, height, speed):
     """Return the first angle of this period at which a flight ends.
+
+    Source: own; docs/conveying.md, "How it is computed".
 
     Parameters
     ----------

@@ -91,7 +91,10 @@ def onward(a, start):
 
 
 def reached(arc, span):
-    """Return the harmonic after a span [rad], in its own unit."""
+    """Return the harmonic after a span [rad], in its own unit.
+
+    Source: the addition theorems, as products of the half span.
+    """
     s, c = math.sin(0.5 * span), math.cos(0.5 * span)
     once = arc.level + arc.sine + 2.0 * s * (arc.cosine * c - arc.sine * s)
     if arc.second == 0.0:
@@ -101,7 +104,10 @@ def reached(arc, span):
 
 
 def gain(arc, span):
-    """Integrate over a span [rad]: the velocity gained [A w]. As a product, short spans keep their digits."""
+    """Integrate over a span [rad]: the velocity gained [A w]. As a product, short spans keep their digits.
+
+    Source: the integral of ``value``; docs/conveying.md, "How it is computed".
+    """
     s, c = math.sin(0.5 * span), math.cos(0.5 * span)
     once = arc.level * span + 2.0 * s * (arc.sine * c + arc.cosine * s)
     if arc.second == 0.0:
@@ -111,7 +117,10 @@ def gain(arc, span):
 
 
 def travel(arc, span):
-    """Integrate twice over a span [rad]: the way made from rest [A]."""
+    """Integrate twice over a span [rad]: the way made from rest [A].
+
+    Source: the integral of ``gain``; docs/conveying.md, "How it is computed".
+    """
     curved = arc.cosine * _beyond_sine(span) - arc.sine * _beyond_cosine(span)
     once = 0.5 * (arc.level + arc.sine) * span * span + curved
     if arc.second == 0.0:

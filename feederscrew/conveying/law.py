@@ -59,6 +59,8 @@ def lift_wave(setting):
 def pull_wave(setting, direction, friction):
     """Return the acceleration left after friction of a part about to slip.
 
+    Source: Newton's law along the track less Coulomb's friction; docs/conveying.md, "The model".
+
     Parameters
     ----------
     setting : OperatingPoint
@@ -89,7 +91,10 @@ def _pull(setting, direction, friction):
 
 
 def throw_number(rules):
-    """Return the plate's greatest downward acceleration over a part's own [1]; it hops above 1."""
+    """Return the plate's greatest downward acceleration over a part's own [1]; it hops above 1.
+
+    Source: docs/conveying.md, "The model".
+    """
     return 1.0 - peak(rules.lift) / rules.lift.level
 
 

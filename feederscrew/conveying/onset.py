@@ -12,6 +12,9 @@ SAME = 1e-15  # relative
 def limits_of_slip(setting):
     """Return the least static friction against slip up and down the track.
 
+    Source: ``limits.forward_limit`` and ``limits.backward_limit``; an elliptical drive by Dinkelbach's
+    method.
+
     Parameters
     ----------
     setting : OperatingPoint

@@ -34,6 +34,8 @@ def at_rest(rules):
 def turn(rules, state, tally):
     """Follow the part to the end of this period of the drive.
 
+    Source: docs/conveying.md, "How it is computed".
+
     Parameters
     ----------
     rules : Law
@@ -123,6 +125,8 @@ def _fly(rules, state, tally):
 
 def land(rules, angle, speed, impact):
     """Return the state after an impact: restitution (Newton) across the track, Coulomb's bound along it.
+
+    Source: Newton's restitution, Coulomb's law for the impulses; docs/conveying.md, "The model".
 
     Parameters
     ----------

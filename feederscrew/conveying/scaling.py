@@ -42,6 +42,8 @@ def numbers(setting):
 def with_numbers(found, friction):
     """Return a setting with given numbers.
 
+    Source: own; the five numbers of docs/conveying.md, "The model".
+
     Parameters
     ----------
     found : Numbers

@@ -46,6 +46,8 @@ def settle(rules, state):
 def follow(rules, state, known, patience):
     """Follow a part as ``settle`` does, or to where it joins a motion that is known.
 
+    Source: own; docs/conveying.md, "How it is computed".
+
     Parameters
     ----------
     rules : Law

@@ -43,6 +43,8 @@ OFF = 1.001  # such starts are this much too fast: exactly on it, even an unstab
 def steady(rules, state, out):
     """Return the steady motion reached from one start.
 
+    Source: own; docs/conveying.md, "How it is computed".
+
     Parameters
     ----------
     rules : Law
@@ -123,6 +125,8 @@ def _slid(tally):
 def escape(rules):
     """Return the greatest growth of the speed of a part that slides all the time, up or down the track.
 
+    Source: own; docs/conveying.md, "How it is computed": what a period of sliding adds.
+
     Parameters
     ----------
     rules : Law
@@ -151,6 +155,8 @@ def _averages(out, tally, periods):
 def survey(setting, out):
     """Fill a row: steady motion from rest and, where impacts rebound, from throws; their range of velocity.
 
+    Source: own; docs/conveying.md, "How it is computed".
+
     Parameters
     ----------
     setting : OperatingPoint
@@ -177,7 +183,10 @@ def _nothing(out):
 
 
 def regime(rules):
-    """Return what a part held by static friction does within a cycle, a place [1] in ``limits.REGIMES``."""
+    """Return what a part held by static friction does within a cycle, a place [1] in ``limits.REGIMES``.
+
+    Source: Coulomb's law before the first slip; docs/conveying.md, "The model".
+    """
     if throw_number(rules) >= 1.0 - limits.ROUNDING:
         return limits.HOP
     forward = limits.FORWARD if peak(rules.onset) > 0.0 else limits.RIDE

@@ -29,7 +29,10 @@ class Wave(NamedTuple):
 
 
 def height(wave, angle):
-    """Return the wave at an angle [rad], in its own unit."""
+    """Return the wave at an angle [rad], in its own unit.
+
+    Source: the double angles of sine and cosine.
+    """
     s, c = math.sin(angle), math.cos(angle)
     once = wave.sine * s + wave.cosine * c
     return wave.level + once + 2.0 * wave.sine_2 * s * c + wave.cosine_2 * (c - s) * (c + s)
@@ -42,6 +45,8 @@ def slope(wave):
 
 def bends(wave):
     """Find where a wave turns.
+
+    Source: own; docs/conveying.md, "How it is computed", and the Notes.
 
     Parameters
     ----------
@@ -89,6 +94,8 @@ def crest(wave):
 
 def crossings(wave, knots, sense):
     """Find the zeros of a wave that has at most one between neighbouring knots.
+
+    Source: own; docs/conveying.md, "How it is computed".
 
     Parameters
     ----------

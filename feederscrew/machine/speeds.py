@@ -10,6 +10,8 @@ MM_S = 1e-3  # [m/s]
 def remark(velocity: float, rules: Sizing | None) -> list[str]:
     """Return what is odd about a conveying velocity.
 
+    Source: trade, the keys ``sizing.slowest`` and ``sizing.fastest``; docs/bowl_file.md.
+
     Parameters
     ----------
     velocity : float [m/s]

@@ -82,6 +82,9 @@ def amplitude_for(
 ) -> tuple[tuple[float, float] | None, tuple[float, float]]:
     """Return the smallest stroke from which on a part travels at least so fast.
 
+    Source: docs/bowl.md, "1. The part, and the rate"; the strokes are those of
+    "Why it feeds 220 for half a minute and then 165".
+
     Parameters
     ----------
     bowl : Bowl

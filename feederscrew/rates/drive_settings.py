@@ -57,6 +57,8 @@ class Solution:
 def solutions(bowl, target, density, *, rough=None, worst=False, progress=None):
     """Find every setting of amplitude, angle or frequency alone that gives a rate, with what it lets arrive.
 
+    Source: docs/conveying.md, "Commands".
+
     Parameters
     ----------
     bowl : Bowl

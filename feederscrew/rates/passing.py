@@ -43,6 +43,8 @@ def places(known, counts):
 def ways(known, names):
     """Return which share of each aspect's parts comes to each station, and which goes on from it.
 
+    Source: own; docs/counts.md, "A feeding test, device by device".
+
     Parameters
     ----------
     known : Orientations
@@ -62,6 +64,8 @@ def ways(known, names):
 
 def passing(flow, shares):
     """Return the share that passes of the parts that come, (D,) [1]; NaN where none comes.
+
+    Source: own; docs/counts.md, "A feeding test, device by device".
 
     Parameters
     ----------

@@ -9,6 +9,8 @@ def mean_length(found, rule):
     """Return the mean length along the track of the parts that stay on it [m]; NaN where none does.
 
     What falls off at the entry, or is turned over on the track, goes back at once: it is in nobody's way.
+
+    Source: docs/conveying.md, "Commands".
     """
     chance, enters = entering(found, rule)
     weights = chance * found.stays
@@ -16,7 +18,10 @@ def mean_length(found, rule):
 
 
 def entering(found, rule):
-    """Return the chance (M,) [1] of each orientation by a rule, and the share [1] that stays on the track."""
+    """Return the chance (M,) [1] of each orientation by a rule, and the share [1] that stays on the track.
+
+    Source: docs/conveying.md, "Commands".
+    """
     chance = np.nan_to_num(found.rules[rule])
     return chance, float((chance * found.stays).sum())
 
@@ -25,6 +30,8 @@ def queued(found, row, rule, gap, fill):
     """Return parts on a length of track before the devices [1/m]: all that stay on it.
 
     They come end to end, or as far apart as the devices need.
+
+    Source: docs/conveying.md, "Commands"; the gap is that of docs/tooling.md, "1. The method".
     """
     length = mean_length(found, rule)
     return float(fill / ((found.lengths[row] if np.isnan(length) else length) + max(gap, found.gap)))

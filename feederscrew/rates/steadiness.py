@@ -57,6 +57,8 @@ def steady(devices, lying, bowl, margin):
 def gone(devices, lying, passes):
     """Return which orientations the first device that does not let them pass is sure to get rid of.
 
+    Source: own; docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     devices : sequence of Device

@@ -115,6 +115,8 @@ class Orientations:
 def orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None):
     """Return every stable aspect and heading of a part, and what becomes of it at each device.
 
+    Source: docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     part : Part

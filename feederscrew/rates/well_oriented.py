@@ -75,6 +75,8 @@ class Rate(Shown):
 def wanted(part, aspects, track, name, heading=None):
     """Return aspect and heading that a part shall leave the bowl in.
 
+    Source: docs/mechanics.md, "Headings".
+
     Parameters
     ----------
     part : Part

@@ -16,6 +16,8 @@ EXACT = np.radians(0.05)  # a direction closer than this to an aspect means that
 def named(groups, normals, hull, given):
     """Name the classes of aspects.
 
+    Source: own; docs/resting.md, "Names that stay".
+
     Parameters
     ----------
     groups : sequence of lists of Face

@@ -23,6 +23,8 @@ PLACES, PIECES = 200, 8  # along a hole at which a part is tried; of a side of i
 def falls_through(one, cut):
     """Return whether a hole lets an orientation through that it does not carry.
 
+    Source: own; docs/tooling.md, "1. The method": what becomes of a part that does not pass.
+
     Parameters
     ----------
     one : Orientation

@@ -131,6 +131,8 @@ def unheld(foot, hole, work=None, enough=np.inf):
     """Return the longest way [m] over which a hole leaves a foot without support.
 
     One longer than ``enough`` may be given as any that is longer.
+
+    Source: own; docs/tooling.md, "1. The method".
     """
     from feederscrew.tooling.kernel import unheld as kernel
 

@@ -147,6 +147,8 @@ def hanging_margin(one, width, widest=None):
 def tip_goes_down(one, near):
     """Return whether the end of a shank that lies askew goes down beside the rail at the wall.
 
+    Source: own; docs/tooling.md, "1. The method": rails begin with a lead-in.
+
     Parameters
     ----------
     one : Orientation
@@ -168,6 +170,8 @@ def tip_goes_down(one, near):
 
 def hung(one, span, known=()):
     """Return a part hanging between rails that it came to lying.
+
+    Source: own; docs/tooling.md, "1. The method".
 
     Parameters
     ----------

@@ -19,6 +19,9 @@ FAR = 10.0  # [m] beyond any foot
 def may_lay_over(one, low):
     """Return whether a blade across the track may lay a part over instead of holding it up.
 
+    Source: moments about the rear side of the foot, Coulomb's friction; docs/tooling.md,
+    "1. The method".
+
     Parameters
     ----------
     one : Orientation
@@ -51,6 +54,8 @@ def may_lay_over(one, low):
 def may_lay_aside(one, low, sweep):
     """Return whether a swept blade may lay a part over towards the free edge as it slides along the face.
 
+    Source: moments about a side of the foot, Coulomb's friction; docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     one : Orientation
@@ -76,6 +81,8 @@ def may_lay_aside(one, low, sweep):
 
 def may_turn_and_lie_over(one, low):
     """Return whether a swept blade may lay a part over once it has turned along the face.
+
+    Source: ``may_lay_aside`` with a side of the foot along the face; docs/tooling.md, "1. The method".
 
     Parameters
     ----------
@@ -106,6 +113,8 @@ def _foot_sides(one):
 
 def may_wedge(one, span):
     """Return whether a head that comes first may stick between rails as a wedge.
+
+    Source: a wedge between two angles of friction; docs/tooling.md, "1. The method".
 
     Parameters
     ----------
@@ -139,6 +148,8 @@ def may_wedge(one, span):
 def leans(one, width):
     """Return by how much [m] a canyon may be wider than a part passes by its foot, and still let it through.
 
+    Source: own; docs/tooling.md, "1. The method": the wall holds what turns towards it.
+
     Parameters
     ----------
     one : Orientation
@@ -162,6 +173,8 @@ def leans(one, width):
 
 def rides(one, width, length):
     """Return whether a part on its round side along the track rides over a hole by its sides.
+
+    Source: own; docs/tooling.md, "1. The method".
 
     Parameters
     ----------

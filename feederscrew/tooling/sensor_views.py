@@ -18,6 +18,8 @@ SLIT = 2e-5  # [m] half the width of slits between facets that are closed
 def difference(one, other, sees):
     """Return by how much [m] two orientations differ for a sensor.
 
+    Source: own; docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     one, other : Orientation
@@ -53,6 +55,8 @@ def _reach(area, other):
 @functools.lru_cache(maxsize=512)
 def outline(one, sees, line=0.0):
     """Return the area that a sensor sees of an orientation [m]: ahead from its front, and from its side.
+
+    Source: own; docs/tooling.md, "1. The method".
 
     Parameters
     ----------

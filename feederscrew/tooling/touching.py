@@ -19,6 +19,8 @@ GRID = 1e-8  # [m] of its corners
 def footprint(posture, heading):
     """Return what touches the track.
 
+    Source: own; docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     posture : Posture
@@ -156,6 +158,8 @@ def ring(span, distance, radius, reach):
 def beside(foot, span, distance, radius):
     """Return what of a footprint rests beside a slot between two distances from the wall.
 
+    Source: own; docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     foot : Footprint
@@ -174,6 +178,8 @@ def beside(foot, span, distance, radius):
 
 def within(foot, distance, radius, width):
     """Return what of a footprint lies over a track of some width.
+
+    Source: own; docs/tooling.md, "1. The method".
 
     Parameters
     ----------

@@ -18,6 +18,8 @@ FAR = 10.0  # [m] an opening goes on so far below the track and behind the wall
 def verdict(device, one, every=(), sigma=0.0):
     """Return what a device does with an orientation.
 
+    Source: own; docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     device : Device
@@ -187,6 +189,8 @@ def gate_margin(opening, one):
 
 def opening_margin(opening, one):
     """Return by how much [m] what is seen of a part over the track stays within an opening.
+
+    Source: own; docs/tooling.md, "1. The method".
 
     Parameters
     ----------

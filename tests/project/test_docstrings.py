@@ -114,10 +114,11 @@ def test_what_computes_has_a_source(known):
     assert without == []
 
 
-def test_many_a_formula_names_its_source_where_it_stands(known):
-    """In its own docstring: 18 of 332 once."""
-    able = [doc for _, node, _, doc in known if computes(node, doc)]
-    assert sum(bool(SOURCE.search(doc)) for doc in able) >= 111
+def test_most_formulas_of_the_mechanics_name_their_source_where_they_stand(known):
+    """In their own docstrings: 103 of 230 once; the others select, sort or read."""
+    rooms = ("conveying", "machine", "mechanics", "rates", "resting", "screw", "tooling")
+    able = [doc for name, node, _, doc in known if name.split(".")[0] in rooms and computes(node, doc)]
+    assert sum(bool(SOURCE.search(doc)) for doc in able) >= 0.8 * len(able)
 
 
 def test_a_page_that_is_a_source_is_there_with_its_section():

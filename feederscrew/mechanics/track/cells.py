@@ -26,6 +26,8 @@ ROUNDED = 12  # decimals that tell two radii, widths or banks apart
 def seated(posture, bowl, heading=None):
     """Return how a part lies against the wall of a bowl.
 
+    Source: docs/mechanics.md, "Headings".
+
     Parameters
     ----------
     posture : Posture

@@ -19,6 +19,8 @@ MARGIN = 1e-6  # of every coefficient, so that an equilibrium on the very limit 
 def exists(seat, bowl, phase=0.5 * np.pi):
     """Return whether forces within the friction cones balance the load on a part at rest.
 
+    Source: Coulomb's cones as a linear programme; docs/mechanics.md, "The track".
+
     Parameters
     ----------
     seat : Seat

@@ -48,6 +48,8 @@ class TrackAxes:
 def seat(posture, heading, touching, lean):
     """Return a mesh part in a heading against the wall.
 
+    Source: docs/mechanics.md, "Headings"; the height of the contacts is own.
+
     Parameters
     ----------
     posture : Posture
@@ -114,6 +116,8 @@ def card_seat(posture):
 
 def frame(bowl, walls):
     """Return the directions on the track of a bowl.
+
+    Source: docs/mechanics.md, "Frames and signs".
 
     Parameters
     ----------

@@ -62,7 +62,10 @@ def alike(first, second, mirrored=False):
 
 
 def firsts(posture, headings):
-    """Return for each of the headings (M,) [rad] the first, (M,) [1], that is the same orientation."""
+    """Return for each of the headings (M,) [rad] the first, (M,) [1], that is the same orientation.
+
+    Source: own; what counts as one is in docs/tooling.md, "1. The method".
+    """
     if posture.corners is None or len(headings) < 2:
         return np.arange(len(headings))
     supports, moments = looks(posture, headings)
@@ -101,7 +104,11 @@ def _turned_back(vectors, turn):
 
 @functools.lru_cache(maxsize=1)
 def directions():
-    """Return unit vectors (N, 3) [1] spread over the sphere."""
+    """Return unit vectors (N, 3) [1] spread over the sphere.
+
+    Source: R. Swinbank, R. J. Purser, "Fibonacci grids: a novel approach to global modelling", Q. J. R.
+    Meteorol. Soc. 132(619), 1769-1793, 2006.
+    """
     k = np.arange(DIRECTIONS) + 0.5
     z, turn = 1.0 - 2.0 * k / DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * k
     r = np.sqrt(1.0 - z * z)

@@ -101,6 +101,8 @@ def headings(posture, track):
 def on_track(found, posture, track, reaches=None):
     """Return the same headings on a track of other width, climb or bank, but of the same radius.
 
+    Source: own; docs/mechanics.md, "Headings".
+
     Parameters
     ----------
     found : Headings
@@ -122,6 +124,8 @@ def on_track(found, posture, track, reaches=None):
 
 def laid(found, heading=None):
     """Return the row of the heading that a part ends in, laid on the track and pushed to the wall.
+
+    Source: own; docs/mechanics.md, "Headings".
 
     Parameters
     ----------

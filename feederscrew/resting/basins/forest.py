@@ -44,6 +44,8 @@ def join(heights, limits, ones, others, tops, region, basin, standing):
 
     A way between sinks that lower ways have led to each other is passed over.
 
+    Source: own; docs/resting.md, "Exact tumbling".
+
     Parameters
     ----------
     heights, limits : (B,) float [m], of the sinks
@@ -71,6 +73,8 @@ def join(heights, limits, ones, others, tops, region, basin, standing):
 @compiled
 def adopt(pairs, tops, tie, names, parent, claims):
     """Let every nameless sink be claimed by what lies behind its lowest saddle, or saddles where they tie.
+
+    Source: own; docs/resting.md, "Exact tumbling".
 
     Parameters
     ----------

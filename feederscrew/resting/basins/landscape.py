@@ -48,6 +48,8 @@ def passes(hull, pairs, ends):
     Tipping over an edge turns the part about it: the centre of mass climbs until it stands over the edge,
     if that happens on the way, else the way is downhill and its top is the higher side.
 
+    Source: docs/resting.md, "Barriers and the tipping graph".
+
     Parameters
     ----------
     hull : Hull
@@ -110,13 +112,18 @@ def landscape(hull):
 
 
 def angle(u, v):
-    """Return angles between vectors (..., 3) [rad], true down to the smallest."""
+    """Return angles between vectors (..., 3) [rad], true down to the smallest.
+
+    Source: its sine and cosine are the cross and the scalar product over one and the same length.
+    """
     along = u[..., 0] * v[..., 0] + u[..., 1] * v[..., 1] + u[..., 2] * v[..., 2]
     return np.arctan2(vectors.norm(vectors.cross(u, v)), along)
 
 
 def gentle(normals, pairs):
     """Whether two planes meet in a bend so gentle that it may be part of a curve.
+
+    Source: own; docs/resting.md, "The drop test": turns of less than 25 degrees.
 
     Parameters
     ----------

@@ -53,6 +53,8 @@ def fits(part, aspects, measured):
 def fit_of_passes(part, aspects, counts, ways):
     """Fit the surface exponent to what passed the devices of a bowl.
 
+    Source: maximum likelihood; docs/resting.md, "Surface-weighted tumbling".
+
     Parameters
     ----------
     part : Part

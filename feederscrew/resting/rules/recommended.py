@@ -168,6 +168,8 @@ def shape(p):
     """Return how wide intervals are at shares p, relative to a share of a half: (A,) [1].
 
     It falls as the scatter of a count does, but for FLOOR.
+
+    Source: own; docs/resting.md, "The recommended answer".
     """
     return (2.0 * np.sqrt(np.clip(p * (1.0 - p), 0.0, None)) + FLOOR) / (1.0 + FLOOR)
 

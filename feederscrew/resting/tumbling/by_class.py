@@ -96,6 +96,8 @@ def ground(part, aspects):
 def exact(found, part, aspects, exponent=surface.EXPONENTS["hard"]):
     """Compute the columns that exact tumbling adds to the aspects of a part.
 
+    Source: docs/resting.md, "Exact tumbling" and "Barriers and the tipping graph".
+
     Parameters
     ----------
     found : Ground

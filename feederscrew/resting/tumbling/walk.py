@@ -165,7 +165,11 @@ def rolls(edges, directions, ends):
 
 @compiled
 def triangle_area(a, b, c):
-    """Signed area [sr] of a spherical triangle of unit vectors, positive counter-clockwise from outside."""
+    """Signed area [sr] of a spherical triangle of unit vectors, positive counter-clockwise from outside.
+
+    Source: A. van Oosterom, J. Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed.
+    Eng. BME-30(2), 125-126, 1983.
+    """
     return 2.0 * math.atan2(triple(a, b, c), 1.0 + dot(a, b) + dot(b, c) + dot(c, a))
 
 

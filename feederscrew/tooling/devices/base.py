@@ -287,6 +287,8 @@ def share(margin, sigma):
 def carried(margin, way, carry):
     """Return the margin [m] of an orientation that travels, from that of one that is placed.
 
+    Source: own; docs/tooling.md, "1. The method": a part that travels needs time to tip.
+
     Parameters
     ----------
     margin : float [m]

@@ -107,5 +107,8 @@ class Tip(_Turner):
 
 
 def below_ledge(every):
-    """Return how far below a ledge the second track lies [m]: half the part's greatest length."""
+    """Return how far below a ledge the second track lies [m]: half the part's greatest length.
+
+    Source: own; docs/tooling.md, "4. Turning parts over".
+    """
     return LOWER * max(max(one.length, one.height) for one in every)

@@ -48,6 +48,8 @@ class Wishes:
 def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=False, same=()):
     """Return every device of one number that the wanted orientation passes by a margin.
 
+    Source: own; docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     every : sequence of Orientation
@@ -129,6 +131,8 @@ def limits(kind, every):
 def fewest(found, others, margin, enough=0.0):
     """Return the fewest devices that return the most of some orientations.
 
+    Source: own; docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     found : dict of Device to (M,) float [m]
@@ -171,6 +175,8 @@ def jams(found, chosen, others, margin):
 
 def placed(every, wanted, devices, must, least=np.inf, step=FINE, same=()):
     """Return the cuts of a chain, each value in the middle of what it may be.
+
+    Source: own; docs/tooling.md, "5. Where it ends".
 
     Parameters
     ----------

@@ -21,6 +21,8 @@ def design(
 ):  # fmt: skip
     """Return the chain of fewest devices that isolates an orientation.
 
+    Source: own; docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     every : sequence of Orientation

@@ -50,6 +50,8 @@ class HoleSearch:
 def cut_out(every, wanted, others, margin, search):
     """Return the hole that the wanted orientation passes and that returns the most others.
 
+    Source: own; docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     every : sequence of Orientation

@@ -13,6 +13,8 @@ FAR = 1.0  # [m] beyond any hole
 def with_corners(given, made, radius):
     """Return a hole with corners of a radius [m], as a cutter leaves them, or None where it then does not do.
 
+    Source: own; docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     given : DesignTask

@@ -20,7 +20,10 @@ TINY = 1e-300
 
 @compiled
 def shift(side, edge, t):
-    """Return the shift [rad] at which an edge crosses a side at share ``t`` of its length."""
+    """Return the shift [rad] at which an edge crosses a side at share ``t`` of its length.
+
+    Source: the edge's equation in polar coordinates, as in the head of the module.
+    """
     x, q = side[0] + t * side[2], side[1] + t * side[3]
     radius = math.hypot(x, q)
     bend = 0.0 if edge[GAMMA] == 0.0 else math.asin(min(edge[GAMMA] / radius, 1.0))
@@ -42,6 +45,8 @@ def sort(values, count):
 @compiled
 def stretches(sides, edges, out, cuts):
     """Fill the stretches of every side with every edge.
+
+    Source: own; docs/tooling.md, "1. The method": where an edge of the hole meets the foot.
 
     Parameters
     ----------

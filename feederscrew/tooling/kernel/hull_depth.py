@@ -40,6 +40,9 @@ def _next(points, count, ax, ay):
 def inset(points, count, far):
     """Return the signed distance of the origin to the border of the convex hull of points.
 
+    Source: R. A. Jarvis, "On the identification of the convex hull of a finite set of points in the
+    plane", Information Processing Letters 2(1), 18-21, 1973.
+
     Parameters
     ----------
     points : (N, 2) float [m]

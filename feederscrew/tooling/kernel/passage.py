@@ -66,6 +66,8 @@ class VerdictArrays(NamedTuple):
 def least(foot, hole, scratch, low, high, out):
     """Fill the least margin over a passage and the shift of the hole at which it occurs.
 
+    Source: own; docs/tooling.md, "1. The method": exact from event to event.
+
     Parameters
     ----------
     foot : Foot

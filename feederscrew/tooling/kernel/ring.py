@@ -11,6 +11,8 @@ from feederscrew.tooling.kernel.passage import _under
 def over_ring(foot, low, high, scratch):
     """Return the margin [m] of a foot over the ring between two radii.
 
+    Source: own; docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     foot : Foot

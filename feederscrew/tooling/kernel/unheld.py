@@ -14,6 +14,8 @@ def longest(foot, hole, scratch, enough):
 
     Between samples the margin is taken to change evenly.
 
+    Source: own; docs/tooling.md, "1. The method".
+
     Parameters
     ----------
     foot : Foot
