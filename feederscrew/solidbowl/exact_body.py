@@ -170,5 +170,7 @@ def _combined(kind, body, tools):
         lists[1].Append(one)
     made.SetArguments(lists[0])
     made.SetTools(lists[1])
+    made.SetUseOBB(True)  # a face along a helix fills little of a box along the axes
+    made.SetFuzzyValue(exact_faces.SEWN)  # the way of two splines along one helix, which else ends nowhere
     made.Build()
     return made.Shape()

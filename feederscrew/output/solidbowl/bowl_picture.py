@@ -52,13 +52,13 @@ def _image(solid, part, columns, rows):
     whole = Rays(corners, np.concatenate([solid.faces, faces + len(solid.vertices)]), centre)
     alone = None if not len(faces) else Rays(points, faces, centre)
     across, up = _frame(looked.project(whole.points), columns, rows)
-    image = np.ones((rows, columns, 3))
+    image = np.full((rows, columns, 3), 255, dtype=np.uint8)  # numbers of eight bytes: 100 MB more
     each = shading.SAMPLES
     for first in range(0, rows, BAND):
         place = slice(max(0, each * first - 2), each * (first + BAND) + 2)
         drawn = _drawn(whole, alone, looked, across, up[place])
         kept = drawn[each * first - place.start :][: each * min(BAND, rows - first)]
-        image[first : first + BAND] = shading.averaged(kept)
+        image[first : first + BAND] = np.rint(255.0 * shading.averaged(kept))
     return image
 
 
