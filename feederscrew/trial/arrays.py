@@ -40,7 +40,7 @@ def crowd_of(solid, surface, count):
         rows=numbers(CONTACTS, contact.WIDTH), counts=places(),
         known=numbers(CONTACTS, 4), knowns=places(), lasted=np.full(count, -1.0),
         made=np.full((count, 10), -1.0), made_at=numbers(3),
-        ends=places(plates, LISTS), verts=places(3, 2 * corners), heights=numbers(2 * corners),
+        ends=places(plates, LISTS), verts=places(3, 2 * corners), offs=numbers(2 * corners),
         sides=places(SIDES * corners + 100),
         edges=places(NEAR, 3), edge_gaps=numbers(NEAR), posts=places(NEAR, 2), corners=places(NEAR, 3),
         walled=places(corners + 1), wall_gaps=numbers(corners + 1),

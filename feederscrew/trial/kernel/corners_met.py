@@ -139,7 +139,7 @@ def _corners_on(surface, solid, crowd, n, k, reach):
     plate, frame, lows = surface.plates[k], crowd.frame, 0
     far = crowd.made[n, MOVED] + reach
     for m in range(first_of(crowd, n, k, VERTS), crowd.ends[n, k, VERTS]):
-        if crowd.heights[n, m] > far:
+        if crowd.offs[n, m] > far:
             continue
         corner = crowd.verts[n, 0, m]
         p = solid.corners[corner]

@@ -76,7 +76,8 @@ class Crowd(NamedTuple):
     made_at: np.ndarray  # (N, 3) tangent of the wall there, and how far from the axis
     ends: np.ndarray  # (N, P, LISTS) int, where the candidates of each plate end in the lists
     verts: np.ndarray  # (N, 3, ...) int, corners near a plate, and where their borders begin and end
-    heights: np.ndarray  # (N, ...) of those corners over the plate, as the lists were made
+    # (N, ...) of those corners over the plate, or beside it where that is more, as the lists were made
+    offs: np.ndarray
     sides: np.ndarray  # (N, ...) int, those borders
     edges: np.ndarray  # (N, ..., 3) int, edges near a border: edge, border, front or back
     edge_gaps: np.ndarray  # (N, ...) how far from the border, as the lists were made

@@ -256,11 +256,13 @@ def _near_corner(surface, solid, crowd, n, k, which, margin):
     plate, borders, (m, few, plain) = surface.plates[k], surface.borders, which
     a, b, c = crowd.shown[m, 0], crowd.shown[m, 1], crowd.shown[m, 2]
     count, begun = crowd.low[VERTS], crowd.low[SIDED]
-    sides = begun
+    sides, nearest = begun, math.inf
     for e in range(few):
-        if abs(beside(borders[crowd.close[e]], a, b)) < margin + DEEP and sides < crowd.sides.shape[1]:
+        off = beside(borders[crowd.close[e]], a, b)
+        if abs(off) < margin + DEEP and sides < crowd.sides.shape[1]:
             crowd.sides[n, sides] = crowd.close[e]
             sides += 1
+            nearest = off if abs(off) < abs(nearest) else nearest
     if sides == begun:
         if -plate[DEPTH] + DEEP + margin < c and (c < -DEEP - margin or solid.ringed[crowd.seen[m]]):
             return
@@ -272,5 +274,5 @@ def _near_corner(surface, solid, crowd, n, k, which, margin):
             begun,
             sides,
         )
-        crowd.heights[n, count] = c
+        crowd.offs[n, count] = c if sides == begun else max(c, nearest)
         crowd.low[VERTS], crowd.low[SIDED] = count + 1, sides
