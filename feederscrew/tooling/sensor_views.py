@@ -4,6 +4,7 @@ import functools
 
 import numpy as np
 import shapely
+import shapely.affinity
 
 from feederscrew.geometry.polygons import turned
 
@@ -11,6 +12,9 @@ FINE = 1e-4  # [m] between places of a border at which two are compared
 PLAIN = 1e-4  # of the part's size: corners that stand out by less are left out
 KEPT = 1e-6  # of an area, that closing its slits may lose by rounding
 GRID = 1e-6  # [m] to which sections are rounded: where facets meet they meet
+ASKEW = tuple(np.radians((-4.0, -2.0, 0.0, 2.0, 4.0)))  # by which parts come turned from their heading
+ABOUT = np.radians(10.0)  # by which an outline is turned, either way, until it fits
+COARSE, SHRINKS, GOLDEN = 9, 10, 0.5 * (np.sqrt(5.0) - 1.0)  # turns that are tried first, then between them
 NOTHING = 1e-7  # [m] of what is not there
 SLIT = 2e-5  # [m] half the width of slits between facets that are closed
 
@@ -31,14 +35,61 @@ def difference(one, other, sees):
     -------
     float [m]
         Greatest distance from a place of either to the other one, both with their front at the same place
-        and, seen from above, as near to the wall.
+        and, seen from above, as near to the wall. The least of how they may come: from above the outline is
+        turned until it fits, seen otherwise the first may come askew.
     """
     if sees == "height":
         return abs(one.height - other.height)
-    if one is other:
-        return 0.0
+    return 0.0 if one is other else _difference(one, other, sees)
+
+
+@functools.lru_cache(maxsize=4096)
+def _difference(one, other, sees):
     line = other.distance
-    return apart(outline(one, sees, line), outline(other, sees, line))
+    wanted = outline(other, sees, line)
+    if sees == "outline":
+        return fitted(outline(one, sees, line), wanted)
+    return min(apart(outline(one, sees, line, by), wanted) for by in ASKEW)
+
+
+@functools.lru_cache(maxsize=512)
+def askew(one, sees):
+    """Return by how much [m] an orientation may differ from itself for a sensor, as parts come askew."""
+    if sees in ("outline", "height"):
+        return 0.0
+    line = one.distance
+    return max(apart(outline(one, sees, line, by), outline(one, sees, line)) for by in ASKEW)
+
+
+def fitted(seen, wanted, enough=0.0):
+    """Return by how much [m] an area seen from above differs from another one, turned until it fits best.
+
+    Once they differ by no more than ``enough`` [m] no better fit is sought.
+    """
+
+    def off(turn):
+        other = shapely.affinity.rotate(seen, turn, (0.0, 0.0), use_radians=True) if turn else seen
+        _, low, front, _ = other.bounds
+        return apart(shapely.affinity.translate(other, -front, -low), wanted)
+
+    best = off(0.0)
+    if best <= enough:
+        return best
+    turns = np.linspace(-ABOUT, ABOUT, COARSE)
+    k = int(np.argmin([off(turn) for turn in turns]))
+    low, high = turns[max(k - 1, 0)], turns[min(k + 1, COARSE - 1)]
+    first, second = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    here, there = off(first), off(second)
+    for _ in range(SHRINKS):
+        if here < there:
+            high, second, there = second, first, here
+            first = high - GOLDEN * (high - low)
+            here = off(first)
+        else:
+            low, first, here = first, second, there
+            second = low + GOLDEN * (high - low)
+            there = off(second)
+    return min(best, here, there)
 
 
 def apart(first, second):
@@ -52,8 +103,8 @@ def _reach(area, other):
     return float(shapely.distance(shapely.points(places), other.boundary).max())
 
 
-@functools.lru_cache(maxsize=512)
-def outline(one, sees, line=0.0):
+@functools.lru_cache(maxsize=2048)
+def outline(one, sees, line=0.0, by=0.0):
     """Return the area that a sensor sees of an orientation [m]: ahead from its front, and from its side.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -65,9 +116,11 @@ def outline(one, sees, line=0.0):
         'outline' from above, 'side' from the bowl's axis, or 'relief'.
     line : float [m]
         From the wall, along which it sees the relief.
+    by : float [rad]
+        By which it comes turned from its heading.
     """
     points, faces = one.posture.surface, one.posture.solid.faces
-    plan = turned(points[:, :2], one.heading)
+    plan = turned(points[:, :2], one.heading + by)
     return area(np.column_stack([plan + [0.0, one.distance], points[:, 2]]), faces, sees, line=line)
 
 

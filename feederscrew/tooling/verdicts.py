@@ -5,13 +5,12 @@ import shapely
 
 from feederscrew.tooling import drift, sensor_views, turning
 from feederscrew.tooling import foot as feet
-from feederscrew.tooling.devices.base import STANDARD_GRAVITY, UNSURE, Verdict, share
+from feederscrew.tooling.devices.base import GRIP, STANDARD_GRAVITY, UNSURE, Verdict, share
 from feederscrew.tooling.falling_through import falls_through
 from feederscrew.tooling.hanging import Hanging, hanging_margin, head_first, tip_goes_down
 from feederscrew.tooling.holding import leans, may_lay_aside, may_lay_over, may_wedge, rides, widest
 
 WORN = 2.5e-4  # [m] what an opening holds by less does not hold a part up
-GRIP = 0.6  # [1] of a dry steel track
 FAR = 10.0  # [m] an opening goes on so far below the track and behind the wall
 
 
@@ -66,17 +65,22 @@ class Meeting:
         """Return by how much [m] a sensor sees it differ from another orientation."""
         return sensor_views.difference(self.one, other, sees)
 
+    def askew(self, sees):
+        """Return by how much [m] a sensor may see it differ from itself, as it comes askew."""
+        return sensor_views.askew(self.one, sees)
+
     def force_to_clear(self, wide, height):
         """Return the least force [N] over a way along the track that takes it off it, at a height [m]."""
         return drift.force_to_clear(self.one, wide, height)
 
-    def blown(self, force, seconds):
+    def blown(self, force, down, seconds):
         """Return how far [m] a force [N] for some time [s] carries it over a track that stands still.
 
-        Less what it has to go to leave it: negative where it stays.
+        ``down`` [N] presses it on the track meanwhile. Less what it has to go to leave it: negative where
+        it stays.
         """
         weight = self.one.posture.mass * STANDARD_GRAVITY
-        left = force - self.grip * weight
+        left = force - self.grip * max(weight + down, 0.0)
         if left <= 0.0:
             return self.one.distance - self.one.track.width
         speed = left * seconds / self.one.posture.mass

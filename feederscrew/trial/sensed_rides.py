@@ -41,7 +41,10 @@ def blows_off(sensor, known, states, level=0.0):
 
     def differs(one):
         seen = sensor_views.area(spots, faces, sensor.sees, fine, one.distance)
-        return sensor_views.apart(seen, sensor_views.outline(one, sensor.sees, one.distance))
+        wanted = sensor_views.outline(one, sensor.sees, one.distance)
+        if sensor.sees == "outline":
+            return sensor_views.fitted(seen, wanted, sensor.play)
+        return sensor_views.apart(seen, wanted)
 
     return all(differs(one) > sensor.play for one in sensor.wanted)
 

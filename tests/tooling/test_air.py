@@ -6,17 +6,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
+import shapely.affinity
 import shapes
 import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew.errors import Faults
+from feederscrew.geometry.polygons import turned
 from feederscrew.part import load
 from feederscrew.rates import spacing
 from feederscrew.resting.aspects import find
 from feederscrew.studies import tooling
 from feederscrew.tooling import drift, sensor_views
 from feederscrew.tooling.devices.kinds import KINDS, made
+from feederscrew.tooling.devices.nozzles import Nozzles
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.orientations import orientations, speed, travelling
 from feederscrew.tooling.verdicts import Meeting, verdict
@@ -173,3 +177,57 @@ def test_the_relief_of_a_wedge_is_that_of_its_section():
     coarse = sensor_views.area(wedge, faces, "relief", 4e-3, 3e-3)
     assert set(np.round(1e3 * np.array(coarse.exterior.coords)[:, 1])) <= {0.0, 4.0, 8.0}
     assert sensor_views.area(wedge, faces, "relief", line=9e-3).area < 1e-12
+
+
+def test_an_outline_is_turned_until_it_fits_and_no_further():
+    """A bar 23 x 8 mm, seen askew: within ten degrees it is the same, beyond that what is left to turn."""
+    bar = shapely.box(-0.023, 0.0, 0.0, 0.008)
+
+    def askew(degrees):
+        turned = shapely.affinity.rotate(bar, degrees, (0.0, 0.0))
+        return shapely.affinity.translate(turned, -turned.bounds[2], -turned.bounds[1])
+
+    for degrees in (-9.0, -2.2, 0.0, 3.4, 9.9):
+        assert sensor_views.fitted(askew(degrees), bar) < 3e-5
+    assert sensor_views.apart(askew(3.4), bar) > 1e-3  # what it was without
+    left = sensor_views.apart(askew(5.0), bar)
+    assert sensor_views.fitted(askew(15.0), bar) == pytest.approx(left, abs=2e-4)
+    other = shapely.box(-0.023, 0.0, 0.0, 0.007)
+    assert sensor_views.fitted(askew(3.0), other) == pytest.approx(1e-3, abs=5e-5)
+
+
+def test_what_is_seen_from_the_side_may_come_askew():
+    """A block is longer then by l cos 4 deg + w sin 4 deg - l, and what is that much longer may be it."""
+    one, turn = FLAT, np.radians(4.0)
+    longer = one.length * (np.cos(turn) - 1.0) + one.width * np.sin(turn)
+    assert Meeting(one).askew("side") == pytest.approx(longer, abs=4e-5)
+    assert Meeting(one).askew("outline") == Meeting(one).askew("height") == 0.0
+    sorter = made("sorter", "here", like=(one.aspect, one.heading, 2e-3), sees="side")
+    assert verdict(sorter, one, EVERY).margin == pytest.approx(2e-3 - longer - 1e-4, abs=5e-5)
+    (_, side, _, _) = type(sorter).around(Meeting(one, EVERY), 2.5e-4, "here")
+    assert side.like[2] == pytest.approx(2.5e-4 + longer + 1e-4, abs=4e-5)
+
+
+def test_a_jet_presses_a_slope_down_and_lifts_what_overhangs():
+    """Air gives a slope T cos2 outwards and T sin cos up or down, whatever the side it comes from."""
+    slope = np.radians(35.0)
+    rise = 20.0 * np.tan(slope)
+    wedge = shapes.part(shapes.prism([(0, 0), (40, 0), (40, 2), (20, 2 + rise), (0, 2 + rise)], 30.0))
+    every = orientations(wedge, find(wedge), BOWL.track)
+    found = []
+    for one in every:
+        points, faces = one.posture.surface, one.posture.solid.faces
+        plan = turned(points[:, :2], one.heading)
+        corners = np.column_stack([plan, points[:, 2]])[faces]
+        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normal /= np.sqrt((normal**2).sum(axis=1))[:, None]
+        sloped = (normal[:, 1] < -0.1) & (np.abs(normal[:, 2]) > 0.1)
+        leans = np.arctan2(normal[sloped, 2], -normal[sloped, 1])
+        if len(leans) and np.ptp(leans) < 1e-6:  # one slope, which nothing hides
+            found.append((one, leans[0], corners[sloped][:, :, 2].mean()))
+    assert {bool(lean > 0.0) for _, lean, _ in found} == {True, False}
+    for one, lean, height in found:
+        nozzles = Nozzles(1e-4, 3e5, height)
+        out, down = nozzles.push(one, every)
+        assert out / nozzles.thrust == pytest.approx(np.cos(lean) ** 2, abs=0.03)
+        assert down / nozzles.thrust == pytest.approx(np.sin(lean) * np.cos(lean), abs=0.03)

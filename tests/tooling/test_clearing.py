@@ -222,7 +222,7 @@ def test_several_nozzles_meet_every_orientation_and_one_blows_at_the_lowest_cent
     heights = nozzles.heights(every)
     assert len(heights) == 4 and np.all(np.diff(heights) > 0.0)
     assert 0.0 < heights[0] < 3e-3 < heights[-1] < max(one.height for one in every)  # its legs are 3 mm thick
-    assert min(nozzles.force(one, every) for one in every) > 0.5 * nozzles.thrust
+    assert min(nozzles.push(one, every)[0] for one in every) > 0.5 * nozzles.thrust
     lowest = min(one.posture.height for one in every)
     assert Nozzles(2e-3, 3e5).heights(every) == pytest.approx([lowest])
     assert Nozzles(2e-3, 3e5, 1e-3, 3).heights(every)[0] == 1e-3

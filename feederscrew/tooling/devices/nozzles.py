@@ -3,17 +3,22 @@
 Source: isentropic flow through a nozzle; docs/tooling.md.
 """
 
+import functools
 import math
 from dataclasses import dataclass
 
 import numpy as np
 import shapely
 
+from feederscrew.geometry.polygons import turned
+from feederscrew.tooling.devices.base import GRIP
 from feederscrew.tooling.devices.pieces import Jet
 
 AMBIENT = 101325.0  # [Pa]
 CHOKED = ((1.4 + 1.0) / 2.0) ** (1.4 / 0.4)  # [1] of absolute pressures: beyond it the nozzle is choked
 SPREAD = math.tan(math.radians(11.0))  # [1] growth of a free jet's radius: 10 to 12 deg to either side
+RAYS, GOLDEN = 24, math.pi * (3.0 - math.sqrt(5.0))  # of a jet; [rad] from one to the next
+TRIED, ENOUGH = 12, 0.5  # heights at which an orientation is blown at, and the least share of the thrust
 REACH = 0.5  # [m] no track is wider
 ACROSS = (0.0, 1.0, 0.0)  # straight across the track
 
@@ -59,28 +64,44 @@ class Nozzles:
         """Return their heights [m] over the track, (N,), upwards.
 
         Where nothing is said of it, one nozzle blows at the lowest centre of mass. Several blow where each
-        orientation has something before its centre of mass, as far as they are enough for that; the others
-        are spread between those and the top of the tallest.
+        orientation has something before its centre of mass that is not a mere slope, as far as they are
+        enough for that; the others are spread between those and the top of the tallest.
         """
+        return np.array(_heights(self, tuple(every)))
+
+    def _placed(self, every):
         low, top = self.height, max(one.height for one in every)
         if math.isnan(low) and self.count > 1:
             met = _meeting([_solid_at_middle(one) for one in every], 0.5 * self.diameter)
             if len(met) <= self.count:
-                return _spread(met, top, self.count)
+                return _spread(self._at_slopes(met, every), top, self.count)
         if math.isnan(low):
             low = max(min(one.posture.height for one in every), 0.5 * self.diameter)
         high = max(top - low, low)
         return np.linspace(low, high, self.count) if high > low else np.full(self.count, low)
 
-    def force(self, one, every):
-        """Return the force [N] on an orientation whose centre of mass is before them."""
-        return self.thrust * sum(self.share(one, height) for height in self.heights(every))
+    def _at_slopes(self, heights, every):
+        """Some heights [m], and those at which what they blow at slopes of is pushed most, of the rest."""
+        found = list(heights)
+        for one in every:
+            if len(found) < self.count and self._moves(one, found) < ENOUGH:
+                tried = one.height * (np.arange(TRIED) + 0.5) / TRIED
+                best = max(tried, key=lambda height: self._moves(one, [height]))
+                found += [float(best)] if self._moves(one, [best]) > self._moves(one, found) else []
+        return found
 
-    def share(self, one, height):
-        """Return the share of the jet at a height [m] that an orientation takes."""
-        radius = 0.5 * self.diameter + SPREAD * max(one.distance - 0.5 * one.width, 0.0)
-        disc = shapely.Point(0.0, height).buffer(radius)
-        return float(one.aside.intersection(disc).area / disc.area)
+    def _moves(self, one, heights):
+        """The force outwards, less the friction of that down, over the thrust of a nozzle [1]."""
+        pushes = [_share(one, self.diameter, float(height)) for height in heights]
+        return sum(out - (one.grip or GRIP) * down for out, down in pushes)
+
+    def push(self, one, every):
+        """Return the force [N] outwards, and down, on an orientation whose centre of mass is before them.
+
+        Air gives a facet what of its momentum goes into that, so a slope is pressed down or lifted as well.
+        """
+        pushes = [_share(one, self.diameter, float(height)) for height in self.heights(every)]
+        return tuple(self.thrust * sum(push[k] for push in pushes) for k in range(2))
 
     def jets(self, place, every, seconds=math.inf):
         """Return their Jets at a place [m] along the device."""
@@ -88,6 +109,49 @@ class Nozzles:
             Jet((place, 0.0, height), ACROSS, 0.5 * self.diameter, SPREAD, self.thrust, REACH, seconds)
             for height in self.heights(every)
         )
+
+
+@functools.lru_cache(maxsize=256)
+def _heights(nozzles, every):
+    """As `Nozzles.heights`."""
+    return tuple(nozzles._placed(every))
+
+
+@functools.lru_cache(maxsize=4096)
+def _share(one, diameter, height):
+    """What of a jet's thrust an orientation takes [1]: outwards from the wall, and down."""
+    points, faces = one.posture.surface, one.posture.solid.faces
+    plan = turned(points[:, :2], one.heading) + [0.0, one.distance]
+    corners = np.column_stack([plan, points[:, 2]])[faces]
+    sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    corners, sides = corners[sides[:, 1] < 0.0], sides[sides[:, 1] < 0.0]  # those that face the wall
+    turn, off = GOLDEN * np.arange(RAYS), np.sqrt((np.arange(RAYS) + 0.5) / RAYS)
+    places = off[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
+    ways = np.column_stack([SPREAD * places[:, 0], np.ones(RAYS), SPREAD * places[:, 1]])
+    mouths = 0.5 * diameter * places + [0.0, height]
+    out = down = 0.0
+    for mouth, way in zip(mouths, ways):
+        k = _first_met(corners, sides, np.array([mouth[0], 0.0, mouth[1]]), way)
+        if k is not None:
+            size = np.sqrt((sides[k] ** 2).sum())
+            into = (sides[k] * way).sum() / (size * np.sqrt((way**2).sum()))
+            out, down = out + into * sides[k, 1] / size, down - into * sides[k, 2] / size
+    return float(out) / RAYS, float(down) / RAYS
+
+
+def _first_met(corners, sides, mouth, way):
+    """Which of some triangles (F, 3, 3) [m] with normals (F, 3) a ray meets first; None where none."""
+    slope = (sides * way).sum(axis=1)
+    fall = ((corners[:, 0] - mouth) * sides).sum(axis=1)
+    far = np.divide(fall, slope, out=np.full(len(sides), np.inf), where=slope < 0.0)
+    spots = mouth + np.where(np.isfinite(far), far, 0.0)[:, None] * way
+    inside = far >= 0.0
+    for a in range(3):
+        along, to = corners[:, (a + 1) % 3] - corners[:, a], spots - corners[:, a]
+        inside &= (np.cross(along, to) * sides).sum(axis=1) >= 0.0
+    if not inside.any():
+        return None
+    return int(np.argmin(np.where(inside, far, np.inf)))
 
 
 def _solid_at_middle(one):

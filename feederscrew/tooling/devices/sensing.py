@@ -55,15 +55,15 @@ class Sorter(Device):
         return RESOLUTION[self.sees] if math.isnan(self.resolution) else self.resolution
 
     @classmethod
-    def around(cls, one, margin, where, unlike=lambda view: ()):
+    def around(cls, met, margin, where, unlike=lambda view: ()):
         """Return the sorters of an orientation, with the play [m] by which what they pass may differ.
 
         Those that ``unlike`` gives for a view are named beside it: they pass too, though they look otherwise.
         """
-        made = []
+        one, made = met.one, []
         for view in VIEWS:
             also = tuple((other.aspect, other.heading) for other in unlike(view))
-            like = one.aspect, one.heading, float(margin) + RESOLUTION[view]
+            like = one.aspect, one.heading, float(margin) + RESOLUTION[view] + met.askew(view)
             made.append(cls(where, like=like, sees=view, also=also))
         return made
 
@@ -76,8 +76,14 @@ class Sorter(Device):
         return replace(self, like=(aspect, heading, float(play)), text=written)
 
     def differs(self, met):
-        """Return by how much [m] an orientation is seen to differ from the nearest of the wanted ones."""
-        return min(met.differs(one, self.sees) for one in self.wanted(met.every))
+        """Return by how much [m] an orientation is seen to differ from the nearest of the wanted ones.
+
+        At least, of what is not wanted; at most, of what is: either may come askew.
+        """
+        wanted = self.wanted(met.every)
+        if any(one is met.one for one in wanted):
+            return met.askew(self.sees)
+        return min(met.differs(one, self.sees) for one in wanted)
 
     def wanted(self, every):
         """Return the orientations that it passes."""
@@ -107,7 +113,7 @@ class Sorter(Device):
     def judged(self, met):
         margin = self.like[2] - self.differs(met)
         margin = math.copysign(max(abs(margin) - self.blur, 0.0), margin)
-        if margin < 0.0 and met.blown(self.jet.force(met.one, met.every or (met.one,)), self.time) <= 0.0:
+        if margin < 0.0 and met.blown(*self.jet.push(met.one, met.every or (met.one,)), self.time) <= 0.0:
             return met.verdict(0.0)  # it is carried on, whatever is seen
         return met.verdict(margin)
 

@@ -49,7 +49,8 @@ class SteadyJet(Device):
         """Return its force on an orientation over the one that just moves it off the track [1]."""
         one = met.one
         wide = self.nozzle + SPREAD * one.width + one.length
-        return self.jet.force(one, met.every or (one,)) / met.force_to_clear(wide, self.height)
+        out, down = self.jet.push(one, met.every or (one,))
+        return (out - met.grip * max(down, 0.0)) / met.force_to_clear(wide, self.height)
 
     def judged(self, met):
         factor = self.factor(met)

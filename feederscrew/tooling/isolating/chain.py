@@ -87,7 +87,7 @@ def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=Fals
 
     for kind in around() if sensed else ():
         if wishes.allows(kind.kind):
-            for device in kind.around(every[wanted], margin, WHERE, unlike):
+            for device in kind.around(Meeting(every[wanted], every), margin, WHERE, unlike):
                 found[device] = np.array([margin_at(device, one, every) for one in every])
     return found
 
@@ -247,7 +247,8 @@ def _sensor(every, wanted, device, must, step):
         play = fine(max(snapped(play, step, up=False), least))
         return device.with_play(play, millimetres(play))
 
-    chosen = _surest(every, must, at, 0.5 * widest, least)
+    own = device.differs(Meeting(every[wanted], every))
+    chosen = _surest(every, must, at, 0.5 * (own + widest), least)
     return judged(every, wanted, chosen, must, at(widest), at(least))
 
 
