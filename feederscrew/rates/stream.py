@@ -106,10 +106,11 @@ class Orientations:
     def sure(self):
         """(M,) bool, whether it comes along the bare track as it lies, and no momentum decides at a device.
 
-        On the track it shall neither rock nor roll.
+        On the track it shall neither rock nor roll: nothing holds what is round at the wall without a bank.
         """
         rocks = False if self.tipping is None else self.tipping.tips & ~self.tipping.over
-        return self.decided & ~(self.rolls_back | rocks)
+        loose = np.array([one.kind == "rolling" and one.track.bank <= 0.0 for one in self.lying], dtype=bool)
+        return self.decided & ~(self.rolls_back | rocks | loose)
 
 
 def orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None):

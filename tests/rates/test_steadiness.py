@@ -8,6 +8,7 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.mechanics.track.frame import seat
+from feederscrew.rates import stream
 from feederscrew.rates.rocking import over_period
 from feederscrew.rates.steadiness import steady
 from feederscrew.resting.aspects import find
@@ -80,3 +81,18 @@ def test_what_rolls_along_the_track_rocks_over_a_gap_as_what_is_flat_does(uprigh
         assert is_steady(along, "gap", upright.gap - carried) == steadily
         assert not is_steady(across, "gap", upright.gap - carried)
     assert is_steady(across, "canyon", 0.0)
+
+
+def test_what_is_round_is_sure_of_nothing_without_a_bank():
+    """A pin along the track rolls off a level one; towards the wall of a banked one it rolls, and stays."""
+    pin = shapes.part(shapes.cylinder(6, 20, 48))
+    aspects = find(pin)
+
+    def said(bank):
+        bowl = bowls.read(None, ["track.width=30 mm", f"track.bank={bank} deg"])
+        sorter = made("sorter", "test", like=("A", 0.0, 2e-3), sees="height")
+        found = stream.orientations(pin, aspects, bowl.track, [sorter], bowl=bowl)
+        row = next(k for k, one in enumerate(found.lying) if one.kind == "rolling" and one.length > 0.019)
+        return found.sure[row]
+
+    assert not said(0.0) and said(3.0)

@@ -204,6 +204,7 @@ def test_what_is_seen_from_the_side_may_come_askew():
     assert Meeting(one).askew("outline") == Meeting(one).askew("height") == 0.0
     sorter = made("sorter", "here", like=(one.aspect, one.heading, 2e-3), sees="side")
     assert verdict(sorter, one, EVERY).margin == pytest.approx(2e-3 - longer - 1e-4, abs=5e-5)
+    assert verdict(sorter, replace(one, carry=1e-3), EVERY).margin == verdict(sorter, one, EVERY).margin
     (_, side, _, _) = type(sorter).around(Meeting(one, EVERY), 2.5e-4, "here")
     assert side.like[2] == pytest.approx(2.5e-4 + longer + 1e-4, abs=4e-5)
 

@@ -81,7 +81,7 @@ class Sorter(Device):
         At least, of what is not wanted; at most, of what is: either may come askew.
         """
         wanted = self.wanted(met.every)
-        if any(one is met.one for one in wanted):
+        if any((one.aspect, one.heading) == (met.one.aspect, met.one.heading) for one in wanted):
             return met.askew(self.sees)
         return min(met.differs(one, self.sees) for one in wanted)
 
