@@ -6,6 +6,7 @@ import numpy as np
 
 from feederscrew.solidbowl import facets
 
+OVER = 5e-4  # [m] over the track, where its wall is met
 RIM = -0.3 - 1e-4  # [rad] before the outlet, where the rim is measured; beside the corners of facets
 
 
@@ -65,18 +66,23 @@ def _outlet_height(plan, body, outlet):
 def track_width(plan, body, s):
     """Return the width [m] of the track at a length along the wall, along its surface.
 
-    Two rays: outwards above the track to the wall, and outwards below its surface to its free edge.
+    Rays from the middle of the track along its surface to the wall, at two heights over it: a wall may lean,
+    and is carried on straight to the surface. One from within, below the surface, to the free edge.
     """
     way = plan.way
-    theta = float(way.angle(s))
-    inside = float(way.wall_radius(s)) - plan.across
-    z = float(way.height(s, plan.width))
-    to_wall = facets.first_met(body, (0.0, 0.0, z + 1e-3), _towards(theta, 3.0 * way.radius, z + 1e-3))[0]
-    under = z - 0.3 * plan.material.plate
-    start = 0.5 * inside
-    near = (start * np.cos(theta), start * np.sin(theta), under)
+    theta, half = float(way.angle(s)), 0.5 * plan.width
+    outward, middle = np.array([np.cos(theta), np.sin(theta), 0.0]), way.places(s, half)
+    along = np.cos(way.bank) * outward - [0.0, 0.0, np.sin(way.bank)]
+    low, high = (
+        facets.first_met(body, start, start + 3.0 * way.radius * along)[0]
+        for start in (middle + [0.0, 0.0, OVER], middle + [0.0, 0.0, 2.0 * OVER])
+    )
+    under = float(way.height(s, plan.width)) - 0.3 * plan.material.plate
+    to_middle = float(way.wall_radius(s)) - 0.5 * plan.across
+    start = to_middle - plan.across  # over the floor, of which the dome may rise above the track further in
+    near = start * outward + [0.0, 0.0, under]
     to_edge = start + facets.first_met(body, near, _towards(theta, 3.0 * way.radius, under))[0]
-    return (to_wall - to_edge) / float(np.cos(way.bank))
+    return (2.0 * low - high) + (to_middle - to_edge) / float(np.cos(way.bank))
 
 
 def heights(plan, body, s, y):

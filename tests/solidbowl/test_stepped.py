@@ -71,13 +71,21 @@ def test_a_slope_on_which_parts_hold_still_is_refused(stepped):
         ways_down(replace(stepped, plan=replace(stepped.plan, stairs=rough)))
 
 
-def test_a_cone_is_closed_and_its_track_that_of_the_formula():
-    solid = body(planned(track=STEEP, asked=Asked(shape="conical"), turns=1.8))
+@pytest.mark.parametrize(
+    ("climb", "bank", "width"), [(4.5, 0.0, 20e-3), (3.0, 8.0, 28e-3), (6.5, 15.0, 16e-3)]
+)
+def test_a_cone_is_closed_and_its_track_that_of_the_formula(climb, bank, width, rng):
+    """At 200 places, with a ray that does not meet the leaning wall over the track for its foot."""
+    track = replace(TRACK, climb=np.radians(climb), bank=np.radians(bank), width=width)
+    solid = body(planned(track=track, asked=Asked(shape="conical"), turns=1.8))
     assert closed(solid) > 0.0
     own, whole = solid.plan, facets.unplaced(solid)
-    for s in (0.2, 0.7, 1.2):
-        assert heights(own, whole, s, 8e-3) == pytest.approx(np.tan(STEEP.climb) * s, abs=NEAR)
-        assert track_width(own, whole, s) == pytest.approx(TRACK.width, abs=1e-3)
+    s, y = rng.uniform(0.1, own.way.end - 0.01, 200), rng.uniform(3e-4, width - 3e-4, 200)
+    found = np.array([heights(own, whole, *one) for one in zip(s, y)])
+    formula = np.tan(track.climb) * s + y * np.sin(track.bank)
+    np.testing.assert_allclose(found, formula, rtol=0, atol=NEAR)
+    widths = np.array([track_width(own, whole, one) for one in s])
+    np.testing.assert_allclose(widths, width, rtol=0, atol=NEAR)
 
 
 @pytest.mark.parametrize(
