@@ -51,8 +51,23 @@ def test_labels_of_the_tipping_graph_stand_apart(count):
     names = [chr(65 + k) for k in range(count)]
     figure = graph.graph("nut", names, ways(count), np.full(count, 1.0 / count))
     texts = [text for text in figure.axes[0].texts if text.get_text()]
-    assert len(texts) == count + count * (count - 1) + 1  # and the note below
+    assert len(texts) == count + count * (count - 1) + 2  # and head and note
     assert not any(a.overlaps(b) for a, b in combinations(boxes(figure, texts), 2))
+
+
+def test_head_and_note_of_the_tipping_graph_are_on_the_picture():
+    """The title was cut in half once."""
+    study = aspects_study(NUT)
+    figure = graph.of_part(study, study.transitions, study.aspects.probabilities["quasistatic"])
+    texts = [
+        text
+        for text in figure.axes[0].texts
+        if "lift to tip" in text.get_text() or "below" in text.get_text()
+    ]
+    found = boxes(figure, texts)
+    assert len(found) == 2 and all(figure.bbox.containsx(x) for box in found for x in (box.x0, box.x1))
+    assert all(figure.bbox.containsy(y) for box in found for y in (box.y0, box.y1))
+    assert figure.axes[0].get_title(loc="left") == ""
 
 
 def test_a_way_of_the_tipping_graph_is_drawn_once_with_its_head():

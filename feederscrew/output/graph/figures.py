@@ -43,7 +43,8 @@ def graph(title, names, ways, shares, drawn=None):
     """
     figure = style.figure(6.4, 6.4)
     axes = figure.add_subplot()
-    axes.set_title(f"{title}: lift to tip [mm]", loc="left", fontsize=10, color=style.INK)
+    head = f"{title}: lift to tip [mm]"
+    axes.text(-REACH, REACH, head, ha="left", va="top", fontsize=10, color=style.INK)
     shown = [k for k in range(len(names)) if np.isfinite(shares[k])][:MOST]
     turn = np.pi / 2 - 2.0 * np.pi * np.arange(len(shown)) / max(len(shown), 1)
     places = {k: np.array([np.cos(a), np.sin(a)]) for k, a in zip(shown, turn)}
@@ -58,6 +59,7 @@ def graph(title, names, ways, shares, drawn=None):
             axes.scatter(*place, s=sizes[k], color="white", edgecolor=style.FAINT, zorder=3)
             _framed(axes, drawn(k), f"{names[k]}  {100.0 * shares[k]:.3g} %", place)
     note = (
+        "orange: the easiest way off each aspect\n"
         "below each aspect: the share of all attitudes from which the part, let go without speed, ends on it"
     )
     axes.text(0.0, -REACH, note, ha="center", va="bottom", fontsize=8, color=style.INK)
