@@ -17,6 +17,7 @@ MM = facets.MM
 UNDER = 3e-4  # [m] below the track's surface, where its plate is cut to see its holes
 CRUMB = 5e-5  # [m] what is narrower is a chord beside its arc
 PLACES = 20  # at which radius and climb are measured
+OVER = 1e-3  # [m] over the wall's foot, where the wall is met
 BEFORE = 20e-3  # [m] of track before the devices that is unrolled
 
 
@@ -40,7 +41,7 @@ def ridden(made, bowl, every):
     Parameters
     ----------
     made : BowlSolid
-        Of that bowl, a cylinder.
+        Of that bowl.
     bowl : Bowl
     every : sequence of Orientation
         Of the part on its track.
@@ -54,8 +55,9 @@ def ridden(made, bowl, every):
     """
     plan, body = made.plan, facets.unplaced(made)
     track = _track(plan, body, bowl.track)
-    flat = _unrolled(plan, body)
-    devices, stretch = [], plan.stretch
+    if plan.stretch is None:
+        return replace(bowl, track=track, devices=()), []
+    flat, devices, stretch = _unrolled(plan, body), [], plan.stretch
     placed = [one for one in bowl.devices if one.placed and not one.leans]
     cuts = {cut.label: list(_of(stretch.cuts, cut.label)) for cut in stretch.cuts}
     blades = {one.label: list(_of(stretch.blades, one.label)) for one in stretch.blades}
@@ -86,11 +88,18 @@ def _track(plan, body, track):
     from_middle = s - s.mean()
     slope = (from_middle * heights[:, 0]).sum() / (from_middle**2).sum()  # least squares
     bank = np.arcsin(float(np.mean(heights[:, 1] - heights[:, 0])) / (0.6 * plan.width))
-    theta, z = float(plan.way.angle(s[-1])), float(plan.way.height(s[-1])) + 2e-3
-    out = 3.0 * plan.way.radius * np.array([np.cos(theta), np.sin(theta)])
-    radius = facets.first_met(body, (0.0, 0.0, z), (*out, z))[0]
-    climb = float(np.arctan(slope))
+    low, high = (_to_wall(plan, body, s[-1], over) for over in (OVER, 2.0 * OVER))
+    climb, radius = float(np.arctan(slope)), 2.0 * low - high  # of the wall's foot, should it lean
     return replace(track, width=float(np.mean(widths)), radius=radius, climb=climb, bank=float(bank))
+
+
+def _to_wall(plan, body, s, over):
+    """Distance [m] of the wall from the axis at a height over its foot, met from above the track."""
+    theta, z = float(plan.way.angle(s)), float(plan.way.height(s)) + over
+    start = float(plan.way.wall_radius(s)) - 1e-3
+    towards = np.array([np.cos(theta), np.sin(theta), 0.0])
+    place = start * towards + [0.0, 0.0, z]
+    return start + facets.first_met(body, place, place + 0.1 * towards)[0]
 
 
 def _unrolled(plan, body):

@@ -71,8 +71,9 @@ def test_a_part_ends_on_the_mesh_as_on_the_analytic_track(ridden):
     assert (seen[1].depths < 2.5e-4).all()
 
 
+HELD = 4  # [deg] of bank that holds parts at the wall: on a level track a bank of 1e-5 rad may decide
 OTHERS = {
-    "a plate over a gap": (shapes.box(16.0, 10.0, 3.0), "wiper: 6 mm", "gap: 9 mm", 20, 0),
+    "a plate over a gap": (shapes.box(16.0, 10.0, 3.0), "wiper: 6 mm", "gap: 9 mm", 20, HELD),
     "a block on a banked track": (shapes.box(*BLOCK), "wiper: 8 mm", "narrowed_track: 8 mm", 24, 6),
 }
 
@@ -97,3 +98,43 @@ def test_other_parts_end_on_the_mesh_as_on_the_analytic_track(name, tmp_path):
     ]
     np.testing.assert_array_equal(seen[1].fates, seen[0].fates)
     assert len(set(seen[0].fates)) > 1  # not one and the same for all
+
+
+LEANING = {
+    "a wiper and a narrowed track in a stepped bowl": (
+        "stepped",
+        ("wiper: 5 mm", "narrowed_track: 5 mm"),
+        14,
+    ),
+    "a track too narrow for some in a cone": ("conical", (), 5),
+}
+PLATE = (12.0, 8.0, 3.0)  # [mm]
+
+
+@pytest.mark.parametrize("name", LEANING)
+def test_parts_end_alike_where_the_wall_steps_out_or_leans(name, tmp_path):
+    shape, devices, width = LEANING[name]
+    path = tmp_path / "bowl.yaml"
+    path.write_text("devices:" + ("".join(f"\n  - {one}" for one in devices) or " []") + "\n")
+    bowl = bowls.read(
+        path, [*OWN, f"track.width={width} mm", f"track.bank={HELD} deg", "track.climb=2.6 deg"]
+    )
+    part = shapes.part(shapes.box(*PLATE))
+    every = orientations(part, find(part), bowl.track)
+    tooled = cuts.stretch(bowl.track, bowl.devices, every) if devices else None
+    asked, size = Asked(shape=shape), SimpleNamespace(diameter=0.3, depth=0.05)
+    made = body(
+        plan(size, bowl.track, material("steel", RULES), tooled, asked, extents=np.array(PLATE) / 1e3)
+    )
+    found, stations = on_mesh.ridden(made, bowl, every)
+    assert made.plan.turns > 1.1
+    assert found.track.width == pytest.approx(bowl.track.width, abs=5e-5)
+    assert found.track.climb == pytest.approx(bowl.track.climb, abs=2e-5)
+    rows = tuple(range(len(every)))
+    seen = [
+        course.course(part, own, every, rows, some, parts=len(rows), seed=3)
+        for own, some in ((bowl, bowl.devices), (found, stations))
+    ]
+    np.testing.assert_array_equal(seen[1].fates, seen[0].fates)
+    np.testing.assert_array_equal(seen[1].ended, seen[0].ended)
+    assert len(set(seen[0].fates)) > 1
