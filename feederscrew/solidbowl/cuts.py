@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from shapely import affinity
 
+from feederscrew.tooling.devices.hole_shapes import beyond_borders
 from feederscrew.tooling.strip import strip
 
 BEYOND = 2e-3  # [m] by which what reaches an edge of the track is cut over it
@@ -94,8 +95,9 @@ def stretch(track, devices, every):
 def _cut(station, drawn, width):
     """A hole, carried a little over the edge of the track that it reaches, and into the wall."""
     s, y = station.hole.T
-    y = np.where(y >= drawn - 1e-9, width + BEYOND, np.where(y <= 1e-9, -BEYOND, y))
-    return TrackHole(station.label, station.device.kind, np.column_stack([s, y]), station.device.hangs)
+    corners = np.column_stack([s, np.where(y <= 1e-9, 0.0, y)])
+    ring = beyond_borders(corners.tolist(), drawn - 1e-9, max(width - drawn, 0.0) + BEYOND)
+    return TrackHole(station.label, station.device.kind, np.array(ring), station.device.hangs)
 
 
 def _blade(station, width):

@@ -8,6 +8,7 @@ from shapely import affinity
 
 from feederscrew import check
 from feederscrew.tooling import whole_surface
+from feederscrew.tooling.devices.hole_shapes import beyond_borders
 from feederscrew.tooling.strip import bent
 from feederscrew.units import factor
 
@@ -99,8 +100,8 @@ def _level(levels, station):
 
 def _clear(ring, width):
     """A hole moved a little off the wall and on over the track's other edge: no two faces then coincide."""
-    across = np.where(ring[:, 1] >= width, width + INTO, np.maximum(ring[:, 1], SEAM))
-    return np.column_stack([ring[:, 0], across])
+    clear = np.column_stack([ring[:, 0], np.maximum(ring[:, 1], SEAM)])
+    return np.array(beyond_borders(clear.tolist(), width, INTO))
 
 
 def _bent(ring, radius):

@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 
 from feederscrew import check
+from feederscrew.tooling.devices.hole_shapes import beyond_borders
 from feederscrew.tooling.orientations import ROUNDED
 from feederscrew.tooling.strip import bent
 from feederscrew.trial import air
@@ -130,8 +131,7 @@ def _floor(holes, track, size, ends, own, level, depth=THICK):
     for outline, start in holes:
         taken = np.array(outline, float)
         taken[:, 0] = np.minimum(taken[:, 0] + start, own[1] + behind)
-        taken[:, 1] = np.where(taken[:, 1] <= 0.0, -2.0 * behind, taken[:, 1])
-        taken[:, 1] = np.where(taken[:, 1] >= width - 1e-9, width + behind, taken[:, 1])
+        taken = np.array(beyond_borders(taken.tolist(), width - 1e-9, 2.0 * behind))
         area = area.difference(shapely.make_valid(shapely.Polygon(bent(taken, track.radius, chord=CHORD))))
     frame = np.array([[0.0, 0.0, level], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     return frame, depth, OWN, rings(area, lambda a, b: drawn_end(a, b, track.radius, ends))

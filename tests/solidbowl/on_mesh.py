@@ -136,10 +136,15 @@ def _holes(plan, flat, start, own, width):
     missing = missing.buffer(-CRUMB, join_style="mitre").buffer(1.5 * CRUMB, join_style="mitre")
     parts = shapely.get_parts(affinity.translate(missing.intersection(room), -start, 0.0))
     return tuple(
-        Hole(np.asarray(shapely.simplify(one, 0.2 * CRUMB).exterior.coords)[:-1])
+        Hole(_at_wall(np.array(shapely.simplify(one, 0.2 * CRUMB).exterior.coords)[:-1]))
         for one in parts
         if one.geom_type == "Polygon" and one.area > CRUMB * plan.width
     )
+
+
+def _at_wall(corners):
+    """The corners of a hole, those within a chord's height of the wall at it."""
+    return np.column_stack([corners[:, 0], np.where(corners[:, 1] <= 1.5 * CRUMB, 0.0, corners[:, 1])])
 
 
 def _blade(plan, flat, drawn, blade):

@@ -101,11 +101,37 @@ def _sides(corners):
 
 def through_the_wall(corners):
     """Return the corners [m] of a hole, in pairs, with every edge along the wall moved behind it."""
+    return _moved_out(corners, math.inf, BEHIND)
+
+
+def beyond_borders(corners, width, far):
+    """Return the corners [m] of a hole, in pairs, with edges along the wall and the free edge moved out.
+
+    Edges that only end there stay as they are: what lies beside them in a corner carries parts.
+
+    Parameters
+    ----------
+    corners : sequence of (float [m], float [m])
+        Along the wall, and from it.
+    width : float [m]
+        From which on an edge is along the free edge.
+    far : float [m]
+        By which those are moved.
+    """
+    out = _moved_out(corners, width, far)
+    sides = zip((out[-1], *out[:-1]), out, (*out[1:], out[0]))
+    return [here for before, here, after in sides if not before[0] == here[0] == after[0]]
+
+
+def _moved_out(corners, width, far):
+    """As ``beyond_borders``, with the corners between what is moved and straight sides to it."""
     out = []
     for (s0, y0), (s1, y1) in _sides(corners):
         out.append((s0, y0))
         if y0 <= 0.0 and y1 <= 0.0:
-            out += [(s0, min(y0, y1) - BEHIND), (s1, min(y0, y1) - BEHIND)]
+            out += [(s0, min(y0, y1) - far), (s1, min(y0, y1) - far)]
+        elif y0 >= width and y1 >= width:
+            out += [(s0, max(y0, y1) + far), (s1, max(y0, y1) + far)]
     return out
 
 
