@@ -5,7 +5,8 @@ import shapely
 
 from feederscrew.tooling import drift, sensor_views, turning
 from feederscrew.tooling import foot as feet
-from feederscrew.tooling.devices.base import GRIP, STANDARD_GRAVITY, UNSURE, Verdict, share
+from feederscrew.tooling.devices.base import STANDARD_GRAVITY, UNSURE, Verdict, share
+from feederscrew.tooling.devices.pieces import GRIP
 from feederscrew.tooling.falling_through import falls_through
 from feederscrew.tooling.hanging import Hanging, hanging_margin, head_first, tip_goes_down
 from feederscrew.tooling.holding import leans, may_lay_aside, may_lay_over, may_wedge, rides, widest

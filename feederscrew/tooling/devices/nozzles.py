@@ -11,8 +11,7 @@ import numpy as np
 import shapely
 
 from feederscrew.geometry.polygons import turned
-from feederscrew.tooling.devices.base import GRIP
-from feederscrew.tooling.devices.pieces import Jet
+from feederscrew.tooling.devices.pieces import GRIP, Jet
 
 AMBIENT = 101325.0  # [Pa]
 CHOKED = ((1.4 + 1.0) / 2.0) ** (1.4 / 0.4)  # [1] of absolute pressures: beyond it the nozzle is choked

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 BLADE = 1.5e-3  # [m] thickness of a blade
+GRIP = 0.6  # [1] friction of a dry steel track
 
 
 @dataclass(frozen=True, eq=False)
