@@ -139,3 +139,9 @@ def test_a_release_knows_its_version_and_its_changes():
 def test_every_picture_of_the_pages_is_made_by_make_docs():
     made = re.search(r"^PICTURES := (.*)$", (ROOT / "Makefile").read_text(), re.MULTILINE)[1].split()
     assert sorted(made) == sorted(path.stem for path in DOCS.glob("*.png"))
+
+
+def test_every_picture_is_shown_on_a_page():
+    """One was made and never shown: the page spoke of 'the picture above'."""
+    shown = {target for page in PAGES for target in re.findall(r"!\[[^\]]+\]\(([^)]+)\)", page.read_text())}
+    assert {Path(target).name for target in shown} == {path.name for path in DOCS.glob("*.png")}
