@@ -127,7 +127,8 @@ def _weighed(plan, parts):
 def pieces(plan, kit=facets):
     """Return the bowl as one body [mm] of a kit and its gates (name, body), the outlet at the angle 0."""
     wall, *ends = [_wall(plan, kit)] if plan.stairs is None else stairs.shell(plan, kit)
-    ring = kit.without(wall, [*_opening(plan, kit), *(_notch(plan, kit, one) for one in _gates(plan))])
+    notches = [_notch(plan, kit, one) for one in _gates(plan)]
+    ring = kit.without(wall, [*_opening(plan, kit), *notches, *_bores(plan, kit)])
     slab = kit.without(track.slab(plan, kit), [_hole(plan, kit, cut) for cut in _holes(plan)])
     blades = [_plate(plan, kit, one) for one in _blades(plan) if not one.alone]
     whole = kit.united(
@@ -182,6 +183,18 @@ def _drilled(plan, kit):
     angles = TURN * np.arange(plan.drains) / max(plan.drains, 1)
     holes += [((edge * np.cos(a), edge * np.sin(a)), plan.drain) for a in angles]
     return [kit.disc(at, size, plan.underside - INTO, plan.dome + INTO) for at, size in holes]
+
+
+def _bores(plan, kit):
+    """Holes of the nozzles through the wall, level and square to it."""
+    made = []
+    for one in () if plan.stretch is None else plan.stretch.bores:
+        s = plan.first + one.place
+        theta = float(plan.way.angle(s))
+        towards = np.array([np.cos(theta), np.sin(theta), 0.0])
+        near = plan.way.places(s, 0.0) + [0.0, 0.0, one.height] - INTO * towards
+        made.append(kit.bore(near, towards, one.size, plan.material.wall + 2.0 * INTO))
+    return made
 
 
 def _holes(plan):

@@ -40,6 +40,16 @@ class TrackBlade:
     alone: bool  # a gate that is a part of its own, and stands in a notch of the wall
 
 
+@dataclass(frozen=True)
+class WallBore:
+    """A hole through the wall, square to it: a nozzle blows from there."""
+
+    label: str
+    place: float  # [m] s of its middle
+    height: float  # [m] of its middle over the track by the wall
+    size: float  # [m] diameter
+
+
 @dataclass(frozen=True, eq=False)
 class Stretch:
     """The tooled stretch of the track."""
@@ -52,6 +62,7 @@ class Stretch:
     drops: tuple[tuple[float, float], ...]  # s and height [m] of each step down
     bends: tuple[tuple[float, float], ...]  # s [m] from which the track climbs otherwise, and how [rad]
     labels: tuple[tuple[float, float, str], ...]  # from, to [m] and label of each device
+    bores: tuple[WallBore, ...] = ()
 
     @property
     def falls(self):
@@ -89,6 +100,11 @@ def stretch(track, devices, every):
             if slope.climb is not None
         ),
         labels=tuple((one.start, one.start + one.length, one.label) for one in stations),
+        bores=tuple(
+            WallBore(one.label, one.start + jet.at[0], jet.at[2], 2.0 * jet.radius)
+            for one in stations
+            for jet in one.device.standing(track, every).jets
+        ),
     )
 
 

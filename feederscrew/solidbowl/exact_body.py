@@ -4,6 +4,8 @@ Planes, cylinders and cones are exact; what runs along the track is a ruled face
 cubic spline through places every 0.1 rad: within 1e-4 mm of the helix for a bowl of a metre.
 """
 
+import contextlib
+import contextvars
 import itertools
 
 import numpy as np
@@ -19,7 +21,9 @@ MM = factor("mm", "length")
 SMOOTH = True  # a curve is a curve
 SEAM = 0.7  # [rad] where a face of revolution is closed: nothing else of a bowl ends there
 CRUMB = 1.0  # [mm3] a loose piece smaller than this is left out
+NEAR = 1e-5, 1e-4, 1e-6  # [mm] faces and edges nearer than this meet: the first with which all goes well
 WIDE = 1e4  # [mm] beyond everything
+_near = contextvars.ContextVar("near", default=NEAR[0])
 MISSING = "pip install 'feederscrew[cad]'"
 
 
@@ -34,6 +38,16 @@ def check(where="step"):
         import OCP.STEPControl  # noqa: F401
     except ImportError:
         raise ArgumentError(where, "needs OpenCASCADE, which is not installed", MISSING) from None
+
+
+@contextlib.contextmanager
+def meeting(near):
+    """Unite and cut bodies whose faces and edges meet within a length [mm], within a ``with``."""
+    before = _near.set(near)
+    try:
+        yield
+    finally:
+        _near.reset(before)
 
 
 def swept(legs):
@@ -71,6 +85,15 @@ def disc(at, size, low, high):
         gp_Dir(*exact_faces.towards(SEAM)),
     )
     return BRepPrimAPI_MakeCylinder(foot, 0.5 * size / MM, (high - low) / MM).Shape()
+
+
+def bore(place, towards, size, deep):
+    """Return a round rod along a unit vector (3,): its near end (3,), diameter and length [m]."""
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+    from OCP.gp import gp_Ax2, gp_Dir
+
+    foot = gp_Ax2(exact_faces.point(np.asarray(place) / MM), gp_Dir(*(float(x) for x in towards)))
+    return BRepPrimAPI_MakeCylinder(foot, 0.5 * size / MM, deep / MM).Shape()
 
 
 def prism(area, low, high):
@@ -171,6 +194,6 @@ def _combined(kind, body, tools):
     made.SetArguments(lists[0])
     made.SetTools(lists[1])
     made.SetUseOBB(True)  # a face along a helix fills little of a box along the axes
-    made.SetFuzzyValue(exact_faces.SEWN)  # the way of two splines along one helix, which else ends nowhere
+    made.SetFuzzyValue(_near.get())  # where two splines along one helix meet, which else ends nowhere
     made.Build()
     return made.Shape()

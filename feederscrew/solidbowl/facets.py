@@ -113,6 +113,14 @@ def disc(at, size, low, high):
     return prism(shapely.Polygon(ring), low, high)
 
 
+def bore(place, towards, size, deep):
+    """Return a round rod along a level unit vector (3,): its near end (3,), diameter and length [m]."""
+    angles = 2.0 * np.pi * (np.arange(SIDES) + APART) / SIDES
+    area = shapely.Polygon(0.5 * size * np.column_stack([np.cos(angles), np.sin(angles)]))
+    up = np.array([0.0, 0.0, 1.0])
+    return plank(area, deep, np.column_stack([np.cross(up, towards), up, towards]), place)
+
+
 def drum(radius, low, high, segments):
     """Return a cylinder about the axis, its facets those of the wall."""
     return turned([(0.0, low), (radius, low), (radius, high), (0.0, high)], segments)

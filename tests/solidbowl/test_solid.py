@@ -31,21 +31,27 @@ RULES = record(effective({})).sizing
 TRACK = Track(climb=np.radians(3.5), bank=0.0, radius=0.15, width=0.02)
 NEAR = 5e-5  # [m]
 RAILS = made("rails", "b", span=(3e-3, 7e-3))
+GAP = made("gap", "b", limit=9e-3)
 CHAINS = {
     "none": (),
     "narrowed and rails": (made("narrowed_track", "b", limit=9e-3, text="9 mm"), RAILS),
-    "gap": (made("gap", "b", limit=9e-3),),
+    "gap": (GAP,),
     "canyon, slot": (made("canyon", "b", limit=6e-3), made("slot", "b", span=(8e-3, 12e-3))),
     "cut out": (made("cut_out", "b", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 8e-3))),),
     "blades": (made("wiper", "b", limit=6e-3), made("hold_down", "b", limit=8e-3)),
     "gate": (made("profile", "b", corners=((0.0, 0.0), (9e-3, 0.0), (9e-3, 5e-3), (0.0, 7e-3))),),
+    "jets": (*(made("jet", "b", nozzle=2e-3, pressure=2e4, height=z) for z in (1e-3, 8e-3)), GAP),
     "step": (made("step", "b", limit=4e-3), made("gap", "b", limit=5e-3)),
 }
 
 
+class One(SimpleNamespace):
+    __hash__ = object.__hash__  # what devices compute of an orientation is kept
+
+
 def planned(devices=(), track=TRACK, asked=None, name="steel", turns=1.5):
     asked = Asked() if asked is None else asked
-    one = SimpleNamespace(length=18e-3, height=12e-3, width=14e-3, track=track)
+    one = One(length=18e-3, height=12e-3, width=14e-3, track=track)
     pitch = 2.0 * np.pi * track.radius * np.tan(track.climb)
     size = Size(2.0 * track.radius, {}, track.width, 0.0, 0.0, track.climb, turns * pitch, turns, pitch)
     tooled = cuts.stretch(track, devices, [one]) if devices else None
@@ -226,6 +232,22 @@ def test_a_swept_blade_leans_ahead_and_keeps_its_clearance():
         at = made.way.places(made.first + blade.start + blade.lean * y + 0.5 * blade.thickness, y)
         hits = facets.first_met(facets.unplaced(solid), at + [0, 0, 1e-3], at + [0, 0, 0.05])
         assert hits[0] + 1e-3 == pytest.approx(6e-3, abs=0.25e-3)
+
+
+@pytest.mark.parametrize("shape", ["cylinder", "stepped"])
+def test_a_nozzle_is_a_hole_through_the_wall(shape):
+    track, asked = replace(TRACK, climb=np.radians(4.5)), Asked(shape=shape, left=True)
+    solid = body(planned(CHAINS["jets"], track=track, asked=asked))
+    plan, whole = solid.plan, facets.unplaced(solid)
+    assert [bore.height for bore in plan.stretch.bores] == [1e-3, 8e-3]
+    s = plan.first + plan.stretch.bores[1].place
+    theta, turns = float(plan.way.angle(s)), np.linspace(0.1, 2.0 * np.pi, 12)
+    out, ahead = np.array([np.cos(theta), np.sin(theta), 0.0]), np.array([-np.sin(theta), np.cos(theta), 0.0])
+    for off, walls in ((0.9e-3, 0), (1.1e-3, 2)):
+        for turn in turns:
+            beside = off * (np.cos(turn) * ahead + [0.0, 0.0, np.sin(turn)])
+            start = plan.way.places(s, 2e-3) + [0.0, 0.0, 8e-3] + beside
+            assert len(facets.first_met(whole, start, start + 0.02 * out)) == walls
 
 
 def test_rails_are_open_at_their_end():

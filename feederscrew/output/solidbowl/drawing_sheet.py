@@ -187,6 +187,10 @@ def _unrolled(paper, solid):
             [x, x + thick, x + thick, x], [at[1], at[1], at[1] + wide, at[1] + wide], color="#0072b2"
         )
         paper.text(x + thick + 0.8, at[1] + 0.5 * wide, str(number), size=2.5, va="center")
+    for number, bore in enumerate(stretch.bores, start=len(stretch.cuts) + len(stretch.blades) + 1):
+        x = at[0] + bore.place / MM * scale
+        paper.lines([[(x, at[1] - 1.6), (x, at[1] + 0.25 * wide)]], THIN, linestyles="dashdot")
+        paper.text(x + 0.8, at[1] + 0.25 * wide, str(number), size=2.5, va="center")
     paper.dimension(at, at + [length, 0.0], f"{stretch.length / MM:.4g}", (0.0, -6.5), size=2.2)
     text = f"{plan.width / MM:.4g}"
     paper.dimension(at + [length, 0.0], at + [length, wide], text, (6.0, 0.0), size=2.2)

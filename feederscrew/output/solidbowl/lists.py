@@ -23,6 +23,10 @@ def cuts(paper, study, at):
         for one in stretch.blades:
             start, end = one.start / MM, (one.start + one.thickness) / MM
             rows.append([str(len(rows)), one.label, f"{start:.5g}", f"{end:.5g}", CUT])
+        for one in stretch.bores:
+            bored = f"Ø{one.size / MM:.4g} in the wall, {one.height / MM:.4g} over the track: {one.label}"
+            start, end = (one.place - 0.5 * one.size) / MM, (one.place + 0.5 * one.size) / MM
+            rows.append([str(len(rows)), bored, f"{start:.5g}", f"{end:.5g}", CUT])
         for place, drop in stretch.drops:
             listed = f"step {drop / MM:.4g} mm down"
             rows.append([str(len(rows)), listed, f"{place / MM:.5g}", f"{place / MM:.5g}", CUT])
