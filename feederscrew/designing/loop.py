@@ -50,15 +50,27 @@ def design(part, plain, given, request, *, known=None, told=None, before=None):
                 break
         _make_whole(search, proofs)
     except KeyboardInterrupt:
-        return replace(_best(search, proofs), partial=True)
+        return replace(_best(search, proofs), attempts=tuple(search.attempts), partial=True)
     best = _best(search, proofs)
     return replace(best, attempts=tuple(search.attempts), nearest=nearest.nearest(best, search))
 
 
 def _best(search, proofs):
-    """The best design so far, as far as it was proved."""
-    studies = [study for study, _ in proofs]
-    return max(studies, key=merit, default=None) or _without(search)
+    """The best design so far, as far as it was proved; the best attempt where none was."""
+    if proofs:
+        return max((study for study, _ in proofs), key=merit)
+    candidate = _likeliest(search)
+    return _without(search) if candidate is None else _unproved(search, candidate, search.known)
+
+
+def _likeliest(search):
+    """The best of the attempts that deliver anything: clean, then of fewer faults, then faster."""
+    order = [one for one in (*search.passed, *search.failed) if one.attempt.rate > 0.0]
+    return max(
+        order,
+        key=lambda one: (one.attempt.clean, -len(one.attempt.faults), one.attempt.rate),
+        default=None,
+    )
 
 
 def merit(study):
@@ -94,13 +106,9 @@ def _make_whole(search, proofs):
         if whole(study):
             return
     else:
-        order = [*search.passed, *search.failed]
-        order = [one for one in order if one.attempt.rate > 0.0]
-        if not order:
+        candidate = _likeliest(search)
+        if candidate is None:
             return
-        candidate = max(
-            order, key=lambda one: (one.attempt.clean, -len(one.attempt.faults), one.attempt.rate)
-        )
     proofs[:] = [one for one in proofs if one[1] is not candidate]
     proofs.append((proved(search, candidate, whole=True), candidate))
 

@@ -200,7 +200,7 @@ class DesignStudy:
     def status(self):
         """One of three words."""
         if self.bowl is None or not self.delivered[0] > 0.0:
-            return NONE if self.bowl is None or not self.queues else FALLS_SHORT
+            return FALLS_SHORT if self.bowl is not None and (self.queues or self.partial) else NONE
         return HOLDS if not self.shortfalls else FALLS_SHORT
 
     @property
@@ -224,6 +224,10 @@ def _shortfalls(study):
             yield "stopped before a design was proved"
         for one in study.attempts[:3]:
             yield f"{one.wanted}: {', '.join(one.faults[:3]) or 'nothing leaves'}"
+        return
+    if study.partial and not study.queues:
+        sort = f"{study.robust.held} of {study.robust.draws} draws sort"
+        yield f"stopped before a queue was followed: {sort if study.robust.draws else 'no draw was tried'}"
         return
     if low < RATE_KEPT * study.request.target:
         yield (

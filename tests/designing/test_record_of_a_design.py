@@ -61,6 +61,20 @@ def test_the_bowl_file_says_what_counted_as_one(tmp_path):
 def test_what_was_stopped_early_says_so():
     none = DesignStudy(PART, DesignRequest(1.0), None, None, None, partial=True)
     assert (none.status, none.why) == ("none", "stopped before a design was proved")
+    for held, draws, said in (
+        (0, 0, "no draw was tried"),
+        (1, 1, "1 of 1 draws sort"),
+        (3, 7, "3 of 7 draws sort"),
+    ):
+        some = replace(study(queue()), queues=(), robust=RobustRun(draws, held, ""), partial=True)
+        assert (some.status, some.why) == ("falls short", f"stopped before a queue was followed: {said}")
+
+
+def test_what_no_queue_was_followed_of_verifies_nothing(tmp_path):
+    some = replace(study(queue()), queues=(), partial=True)
+    (tmp_path / "design.yaml").write_text(design_file.bowl_file(some, ()))
+    assert bowls.verified(tmp_path / "design.yaml") is None
+    assert "Nothing is verified" in (tmp_path / "design.yaml").read_text()
 
 
 def fills(right, left, returned, **more):

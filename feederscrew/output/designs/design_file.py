@@ -56,8 +56,11 @@ def bowl_file(study, settings, sheet=None):
     if study.bowl.devices:
         lines += [f"{SECTION}:  # along the track, in the order parts meet them"]
         lines += [f"  - {one.kind}: {device_value(one)}" for one in study.bowl.devices]
-    lines += ["verified:  # void as soon as part, bowl or version is another"]
-    lines += [f"  {word}: {value}" for word, value in _verified(study)]
+    if study.queues:
+        lines += ["verified:  # void as soon as part, bowl or version is another"]
+        lines += [f"  {word}: {value}" for word, value in _verified(study)]
+    else:
+        lines += ["# Nothing is verified: it was stopped before a queue was followed."]
     return "\n".join(lines) + "\n"
 
 
