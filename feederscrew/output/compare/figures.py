@@ -15,10 +15,12 @@ FIXED = {
     "CSA_Table_3-1": ("CSA, Table 3-1", "#b67c00"),
     "CSA_mixed_heights": ("CSA, mixed heights", "#f3c565"),
     "experiment": ("experiment", "#545f6b"),
+    "recommended": ("recommended", style.ANSWER),
 }
 OWN = ("#545f6b", "#cc79a7", "#a9b3bd", "#8f4a71", "#7d6b5d", "#5b3a8e")  # a user's profiles, in turn
 BAR = 0.20  # [in] of paper a bar gets
 WIDEST = 13.0  # [in] of all charts side by side
+UPRIGHT = 0.3  # [in] of a bar below which its number stands upright
 LEAST_ROOM = 0.17  # [in] of a bar below which its number is left out
 
 
@@ -68,17 +70,20 @@ def bars(axes, names, profiles, printed=None, room=BAR):
         x = places + (place - 0.5 * (len(profiles) - 1)) * width
         axes.bar(x, 100.0 * values, 0.92 * width, color=colour, label=label)
         if room >= LEAST_ROOM:
-            _numbers(axes, x, 100.0 * values, upright=room < 0.3)
+            _numbers(axes, x, 100.0 * values, upright=room < UPRIGHT)
         if name in (printed or {}):
             _ticks(axes, x, 100.0 * printed[name], width)
     style.named_ticks(axes, places, names)
     axes.tick_params(axis="x", length=0)
     axes.set_xlim(-0.55, len(names) - 0.45)
-    axes.set_ylim(0.0, 114.0 * max(values.max() for values in profiles.values()))
+    above = (
+        132.0 if LEAST_ROOM <= room < UPRIGHT else 114.0
+    )  # numbers that stand upright are kept off the title
+    axes.set_ylim(0.0, above * max(values.max() for values in profiles.values()))
 
 
 def comparison(title, names, measured, rules, compared):
-    """Draw one chart a rule against everything measured, and the deviations of all pairs.
+    """Draw one chart a rule against everything measured, and how far each profile is from what was measured.
 
     Parameters
     ----------
@@ -95,10 +100,10 @@ def comparison(title, names, measured, rules, compared):
     Figure
     """
     width = float(np.clip(len(names) * (len(measured) + 1.9) * BAR + 1.0, 4.2, 12.0))
-    side = max(3.4, 0.42 * (len(measured) + len(rules)) + 1.3)
+    side, tall = max(3.1, 0.42 * len(measured) + 1.5), 0.42 * (len(measured) + len(rules)) + 1.3
     across = max(1, min(len(rules), int(WIDEST / width)))
     rows = -(-max(len(rules), 1) // across)
-    figure = style.figure(across * width + side, max(2.2 * rows, side))
+    figure = style.figure(across * width + side, max(2.2 * rows, tall))
     grid = figure.add_gridspec(rows, across + 1, width_ratios=(*[width] * across, side))
     charts = {name: {**measured, name: values} for name, values in rules.items()} or {title: measured}
     room = (width - 1.0) / (len(names) * (len(measured) + 1.9))
@@ -112,7 +117,7 @@ def comparison(title, names, measured, rules, compared):
         )
         bars(axes, names, profiles, room=room)
     _legend(figure, measured, rules)
-    _matrix(figure.add_subplot(grid[:, across]), [*measured, *rules], compared)
+    _matrix(figure.add_subplot(grid[:, across]), list(measured), list(rules), compared)
     return figure
 
 
@@ -126,24 +131,23 @@ def _legend(figure, measured, rules):
     )
 
 
-def _matrix(axes, names, compared):
-    """Deviations of all pairs as a table of shades."""
-    count = len(names)
-    values = np.full((count, count), np.nan)
-    for (first, second), value in compared.items():
-        i, j = sorted((names.index(first), names.index(second)))
-        values[j, i] = value
-    top = max(np.nanmax(values), 0.1)
-    axes.imshow(values, cmap="Blues", vmin=0.0, vmax=1.25 * top, aspect="equal")
-    for (j, i), value in np.ndenumerate(values):
+def _matrix(axes, measured, rules, compared):
+    """Deviations of every profile from those that were measured, as a table of shades."""
+    names, known = [*measured, *rules], {frozenset(pair): value for pair, value in compared.items()}
+    values = np.full((len(names), len(measured)), np.nan)
+    for j, i in zip(*np.tril_indices(len(names), -1, len(measured))):
+        values[j, i] = known.get(frozenset((names[j], names[i])), np.nan)
+    rows = slice(1, None)  # the first has nothing before it
+    top = max(np.nanmax(values, initial=0.0), 0.1)
+    axes.imshow(values[rows], cmap="Blues", vmin=0.0, vmax=1.25 * top, aspect="equal")
+    for (j, i), value in np.ndenumerate(values[rows]):
         if np.isfinite(value):
             colour = "white" if value > 0.6 * top else style.INK
             axes.text(i, j, f"{value:.3f}", ha="center", va="center", fontsize=7, color=colour)
     labels = [look(name, place)[0] for place, name in enumerate(names)]
-    style.tidy(axes, title="Deviation between two profiles", grid="none")
-    axes.set_xticks(range(count - 1), labels[:-1], rotation=45, ha="right")
-    axes.set_yticks(range(1, count), labels[1:])
-    axes.set(xlim=(-0.5, count - 1.5), ylim=(count - 0.5, 0.5))
+    style.tidy(axes, title="Deviation from\nwhat was measured", grid="none")
+    axes.set_xticks(range(len(measured)), labels[: len(measured)], rotation=45, ha="right")
+    axes.set_yticks(range(len(names) - 1), labels[1:])
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)
 
