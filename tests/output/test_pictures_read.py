@@ -245,3 +245,9 @@ def test_the_history_of_a_loop_can_be_read():
 
 def test_phases_of_a_cycle_are_told_apart_without_their_colours():
     assert len({convey.PHASE_LINES[name] for name in ("forward", "backward", "flight")}) == 3
+
+
+def test_the_heading_of_a_column_of_numbers_stands_over_them():
+    cells = ((MarkedCell("b"), MarkedCell("7", "number")), (MarkedCell("a"), MarkedCell("failed", "failed")))
+    page = html(Page("all", "", (Chapter((Matrix(("part", "mass"), cells),)),)))
+    assert '<th>part</th><th class="number">mass</th>' in page

@@ -227,7 +227,9 @@ def _links(entries):
 
 def _matrix(heads, rows, sortable):
     kind = "matrix sortable" if sortable else "matrix"
-    head = "".join(f"<th>{escape(text)}</th>" for text in heads)
+    numbers = [any(row[place].mark == "number" for row in rows) for place in range(len(heads))]
+    marks = [' class="number"' if number else "" for number in numbers]
+    head = "".join(f"<th{mark}>{escape(text)}</th>" for mark, text in zip(marks, heads))
     return _grid(f' class="{kind}"', head, [f"<tr>{''.join(map(_entry, row))}</tr>" for row in rows])
 
 
