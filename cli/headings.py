@@ -34,4 +34,5 @@ def headings(part, aspect, bowl, pictures, out):
         found = study(solid, record(given).track, aspect, arriving(solid, record(given)))
         out.say(tables.answer(found), *tables.remarks(found))
         offers.write(folder, files.offers(found, texts(given)), pictures=pictures)
-    out.show(tables.frame(found), tables.document(found, texts(given)), hidden=tables.HIDDEN)
+    shown, document = tables.frame(found), tables.document(found, texts(given))
+    out.show(shown, document, hidden=tables.HIDDEN, spare=tables.SPARE)

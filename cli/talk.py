@@ -108,7 +108,8 @@ class Output:
         if self.format == "table" and spare:
             shown, left_out = tables.to_page(shown, spare)
             if left_out:
-                self.say(f"Left out of the table: {', '.join(left_out)}; --format csv prints them too")
+                those = "it" if len(left_out) == 1 else "them"
+                self.say(f"Left out of the table: {', '.join(left_out)}; --format csv prints {those} too")
         width = _window() or (tables.PAGE if spare else None)
         click.echo(tables.text(shown, self.format, width), nl=False)
 

@@ -7,6 +7,10 @@ from feederscrew.units import factor
 
 MM = factor("mm", "length")
 HIDDEN = ("contact_1_x_mm", "contact_1_y_mm", "contact_2_x_mm", "contact_2_y_mm")
+SPARE = (
+    ("straight_wall_share",),
+    ("half_turn_of_deg", "mirror_of_deg"),
+)  # left out of a table that is too wide
 
 
 def rows(study):
