@@ -18,6 +18,7 @@ from feederscrew.resting.posture import posture
 STRAIGHT = Track(climb=0.0, bank=0.0, radius=1e3, width=1.0)  # [m] a wall without a bend
 ROUNDS = 200  # of a search that halves its error in each
 SETTLED = 1e-12  # [m]
+ABOVE = 5e-3  # [m] of upright wall over a part on a track or below its rails, at least, where it steps out
 STEEP = 0.9  # slope, a little over 40 deg, of a wall between two turns that lie beside each other
 
 
@@ -29,6 +30,7 @@ class Lying:
     tallest: float  # [m]
     length: float  # [m] along the wall, of the longest orientation that is wanted
     width: float  # [m] from the wall, of the widest orientation that is wanted
+    hanging: float = 0.0  # [m] greatest length of a part that leaves hanging; 0 where none does
 
 
 @dataclass(frozen=True)
@@ -156,7 +158,8 @@ def _climb(part: Lying, across: float, wide: float, rules: Sizing) -> float:
     """The least climb [rad]: parts pass below the next turn, or below the slope that leads to it."""
     rise, way = rules.headroom * part.tallest + rules.sheet, np.pi * across
     if rules.shape != "cylinder":
-        rise += STEEP * wide + 3.0 * rules.sheet
+        free = [max(rules.headroom * one, one + ABOVE) for one in (part.tallest, part.hanging) if one > 0.0]
+        rise = sum(free) + STEEP * wide + 4.0 * rules.sheet
         way = np.pi * (across - wide)
     return max(rules.least_climb, np.arctan(rise / way))
 

@@ -12,6 +12,7 @@ import numpy as np
 import shapely
 
 from feederscrew.errors import FeederError
+from feederscrew.machine.sizing import ABOVE
 
 CYLINDER, STEPPED, CONICAL = SHAPES = ("cylinder", "stepped", "conical")
 TURN = 2.0 * np.pi
@@ -20,7 +21,6 @@ SLOPE, SURE = np.radians(40.0), np.radians(5.0)  # least slope, and how much ste
 PRINTED = np.radians(45.5)  # a slope that needs no support
 FLOOR = 0.5  # of the bowl's radius: no floor is smaller
 LIFT = 3e-4  # [m] by which the wall ends higher than the floor below it
-ABOVE = 5e-3  # [m] of upright wall over the tallest part
 SMOOTH = 16  # places in a quarter turn that a curve is led through
 
 

@@ -233,8 +233,9 @@ def _size(
 ) -> sizing.Size:
     """The size of the bowl; what the file says of its track is kept."""
     said, track = drive_sought.given(settings, "track"), plain.track
+    greatest = float(np.ptp(np.asarray(part.vertices), axis=0).max())
     return sizing.size(
-        lying,
+        replace(lying, hanging=greatest if any(one.hangs for one in plain.devices) else 0.0),
         part.source,
         plain.sizing,
         sorts=sorts,

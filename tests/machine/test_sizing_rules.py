@@ -49,6 +49,17 @@ def test_beside_a_slope_a_turn_rises_by_the_slope_and_three_sheets_more(shape):
     assert rise - own == pytest.approx(0.9 * found.track_width + 3.0 * rules.sheet, rel=1e-9)
 
 
+@pytest.mark.parametrize(("hanging", "free"), [(0.0, 0.0), (4e-3, 9e-3), (40e-3, 60e-3)])
+def test_below_rails_a_turn_rises_by_what_hangs_as_well(hanging, free):
+    """By 1.5 times a long part, and a short one and 5 mm: so much upright wall a stepped solid needs."""
+    rules = replace(awkward.bowl().sizing, shape="stepped", headroom=1.5, least_climb=0.0)
+    level, hung = (
+        sizing.size(replace(LYING, hanging=deep), "a part", rules, sorts=False) for deep in (0.0, hanging)
+    )
+    rise = np.pi * (hung.diameter - hung.track_width) * (np.tan(hung.climb) - np.tan(level.climb))
+    assert rise == pytest.approx(free, rel=1e-9, abs=1e-12)
+
+
 @pytest.mark.parametrize(("more", "diameter"), [(0.0, 0.3), (1e-5, 0.4), (-1e-5, 0.3)])
 def test_a_bowl_is_rounded_up_unless_it_is_a_whole_number_of_steps(more, diameter):
     """0.3 over 0.1 is a little less or more than 3, by how it was made: three steps either way."""
