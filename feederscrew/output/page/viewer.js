@@ -10,7 +10,7 @@
   const LONGEST = 10; // seconds a trial plays; a longer one plays faster
   const WIDTH = 680, HEIGHT = 544; // pixels of a view
   const REACH = 1.16; // of the picture over the part
-  const COLOURS = { steel: 0xc3d3e4, track: 0xdfe1e4, edge: 0x22303c, accent: 0xd55e00, floor: 0xe3e8ed };
+  const COLOURS = { steel: 0xc3d3e4, track: 0xdfe1e4, edge: 0x22303c, accent: 0xd55e00, floor: 0xe3e8ed, parts: 0xed8c33 };
 
   function renderer() {
     const canvas = document.createElement("canvas");
@@ -76,7 +76,7 @@
     const contact = contactLines(), lamp = new THREE.DirectionalLight(0xffffff, 2.1), fill = new THREE.DirectionalLight(0xffffff, 0.7);
     const paths = (data.paths || []).map((path) => decoded(path, Float32Array));
     const tracks = (data.tracks || []).map(trackOf), floor = floorDisc(data);
-    part.add(...surfaceOf(data, COLOURS.steel), ...contact, ...(data.unmarked ? [] : [centreMark(data)]));
+    part.add(...surfaceOf(data, COLOURS[data.colour || "steel"]), ...contact, ...(data.unmarked ? [] : [centreMark(data)]));
     scene.add(part, floor, ...tracks, new THREE.HemisphereLight(0xffffff, 0xd8dee5, 1.9), lamp, fill);
     const tall = REACH * (data.reach || 1) * data.radius, wide = (tall * WIDTH) / HEIGHT;
     const camera = new THREE.OrthographicCamera(-wide, wide, tall, -tall, 0.1 * data.radius, 20 * data.radius);
