@@ -9,7 +9,8 @@ from feederscrew.bowl.record import Unbalance
 from feederscrew.errors import FeederError
 from feederscrew.part import mass
 from feederscrew.solidbowl import facets, stairs, track
-from feederscrew.solidbowl.plan import BESIDE, TURN, BowlPlan
+from feederscrew.solidbowl.bolting import BESIDE
+from feederscrew.solidbowl.plan import TURN, BowlPlan
 from feederscrew.solidbowl.segments import Segments
 from feederscrew.tooling import whole_surface
 

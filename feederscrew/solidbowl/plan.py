@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew.errors import FeederError
+from feederscrew.solidbowl import bolting
+from feederscrew.solidbowl.bolting import BESIDE
 from feederscrew.solidbowl.cuts import Stretch
 from feederscrew.solidbowl.materials import BowlMaterial
 from feederscrew.solidbowl.stairs import CYLINDER, Stairs, stairs
@@ -17,7 +19,6 @@ OUTLET = 15e-3  # [m] by which the outlet stands out of the wall
 LEAD = 10e-3  # [m] of track between the last device and the outlet
 DIP = 0.06  # [rad] the track begins so far below the floor: no edge where it grows from it
 CLEAR = 2e-3  # [m] more than a part needs, below rails
-BESIDE = 1e-3  # [m] of level floor beside the track
 NARROW = 0.75  # of the radius: no track is wider
 LOWEST = 10e-3  # [m] over the floor of a track that goes down
 TURN = 2.0 * np.pi
@@ -142,7 +143,7 @@ def plan(size, track, made_of, tooled, asked, *, extents):
     stepped = stairs(track, made_of, tooled, asked, extents)
     way, first = _way(size, track, tooled, asked, stepped)
     lowest = float(way.wall_radius(0.0))
-    _check_holes(track, asked, extents, lowest)
+    bolting.check(track, asked, extents, lowest)
     across = track.width * np.cos(track.bank)
     outer = track.radius + made_of.wall
     outlet = np.sqrt(outer**2 - (track.radius - across) ** 2) + OUTLET
@@ -160,10 +161,10 @@ def plan(size, track, made_of, tooled, asked, *, extents):
         hanging=greatest + CLEAR if hangs else 0.0,
         headroom=tallest,
         top=way.highest + max([tallest + ABOVE, *gates]),
-        hub=_hub(track, asked, lowest),
+        hub=bolting.hub(track, asked, lowest),
         bolts=asked.bolts,
         bolt=asked.bolt,
-        bolt_circle=_circle(track, asked, lowest),
+        bolt_circle=bolting.circle(track, asked, lowest),
         drains=asked.drains,
         drain=asked.drain,
         turned=asked.outlet_angle,
@@ -183,35 +184,6 @@ def _check(size, track):
     if track.climb <= 0.0:
         what = f"{np.degrees(track.climb):.3g} deg does not lead a track out of the bowl"
         raise FeederError("track.climb", what, "give a climb, as 3.5 deg, or leave it out")
-
-
-def _circle(track, asked, radius):
-    """Diameter of the circle of bolts: as given, or by the rule as far as a floor of a radius has room."""
-    most = 2.0 * (_room(track, radius) - 2.0 * asked.bolt)
-    ruled = asked.bolt_share * 2.0 * track.radius
-    return asked.bolt_circle or (min(ruled, most) if most > 0.0 else ruled)
-
-
-def _room(track, radius):
-    """Radius within which nothing of the track lies."""
-    return radius - track.width - 2.0 * BESIDE
-
-
-def _hub(track, asked, radius):
-    """Radius of the hub."""
-    return 0.5 * _circle(track, asked, radius) + 2.0 * asked.bolt
-
-
-def _check_holes(track, asked, extents, radius):
-    room = _room(track, radius)
-    if _hub(track, asked, radius) > room + 1e-9:
-        what = f"{1e3 * _circle(track, asked, radius):.4g} mm lies under the track of a bowl this small"
-        most = 2e3 * (room - 2.0 * asked.bolt)
-        raise FeederError("machine.bolt_circle", what, f"give at most {most:.4g} mm, or smaller bolts")
-    least = float(min(extents))
-    if asked.drains and asked.drain >= least:
-        what = f"{1e3 * asked.drain:.4g} mm may let parts through that are {1e3 * least:.4g} mm thick"
-        raise FeederError("sizing.drain_hole", what, f"give less than {1e3 * least:.4g} mm")
 
 
 def _way(size, track, tooled, asked, stepped):

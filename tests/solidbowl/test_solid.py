@@ -362,6 +362,16 @@ def model_of(data):
             "smaller bolts",
         ),
         (
+            TRACK, Asked(bolts=12, bolt_circle=0.04), (),
+            "machine.bolts: 12 and one in the middle, of 9 mm, leave no metal between them on a circle of "
+            "40 mm - take fewer, a smaller machine.bolt_hole, or a larger bowl",
+        ),
+        (
+            TRACK, Asked(bolts=1, bolt_circle=0.026), (),
+            "machine.bolts: 1 and one in the middle, of 9 mm, leave no metal between them on a circle of "
+            "26 mm - take fewer, a smaller machine.bolt_hole, or a larger bowl",
+        ),
+        (
             TRACK, Asked(drains=8, drain=12e-3), (),
             "sizing.drain_hole: 12 mm may let parts through that are 12 mm thick - give less than 12 mm",
         ),

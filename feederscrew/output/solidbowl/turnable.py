@@ -10,8 +10,8 @@ from feederscrew.units import factor
 MM = factor("mm", "length")
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)  # quaternion x, y, z, w
 TURN = (
-    "The bowl as one closed body, parts on its track. Drag it to turn it, or use the arrow keys; double-click "
-    "sets it back."
+    "The bowl as one closed body, parts on its track. Drag it to turn it, or use the arrow keys; "
+    "double-click sets it back."
 )
 CLOSE = 0.9  # of how far other views reach: from every side the whole bowl is seen
 MOST = 60_000  # facets of all parts together
