@@ -75,7 +75,7 @@ def _point(settings, pictures, folder, out):
     document = tables.document(found) | {"bowl": texts}
     out.warn(*tables.remarks(document), *found.warnings)
     offers.write(folder, files.offers(found, texts), pictures=pictures)
-    out.show(tables.summary(document), document)
+    out.show(tables.summary(document), document, spare=())
 
 
 def _map(settings, ranges, curve, pictures, folder, out):

@@ -96,21 +96,22 @@ class Output:
         yield
         self.detail(f"{name}: {time.perf_counter() - start:.2f} s")
 
-    def table(self, frame, *, hidden=(), spare=()):
+    def table(self, frame, *, hidden=(), spare=None):
         """Print a frame as the table or CSV asked for.
 
-        A table for people leaves out ``hidden`` columns, and of ``spare`` ones, from the first on, as many
-        as it takes to be no wider than a page; it says which.
+        A table for people leaves out ``hidden`` columns. Where ``spare`` is given it is no wider than a page.
+        Of these columns, from the first on, as many as that takes are left out, and it says which. Texts of
+        a table that is still wider go on below.
         """
         from feederscrew.output import tables
 
         shown = frame.without(hidden) if self.format == "table" else frame
-        if self.format == "table" and spare:
+        if self.format == "table" and spare is not None:
             shown, left_out = tables.to_page(shown, spare)
             if left_out:
                 those = "it" if len(left_out) == 1 else "them"
                 self.say(f"Left out of the table: {', '.join(left_out)}; --format csv prints {those} too")
-        width = _window() or (tables.PAGE if spare else None)
+        width = _window() or (None if spare is None else tables.PAGE)
         click.echo(tables.text(shown, self.format, width), nl=False)
 
     def json(self, document):
@@ -119,7 +120,7 @@ class Output:
 
         click.echo(tables.json_text(document), nl=False)
 
-    def show(self, frame, document, *, hidden=(), spare=()):
+    def show(self, frame, document, *, hidden=(), spare=None):
         """Print the document with ``--format json``, else the frame."""
         if self.format == "json":
             self.json(document)
