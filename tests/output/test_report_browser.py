@@ -6,7 +6,7 @@ import json
 import re
 import shutil
 import subprocess
-from html import unescape
+from html import escape, unescape
 from pathlib import Path
 
 import numpy as np
@@ -181,6 +181,12 @@ window.addEventListener("load", () => {
 });
 </script>
 </body>"""
+TELEPHONE = """<script>
+window.addEventListener("load", () => {
+  const seen = frames[0].document.documentElement;
+  document.title = [seen.scrollWidth, frames[0].innerWidth].join();
+});
+</script>"""  # no browser without a head has a window of less than 500 pixels
 MACHINE = (
     "change leaf_thickness_mm leaves natural_frequency_hz by_t_squared_hz above_drive gain stress_mpa".split()
 )
@@ -266,3 +272,19 @@ def test_a_trial_plays(visit, tmp_path):
     assert told["paused"]["sum"] == told["still"]["sum"]
     assert len({told[name]["sum"] for name in ("start", "paused", "end")}) == 3
     assert 0.0 < times["again"] < times["end"]  # from the start once it has come to the end
+
+
+def test_on_a_telephone_nothing_moves_the_page_sideways(visit):
+    """The view of a trial was 384 pixels wide on a page of 358; tables and pictures scroll by themselves."""
+    scene, wide = {"poses": []}, tables.frame({f"column_{k}_mm": np.full(3, 124.5) for k in range(20)})
+    views = Views(scene, (("A@2", "passed", ()),), "trial-views", "Orientation", plays=True)
+    text = html(
+        Page("part", "", (Chapter((views, Table(wide), Table(wide)), anchor="trial", title="Trial"),))
+    )
+    shown = text.split("<script")[0].replace(" hidden", "")  # as it is laid out, the views not drawn
+    frame = (
+        f'<title></title><iframe width="390" height="900" frameborder="0" srcdoc="{escape(shown)}"></iframe>'
+    )
+    dom, _ = visit(frame + TELEPHONE, "--dump-dom")
+    width, window = map(int, re.search(r"<title>(\d+),(\d+)</title>", dom).groups())
+    assert window == 390 and width <= window
