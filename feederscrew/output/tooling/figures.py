@@ -8,7 +8,7 @@ from matplotlib.patches import Polygon
 from shapely import affinity
 
 from feederscrew.output import style
-from feederscrew.output.tooling import ink, tables
+from feederscrew.output.tooling import ink, leaving, tables
 from feederscrew.tooling import tightest
 from feederscrew.tooling.isolating.proposal import (
     LEAST_SHARE,  # orientations that come less often have no row
@@ -18,7 +18,7 @@ from feederscrew.units import factor
 MM = factor("mm", "length")
 WIDTH = 1200  # pixels
 LEAST = 900  # pixels: room for the lines over the rows
-LEFT, COLUMN, ROW, HEAD, FOOT = 230, 300, 170, 134, 30  # pixels
+LEFT, COLUMN, ROW, HEAD, FOOT, OUT = 230, 300, 170, 134, 30, 210  # pixels
 PASSES, FALLS = "#0072b2", "#d55e00"
 TRACK, AIR, PART, TOUCHING = "#e3e8ec", "#ffffff", "#9fb3c4", "#56697a"
 WIDEST = 420  # pixels of a column
@@ -50,11 +50,12 @@ def chain(devices, every, shares, wanted=None):
     """
     shown = [device for device in devices if device.placed]
     rows = _rows(every, shares, wanted)
-    wide = max(LEAST, LEFT + min(max(COLUMN, (WIDTH - LEFT) / max(len(shown), 1)), WIDEST) * len(shown))
+    wide = LEFT + min(max(COLUMN, (WIDTH - LEFT) / max(len(shown), 1)), WIDEST) * len(shown) + OUT
+    wide = max(LEAST, wide)
     panels = 2 if len(rows) > LONG and 2 * wide <= BROAD else 1
     high = -(-len(rows) // panels)
     page = style.page(panels * wide, HEAD + ROW * high + FOOT)
-    column = (wide - LEFT) / max(len(shown), 1)
+    column = (wide - LEFT - OUT) / max(len(shown), 1)
     title = "Each orientation where each device bears least" if wanted is None else (
         f"What lets {every[wanted].name} leave: each orientation where each device bears least"
     )  # fmt: skip
@@ -63,7 +64,9 @@ def chain(devices, every, shares, wanted=None):
         for place, device in enumerate(shown):
             left = panel * wide + LEFT + place * column + 8
             ink.text(page, left, HEAD - 22, _device(device, place), weight="bold")
+        ink.text(page, (panel + 1) * wide - OUT + 8, HEAD - 22, "as it leaves", weight="bold")
     size = _scale(every, rows, column)
+    leaving.bar_on_page(page, panels * wide - 16, 40, size)
     for place, k in enumerate(rows):
         panel, line = divmod(place, high)
         left, top = panel * wide, HEAD + line * ROW
@@ -73,6 +76,9 @@ def chain(devices, every, shares, wanted=None):
         _told(page, (left + 16, top), every[k], shares[k], found, k == wanted)
         for step, one in enumerate(found):
             _cell(page, (left + LEFT + step * column, top, column, ROW), one, size)
+        if found and all(one.verdict.passes > 0.0 for one in found):
+            box = left + wide - OUT + 8, top + 8, OUT - 24, ROW - 38
+            leaving.column(page, box, found[-1].after, size, PASSES)
         if every[k].returned:
             _bare(page, (left + LEFT, top, column, ROW), every[k], size)
     return page
