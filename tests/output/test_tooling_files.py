@@ -25,6 +25,7 @@ from feederscrew.output.tooling import (
     figures,
     files,
     ink,
+    leaving,
     relief,
     tables,
     written_step,
@@ -36,7 +37,8 @@ from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling import solid, tightest
 from feederscrew.tooling.devices.base import UNSURE, Verdict
-from feederscrew.tooling.orientations import orientations
+from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.strip import bent, strip
 from feederscrew.tooling.verdicts import verdict
 
@@ -217,6 +219,38 @@ def test_a_picture_of_one_device_is_no_wider_than_what_it_shows(lying):
     few, shares = every[: figures.LONG], np.full(len(every), 1.0 / len(every))
     wide = [figures.chain(bowl.devices[:count], few, shares).get_size_inches()[0] for count in (1, 2, 3)]
     assert wide[0] < wide[1] <= wide[2]
+
+
+@pytest.mark.parametrize(
+    ("size", "long"), [(0.1, 10.0), (0.0165, 1.0), (0.0167, 2.0), (0.2, 20.0), (1.0, 100.0)]
+)
+def test_a_scale_bar_is_1_2_or_5_of_a_power_of_ten_and_fits(size, long):
+    """120 pixels at most, at so many millimetres a pixel."""
+    assert leaving.bar(size) == pytest.approx(long)
+
+
+def test_what_leaves_is_drawn_as_it_leaves(lying):
+    """Behind two devices that let it pass, seen along the track: the wall at 0, its foot at height 0."""
+    _, every = lying
+    narrow = [made("narrowed_track", "here", limit=limit) for limit in (0.03, 0.029)]
+    page = figures.chain(narrow, every[:1], np.ones(1))
+    last = page.axes[-1]
+    assert len(page.axes) == 3 and last.get_xlim()[0] < 0.0 < last.get_ylim()[1]
+    (area,) = [patch.get_path().get_extents() for patch in last.patches]
+    seen = np.array(every[0].seen.bounds) * 1e3
+    assert [area.x0, area.y0, area.x1, area.y1] == pytest.approx(seen, abs=1e-6)
+
+
+def test_rails_are_cut_across_under_what_hangs():
+    screw = parts.load(Path(__file__).parents[2] / "docs/tutorial/countersunk_m4x12.stl")
+    bowl = bowls.read(None, ["track.width=15 mm"])
+    every = travelling(orientations(screw, find(screw), bowl.track), bowl)
+    rails = made("rails", "here", span=(2.1e-3, 6.6e-3))
+    along = next(one for one in every if one.length > 0.011 and one.height < 0.009)
+    page = figures.chain([rails], [along], np.ones(1))
+    near, far, part = (patch.get_path().get_extents() for patch in page.axes[-1].patches)
+    assert (near.x0, near.x1, near.y1) == pytest.approx((0.0, 2.1, 0.0)) and far.x0 == pytest.approx(6.6)
+    assert part.y0 < -9.0 < 0.0 < part.y1 < 3.0  # its shank below the rails, its head over them
 
 
 def test_many_orientations_stand_in_two_panels(lying):
