@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 
 from feederscrew.solidbowl.plan import DIP
+from feederscrew.solidbowl.stairs import CONICAL
 
 INTO = 1e-3  # [m] by which one piece reaches into another
 ARC = 6  # facets of a fillet
@@ -95,10 +96,19 @@ def _sections(plan, s, heights, strips):
     under = [[-plan.across, plan.across * slope - plate], *arc, [INTO, -plate - own]]
     if not plan.material.supported:
         under = [[-plan.across, plan.across * slope - plate], arc[0], arc[-1], [INTO, -plate - own]]
-    outline = np.concatenate([top, np.array(under)])
+    outline = np.concatenate([top, _within_wall(plan, np.array(under))])
     sections = np.broadcast_to(outline, (len(s), *outline.shape)).copy()
     sections[..., 1] += heights[:, None]
     return sections
+
+
+def _within_wall(plan, under):
+    """Corners (K, 2) below the track, kept within a wall that leans in below it."""
+    if plan.stairs is None or plan.stairs.shape != CONICAL:
+        return under
+    most = INTO + under[:, 1] / np.tan(plan.stairs.slope)
+    last = int(np.argmax(under[:, 0] > most))  # the first corner that is deep enough in the wall
+    return np.vstack([under[:last], [most[last], under[last, 1]]])
 
 
 def _riser(plan, kit, at, drop):

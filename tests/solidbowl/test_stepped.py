@@ -88,6 +88,22 @@ def test_a_cone_is_closed_and_its_track_that_of_the_formula(climb, bank, width, 
     np.testing.assert_allclose(widths, width, rtol=0, atol=NEAR)
 
 
+@pytest.mark.parametrize("name", ["steel", "pla"])
+def test_nothing_of_the_track_stands_out_of_a_leaning_wall(name):
+    """Met from outside, where the fillet is: the wall's outer face, a wall from its inner one."""
+    track = replace(TRACK, climb=np.radians(3.0), width=28e-3)
+    solid = body(planned(track=track, asked=Asked(shape="conical"), turns=1.4, name=name))
+    own, whole = solid.plan, facets.unplaced(solid)
+    lean = np.tan(0.5 * np.pi - own.stairs.slope)
+    for s in np.linspace(0.5, 0.9, 12) * own.way.end:
+        theta, foot = own.way.angle(s), own.way.places(s, 0.0)
+        out = np.array([np.cos(theta), np.sin(theta), 0.0])
+        for deep in np.linspace(0.5, 3.0, 12) * own.material.plate:
+            start = foot + 0.05 * out - [0.0, 0.0, deep]
+            met = 0.05 - facets.first_met(whole, start, start - 0.1 * out)[0]
+            assert met == pytest.approx(own.material.wall - lean * deep, abs=NEAR)
+
+
 @pytest.mark.parametrize(
     ("track", "asked", "devices", "line"),
     [
