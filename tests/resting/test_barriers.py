@@ -85,6 +85,12 @@ def test_the_critical_solid_angle_of_a_box():
     assert critical_solid_angles([rectangle(a, b, h)], [h])[0] == pytest.approx((q - want) / q)
 
 
+def test_a_face_through_the_centre_of_mass_has_no_share_of_its_solid_angle():
+    """Of a sheet 4 um thick, read in single precision; it was a division by zero."""
+    face = 1e-3 * np.array([[10.0, 0.0, 2.0], [-10.0, 0.0, 2.0], [-10.0, 0.0, -2.0], [10.0, 0.0, -2.0]])
+    assert (critical_solid_angles([face, face[::-1]], [2e-6, 2e-6]) == 0.0).all()
+
+
 def test_in_balance_as_much_tips_into_each_face_as_out_of_it():
     tips = box_tipping((3.0, 4.0, 5.0), (0.4, -0.3, 0.2))
     shares, net = balance(tips), np.zeros(6)

@@ -22,6 +22,7 @@ def test_unstable_aspects_are_left_out_and_the_rest_renormalised():
 
 def test_an_unknown_weight_leaves_no_probability():
     assert np.isnan(published.normalised(np.array([3.0, np.nan]), np.array([True, True]))).all()
+    assert np.isnan(published.normalised(np.zeros(2), np.array([True, True]))).all()  # without a warning
 
 
 @pytest.mark.parametrize("rule", RULES)

@@ -158,9 +158,9 @@ def critical_solid_angles(polygons, heights):
     Returns
     -------
     (F,) float [1]
-        (Q - mean over the edges of Q_crit) / Q. Q_crit of an edge is the solid angle of the polygon seen
-        from the centre of mass lifted, upright, to its distance from that edge: where it passes when the
-        part tips. The rule's weight is this times Q / h.
+        (Q - mean over the edges of Q_crit) / Q; 0 where Q is. Q_crit of an edge is the solid angle of the
+        polygon seen from the centre of mass lifted, upright, to its distance from that edge: where it
+        passes when the part tips. The rule's weight is this times Q / h.
 
     References
     ----------
@@ -175,7 +175,8 @@ def critical_solid_angles(polygons, heights):
         alike = np.flatnonzero(counts == size)
         edges = first[alike, None] + np.arange(size)
         seen = _lifted_angles(corners[edges], normals[alike], lifts[edges])
-        shares[alike] = 1.0 - seen[:, 1:].mean(axis=1) / seen[:, 0]
+        critical, whole = seen[:, 1:].mean(axis=1), seen[:, 0]
+        shares[alike] = 1.0 - np.divide(critical, whole, out=np.ones(len(whole)), where=whole > 0.0)
     return shares
 
 

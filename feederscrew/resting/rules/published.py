@@ -79,7 +79,8 @@ def normalised(weights, stable):
     Returns
     -------
     (A,) float [1]
-        Sums to 1; NaN throughout where a weight is not known.
+        Sums to 1; NaN throughout where a weight is not known, or none is above 0.
     """
     weights = np.where(stable, weights, 0.0)
-    return weights / weights.sum()
+    total = weights.sum()
+    return weights / (total if total != 0.0 else np.nan)
