@@ -32,6 +32,12 @@ SOLID = (
         metavar="XxYxZ",
         help="Cut it into segments that fit a printer: 220x220x250mm; with holes for dowels at the seams.",
     ),
+    click.option(
+        "--join",
+        type=click.Choice(["dowels", "screws"]),
+        help="What holds the segments together: dowels, or screws in lugs outside the wall as well.  "
+        "[default: dowels]",
+    ),
     click.option("--step", is_flag=True, help="Write bowl.step, of exact faces; needs feederscrew[cad]."),
     quantity.with_default(
         "--chord",
@@ -53,7 +59,7 @@ def _wanted(command):
 def _of_the_solid(command):
     """The options of SOLID, packed as ``made``."""
     return options.stacked(
-        options.packed(command, "made", ("solid", "material", "chord", "bed", "step")), *SOLID
+        options.packed(command, "made", ("solid", "material", "chord", "bed", "join", "step")), *SOLID
     )
 
 
@@ -137,6 +143,8 @@ def _fitting(part, target, made, measured):
     for option in ("bed", "step"):
         if made[option] and not made["solid"]:
             raise click.UsageError(f"--{option} is given without --solid - add --solid")
+    if made["join"] and not made["bed"]:
+        raise click.UsageError("--join is given without --bed - give the printer's bed: --bed 220x220x250mm")
     if part["source"] and target is None:
         raise click.UsageError("PART is given without --target - give the rate as well: --target 120/min")
     if target is not None and not part["source"]:

@@ -1,6 +1,6 @@
 """The bowl as one body: made of swept, turned and extruded pieces."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
@@ -111,6 +111,34 @@ def body(plan):
     )
     total, centre, inertia = _weighed(plan, [found, *(mass.solid(v[f]) for _, v, f in extra)])
     return BowlSolid(plan, vertices, faces, extra, float(found.volume), total, inertia, centre)
+
+
+def screwed(made, weight):
+    """Return a bowl in segments that weighs as much as it does with its lugs and screws.
+
+    Parameters
+    ----------
+    made : BowlSolid
+        With its segments; without screws it stays as it is.
+    weight : float [kg]
+        Of a screw with its nut.
+
+    Returns
+    -------
+    BowlSolid
+    """
+    if made.segments.joined is None:
+        return made
+    vertices, faces = made.segments.joined
+    bodies = [mass.solid(v[f]) for v, f in ((vertices, faces), *(one[1:] for one in made.gates))]
+    bare, middle, tensor = _weighed(made.plan, bodies)
+    at = made.segments.screws
+    total = bare + weight * len(at)
+    centre = (bare * middle + weight * at.sum(axis=0)) / total
+    tensor = mass.shifted(tensor, bare, middle - centre)
+    for one in at:
+        tensor = mass.shifted(tensor, weight, one - centre)
+    return replace(made, mass=float(total), centre=centre, tensor=tensor)
 
 
 def _weighed(plan, parts):

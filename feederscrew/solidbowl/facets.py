@@ -131,6 +131,13 @@ def plank(area, thickness, axes, foot):
     return prism(area, 0.0, thickness).transform(np.column_stack([axes, np.asarray(foot) / MM]))
 
 
+def hull(places):
+    """Return the convex hull of places (N, 3) [m] as a Manifold."""
+    from manifold3d import Manifold
+
+    return Manifold.hull_points(np.asarray(places) / MM)
+
+
 def united(bodies):
     """Return the union of a list of Manifolds."""
     from manifold3d import Manifold, OpType
@@ -264,9 +271,9 @@ def cut_by(body, planes):
     return [cell for cell in cells if not cell.is_empty()]
 
 
-def parts_of(body):
-    """Return the pieces of a Manifold that hang together, crumbs left out."""
-    return [one for one in body.decompose() if one.volume() * MM**3 > CRUMB]
+def parts_of(body, least=CRUMB):
+    """Return the pieces of a Manifold that hang together, those of less than a volume [m3] left out."""
+    return [one for one in body.decompose() if one.volume() * MM**3 > least]
 
 
 def cut_face(body, axis, at):

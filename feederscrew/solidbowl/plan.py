@@ -113,6 +113,7 @@ class Asked:
     drain: float = 4e-3  # [m]
     step: bool = False  # a file with exact faces as well
     bed: tuple[float, ...] | None = None  # (x, y, z) [m] of the printer; None leaves the bowl whole
+    joint: str = "dowels"  # of ``segments.JOINTS``: what holds its segments together
 
 
 def plan(size, track, made_of, tooled, asked, *, extents):

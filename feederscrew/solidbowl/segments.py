@@ -1,4 +1,4 @@
-"""A bowl cut into segments that fit a printer, with holes for dowels across the seams."""
+"""A bowl cut into segments that fit a printer, with holes for dowels across the seams, and screws."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ import shapely
 
 from feederscrew import units
 from feederscrew.errors import ArgumentError, FeederError
-from feederscrew.solidbowl import facets
+from feederscrew.solidbowl import facets, lugs
 from feederscrew.solidbowl.plan import TURN
 from feederscrew.solidbowl.track import fillet
 from feederscrew.tooling import whole_surface
@@ -21,6 +21,7 @@ APART = 25e-3  # [m] between dowels
 GRID = 1.5e-3  # [m] at which places for dowels are looked for
 NEAR = 1e-3  # [m] of a surface
 PLACES = "floor", "wall", "track", "outlet"  # what may hang over
+DOWELS, SCREWS = JOINTS = ("dowels", "screws")
 MM = 1e-3
 
 
@@ -44,11 +45,18 @@ class Segments:
     dowel: float  # [m] diameter
     dowel_length: float  # [m]
     turned: float  # [rad] of the seams against the bowl's axes
+    lugs: np.ndarray  # (N, 3, 3) of each screw: its middle [m], its direction, off the wall
+    joined: object  # vertices and faces of the bowl with lugs and their holes; None without
 
     @property
     def dowels(self):
         """How many."""
         return len(self.places)
+
+    @property
+    def screws(self):
+        """The middle (N, 3) [m] of each screw, in the bowl's axes."""
+        return self.lugs[:, 0]
 
 
 def bed(text):
@@ -73,7 +81,7 @@ def bed(text):
     return tuple(size)
 
 
-def segments(made, size):
+def segments(made, size, joint=DOWELS):
     """Return a bowl in pieces that fit a bed, whole where it fits as it is.
 
     Parameters
@@ -81,6 +89,8 @@ def segments(made, size):
     made : BowlSolid
     size : (float, float, float) [m]
         Of the bed, and of the height that is printed.
+    joint : str
+        Of ``JOINTS``: dowels alone, or screws in lugs outside the wall as well.
 
     Returns
     -------
@@ -89,9 +99,9 @@ def segments(made, size):
     Raises
     ------
     FeederError
-        If it takes more than six segments in one direction.
+        If it takes more than six segments in one direction, or no lug for a screw has room.
     """
-    counts, turn, extents = _seams(made, size)
+    counts, turn, extents = _seams(made, size, joint == SCREWS)
     body = facets.placed(made).rotate((0.0, 0.0, -float(np.degrees(turn))))
     planes = [
         (axis, low + (high - low) * k / count)
@@ -100,6 +110,8 @@ def segments(made, size):
     ]
     dowel = SHARE * min(made.plan.material.wall, made.plan.material.floor)
     holes = [one for plane in planes for one in _dowels(made, body, turn, plane, dowel)]
+    joints = _lugs(made, body, turn, planes) if joint == SCREWS else []
+    body, joined = _joined(body, joints, turn)
     body = facets.without(body, [facets.rod(*one, dowel, DEEP) for one in holes])
     cells = facets.cut_by(body, planes)
     found = sorted(
@@ -107,7 +119,36 @@ def segments(made, size):
     )
     pieces = tuple(_piece(f"segment_{k}", one) for k, one in enumerate(found, start=1))
     places = np.array([middle for _, middle in holes]).reshape(-1, 3)
-    return Segments(pieces, places, dowel, 2.0 * DEEP, turn)
+    screwed = np.array([(one.middle, one.along, one.out) for one in joints]).reshape(-1, 3, 3)
+    return Segments(pieces, places, dowel, 2.0 * DEEP, turn, _turned(screwed, turn), joined)
+
+
+def _lugs(made, body, turn, planes):
+    """The lugs for the screws of all seams."""
+    plan = made.plan
+    s = np.linspace(_tooled(plan)[0], plan.way.end + plan.outlet, 120)
+    edges = [_filed(plan, plan.way.plan(s, y)) for y in (-plan.material.wall, plan.width)]
+    kept = shapely.MultiLineString([_turned(one, -turn) for one in edges])
+    found = lugs.lugs(body, planes, kept, _box(made.vertices, turn))
+    if planes and not found:
+        raise FeederError("join", "no lug for a screw has room at the seams", "take --join dowels")
+    return found
+
+
+def _joined(body, joints, turn):
+    """The bowl with its lugs, and its surface in the bowl's own axes."""
+    if not joints:
+        return body, None
+    whole = facets.united([body, *(one.body for one in joints)])
+    whole = facets.without(whole, [hole for one in joints for hole in one.holes])
+    return whole, whole_surface.mesh(whole.rotate((0.0, 0.0, float(np.degrees(turn)))))
+
+
+def _turned(places, turn):
+    """Places (..., 2 or 3) turned about Z."""
+    c, s = np.cos(turn), np.sin(turn)
+    x, y = places[..., 0], places[..., 1]
+    return np.concatenate([np.stack([c * x - s * y, s * x + c * y], axis=-1), places[..., 2:]], axis=-1)
 
 
 def _piece(name, body):
@@ -117,16 +158,19 @@ def _piece(name, body):
     return Segment(name, vertices, faces, size, body.volume() * MM**3)
 
 
-def _seams(made, size):
+def _seams(made, size, screwed):
     """Segments along each axis, the turn of the seams, and the box (3, 2) [m] of the bowl turned back by it.
 
+    The box has room for the lugs of screws.
     Of the turns with fewest segments the one whose seams keep farthest from the devices.
     """
     best = None
     for turn in 0.5 * np.pi * np.arange(TURNS) / TURNS:
         extents = _box(made.vertices, turn)
-        room = extents[:, 1] - extents[:, 0]
-        counts = tuple(int(np.ceil(one / side - 1e-9)) for one, side in zip(room, size))
+        counts = _counts(extents, size)
+        if screwed and max(counts) > 1:
+            extents = extents + lugs.STANDS * np.array([[-1.0, 1.0], [-1.0, 1.0], [0.0, 0.0]])
+            counts = _counts(extents, size)
         rank = np.prod(counts), -round(_clear(made, turn, counts, extents), 9), float(turn)
         if best is None or rank < best[0]:
             best = rank, counts, float(turn), extents
@@ -139,12 +183,13 @@ def _seams(made, size):
     return counts, turn, extents
 
 
+def _counts(extents, size):
+    room = extents[:, 1] - extents[:, 0]
+    return tuple(int(np.ceil(one / side - 1e-9)) for one, side in zip(room, size))
+
+
 def _box(vertices, turn):
-    c, s = np.cos(turn), np.sin(turn)
-    points = np.column_stack(
-        [c * vertices[:, 0] + s * vertices[:, 1], c * vertices[:, 1] - s * vertices[:, 0]]
-    )
-    points = np.column_stack([points, vertices[:, 2]])
+    points = _turned(vertices, -turn)
     return np.column_stack([points.min(axis=0), points.max(axis=0)])
 
 
@@ -166,9 +211,7 @@ def _box_points(made, turn):
     plan = made.plan
     ends = _tooled(plan)
     s, y = np.meshgrid(np.linspace(*ends, 30), [0.0, plan.width])
-    x, y = _filed(plan, plan.way.plan(s.ravel(), y.ravel())).T
-    c, sn = np.cos(turn), np.sin(turn)
-    return np.column_stack([c * x + sn * y, c * y - sn * x])
+    return _turned(_filed(plan, plan.way.plan(s.ravel(), y.ravel())), -turn)
 
 
 def _tooled(plan):
@@ -177,10 +220,7 @@ def _tooled(plan):
 
 
 def _filed(plan, flat):
-    x, y = flat.T
-    y = -y if plan.left else y
-    c, s = np.cos(plan.turned), np.sin(plan.turned)
-    return np.column_stack([c * x - s * y, s * x + c * y])
+    return _turned(flat * [1.0, -1.0] if plan.left else flat, plan.turned)
 
 
 def _dowels(made, body, turn, plane, size):

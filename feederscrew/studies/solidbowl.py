@@ -13,8 +13,8 @@ from feederscrew.machine.sizing import Size
 from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import Aspects
-from feederscrew.solidbowl import cuts, exact_body, exact_file, leaning, riding, segments
-from feederscrew.solidbowl.closed_body import BowlSolid, body
+from feederscrew.solidbowl import cuts, exact_body, exact_file, leaning, lugs, riding, segments
+from feederscrew.solidbowl.closed_body import BowlSolid, body, screwed
 from feederscrew.solidbowl.materials import STEEL, material
 from feederscrew.solidbowl.plan import CHORD, Asked, BowlPlan, plan
 from feederscrew.solidbowl.ways_down import ways_down
@@ -30,6 +30,7 @@ def asked(
     chord: float,
     bed: str | None = None,
     step: bool = False,
+    join: str | None = None,
 ) -> Asked | None:
     """Return what is asked of the solid, None where none is.
 
@@ -44,6 +45,8 @@ def asked(
         Size of the printer's bed, '220x220x250mm'.
     step : bool
         A STEP file with exact faces as well.
+    join : str, optional
+        Of ``segments.JOINTS``: what holds segments together; None: dowels.
 
     Returns
     -------
@@ -75,6 +78,7 @@ def asked(
         drain=rules.drain_hole,
         step=step,
         bed=None if bed is None else segments.bed(bed),
+        joint=segments.DOWELS if join is None else join,
     )
 
 
@@ -142,7 +146,8 @@ def solid(
     wanted = 0.0 if asked.outlet_height > 0.0 else size.turns
     made = replace(made, falls=ways_down(made), turns_of_sheet=float(wanted))
     if asked.bed is not None:
-        made = replace(made, segments=segments.segments(made, asked.bed))
+        made = replace(made, segments=segments.segments(made, asked.bed, asked.joint))
+        made = screwed(made, lugs.WEIGHT)
     if asked.step:
         made = replace(made, step=exact_file.step_file(made))
     own = {"depth": made.plan.outlet_height, "turns": made.plan.turns, "room": made.plan.room}

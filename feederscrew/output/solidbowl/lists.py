@@ -3,6 +3,7 @@
 import numpy as np
 
 from feederscrew.output.machine import sheet as sheets
+from feederscrew.solidbowl import lugs
 from feederscrew.units import factor
 
 MM, MIN, LITRE = factor("mm", "length"), factor("/min", "rate"), factor("l", "volume")
@@ -60,6 +61,9 @@ def parts(paper, study, at):
         size = f"{cut.dowel / MM:.3g} x {cut.dowel_length / MM:.3g} mm"
         text = f"dowels {size}, between {len(cut.pieces)} segments"
         rows.append([str(len(rows)), str(cut.dowels), text])
+    if cut is not None and len(cut.screws):
+        text = f"screws ISO 4762 {lugs.NAME} with nuts ISO 4032, in the lugs of the seams"
+        rows.append([str(len(rows)), str(len(cut.screws)), text])
     rows.append([str(len(rows)), str(plan.bolts + 1), f"bolts for holes of {plan.bolt / MM:.4g} mm"])
     rows.append([str(len(rows)), f"{under.leaves:.0f}", f"leaves {leaf} mm"])
     rows.append(

@@ -1,5 +1,6 @@
 """The bowl as a solid as a document."""
 
+from feederscrew.solidbowl import lugs
 from feederscrew.solidbowl.segments import overhangs
 from feederscrew.units import factor
 
@@ -78,5 +79,7 @@ def _segments(cut):
         "dowels": cut.dowels,
         "dowel_mm": cut.dowel / MM,
         "dowel_length_mm": cut.dowel_length / MM,
+        "screws": len(cut.screws),
+        "screw": lugs.NAME if len(cut.screws) else None,
         "seams_deg": cut.turned / DEG,
     }

@@ -284,14 +284,15 @@ def test_the_bowl_as_a_solid(run, tmp_path):
     config = tmp_path / "gap.yaml"
     config.write_text("devices:\n  - gap: 9 mm\n")
     line = ["bowl", PART, "--target", "40/min", "--config", config, "--solid"]
-    line += ["--print", "pla", "--bed", "220x220x250mm"]
+    line += ["--print", "pla", "--bed", "220x220x250mm", "--join", "screws"]
     found = document(run(*line, "-o", tmp_path, "--no-pictures", "--format", "json"))
     made = tmp_path / "lbracket_30x20x15"
     assert {path.name for path in made.iterdir()} >= {"bowl.stl", "bowl.3mf", "bowl.pdf", "bowl_segments.3mf"}
     shape = trimesh.load(made / "bowl.stl")
     assert shape.is_watertight and shape.body_count == 1
     assert shape.volume == pytest.approx(found["solid_volume_mm3"], rel=1e-5)
-    assert found["bowl_mass_kg"] == pytest.approx(1240e-9 * shape.volume, rel=1e-5)
+    assert found["screws"] >= 4  # each with its lug
+    assert found["bowl_mass_kg"] / (1240e-9 * shape.volume) == pytest.approx(1.04, abs=0.02)
     assert found["bowl_depth_mm"] == found["outlet_height_mm"]
     pieces = [trimesh.load(made / f"bowl_{one['name']}.stl") for one in found["segments"]]
     assert len(pieces) == 4 and max(max(one.extents) for one in pieces) <= 220.0
@@ -313,6 +314,11 @@ def test_a_left_hand_is_said(run):
 def test_a_solid_needs_a_part(run):
     found = run("bowl", "--solid")
     assert found.exit_code == 2 and "--solid is given without PART - name the part's file" in found.stderr
+
+
+def test_what_joins_segments_needs_a_bed(run):
+    found = run("bowl", PART, "--target", "60/min", "--solid", "--join", "screws")
+    assert found.exit_code == 2 and "--join is given without --bed - give the printer's bed" in found.stderr
 
 
 def test_what_was_measured_is_set_beside_what_should_be(run):

@@ -1,0 +1,121 @@
+"""Screws across the seams of a bowl in segments: through both halves of lugs outside the wall."""
+
+import functools
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import shapely
+from test_drawing import study
+from test_solid import CHAINS, TRACK, closed, planned
+from test_stepped import STEEP, STEPPED
+
+from feederscrew.errors import FeederError
+from feederscrew.output.solidbowl import drawing_sheet, tables
+from feederscrew.part import mass
+from feederscrew.solidbowl import facets, lugs, segments
+from feederscrew.solidbowl.closed_body import body, screwed
+from feederscrew.solidbowl.plan import Asked
+
+BED = 0.22, 0.22, 0.25
+LOW = 0.22, 0.22, 0.06
+SHAPES = {
+    "cylinder": ("gap", TRACK, Asked(left=True, outlet_angle=0.4), BED),
+    "low bed": ("gap", TRACK, Asked(), LOW),
+    "stepped": ("gap", STEEP, STEPPED, BED),
+    "conical": ("none", STEEP, replace(STEPPED, shape="conical"), LOW),
+}
+
+
+@functools.cache
+def cut(name):
+    chain, track, asked, bed = SHAPES[name]
+    solid = body(planned(CHAINS[chain], track=track, asked=asked, name="pla"))
+    return solid, segments.segments(solid, bed, segments.SCREWS), bed
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_a_screw_goes_through_both_halves_of_its_lug(name):
+    solid, found, bed = cut(name)
+    vertices, faces = found.joined
+    whole = facets.placed(SimpleNamespace(vertices=vertices, faces=faces))
+    bare = facets.placed(solid)
+    assert len(found.screws) >= 4
+    for one, along, out in found.lugs:
+        side = np.cross(along, out)
+        towards = np.array([out, side, -out, -side])
+        head, nut = 0.5 * lugs.LENGTH * along, -0.5 * lugs.LENGTH * along
+        assert facets.first_met(whole, one + 1.5 * head, one + 1.5 * nut) == []  # the hole is free
+        for at, free in ((0.0, lugs.HOLE), (6e-3, lugs.HOLE), (-4e-3, lugs.HOLE), (-7e-3, 5.7e-3)):
+            around = [
+                facets.first_met(whole, one + at * along, one + at * along + 0.015 * w) for w in towards
+            ]
+            for hits in (around[0], around[1], around[3]):  # metal round it, then air
+                assert 0.5 * free - 2e-5 < hits[0] < 0.62 * free and len(hits) == 2
+                assert hits[1] - hits[0] > 1.2e-3
+        for at, free in ((1.02 * head, 3.2e-3), (1.02 * nut, 2.8e-3)):  # room for the head and for the nut
+            for way in towards:
+                assert facets.first_met(whole, one + at, one + at + free * way) == []
+        assert facets.first_met(bare, one, one + 0.3 * out) == []  # it lies outside the wall
+    for one in found.pieces:
+        assert all(np.array(one.size) <= np.array(bed) + 1e-6)
+        closed(one, near=1e-5)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_lugs_stand_outside_the_wall_and_off_the_devices(name):
+    solid, found, _ = cut(name)
+    plan = solid.plan
+    old = facets.placed(solid)
+    whole = facets.placed(SimpleNamespace(vertices=found.joined[0], faces=found.joined[1]))
+    assert facets.without(whole, [old]).volume() > 1e4
+    for one, along, out in found.lugs:  # seen from within, the wall is as it was
+        for off in np.linspace(-30e-3, 30e-3, 13):
+            for side in np.linspace(-20e-3, 20e-3, 7):
+                place = one + off * along + side * np.cross(along, out)
+                ends = place - 0.05 * out, place + 0.03 * out
+                found_now, before = (facets.first_met(each, *ends)[:1] for each in (whole, old))
+                assert found_now == pytest.approx(before, abs=1e-7) or found_now[0] > 0.043
+    if plan.stretch is not None:
+        s = np.linspace(plan.first, plan.way.end + plan.outlet, 200)
+        line = shapely.LineString(plan.way.plan(s, -plan.material.wall))
+        there = facets.as_planned(plan, found.screws)[:, :2]
+        assert line.distance(shapely.points(there)).min() > 0.012
+
+
+def test_a_bowl_weighs_what_it_does_with_its_lugs_and_screws():
+    solid, found, _ = cut("cylinder")
+    heavy = screwed(replace(solid, segments=found), lugs.WEIGHT)
+    joined, at = mass.solid(found.joined[0][found.joined[1]]), found.screws
+    bare = joined.volume * solid.plan.material.density
+    total = bare + 1.5e-3 * len(at)
+    assert heavy.mass == pytest.approx(total, rel=1e-12) and heavy.mass > 1.01 * solid.mass
+    np.testing.assert_allclose(heavy.centre, (bare * joined.centre + 1.5e-3 * at.sum(axis=0)) / total)
+    turning = mass.shifted(joined.inertia * solid.plan.material.density, bare, joined.centre)[2, 2]
+    about = turning + 1.5e-3 * (at[:, :2] ** 2).sum()
+    assert heavy.inertia == pytest.approx(about, rel=1e-9)
+    assert heavy.volume == solid.volume and screwed(
+        replace(solid, segments=segments.segments(solid, BED)), 1.0
+    ).mass == pytest.approx(solid.mass, abs=0)
+
+
+def test_screws_are_on_the_parts_list_and_in_the_document():
+    solid, found, _ = cut("cylinder")
+    solid = replace(solid, segments=found)
+    told = tables.document(solid)
+    assert told["screws"] == len(found.screws) > 0 and told["screw"] == "M3 x 16"
+    words = [one.get_text() for one in drawing_sheet.sheet(study(solid)).axes.texts]
+    assert "screws ISO 4762 M3 x 16 with nuts ISO 4032, in the lugs of the seams" in words
+    plain = tables.document(replace(solid, segments=segments.segments(solid, BED)))
+    assert plain["screws"] == 0 and plain["screw"] is None
+
+
+def test_a_bowl_that_fits_whole_has_no_lugs_and_a_wall_without_room_is_said(monkeypatch):
+    solid = body(planned())
+    found = segments.segments(solid, (1.0, 1.0, 1.0), segments.SCREWS)
+    assert len(found.pieces) == 1 and len(found.screws) == 0 and found.joined is None
+    monkeypatch.setattr(lugs, "KEPT", 1.0)
+    with pytest.raises(FeederError) as fault:
+        segments.segments(solid, (0.2, 0.2, 0.2), segments.SCREWS)
+    assert str(fault.value) == "join: no lug for a screw has room at the seams - take --join dowels"
