@@ -15,10 +15,10 @@ import shapes
 from PIL import Image
 
 from feederscrew import bowl as bowls
-from feederscrew.output import tables
+from feederscrew.output import style, tables
 from feederscrew.output.aspects import tables as aspects_tables
 from feederscrew.output.page.as_html import html
-from feederscrew.output.page.blocks import Chapter, Page, Table, Views
+from feederscrew.output.page.blocks import Chapter, Page, Picture, Table, Views
 from feederscrew.output.report import page
 from feederscrew.output.report.chapters import CHAPTERS
 from feederscrew.output.report.scene import over_cuts
@@ -211,6 +211,18 @@ def test_what_stands_alone_has_the_whole_width():
     columns = html(Page("t", "", (Chapter((small, *[Table(tables.frame({"a": [1.0] * 9}))] * 3)),)))
     assert columns.split('class="beside"')[1].count("<div>") == 2
     assert columns.split("<div>")[2].count("<table>") == 3  # the short ones below each other
+
+
+def test_names_with_values_are_set_in_two_halves():
+    """A list of thirty quantities took a page of paper and left its right half empty."""
+    names, short = ({"quantity": ["a"] * rows, "value": ["b"] * rows} for rows in (13, 7))
+    alone = html(Page("t", "", (Chapter((Table(tables.frame(names)), Table(tables.frame(short)))),)))
+    assert alone.split("</style>")[1].count('<table class="pairs">') == 1
+    picture = Picture("a.png", style.png(style.figure(4.0, 4.0)), "")
+    table = Table(tables.frame(names))  # 447 px; a picture 384
+    one, two, three = (html(Page("t", "", (Chapter((table, *[picture] * count)),))) for count in (1, 2, 3))
+    above = [text.index('"pairs"') < text.index('<div class="beside">') for text in (one, two, three)]
+    assert above == [False, True, False]  # with three pictures the columns are even again
 
 
 def test_the_part_turns_over_the_cut(visit, case):

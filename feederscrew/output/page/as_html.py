@@ -18,6 +18,8 @@ CSS_DPI = 96  # pixels of a page to the inch
 HALF = 700  # [px] a broader picture is not put beside another
 NARROW = 6  # columns of a table that is put beside something else
 MANY = 10  # columns of a table that is printed in smaller letters
+UNEVEN = 1.5  # times the height of a column: the other is so high that its table stands above both
+PAIRS = 8  # rows from which a table of two columns that stands alone is set in two halves
 ALONE = 1.4  # times the size of a picture that has the whole width
 TALL = 1.5  # times its width: the height from which a picture has a page of paper to itself
 BROAD = 1000  # [px] width from which a picture that is high as well takes half a page of paper
@@ -122,6 +124,8 @@ def _run(beside, blocks):
         return "\n".join(map(_block, blocks))
     heights = [_height(block) for block in blocks]
     first = min(range(1, len(blocks)), key=lambda k: max(sum(heights[:k]), sum(heights[k:])))
+    if _pairs(blocks[0]) and len(blocks) > 2 and sum(heights[first:]) > UNEVEN * sum(heights[:first]):
+        return f"{_block(blocks[0])}\n{_run(beside, blocks[1:])}"
     halves = ("\n".join(map(_in_column, half)) for half in (blocks[:first], blocks[first:]))
     return '<div class="beside">\n' + "\n".join(f"<div>\n{half}\n</div>" for half in halves) + "\n</div>"
 
@@ -193,7 +197,15 @@ def _table(frame):
     lines = [
         f"<tr>{''.join(f'<td{m}>{escape(cell)}</td>' for m, cell in zip(marks, row))}</tr>" for row in rows
     ]
-    return _grid(' class="many"' if len(heads) > MANY else "", head, lines)
+    kind = ' class="pairs"' if _pairs(kinds.Table(frame)) else ' class="many"' if len(heads) > MANY else ""
+    return _grid(kind, head, lines)
+
+
+def _pairs(block):
+    """Whether it is a table of names and values that is long enough for two halves beside each other."""
+    if not isinstance(block, kinds.Table) or len(block.frame) != 2:
+        return False
+    return len(next(iter(block.frame.values()))) >= PAIRS
 
 
 def _sheet(file, text):
