@@ -17,7 +17,7 @@ from feederscrew_cli.quantity import Quantity
 )
 @orientation.chain
 @orientation.taken_of_a_seed
-@click.option("--worst", is_flag=True, help="Give the rate at the worst friction, a fifth lower or higher.")
+@click.option("--worst", is_flag=True, help="Give the rate at the worst friction and restitution.")
 @options.bowl
 @options.output
 def tune(part, target, aspect, heading, rule, gap, fill, taken, worst, bowl, out):
@@ -30,7 +30,8 @@ def tune(part, target, aspect, heading, rule, gap, fill, taken, worst, bowl, out
 
     Another drive lets other shares of the aspects arrive. Each setting is found with its own shares, so
     that `feeder rate` says the same of it. The rate is met at the bowl's friction. With --worst it is
-    met at the worst of friction a fifth lower and higher and of every start. The table says which.
+    met at the worst of every start and of friction a fifth lower and higher. Where parts hop, the
+    spread of restitution counts too. The table says which.
 
     With -o: tune.csv and tune.json.
     """

@@ -115,7 +115,8 @@ def tune(
     heading
         As for ``rate``.
     worst : bool
-        Meet the target at the worst of friction a fifth lower and higher and of every start.
+        Meet the target at the worst of every start, of friction a fifth lower and higher and, where parts
+        hop, of restitution over its spread.
     **answer
         gap, fill, rule, launch, probabilities, fed, known: as for ``rate``.
 

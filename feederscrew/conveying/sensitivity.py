@@ -1,12 +1,16 @@
 """What becomes of an answer when the bowl is not quite what the file says."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from feederscrew.conveying.answer import answer, scaled
 
 CHANGE = 0.1  # of stroke, friction and angle, each by itself
 FRICTION_DOUBT = 0.2  # what a coefficient of friction is seldom known better than
+RESTITUTION_DOUBT = 0.16
+"""[1] Relative standard deviation of the restitution of single impacts of one body on one surface. 1,718
+filmed impacts have the quartiles 0.53, 0.60, 0.66, and half of that width is 0.67 standard deviations."""
+MOST = 0.99  # [1] restitution: at 1 a part never comes to rest on the track
 QUANTITIES = ("amplitude", "friction", "angle")
 
 
@@ -40,6 +44,46 @@ def sensitivity(bowl):
 def friction_doubt(bowl):
     """Return neighbours for friction a fifth lower and higher."""
     return _neighbours(bowl, "friction", FRICTION_DOUBT)
+
+
+def surfaces(bowl, hops):
+    """Return the bowl on the surfaces that may be there, its own first.
+
+    Source: docs/validation.md, "Restitution is a spread".
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its drive and friction may be arrays that broadcast together.
+    hops : bool
+        Whether parts may leave the track: without that restitution decides nothing.
+
+    Returns
+    -------
+    list of Bowl
+        As it is, friction ``FRICTION_DOUBT`` lower and higher, and both ends of ``even_range`` [1].
+    """
+    found = [bowl, *(scaled(bowl, friction=1.0 + sign * FRICTION_DOUBT) for sign in (-1.0, 1.0))]
+    ends = even_range(bowl.restitution) if hops else ()
+    return found + [replace(bowl, restitution=min(end, MOST)) for end in ends]
+
+
+def even_range(restitution):
+    """Return both ends of the even range round a restitution with ``RESTITUTION_DOUBT`` as deviation.
+
+    A uniform range has 1 / sqrt(12) of its width as its standard deviation. It ends at 0 and 1.
+    Source: the standard deviation of a uniform distribution.
+
+    Parameters
+    ----------
+    restitution : float [1]
+
+    Returns
+    -------
+    (float [1], float [1])
+    """
+    half = min(math.sqrt(3.0) * RESTITUTION_DOUBT * restitution, 1.0 - restitution)
+    return restitution - half, restitution + half
 
 
 def _neighbours(bowl, name, change):

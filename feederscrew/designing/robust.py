@@ -8,9 +8,9 @@ import numpy as np
 import shapely
 
 from feederscrew import check
+from feederscrew.conveying.sensitivity import RESTITUTION_DOUBT
 from feederscrew.designing import trying
 from feederscrew.designing.record import RobustRun
-from feederscrew.dropping.launches import RESTITUTION
 from feederscrew.dropping.toss_runs import scattered
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
@@ -45,7 +45,7 @@ def drawn_bowl(bowl, every, rng):
     drive = replace(bowl.drive, amplitude=bowl.drive.amplitude * driven)
     devices = tuple(_drawn_device(one, every, rng) for one in bowl.devices)
     (own,) = rng.spawn(1)
-    bounce = scattered((bowl.restitution, bowl.restitution), RESTITUTION, own.standard_normal(1))
+    bounce = scattered((bowl.restitution, bowl.restitution), RESTITUTION_DOUBT, own.standard_normal(1))
     return replace(
         bowl, friction=friction, drive=drive, devices=devices, restitution=min(float(bounce[0]), 1.0)
     )

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import check
+from feederscrew.conveying.sensitivity import even_range
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.rims import lowest_on
 from feederscrew.resting.rules.recommended import launch_named
@@ -13,9 +14,6 @@ from feederscrew.resting.rules.recommended import launch_named
 DRAWS = 11  # uniform numbers a drop takes: 3 attitude, 3 spin, 2 drift, fall, restitution, friction
 ANY, LEVEL, FLIP = "any", "horizontal", "in the greatest face"  # axes a launch spins about
 LEAN = np.radians(40.0)  # of FLIP's axis from the level, at most: see docs/resting.md
-RESTITUTION = 0.16
-"""[1] Relative standard deviation of the restitution of single impacts of one body on one surface. 1,718
-filmed impacts have the quartiles 0.53, 0.60, 0.66, and half of that width is 0.67 standard deviations."""
 
 
 @dataclass(frozen=True)
@@ -39,13 +37,9 @@ class Launch:
         return replace(self, name="own", **given) if given else self
 
     def scattering(self):
-        """Return the launch with one value of restitution as a range with RESTITUTION as deviation.
-
-        A uniform range has 1 / sqrt(12) of its width as its standard deviation. It ends at 0 and 1.
-        """
+        """Return the launch with one value of restitution as ``sensitivity.even_range`` round it."""
         low, high = self.restitution
-        half = min(np.sqrt(3.0) * RESTITUTION * low, 1.0 - low) if low == high else 0.0
-        return replace(self, restitution=(low - half, high + half))
+        return replace(self, restitution=even_range(low) if low == high else (low, high))
 
 
 SURFACE: dict[str, Any] = {

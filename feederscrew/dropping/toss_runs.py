@@ -6,9 +6,10 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from feederscrew import check
+from feederscrew.conveying.sensitivity import RESTITUTION_DOUBT
 from feederscrew.dropping.kernel import body, one_drop
 from feederscrew.dropping.launch_file import FACES
-from feederscrew.dropping.launches import RESTITUTION, lowest_points
+from feederscrew.dropping.launches import lowest_points
 from feederscrew.dropping.pool import in_batches
 from feederscrew.dropping.rigid_body import principal_axes, shape_of_part
 from feederscrew.errors import FeederError
@@ -75,7 +76,7 @@ def follow(part, found, launches, surface, rng, *, runs=USUAL, jobs=1, progress=
 
     Notes
     -----
-    What is not known: the restitution and friction of this toss (RESTITUTION, FRICTION), and the state within
+    What is not known: the restitution and friction of this toss (RESTITUTION_DOUBT, FRICTION), and the state
     one picture of the camera. In that time gravity changes a velocity by g times the time, and spin turns the
     part by the spin times the time: velocities, those of a point at half the part's length from the centre,
     and attitudes scatter as a value does that is anywhere in such an interval, by 1 / sqrt(12) of it.
@@ -142,7 +143,7 @@ def _varied(state, uncertain, surface, draws):
     states[:, body.W :] += uncertain[1] * draws[:, 3:6]
     turns = _rotations(states[:, body.Q : body.W]) * Rotation.from_rotvec(uncertain[2] * draws[:, 6:9])
     states[:, body.Q : body.W] = np.roll(turns.as_quat(), 1, axis=1)
-    bounce = scattered(surface.restitution, RESTITUTION, draws[:, 9])
+    bounce = scattered(surface.restitution, RESTITUTION_DOUBT, draws[:, 9])
     return states, np.clip(bounce, 0.0, 1.0), scattered(surface.friction, FRICTION, draws[:, 10])
 
 

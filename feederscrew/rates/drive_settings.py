@@ -33,7 +33,7 @@ class Solution:
     key: Key  # what was turned
     value: float  # [SI]
     answer: answer.Answer
-    speed: float  # [m/s] that the target is met with: from rest, or the slowest of every start and friction
+    speed: float  # [m/s] that the target is met with: from rest, or the slowest of every start and surface
     parts_per_metre: float  # [1/m] well-oriented parts on a length of track, with what arrives at that drive
 
     @property
@@ -70,7 +70,7 @@ def solutions(bowl, target, density, *, rough=None, worst=False, progress=None):
     rough : callable, optional
         The same of fewer parts, sooner: it leads to a setting that ``density`` then decides on.
     worst : bool
-        Reach the target at the slowest of every start, here and for friction a fifth lower and higher.
+        Reach the target at the slowest of every start and surface, as ``well_oriented.velocity``.
     progress : function, optional
         Called with how many settings are found, and of how many.
 
@@ -237,12 +237,13 @@ def _look(bowl, key, worst):
 
 
 def _speeds(bowl, key, values, worst):
-    """Velocity at each value [m/s]: from rest, or the slowest of every start and friction."""
+    """Velocity at each value [m/s]: from rest, or the slowest of every start and surface."""
     there = turned(bowl, key, values)
+    here = answer.cells(there)
     if not worst:
-        return answer.cells(there)["velocity"]
-    doubt = sensitivity.FRICTION_DOUBT
-    around = (answer.cells(answer.scaled(there, friction=1.0 + sign * doubt)) for sign in (-1.0, 0.0, 1.0))
+        return here["velocity"]
+    others = sensitivity.surfaces(there, (here["throw_number"] > 1.0).any())[1:]
+    around = [here, *map(answer.cells, others)]
     return np.min([one["low"] for one in around], axis=0)  # NaN where one friction has no steady state
 
 

@@ -59,7 +59,7 @@ class Rate(Shown):
     parts: Range  # [1/s] delivered: offered times efficiency, at most what fits behind the devices
     offered: Range  # [1/s] parts that arrive at the first device, in every orientation
     efficiency: float  # [1] share of the parts offered that leave well oriented
-    velocity: Range  # [m/s] over the starts and for friction a fifth lower and higher; not below 0
+    velocity: Range  # [m/s] over the starts and surfaces of ``velocity``; not below 0
     pitch: float  # [m] mean of the queue before the devices
     gap: float  # [m] between one part and the next
     probability: Range  # of the aspect and the heading; the range is the rule's own, or over all rules
@@ -106,7 +106,8 @@ def velocity(bowl):
     Returns
     -------
     Range [m/s]
-        Over all starts, here and for friction a fifth lower and higher; a part that travels back counts as 0.
+        Over all starts, here, for friction a fifth lower and higher and, where it hops, over the spread of
+        restitution; a part that travels back counts as 0.
 
     Raises
     ------
@@ -117,8 +118,8 @@ def velocity(bowl):
     if here.status == "no steady state":
         what = "is steeper than friction holds: the part slides down continuously"
         raise FeederError("track.climb", what, "lower the climb or raise the friction")
-    doubt = sensitivity.FRICTION_DOUBT
-    around = [here, *(answer.answer(answer.scaled(bowl, friction=1.0 + s * doubt)) for s in (-1.0, 1.0))]
+    others = sensitivity.surfaces(bowl, here.throw_number > 1.0)[1:]
+    around = [here, *map(answer.answer, others)]
     low = min(0.0 if np.isnan(one.low) else one.low for one in around)
     high = max(0.0 if np.isnan(one.high) else one.high for one in around)
     return Range(*(max(0.0, number) for number in (here.velocity, low, high)))

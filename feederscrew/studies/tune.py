@@ -26,7 +26,7 @@ class Tuned(Shown):
     """One setting that gives the rate, with what it gives."""
 
     solution: knobs.Solution
-    velocity: well_oriented.Range  # [m/s] over all starts and for friction a fifth lower and higher; >= 0
+    velocity: well_oriented.Range  # [m/s] over all starts and surfaces; >= 0
     over: tuple[str, ...]  # orientations that this drive turns over on the track
     several: bool  # steady velocities, depending on how the part arrives
 
@@ -79,7 +79,7 @@ def tune(
     heading, rule, devices, gap, fill
         As for ``rate``.
     worst : bool
-        Meet the target at the slowest of every start, here and for friction a fifth lower and higher.
+        Meet the target at the slowest of every start and surface, as ``well_oriented.velocity``.
     arriving : function, optional
         From a bowl to the Shares that arrive at its drive; ``studies.rate.shares`` without it.
     rough : function, optional

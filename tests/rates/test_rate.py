@@ -8,7 +8,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.conveying import answer
+from feederscrew.conveying import answer, sensitivity
 from feederscrew.errors import FeederError
 from feederscrew.part.reading.from_file import load
 from feederscrew.rates import well_oriented
@@ -117,6 +117,36 @@ def test_velocity_brackets_friction_and_starts():
     assert found.value == pytest.approx(answer.answer(BOWL).velocity)
     assert found.low <= min(softer, found.value)
     assert found.high >= max(softer, found.value)
+
+
+def bouncing(restitution):
+    """A bowl whose parts hop: throw number 1.84, where a harder bounce is a slower travel."""
+    drive = replace(BOWL.drive, amplitude=0.3e-3, frequency=60.0, vibration_angle=np.radians(25.0))
+    friction = replace(BOWL.friction, static=0.6, kinetic=0.6, wall=0.6)
+    return replace(BOWL, drive=drive, friction=friction, restitution=restitution)
+
+
+def test_velocity_brackets_the_spread_of_restitution_where_parts_hop():
+    """An even range of one standard deviation of 16 % about 0.2 ends at 0.145 and 0.255."""
+    found = well_oriented.velocity(bouncing(0.2))
+    assert found.value == answer.answer(bouncing(0.2)).velocity
+    for end in (0.2 * (1 - 0.16 * 3**0.5), 0.2 * (1 + 0.16 * 3**0.5)):
+        at_end = answer.answer(bouncing(end)).velocity
+        assert abs(at_end - found.value) > 0.04 * found.value
+        assert found.low <= at_end <= found.high
+
+
+def test_the_spread_of_restitution_alone_widens_what_friction_leaves_open(monkeypatch):
+    wide = well_oriented.velocity(bouncing(0.5))
+    monkeypatch.setattr(sensitivity, "even_range", lambda restitution: (restitution, restitution))
+    narrow = well_oriented.velocity(bouncing(0.5))
+    assert wide.value == narrow.value and wide.high - wide.low > 1.05 * (narrow.high - narrow.low)
+
+
+def test_a_part_that_does_not_hop_asks_for_no_restitution():
+    assert len(sensitivity.surfaces(BOWL, False)) == 3
+    ends = [one.restitution for one in sensitivity.surfaces(bouncing(0.95), True)[3:]]
+    assert ends == pytest.approx([0.9, 0.99])  # of 0.687 to 1.213
 
 
 def test_a_part_that_travels_back_gives_no_rate():

@@ -4,6 +4,7 @@ from dataclasses import asdict
 
 import numpy as np
 
+from feederscrew.conveying.sensitivity import RESTITUTION_DOUBT
 from feederscrew.dropping import toss_runs
 from feederscrew.dropping.launch_file import FACES
 from feederscrew.output import columns, tables
@@ -79,7 +80,7 @@ def document(study):
         "frame_s": study.launches.frame,
         "restitution": list(study.surface.restitution),
         "friction": list(study.surface.friction),
-        "restitution_scatter": toss_runs.RESTITUTION,
+        "restitution_scatter": RESTITUTION_DOUBT,
         "friction_scatter": toss_runs.FRICTION,
         "partial": study.result.partial,
         "measured": measured,

@@ -117,9 +117,9 @@ def rate(case):
     tried = bowls.verified(case.path)
     document = proof.beside(rate_tables.document(found), tried, case.part, case.bowl)
     lead = Text(
-        "The chain from velocity to rate; the range in brackets is over all starts, friction a fifth "
-        "off and the interval of the shares. The second table has what the track and each device do "
-        "with each orientation."
+        "The chain from velocity to rate. The range in brackets is over all starts, friction a fifth off, "
+        "restitution where the part hops, and the interval of the shares. The second table has what the "
+        "track and each device do with each orientation."
     )
     return Chapter(
         (lead, Table(rate_tables.summary(document)), Table(_passing(found, document["orientations"]))),
