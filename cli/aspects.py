@@ -9,7 +9,7 @@ SURFACES = click.Choice(["soft", "medium", "hard"])
 
 @grouped.command(short_help="Resting aspects of a part and how often it lands on each.")
 @options.part
-@click.option("--all", "unstable", is_flag=True, help="List the facets it rolls off as well.")
+@click.option("--all", "unstable", is_flag=True, help="List the facets that it rolls off too.")
 @click.option(
     "--as-published", is_flag=True, help="Count each class once in p_pmi, as Tables 3-8 and 3-9 do."
 )
@@ -22,7 +22,7 @@ SURFACES = click.Choice(["soft", "medium", "hard"])
 @click.option("--surface-exponent", type=options.Number(-10, 10), help="The same as a number, 0 to about 3.")
 @click.option(
     "--drop", "drops", type=click.IntRange(0, 10**7),
-    help="Drop it so often; 0: never.  [default: until every share is known to 1 %]",
+    help="How many drops; 0 for none.  [default: until every share is known to 1 %]",
 )  # fmt: skip
 @click.option(
     "--rule", type=click.Choice(["recommended", "closed"]), default="recommended", show_default=True,

@@ -9,12 +9,12 @@ TARGET = click.option(
     "--target",
     type=Quantity("rate", positive=True),
     metavar="RATE",
-    help="Parts that shall leave the bowl: 120/min.  [needed with PART]",
+    help="Parts that must leave the bowl: 120/min.  [needed with PART]",
 )
 ASPECT = click.option(
     "--aspect",
     metavar="NAME",
-    help="Aspect that shall leave the bowl.  [default: every one that passes the track and the devices]",
+    help="Aspect that must leave the bowl.  [default: every one that passes the track and the devices]",
 )
 
 SOLID = (

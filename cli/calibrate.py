@@ -5,7 +5,7 @@ import click
 from feederscrew_cli import grouped, options
 
 
-@grouped.command(short_help="The surface exponent that your own counts ask for.")
+@grouped.command(short_help="Fit the surface exponent to your own counts.")
 @options.part
 @click.option(
     "--with", "counts", metavar="CSV", required=True, type=options.Place(), help="Counted parts by aspect."

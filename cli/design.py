@@ -17,12 +17,12 @@ REQUEST = (  # what shall leave, and what may be used
         type=Quantity("rate", positive=True),
         required=True,
         metavar="RATE",
-        help="Parts that shall leave the bowl: 60/min.",
+        help="Parts that must leave the bowl: 60/min.",
     ),
     click.option(
         "--aspect",
         metavar="NAME",
-        help="Aspect on which they shall leave.  [default: the one that delivers most]",
+        help="Aspect on which they must leave.  [default: the one that delivers most]",
     ),
     click.option(
         "--heading",
@@ -53,7 +53,7 @@ REQUEST = (  # what shall leave, and what may be used
         help="Least and greatest diameter of the bowl: 200mm:400mm.",
     ),
     quantity.with_default(
-        "--tolerance", "length", "0.1 mm", "By which a part may be larger or smaller than its file."
+        "--tolerance", "length", "0.1 mm", "How much larger or smaller than its file a part may be."
     ),
     click.option(
         "--budget",

@@ -90,7 +90,7 @@ def drop(part, launch, drops, until, seed, jobs, trace, launches, plate, picture
     """
     _fitting(until, trace, plate, out)
     if plate and launches:
-        raise click.UsageError("--launches is for a plane at rest - leave it or --plate out")
+        raise click.UsageError("--launches is for a plane at rest - leave out --launches or --plate")
     test = {"drops": drops, "seed": seed, "jobs": jobs or os.cpu_count()}
     if plate:
         plates.run(part, plate, launch, own, test, pictures, out)
@@ -104,7 +104,7 @@ def _fitting(until, trace, plate, out):
     """Wrong calls."""
     for option, given in (("--until", until), ("--trace", trace)):
         if plate and given:
-            raise click.UsageError(f"{option} is for a plane at rest - leave it or --plate out")
+            raise click.UsageError(f"{option} is for a plane at rest - leave out {option} or --plate")
     if trace and out.directory is None:
         raise click.UsageError("--trace writes files: give -o DIR as well")
 

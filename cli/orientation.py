@@ -6,7 +6,9 @@ from feederscrew_cli import options, quantity, waiting
 from feederscrew_cli.angle import Angle
 
 CHAIN = (
-    click.option("--aspect", required=True, metavar="NAME", help="Aspect the part shall leave the bowl on."),
+    click.option(
+        "--aspect", required=True, metavar="NAME", help="Aspect on which the part must leave the bowl."
+    ),
     click.option(
         "--heading",
         type=Angle(),
@@ -33,7 +35,7 @@ def chain(command):
 LEAVES_MOST = click.option(
     "--aspect",
     metavar="NAME",
-    help="Aspect the part shall leave the bowl on.  [default: the one that leaves most often]",
+    help="Aspect on which the part must leave the bowl.  [default: the one that leaves most often]",
 )
 
 
@@ -117,7 +119,7 @@ def choice(taken):
     if taken["probabilities"] is not None and others:
         raise click.UsageError(f"--probabilities takes the place of {others[0]} - leave one of them out")
     if taken["launch"] is not None and taken["fed"] is not None:
-        raise click.UsageError("--fed is for parts on the moving floor - leave it or --launch out")
+        raise click.UsageError("--fed is for parts on the moving floor - leave out --fed or --launch")
     return taken
 
 

@@ -54,7 +54,7 @@ def _all(decorators):
     return decorate
 
 
-@grouped.command(short_help="All that is known of a part in a bowl, on one page to turn, print and keep.")
+@grouped.command(short_help="Everything about a part in a bowl, on one page to read, print and keep.")
 @options.part
 @_all(WANTED)
 @orientation.taken_of_a_seed

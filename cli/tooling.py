@@ -20,7 +20,7 @@ def _asked(command):
 @grouped.command(short_help="Which cuts let only one orientation leave the bowl.")
 @options.part
 @click.option(
-    "--aspect", metavar="NAME", help="Aspect the part shall leave on.  [default: every orientation]"
+    "--aspect", metavar="NAME", help="Aspect on which the part must leave.  [default: every orientation]"
 )
 @click.option(
     "--heading", type=Angle(), metavar="DEG", help="Heading of that aspect.  [default: the most frequent]"
@@ -37,7 +37,7 @@ def _asked(command):
     "--purity",
     "number",
     "1",
-    "Share of what leaves that is enough in the wanted orientation: a shorter chain may do.",
+    "Share of what leaves that must be in the wanted orientation: below 1 a shorter chain may do.",
     positive=True,
     most=1.0,
 )
@@ -45,7 +45,7 @@ def _asked(command):
     "--efficiency",
     "number",
     "0",
-    "Share of what is offered that shall leave: the search goes on for it, or says what is missing.",
+    "Share of what is offered that must leave: the search goes on until it does, or says what is missing.",
     most=1.0,
 )
 @click.option(
@@ -53,7 +53,7 @@ def _asked(command):
     type=click.Choice(["lying", "hanging", "any"]),
     default="any",
     show_default=True,
-    help="How parts shall leave: as they lie, hanging between rails, or either.",
+    help="How parts must leave: as they lie, hanging between rails, or either.",
 )
 @click.option(
     "--without",
@@ -62,12 +62,18 @@ def _asked(command):
     help="Kinds of devices that are not used: wiper,cut_out.",
 )
 @quantity.with_default(
-    "--step", "length", "0.05 mm", "What a shop makes: values are whole multiples of it.", positive=True
+    "--step",
+    "length",
+    "0.05 mm",
+    "Step in which a shop makes dimensions: values are whole multiples of it.",
+    positive=True,
 )
 @click.option("--up", default="", metavar="NAME,...", help="Other aspects that count as the one wanted: B,C.")
 @quantity.with_default("--cutter", "length", "0 mm", "Radius that corners of holes are rounded to.")
-@quantity.with_default("--play", "length", "0 mm", "Of parts from the wall: every margin is larger by it.")
-@quantity.with_default("--tolerance", "length", "0 mm", "Of the part's size: every margin is larger by it.")
+@quantity.with_default("--play", "length", "0 mm", "Play of parts at the wall: every margin is larger by it.")
+@quantity.with_default(
+    "--tolerance", "length", "0 mm", "Tolerance of the part's size: every margin is larger by it."
+)
 @click.option("--cad", is_flag=True, help="Write tooling.step as well; needs feederscrew[cad].")
 @click.option("--turn", is_flag=True, help="Allow steps and ledges that turn parts over, before the cuts.")
 @click.option(
@@ -78,7 +84,7 @@ def _asked(command):
     type=click.IntRange(min=1),
     default=30000,
     show_default=True,
-    help="Most verdicts in the search for holes of one orientation: the same end on every machine.",
+    help="Limit of the search for holes, in verdicts an orientation: it ends alike on every machine.",
 )
 @quantity.with_default(
     "--limit seconds",
@@ -87,7 +93,7 @@ def _asked(command):
     "Time after which the best so far is taken; the answer then says so.",
     positive=True,
 )
-@click.option("--static", is_flag=True, help="Leave out the trial of what is proposed.")
+@click.option("--static", is_flag=True, help="Do not send parts through what is proposed.")
 @orientation.taken
 @options.bowl
 @options.pictures

@@ -88,7 +88,7 @@ def aspects(
     ----------
     part : Part
     unstable : bool
-        List the facets it rolls off as well.
+        List the facets that it rolls off too.
     as_published : bool
         Count each class once in the PMI rule, as the thesis's tables do.
     surface : str or float, optional

@@ -17,7 +17,7 @@ AHEAD = 2  # tasks sent for each thread of the cluster, so that none waits
 POLL = 0.05  # [s] between looks at what has come
 AT_WORK = ("pending", "lost")  # what a worker had done that died is done again by another
 ADDRESS = re.compile(r"((tcp|tls|ucx|wss?)://)?[^\s/]+:\d+/?")
-AGAIN = "see to it, then start this command again with `resume`: what is finished is kept"
+AGAIN = "mend it, then start this command again with `resume`: what is finished is kept"
 
 
 class Cluster:

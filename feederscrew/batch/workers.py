@@ -15,7 +15,7 @@ ATTEMPTS = 3  # of a part whose worker dies under it
 LIFETIME = 200  # parts of one process: what libraries leak goes with it
 PRELOAD = "feederscrew.batch.preload"  # WORK, imported sooner
 WORK = "feederscrew.batch.work"  # its libraries take a second to import, which only the processes need
-LOST = "the process that computed it died each of {} times, for lack of memory perhaps - try it alone"
+LOST = "its process ended {} times before it was done, perhaps for lack of memory - try it alone"
 
 
 def work(task):

@@ -52,7 +52,7 @@ def named_apart(parts):
         if name in names[: k + 1]:
             raise FeederError(
                 parts[k].source,
-                f"is another part of the name {parts[k].name}: results would be written over",
+                f"is another part of the name {parts[k].name}: results would be overwritten",
                 "rename a file",
             )
 

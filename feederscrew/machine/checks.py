@@ -66,10 +66,14 @@ def _tuning(sheet: Any) -> Iterator[FeederError]:
         mend = f"add leaves or take thicker ones{better}"
         yield FeederError(where, f"{natural} is below the drive's {drive:.4g} Hz", mend)
     elif sheet.detuning < rules.least_detuning:
-        what = f"{natural} is {100 * sheet.detuning:.2g} % above the drive: the stroke hangs on every gram"
+        what = (
+            f"{natural} is {100 * sheet.detuning:.2g} % above the drive: the stroke changes with every gram"
+        )
         yield FeederError(where, what, f"add leaves, to come {window} above it{better}")
     elif sheet.detuning > rules.greatest_detuning:
-        what = f"{natural} is {100 * sheet.detuning:.3g} % above the drive: the magnet works in vain"
+        what = (
+            f"{natural} is {100 * sheet.detuning:.3g} % above the drive: much of the magnet's force is wasted"
+        )
         yield FeederError(where, what, f"take leaves away, to come {window} above it{better}")
 
 
@@ -97,7 +101,7 @@ def _throw(sheet: Any) -> Iterator[FeederError]:
     if over and throw > 1.0:
         kinds = units.listed(list(dict.fromkeys(over)))
         what = f"the throw number {throw:.3g} is above 1, so parts hop over the {kinds}"
-        mend = "take a smaller stroke or a flatter angle: that tooling tells parts apart as they lie"
+        mend = "take a smaller stroke or a flatter angle: that tooling sorts parts by how they lie"
         yield FeederError("drive.amplitude", what, mend)
 
 

@@ -74,7 +74,7 @@ def aspects(
     part : Part
         From a mesh or from a part card.
     unstable : bool
-        List the facets it rolls off as well.
+        List the facets that it rolls off too.
     as_published : bool
         Count each class once in the PMI rule, as the thesis's tables do.
     surface : str or float [1], optional

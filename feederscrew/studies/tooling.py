@@ -33,7 +33,7 @@ CARRIED = (
     "blade or wedged between rails - see feeder trial"
 )
 ROCKS = (
-    "{} may rock on what these cuts leave of its foot, and nothing surer lies between the limits - try it "
+    "{} may rock on what these cuts leave below it, and no safer value lies between the limits - try it "
     "with feeder trial"
 )
 STEEP = np.radians(-6.0)  # [rad] climb of a stretch that separates parts

@@ -270,7 +270,7 @@ def test_a_part_whose_worker_dies_is_tried_again_then_told_and_tried_once_more_b
     found = ran(three, tmp_path / "out", workers=crew)
     reasons = [row["reason"] for row in found.rows]
     assert [reasons[0], reasons[2]] == [f"{three[k].source}: computed" for k in (0, 2)]
-    assert reasons[1].startswith(f"{three[1].source}: the process that computed it died each of 3 times")
+    assert reasons[1].startswith(f"{three[1].source}: its process ended 3 times before it was done")
     again = Here()
     ran(three, tmp_path / "out", workers=again, resume=True)
     assert again.done == ["b"]

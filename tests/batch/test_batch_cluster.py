@@ -116,7 +116,7 @@ def test_a_lost_scheduler_is_one_line_and_what_is_finished_is_kept(tmp_path, thr
     with cluster(tmp_path, workers=1) as (address, running), pytest.raises(FeederError) as fault:
         ran(three, tmp_path / "out", workers=batch.Cluster(address), tell=lambda kept: running[0].kill())
     assert fault.value.lines == (
-        f"{address}: the scheduler is lost - see to it, then start this command again with `resume`:"
+        f"{address}: the scheduler is lost - mend it, then start this command again with `resume`:"
         " what is finished is kept",
     )
     rest = Here()

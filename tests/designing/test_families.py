@@ -123,5 +123,5 @@ def test_the_widest_is_designed_first_and_its_kinds_are_offered_to_the_others(mo
 
 def test_parts_of_one_name_are_refused():
     for names in ((SMALL, SMALL), (SMALL, replace(LARGE, name="Family"))):
-        with pytest.raises(FeederError, match=r"results would be written over - rename a file$"):
+        with pytest.raises(FeederError, match=r"results would be overwritten - rename a file$"):
             families.named_apart(names)

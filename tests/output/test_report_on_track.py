@@ -26,7 +26,7 @@ def test_what_slides_has_the_velocity_of_the_rate():
     said, case = told(shapes.box(20, 14, 5))
     speed = 1e3 * case.rate.rate.velocity.value
     assert said == f"On this track the part travels at {speed:.1f} mm/s and slips both ways:" + (
-        " the rate is reckoned with that. It stays on its aspect through the stroke."
+        " the rate is computed with that. It stays on its aspect through the stroke."
     )
 
 

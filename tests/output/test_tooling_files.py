@@ -183,7 +183,7 @@ def test_what_the_bare_track_returns_has_a_picture_too(lying):
     off = [replace(one, falls_off=True) for one in every]
     page = figures.chain(bowl.devices, off, np.full(len(off), 1.0 / len(off)))
     assert len(page.axes) == len(off)
-    assert sum(text.get_text() == "comes to no device" for text in page.texts) == len(off)
+    assert sum(text.get_text() == "meets no device" for text in page.texts) == len(off)
 
 
 def test_a_part_that_a_gate_stops_is_drawn_in_front_of_it(lying):

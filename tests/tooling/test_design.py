@@ -213,7 +213,7 @@ def test_the_design_is_found_behind_the_devices_of_the_bowl(bracket, tmp_path):
     wanted = int(np.argmax([one.canyon for one in every]))
     before = (device_of("wiper", "bowl.yaml:2:3", limit=0.019, text="19 mm"),)
     found = design(every, shares, wanted, holes=False, before=before)
-    assert not found.cuts and "does not come past" in found.reasons[0]
+    assert not found.cuts and "is returned by the devices" in found.reasons[0]
     low = max((k for k, one in enumerate(every) if one.height < 0.016), key=lambda k: shares[k])
     own = {"holes": False, "wishes": Wishes(without=ONES)}
     alone, behind = (design(every, shares, low, before=some, **own) for some in ((), before))

@@ -53,7 +53,7 @@ def remarks(study):
     listed = []
     for fit in study.fits:
         if fit.calibration.bounded:
-            listed.append(f"{fit.name}: the counts leave the exponent open to one side")
+            listed.append(f"{fit.name}: the counts limit the exponent on one side only")
         if (p_value := fit.calibration.chi_square.p_value) < UNLIKELY:
             listed.append(f"{fit.name}: no exponent explains these counts (p {p_value:.2g})")
     return listed

@@ -13,7 +13,7 @@ from feederscrew.output.slide import tables as slide_tables
 
 LIMITS = (
     "How often a part lands on an aspect: the rules compute from the part's shape and mass alone; only "
-    "p_recommended knows how the part is launched, and none knows other parts. They disagree, "
+    "p_recommended knows how the part is launched, and none considers other parts. They disagree, "
     "and on real parts each is right in some cases only. The interval of p_recommended holds for the launch "
     "it names. Where much depends on it, drop the part a few hundred times and let your own counts decide "
     "(feeder compare).",

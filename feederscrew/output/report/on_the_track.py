@@ -36,7 +36,7 @@ def on_track(case, words):
         return SLIDES_DOWN
     speed = number(found.velocity / MM_S, SHORT)
     regime = words.get(found.regime, found.regime)
-    said = [f"On this track the part travels at {speed} mm/s and {regime}: the rate is reckoned with that."]
+    said = [f"On this track the part travels at {speed} mm/s and {regime}: the rate is computed with that."]
     if HOP in case.track.cycle.state and stands and stands.way != tipping.THROWN:
         said.append(THROWN)
     said += [WORDS[stands.way].format(*np.degrees((stands.tilt, stands.lean)))] if stands else []

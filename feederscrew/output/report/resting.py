@@ -147,6 +147,6 @@ def _how_likely(case):
     chances = {rule: values[case.row] for rule, values in case.resting.aspects.probabilities.items()}
     known = {rule: share for rule, share in chances.items() if np.isfinite(share)}
     if not known:
-        return "no rule tells how often"
+        return "no rule says how often"
     low, high = percent(min(known.values())), percent(max(known.values()))
     return f"{low} to {high} % of drops, by {len(known)} rules"

@@ -135,9 +135,9 @@ def _cell(page, box, found, size):
 
 
 def _bare(page, box, one, size):
-    """One orientation that the bare track returns: it comes to no device."""
+    """One orientation that the bare track returns: it meets no device."""
     _above(_axes(page, box, size, True), one, None, None, FALLS)
-    ink.text(page, box[0] + 8, box[1] + ROW - 12, "comes to no device", colour=FALLS)
+    ink.text(page, box[0] + 8, box[1] + ROW - 12, "meets no device", colour=FALLS)
 
 
 def _turned(page, axes, found, box, colour):

@@ -207,8 +207,8 @@ def summary(study):
             where = ", ".join(_staying(run))
             yield f"jams: {run.jams} of {run.tried.sum()} parts stay at a device or hang ({where})"
         yield (
-            f"in {run.course.seconds.sum():.4g} part-seconds nothing was deeper in anything than "
-            f"{_most(run.course.depths) / MM:.2g} mm, and no part won more energy than lifts it by "
+            f"in {run.course.seconds.sum():.4g} part-seconds the deepest penetration was "
+            f"{_most(run.course.depths) / MM:.2g} mm, and the most energy that a part won would lift it by "
             f"{_most(run.course.gains) / UM:.2g} um"
         )
         if run.landing is not None:

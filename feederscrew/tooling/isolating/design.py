@@ -70,7 +70,7 @@ def _returning(given, search, holes):
     outcome = given.wishes.outcome
     hung = rails.design(given) if outcome != "lying" and given.wishes.allows("rails") else None
     if outcome == "hanging":
-        return without(given, "hangs between no rails") if hung is None else hung
+        return without(given, "does not hang between rails") if hung is None else hung
     found = _plain(given, search, holes and given.wishes.allows("cut_out"))
     if hung is None or (hung.isolated, hung.efficiency) <= (found.isolated, found.efficiency):
         return found
@@ -130,7 +130,7 @@ def _plain(given, search, holes):
     if every[wanted].falls_off or not every[wanted].margin > 0.0:
         return without(given, "falls off the bare track")
     if not given.coming[wanted] > 0.0 and given.shares[wanted] > 0.0:
-        return without(given, "does not come past the devices of the bowl file")
+        return without(given, "is returned by the devices of the bowl file")
     weight = weights(given)
     weight[given.same] = 0.0
     holes = holes and given.same.sum() == 1  # a hole is searched for one orientation

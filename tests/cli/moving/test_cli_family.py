@@ -55,6 +55,6 @@ def test_two_files_of_one_name_are_a_fault(run, cubes, tmp_path):
     done = run("design", *cubes, twin, "--target", "40/min", "-o", "results")
     assert done.exit_code == 1 and done.stdout == ""
     assert done.stderr == (
-        f"Error: {twin}: is another part of the name small: results would be written over - rename a file\n"
+        f"Error: {twin}: is another part of the name small: results would be overwritten - rename a file\n"
     )
     assert not (tmp_path / "results").exists()

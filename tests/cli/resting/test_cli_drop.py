@@ -344,7 +344,7 @@ def test_launches_of_a_file_are_followed_one_by_one(run, stl, tmp_path):
     [
         (("--launch", "roll"), "--launch cannot be combined with --launches - leave one of them out"),
         (("--spin", "3 rad/s"), "--spin cannot be combined with --launches - leave one of them out"),
-        (("--plate",), "--launches is for a plane at rest - leave it or --plate out"),
+        (("--plate",), "--launches is for a plane at rest - leave out --launches or --plate"),
     ],
 )
 def test_launches_of_a_file_say_what_a_preset_would(run, stl, options, said):

@@ -21,6 +21,7 @@ COLUMNS = [
 RATES = [*HEAD, "from", "to", "count", "rate_per_s", "rate_low_per_s", "rate_high_per_s"]
 SHORT = ("--plate", "--drops", 30, "--seconds", "0.5")
 BOWL = Path(__file__).parents[3] / "configs/bowl.yaml"
+AT_REST = "Error: {0} is for a plane at rest - leave out {0} or --plate"
 
 
 @pytest.fixture
@@ -118,8 +119,8 @@ def test_what_is_simplified_is_said(run, stl):
         (("--config", "b.yaml"), 2, "Error: --config is for a vibrating plate - give --plate as well"),
         (("--seconds", "2"), 2, "Error: --seconds is for a vibrating plate - give --plate as well"),
         (("--amplitude", "80%"), 2, "Error: --amplitude is for a vibrating plate - give --plate as well"),
-        (("--plate", "--until", "1%"), 2, "Error: --until is for a plane at rest - leave it or --plate out"),
-        (("--plate", "--trace", "1"), 2, "Error: --trace is for a plane at rest - leave it or --plate out"),
+        (("--plate", "--until", "1%"), 2, AT_REST.format("--until")),
+        (("--plate", "--trace", "1"), 2, AT_REST.format("--trace")),
         (("--plate", "--amplitude", "0.4"), 1, "Error: --amplitude: drive.amplitude: '0.4' has no unit"),
         (("--plate", "--amplitude", "900%"), 1, "Error: --amplitude: '900%' is out of range - give 0%"),
         (("--plate", "--amplitude", "x%"), 1, "Error: --amplitude: 'x%' is not a number - write digits"),
