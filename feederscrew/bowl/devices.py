@@ -51,11 +51,11 @@ def misplaced(chain: Sequence[Device], width: float) -> list[ConfigError]:
     -------
     list of ConfigError
     """
-    return [fault for device in chain for fault in device.misfits(width)] + beyond_rails(chain)
+    return [fault for device in chain for fault in device.misfits(width)] + unfit(chain)
 
 
-def beyond_rails(chain: Sequence[Device]) -> list[ConfigError]:
-    """Return the faults of devices behind rails that mean nothing to parts that hang.
+def unfit(chain: Sequence[Device]) -> list[ConfigError]:
+    """Return the faults of devices where those before them leave them no meaning.
 
     Parameters
     ----------
@@ -65,6 +65,11 @@ def beyond_rails(chain: Sequence[Device]) -> list[ConfigError]:
     -------
     list of ConfigError
     """
+    return [*_beyond_rails(chain), *_in_grooves(chain)]
+
+
+def _beyond_rails(chain: Sequence[Device]) -> list[ConfigError]:
+    """Devices behind rails that mean nothing to parts that hang."""
     first = next((place for place, device in enumerate(chain) if device.hangs), len(chain))
     return [
         ConfigError(
@@ -75,6 +80,17 @@ def beyond_rails(chain: Sequence[Device]) -> list[ConfigError]:
         for device in chain[first:]
         if not device.hanging
     ]
+
+
+def _in_grooves(chain: Sequence[Device]) -> list[ConfigError]:
+    """Devices in a groove, which holds parts on both its faces, where one is cut or stood over alone."""
+    faults, grooved = [], False
+    for device in chain:
+        grooved = grooved if device.grooved is None else device.grooved
+        if grooved and device.placed and not device.leans:
+            mend = "list 'bank: 6 deg' before it, which ends the groove"
+            faults.append(ConfigError(device.where, f"{device.kind} stands in a groove", mend))
+    return faults
 
 
 def strangers(chain: Sequence[Device], aspects: Sequence[str]) -> list[str]:

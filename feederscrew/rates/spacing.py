@@ -1,9 +1,8 @@
 """How far apart parts have to come for devices that look at one part at a time."""
 
-from dataclasses import replace
-
 import numpy as np
 
+from feederscrew.rates import stretches
 from feederscrew.tooling.orientations import speed
 
 
@@ -25,13 +24,12 @@ def needed(chain, lying, bowl):
         0 where they need none. Behind a stretch on which parts travel r times as fast, their pitch is r times
         as large.
     """
-    here, gap, first = bowl, 0.0, speed(bowl)
+    here, gap = lying[0], 0.0
+    first = speed(stretches.queueing(bowl, lying))
     shortest = min(one.length for one in lying)
     for device in chain:
-        if device.leans:
-            track = device.onward(lying[0]).track
-            here = replace(here, track=replace(here.track, climb=track.climb))
-        now = speed(here)
+        here = device.onward(here)
+        now = speed(stretches.on_stretch(bowl, here))
         free = max(device.gap(one, now) for one in lying)
         if free > 0.0:
             ratio = now / first if first > 0.0 else np.inf

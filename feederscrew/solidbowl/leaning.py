@@ -22,13 +22,15 @@ def banked(track, devices, every):
     Raises
     ------
     FeederError
-        If a device changes the bank of the track further on, or leads it on beside a ledge.
+        If a device is a groove, changes the bank of the track further on, or leads it on beside a ledge.
     """
     entry = True
     for device in devices:
         if not device.placed:
             continue
         for slope in device.standing(track, every).slopes:
+            if slope.wall:
+                raise _refused(device, "is a V, which a solid does not have")
             if slope.bank is not None and not entry:
                 raise _refused(device, "changes the bank of the track, and a solid has one bank")
             track = track if slope.bank is None else replace(track, bank=slope.bank)

@@ -14,7 +14,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.conveying.answer import conveying
 from feederscrew.machine import speeds
 from feederscrew.part.record import Part
-from feederscrew.rates import arrivals, well_oriented
+from feederscrew.rates import arrivals, stretches, well_oriented
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
@@ -218,7 +218,7 @@ def rate(
     target = None if aspect is None else well_oriented.wanted(part, found, bowl.track, aspect, heading)
     ways = well_oriented.orientations(part, found, bowl.track, chain, sigma, bowl)
     lying = arrivals.oriented(ways, known.measured)
-    speed = well_oriented.velocity(bowl)
+    speed = well_oriented.velocity(stretches.queueing(bowl, lying.lying))
     target = most_frequent(lying, rule) if target is None else target
     return RateStudy(
         part=part,

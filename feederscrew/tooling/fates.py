@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from feederscrew import check
-from feederscrew.bowl.devices import beyond_rails
+from feederscrew.bowl.devices import unfit
 from feederscrew.tooling import touching
 from feederscrew.tooling.devices.base import CARRIED, RETURNED, STOPPED, Device, Verdict
 from feederscrew.tooling.hanging import Hanging, hung
@@ -120,9 +120,9 @@ def course(devices, every, sigma=0.0):
     Raises
     ------
     ConfigError
-        If a device behind rails means nothing to parts that hang.
+        If a device means nothing behind rails, or in a groove.
     """
-    for fault in beyond_rails(devices):
+    for fault in unfit(devices):
         raise fault
     every = tuple(every)
     states, here = list(every), list(every)  # `here`: as they are at this device, a slot below them or not
@@ -147,11 +147,20 @@ def course(devices, every, sigma=0.0):
 
 def at_entry(every, devices):
     """Return orientations as they come: where devices that lean the track come first, they begin there."""
-    for device in devices:
-        if not device.leans:
-            break
+    for device in leading(devices):
         every = tuple(device.onward(one) for one in every)
     return tuple(every)
+
+
+def leading(devices):
+    """Return the devices that come first and lean the track from its entry on, up to the end of a groove."""
+    found, grooved = [], False
+    for device in devices:
+        if not device.leans or (grooved and device.grooved is False):
+            break
+        found.append(device)
+        grooved = grooved or bool(device.grooved)
+    return tuple(found)
 
 
 def _way(device, place, one, found, states):

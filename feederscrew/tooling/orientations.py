@@ -49,6 +49,7 @@ class Orientation:
     swing: float = 0.0  # [m/s] amplitude of the track's velocity along it
     wall_grip: float = 0.0  # [1] friction of the wall
     climbs: float = 0.0  # [m] height of an edge that the speed of the drive lifts it over
+    groove: float = 0.0  # [rad] of both faces of the groove that it lies in; 0 on a track with a wall
     any_heading: bool = False  # on that aspect it is known however it is turned
 
     @property
@@ -65,6 +66,18 @@ class Orientation:
     def shift(self):
         """By how much the weight meets a banked track nearer to the wall [m]."""
         return self.posture.height * np.tan(self.track.bank)
+
+    @property
+    def rolls_along(self):
+        """Whether the axis about which it rolls lies more along the track than across it."""
+        axis = self.posture.axis
+        along, across = (0.0, 1.0) if axis is None else np.abs(turned(axis, self.heading))
+        return bool(along >= across)
+
+    @property
+    def wall_leans(self):
+        """How far the wall leans back from upright [rad]: it is the other face of a groove."""
+        return 0.5 * np.pi - self.groove if self.groove else 0.0
 
     @cached_property
     def axes(self):
@@ -199,7 +212,8 @@ def travelling(found, bowl):
     or even carry it on as it does what slides.
     """
     along, track = speed(bowl), bowl.track
-    swing = 2.0 * np.pi * bowl.drive.frequency * bowl.drive.amplitude * np.cos(bowl.drive.vibration_angle)
+    fastest = 2.0 * np.pi * bowl.drive.frequency * bowl.drive.amplitude
+    swing = fastest * np.cos(bowl.drive.vibration_angle)
     held = np.tan(track.climb) <= bowl.friction.wall * np.tan(track.bank)
     return tuple(
         replace(
@@ -210,7 +224,7 @@ def travelling(found, bowl):
             speed=along,
             swing=swing,
             wall_grip=float(bowl.friction.wall),
-            climbs=_climbs(bowl),
+            climbs=float(ROUNDED + fastest**2 / (2.0 * bowl.gravity)),
             may_roll_back=bool(not held and rolls_across(one)),
         )
         for one in found
@@ -219,12 +233,7 @@ def travelling(found, bowl):
 
 def rolls_across(one):
     """Return whether it rolls along the track: about an axis across it, round in a circle, or as a ball."""
-    if one.kind != "rolling":
-        return False
-    if one.posture.axis is None or np.isfinite(one.posture.rolling_circle):
-        return True
-    along, across = np.abs(turned(one.posture.axis, one.heading))
-    return bool(across > along)
+    return one.kind == "rolling" and bool(np.isfinite(one.posture.rolling_circle) or not one.rolls_along)
 
 
 def speed(bowl):
@@ -236,12 +245,6 @@ def speed(bowl):
             raise
         return 0.0
     return max(float(found), 0.0) if np.isfinite(found) else 0.0
-
-
-def _climbs(bowl):
-    """Height [m] to which the greatest speed of the drive lifts a part, above an edge's own round."""
-    drive = bowl.drive
-    return float(ROUNDED + (2.0 * np.pi * drive.frequency * drive.amplitude) ** 2 / (2.0 * bowl.gravity))
 
 
 def _tipping_time(one, spread, gravity):

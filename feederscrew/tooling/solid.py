@@ -9,7 +9,7 @@ from shapely import affinity
 from feederscrew import check
 from feederscrew.tooling import whole_surface
 from feederscrew.tooling.devices.hole_shapes import beyond_borders
-from feederscrew.tooling.strip import bent
+from feederscrew.tooling.strip import CHORD, bent
 from feederscrew.units import factor
 
 MM = factor("mm", "length")  # manifold3d works on numbers of that size
@@ -42,12 +42,10 @@ def solid(section):
 
 def triangles(section):
     """Return the triangles (F, 3, 3) [m] of the section, counter-clockwise seen from outside."""
-    radius, length, width = section.track.radius, section.length, section.width
+    radius, width = section.track.radius, section.width
     holes = [_bent(_clear(one.hole, width), radius) for one in section.stations if one.hole is not None]
-    low, high = INTO, length - INTO
-    wall = _bent([[low, INTO - WALL], [high, INTO - WALL], [high, 0.0], [low, 0.0]], radius)
     levels = _levels(section)
-    body = _extruded(wall, -INTO + levels[-1][2], section.tallest + ABOVE)
+    body = _walls(section, -INTO + levels[-1][2], section.tallest + ABOVE)
     holes = shapely.union_all(holes)
     for start, end, level in levels:
         plate = _bent([[start, -WALL], [end, -WALL], [end, width], [start, width]], radius)
@@ -60,6 +58,41 @@ def triangles(section):
             body += _gate(station, section).translate((0.0, 0.0, _level(levels, station) / MM))
     points, faces = whole_surface.mesh(body)
     return _in_order(points[faces])
+
+
+def _walls(section, low, high):
+    """The wall, upright, or leaning back where it is the other face of a groove."""
+    made = []
+    for begin, end, lean in section.walls:
+        start, stop = max(begin, INTO), min(end + INTO, section.length - INTO)
+        if lean:
+            made.append(_leaning(section.track.radius, start, stop, lean, high))
+        else:
+            ring = [[start, INTO - WALL], [stop, INTO - WALL], [stop, 0.0], [start, 0.0]]
+            made.append(_extruded(_bent(ring, section.track.radius), low, high))
+    return sum(made[1:], made[0])
+
+
+def leaning_wall(radius, start, stop, lean, high):
+    """Return the vertices and faces of a wall that leans back [rad] between two places [m].
+
+    Source: own; docs/tooling.md, "A groove".
+    """
+    mesh = _leaning(radius, start, stop, lean, high).to_mesh64()
+    return np.asarray(mesh.vert_properties)[:, :3] * MM, np.asarray(mesh.tri_verts).astype(int)
+
+
+def _leaning(radius, start, stop, lean, high):
+    """A body [mm]: a wall from the track's outer edge on, as wide as ``high`` [m] up its slope."""
+    from manifold3d import CrossSection, Manifold
+
+    up, out = np.array([np.sin(lean), np.cos(lean)]), np.array([np.cos(lean), -np.sin(lean)])
+    low, top = -INTO * up, high * up
+    across = np.array([low, low + WALL * out, top + WALL * out, top]) + [radius, 0.0]
+    round_once = int(np.ceil(np.pi / np.sqrt(2.0 * CHORD / radius)))
+    turned, first = np.degrees((stop - start) / radius), np.degrees(start / radius) - 90.0
+    body = Manifold.revolve(CrossSection([across / MM]), round_once, turned)
+    return body.rotate((0.0, 0.0, first)).translate((0.0, radius / MM, 0.0))
 
 
 def prism(area, low, high):

@@ -1,5 +1,6 @@
 """A stretch of track with a chain of devices on it, one after the other, as it is drawn and made."""
 
+import itertools
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,6 +9,7 @@ import shapely
 from feederscrew.bowl.record import Track
 from feederscrew.tooling.devices.base import FRAME, Device, room_of
 from feederscrew.tooling.devices.pieces import BLADE
+from feederscrew.tooling.fates import leading
 
 BESIDE = 5e-3  # [m] of track beyond what parts and cuts need, where the whole track is not drawn
 CHORD = 1e-5  # [m] by which an arc may be seen too flat
@@ -26,6 +28,9 @@ class Station:
     top: float  # [m] height of a gate
     drop: float = 0.0  # [m] by which the track goes on lower, from the middle of its length
     edge: np.ndarray | None = None  # (4, 2) [m] where parts turn over, unrolled: a step's or a ledge's edge
+    wall: float | None = (
+        None  # [rad] by which the wall leans back over the track from there on; None: as before
+    )
 
     @property
     def label(self):
@@ -42,6 +47,18 @@ class TrackSection:
     width: float  # [m] of it that is drawn
     tallest: float  # [m] of all orientations
     stations: tuple[Station, ...]
+
+    @property
+    def walls(self):
+        """Stretches of the wall, (from, to, lean) [m, m, rad]; a groove listed first begins at the entry."""
+        first = leading([station.device for station in self.stations])
+        turns = [
+            (0.0 if place < len(first) else station.start, station.wall)
+            for place, station in enumerate(self.stations)
+            if station.wall is not None
+        ]
+        ends = [(0.0, 0.0), *turns, (self.length, 0.0)]
+        return [(begin, end, lean) for (begin, lean), (end, _) in itertools.pairwise(ends) if end > begin]
 
     def bent(self, ring):
         """Return a ring (K, 2) [m] unrolled as it lies in the bowl, its corners joined by short chords.
@@ -137,7 +154,14 @@ def _station(device, start, length, section, every):
         top=0.0 if gate is None else max(section.tallest, gate.bounds[3]) + FRAME,
         drop=lower[0] if lower is not None and lower[1] <= 0.0 else 0.0,
         edge=device.edge(start, length, section.width),
+        wall=_wall(device, section.track, every),
     )
+
+
+def _wall(device, track, every):
+    """By how much [rad] the wall leans back from square to the track from a device on; None: as before."""
+    slopes = [one for one in device.standing(track, every).slopes if one.wall is not None]
+    return (slopes[-1].wall - slopes[-1].bank if slopes[-1].wall else 0.0) if slopes else None
 
 
 def _rings(area):

@@ -133,7 +133,7 @@ def fate(one, met):
 def _after(device, one, found, every, known):
     """The orientation in which most parts go on from a device."""
     if found.onto:
-        return every[max(found.onto, key=lambda place: place[1])[0]]
+        return device.onward(every[max(found.onto, key=lambda place: place[1])[0]])
     if found.hangs:
         return hung(one, device.span, known)
     return astride(one, device.span) if device.hangs and found.passes > 0.0 else device.onward(one)

@@ -3,6 +3,7 @@
 import numpy as np
 import shapely
 
+from feederscrew.mechanics.wall.lying_in_groove import becomes
 from feederscrew.tooling import drift, sensor_views, turning
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling.devices.base import STANDARD_GRAVITY, UNSURE, Verdict, share
@@ -93,6 +94,15 @@ class Meeting:
         """Whether it comes hanging between rails."""
         return isinstance(self.one, Hanging)
 
+    @property
+    def place(self):
+        """Its place among the orientations, also where the track leans otherwise by now."""
+        one = self.one
+        for k, other in enumerate(self.every):
+            if other is one or (other.posture is one.posture and other.heading == one.heading):
+                return k
+        raise ValueError(f"{one.name} is not one of the orientations")
+
     def passing(self):
         """Return the verdict of a device that does nothing."""
         return Verdict(1.0, float("nan"))
@@ -103,9 +113,7 @@ class Meeting:
 
     def turning(self, turned, margin):
         """Return the verdict of a device that turns shares of it into others: (place, share) each."""
-        here = next((k for k, other in enumerate(self.every) if other is self.one), None)
-        if here is None:
-            raise ValueError(f"{self.one.name} is not one of the orientations")
+        here = self.place
         stays = 1.0 - sum(part for _, part in turned)
         return Verdict(1.0, float(margin), onto=(((here, stays),) if stays > 0.0 else ()) + tuple(turned))
 
@@ -177,6 +185,16 @@ class Meeting:
     def pitched_over(self, height):
         """Return what a step of some height [m] turns it into, and the margin [m]."""
         return turning.over_step(self.one, self.every, height)
+
+    def laid_in_groove(self, angle):
+        """Return the verdict of a groove, of two faces at an angle [rad]: what it lies in as it came passes.
+
+        What turns there, or comes to lie as none of the known does, is not sure.
+        """
+        here, found = self.place, becomes(self.one, self.every, angle)
+        if found == ((here, 1.0),):
+            return self.passing()
+        return Verdict(1.0, -UNSURE, onto=tuple((here if k < 0 else k, part) for k, part in found))
 
     def rolled_over(self, width):
         """Return what a ledge of some width [m] turns it into if its weight lies beyond, and the margin."""

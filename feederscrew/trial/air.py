@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.trial.kernel import jets
 
-BLEND = 0.25  # of the part's size: way over which one lean of the track becomes the next
+BLEND, OPENS = 0.25, 1.0  # of the part's size: way over which a lean of track, or of wall, becomes the next
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +49,8 @@ class Air:
 
     jets: np.ndarray  # (J, 12) [m], [1], [m/s2], [s] as `trial.kernel.jets` names the columns
     watches: tuple[Watch, ...]
-    slopes: tuple[tuple[float, float | None, float | None], ...]  # [m] place, [rad] climb and bank from there
+    # [m] place, [rad] climb, bank and lean of the wall from there
+    slopes: tuple[tuple[float, float | None, float | None, float | None], ...]
 
 
 STILL = Air(np.zeros((0, jets.END + 1)), (), ())
@@ -82,7 +83,7 @@ def along(placed, track, every):
                     start + standing.sensor.at, start + standing.jets[0].at[0], standing.sensor, own, seconds
                 )
             )
-        slopes += [(start + slope.begin, slope.climb, slope.bank) for slope in standing.slopes]
+        slopes += [(start + one.begin, one.climb, one.bank, one.wall) for one in standing.slopes]
     return Air(check.frozen(np.reshape(rows, (-1, jets.END + 1))), tuple(watches), tuple(slopes))
 
 
@@ -110,12 +111,12 @@ def blowing(rows, length, unit):
 
 
 def leaning(slopes, climb, bank, size, length):
-    """Return how gravity and the bowl's axis lie in the track's frame along the wall, (K, 6).
+    """Return how gravity, the bowl's axis and the wall lie in the track's frame along the wall, (K, 8).
 
     Parameters
     ----------
-    slopes : sequence of (float [m], float [rad] or None, float [rad] or None)
-        Where another climb or bank begins.
+    slopes : sequence of (float [m], float [rad] or None, float [rad] or None, float [rad] or None)
+        Where another climb, bank or lean of the wall begins.
     climb, bank : float [rad]
         Before them, of the bowl's track.
     size : float [m]
@@ -123,14 +124,17 @@ def leaning(slopes, climb, bank, size, length):
     length : float [m]
         Of the unit.
     """
-    rows, here = [] if slopes else [(0.0, climb, bank)], (climb, bank)
-    for place, rise, tilt in sorted(slopes, key=lambda one: one[0]):
+    here = climb, bank, 0.0
+    rows = [] if slopes else [(0.0, *here)]
+    for place, *new in sorted(slopes, key=lambda one: one[0]):
         rows.append((place / length, *here))
-        here = here[0] if rise is None else rise, here[1] if tilt is None else tilt
-        rows.append((place / length + BLEND * size / length, *here))
+        before, here = here, tuple(old if given is None else given for old, given in zip(here, new))
+        blend = BLEND if here[-1] == before[-1] else OPENS
+        rows.append((place / length + blend * size / length, *here))
     return np.array([_lean(*row) for row in rows])
 
 
-def _lean(place, climb, bank):
-    c, s = np.cos(climb), np.sin(climb)
-    return [place, -s, -c * np.sin(bank), -c * np.cos(bank), np.sin(bank), np.cos(bank)]
+def _lean(place, climb, bank, wall):
+    c, s, off = np.cos(climb), np.sin(climb), bank - wall
+    axis, upright = [np.sin(bank), np.cos(bank)], [np.sin(off), np.cos(off)]
+    return [place, -s, -c * np.sin(bank), -c * np.cos(bank), *axis, *upright]

@@ -36,7 +36,7 @@ def crowd_of(solid, surface, count):
 
     return Crowd(
         states=numbers(body.STATE), before=numbers(body.STATE), push=numbers(body.STATE), turns=numbers(9),
-        tangents=numbers(2), leans=numbers(5), given=numbers(6), free=numbers(3), blown=numbers(7),
+        tangents=numbers(2), leans=numbers(7), given=numbers(6), free=numbers(3), blown=numbers(7),
         rows=numbers(CONTACTS, contact.WIDTH), counts=places(),
         known=numbers(CONTACTS, 4), knowns=places(), lasted=np.full(count, -1.0),
         made=np.full((count, 10), -1.0), made_at=numbers(3),

@@ -1,6 +1,5 @@
 """Many parts, one at a time, through a chain of devices: what becomes of each, and where."""
 
-import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -181,12 +180,8 @@ def rightly(leaving):
 def _chain(bowl, every, devices):
     """The bare track, then each device that is no measured yield."""
     size = max(one.length for one in every)
-    made, slopes = [], ()
-    first = tuple(
-        slope
-        for device in itertools.takewhile(lambda device: device.leans, devices)
-        for slope in device.standing(bowl.track, every).slopes
-    )
+    made, slopes = [], stations.at_entry(devices, bowl.track, every)
+    first = slopes
     for device in devices:
         if device.placed:
             made.append(stations.station(device, bowl.track, every, slopes=slopes))

@@ -1,6 +1,6 @@
 """Several parts on one track with all its devices: they push, carry and climb each other."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -55,13 +55,16 @@ def crowded(bowl, every, devices, room):
     if placed:  # a ledge goes on behind the outlet
         placed[-1] = (*placed[-1][:2], place + TAIL * size)
     ends = -room - size, place + TAIL * size
+    blows = air.along(blows, track, every)
+    first = [replace(one, climb=None) for one in stations.at_entry(devices, track, every)]
+    blows = replace(blows, slopes=(*staging.before(first), *blows.slopes))  # they come apart on a steeper way
     made = staging.built(placed, track, size, ends)
     stage = staging.Stage(
         stations.BARE,
         *made,
         begin=-room,
         exit=np.inf,
-        air=air.along(blows, track, every),
+        air=blows,
         size=size,
         width=track.extent,
     )

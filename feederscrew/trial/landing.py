@@ -105,7 +105,8 @@ def _fallen(part, bowl, every, shape, launch, parts, seed, jobs, progress):
     flight, fastest = np.sqrt(2.0 * launch.fall[1]), launch.speed[1]
     room = fastest * flight + fastest**2 / (2.0 * max(bowl.friction.kinetic, 0.05)) + solid.radius
     room = min(length * room, MOST * 2.0 * np.pi * bowl.track.radius)
-    stage = replace(stations.plain(bowl.track, every, 2.0 * room), exit=np.inf)
+    first = stations.at_entry(bowl.devices, bowl.track, every)
+    stage = replace(stations.plain(bowl.track, every, 2.0 * room, first), exit=np.inf)
     seconds = known.unit * (flight + EXACT.settling)
     ride = runs.ride(
         known, stage, whereabouts.moved(states, room / length, known.radius), times,

@@ -158,11 +158,12 @@ class _Queue:
     def fresh(self):
         """A part that is about to enter: its state at the place 0, and the free way before it."""
         k = min(int(np.searchsorted(self.chances, self.rng.random() * self.chances[-1])), len(self.every) - 1)
-        one, track = self.every[k], self.bowl.track
+        one = self.every[k]
+        track = one.track
         if not self.poured:
             play = starts.PLAY * self.rng.random()
             state = whereabouts.laid(one, self.principal, self.known.length, track, place=0.0)
-            state = starts.clear(state, self.known.solid, track, self.known.length, play)
+            state = starts.clear(state, self.known.solid, track, self.known.length, play, one.wall_leans)
             gap = self.apart + 2.0 * GAPS * self.rng.random() * one.length / self.known.length
             return state, gap
         radius, state = self.known.solid.radius, np.zeros(body.STATE)

@@ -68,7 +68,7 @@ def stage(device, standing, track, every, start=0.0, slopes=()):
     """
     size = size_of(every)
     blows = air.along([(standing, start, 0.0)], track, every)
-    blows = replace(blows, slopes=(*_before(slopes), *blows.slopes))
+    blows = replace(blows, slopes=(*before(slopes), *blows.slopes))
     begin, beyond = start - (0.5 + SPARE) * size, passed(standing, start, size)
     ends = begin - BEFORE * size, beyond + AFTER * size
     return Stage(
@@ -82,13 +82,13 @@ def plain(device, track, every, length, slopes=()):
     """Return a stretch of the bare track, from 0 to ``length`` [m]."""
     size = size_of(every)
     bare = built((), track, size, (-BEFORE * size, length + AFTER * size))
-    blows = replace(air.STILL, slopes=_before(slopes))
+    blows = replace(air.STILL, slopes=before(slopes))
     return Stage(device, *bare, begin=0.0, exit=length, size=size, width=track.extent, air=blows)
 
 
-def _before(slopes):
-    """Slopes that began before what is drawn."""
-    return tuple((-FAR, one.climb, one.bank) for one in slopes)
+def before(slopes):
+    """Return slopes as they are where they began before what is drawn."""
+    return tuple((-FAR, one.climb, one.bank, one.wall) for one in slopes)
 
 
 def passed(standing, start, size):

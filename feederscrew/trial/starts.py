@@ -45,15 +45,19 @@ def laid_down(bowl, every, entered, solid, principal, length, seed):
             turn=lean,
         )  # fmt: skip
         states[n, body.Z] -= lowest(solid.corners, states[n])
-        states[n] = clear(states[n], solid, bowl.track, length, PLAY * play)
+        states[n] = clear(states[n], solid, every[k].track, length, PLAY * play, every[k].wall_leans)
         times[n] = phase / bowl.drive.frequency
     return states, times
 
 
-def clear(state, solid, track, length, play):
-    """Return a part's state moved along the track's width until it is ``play`` [m] from the upright wall."""
+def clear(state, solid, track, length, play, leans=0.0):
+    """Return a part's state moved along the track's width until it is ``play`` [m] from the wall.
+
+    The wall is upright, or ``leans`` [rad] back from that beside a groove.
+    """
     spots = state[:3] + vectors.product(solid.corners, whereabouts.matrix(state).T)
-    radius, lean, up = track.radius / length, np.sin(track.bank), np.cos(track.bank)
+    radius, off = track.radius / length, track.bank - leans
+    lean, up = np.sin(off), np.cos(off)
     gap = up * (radius - np.hypot(spots[:, 0], radius - spots[:, 1])) - lean * spots[:, 2]
     out = state[:2] - [0.0, radius]
     state[:2] += out / np.hypot(*out) * (gap.min() - play / length) / up

@@ -1,6 +1,7 @@
 """Each device along the track as the trial takes it."""
 
 from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.fates import leading
 from feederscrew.trial import staging
 
 BARE = Device("")
@@ -22,6 +23,11 @@ def station(device, track, every, start=0.0, slopes=()):
         Of the devices before it, which go on.
     """
     return staging.stage(device, device.standing(track, every), track, every, start, slopes)
+
+
+def at_entry(devices, track, every):
+    """Return the slopes of the devices that come first and lean the track: they begin at its entry."""
+    return tuple(slope for one in leading(devices) for slope in one.standing(track, every).slopes)
 
 
 def plain(track, every, length, slopes=()):

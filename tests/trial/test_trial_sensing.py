@@ -100,11 +100,11 @@ def test_rays_take_the_share_of_a_jet_that_the_outline_does():
 
 def test_the_lean_of_the_track_changes_where_a_slope_begins():
     flat = air.leaning((), 0.02, 0.0, 0.01, 1.0)
-    assert flat.shape == (1, 6) and flat[0, 1] == pytest.approx(-np.sin(0.02))
-    rows = air.leaning([(0.1, -0.05, None), (0.2, None, 0.1)], 0.02, 0.0, 0.01, 0.5)
+    assert flat.shape == (1, 8) and flat[0, 1] == pytest.approx(-np.sin(0.02))
+    rows = air.leaning([(0.1, -0.05, None, None), (0.2, None, 0.1, None)], 0.02, 0.0, 0.01, 0.5)
     assert rows[:, 0] == pytest.approx([0.2, 0.205, 0.4, 0.405])
     assert rows[:, 1] == pytest.approx(-np.sin([0.02, -0.05, -0.05, -0.05]))
-    assert rows[-1, 4:] == pytest.approx([np.sin(0.1), np.cos(0.1)])
+    assert rows[-1, 4:] == pytest.approx([np.sin(0.1), np.cos(0.1)] * 2)
 
 
 def test_what_flies_past_the_outlet_on_its_way_off_the_track_has_not_left():

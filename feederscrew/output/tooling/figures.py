@@ -8,7 +8,7 @@ from matplotlib.patches import Polygon
 from shapely import affinity
 
 from feederscrew.output import style
-from feederscrew.output.tooling import ink, leaving, tables
+from feederscrew.output.tooling import ink, leaving, profile, tables
 from feederscrew.tooling import tightest
 from feederscrew.tooling.isolating.proposal import (
     LEAST_SHARE,  # orientations that come less often have no row
@@ -129,7 +129,10 @@ def _cell(page, box, found, size):
     if found.picture == "above":
         _above(axes, found.orientation, found.hole, found, colour)
     else:
-        _ahead(axes, found.orientation, found.opening, colour)
+        _ahead(axes, found.after if found.device.leans else found.orientation, found.opening, colour)
+    if found.verdict.onto:
+        ink.text(page, box[0] + 8, box[1] + ROW - 12, profile.turned_into(found), colour=colour)
+        return
     word = "hangs" if found.verdict.hangs else "passes" if good else f"is {found.fate}"
     ink.text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, {ink.margin(found.verdict)}", colour=colour)
 
@@ -173,7 +176,7 @@ def _above(axes, one, hole, found, colour):
     right = axes.get_xlim()[1]
     half = min(0.95 * max(one.length, one.width) / MM, right)
     track = shapely.box(-half, 0.0, half, one.track.width / MM)
-    curved = _sunk(track, one.track.radius / MM)
+    curved = profile.sunk(track, one.track.radius / MM)
     ink.fill(axes, curved if hole is None else curved.difference(ink.mm(hole)), TRACK, "#b8c2cb", 1)
     outline = np.add(one.outline, [0.0, one.distance]) / MM
     axes.add_patch(Polygon(outline, fc=PART, ec="#4d5b68", lw=0.9, alpha=0.45, zorder=3))
@@ -195,20 +198,10 @@ def _ahead(axes, one, opening, colour):
     if opening is not None:
         plate = shapely.box(0.0, 0.0, right, top).difference(ink.mm(opening))
         ink.fill(axes, plate, "#c3ccd4", "#8593a0", 2)
-    axes.plot([0.0, 0.0, right], [top, 0.0, 0.0], color=style.INK, lw=1.5, zorder=6)
-    shown = ink.mm(one.seen)
+    shown, line = profile.along(one, top, right)
+    axes.plot(*line.T, color=style.INK, lw=1.5, zorder=6)
     ink.fill(axes, shown, f"{PART}b0", "none", 4)
     ink.fill(axes, shown, "none", colour, 5, width=1.8)
-
-
-def _sunk(track, radius):
-    """The track [mm] between the curved wall and its inner edge."""
-    left, _, right, high = track.bounds
-    x = np.linspace(left, right, 41)
-    wall = radius - np.sqrt(radius**2 - x**2)
-    inner = radius - high
-    far = radius - np.sqrt(np.maximum(inner**2 - x**2, 0.0)) if inner > abs(left) else np.full(41, 1e3)
-    return shapely.Polygon(np.vstack([np.column_stack([x, wall]), np.column_stack([x, far])[::-1]]))
 
 
 def _axes(page, box, size, middle):

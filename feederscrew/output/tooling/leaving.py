@@ -4,7 +4,7 @@ import shapely
 from matplotlib.lines import Line2D
 
 from feederscrew.output import style
-from feederscrew.output.tooling import ink
+from feederscrew.output.tooling import ink, profile
 from feederscrew.tooling.hanging import Hanging
 from feederscrew.units import factor
 
@@ -61,5 +61,6 @@ def draw(axes, one, colour):
             ink.fill(axes, shapely.box(low, -DEEP, high, 0.0), SHEET, style.INK, 3)
         axes.plot([0.0, 0.0], [min(shown.bounds[1], -DEEP), top], color=style.INK, lw=1.5, zorder=6)
     else:
-        axes.plot([0.0, 0.0, right], [top, 0.0, 0.0], color=style.INK, lw=1.5, zorder=6)
+        shown, line = profile.along(one, top, right)
+        axes.plot(*line.T, color=style.INK, lw=1.5, zorder=6)
     ink.fill(axes, shown, f"{PART}b0", colour, 5, width=1.6)

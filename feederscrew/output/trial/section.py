@@ -1,5 +1,7 @@
 """The track of one station as a solid to be seen: what the trial's kernel had the part meet."""
 
+import itertools
+
 import numpy as np
 import shapely
 
@@ -27,7 +29,7 @@ def section(station, track, height):
     faces : (F, 3) int
     """
     meshes = [_plate(station, k, track) for k in range(len(station.plates))]
-    meshes.append(_wall(station, track, height))
+    meshes += _wall(station, track, height)
     first = np.cumsum([0] + [len(vertices) for vertices, _ in meshes])
     corners = np.concatenate([vertices for vertices, _ in meshes])
     return corners, np.concatenate([faces + n for (_, faces), n in zip(meshes, first)])
@@ -47,9 +49,22 @@ def _plate(station, k, track):
 
 
 def _wall(station, track, height):
-    """The wall behind the track, over its length."""
+    """The wall behind the track, over its length, stretch by stretch."""
     corners = np.concatenate(solids(station))
     way, _ = unrolled(np.column_stack([np.zeros(len(corners)), corners]), track.radius)
     low, high = way.min(), way.max()
+    turns = [(place, wall and wall - bank) for place, _, bank, wall in station.air.slopes if wall is not None]
+    ends = [(low, 0.0), *((max(place, low), lean) for place, lean in turns), (high, 0.0)]
+    return [
+        _stretch(station, track, height, begin, end, lean)
+        for (begin, lean), (end, _) in itertools.pairwise(ends)
+        if end > begin
+    ]
+
+
+def _stretch(station, track, height, low, high, lean):
+    """The wall between two places, upright or leaning back as the other face of a groove."""
+    if lean:
+        return solid.leaning_wall(track.radius, low, high, lean, height)
     ring = bent(np.array([[low, -WALL], [high, -WALL], [high, 0.0], [low, 0.0]]), track.radius)
     return solid.prism(shapely.Polygon(ring), -station.plates[0, crowd_records.DEPTH], height)

@@ -75,6 +75,7 @@ class Device:
     feature: ClassVar[str] = ""  # what it measures of a part, in the part's own terms
     picture: ClassVar[str] = ""  # where a part at it is seen from: 'side', 'above', 'ahead', 'turned'
     leans: ClassVar[bool] = False  # whether the track leans otherwise from it on
+    grooved: ClassVar[bool | None] = None  # whether the track is a V from it on; None: as before it
     layer: ClassVar[str] = ""  # of its edge in a drawing, where it is none of cuts and gates
 
     @classmethod
@@ -248,13 +249,15 @@ class Device:
 
     def beside(self, width):
         """Return the ConfigError of a hole that lies beside a track of some width [m]."""
-        what = f"{self.kind} lies beside the track: {_told(width)}"
+        what = f"{self.kind} lies beside the track: the track is {1e3 * width:.4g} mm wide"
         return ConfigError(self.where, what, "move it onto the track")
 
     def whole(self, width):
         """Return the ConfigError of a hole that leaves nothing of a track of some width [m]."""
-        what = f"{self.kind} leaves no track: {_told(width)}"
-        return ConfigError(self.where, what, "give a smaller one, or a wider track")
+        mend = "give a smaller one, or a wider track"
+        return ConfigError(
+            self.where, f"{self.kind} leaves no track: the track is {1e3 * width:.4g} mm wide", mend
+        )
 
 
 def room_of(every):
@@ -268,10 +271,6 @@ def across(gate, width, every, place):
 
     tall = 2.0 * max(max(one.height for one in every), gate.bounds[3]) + FRAME
     return Blade(shapely.box(0.0, 0.0, width, tall).difference(gate), foot=(place, 0.0))
-
-
-def _told(width):
-    return f"the track is {1e3 * width:.4g} mm wide"
 
 
 def share(margin, sigma):

@@ -14,7 +14,9 @@ LINE = 2e-4  # [m] of a line in a drawing
 
 
 @dataclass(frozen=True)
-class _Lean(Device):
+class Lean(Device):
+    """A stretch of the track that leans otherwise by an angle."""
+
     angle: float = math.nan  # [rad]
 
     def edge(self, start, length, width):
@@ -30,7 +32,7 @@ class _Lean(Device):
 
 
 @dataclass(frozen=True)
-class Bank(_Lean):
+class Bank(Lean):
     """Another bank from here on."""
 
     kind = "bank"
@@ -41,6 +43,7 @@ class Bank(_Lean):
         "parts on their round side are then held at the wall where friction.wall tan(bank) > tan(climb)"
     )
     leans = True
+    grooved = False
     layer = "SLOPE"
 
     @classmethod
@@ -51,14 +54,14 @@ class Bank(_Lean):
         """Return an orientation as it goes on: its weight meets the track nearer to the wall."""
         track = replace(one.track, bank=self.angle)
         held = math.tan(track.climb) <= one.wall_grip * math.tan(self.angle)
-        return replace(one, track=track, may_roll_back=one.may_roll_back and not held)
+        return replace(one, track=track, groove=0.0, may_roll_back=one.may_roll_back and not held)
 
     def standing(self, track, every):
-        return Standing(0.5 * room_of(every), slopes=(Slope(0.0, bank=self.angle),))
+        return Standing(0.5 * room_of(every), slopes=(Slope(0.0, bank=self.angle, wall=0.0),))
 
 
 @dataclass(frozen=True)
-class Separation(_Lean):
+class Separation(Lean):
     """A steeper way down from here on, on which parts travel faster and so come apart."""
 
     kind = "separation"

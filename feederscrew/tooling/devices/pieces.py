@@ -38,6 +38,7 @@ class Slope:
     begin: float  # [m] x
     climb: float | None = None  # [rad] rise along the track; None is the bowl's own
     bank: float | None = None  # [rad] tilt towards the wall
+    wall: float | None = None  # [rad] by which the wall leans back from upright; None is as before
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import apart, compiled
 from feederscrew.trial.kernel import supports
 from feederscrew.trial.kernel.contact import KINDS
-from feederscrew.trial.kernel.crowd_records import DEPTH, FIRST, LAST, LEAN, RIMS, ROUNDED
+from feederscrew.trial.kernel.crowd_records import DEPTH, FIRST, LAST, RIMS, ROUNDED, WALL
 from feederscrew.trial.kernel.plate_views import DEEP, beside, in_body, inside, off_wall, placed
 from feederscrew.trial.kernel.supports import COSINES, FALL, SINES, WAYS
 
@@ -115,7 +115,7 @@ def deepest(surface, state, turn, leans, rim):
     p = _turned(turn, rim[0], rim[1], rim[2])
     x, y, z = p[0] + state[X], p[1] + state[Y] - surface.radius, p[2]
     off = math.sqrt(x * x + y * y)
-    a, b, c = leans[LEAN + 1] * x / off, leans[LEAN + 1] * y / off, leans[LEAN]
+    a, b, c = leans[WALL + 1] * x / off, leans[WALL + 1] * y / off, leans[WALL]
     n = _turned(turn, rim[AXIS], rim[AXIS + 1], rim[AXIS + 2])
     along = a * n[0] + b * n[1] + c * n[2]
     tilt = math.sqrt(max(a * a + b * b + c * c - along * along, 0.0))
@@ -143,8 +143,8 @@ def _towards_wall(surface, crowd, n, rim, ahead, up):
     for _ in range(2):  # the wall is curved: once more from where that is
         q = _turned(turn, p[0], p[1], p[2])
         x, y = q[0] + state[X], q[1] + state[Y] - surface.radius
-        size = FALL * leans[LEAN + 1] / math.sqrt(x * x + y * y)
-        a, b, c = x * size + ahead * s, y * size + ahead * t, FALL * leans[LEAN] + up
+        size = FALL * leans[WALL + 1] / math.sqrt(x * x + y * y)
+        a, b, c = x * size + ahead * s, y * size + ahead * t, FALL * leans[WALL] + up
         p = _furthest(
             rim,
             turn[0] * a + turn[3] * b + turn[6] * c,

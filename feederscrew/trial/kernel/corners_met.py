@@ -10,13 +10,12 @@ import math
 
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import apart, compiled
-from feederscrew.trial.kernel import circles_met, contact, edges_met, near, plate_views, supports
+from feederscrew.trial.kernel import circles_met, contact, edges_met, near, plate_views, supports, track_leans
 from feederscrew.trial.kernel.contact import GAP, KINDS, SPOT, put
 from feederscrew.trial.kernel.crowd_records import (
     CORNERS,
     DEPTH,
     EDGES,
-    LEAN,
     MOVED,
     NORMAL,
     POSTS,
@@ -24,6 +23,7 @@ from feederscrew.trial.kernel.crowd_records import (
     ROUNDED,
     RUBS,
     VERTS,
+    WALL,
 )
 from feederscrew.trial.kernel.edges_met import first_of
 from feederscrew.trial.kernel.plate_views import DEEP, SLANT, in_body, in_bowl, placed
@@ -67,7 +67,8 @@ def found(surface, solid, crowd, n, reach):
 def _on_wall(surface, solid, crowd, n, reach):
     """Add contacts with the wall, a cone in the track's frame where that is banked."""
     state, turn, lows = crowd.states[n], crowd.turns[n], 0
-    lean, up, radius = crowd.leans[n, LEAN], crowd.leans[n, LEAN + 1], surface.radius
+    lean, up, radius = crowd.leans[n, WALL], crowd.leans[n, WALL + 1], surface.radius
+    rub = track_leans.wall_friction(surface, crowd.leans[n])
     far = crowd.made[n, MOVED] + reach
     for m in range(1, crowd.walled[n, 0] + 1):
         if crowd.wall_gaps[n, m] > far:
@@ -89,7 +90,7 @@ def _on_wall(surface, solid, crowd, n, reach):
         y = state[Y] + turn[3] * p[0] + turn[4] * p[1] + turn[5] * p[2] - radius
         far = math.sqrt(x * x + y * y)
         normal = (-up * x / far, -up * y / far, -lean)
-        put(crowd, n, solid, p, normal, row[supports.GAP], surface.friction[4], row[supports.KEY])
+        put(crowd, n, solid, p, normal, row[supports.GAP], rub, row[supports.KEY])
 
 
 @compiled

@@ -13,7 +13,7 @@ ORIGIN, ACROSS, ALONG, FRONT, DEPTH, ROUNDED, FIRST, LAST = 0, 3, 6, 9, 12, 13, 
 RUBS, BOX = 16, 17  # its own friction, NaN for that of the track; least and greatest place of its borders (4)
 NORMAL, BEND, END, BEFORE = 4, 6, 7, 8  # of a border: normal; a convex corner at its start; the drawing's end
 ONWARDS = 10  # ... how far it goes on in the solid before its start and behind its end (2)
-LEAN = 3  # how the track leans where a part is: gravity (3), then the bowl's axis (2)
+LEAN, WALL = 3, 5  # how the track leans where a part is: gravity (3), the bowl's axis (2), the wall's (2)
 REACHES, MOVED, FREE = 7, 8, 9  # of what is noted as lists are made
 VERTS, EDGES, POSTS, CORNERS, RIMS, LISTS = range(6)  # lists of what of a part is near a plate
 
@@ -26,8 +26,8 @@ class Surface(NamedTuple):
     """
 
     radius: float  # of the wall
-    # (K, 6) along the wall, evenly between two: gravity ahead, from the wall inwards and up; the bowl's axis,
-    # along which it moves and the wall stands, inwards and up
+    # (K, 8) along the wall, evenly between two: gravity ahead, from the wall inwards and up; the bowl's axis,
+    # along which it moves, inwards and up; the same of the wall, that stands along it but beside a groove
     slopes: np.ndarray
     plates: np.ndarray  # (P, 21) origin, three axes, depth, round, borders, friction, box
     borders: np.ndarray  # (B, 12) start, end, normal, corner, drawing's end, normal before, onwards
@@ -61,7 +61,7 @@ class Crowd(NamedTuple):
     push: np.ndarray  # (N, 13) velocities that take parts out of what they are too deep in
     turns: np.ndarray  # (N, 9) body to bowl, at the start of a step
     tangents: np.ndarray  # (N, 2) of the wall where each is
-    leans: np.ndarray  # (N, 5) gravity and the bowl's axis where each is, in the track's frame
+    leans: np.ndarray  # (N, 7) gravity, the bowl's axis and the wall where each is, in the track's frame
     given: np.ndarray  # (N, 6) changes of velocity and rates by gravity, drive and jets over a step
     free: np.ndarray  # (N, 3) rates at the end of a step by free rotation alone
     blown: np.ndarray  # (N, 7) force and torque of jets, the latter about the body's axes; until when

@@ -133,20 +133,3 @@ def _through(solid, f, a, spot, way):
         return False
     v = (way[0] * (y * g - z * e) + way[1] * (z * d - x * g) + way[2] * (x * e - y * d)) / flat
     return v >= 0.0 and u + v <= 1.0
-
-
-@compiled
-def lean_here(surface, state, leans):
-    """Write gravity and the bowl's axis, as the track leans where a part is, to ``leans`` (5,)."""
-    slopes, last = surface.slopes, len(surface.slopes) - 1
-    place = surface.radius * math.atan2(state[X], surface.radius - state[X + 1]) if last else 0.0
-    m = 0
-    while m < last and place > slopes[m, 0]:
-        m += 1
-    if m == 0 or place > slopes[m, 0]:
-        for k in range(5):
-            leans[k] = slopes[m, 1 + k]
-        return
-    share = (place - slopes[m - 1, 0]) / (slopes[m, 0] - slopes[m - 1, 0])
-    for k in range(5):
-        leans[k] = slopes[m - 1, 1 + k] + share * (slopes[m, 1 + k] - slopes[m - 1, 1 + k])

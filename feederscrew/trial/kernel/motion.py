@@ -6,7 +6,7 @@ from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VY, VZ, W, X, Y
 from feederscrew.dropping.kernel.floor_contacts import IMPULSE, WANTED
 from feederscrew.geometry.compiled import apart, compiled
-from feederscrew.trial.kernel import contact, corners_met, jets, pairs
+from feederscrew.trial.kernel import contact, corners_met, pairs, track_leans
 from feederscrew.trial.kernel.contact import GAP
 from feederscrew.trial.kernel.pushes import give, reversal, wanted, wanted_of_pairs
 
@@ -39,7 +39,7 @@ def met(surface, solid, crowd, island, dt):
         x, y = state[X], surface.radius - state[Y]
         off = math.sqrt(x * x + y * y)
         crowd.tangents[n, 0], crowd.tangents[n, 1] = y / off, x / off
-        jets.lean_here(surface, state, crowd.leans[n])
+        track_leans.lean_here(surface, crowd, n)
         own = ahead(solid, state, dt)
         reach = max(reach, own)
         corners_met.found(surface, solid, crowd, n, own)

@@ -5,7 +5,7 @@ import math
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import compiled
 from feederscrew.trial.kernel import circles_met
-from feederscrew.trial.kernel.crowd_records import LEAN
+from feederscrew.trial.kernel.crowd_records import WALL
 from feederscrew.trial.kernel.near_borders import BLOCK
 from feederscrew.trial.kernel.plate_views import off_wall
 
@@ -15,7 +15,7 @@ def near_wall(surface, solid, crowd, n, margin):
     """List what of a part is within a margin [L] of the wall: corners of its hull, and circles."""
     state, count = crowd.states[n], 0
     x, y = state[X], surface.radius - state[Y]
-    if math.sqrt(x * x + y * y) + solid.radius > (surface.radius - margin) * crowd.leans[n, LEAN + 1]:
+    if math.sqrt(x * x + y * y) + solid.radius > (surface.radius - margin) * crowd.leans[n, WALL + 1]:
         for j in range(len(solid.single_blocks)):
             block = solid.single_blocks[j]
             p = 0.5 * (block[0] + block[3]), 0.5 * (block[1] + block[4]), 0.5 * (block[2] + block[5])

@@ -4,7 +4,7 @@ import math
 
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import compiled
-from feederscrew.trial.kernel.crowd_records import ACROSS, ALONG, BEFORE, FRONT, LEAN, NORMAL
+from feederscrew.trial.kernel.crowd_records import ACROSS, ALONG, BEFORE, FRONT, NORMAL, WALL
 
 DEEP = 0.04  # how far behind a surface anything may be found, in units of the part's length
 SLANT = 0.02  # [1] by which a contact's normal may lie beyond the faces it is between
@@ -55,9 +55,12 @@ def in_bowl(plate, x, y, z):
 
 @compiled
 def off_wall(surface, leans, x, y, z):
-    """Return how far a point is from the wall [L], which stands upright also where the track is banked."""
+    """Return how far a point is from the wall [L], which stands upright also where the track is banked.
+
+    Beside a groove it leans back: it is the other face of the V.
+    """
     y -= surface.radius
-    return leans[LEAN + 1] * (surface.radius - math.sqrt(x * x + y * y)) - leans[LEAN] * z
+    return leans[WALL + 1] * (surface.radius - math.sqrt(x * x + y * y)) - leans[WALL] * z
 
 
 @compiled

@@ -1,0 +1,122 @@
+"""How a part comes to lie in a groove: a V of two faces, where its weight finds the lowest place."""
+
+import functools
+
+import numpy as np
+
+from feederscrew.geometry import vectors
+from feederscrew.mechanics.wall.sameness import directions
+
+FIRST, LAST = np.radians(6.0), np.radians(0.02)  # [rad] steps of the way down, the largest and the smallest
+AXES = 24  # about which a step may turn it, either way
+YAW = np.radians(5.0)  # [rad] askew to either side, as it comes
+ASKEW = np.radians(np.linspace(-10.0, 10.0, 11))  # by which one may lie turned and be known
+SEEN = 160  # directions in which reaches are compared
+ALIKE = 0.05  # of the part's size, by which they may differ
+
+
+def height(points, angle):
+    """Return how high over the bottom of a groove a centre of mass is, its part resting on both faces.
+
+    Source: own; docs/tooling.md, "A groove". Each face holds off the farthest point of the part.
+
+    Parameters
+    ----------
+    points : (..., V, 3) float [m]
+        Of the part from its centre of mass: ahead, inwards along the inner face, square to that face.
+    angle : float [rad]
+        Of both faces from level.
+
+    Returns
+    -------
+    (...) float [m]
+    """
+    s, c = np.sin(2.0 * angle), np.cos(2.0 * angle)
+    inner = -points[..., 2].min(axis=-1)
+    outer = -(s * points[..., 1] + c * points[..., 2]).min(axis=-1)
+    return (inner + outer) / (2.0 * np.cos(angle))
+
+
+def settled(points, angle):
+    """Return a part (V, 3) [m] as it comes to lie in a groove: turned downhill until no turn leads lower.
+
+    Source: own; docs/tooling.md, "A groove". Parameters as for ``height``. What moves slips both ways on a
+    vibrating track, so friction holds nothing across it.
+    """
+    step, here = FIRST, float(height(points, angle))
+    while step > LAST:
+        ways = vectors.product(points, _turns(step))
+        found = height(ways, angle)
+        best = int(np.argmin(found))
+        if found[best] < here * (1.0 - 1e-9):
+            points, here = ways[best], float(found[best])
+        else:
+            step *= 0.5
+    return points
+
+
+@functools.lru_cache(maxsize=32)
+def _turns(step):
+    """Matrices (2 AXES, 3, 3) that turn rows by a step [rad] about axes spread over the sphere."""
+    axes = directions()[:: len(directions()) // AXES][:AXES]
+    s, c = np.sin(step), np.cos(step)
+    made = []
+    for x, y, z in np.concatenate([axes, -axes]):
+        across = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
+        made.append(c * np.eye(3) + s * across + (1.0 - c) * np.outer([x, y, z], [x, y, z]))
+    return np.array(made)
+
+
+@functools.lru_cache(maxsize=2048)
+def _comes_to_lie(posture, heading, angle, turn):
+    """What it reaches (SEEN,) [m] as it lies in a groove, of one that comes turned by ``turn`` [rad]."""
+    return _reach(settled(_standing(posture, heading + turn), angle))
+
+
+def _standing(posture, heading):
+    """A part (V, 3) [m] from its centre of mass as it lies on the track at a heading [rad]."""
+    c, s = np.cos(heading), np.sin(heading)
+    turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    return vectors.product(posture.corners - [0.0, 0.0, posture.height], turn)
+
+
+def _reach(points):
+    seen = directions()[:: len(directions()) // SEEN][:SEEN]
+    return vectors.product(points, seen.T).max(axis=-2)
+
+
+@functools.lru_cache(maxsize=2048)
+def _known(posture, heading):
+    """What an orientation reaches (N, SEEN) [m], turned a little."""
+    return np.array([_reach(_standing(posture, heading + by)) for by in ASKEW])
+
+
+def becomes(one, every, angle):
+    """Return what an orientation becomes in a groove, ((place, share) ...); place -1 is none of the known.
+
+    Source: own; docs/tooling.md, "A groove".
+
+    Parameters
+    ----------
+    one : Orientation
+        It comes a little askew, one way as often as the other.
+    every : sequence of Orientation
+        Of the part.
+    angle : float [rad]
+        Of both faces from level.
+    """
+    shares = {}
+    for turn in (-YAW, YAW):
+        reach = _comes_to_lie(one.posture, one.heading, angle, turn)
+        place = _like(reach, one, every)
+        shares[place] = shares.get(place, 0.0) + 0.5
+    return tuple(shares.items())
+
+
+def _like(reach, one, every):
+    """Place of the orientation that reaches so, that of ``one`` first; -1 where none does."""
+    off = [float(np.abs(_known(k.posture, k.heading) - reach).max(axis=1).min()) for k in every]
+    size = ALIKE * float(reach.max())
+    own = [other.posture is one.posture and other.heading == one.heading for other in every].index(True)
+    best = own if off[own] < size else int(np.argmin(off))
+    return best if off[best] < size else -1

@@ -1,0 +1,46 @@
+"""A groove: a stretch of the track that is a V, in which what is round lies along it and rolls no more."""
+
+import math
+from dataclasses import dataclass, replace
+
+from feederscrew.tooling.devices import values
+from feederscrew.tooling.devices.base import room_of
+from feederscrew.tooling.devices.leans import Lean
+from feederscrew.tooling.devices.pieces import Slope, Standing
+
+FLATTEST, STEEPEST = math.radians(10.0), math.radians(60.0)  # [rad]
+LENGTHS = 3.0  # rooms of a part in which what comes across turns along it
+
+
+@dataclass(frozen=True)
+class Groove(Lean):
+    """A V from here on, until a bank: the track leans towards its wall, and the wall back by as much."""
+
+    kind = "groove"
+    dimension = "groove"
+    example = "{angle: 30 deg}"
+    meaning = (
+        "the track is a V from here on, until a bank: it and its wall rise by so much to either side; round "
+        "parts lie along it and roll no more, on a friction that acts as mu / cos(angle)"
+    )
+    leans = True
+    grooved = True
+    layer = "SLOPE"
+
+    @classmethod
+    def read(cls, entry):
+        given = values.mapping(entry, ("angle",), "write {angle: 30 deg}")
+        return {"angle": values.within(given, "angle", "angle", FLATTEST, STEEPEST)}
+
+    def onward(self, one):
+        """Return an orientation as it goes on: both faces hold what lies along them."""
+        track, rolls = replace(one.track, bank=self.angle), one.may_roll_back and not one.rolls_along
+        return replace(one, track=track, groove=self.angle, may_roll_back=rolls)
+
+    def judged(self, met):
+        """Return what it does: it passes what lies in it as it came, and turns the rest."""
+        return met.laid_in_groove(self.angle)
+
+    def standing(self, track, every):
+        slope = Slope(0.0, bank=self.angle, wall=0.5 * math.pi - self.angle)
+        return Standing(LENGTHS * room_of(every), slopes=(slope,))
