@@ -161,7 +161,16 @@ def pieces(plan, kit=facets):
     slab = kit.without(track.slab(plan, kit), [_hole(plan, kit, cut) for cut in _holes(plan)])
     blades = [_plate(plan, kit, one) for one in _blades(plan) if not one.alone]
     whole = kit.united(
-        [*_floor(plan, kit), ring, *ends, slab, *track.sides(plan, kit), *track.yokes(plan, kit), *blades]
+        [
+            *_floor(plan, kit),
+            ring,
+            *ends,
+            slab,
+            *track.sides(plan, kit),
+            *track.yokes(plan, kit),
+            *blades,
+            *track.ledges(plan, kit),
+        ]
     )
     whole = kit.without(whole, [*track.slots(plan, kit), *_drilled(plan, kit)])
     gates = [(f"gate_{k + 1}", _plate(plan, kit, one)) for k, one in enumerate(_gates(plan))]
@@ -197,7 +206,7 @@ def _opening(plan, kit):
     """Where the outlet passes through the wall."""
     end, far = plan.way.end, plan.way.end + 2.0 * plan.outlet
     ring = np.array([[end, 0.0], [far, 0.0], [far, plan.width], [end, plan.width]])
-    low, lift = plan.outlet_height - 0.5 * plan.material.plate, plan.width * np.sin(plan.way.bank)
+    low, lift = plan.outlet_height - 0.5 * plan.material.plate, plan.width * np.sin(plan.way.bank_at(end))
     return [kit.over(plan.way, ring, low, plan.top + lift + FAR, plan.chord)]
 
 

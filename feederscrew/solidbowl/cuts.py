@@ -6,6 +6,8 @@ import numpy as np
 import shapely
 from shapely import affinity
 
+from feederscrew.solidbowl import leaning
+from feederscrew.solidbowl.leaning import TrackLedge
 from feederscrew.tooling.devices.hole_shapes import beyond_borders
 from feederscrew.tooling.strip import strip
 
@@ -63,6 +65,8 @@ class Stretch:
     bends: tuple[tuple[float, float], ...]  # s [m] from which the track climbs otherwise, and how [rad]
     labels: tuple[tuple[float, float, str], ...]  # from, to [m] and label of each device
     bores: tuple[WallBore, ...] = ()
+    leans: tuple[tuple[float, float, float], ...] = ()  # from and to s [m] it twists to another bank [rad]
+    ledges: tuple[TrackLedge, ...] = ()
 
     @property
     def falls(self):
@@ -85,14 +89,18 @@ def stretch(track, devices, every):
     Stretch
     """
     section = strip(track, devices, every)
-    stations = section.stations
+    stations, leans, ledges, more = leaning.laid_out(track, section.stations, every)
+    beside = {ledge.start for ledge in ledges}
+    cut = [one for one in stations if one.hole is not None and one.start not in beside]
+    drops = [(one.start + 0.5 * one.length, one.drop) for one in stations if one.drop > 0.0]
+    drops += [(ledge.start, ledge.drop) for ledge in ledges]
     return Stretch(
-        length=section.length,
+        length=section.length + more,
         tallest=section.tallest,
         longest=max(one.length for one in every),
-        cuts=tuple(_cut(one, section.width, track.width) for one in stations if one.hole is not None),
+        cuts=tuple(_cut(one, section.width, track.width) for one in cut),
         blades=tuple(_blade(one, track.width) for one in stations if one.blade is not None),
-        drops=tuple((one.start + 0.5 * one.length, one.drop) for one in stations if one.drop > 0.0),
+        drops=tuple(sorted(drops)),
         bends=tuple(
             (one.start + slope.begin, slope.climb)
             for one in stations
@@ -105,6 +113,8 @@ def stretch(track, devices, every):
             for one in stations
             for jet in one.device.standing(track, every).jets
         ),
+        leans=leans,
+        ledges=ledges,
     )
 
 

@@ -101,7 +101,8 @@ def side(way, one, other, z):
         ends = way.plan(*np.array([one, other]).T) / MM
         return BRepBuilderAPI_MakeEdge(*(point([*place, z]) for place in ends)).Edge()
     count = max(int(abs(other[0] - one[0]) / way.radius / CHORD), 3) + 1
-    arc = abs(one[1] - other[1]) < 1e-9 and way.flare == 0.0
+    ends = np.cos(way.bank_at(np.linspace(one[0], other[0], count)))
+    arc = abs(one[1] - other[1]) < 1e-9 and way.flare == 0.0 and np.ptp(ends) * abs(one[1]) < 1e-12
     s, y = np.linspace(one, other, 3 if arc else count).T
     places = [[*place, z] for place in way.plan(s, y) / MM]
     if arc:

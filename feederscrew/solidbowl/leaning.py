@@ -1,8 +1,28 @@
-"""What of the devices a solid with one bank can be made of."""
+"""How the track of a solid leans and drops along its devices, and how much longer it is for that."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from feederscrew.errors import FeederError
+from feederscrew.tooling.devices.base import room_of
+from feederscrew.tooling.fates import leading
+
+GENTLE = np.radians(10.0)  # slope along the track of its free edge, where the bank changes
+RAMP = np.radians(15.0)  # slope on which a ledge comes down to the track beside it
+TWIST = 0.5  # of the room that a part has to itself: over so much the bank changes at least
+
+
+@dataclass(frozen=True)
+class TrackLedge:
+    """A ledge along the wall, above the track that goes on lower; s from where the stretch begins."""
+
+    label: str  # 'tip 6 mm'
+    start: float  # [m] s where the track beside it goes on lower
+    end: float  # [m] s where it begins to come down
+    width: float  # [m]
+    drop: float  # [m] of the track beside it
+    ramp: float  # [m] over which it comes down
 
 
 def banked(track, devices, every):
@@ -22,24 +42,82 @@ def banked(track, devices, every):
     Raises
     ------
     FeederError
-        If a device is a groove, changes the bank of the track further on, or leads it on beside a ledge.
+        If a device is a groove.
     """
-    entry = True
     for device in devices:
-        if not device.placed:
-            continue
+        if device.placed and any(slope.wall for slope in device.standing(track, every).slopes):
+            what = "is a V, which a solid does not have"
+            raise FeederError(f"devices: {device.label}", what, "leave it out of the bowl file of the solid")
+    for device in at_entry(devices):
         for slope in device.standing(track, every).slopes:
-            if slope.wall:
-                raise _refused(device, "is a V, which a solid does not have")
-            if slope.bank is not None and not entry:
-                raise _refused(device, "changes the bank of the track, and a solid has one bank")
             track = track if slope.bank is None else replace(track, bank=slope.bank)
-        entry = entry and device.leans
-        lower = device.lower(every)
-        if lower is not None and lower[1] > 0.0:
-            raise _refused(device, "leads to a lower track beside it, which a solid does not have")
     return track
 
 
-def _refused(device, what):
-    return FeederError(f"devices: {device.label}", what, "leave it out of the bowl file of the solid")
+def at_entry(devices):
+    """Return those devices that stand at the track's entry: before what does more than lean it."""
+    return leading([device for device in devices if device.placed])
+
+
+def laid_out(track, stations, every):
+    """Return stations along a solid's track, with room for what leans and drops it.
+
+    Parameters
+    ----------
+    track : Track
+        With the bank of its entry.
+    stations : sequence of Station
+    every : sequence of Orientation
+
+    Returns
+    -------
+    stations : list of Station
+    leans : tuple of (float [m], float [m], float [rad])
+        From and to which length the track twists to which bank.
+    ledges : tuple of TrackLedge
+    more : float [m]
+        By which the stretch is longer.
+    """
+    entry = len(at_entry([one.device for one in stations]))
+    moved, leans, ledges, more, bank = [], [], [], 0.0, track.bank
+    for place, one in enumerate(stations):
+        one = _moved(one, more)
+        moved.append(one)
+        end = one.start + one.length
+        for slope in one.device.standing(track, every).slopes if place >= entry else ():
+            if slope.bank is not None and slope.bank != bank:
+                begin = one.start + slope.begin
+                leans.append((begin, begin + _twist(track, bank, slope.bank, every), slope.bank))
+                bank, more = slope.bank, more + max(leans[-1][1] - end, 0.0)
+        ledge = _ledge(one, every)
+        if ledge is not None:
+            ledges.append(ledge)
+            more += ledge.ramp
+    return moved, tuple(leans), tuple(ledges), more
+
+
+def _moved(station, by):
+    """A station further on along the track."""
+    rings = {
+        name: getattr(station, name) + np.array([by, 0.0])
+        for name in ("hole", "blade")
+        if getattr(station, name) is not None
+    }
+    return replace(station, start=station.start + by, **rings)
+
+
+def _twist(track, before, after, every):
+    """Length [m] over which one bank becomes another: the free edge rises or falls gently."""
+    edge = track.width * abs(np.sin(after) - np.sin(before))
+    return float(max(TWIST * room_of(every), edge / np.tan(GENTLE)))
+
+
+def _ledge(station, every):
+    """The ledge of a station, None without one."""
+    drop, aside = station.device.lower(every) or (0.0, 0.0)
+    if aside <= 0.0:
+        return None
+    ramp = float(drop / np.tan(RAMP))
+    return TrackLedge(
+        station.label, station.start, station.start + station.length, float(aside), float(drop), ramp
+    )

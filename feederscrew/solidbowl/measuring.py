@@ -59,7 +59,7 @@ def _outlet_height(plan, body, outlet):
     for across in (1e-3, 5e-4, 0.5 * plan.width, plan.width - 1e-3):
         found = facets.below(body, plan.way.places(outlet, across) + [0.0, 0.0, 1e-3])
         if found is not None:
-            return found - across * np.sin(plan.way.bank)
+            return found - across * float(np.sin(plan.way.bank_at(outlet)))
     return float(plan.way.height(outlet, 0.0))
 
 
@@ -70,19 +70,19 @@ def track_width(plan, body, s):
     and is carried on straight to the surface. One from within, below the surface, to the free edge.
     """
     way = plan.way
-    theta, half = float(way.angle(s)), 0.5 * plan.width
+    theta, half, bank = float(way.angle(s)), 0.5 * plan.width, float(way.bank_at(s))
     outward, middle = np.array([np.cos(theta), np.sin(theta), 0.0]), way.places(s, half)
-    along = np.cos(way.bank) * outward - [0.0, 0.0, np.sin(way.bank)]
+    along = np.cos(bank) * outward - [0.0, 0.0, np.sin(bank)]
     low, high = (
         facets.first_met(body, start, start + 3.0 * way.radius * along)[0]
         for start in (middle + [0.0, 0.0, OVER], middle + [0.0, 0.0, 2.0 * OVER])
     )
     under = float(way.height(s, plan.width)) - 0.3 * plan.material.plate
-    to_middle = float(way.wall_radius(s)) - 0.5 * plan.across
+    to_middle = float(way.wall_radius(s)) - half * float(np.cos(bank))
     start = to_middle - plan.across  # over the floor, of which the dome may rise above the track further in
     near = start * outward + [0.0, 0.0, under]
     to_edge = start + facets.first_met(body, near, _towards(theta, 3.0 * way.radius, under))[0]
-    return (2.0 * low - high) + (to_middle - to_edge) / float(np.cos(way.bank))
+    return (2.0 * low - high) + (to_middle - to_edge) / float(np.cos(bank))
 
 
 def heights(plan, body, s, y):

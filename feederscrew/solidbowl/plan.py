@@ -50,8 +50,8 @@ class BowlPlan:
 
     @property
     def across(self):
-        """Width of the track, seen from above."""
-        return self.width * float(np.cos(self.way.bank))
+        """Width of the track, seen from above, where it is widest."""
+        return self.width * float(np.cos(self.way.least_bank))
 
     @property
     def segments(self):
@@ -77,7 +77,7 @@ class BowlPlan:
     def ring(self):
         """Radius up to which the floor is level, a little more than the track covers; the dome is within."""
         lowest = self.way.rises(self.width) - DIP * self.way.radius if self.stairs else 0.0
-        return float(self.way.wall_radius(lowest)) - self.across - BESIDE
+        return float(self.way.wall_radius(lowest)) - self.width * float(np.cos(self.way.bank)) - BESIDE
 
     @property
     def dome(self):
@@ -145,7 +145,7 @@ def plan(size, track, made_of, tooled, asked, *, extents):
     way, first = _way(size, track, tooled, asked, stepped)
     lowest = float(way.wall_radius(0.0))
     bolting.check(track, asked, extents, lowest)
-    across = track.width * np.cos(track.bank)
+    across = track.width * np.cos(way.least_bank)
     outer = track.radius + made_of.wall
     outlet = np.sqrt(outer**2 - (track.radius - across) ** 2) + OUTLET
     greatest = float(max(extents))
@@ -209,6 +209,7 @@ def _way(size, track, tooled, asked, stepped):
         drops=tuple((first + at, drop) for at, drop in drops),
         bends=() if tooled is None else tuple((first + at, climb) for at, climb in tooled.bends),
         flare=0.0 if stepped is None else stepped.flare,
+        leans=() if tooled is None else tuple((first + a, first + b, bank) for a, b, bank in tooled.leans),
     )  # fmt: skip
     _check_bends(way, stepped, round_once, 0.0 if tooled is None else tooled.tallest)
     return way, float(first)

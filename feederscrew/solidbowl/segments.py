@@ -280,7 +280,7 @@ def _where(plan, places):
     r, theta = np.hypot(x, y), np.arctan2(y, x)
     behind = theta - TURN * (theta > 0.0) - TURN * np.arange(int(plan.turns) + 2)[:, None]
     s = way.at(behind)  # of each turn of the track that is there
-    inwards = (way.wall_radius(s) - r) / np.cos(way.bank)
+    inwards = (way.wall_radius(s) - r) / np.cos(way.bank_at(s))
     above = z - way.height(s, inwards)
     deep = -(plan.material.plate + plan.across + plan.hanging)
     beside = (inwards > -NEAR) & (inwards < plan.width + NEAR)

@@ -96,7 +96,8 @@ def stairs(track, made_of, tooled, asked, extents):
     if asked.shape == CONICAL and tooled is not None:
         what = "conical leans outwards, and devices are computed by an upright wall"
         raise FeederError("sizing.shape", what, "take stepped")
-    step = track.width * np.cos(track.bank) + BESIDE
+    least = min([track.bank, *(bank for _, _, bank in tooled.leans)]) if tooled else track.bank
+    step = track.width * np.cos(least) + BESIDE
     flare = -np.log1p(-step / track.radius) / TURN
     tallest = float(max(extents)) if tooled is None else tooled.tallest
     hangs = tooled is not None and any(cut.hangs for cut in tooled.cuts)

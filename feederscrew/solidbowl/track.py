@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 
-from feederscrew.solidbowl.plan import DIP
+from feederscrew.solidbowl.plan import DIP, TURN
 from feederscrew.solidbowl.stairs import CONICAL
 
 INTO = 1e-3  # [m] by which one piece reaches into another
@@ -12,6 +12,8 @@ ARC = 6  # facets of a fillet
 THROUGH = 1.05  # its radius over its distance from the wall: it crosses the wall, and does not touch it
 YOKE = 6e-3  # [m] thickness of what carries the inner rail from below
 QUARTER = 0.5 * np.pi  # [rad] of a curved face: a longer one takes long to cut
+SUNK = 3e-5  # [m] by which a ledge lies below the plate that it begins in: no face on another
+TWISTED = 4  # facets where the bank changes in place of one
 SPAN = 0.1  # [rad] of a curve between two places that it is led through
 
 
@@ -37,11 +39,14 @@ def slab(plan, kit):
     borders = [way.rises(plan.width) - DIP * way.radius, *(at for at, _ in way.drops), way.end + plan.outlet]
     for start, end in itertools.pairwise(borders):
         turned = way.at(-QUARTER * np.arange(1.0, 100.0)) if kit.SMOOTH else ()
-        breaks = sorted(at for at in (*(at for at, _ in way.bends), way.end, *turned) if start < at < end)
+        changes = *(at for at, _ in way.bends), *(at for lean in way.leans for at in lean[:2])
+        breaks = sorted(at for at in {*changes, way.end, *turned} if start < at < end)
         legs = [start, *breaks, end]
         runs.append(kit.swept([_leg(plan, kit, leg, (start, end)) for leg in itertools.pairwise(legs)]))
-    risers = [_riser(plan, kit, at, drop) for at, drop in way.drops]
-    whole = kit.united([*runs, *risers]) if len(runs) > 1 else runs[0]
+    joined = runs[:1]
+    for (at, drop), run in zip(way.drops, runs[1:]):
+        joined += [_riser(plan, kit, at, drop), run]  # in this order: what is apart cannot be united exactly
+    whole = kit.united(joined) if len(runs) > 1 else runs[0]
     return kit.above(whole, plan.underside + 0.5 * INTO)
 
 
@@ -72,7 +77,11 @@ def _steps(plan, start, end):
     first = np.ceil(float(way.angle(start)) / (2.0 * np.pi / plan.segments))
     inner = way.at(2.0 * np.pi / plan.segments * np.arange(first, 1.0))
     inner = inner[(inner > start + 0.01 * step) & (inner < end - 0.01 * step)]
-    return np.unique(np.concatenate([[start], inner, [way.end] if start < way.end < end else [], [end]]))
+    found = np.unique(np.concatenate([[start], inner, [way.end] if start < way.end < end else [], [end]]))
+    if not any(low < 0.5 * (start + end) < high for low, high, _ in way.leans):
+        return found
+    places = np.arange(TWISTED * (len(found) - 1) + 1) / TWISTED
+    return np.interp(places, np.arange(len(found)), found)
 
 
 def _strips(plan):
@@ -80,35 +89,45 @@ def _strips(plan):
     way, inner = plan.way, plan.way.radius - plan.across
     steepest = max(abs(climb) for climb in (way.climb, *(climb for _, climb in way.bends)))
     twist = way.radius * np.tan(steepest) * np.pi / plan.segments * plan.across / (way.radius + inner)
+    banks = [way.bank, *(bank for _, _, bank in way.leans)]
+    fastest = max(
+        [0.0, *(abs(b - a) / (lean[1] - lean[0]) for a, b, lean in zip(banks, banks[1:], way.leans))]
+    )
+    step = TURN * way.radius / plan.segments / TWISTED
+    twist = max(twist, 0.25 * fastest * step * plan.across)
     return int(np.ceil(twist / (0.3 * plan.chord))) + 1
 
 
 def _sections(plan, s, heights, strips):
     """Sections (M, K, 2) of the plate with a fillet below it, by the wall."""
-    plate, slope = plan.material.plate, np.tan(plan.way.bank)
+    plate, bank = plan.material.plate, plan.way.bank_at(s)
     r = fillet(plan)
-    inward = plan.across * np.arange(strips + 1) / strips
-    inward[0] = -INTO  # no edge lies on the wall
-    top = np.column_stack([-inward, inward * slope])
+    inward = np.arange(strips + 1) / strips * np.ones((len(s), 1)) * (plan.width * np.cos(bank))[:, None]
+    edge = inward[:, -1:].copy()
+    inward[:, 0] = -INTO  # no edge lies on the wall
     turn, own = 0.5 * np.pi * np.arange(ARC + 1) / ARC, THROUGH * r  # the arc goes on into the wall
     arc = np.column_stack([-r + own * np.sin(turn), -plate - own + own * np.cos(turn)])
-    arc[:, 1] -= arc[:, 0] * slope
-    under = [[-plan.across, plan.across * slope - plate], *arc, [INTO, -plate - own]]
-    if not plan.material.supported:
-        under = [[-plan.across, plan.across * slope - plate], arc[0], arc[-1], [INTO, -plate - own]]
-    outline = np.concatenate([top, _within_wall(plan, np.array(under))])
-    sections = np.broadcast_to(outline, (len(s), *outline.shape)).copy()
+    arc = arc if plan.material.supported else arc[[0, -1]]
+    level = np.ones((len(s), 1))
+    out = np.hstack([-inward, -edge, arc[:, 0] * level, INTO * level])
+    below = np.hstack([0.0 * inward, -plate * level, arc[:, 1] * level, (-plate - own) * level])
+    slanted = np.hstack([out[:, :-1], 0.0 * level])  # all but the corner deep in the wall
+    sections = np.stack([out, below - slanted * np.tan(bank)[:, None]], axis=-1)
+    sections = _within_wall(plan, sections, strips + 1)
     sections[..., 1] += heights[:, None]
     return sections
 
 
-def _within_wall(plan, under):
-    """Corners (K, 2) below the track, kept within a wall that leans in below it."""
+def _within_wall(plan, sections, above):
+    """Sections (M, K, 2), what is below the track kept within a wall that leans in below it."""
     if plan.stairs is None or plan.stairs.shape != CONICAL:
-        return under
+        return sections
+    under = sections[0, above:]  # no device changes the bank of a conical bowl
     most = INTO + under[:, 1] / np.tan(plan.stairs.slope)
     last = int(np.argmax(under[:, 0] > most))  # the first corner that is deep enough in the wall
-    return np.vstack([under[:last], [most[last], under[last, 1]]])
+    kept = sections[:, : above + last + 1].copy()
+    kept[:, -1, 0] = most[last]
+    return kept
 
 
 def _riser(plan, kit, at, drop):
@@ -120,13 +139,54 @@ def _riser(plan, kit, at, drop):
     return kit.over(plan.way, ring, low - plate, low + drop - 0.5 * plate, plan.chord)
 
 
+def ledges(plan, kit):
+    """Return the ledges along the wall that stand on the track which goes on lower beside them.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    kit : module
+
+    Returns
+    -------
+    list of bodies [mm]
+    """
+    return [_ledge(plan, kit, one) for one in (() if plan.stretch is None else plan.stretch.ledges)]
+
+
+def _ledge(plan, kit, ledge):
+    """A ledge; it begins within the plate before it, a little lower, and ends within the plate below it."""
+    at, half = plan.first + ledge.start, 0.5 * plan.material.plate
+    end = plan.first + ledge.end
+    breaks = [at - half, at, end, end + ledge.ramp * (1.0 + 0.8 * half / ledge.drop)]
+    turned = plan.way.at(-QUARTER * np.arange(1.0, 100.0)) if kit.SMOOTH else ()
+    legs = sorted({*breaks, *(one for one in turned if breaks[0] < one < breaks[-1])})
+    return kit.swept([_ledge_leg(plan, kit, ledge, leg) for leg in itertools.pairwise(legs)])
+
+
+def _ledge_leg(plan, kit, ledge, leg):
+    """Sections and frames of a piece of a ledge."""
+    way, half = plan.way, 0.5 * plan.material.plate
+    at, end = plan.first + ledge.start, plan.first + ledge.end
+    s = _smooth_steps(plan, *leg) if kit.SMOOTH else _steps(plan, *leg)
+    low = way.height(s) - ledge.drop * (s < at)
+    high = low + ledge.drop * (1.0 - np.maximum((s - end) / ledge.ramp, 0.0)) - SUNK
+    strips = 1 if kit.SMOOTH else _strips(plan)
+    inward = ledge.width * np.cos(way.bank_at(s))[:, None] * np.arange(strips + 1) / strips
+    inward[:, 0] = -INTO
+    rise = inward * np.tan(way.bank_at(s))[:, None]
+    top = np.stack([-inward, high[:, None] + rise], axis=-1)
+    under = np.stack([-inward, low[:, None] - half + rise], axis=-1)[:, [-1, 0]]
+    return np.concatenate([top, under], axis=1), frames(plan, s)
+
+
 def sides(plan, kit):
     """Return the walls of the outlet: one carries on the bowl's wall, one keeps parts on the outlet."""
     way, wall = plan.way, plan.material.wall
     end = way.end + plan.outlet
     height = plan.outlet_height
     low, top = height - plan.material.plate - fillet(plan), height + plan.headroom
-    lift = plan.width * np.sin(way.bank)
+    lift = plan.width * np.sin(way.bank_at(way.end))
     outer = np.array([[way.end + 2e-3, -wall], [end, -wall], [end, 0.0], [way.end + 2e-3, 0.0]])
     y = plan.width
     inner = np.array([[way.end, y], [end, y], [end, y + wall], [way.end, y + wall]])
@@ -188,8 +248,10 @@ def yokes(plan, kit):
 
 def _yoke(plan, kit, s):
     """A bracket below the track, deep enough that parts hang free over it."""
-    ring = np.array([[s, -INTO], [s + YOKE, -INTO], [s + YOKE, plan.width], [s, plan.width]])
-    height = float(plan.way.height(s, 0.5 * plan.width))
-    plate = plan.material.plate
-    low = float(plan.way.height(s)) - plate - plan.hanging - YOKE
-    return kit.over(plan.way, ring, low, height - 0.5 * plate, plan.chord)
+    ends, plate = np.array([s, s + YOKE]), plan.material.plate
+    foot, bank = plan.way.height(ends), plan.way.bank_at(ends)
+    across, low = plan.width * np.cos(bank), foot[0] - plate - plan.hanging - YOKE
+    out = np.stack([-across, [INTO, INTO], [INTO, INTO], -across], axis=-1)
+    up = foot[:, None] - 0.5 * plate - out[:, 2:] * np.tan(bank)[:, None]
+    sections = np.stack([out, np.hstack([np.full((2, 2), low), up])], axis=-1)
+    return kit.swept([(sections, frames(plan, ends))])

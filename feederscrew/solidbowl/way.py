@@ -21,11 +21,12 @@ class Way:
 
     radius: float  # [m] of the wall's inner face where the outlet begins
     climb: float  # [rad]
-    bank: float  # [rad] down towards the wall
+    bank: float  # [rad] down towards the wall, where it begins
     end: float  # [m] s where the outlet begins: from there on the way is straight and level
     drops: tuple[tuple[float, float], ...] = ()  # s of each step of the track and its height [m]
     bends: tuple[tuple[float, float], ...] = ()  # s from which the track climbs otherwise, and how [rad]
     flare: float = 0.0  # [1] by which the wall's radius grows over s
+    leans: tuple[tuple[float, float, float], ...] = ()  # from and to s it twists to another bank [rad]
 
     def wall_radius(self, s):
         """Return the radius [m] of the wall's inner face at lengths s."""
@@ -43,6 +44,19 @@ class Way:
         before = (np.minimum(s, self.end) - self.end) / self.radius
         return before if self.flare == 0.0 else np.log1p(self.flare * before) / self.flare
 
+    def bank_at(self, s):
+        """Return the bank [rad] at lengths s."""
+        banks = [self.bank, *(bank for _, _, bank in self.leans)]
+        found = np.full(np.shape(s), float(self.bank))
+        for (start, end, bank), before in zip(self.leans, banks):
+            found = found + (bank - before) * np.clip((s - start) / (end - start), 0.0, 1.0)
+        return found
+
+    @property
+    def least_bank(self):
+        """The least bank [rad] anywhere: there the track is widest, seen from above."""
+        return min([self.bank, *(bank for _, _, bank in self.leans)])
+
     def rises(self, width):
         """Return the length s [m], at most 0, at which a track of a width first comes out of the floor.
 
@@ -54,14 +68,14 @@ class Way:
         """Return the places (..., 2) [m] from above at lengths s and distances y."""
         s, y = np.broadcast_arrays(np.asarray(s, float), np.asarray(y, float))
         theta, straight = self.angle(s), np.maximum(s - self.end, 0.0)
-        r, c, sn = self.wall_radius(s) - y * np.cos(self.bank), np.cos(theta), np.sin(theta)
+        r, c, sn = self.wall_radius(s) - y * np.cos(self.bank_at(s)), np.cos(theta), np.sin(theta)
         return np.stack([r * c - straight * sn, r * sn + straight * c], axis=-1)
 
     def height(self, s, y=0.0):
         """Return the height [m] of the track's surface over the floor's edge at lengths s, distances y."""
         s = np.asarray(s, float)
         fallen = sum((np.where(s >= at, drop, 0.0) for at, drop in self.drops), np.zeros(s.shape))
-        return self.risen(np.minimum(s, self.end)) - fallen + np.sin(self.bank) * np.asarray(y)
+        return self.risen(np.minimum(s, self.end)) - fallen + np.sin(self.bank_at(s)) * np.asarray(y)
 
     def risen(self, s):
         """Return by how much [m] the track climbs up to lengths s, its steps down left out."""

@@ -76,7 +76,7 @@ def _on_the_turn_before(plan, place, met):
     """Whether a place lies on the track a turn before, and that before the first device."""
     way = plan.way
     s = float(way.at(np.arctan2(place[1], place[0]) % -TURN - TURN))
-    y = (float(way.wall_radius(s)) - np.hypot(*place[:2])) / np.cos(way.bank)
+    y = (float(way.wall_radius(s)) - np.hypot(*place[:2])) / float(np.cos(way.bank_at(s)))
     off = met - float(way.height(s, y))
     return -NEAR < y < plan.width + NEAR and abs(off) < NEAR + plan.material.plate and s < plan.first
 

@@ -18,7 +18,7 @@ from feederscrew.machine.sizing import Size
 from feederscrew.machine.springs import centred_mass, springs
 from feederscrew.machine.unbalanced import rocking
 from feederscrew.output.solidbowl import printing
-from feederscrew.solidbowl import cuts, facets, leaning, riding, segments
+from feederscrew.solidbowl import cuts, facets, riding, segments
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.materials import material
 from feederscrew.solidbowl.measuring import heights, measures, track_width
@@ -391,18 +391,6 @@ def test_faults(track, asked, devices, line):
     with pytest.raises(FeederError) as fault:
         planned(devices, track=track, asked=asked)
     assert str(fault.value) == line
-
-
-def test_a_bank_at_the_entry_is_the_track_s_and_one_further_on_is_refused():
-    one = SimpleNamespace(length=18e-3, height=12e-3, width=14e-3, track=TRACK)
-    bank, gap = made("bank", "b", angle=np.radians(6.0), text="6 deg"), CHAINS["gap"][0]
-    assert leaning.banked(TRACK, (bank, gap), [one]).bank == np.radians(6.0)
-    with pytest.raises(FeederError) as fault:
-        leaning.banked(TRACK, (gap, bank), [one])
-    assert str(fault.value) == (
-        "devices: bank 6 deg: changes the bank of the track, and a solid has one bank - leave it out of the "
-        "bowl file of the solid"
-    )
 
 
 def test_a_turn_below_a_cut_is_found():

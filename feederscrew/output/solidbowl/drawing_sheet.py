@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.output.solidbowl import lists, views
+from feederscrew.output.solidbowl import lists, unrolled_strip, views
 from feederscrew.output.solidbowl.paper import THICK, THIN, Paper
 from feederscrew.solidbowl import facets
 from feederscrew.solidbowl.measuring import measures
@@ -14,7 +14,6 @@ ROOM = 134.0  # [mm] of paper for the bowl across
 HIGH = 56.0  # and upright, in each of two views
 TOP, BETWEEN = 276.0, 21.0  # [mm] where the upper of them begins, and from its foot to the lower one
 STRIP = 205.0, 26.0  # [mm] of paper for the unrolled track
-NARROW = 5.0  # [mm] of paper: a cut that has no room for its number
 FRAME = 20.0, 10.0, 410.0, 287.0
 
 
@@ -100,7 +99,8 @@ def _track_width(paper, plan, found, at, scale):
     """The width of the track, a quarter turn before the outlet."""
     turn = plan.turned + (1.0 if plan.left else -1.0) * 0.5 * np.pi
     outward, r = np.array([np.cos(turn), np.sin(turn)]), 0.5 * found.diameter / MM * scale
-    wide = found.track_width * np.cos(plan.way.bank) / MM * scale
+    bank = float(plan.way.bank_at(plan.way.at(-0.5 * np.pi)))
+    wide = found.track_width * np.cos(bank) / MM * scale
     paper.lines([[at + outward * (r - wide - 7.0), at + outward * r]])
     text = f"track {found.track_width / MM:.4g}"
     paper.text(*(at + outward * (r - wide - 9.5)), text, size=2.2, ha="center", va="center")
@@ -164,33 +164,8 @@ def _unrolled(paper, solid):
     scale = min(_scale(stretch.length / MM, STRIP[0]), _scale(plan.width / MM, STRIP[1]))
     at = np.array([27.0, 94.0])
 
-    def laid(ring):
-        inside = np.column_stack([ring[:, 0], np.clip(ring[:, 1], 0.0, plan.width)])
-        return inside / MM * scale + at
-
     length, wide = stretch.length / MM * scale, plan.width / MM * scale
-    paper.box(at[0], at[1], at[0] + length, at[1] + wide, THICK)
-    paper.lines([[at + [0.0, -0.8], at + [length, -0.8]]], 3.0 * THICK)
-    for number, cut in enumerate(stretch.cuts, start=1):
-        ring = cut.ring.copy()
-        if cut.hangs:
-            ring[ring[:, 0] >= cut.span[1] - 1e-9, 0] = stretch.length
-        ring = laid(ring)
-        paper.axes.fill(*ring.T, facecolor="white", edgecolor="#d55e00", linewidth=THICK)
-        narrow = np.ptp(ring[:, 0]) < NARROW
-        place = (ring[:, 0].max() + 0.8, ring[:, 1].mean()) if narrow else ring.mean(axis=0)
-        paper.text(*place, str(number), size=2.5, ha="left" if narrow else "center", va="center")
-    for number, blade in enumerate(stretch.blades, start=len(stretch.cuts) + 1):
-        x = at[0] + blade.start / MM * scale
-        thick = max(blade.thickness / MM * scale, 0.4)
-        paper.axes.fill(
-            [x, x + thick, x + thick, x], [at[1], at[1], at[1] + wide, at[1] + wide], color="#0072b2"
-        )
-        paper.text(x + thick + 0.8, at[1] + 0.5 * wide, str(number), size=2.5, va="center")
-    for number, bore in enumerate(stretch.bores, start=len(stretch.cuts) + len(stretch.blades) + 1):
-        x = at[0] + bore.place / MM * scale
-        paper.lines([[(x, at[1] - 1.6), (x, at[1] + 0.25 * wide)]], THIN, linestyles="dashdot")
-        paper.text(x + 0.8, at[1] + 0.25 * wide, str(number), size=2.5, va="center")
+    unrolled_strip.drawn(paper, plan, at, scale)
     paper.dimension(at, at + [length, 0.0], f"{stretch.length / MM:.4g}", (0.0, -6.5), size=2.2)
     text = f"{plan.width / MM:.4g}"
     paper.dimension(at + [length, 0.0], at + [length, wide], text, (6.0, 0.0), size=2.2)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from feederscrew.output.machine import sheet as sheets
+from feederscrew.output.solidbowl.unrolled_strip import numbered
 from feederscrew.solidbowl import lugs
 from feederscrew.units import factor
 
@@ -17,20 +18,9 @@ def cuts(paper, study, at):
     """Draw the table of cuts and blades at its upper left corner [mm]."""
     stretch, plan = study.solid.plan.stretch, study.solid.plan
     rows = [["no.", "device", "from [mm]", "to [mm]", "tolerance [mm]"]]
-    if stretch is not None:
-        for one in stretch.cuts:
-            far = "outlet, open" if one.hangs else f"{one.span[1] / MM:.5g}"
-            rows.append([str(len(rows)), one.label, f"{one.span[0] / MM:.5g}", far, CUT])
-        for one in stretch.blades:
-            start, end = one.start / MM, (one.start + one.thickness) / MM
-            rows.append([str(len(rows)), one.label, f"{start:.5g}", f"{end:.5g}", CUT])
-        for one in stretch.bores:
-            bored = f"Ø{one.size / MM:.4g} in the wall, {one.height / MM:.4g} over the track: {one.label}"
-            start, end = (one.place - 0.5 * one.size) / MM, (one.place + 0.5 * one.size) / MM
-            rows.append([str(len(rows)), bored, f"{start:.5g}", f"{end:.5g}", CUT])
-        for place, drop in stretch.drops:
-            listed = f"step {drop / MM:.4g} mm down"
-            rows.append([str(len(rows)), listed, f"{place / MM:.5g}", f"{place / MM:.5g}", CUT])
+    for _, words, start, end in numbered(stretch):
+        far = f"{end / MM:.5g}" if np.isfinite(end) else "outlet, open"
+        rows.append([str(len(rows)), words, f"{start / MM:.5g}", far, CUT])
     left = len(rows) - MOST
     rows = rows if left <= 0 else [*rows[: MOST - 1], ["", f"and {left + 1} more in bowl.json", "", "", ""]]
     low = paper.table(*at, [9.0, 90.0, 32.0, 32.0, 32.0], rows)
@@ -115,7 +105,7 @@ def _fields(study, solid, found, scale):
         ("fill, hopper", f"{study.fill.mass:.3g} kg, {order.hopper / LITRE:.3g} l"),
         ("drive", f"{study.stroke.frequency:.4g} Hz, {study.stroke.peak_to_peak / MM:.3g} mm"),
         ("natural frequency", f"{study.springs.natural_frequency:.4g} Hz"),
-        ("climb, bank", f"{np.degrees(plan.way.climb):.3g}°, {np.degrees(plan.way.bank):.3g}°"),
+        ("climb, bank", f"{np.degrees(plan.way.climb):.3g}°, {_banks(plan.way)}"),
         (
             "hand",
             f"{'left' if plan.left else 'right'}: parts climb {'' if plan.left else 'counter-'}clockwise",
@@ -130,3 +120,8 @@ def _fields(study, solid, found, scale):
         ("scale, sheet", f"1 : {1.0 / scale:g}, A3, sizes in mm"),
         ("drawn by", "feeder bowl"),
     ]
+
+
+def _banks(way):
+    """'0°', '0° to 12°': the banks of the track, one after the other."""
+    return " to ".join(f"{np.degrees(bank):.3g}°" for bank in (way.bank, *(one[2] for one in way.leans)))

@@ -1,0 +1,123 @@
+"""A solid's track that leans otherwise further on, and one that goes on lower beside a ledge."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from test_drawing import study
+from test_solid import CHAINS, GAP, NEAR, RAILS, TRACK, One, closed, made, planned
+from test_stepped import STEPPED
+
+from feederscrew.output.solidbowl import drawing_sheet, unrolled_strip
+from feederscrew.solidbowl import exact_body, exact_faces, facets, leaning, track
+from feederscrew.solidbowl.closed_body import body
+from feederscrew.solidbowl.measuring import heights, measures, track_width
+from feederscrew.solidbowl.plan import Asked
+from feederscrew.solidbowl.ways_down import ways_down
+
+STEEP = replace(TRACK, climb=np.radians(6.5))
+TIP = made("tip", "b", limit=6e-3, text="6 mm")
+SHAPES = {"cylinder": (TRACK, Asked()), "stepped": (STEEP, replace(STEPPED, left=True))}
+
+
+def bank(degrees):
+    return made("bank", "b", angle=np.radians(degrees), text=f"{degrees} deg")
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_bank_further_on_twists_the_track(shape, rng):
+    own, asked = SHAPES[shape]
+    solid = body(planned((GAP, bank(20.0)), track=own, asked=asked))
+    assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
+    plan, whole = solid.plan, facets.unplaced(solid)
+    ((start, end, angle),) = plan.way.leans
+    assert angle == np.radians(20.0) and plan.first < start < end < plan.way.end
+    edge = TRACK.width * np.sin(angle) / (end - start)
+    assert edge == pytest.approx(np.tan(np.radians(10.0)), rel=1e-9)  # its free edge rises gently
+    for s, y in zip(rng.uniform(start - 2e-3, plan.way.end, 120), rng.uniform(2e-4, 19.7e-3, 120)):
+        tilt = np.radians(20.0) * min(max((s - start) / (end - start), 0.0), 1.0)
+        place = plan.way.wall_radius(s) - y * np.cos(tilt), plan.way.angle(s)
+        flat = place[0] * np.array([np.cos(place[1]), np.sin(place[1])])
+        np.testing.assert_allclose(plan.way.plan(s, y), flat, rtol=0, atol=1e-12)
+        formula = np.tan(own.climb) * s + y * np.sin(tilt)
+        assert heights(plan, whole, s, y) == pytest.approx(formula, abs=NEAR)
+    for s in (start - 1e-3, *(start + (end - start) * np.array([0.3, 0.7])), end + 2e-3):
+        assert track_width(plan, whole, s) == pytest.approx(TRACK.width, abs=NEAR)
+    assert measures(solid).outlet_height == pytest.approx(plan.outlet_height, abs=NEAR)
+    assert list(ways_down(solid)) == ["gap "]
+
+
+def test_banks_listed_first_are_those_of_the_whole_track():
+    one = One(length=18e-3, height=12e-3, width=14e-3, track=TRACK)
+    assert leaning.banked(TRACK, (bank(3.0), bank(6.0), GAP, bank(9.0)), [one]).bank == np.radians(6.0)
+    chain = (bank(6.0), GAP, bank(6.0))
+    own = leaning.banked(TRACK, chain, [one])
+    assert planned(chain, track=own).way.leans == ()
+    ((start, end, angle),) = planned((bank(3.0), GAP, bank(0.0)), track=replace(own, bank=0.05)).way.leans
+    assert angle == 0.0 and end - start == pytest.approx(0.65 * 18e-3)  # half a room, and gentle enough
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_tip_is_a_ledge_beside_a_lower_track(shape):
+    own, asked = SHAPES[shape]
+    solid = body(planned((TIP, GAP), track=own, asked=asked))
+    assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
+    plan, whole = solid.plan, facets.unplaced(solid)
+    (ledge,) = plan.stretch.ledges
+    start, end = plan.first + ledge.start, plan.first + ledge.end
+    assert (ledge.width, ledge.drop) == (6e-3, 9e-3) and end - start == pytest.approx(1.3 * 18e-3)
+    ramp = 9e-3 / np.tan(np.radians(15.0))
+
+    def found(s, y):
+        place = [*plan.way.plan(s, y), np.tan(own.climb) * s + 4e-3]
+        return facets.below(whole, place) - np.tan(own.climb) * s
+
+    for s in np.linspace(start - 8e-3, end + ramp + 5e-3, 60):
+        on = 0.0 if s < end else max(-9e-3, -9e-3 * (s - end) / ramp)
+        for y in (1e-3, 5.9e-3):
+            assert found(s, y) == pytest.approx(on, abs=NEAR)
+        for y in (6.1e-3, 19e-3):
+            assert found(s, y) == pytest.approx(0.0 if s < start else -9e-3, abs=NEAR)
+    gap = plan.stretch.cuts[0]
+    assert [one.kind for one in plan.stretch.cuts] == ["gap"] and gap.span[0] > ledge.end + ramp
+    assert plan.way.drops == ((start, 9e-3),)
+    ways_down(solid)
+
+
+def test_a_step_higher_than_the_plate_is_one_exact_body():
+    """Two runs of track that do not meet were united before what joins them: one of them was lost."""
+    plan = planned((TIP,))
+    exact, flat = (track.slab(plan, kit) for kit in (exact_body, facets))
+    assert exact_faces.volume(exact) == pytest.approx(flat.volume(), rel=3e-3)
+
+
+def test_a_yoke_of_banked_rails_lies_below_their_surface():
+    solid = body(planned((RAILS,), track=replace(TRACK, bank=np.radians(15.0), climb=np.radians(4.0))))
+    plan, whole = solid.plan, facets.unplaced(solid)
+    behind = plan.first + plan.stretch.cuts[0].span[1]
+    for s in behind + np.array([1e-3, 3e-3, 5e-3]):
+        for y in (5e-4, 2.5e-3, 8e-3, 19e-3):
+            formula = np.tan(np.radians(4.0)) * s + y * np.sin(np.radians(15.0))
+            assert heights(plan, whole, s, y) == pytest.approx(formula, abs=NEAR)
+    assert len(facets.placed(solid).decompose()) == 1
+
+
+def test_the_sheet_has_what_leans_and_what_drops():
+    chain = (TIP, made("step", "b", limit=4e-3), *CHAINS["blades"], *CHAINS["jets"], bank(12.0))
+    solid = body(planned(chain, track=STEEP, asked=STEPPED))
+    paper = drawing_sheet.sheet(study(solid))
+    told = [one.get_text() for one in paper.axes.texts]
+    listed = unrolled_strip.numbered(solid.plan.stretch)
+    assert [row[1] for row in listed][-3:] == [
+        "step 4 mm down", "ledge 6 wide, track 9 lower; to 35.1 level", "twists to a bank of 12°",
+    ]  # fmt: skip
+    for number, (_, words, start, end) in enumerate(listed, start=1):
+        assert told.count(str(number)) >= 2 and words in told  # in the table and on the strip
+        assert f"{1e3 * start:.5g}" in told and f"{1e3 * end:.5g}" in told
+    assert "6.5°, 0° to 12°" in told
+    left, bottom, right, top = drawing_sheet.FRAME
+    for some in paper.axes.collections:
+        places = np.concatenate([path.vertices for path in some.get_paths()])
+        assert (places >= np.array([left, bottom]) - 0.1).all() and (
+            places <= np.array([right, top]) + 0.1
+        ).all()
