@@ -18,6 +18,7 @@ import trimesh
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
 from feederscrew.errors import FeederError
+from feederscrew.output.designs import tables as design_tables
 from feederscrew.output.solid import pair
 from feederscrew.output.tooling import (
     bowl_file,
@@ -270,12 +271,23 @@ def test_many_orientations_stand_in_two_panels(lying):
     [
         ("{of: A@187.672, play: 8.45 mm, sees: height}", "of A@188, play 8.45 mm, sees height"),
         ("{from: 4.4 mm, to: 11.45 mm}, lead-in 2.9 to 12.7 mm", "4.4 to 11.45 mm, lead-in 2.9 to 12.7 mm"),
+        ("[A@359.7, B@0.402124]", "A@0, B@0"),
         ("18.85 mm", "18.85 mm"),
         ("[[0 mm, 0 mm], [12 mm, 3 mm], [14 mm, 9 mm]]", "polygon of 3 corners"),
     ],
 )
 def test_a_value_in_a_table_has_no_marks_of_a_bowl_file(text, shown):
     assert tooling_tables._short(text, tooling_tables.WIDE) == shown
+
+
+def test_a_design_names_headings_in_whole_degrees_and_lengths_as_they_are():
+    sorter = {"device": "sorter", "value": "{of: A@0.402124, play: 2.35 mm, sees: side}"}
+    found = dict.fromkeys(
+        "status wanted target_per_minute delivered_per_minute static_per_minute".split(), 1.0
+    )
+    found |= {"delivered_low": 1.0, "delivered_high": 1.0, "purity": None, "jams": 0, "queue_seconds": 0.0}
+    found |= {"jams_per_hour_high": None, "robust": {"held": 0, "draws": 0}, "chain": [sorter]}
+    assert design_tables.outcome(found)[-1] == ("device 1", "sorter: {of: A@0, play: 2.35 mm, sees: side}")
 
 
 def test_a_device_without_a_margin_is_drawn_so():

@@ -7,6 +7,7 @@ import numpy as np
 from feederscrew import units
 from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.output import columns, tables
+from feederscrew.tooling.devices import named
 
 PER_MINUTE = units.factor("/min", "rate")
 MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
@@ -163,7 +164,7 @@ def outcome(d):
         ("jams", f"{d['jams']} in {d['queue_seconds']:.4g} s of queue" + _hourly(d)),
         ("draws that sort", f"{d['robust']['held']} of {d['robust']['draws']}"),
     ]
-    chain = [f"{one['device']}: {one['value']}" for one in d["chain"]] or ["none"]
+    chain = [f"{one['device']}: {named.whole_degrees(one['value'])}" for one in d["chain"]] or ["none"]
     return rows + [(f"device {k}", one) for k, one in enumerate(chain, start=1)]
 
 

@@ -274,8 +274,8 @@ def _view(of, place, name, kind, bars, player):
     return (
         f'<figure class="view">\n'
         f'<canvas data-pose="{place}" tabindex="0" role="img" aria-label="{label}"></canvas>\n'
-        f"<figcaption><strong>{escape(name)}</strong> <span>{escape(kind)}</span> "
-        f'<button type="button">from below</button>\n{player}{shares}</figcaption>\n</figure>'
+        f'<figcaption><button type="button">from below</button><strong>{escape(name)}</strong> '
+        f"<span>{escape(kind)}</span>\n{player}{shares}</figcaption>\n</figure>"
     )
 
 

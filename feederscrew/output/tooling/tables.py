@@ -6,6 +6,7 @@ import numpy as np
 
 from feederscrew.output import columns, tables
 from feederscrew.tooling import tightest as passages_of
+from feederscrew.tooling.devices import named
 from feederscrew.tooling.isolating.proposal import LEAST_SHARE
 from feederscrew.units import factor
 
@@ -17,7 +18,6 @@ SPARE = (  # left out of a table for people that is too wide, the first ones fir
     ("height_mm",), ("length_mm", "width_mm"), ("steady",), ("status",), ("purity",), ("left_over",),
 )  # fmt: skip
 SPAN = re.compile(r"\{from: ([\d.]+) mm, to: ([\d.]+) mm\}")
-HEADING = re.compile(r"@(\d+\.\d+)")  # [deg] of an orientation that a device names
 WIDE = 34  # letters of a text in a table for people
 QUASI_STATIC = "quasi-static, until a trial confirms it"
 
@@ -124,8 +124,7 @@ def _short(text, most):
     corners = text.count("[") - 1
     if corners > 1 and len(text) > most:
         return f"polygon of {corners} corners"
-    text = HEADING.sub(lambda found: f"@{float(found[1]):.0f}", SPAN.sub(r"\1 to \2 mm", text))
-    return re.sub(r"[][{}:]", "", text)
+    return re.sub(r"[][{}:]", "", named.whole_degrees(SPAN.sub(r"\1 to \2 mm", text)))
 
 
 def _few(text, most):

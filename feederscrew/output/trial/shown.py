@@ -19,7 +19,7 @@ class ShownRide:
     def title(self, found):
         """'A@0 at gap 9 mm: returned'."""
         device = found.stations[self.place].device
-        where = f"{device.kind.replace('_', ' ')} {device.text}".strip()
+        where = f"{device.kind.replace('_', ' ')} {device.short}".strip()
         return f"{self.orientation} at {where}: {self.fate.replace('_', ' ')}"
 
 

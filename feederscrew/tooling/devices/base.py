@@ -8,6 +8,7 @@ import numpy as np
 
 from feederscrew import units
 from feederscrew.errors import ConfigError
+from feederscrew.tooling.devices import named
 from feederscrew.tooling.devices.pieces import Blade, Hole, Standing
 
 CLOSE = 1e-9  # [m] a part this much over a limit still passes
@@ -244,8 +245,8 @@ class Device:
 
     @property
     def short(self):
-        """Its value as a table has it."""
-        return self.text
+        """Its value as a table has it: headings in whole degrees."""
+        return named.whole_degrees(self.text)
 
     def beside(self, width):
         """Return the ConfigError of a hole that lies beside a track of some width [m]."""

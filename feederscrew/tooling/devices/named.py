@@ -1,10 +1,13 @@
 """The orientation that a text such as A@90 names."""
 
+import re
+
 import numpy as np
 
 from feederscrew.errors import ConfigError, FeederError
 
 WITHIN = np.radians(3.0)  # so near to a heading that the part can have, a named one is that
+HEADING = re.compile(r"@(\d+\.\d+)")  # [deg] with decimals
 
 
 def place(aspects, headings, aspect, heading, where, named="", kind=FeederError):
@@ -54,6 +57,11 @@ def place_of(every, aspect, heading, where, named="", kind=ConfigError):
     return place(
         [one.aspect for one in every], [one.heading for one in every], aspect, heading, where, named, kind
     )
+
+
+def whole_degrees(text):
+    """Return a text such as '{of: A@90.4021}' with its headings in whole degrees, as people read them."""
+    return HEADING.sub(lambda found: f"@{round(float(found[1])) % 360}", text)
 
 
 def _turn(angle):
