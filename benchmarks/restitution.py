@@ -3,7 +3,7 @@
 Example: python benchmarks/restitution.py --write    (ten minutes of one core)
 
 Each command runs at the bowl's restitution of 0.2 and at both ends of the even range round it whose standard
-deviation is that of filmed impacts, as the README has it: with the bowl's defaults but for what a row names.
+deviation is that of filmed impacts. All else is as the bowl's defaults, but for what a row names.
 """
 
 import json
@@ -20,7 +20,8 @@ BRACKET, BOLT = "parts/lbracket_30x20x15.stl", "parts/hexbolt_m8x25.stl"
 THROWN = "--set drive.amplitude=0.3mm --set drive.frequency=60Hz"
 TOOLED = "--config docs/measured/example/bowl.yaml"
 HARDER = "--set drive.peak_to_peak=0.6mm --set drive.frequency=60Hz"
-FEW, MORE = "--parts 17 --queue 4 --seconds 8", "--parts 34 --queue 6 --seconds 15"
+FEW = "--rule quasistatic --parts 17 --queue 4 --seconds 8"
+MORE = "--rule quasistatic --parts 34 --queue 6 --seconds 15"
 
 
 def answers(line):
@@ -65,10 +66,11 @@ def trial(found):
         sum(any(a[f] != b[f] for f in fates) for a, b in zip(one["orientations"], found[1]["orientations"]))
         for one in found
     ]
-    queue = ", ".join(f"{one['queue']['parts_per_minute']:.3g}" for one in found)
+    queue = ", ".join(f"{one['queue']['delivered']:.0f}" for one in found)
+    seconds = f"{found[1]['queue']['counted_seconds']:.0f} s"
     return (
         f"{speeds} mm/s; {other[0]} and {other[2]} of {len(found[1]['orientations'])} orientations end "
-        f"otherwise; the queue delivers {queue} a minute"
+        f"otherwise; the queue delivers {queue} parts in {seconds}"
     )
 
 
@@ -90,11 +92,11 @@ COMMANDS = {velocity: "convey", plate: "drop --plate", rate: "rate", trial: "tri
 def table():
     """Return the table in Markdown, a row at a time on stderr."""
     lines = ["| Where | Typed behind it | At 0.145, 0.2 and 0.255 |\n", "|---|---|---|\n"]
-    for title, typed, told in ROWS:
-        command = COMMANDS[told]
-        first, *more = typed.split(" ", 1) if told is not velocity else ("", typed)
+    for title, typed, shown in ROWS:
+        command = COMMANDS[shown]
+        first, *more = typed.split(" ", 1) if shown is not velocity else ("", typed)
         line = " ".join(filter(None, (command.split()[0], first, *command.split()[1:], *more)))
-        lines.append(f"| {title} | `{line.partition(' ')[2]}` | {told(list(answers(line)))} |\n")
+        lines.append(f"| {title} | `{line.partition(' ')[2]}` | {shown(list(answers(line)))} |\n")
         print(lines[-1], end="", file=sys.stderr, flush=True)
     return "".join(lines)
 

@@ -15,7 +15,7 @@ from feederscrew.output import style, tables
 from feederscrew.output.page import blocks, numbers
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
-from feederscrew.output.report import page
+from feederscrew.output.report import cutting, page
 from feederscrew.output.report.chapters import CHAPTERS
 from feederscrew.output.report.files import BESIDE
 from feederscrew.output.report.scene import scene
@@ -23,6 +23,7 @@ from feederscrew.output.solid.meshes import reduced
 from feederscrew.part import load
 from feederscrew.resting import aspects
 from feederscrew.studies.report import report
+from feederscrew.trial.course import FATES
 from feederscrew_cli.report import repeated
 
 PARTS = Path(__file__).parents[2] / "parts"
@@ -322,3 +323,11 @@ def test_a_picture_much_taller_than_wide_is_not_put_beside_a_table(height, tall)
     frame = tables.frame({"quantity": ["a"], "value": ["b"]})
     text = html(blocks.Page("a", "", (blocks.Chapter((blocks.Table(frame), picture)),)))
     assert ('<div class="beside">' in text, 'class="plain tall"' in text) == (not tall, tall)
+
+
+def test_each_fate_that_a_part_met_has_a_column_of_the_trials_table():
+    """Of five bolts one was turned and one rolled back, and no column said so."""
+    counts = np.zeros((2, len(FATES)), dtype=int)
+    assert cutting.columns(counts) == (*cutting.CAME, "passed", *cutting.WENT)
+    counts[1, FATES.index("turned")] = counts[0, FATES.index("rolled_back")] = 1
+    assert cutting.columns(counts) == (*cutting.CAME, "passed", "turned", "rolled_back", *cutting.WENT)

@@ -10,11 +10,10 @@ from feederscrew.output.trial import files as trial_files
 from feederscrew.output.trial import playback
 from feederscrew.output.trial import tables as trial_tables
 from feederscrew.rates.tipping import remark
+from feederscrew.trial.course import FATES
 
-TRIED = (  # columns of the trial's table that a page has room for
-    *("aspect", "heading_deg", "share", "tried", "passed", "returned", "hanging", "stuck"),
-    *("leaves_as", "ended_at", "predicted", "margin_mm", "disagrees"),
-)
+CAME = ("aspect", "heading_deg", "share", "tried")  # columns of the trial's table that a page has room for
+WENT = ("leaves_as", "ended_at", "predicted", "margin_mm", "disagrees")
 
 
 def tooling(case):
@@ -47,9 +46,18 @@ def trial(case):
     views = Views(scene, tuple((*one, ()) for one in captions), "trial-views", "Orientation", plays=True)
     matrix, paths, stills = (Picture(one.name, one.make(), one.alt) for one in trial_files.pictures(study))
     frame = trial_tables.frame(study)
-    table = Table(tables_of.frame({name: frame[name] for name in TRIED}))
+    table = Table(tables_of.frame({name: frame[name] for name in columns(run.counts)}))
     blocks = (lead, result, views, replace(stills, printed=True), table, matrix, paths)
     return Chapter(blocks, warnings=study.warnings)
+
+
+def columns(counts):
+    """Return the columns of the trial's table on a page, from the parts of each orientation by fate.
+
+    A fate has a column where a part met it: without one a row of parts tried adds up to less.
+    """
+    met = [name for name, count in zip(FATES, counts.sum(axis=0)) if count or name == "passed"]
+    return (*CAME, *met, *WENT)
 
 
 def _turning(study):
