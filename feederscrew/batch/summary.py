@@ -67,13 +67,16 @@ def rate(row):
     return "no rate" if number is None else f"{number:.3g} / min"
 
 
+NO_RATE = "; rate is 0"  # what a note ends in where the number says it already
+
+
 def sheets(store, rows):
     """Yield what each contact sheet shows, up to ``TILES`` parts; a sheet without a picture is left out.
 
     Yields
     ------
     list of (bytes or None, str, str)
-        A part's picture, or None, its name, and what is to say of it: its rate, or why it failed.
+        A part's picture, or None, its name, and what is to say of it: its rate, or why it has none.
     """
     for first in range(0, len(rows), TILES):
         tiles = [_tile(store, row) for row in rows[first : first + TILES]]
@@ -88,6 +91,8 @@ def _tile(store, row):
         said = row["note"]
     else:
         said = f"{row['orientation'] or '-'}: {rate(row)}"
+        if row["parts_per_minute"] == 0.0 and row.get("note"):
+            said += f", {row['note'].removesuffix(NO_RATE)}"
     return store.file(row["folder"], THUMBNAIL), row["folder"], said
 
 

@@ -2,10 +2,12 @@
 
 from itertools import combinations, pairwise
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from feederscrew.batch import summary
 from feederscrew.bowl import read, settings
 from feederscrew.bowl.vary import ranges
 from feederscrew.output import style
@@ -203,6 +205,23 @@ def test_a_contact_sheet_says_why_a_part_failed():
     figure = contact_sheet._sheet([(None, "bolt", why)])
     said = " ".join(" ".join(text.get_text() for text in figure.axes[0].texts).split())
     assert why in said
+
+
+def test_a_contact_sheet_says_why_a_rate_is_zero():
+    """It said '0 / min' alone; the reason stands below the picture, above the lower edge."""
+    row = {"status": summary.DONE, "parts_per_minute": 0.0, "orientation": "A@257", "folder": "washer"}
+    row["note"] = "gap (9.35 mm) rejects the orientation you want; rate is 0"
+    store = SimpleNamespace(file=lambda folder, name: contact_sheet.thumbnail(NUT, find(NUT)))
+    [[tile]] = summary.sheets(store, [row])
+    figure = contact_sheet._sheet([tile])
+    text = figure.axes[0].texts[1]
+    assert (
+        " ".join(text.get_text().split()) == "A@257: 0 / min, gap (9.35 mm) rejects the orientation you want"
+    )
+    figure.canvas.draw()
+    assert text.get_window_extent().y0 > 0.0
+    [[other]] = summary.sheets(store, [row | {"parts_per_minute": 2.0}])
+    assert other[2] == "A@257: 2 / min"
 
 
 def test_a_matrix_can_be_sorted_where_it_says_so():

@@ -11,9 +11,9 @@ from feederscrew.output.solid import render
 from feederscrew.output.solid import thumbnail as small
 
 WIDTH, HEIGHT = 240, 180  # [px] of a thumbnail
-TEXT, EDGE = 52, 20  # [px] under each thumbnail, round the sheet
+TEXT, EDGE = 72, 20  # [px] under each thumbnail, round the sheet
 LETTERS = 26  # of a line of text
-LINES = 8  # of the reason why a part failed
+LINES, BELOW = 8, 3  # of the reason why a part failed, and of what stands below a picture
 
 
 def thumbnail(part, found, aspect=None):
@@ -74,17 +74,19 @@ def _tile(figure, axes, left, bottom, tile):
     failed = picture is None
     middle, colour = left + WIDTH / 2, style.ACCENT if failed else style.INK
     look = {"fontsize": 7, "color": colour, "ha": "center"}
-    axes.text(middle, bottom + 38, _shortened(name, LETTERS), fontweight="bold", va="center", **look)
+    axes.text(middle, bottom + TEXT - 14, _shortened(name, LETTERS), fontweight="bold", va="center", **look)
     if failed:  # the reason has the place of the picture
-        lines = textwrap.wrap(said, LETTERS + 2)
-        lines = (
-            lines
-            if len(lines) <= LINES
-            else [*lines[: LINES - 1], _shortened(lines[LINES - 1] + " ...", LETTERS)]
-        )
-        axes.text(middle, bottom + TEXT + HEIGHT / 2, "\n".join(lines), va="center", **look)
+        axes.text(middle, bottom + TEXT + HEIGHT / 2, _wrapped(said, LINES), va="center", **look)
     else:
-        axes.text(middle, bottom + 16, _shortened(said, LETTERS), va="center", **look)
+        axes.text(middle, bottom + TEXT - 24, _wrapped(said, BELOW), va="top", **look)
+
+
+def _wrapped(text, most):
+    """The text in as many lines as there is room for."""
+    lines = textwrap.wrap(text, LETTERS + 2)
+    if len(lines) > most:
+        lines = [*lines[: most - 1], _shortened(lines[most - 1] + " ...", LETTERS)]
+    return "\n".join(lines)
 
 
 def _shortened(text, most):
