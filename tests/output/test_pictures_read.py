@@ -20,6 +20,7 @@ from feederscrew.output.graph import figures as graph
 from feederscrew.output.headings import figures as headings_figures
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page
+from feederscrew.output.trial.shown import ShownRide
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.tumbling.by_class import Transition
@@ -222,6 +223,14 @@ def test_a_contact_sheet_says_why_a_rate_is_zero():
     assert text.get_window_extent().y0 > 0.0
     [[other]] = summary.sheets(store, [row | {"parts_per_minute": 2.0}])
     assert other[2] == "A@257: 2 / min"
+
+
+def test_a_ride_is_named_by_its_device_and_a_single_value():
+    devices = [SimpleNamespace(kind="gap", short="9 mm"), SimpleNamespace(kind="cut_out", short="[[0 mm]]")]
+    devices.append(SimpleNamespace(kind="sorter", short="{of: A@90, play: 0.2 mm}"))
+    found = SimpleNamespace(stations=[SimpleNamespace(device=one) for one in devices])
+    said = [ShownRide(place, "A@0", "rolled_back", np.zeros((1, 8))).title(found) for place in range(3)]
+    assert said == [f"A@0 at {name}: rolled back" for name in ("gap 9 mm", "cut out", "sorter")]
 
 
 def test_a_matrix_can_be_sorted_where_it_says_so():

@@ -184,7 +184,11 @@ window.addEventListener("load", () => {
 TELEPHONE = """<script>
 window.addEventListener("load", () => {
   const seen = frames[0].document.documentElement;
-  document.title = [seen.scrollWidth, frames[0].innerWidth].join();
+  const button = seen.querySelector("figcaption > button").getBoundingClientRect();
+  const lines = [...seen.querySelector("figcaption > span").getClientRects()];
+  const under = lines.filter((one) =>
+    one.right > button.left && one.top < button.bottom && one.bottom > button.top);
+  document.title = [seen.scrollWidth, frames[0].innerWidth, lines.length, under.length].join();
 });
 </script>"""  # no browser without a head has a window of less than 500 pixels
 MACHINE = (
@@ -289,7 +293,8 @@ def test_a_trial_plays(visit, tmp_path):
 def test_on_a_telephone_nothing_moves_the_page_sideways(visit):
     """The view of a trial was 384 pixels wide on a page of 358; tables and pictures scroll by themselves."""
     scene, wide = {"poses": []}, tables.frame({f"column_{k}_mm": np.full(3, 124.5) for k in range(20)})
-    views = Views(scene, (("A@2", "passed", ()),), "trial-views", "Orientation", plays=True)
+    words = "at sorter of two orientations, play 3.75 mm, sees their outline: passed"
+    views = Views(scene, (("A@2", words, ()),), "trial-views", "Orientation", plays=True)
     text = html(
         Page("part", "", (Chapter((views, Table(wide), Table(wide)), anchor="trial", title="Trial"),))
     )
@@ -298,5 +303,6 @@ def test_on_a_telephone_nothing_moves_the_page_sideways(visit):
         f'<title></title><iframe width="390" height="900" frameborder="0" srcdoc="{escape(shown)}"></iframe>'
     )
     dom, _ = visit(frame + TELEPHONE, "--dump-dom")
-    width, window = map(int, re.search(r"<title>(\d+),(\d+)</title>", dom).groups())
+    width, window, lines, under = map(int, re.search(r"<title>([\d,]+)</title>", dom)[1].split(","))
     assert window == 390 and width <= window
+    assert lines == 2 and under == 0  # of the caption: no line lies under the button beside it

@@ -17,9 +17,12 @@ class ShownRide:
     path: np.ndarray  # (K, 8) time [s], position [m], attitude w x y z (principal axes to bowl)
 
     def title(self, found):
-        """'A@0 at gap 9 mm: returned'."""
+        """'A@0 at gap 9 mm: returned'; of a device of several values its kind alone."""
         device = found.stations[self.place].device
-        where = f"{device.kind.replace('_', ' ')} {device.short}".strip()
+        """'A@0 at gap 9 mm: returned'; of a device of several values its kind alone."""
+        device = found.stations[self.place].device
+        value = "" if device.short.startswith(("{", "[")) else device.short
+        where = f"{device.kind.replace('_', ' ')} {value}".strip()
         return f"{self.orientation} at {where}: {self.fate.replace('_', ' ')}"
 
 
