@@ -19,8 +19,6 @@ class ShownRide:
     def title(self, found):
         """'A@0 at gap 9 mm: returned'; of a device of several values its kind alone."""
         device = found.stations[self.place].device
-        """'A@0 at gap 9 mm: returned'; of a device of several values its kind alone."""
-        device = found.stations[self.place].device
         value = "" if device.short.startswith(("{", "[")) else device.short
         where = f"{device.kind.replace('_', ' ')} {value}".strip()
         return f"{self.orientation} at {where}: {self.fate.replace('_', ' ')}"
