@@ -11,8 +11,9 @@ from feederscrew.bowl.record import Track
 from feederscrew.bowl.settings import effective, record
 from feederscrew.machine.sizing import Size
 from feederscrew.output.solidbowl import printing
-from feederscrew.solidbowl import exact_file, segments
+from feederscrew.solidbowl import segments
 from feederscrew.solidbowl.closed_body import body
+from feederscrew.solidbowl.exact import exact_file
 from feederscrew.solidbowl.materials import material
 from feederscrew.solidbowl.plan import Asked, plan
 

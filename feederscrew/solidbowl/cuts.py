@@ -67,6 +67,9 @@ class Stretch:
     bores: tuple[WallBore, ...] = ()
     leans: tuple[tuple[float, float, float], ...] = ()  # from and to s [m] it twists to another bank [rad]
     ledges: tuple[TrackLedge, ...] = ()
+    grooves: tuple[
+        tuple[float, float, float, float], ...
+    ] = ()  # from and to s [m], lean of the wall, opens [m]
 
     @property
     def falls(self):
@@ -89,7 +92,7 @@ def stretch(track, devices, every):
     Stretch
     """
     section = strip(track, devices, every)
-    stations, leans, ledges, more = leaning.laid_out(track, section.stations, every)
+    stations, leans, ledges, grooves, more = leaning.laid_out(track, section.stations, every)
     beside = {ledge.start for ledge in ledges}
     cut = [one for one in stations if one.hole is not None and one.start not in beside]
     drops = [(one.start + 0.5 * one.length, one.drop) for one in stations if one.drop > 0.0]
@@ -115,6 +118,7 @@ def stretch(track, devices, every):
         ),
         leans=leans,
         ledges=ledges,
+        grooves=grooves,
     )
 
 

@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feederscrew.errors import FeederError
 from feederscrew.tooling.devices.base import room_of
 from feederscrew.tooling.fates import leading
 
@@ -38,16 +37,7 @@ def banked(track, devices, every):
     Returns
     -------
     Track
-
-    Raises
-    ------
-    FeederError
-        If a device is a groove.
     """
-    for device in devices:
-        if device.placed and any(slope.wall for slope in device.standing(track, every).slopes):
-            what = "is a V, which a solid does not have"
-            raise FeederError(f"devices: {device.label}", what, "leave it out of the bowl file of the solid")
     for device in at_entry(devices):
         for slope in device.standing(track, every).slopes:
             track = track if slope.bank is None else replace(track, bank=slope.bank)
@@ -75,6 +65,8 @@ def laid_out(track, stations, every):
     leans : tuple of (float [m], float [m], float [rad])
         From and to which length the track twists to which bank.
     ledges : tuple of TrackLedge
+    grooves : tuple of (float [m], float [m], float [rad], float [m])
+        From and to which length the wall leans back, by how much, and over how long it opens.
     more : float [m]
         By which the stretch is longer.
     """
@@ -93,7 +85,20 @@ def laid_out(track, stations, every):
         if ledge is not None:
             ledges.append(ledge)
             more += ledge.ramp
-    return moved, tuple(leans), tuple(ledges), more
+    return moved, tuple(leans), tuple(ledges), _grooves(moved, entry, track, every), more
+
+
+def _grooves(stations, entry, track, every):
+    """Where the wall leans back; a groove at the entry is there from the first of the track on."""
+    found, opens = [], max(one.length for one in every)
+    for place, one in enumerate(stations):
+        for slope in one.device.standing(track, every).slopes:
+            at = -np.inf if place < entry else one.start + slope.begin
+            if slope.wall is not None and found and np.isinf(found[-1][1]):
+                found[-1] = found[-1][0], at, *found[-1][2:]
+            if slope.wall:
+                found.append((at, np.inf, slope.wall, opens))
+    return tuple(one for one in found if one[1] > one[0])
 
 
 def _moved(station, by):

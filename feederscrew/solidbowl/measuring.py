@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.solidbowl import facets
+from feederscrew.solidbowl import facets, grooves_wall
 
 OVER = 5e-4  # [m] over the track, where its wall is met
 RIM = -0.3 - 1e-4  # [rad] before the outlet, where the rim is measured; beside the corners of facets
@@ -37,14 +37,15 @@ def measures(made):
     plan, body = made.plan, facets.unplaced(made)
     way, far = plan.way, 3.0 * plan.way.radius
     high = plan.top - 1e-3
-    rim = facets.first_met(body, (0.0, 0.0, high), _towards(RIM, far, high))
+    at = _rim(plan)
+    rim = facets.first_met(body, (0.0, 0.0, high), _towards(at, far, high))
     r = float(way.wall_radius(way.at(_bare(plan)))) - 1e-3
     bare = np.array([r * np.cos(_bare(plan)), r * np.sin(_bare(plan))])
     floor = facets.first_met(body, (*bare, 5e-4), (*bare, -far))
     s = float(way.at(-0.5 * np.pi))
     outlet = way.end + 0.5 * plan.outlet
     return Measures(
-        diameter=2.0 * (rim[0] + way.radius - float(way.wall_radius(way.at(RIM)))),
+        diameter=2.0 * (rim[0] + way.radius - float(way.wall_radius(way.at(at)))),
         wall=rim[1] - rim[0],
         floor=floor[1] - floor[0],
         height=float(np.ptp(made.vertices[:, 2])),
@@ -52,6 +53,12 @@ def measures(made):
         outlet_height=_outlet_height(plan, body, outlet),
         extent=tuple(float(x) for x in np.ptp(made.vertices, axis=0)),
     )
+
+
+def _rim(plan):
+    """An angle at which the rim is measured: before every groove, where the wall is open."""
+    starts = [float(plan.way.angle(one[0])) - 0.1 for one in grooves_wall.spans(plan)]
+    return min([RIM, *starts])
 
 
 def _outlet_height(plan, body, outlet):

@@ -55,8 +55,10 @@ class BowlPlan:
 
     @property
     def segments(self):
-        """How many facets a full turn has."""
-        return int(np.ceil(TURN / (2.0 * np.arccos(1.0 - self.chord / self.way.radius)) / 4.0)) * 4
+        """How many facets a full turn has; where the track is steeper than 45 deg across, more."""
+        banks = self.way.bank, *(bank for _, _, bank in self.way.leans)
+        chord = self.chord / max(1.0, *(float(np.tan(bank)) for bank in banks))
+        return int(np.ceil(TURN / (2.0 * np.arccos(1.0 - chord / self.way.radius)) / 4.0)) * 4
 
     @property
     def outlet_height(self):

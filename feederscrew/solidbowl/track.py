@@ -52,10 +52,15 @@ def slab(plan, kit):
 
 def _leg(plan, kit, leg, run):
     """Sections and frames of a piece of a run, which goes on past its ends at the same height."""
-    s = _smooth_steps(plan, *leg) if kit.SMOOTH else _steps(plan, *leg)
+    s = steps(plan, kit, *leg)
     inside = np.clip(s, run[0] + 1e-9, run[1] - 1e-9)
     strips = 1 if kit.SMOOTH else _strips(plan)
     return _sections(plan, s, plan.way.height(inside), strips), frames(plan, s)
+
+
+def steps(plan, kit, start, end):
+    """Return the lengths (M,) [m] along the wall at which a piece of track has its sections."""
+    return _smooth_steps(plan, start, end) if kit.SMOOTH else _steps(plan, start, end)
 
 
 def _smooth_steps(plan, start, end):
@@ -168,7 +173,7 @@ def _ledge_leg(plan, kit, ledge, leg):
     """Sections and frames of a piece of a ledge."""
     way, half = plan.way, 0.5 * plan.material.plate
     at, end = plan.first + ledge.start, plan.first + ledge.end
-    s = _smooth_steps(plan, *leg) if kit.SMOOTH else _steps(plan, *leg)
+    s = steps(plan, kit, *leg)
     low = way.height(s) - ledge.drop * (s < at)
     high = low + ledge.drop * (1.0 - np.maximum((s - end) / ledge.ramp, 0.0)) - SUNK
     strips = 1 if kit.SMOOTH else _strips(plan)
@@ -196,7 +201,8 @@ def sides(plan, kit):
         top + lift + INTO,
         plan.segments,
     )
-    made = [kit.over(way, outer, low, max(top, height + plan.headroom), plan.chord)]
+    open_there = plan.stretch is not None and any(np.isinf(one[1]) for one in plan.stretch.grooves)
+    made = [] if open_there else [kit.over(way, outer, low, max(top, height + plan.headroom), plan.chord)]
     made.append(kit.without(kit.over(way, inner, low + lift, top + lift, plan.chord), [inside]))
     return made
 

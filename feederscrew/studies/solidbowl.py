@@ -13,8 +13,9 @@ from feederscrew.machine.sizing import Size
 from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import Aspects
-from feederscrew.solidbowl import cuts, exact_body, exact_file, leaning, lugs, riding, segments
+from feederscrew.solidbowl import cuts, leaning, lugs, riding, segments
 from feederscrew.solidbowl.closed_body import BowlSolid, body, screwed
+from feederscrew.solidbowl.exact import exact_body, exact_file
 from feederscrew.solidbowl.materials import STEEL, material
 from feederscrew.solidbowl.plan import CHORD, Asked, BowlPlan, plan
 from feederscrew.solidbowl.ways_down import ways_down

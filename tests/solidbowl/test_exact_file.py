@@ -8,9 +8,9 @@ import pytest
 from test_solid import CHAINS, TRACK, planned
 
 from feederscrew.errors import FeederError
-from feederscrew.solidbowl import exact_body
 from feederscrew.solidbowl.closed_body import body
-from feederscrew.solidbowl.exact_file import step_file
+from feederscrew.solidbowl.exact import exact_body
+from feederscrew.solidbowl.exact.exact_file import step_file
 from feederscrew.solidbowl.plan import Asked
 
 

@@ -9,8 +9,9 @@ from test_solid import CHAINS, GAP, NEAR, RAILS, TRACK, One, closed, made, plann
 from test_stepped import STEPPED
 
 from feederscrew.output.solidbowl import drawing_sheet, unrolled_strip
-from feederscrew.solidbowl import exact_body, exact_faces, facets, leaning, track
+from feederscrew.solidbowl import facets, leaning, track
 from feederscrew.solidbowl.closed_body import body
+from feederscrew.solidbowl.exact import exact_body, exact_faces
 from feederscrew.solidbowl.measuring import heights, measures, track_width
 from feederscrew.solidbowl.plan import Asked
 from feederscrew.solidbowl.ways_down import ways_down

@@ -10,14 +10,13 @@ import shapes
 import trimesh
 
 from feederscrew import bowl as bowls
-from feederscrew.errors import Faults, FeederError
+from feederscrew.errors import Faults
 from feederscrew.mechanics.wall import lying_in_groove
 from feederscrew.output.tooling import drawing, profile
 from feederscrew.part import load
 from feederscrew.rates import spacing, stretches
 from feederscrew.rates.well_oriented import velocity
 from feederscrew.resting.aspects import find
-from feederscrew.solidbowl import leaning
 from feederscrew.studies.rate import rate, shares
 from feederscrew.tooling import solid
 from feederscrew.tooling.devices.kinds import made
@@ -212,9 +211,3 @@ def test_its_picture_has_the_part_between_both_faces(dowel, angle):
     middle = shown.centroid
     assert middle.x == pytest.approx(x1, abs=0.15)  # the wall bends by that over its length
     assert middle.y == pytest.approx(3.0 / math.cos(angle * DEG), abs=0.15)
-
-
-def test_a_bowl_as_a_solid_refuses_it(dowel):
-    _, every = dowel
-    with pytest.raises(FeederError, match="is a V, which a solid does not have"):
-        leaning.banked(BOWL.track, [groove(30.0)], every)

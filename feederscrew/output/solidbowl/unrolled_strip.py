@@ -40,6 +40,9 @@ def numbered(stretch):
         found.append((one, words, one.start, one.end + one.ramp))
     for start, end, bank in stretch.leans:
         found.append(((start, end, bank), f"twists to a bank of {np.degrees(bank):.3g}°", start, end))
+    for start, end, lean, _ in stretch.grooves:
+        words = f"groove: the wall leans back by {np.degrees(lean):.3g}°"
+        found.append(((start, end, lean), words, max(start, 0.0), end))
     return found
 
 

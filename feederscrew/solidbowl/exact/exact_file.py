@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from feederscrew.errors import FeederError
-from feederscrew.solidbowl import exact_body, exact_faces
 from feederscrew.solidbowl.closed_body import pieces
+from feederscrew.solidbowl.exact import exact_body, exact_faces
 from feederscrew.units import factor
 
 MM = factor("mm", "length")

@@ -13,7 +13,7 @@ import shapely
 
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.geometry.vectors import product
-from feederscrew.solidbowl import exact_faces
+from feederscrew.solidbowl.exact import exact_faces
 from feederscrew.solidbowl.facets import in_space
 from feederscrew.units import factor
 

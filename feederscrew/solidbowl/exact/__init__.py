@@ -1,0 +1,1 @@
+"""The bowl with exact faces, as a STEP file: its door to OpenCASCADE."""

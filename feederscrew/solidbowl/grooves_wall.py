@@ -1,0 +1,110 @@
+"""The other face of a groove: a wall that leans back, in place of the bowl's own along that stretch."""
+
+import itertools
+
+import numpy as np
+
+from feederscrew.solidbowl.plan import TURN
+from feederscrew.solidbowl.track import QUARTER, frames, steps
+
+LEAST = np.radians(3.0)  # by which it leans at once: no face lies on the bowl's wall
+FOOT = 5e-4  # [m] by which its face goes on into the track
+BEYOND = 5e-3  # [m] beyond what is cut away
+FAR = 1.0  # [m] beyond everything
+ABOVE = 5e-3  # [m] of the face beyond the tallest part
+OPENING = 24  # sections of a stretch over which the wall opens
+LONGEST = 0.85 * TURN  # [rad] before the outlet: above it the bowl's wall is open
+
+
+def cuts(plan, kit):
+    """Return what grooves take from the bowl's wall.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    kit : module
+
+    Returns
+    -------
+    list of bodies [mm]
+    """
+    return [_swept(plan, kit, groove, _cut) for groove in spans(plan)]
+
+
+def faces(plan, kit):
+    """Return the walls of grooves.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    kit : module
+
+    Returns
+    -------
+    list of bodies [mm]
+    """
+    return [_swept(plan, kit, groove, _face) for groove in spans(plan)]
+
+
+def spans(plan):
+    """Return the grooves of a bowl: (from, to, lean, opens), lengths [m] along the wall, an angle [rad].
+
+    They lie in the last turn: above them there is no other.
+    """
+    earliest, last = float(plan.way.at(-LONGEST)), plan.way.end + plan.outlet
+    grooves = () if plan.stretch is None else plan.stretch.grooves
+    return [
+        (max(plan.first + start, earliest, BEYOND), min(plan.first + end, last), lean, opens)
+        for start, end, lean, opens in grooves
+    ]
+
+
+def lean_at(groove, s):
+    """Return by how much [rad] the wall of a groove leans back from upright at lengths s."""
+    start, end, lean, opens = groove
+    share = np.clip((s - start) / opens, 0.0, 1.0) * (1.0 - np.clip((s - end) / opens, 0.0, 1.0))
+    return np.maximum(lean * share, LEAST)
+
+
+def _swept(plan, kit, groove, section):
+    """A body along a groove, of sections that its lean makes."""
+    way, last = plan.way, plan.way.end + plan.outlet
+    start, end, _, opens = groove
+    stop = min(end + opens, last)
+    turned = way.at(-QUARTER * np.arange(1.0, 100.0)) if kit.SMOOTH else ()
+    inner = {start + opens, end, way.end, *turned}
+    legs = [start, *sorted(one for one in inner if start < one < stop), stop]
+    made = []
+    for low, high in itertools.pairwise(legs):
+        s = steps(plan, kit, low, high)
+        if min(start + opens, high) > low or low >= end:
+            s = np.linspace(low, high, max(len(s), int(np.ceil(OPENING * (high - low) / opens)) + 1))
+        made.append(
+            (section(plan, lean_at(groove, s)) + way.height(s)[:, None, None] * [0.0, 1.0], frames(plan, s))
+        )
+    return kit.swept(made)
+
+
+def _sloping(plan, lean):
+    """Unit vectors (M, 2) up the face and off its back; its width [m]."""
+    c, s = np.cos(lean), np.sin(lean)
+    return np.stack([s, c], axis=-1), np.stack([c, -s], axis=-1), plan.headroom + ABOVE
+
+
+def _face(plan, lean):
+    """Sections (M, 4, 2) of the wall: outwards and up from the track's foot."""
+    up, back, wide = _sloping(plan, lean)
+    thick = plan.material.wall
+    return np.stack([-FOOT * up, thick * back - FOOT * up, thick * back + wide * up, wide * up], axis=1)
+
+
+def _cut(plan, lean):
+    """Sections (M, 6, 2) of what is above it, out of the bowl's wall."""
+    up, _, wide = _sloping(plan, lean)
+    top, out, level = wide * up, plan.material.wall + BEYOND, np.zeros(len(lean))
+    far = np.full(len(lean), FAR)
+    corners = [
+        (level - FOOT, level), (level, level), top.T, (top[:, 0] + out, top[:, 1]),
+        (top[:, 0] + out, far), (level - FOOT, far),
+    ]  # fmt: skip
+    return np.stack([np.column_stack(one) for one in corners], axis=1)

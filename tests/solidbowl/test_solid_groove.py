@@ -1,0 +1,80 @@
+"""A groove in the bowl as a solid: two faces that meet at the foot of its wall."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from test_drawing import study
+from test_leans import STEEP, bank
+from test_solid import GAP, NEAR, TRACK, One, closed, made, planned
+from test_stepped import STEPPED
+
+from feederscrew.output.solidbowl import drawing_sheet
+from feederscrew.solidbowl import facets, grooves_wall, leaning
+from feederscrew.solidbowl.closed_body import body
+from feederscrew.solidbowl.measuring import heights, measures
+from feederscrew.solidbowl.plan import Asked
+from feederscrew.solidbowl.ways_down import ways_down
+
+LEFT = replace(STEPPED, left=True)
+CYLINDER = replace(TRACK, climb=np.radians(4.5))
+
+
+def groove(degrees):
+    return made("groove", "b", angle=np.radians(degrees), text=f"{{angle: {degrees} deg}}")
+
+
+CASES = {
+    "at the end": ((GAP, groove(30.0)), CYLINDER, Asked(), 30.0),
+    "before a bank": ((GAP, groove(40.0), bank(0.0)), STEEP, LEFT, 40.0),
+    "from the entry": ((groove(25.0),), CYLINDER, Asked(), 25.0),
+    "from the entry to a bank": ((groove(55.0), bank(5.0), GAP), STEEP, LEFT, 55.0),
+}
+
+
+def grooved(name):
+    chain, own, asked, angle = CASES[name]
+    own = leaning.banked(own, chain, [One(length=18e-3, height=12e-3, width=14e-3, track=own)])
+    return body(planned(chain, track=own, asked=asked)), np.radians(angle)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_both_faces_rise_from_the_foot_by_its_angle(name, rng):
+    solid, angle = grooved(name)
+    assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
+    assert len(facets.placed(solid).decompose()) == 1
+    plan, whole = solid.plan, facets.unplaced(solid)
+    ((start, end, lean, opens),) = grooves_wall.spans(plan)
+    assert lean == pytest.approx(0.5 * np.pi - angle) and opens == 18e-3
+    twisted = max([start, *(stop for _, stop, tilt in plan.way.leans if tilt == angle)])
+    for s in rng.uniform(max(start + opens, twisted) + 1e-3, min(end, plan.way.end + plan.outlet) - 1e-3, 40):
+        theta, foot = float(plan.way.angle(s)), plan.way.places(s, 0.0)
+        out = np.array([np.cos(theta), np.sin(theta), 0.0])
+        for along in (1e-3, 9e-3, 16e-3):  # up the wall's face, 17 mm wide
+            place = foot + along * (np.cos(angle) * out + [0.0, 0.0, np.sin(angle)])
+            assert facets.below(whole, place + [0.0, 0.0, 8e-3]) == pytest.approx(place[2], abs=NEAR)
+        assert facets.below(whole, place + 5e-3 * out, 8e-3) is None  # beyond it there is nothing
+        y = rng.uniform(3e-4, 19.6e-3)
+        assert heights(plan, whole, s, y) == pytest.approx(foot[2] + y * np.sin(angle), abs=NEAR)
+    found = measures(solid)
+    assert found.outlet_height == pytest.approx(plan.outlet_height, abs=NEAR)
+    assert found.diameter == pytest.approx(0.3, abs=3.0 * NEAR)  # of chords
+    ways_down(solid)
+
+
+def test_it_begins_where_it_is_listed_and_ends_at_a_bank():
+    plan = grooved("before a bank")[0].plan
+    ((start, end, _, opens),) = grooves_wall.spans(plan)
+    first, last = plan.stretch.labels[1:]
+    assert (start, end) == pytest.approx((plan.first + first[0], plan.first + last[0]))
+    lean = grooves_wall.lean_at(grooves_wall.spans(plan)[0], np.array([start, start + 0.5 * opens, end]))
+    assert np.degrees(lean) == pytest.approx([3.0, 25.0, 50.0])  # it opens over the length of a part
+    assert grooves_wall.lean_at((start, end, 0.8, opens), end + opens) == grooves_wall.LEAST
+    early = grooved("from the entry")[0].plan
+    assert early.way.angle(grooves_wall.spans(early)[0][0]) == pytest.approx(-0.85 * 2.0 * np.pi)
+
+
+def test_the_sheet_has_the_groove():
+    solid = grooved("before a bank")[0]
+    told = [one.get_text() for one in drawing_sheet.sheet(study(solid)).axes.texts]
+    assert "groove: the wall leans back by 50°" in told and "6.5°, 0° to 40° to 0°" in told
