@@ -21,7 +21,7 @@ THROWN = "--set drive.amplitude=0.3mm --set drive.frequency=60Hz"
 TOOLED = "--config docs/measured/example/bowl.yaml"
 HARDER = "--set drive.peak_to_peak=0.6mm --set drive.frequency=60Hz"
 FEW = "--rule quasistatic --parts 36"
-MORE = "--rule quasistatic --parts 34 --queue 6 --seconds 15"
+ROW = "--rule quasistatic --parts 1 --queue 6 --seconds 15"
 
 
 def answers(line):
@@ -59,19 +59,23 @@ def rate(found):
 
 
 def trial(found):
-    """Return velocities, how many orientations end otherwise, and what the queue delivers."""
+    """Return velocities, and how many orientations end otherwise."""
     speeds = ", ".join(f"{one['velocity_mm_s']:.4g}" for one in found)
     fates = ("passed", "turned", "returned", "hanging", "stopped", "rolled_back", "stuck")
-    other = [
-        sum(any(a[f] != b[f] for f in fates) for a, b in zip(one["orientations"], found[1]["orientations"]))
+    ended = [
+        {(row["aspect"], row["heading_deg"]): [row[fate] for fate in fates] for row in one["orientations"]}
         for one in found
     ]
+    other = [sum(rows[name] != ended[1][name] for name in rows) for rows in ended]
     ends = f"{other[0]} and {other[2]} of {len(found[1]['orientations'])} orientations end otherwise"
-    if found[1]["queue"] is None:
-        return f"{speeds} mm/s; {ends}"
-    queue = ", ".join(f"{one['queue']['delivered']:.0f}" for one in found)
-    seconds = f"{found[1]['queue']['counted_seconds']:.0f} s"
-    return f"{speeds} mm/s; {ends}; the queue delivers {queue} parts in {seconds}"
+    return f"{speeds} mm/s; {ends}"
+
+
+def queue(found):
+    """Return what a queue delivers, and how fast its parts travel."""
+    speeds = ", ".join(f"{one['queue']['velocity_mm_s']:.3g}" for one in found)
+    counts = ", ".join(f"{one['queue']['delivered']:.0f}" for one in found)
+    return f"{speeds} mm/s; {counts} parts leave in {found[1]['queue']['counted_seconds']:.0f} s"
 
 
 ROWS = (
@@ -84,9 +88,10 @@ ROWS = (
     ("the same, bolt", f"{BOLT} --aspect A", rate),
     ("`feeder rate`, throw number 1.84, bracket", f"{BRACKET} --aspect A {THROWN}", rate),
     ("`feeder trial`, throw number 0.64, bracket", f"{BRACKET} {TOOLED} {FEW}", trial),
-    ("`feeder trial`, throw number 1.84, bracket", f"{BRACKET} {TOOLED} {HARDER} {MORE}", trial),
+    ("`feeder trial`, throw number 1.84, bracket", f"{BRACKET} {TOOLED} {HARDER} {FEW}", trial),
+    ("its queue of six, no devices", f"{BRACKET} {THROWN} {ROW}", queue),
 )  # fmt: skip
-COMMANDS = {velocity: "convey", plate: "drop --plate", rate: "rate", trial: "trial"}
+COMMANDS = {velocity: "convey", plate: "drop --plate", rate: "rate", trial: "trial", queue: "trial"}
 
 
 def table():

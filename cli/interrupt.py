@@ -19,10 +19,10 @@ def held_back():
         return
     caught = []
 
-    def catch(*told):
+    def catch(*received):
         if caught:
             raise KeyboardInterrupt
-        caught.append(told)
+        caught.append(received)
 
     before = signal.signal(signal.SIGINT, catch)
     try:
@@ -44,8 +44,8 @@ def noted():
         yield lambda: None
         return
 
-    def catch(*told):
-        caught.append(told)
+    def catch(*received):
+        caught.append(received)
         raise KeyboardInterrupt
 
     def again():

@@ -5,7 +5,7 @@ import click
 METAVARS = {"length": "LENGTH", "number": "SHARE", "time": "TIME"}
 
 
-def with_default(names, dimension, default, told, **bounds):
+def with_default(names, dimension, default, meaning, **bounds):
     """An option of a quantity with a default, which its help shows; bounds as of ``Quantity``."""
     return click.option(
         *names.split(),
@@ -13,7 +13,7 @@ def with_default(names, dimension, default, told, **bounds):
         default=default,
         show_default=True,
         metavar=METAVARS[dimension],
-        help=told,
+        help=meaning,
     )
 
 

@@ -39,7 +39,7 @@ def run(part, path, own, test, pictures, out):
         out.warn(*toss_tables.remarks(study))
         out.say(*toss_tables.summary(study))
         offers.write(folder, toss_files.offers(study), pictures=pictures)
-    out.show(toss_tables.told(study), toss_tables.document(study), hidden=toss_tables.HIDDEN)
+    out.show(toss_tables.tosses(study), toss_tables.document(study), hidden=toss_tables.HIDDEN)
 
 
 def _fitting(own, test):

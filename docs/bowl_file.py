@@ -32,9 +32,9 @@ def filled(text):
 
 
 def _row(name, value):
-    told, _, left_out = value["description"].rpartition(" Left out: ")
+    said, _, left_out = value["description"].rpartition(" Left out: ")
     default = f"{value['default']}" if "default" in value else left_out.removesuffix(".")
-    meaning = told or value["description"].rpartition(" Default: ")[0]
+    meaning = said or value["description"].rpartition(" Default: ")[0]
     meaning = meaning.rpartition(". From ")[0] or meaning.rpartition(". One of ")[0]
     units = ", ".join(value["x-units"])
     return f"| `{name}` | {default} | {value['x-lowest']} | {value['x-highest']} | {units} | {meaning} |\n"

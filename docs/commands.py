@@ -28,23 +28,23 @@ def reference():
 def _section(command, context, level="##"):
     """Usage, help and options of a command, then of the commands below it."""
     usage = " ".join(command.collect_usage_pieces(context))
-    example, _, told = command.help.partition("\n")
+    example, _, prose = command.help.partition("\n")
     text = f"\n{level} `{context.command_path}`\n\n{command.short_help}\n\n"
     text += f"```sh\n{context.command_path} {usage}\n{example.removeprefix('Example:').strip()}\n```\n\n"
-    text += _prose(told) + _options(command, context)
+    text += _prose(prose) + _options(command, context)
     for name, below in getattr(command, "commands", {}).items():
         text += _section(below, click.Context(below, info_name=name, parent=context), f"{level}#")
     return text
 
 
-def _prose(told):
-    paragraphs = (" ".join(block.split()) for block in told.replace("\b", "").split("\n\n"))
+def _prose(text):
+    paragraphs = (" ".join(block.split()) for block in text.replace("\b", "").split("\n\n"))
     return "".join(f"{escaped(block)}\n\n" for block in paragraphs if block)
 
 
 def _options(command, context):
     records = [option.get_help_record(context) for option in command.get_params(context)]
-    rows = [f"| `{_piped(names)}` | {escaped(told)} |\n" for names, told in filter(None, records) if told]
+    rows = [f"| `{_piped(names)}` | {escaped(text)} |\n" for names, text in filter(None, records) if text]
     return "| Option | Meaning |\n|---|---|\n" + "".join(rows)
 
 

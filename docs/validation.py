@@ -132,9 +132,9 @@ def air_jet():
     rows = []
     for row in found:
         force, pressure = float(row["force_plateau_N"]), float(row["before_valve_bar"])
-        told = thrust(pressure) / own * unit
-        rows.append([row["target_bar"], row["before_valve_bar"], f"{force:.3f}", f"{told:.3f}",
-                     f"{100.0 * (told / force - 1.0):+.1f}"])  # fmt: skip
+        ours = thrust(pressure) / own * unit
+        rows.append([row["target_bar"], row["before_valve_bar"], f"{force:.3f}", f"{ours:.3f}",
+                     f"{100.0 * (ours / force - 1.0):+.1f}"])  # fmt: skip
     head = [
         "pressure set [bar]",
         "before the valve [bar]",

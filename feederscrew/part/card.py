@@ -148,11 +148,11 @@ def _aspects(rows, faults):
     return aspects
 
 
-def _keywords(told, row):
+def _keywords(shown, row):
     angle = row.find("solid_angle")
     in_sr = angle is None or not angle.value.text.strip().endswith(RELATIVE)
-    renamed = {"name" if word == "aspect" else word: value for word, value in told.items()}
-    return renamed | {"faces": int(told.get("faces", 1)), "solid_angle_in_sr": in_sr}
+    renamed = {"name" if word == "aspect" else word: value for word, value in shown.items()}
+    return renamed | {"faces": int(shown.get("faces", 1)), "solid_angle_in_sr": in_sr}
 
 
 def _strangers(root, printed, aspects):

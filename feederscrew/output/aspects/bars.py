@@ -65,7 +65,7 @@ def answered(names, answer, profiles, title=""):
     axes.bar(places - ASIDE, share, THICK, color=style.ANSWER, label=ANSWERED)
     reach = np.maximum([share - low, high - share], 0.0)
     axes.errorbar(places - ASIDE, share, reach, fmt="none", ecolor=style.INK, elinewidth=1.4, capsize=3)
-    _numbers(axes, places - ASIDE, np.maximum(share, high), np.isfinite(share), upright=False, told=share)
+    _numbers(axes, places - ASIDE, np.maximum(share, high), np.isfinite(share), upright=False, texts=share)
     steps = np.linspace(FIRST, LAST, len(profiles))
     for place, (step, (name, values)) in enumerate(zip(steps, profiles.items())):
         label, colour = style.method(name, place)
@@ -118,11 +118,11 @@ def grouped(axes, names, profiles, room=UPRIGHT):
     axes.set_ylim(0.0, highest * 1.14)
 
 
-def _numbers(axes, x, percent, known, upright, told=None):
-    """Write the percentages, or what is ``told`` in their place, over the ends of bars."""
-    look = {} if told is None else {"fontweight": "bold"}
-    told = percent if told is None else told
-    for at, value, text in zip(x[known], percent[known], told[known]):
+def _numbers(axes, x, percent, known, upright, texts=None):
+    """Write the percentages, or ``texts`` in their place, over the ends of bars."""
+    look = {} if texts is None else {"fontweight": "bold"}
+    texts = percent if texts is None else texts
+    for at, value, text in zip(x[known], percent[known], texts[known]):
         axes.annotate(
             f"{text:.1f}",
             (at, value),

@@ -16,7 +16,7 @@ def offers(study):
     list of Offer
     """
     offered = [
-        offer.table("tosses.csv", toss_tables.told, study),
+        offer.table("tosses.csv", toss_tables.tosses, study),
         offer.document("tosses.json", toss_tables.document, study),
     ]
     if study.launches.ends is not None:

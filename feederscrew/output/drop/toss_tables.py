@@ -15,7 +15,7 @@ BY_SIDE = tuple(f"p_{'plus' if side[0] == '+' else 'minus'}_{side[1]}" for side 
 HIDDEN = ("p_low", "p_high", *BY_SIDE, "settled_runs", "time_s", "x_measured_mm", "y_measured_mm")
 
 
-def told(study):
+def tosses(study):
     """Return where each toss leads, one row a toss.
 
     Parameters
@@ -84,7 +84,7 @@ def document(study):
         "friction_scatter": toss_runs.FRICTION,
         "partial": study.result.partial,
         "measured": measured,
-        "tosses": told(study),
+        "tosses": tosses(study),
     }
 
 

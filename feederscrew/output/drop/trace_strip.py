@@ -201,8 +201,8 @@ def _page(figure, laid, title):
     return axes
 
 
-def _caption(page, place, number, told):
+def _caption(page, place, number, words):
     """Number and text under a still."""
     left, bottom, _, _ = place
     trace_curve.badge(page, left + 16, bottom - 18, number)
-    page.text(left + 34, bottom - 18, told, fontsize=8, color=style.INK, va="center")
+    page.text(left + 34, bottom - 18, words, fontsize=8, color=style.INK, va="center")

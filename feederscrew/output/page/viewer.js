@@ -26,10 +26,10 @@
     return new Kind(bytes.buffer);
   }
 
-  function surfaceOf(told, colour) {
+  function surfaceOf(given, colour) {
     const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(decoded(told.positions, Float32Array), 3));
-    geometry.setIndex(new THREE.BufferAttribute(decoded(told.index, Uint32Array), 1));
+    geometry.setAttribute("position", new THREE.BufferAttribute(decoded(given.positions, Float32Array), 3));
+    geometry.setIndex(new THREE.BufferAttribute(decoded(given.index, Uint32Array), 1));
     const creased = THREE.toCreasedNormals(geometry, (CREASE * Math.PI) / 180);
     const surface = new THREE.MeshStandardMaterial({
       color: colour, metalness: 0.0, roughness: 0.62, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
@@ -65,9 +65,9 @@
     return disc; // seen from above only, so that from below the contact face is free
   }
 
-  function trackOf(told) {
+  function trackOf(given) {
     const group = new THREE.Group();
-    group.add(...surfaceOf(told, COLOURS.track));
+    group.add(...surfaceOf(given, COLOURS.track));
     return group;
   }
 
@@ -161,12 +161,12 @@
 
   function play(figure, view, path) {
     const last = path[path.length - 8], quick = Math.max(1, last / LONGEST);
-    const button = figure.querySelector(".play"), bar = figure.querySelector("input"), told = figure.querySelector("output");
+    const button = figure.querySelector(".play"), bar = figure.querySelector("input"), clock = figure.querySelector("output");
     let ticking = null, before = 0;
     const reach = (time) => {
       view.time = Math.min(Math.max(time, 0), last);
       bar.value = view.time / last;
-      told.textContent = `${view.time.toFixed(2)} s`;
+      clock.textContent = `${view.time.toFixed(2)} s`;
       view.draw();
     };
     const run = (on) => {
@@ -210,8 +210,8 @@
   const pen = renderer();
   if (!pen) return;
   document.body.classList.add("has-views");
-  for (const told of document.querySelectorAll("script.scene")) {
-    const set = stage(JSON.parse(told.textContent)), block = document.getElementById(told.dataset.views);
+  for (const given of document.querySelectorAll("script.scene")) {
+    const set = stage(JSON.parse(given.textContent)), block = document.getElementById(given.dataset.views);
     block.hidden = false;
     for (const canvas of block.querySelectorAll(".view canvas")) show(pen, set, canvas);
   }

@@ -78,9 +78,9 @@ def _cleaned(key, value):
     return DIGEST.fullmatch(value)[1].lower() if key == "mesh" else value
 
 
-def _fault(where, key, value, told):
+def _fault(where, key, value, known):
     """What is wrong with one line of the head, or None."""
-    if key in told:
+    if key in known:
         return FeederError(where, f"{key} is given twice", "keep one of them")
     if not value:
         return FeederError(where, f"{key} has no value", "give one, or remove the line")
