@@ -164,14 +164,24 @@ def _broad_normals(hull, below):
     thin = 2.0 * hull.areas < SLIVER * hull.radius * np.maximum(np.maximum(*sides[:2]), sides[2])
     end = forest.roots(np.where(thin, below, np.arange(len(thin))))
     still = np.flatnonzero(thin & (end == np.arange(len(thin))))  # no way down, or half of a flat strip
-    beside = hull.neighbours[still]
+    lengths, beside = np.column_stack(sides)[still], hull.neighbours[still]
+    end = _over_longest(end, thin, still, beside[np.arange(len(still)), lengths.argmax(axis=1)])
     level = angle(hull.normals[still, None], hull.normals[beside]) < FLAT
-    best = np.where(thin[end[beside]], 0.0, np.where(level, np.inf, np.column_stack(sides)[still])).argmax(
-        axis=1
-    )
+    best = np.where(thin[end[beside]], 0.0, np.where(level, np.inf, lengths)).argmax(axis=1)
     out = np.arange(len(thin))
-    out[still] = end[hull.neighbours[still, best]]
+    out[still] = np.where(thin[end[still]], end[hull.neighbours[still, best]], end[still])
     return hull.normals[out[end]]
+
+
+def _over_longest(end, thin, still, longest):
+    """(T,) triangle for which each stands: slivers at the rim of a flat end lead over their longest sides.
+
+    Two slivers that share their longest side, as those of a narrow chamfer, stand for themselves.
+    """
+    end = end.copy()
+    while (found := thin[end[still]] & ~thin[end[longest]]).any():
+        end[still[found]] = end[longest[found]]
+    return end
 
 
 def _joined(hull, basins, pairs, tops, limit):
