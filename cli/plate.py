@@ -60,7 +60,8 @@ def run(part, plate, launch, own, test, pictures, out):
         out.say(*tables.summary(study))
         out.warn(*tables.remarks(study))
         offers.write(folder, files.offers(study), pictures=pictures)
-    out.show(tables.plates(study), tables.document(study), hidden=tables.HIDDEN)
+    frame = tables.plates(study)
+    out.show(frame, tables.document(study), hidden=tables.HIDDEN, spare=tables.spare(frame))
 
 
 def _given(shaken, **others):

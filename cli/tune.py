@@ -55,4 +55,4 @@ def tune(part, target, aspect, heading, rule, gap, fill, taken, worst, bowl, out
         out.warn(*found.warnings, *tables.remarks(found), *proof.warnings(tried, solid, record))
         offers.write(folder, files.offers(found))
         document = proof.beside(tables.document(found), tried, solid, record)
-        out.show(tables.shown(found, out.format), document)
+        out.show(tables.shown(found, out.format), document, spare=())

@@ -29,6 +29,13 @@ def plates(study):
     return _labelled(study, _plate)
 
 
+def spare(frame):
+    """Return groups of columns to leave out of a table for people that is too wide; empty ones go first."""
+    limit = ("p_limit", "p_limit_low", "p_limit_high")
+    groups = [limit, ("height_mm",), ("throw_number",), ("p_start",)]
+    return groups if np.isnan(frame["p_limit"]).all() else groups[1:] + groups[:1]
+
+
 def rates(study):
     """Return the transitions seen and their rate, one row a plate and pair of aspects: ``plate_rates.csv``.
 

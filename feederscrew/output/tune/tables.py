@@ -1,5 +1,7 @@
 """Settings that reach a target as tables and documents."""
 
+import math
+
 from feederscrew import units
 from feederscrew.output import columns, tables
 from feederscrew.rates.drive_settings import WITHIN
@@ -35,17 +37,18 @@ def summary(study):
     rows = frame.rows()
     return tables.frame(
         {
-            f"{study.target / PER_MINUTE:.6g}/min {MET[study.worst]}": [
-                f"{row['key']} {row['value']:.6g} {row['unit']}" for row in rows
+            f"{study.target / PER_MINUTE:.6g}/min {MET[study.worst].replace(' the ', ' ')}": [
+                f"{row['key']} {row['value']:.5g} {row['unit']}" for row in rows
             ],
             "per min": frame["parts_per_minute"],
             "mu +-20 %": [_between(row) for row in rows],
             "velocity_mm_s": frame["velocity_mm_s"],
             "impact_mm_s": frame["hardest_impact_mm_s"],
             "regime": [row["regime"] + (SEVERAL if row["several"] else "") for row in rows],
-            "to fwd": frame["margin_forward"],
-            "to back": frame["margin_backward"],
-            "to hop": frame["margin_hop"],
+            **{
+                f"to {short}": [_margin(value, len(short)) for value in frame[f"margin_{name}"]]
+                for short, name in (("fwd", "forward"), ("back", "backward"), ("hop", "hop"))
+            },
         }
     )
 
@@ -64,8 +67,16 @@ def _told(one):
     return f"at {key.name} {one.solution.shown:.6g} {key.unit}, {units.listed(one.over)}"
 
 
+def _margin(value, letters):
+    """A margin as a cell that stands right under its heading, 'to' and so many letters."""
+    text = "-" if math.isnan(value) else f"{value:.2f}"
+    return text.rjust(len("to ") + letters)
+
+
 def _between(row):
-    return f"{row['parts_per_minute_low']:.4g} to {row['parts_per_minute_high']:.4g}"
+    """The range of a rate as a cell, to three digits."""
+    ends = (row["parts_per_minute_low"], row["parts_per_minute_high"])
+    return " to ".join(f"{end:.3g}" if end < 999.5 else f"{end:.0f}" for end in ends)
 
 
 def _row(one, per_minute):

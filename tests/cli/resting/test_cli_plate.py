@@ -5,6 +5,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 import shapes
 
@@ -56,6 +57,21 @@ def test_json_of_one_plate(run, stl):
     assert list(plate["rates"][0]) == RATES[3:]
     seen = sum(row["count"] for row in plate["rates"] if row["from"] != row["to"])
     assert plate["transitions_seen"] == seen
+
+
+def test_a_table_of_two_plates_fits_a_page(run, stl):
+    """It was 119 letters wide; what goes is said, and stands in the CSV."""
+    plates = ("--plate", "--drops", 12, "--seconds", "0.3", "--amplitude", "0.2 mm,0.5 mm", "--config", BOWL)
+    done = run("drop", stl, *plates)
+    assert max(map(len, done.stdout.splitlines())) <= 100
+    heads = done.stdout.splitlines()[0].split()
+    assert {"plate", "velocity", "amplitude"} <= set(heads)
+    assert "Left out of the table: " in done.stderr
+
+
+def test_what_is_empty_is_left_out_first():
+    empty, seen = ({"p_limit": np.array([value])} for value in (np.nan, 0.5))
+    assert tables.spare(empty)[0] == tables.spare(seen)[-1] == ("p_limit", "p_limit_low", "p_limit_high")
 
 
 def test_the_files_and_the_trend(run, stl, tmp_path):
