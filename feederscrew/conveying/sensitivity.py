@@ -64,8 +64,17 @@ def surfaces(bowl, hops):
         As it is, friction ``FRICTION_DOUBT`` lower and higher, and both ends of ``even_range`` [1].
     """
     found = [bowl, *(scaled(bowl, friction=1.0 + sign * FRICTION_DOUBT) for sign in (-1.0, 1.0))]
-    ends = even_range(bowl.restitution) if hops else ()
-    return found + [replace(bowl, restitution=min(end, MOST)) for end in ends]
+    return found + ([replace(bowl, restitution=end) for end in rebounds(bowl)] if hops else [])
+
+
+def rebounds(bowl):
+    """Return both ends of the spread of a bowl's restitution [1], not above ``MOST``."""
+    return tuple(min(end, MOST) for end in even_range(bowl.restitution))
+
+
+def restitution_doubt(bowl):
+    """Return neighbours for both ends of the spread of restitution."""
+    return Neighbours(*(answer(replace(bowl, restitution=end)).velocity for end in rebounds(bowl)))
 
 
 def even_range(restitution):

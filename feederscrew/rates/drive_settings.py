@@ -23,7 +23,7 @@ LED = 0.1  # of the rate: a setting that fewer parts lead no nearer to it is sou
 LEADS = 2  # steps that fewer parts lead
 ROUNDS, REMEMBERED = 8, 3  # steps towards a setting, and those whose parts lead on
 ALIKE = 0.01  # of a value: two settings are one
-DIGITS = 6  # of a value as it is printed
+DIGITS = 5  # of a value as it is printed
 
 
 @dataclass(frozen=True, eq=False)

@@ -39,6 +39,11 @@ class ConveyStudy(Shown):
         """Velocities for friction ``sensitivity.FRICTION_DOUBT`` lower and higher, Neighbours."""
         return sensitivity.friction_doubt(self.bowl)
 
+    @cached_property
+    def rebound(self) -> sensitivity.Neighbours | None:
+        """Velocities at both ends of the spread of restitution; None where nothing is thrown up."""
+        return sensitivity.restitution_doubt(self.bowl) if self.answer.throw_number > 1.0 else None
+
     @property
     def validity(self) -> str:
         """What the answer leaves out, in one sentence."""

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
+from feederscrew.conveying import sensitivity
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.rates import stream
 from feederscrew.rates.steadiness import gone, steady
@@ -18,6 +19,10 @@ HELD = 0.95  # [1] of the trials in which it should
 HOPS = (
     "throw number {:.3g}: parts hop over the tooling - the static verdicts stand below 1, at an amplitude "
     "of {:.3g} mm"
+)
+BOUNCES = (
+    "restitution of single impacts spreads from {:.3g} to {:.3g}: a point would travel at {:.4g} to {:.4g} "
+    "mm/s - velocities and rates here are of the value between"
 )
 DEEP = (
     "{}: up to {:.2g} mm deep in the track or a device, where corners and edges slipped past each other's "
@@ -115,6 +120,14 @@ class TrialRun:
         total = weights.sum()
         return float((weights * found.velocities[which]).sum() / total) if total > 0.0 else np.nan
 
+    @cached_property
+    def rebound(self):
+        """Return what a point travels at, at both ends of the spread of restitution, Neighbours.
+
+        None where no part is thrown up: then restitution decides nothing of a velocity.
+        """
+        return sensitivity.restitution_doubt(self.bowl) if self.throw_number > 1.0 else None
+
     @property
     def parts(self):
         """Return delivered parts [1/s]: counted in the queue, else what is offered times the efficiency."""
@@ -200,6 +213,8 @@ class TrialRun:
         drive = self.bowl.drive
         if self.throw_number > 1.0:
             yield HOPS.format(self.throw_number, 1e3 * drive.amplitude / self.throw_number)
+            low, high = sensitivity.rebounds(self.bowl)
+            yield BOUNCES.format(low, high, 1e3 * self.rebound.less, 1e3 * self.rebound.more)
         for k in np.flatnonzero(self.odd):
             said = "passes" if self.predicted[k] else "is returned"
             if np.isfinite(self.margin[k]):  # the bare track gives none

@@ -35,6 +35,18 @@ def test_every_transition_is_counted_once():
     assert found.rates == pytest.approx(found.counts / found.times[:, None])
 
 
+def test_restitution_scatters_where_the_plate_throws_parts_up():
+    """A value of the bowl file stood as it was, 0.2 for all; a range as typed stays what it is."""
+
+    def came(amplitude, pace=bowl_test.EXACT, **own):
+        bowl = bowls.read(None, (f"drive.amplitude={amplitude} mm",))
+        return bowl_test._surfaced(PRESETS["feed"], bowl, own, pace).restitution
+
+    assert came(0.4) == pytest.approx((0.1446, 0.2554), abs=1e-4)
+    assert came(0.2) == (0.2, 0.2) and came(0.4, bowl_test.Pace()) == (0.2, 0.2)
+    assert came(0.4, restitution="0.2:0.2") == PRESETS["feed"].restitution  # as it came, with that range
+
+
 def test_shares_fill_each_look():
     rng = np.random.default_rng(3)
     found = counted(rng.integers(0, 4, (30, 40)))

@@ -32,7 +32,7 @@ def test_each_solution_reaches_the_target():
     assert {one.key.name for one in found} >= {"drive.amplitude", "drive.frequency"}
     for one in found:
         again = answer.answer(drive_settings.turned(BOWL, one.key, one.value))
-        assert again.velocity == pytest.approx(0.05 / PER_METRE, rel=1e-5)
+        assert again.velocity == pytest.approx(0.05 / PER_METRE, rel=1e-4)  # values have five digits
         assert again.regime == one.answer.regime
 
 

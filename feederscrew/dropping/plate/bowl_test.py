@@ -33,9 +33,10 @@ class Pace:
     width: float | None = None  # [1] of the widest 95 % interval to either side: then enough parts are known
     keep: bool = False  # the rides themselves, for a run of more parts
     done: Rides | None = None  # those of the first parts, where they were kept
+    scatters: bool = False  # one value of restitution as that of single impacts, where parts are thrown up
 
 
-EXACT = Pace()
+EXACT = Pace(scatters=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +124,7 @@ def test(
     count, results = USUAL if drops is None else drops, []
     plate = partial(_plate, found, aspects, shape, length, seconds, pace)
     came = (conditions.launch_of(preset, length, own, bowl.gravity) for bowl in bowls)
-    launches = [_surfaced(launch, bowl, own) for launch, bowl in zip(came, bowls)]
+    launches = [_surfaced(launch, bowl, own, pace) for launch, bowl in zip(came, bowls)]
     if before:
         before()
     for k, bowl in enumerate(bowls):
@@ -144,10 +145,16 @@ def _after(before, total, progress):
     return progress and (lambda done: progress(before + done, total))
 
 
-def _surfaced(launch, bowl, own):
+def _surfaced(launch, bowl, own, pace):
     """The launch with the bowl's restitution and friction, where the user gave none."""
     surface = {"restitution": bowl.restitution, "friction": bowl.friction.kinetic}
-    return replace(launch, **{key: (value, value) for key, value in surface.items() if own.get(key) is None})
+    launch = replace(
+        launch, **{key: (value, value) for key, value in surface.items() if own.get(key) is None}
+    )
+    given = own.get("restitution")
+    single = given is None or conditions.single(given) is not None
+    thrown = drive.throw_number(bowl) > 1.0
+    return launch.scattering() if pace.scatters and single and thrown else launch
 
 
 def _plate(found, aspects, shape, length, seconds, pace, bowl, launch, count, seed, jobs, progress):

@@ -42,6 +42,7 @@ def document(study):
         "flights_per_period": found.flights,
         "sensitivity": {name: _changed(found, pair, change) for name, pair in study.nearby.items()},
         "friction_doubt": _changed(found, study.doubt, sensitivity.FRICTION_DOUBT),
+        "restitution_doubt": rebound(study.bowl, study.rebound),
         "validity": study.validity,
     }
 
@@ -66,6 +67,7 @@ def summary(document):
         ("hardest impact [mm/s]", number(document["hardest_impact_mm_s"])),
         *(_change(name, pair) for name, pair in document["sensitivity"].items()),
         _change("friction", document["friction_doubt"]),
+        *_bounced(document["restitution_doubt"]),
         ("validity", document["validity"]),
     ]
     return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
@@ -154,6 +156,39 @@ def _changed(found, pair, change):
         "velocity_more_mm_s": pair.more / MM_S,
         "percent_per_percent": pair.elasticity(found.velocity, change),
     }
+
+
+def rebound(bowl, found):
+    """Return a document's entry on the spread of restitution.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    found : Neighbours or None
+        From ``sensitivity.restitution_doubt``; None where nothing is thrown up.
+
+    Returns
+    -------
+    dict or None
+    """
+    if found is None:
+        return None
+    low, high = sensitivity.rebounds(bowl)
+    return {
+        "restitution_low": low,
+        "restitution_high": high,
+        "velocity_less_mm_s": found.less / MM_S,
+        "velocity_more_mm_s": found.more / MM_S,
+    }
+
+
+def _bounced(found):
+    """A row of what the spread of restitution does, where the document has one."""
+    if found is None:
+        return []
+    ends = (number(found[f"restitution_{end}"]) for end in ("low", "high"))
+    speeds = (number(found[f"velocity_{end}_mm_s"]) for end in ("less", "more"))
+    return [(f"velocity for restitution {' / '.join(ends)} [mm/s]", " / ".join(speeds))]
 
 
 def _change(name, pair):

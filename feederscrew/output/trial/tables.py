@@ -5,6 +5,7 @@ import numpy as np
 from feederscrew import units
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.output import columns, tables
+from feederscrew.output.convey.tables import rebound
 from feederscrew.studies.trial import ENGINE
 from feederscrew.trial import course
 
@@ -36,6 +37,7 @@ def _run(study, run):
         "amplitude_mm": run.bowl.drive.amplitude / MM,
         "throw_number": run.throw_number,
         "velocity_mm_s": run.velocity / MM_S,
+        "point_restitution_doubt": rebound(run.bowl, run.rebound),
         "rolls_back_mm_s": run.rolling_back / MM_S,
         "parts_per_minute": run.parts / PER_MINUTE,
         "efficiency": run.efficiency,

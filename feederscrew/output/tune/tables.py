@@ -38,7 +38,7 @@ def summary(study):
     return tables.frame(
         {
             f"{study.target / PER_MINUTE:.6g}/min {MET[study.worst].replace(' the ', ' ')}": [
-                f"{row['key']} {row['value']:.5g} {row['unit']}" for row in rows
+                f"{row['key']} {row['value']:.6g} {row['unit']}" for row in rows
             ],
             "per min": frame["parts_per_minute"],
             "mu +-20 %": [_between(row) for row in rows],

@@ -57,6 +57,16 @@ def test_table_of_a_point(run):
     assert max(map(len, result.stdout.splitlines())) <= 100  # 170 once
 
 
+def test_restitution_is_a_spread_where_parts_are_thrown(run):
+    high, low = ("convey", "--set", "drive.amplitude=0.4 mm"), ("convey", "--set", "drive.amplitude=0.2 mm")
+    found = json.loads(run(*high, "--format", "json").stdout)["restitution_doubt"]
+    assert (found["restitution_low"], found["restitution_high"]) == pytest.approx((0.1446, 0.2554), abs=1e-4)
+    assert found["velocity_less_mm_s"] > 1.05 * found["velocity_more_mm_s"] > 0.0
+    assert "velocity for restitution 0.1446 / 0.2554 [mm/s]" in run(*high).stdout
+    assert json.loads(run(*low, "--format", "json").stdout)["restitution_doubt"] is None
+    assert "restitution" not in run(*low).stdout
+
+
 def test_no_steady_state_is_an_answer_and_a_warning(run):
     result = run("convey", "--set", "track.climb=20 deg", "--set", "friction.static=0.3", "--format", "json")
     document = json.loads(result.stdout)

@@ -49,7 +49,8 @@ def test_json_of_one_plate(run, stl):
     (plate,) = told["plates"]
     assert plate["bowl"] == "bowl" and plate["amplitude_mm"] == pytest.approx(0.4)
     assert plate["drops"] == 30 and plate["seconds"] == pytest.approx(0.5)
-    assert plate["restitution"] == [0.2, 0.2] and plate["friction"] == [0.6, 0.6]
+    assert plate["restitution"] == pytest.approx([0.1446, 0.2554], abs=1e-4)  # parts hop: it scatters
+    assert plate["friction"] == [0.6, 0.6]
     assert plate["velocity_low_mm_s"] <= plate["velocity_mm_s"] <= plate["velocity_high_mm_s"]
     assert [list(row) for row in plate["aspects"]] == [COLUMNS[3:]] * 3
     assert plate["unsettled"] == 0
