@@ -16,6 +16,8 @@ RIGHT = 0.5 * np.pi  # [rad] upright
 def direction(machine: Machine, radius: ArrayLike) -> Any:
     """Return the angle of the bowl's motion to the horizontal.
 
+    Source: docs/bowl.md, "How it is computed".
+
     Parameters
     ----------
     machine : Machine
@@ -38,13 +40,18 @@ def direction(machine: Machine, radius: ArrayLike) -> Any:
 
 
 def shares(machine: Machine) -> tuple[float, float]:
-    """Return the bowl's shares of the rise and of the turn between bowl and base [1]."""
+    """Return the bowl's shares of the rise and of the turn between bowl and base [1].
+
+    Source: the bowl and its base keep their momentum; docs/bowl.md, "How it is computed".
+    """
     rise = machine.base_mass / (machine.bowl_mass + machine.base_mass)
     return rise, machine.base_inertia / (machine.bowl_inertia + machine.base_inertia)
 
 
 def vibration_angle(machine: Machine, radius: ArrayLike, climb: ArrayLike) -> Any:
     """Return the angle from the track to the bowl's motion [rad], within 0 to 90 deg.
+
+    Source: docs/bowl.md, "How it is computed".
 
     Parameters
     ----------

@@ -40,7 +40,10 @@ def harmonic(wave):
 
 
 def peak(a):
-    """Return the greatest value of a harmonic, in its own unit: here accelerations [A w2]."""
+    """Return the greatest value of a harmonic, in its own unit: here accelerations [A w2].
+
+    Source: own; docs/conveying.md, "Elliptical drives".
+    """
     if a.second == 0.0:
         return a.level + a.swing
     once, twice = a.phase, a.second_phase
@@ -50,7 +53,10 @@ def peak(a):
 
 
 def value(a, angle):
-    """Return the harmonic at an angle [rad], in its own unit."""
+    """Return the harmonic at an angle [rad], in its own unit.
+
+    Source: docs/conveying.md, "Elliptical drives".
+    """
     once = a.level + a.swing * math.sin(angle + a.phase)
     return once if a.second == 0.0 else once + a.second * math.sin(2.0 * angle + a.second_phase)
 

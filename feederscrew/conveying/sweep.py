@@ -46,6 +46,8 @@ LOT = 256  # settings handed to a core at a time: their costs differ a hundredfo
 def sweep(settings, workers=None):
     """Compute the steady motion of many settings, as ``steady.survey`` does for one.
 
+    Source: docs/conveying.md, "How it is computed".
+
     Parameters
     ----------
     settings : (N, 11) float [1 and rad, as OperatingPoint]

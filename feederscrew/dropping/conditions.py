@@ -20,6 +20,8 @@ SHOWN = {"length": "mm", "velocity": "mm/s", "angular velocity": "rad/s", "numbe
 def launch_of(preset, length, texts, gravity=GRAVITY):
     """Return a preset with the user's own ranges in it.
 
+    Source: docs/resting.md, "The drop test".
+
     Parameters
     ----------
     preset : str
@@ -52,6 +54,8 @@ def single(text):
 
 def described(launch, length, gravity=GRAVITY):
     """Return the name and ranges of a launch in the units of the shop, for documents.
+
+    Source: docs/resting.md, "The drop test".
 
     Parameters
     ----------

@@ -152,12 +152,18 @@ def tally(drops, rows, count, *, surface=False):
 
 
 def counted(faces, rows, count):
-    """Count drops by class, (A,) [1], from the faces (N,) they rest on."""
+    """Count drops by class, (A,) [1], from the faces (N,) they rest on.
+
+    Source: docs/resting.md, "The drop test".
+    """
     return np.bincount(rows[faces[faces != kernel.UNSETTLED]], minlength=count)
 
 
 def shares(counts):
-    """Return the shares (A,) [1] of counts (A,); NaN where all are zero."""
+    """Return the shares (A,) [1] of counts (A,); NaN where all are zero.
+
+    Source: docs/resting.md, "The drop test".
+    """
     total = counts.sum()
     return counts / total if total else np.full(len(counts), np.nan)
 

@@ -153,7 +153,10 @@ def _after(p, q):
 
 
 def lowest_points(shape, attitudes):
-    """Return heights (N,) [L] of the lowest point over the centre, for attitudes (N, 4) [1] of the body."""
+    """Return heights (N,) [L] of the lowest point over the centre, for attitudes (N, 4) [1] of the body.
+
+    Source: the support function of a body in the direction down.
+    """
     up = _in_body(attitudes, np.array([[0.0, 0.0, 1.0]]))
     lowest = np.einsum("ni,vi->nv", up, shape.vertices).min(axis=1)
     rims = np.einsum("ni,nri->nr", up, lowest_on(shape, up))

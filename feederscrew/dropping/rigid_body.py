@@ -61,6 +61,8 @@ class Shape(NamedTuple):
 def shape_of(hull, labels, mass, inertia, axes=None):
     """Return the shape of a hull, and the length that makes it dimensionless.
 
+    Source: docs/resting.md, "The drop test".
+
     Parameters
     ----------
     hull : Hull

@@ -150,6 +150,8 @@ def _varied(state, uncertain, surface, draws):
 def scattered(ends, relative, draws):
     """Return values of what is known as one value or as a range.
 
+    Source: docs/validation.md, "Restitution is a spread".
+
     Parameters
     ----------
     ends : (float, float) [that of the value]

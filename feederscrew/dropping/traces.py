@@ -55,6 +55,8 @@ class DropTrace:
 def follow(shape, length, principal, starts, drops, rows):
     """Follow the first drops of a test once more.
 
+    Source: docs/resting.md, "The drop test".
+
     Parameters
     ----------
     shape : Shape

@@ -131,7 +131,10 @@ def _first(amplitudes: np.ndarray, fast: np.ndarray, reach: float) -> Any:
 
 
 def steepest(bowl: Bowl) -> float:
-    """Return the climb up to which a part travels, the springs left as they are [rad]; NaN for none."""
+    """Return the climb up to which a part travels, the springs left as they are [rad]; NaN for none.
+
+    Source: docs/bowl.md, "How it is computed".
+    """
     upright = bowl.drive.vibration_angle + bowl.track.climb
 
     def travels(climb: float) -> bool:

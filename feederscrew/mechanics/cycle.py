@@ -32,7 +32,10 @@ class Cycle:
 
 
 def phases(samples=SAMPLES):
-    """Return phases w t of one period, (samples,) [rad]; the upper reversal is at a quarter."""
+    """Return phases w t of one period, (samples,) [rad]; the upper reversal is at a quarter.
+
+    Source: a harmonic drive; docs/mechanics.md, "Frames and signs".
+    """
     return TURN * np.arange(samples) / samples
 
 

@@ -10,6 +10,8 @@ from feederscrew.errors import FeederError
 def places(known, counts):
     """Return the stations of a chain that were counted.
 
+    Source: docs/counts.md, "A feeding test, device by device".
+
     Parameters
     ----------
     known : Orientations

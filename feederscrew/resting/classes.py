@@ -17,6 +17,8 @@ def classes(faces, part, moments):
     Only rotations count: a feeder cannot reflect a part, so mirror images stay apart. The rotation must be
     a symmetry of the solid, not just of its hull.
 
+    Source: own; docs/resting.md, "Exact tumbling".
+
     Parameters
     ----------
     faces : list of Face
@@ -58,6 +60,8 @@ def _along(turned, axes):
 def symmetries(faces, part, moments):
     """Return rotations that leave the solid as it is, the identity left out.
 
+    Source: own; docs/resting.md, "Exact tumbling".
+
     Parameters
     ----------
     faces : list of Face
@@ -82,6 +86,8 @@ def symmetries(faces, part, moments):
 
 def body_frame(part, moments):
     """Return axes fixed in the part: principal axes of inertia, pointed by the solid's third moments.
+
+    Source: the eigenvectors of the inertia matrix; own: their signs.
 
     Parameters
     ----------

@@ -11,6 +11,8 @@ ON_A_LINE = 1e-6  # of the contact's size: a corner off the line between its nei
 def outlines(vertices, corners, owners, normals):
     """Return the convex outlines of points about planes.
 
+    Source: own; docs/resting.md, "Barriers and the tipping graph".
+
     Parameters
     ----------
     vertices : (V, 3) float [m]

@@ -35,12 +35,18 @@ def vectors(name, value):
 
 
 def dot(u, v):
-    """Return the scalar product (...,) over the last axis of (..., 3) and (..., 3) [any units]."""
+    """Return the scalar product (...,) over the last axis of (..., 3) and (..., 3) [any units].
+
+    Source: its definition.
+    """
     return np.einsum("...i,...i->...", u, v)
 
 
 def length(u):
-    """Return the length (...,) of vectors (..., 3), in their unit [any]; no square overflows or vanishes."""
+    """Return the length (...,) of vectors (..., 3), in their unit [any]; no square overflows or vanishes.
+
+    Source: own: scaled by the largest component.
+    """
     return np.hypot(np.hypot(u[..., 0], u[..., 1]), u[..., 2])
 
 

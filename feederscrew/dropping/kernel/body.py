@@ -36,34 +36,49 @@ def rotation(state, turn):
 
 @compiled
 def spin_energy(state, inertia):
-    """Return the rotational energy over mass [g L] of a state (13,), from the inertia (3,) over mass [L2]."""
+    """Return the rotational energy over mass [g L] of a state (13,), from the inertia (3,) over mass [L2].
+
+    Source: Newton and Euler for a rigid body; docs/resting.md, "The drop test".
+    """
     p, q, r = state[W], state[W + 1], state[W + 2]
     return 0.5 * (inertia[0] * p * p + inertia[1] * q * q + inertia[2] * r * r)
 
 
 @compiled
 def rate(state):
-    """Return how fast the body of a state (13,) turns [sqrt(g/L)]."""
+    """Return how fast the body of a state (13,) turns [sqrt(g/L)].
+
+    Source: Newton and Euler for a rigid body; docs/resting.md, "The drop test".
+    """
     p, q, r = state[W], state[W + 1], state[W + 2]
     return math.sqrt(p * p + q * q + r * r)
 
 
 @compiled
 def quickest(state, inertia):
-    """Bound how fast a body turns in free rotation [sqrt(g/L)]: all energy about the easiest axis."""
+    """Bound how fast a body turns in free rotation [sqrt(g/L)]: all energy about the easiest axis.
+
+    Source: 2 T = w . I w with the least moment of inertia.
+    """
     return math.sqrt(2.0 * spin_energy(state, inertia) / min(inertia[0], inertia[1], inertia[2]))
 
 
 @compiled
 def moving_energy(state, inertia):
-    """Return the kinetic energy over mass [g L] of a state (13,)."""
+    """Return the kinetic energy over mass [g L] of a state (13,).
+
+    Source: Newton and Euler for a rigid body; docs/resting.md, "The drop test".
+    """
     u, v, w = state[VX], state[VY], state[VZ]
     return spin_energy(state, inertia) + 0.5 * (u * u + v * v + w * w)
 
 
 @compiled
 def energy(state, inertia):
-    """Return kinetic energy and height of a state (13,): the total energy over mass [g L]."""
+    """Return kinetic energy and height of a state (13,): the total energy over mass [g L].
+
+    Source: Newton and Euler for a rigid body; docs/resting.md, "The drop test".
+    """
     return moving_energy(state, inertia) + state[Z]
 
 
@@ -166,7 +181,10 @@ def lowest(points, links, turn, corner):
 
 @compiled
 def rim_level(rims, k, turn):
-    """Return the height [L] of a rim's lowest point over the centre; infinite where an arc has none."""
+    """Return the height [L] of a rim's lowest point over the centre; infinite where an arc has none.
+
+    Source: a circle is lowest where the vertical, seen in its plane, points down.
+    """
     a, b, c = turn[6], turn[7], turn[8]
     along = a * rims[k, 3] + b * rims[k, 4] + c * rims[k, 5]
     x, y, z = a - along * rims[k, 3], b - along * rims[k, 4], c - along * rims[k, 5]

@@ -75,7 +75,10 @@ class Steps(NamedTuple):
 
 @compiled
 def gap_after(solid, work, floor, time, corner, dt):
-    """Fly from the saved state over dt [sqrt(L/g)]; return the corner to look on from and the height [L]."""
+    """Fly from the saved state over dt [sqrt(L/g)]; return the corner to look on from and the height [L].
+
+    Source: docs/resting.md, "The drop test".
+    """
     state = work.state
     body.keep(work.saved, state)
     body.fly(state, solid.inertia, dt)
@@ -118,7 +121,10 @@ def approach(solid, work, floor, time, corner, gap, steps):
 
 @compiled
 def move(solid, work, corner, dt):
-    """Move at the mean of saved and present velocities over dt [sqrt(L/g)]; return corner and height [L]."""
+    """Move at the mean of saved and present velocities over dt [sqrt(L/g)]; return corner and height [L].
+
+    Source: docs/resting.md, "The drop test".
+    """
     state, saved = work.state, work.saved
     for k in range(3):
         state[k] = saved[k] + 0.5 * dt * (saved[VX + k] + state[VX + k])
@@ -226,7 +232,10 @@ def advance(solid, work, floor, time, corner, gap, restitution, friction, steps)
 
 @compiled
 def start(solid, work):
-    """Return the corner from which to look for the body's lowest point as it stands, and its height [L]."""
+    """Return the corner from which to look for the body's lowest point as it stands, and its height [L].
+
+    Source: docs/resting.md, "The drop test".
+    """
     work.pressed[0] = 0.0
     body.rotation(work.state, work.turn)
     corner, level = body.bottom(solid, work.turn, 0)

@@ -84,7 +84,10 @@ def masses(row):
 
 @compiled
 def speed(state, row, e):
-    """Return the velocity [sqrt(g L)] of a contact, a row (WIDTH,), along floor axis e."""
+    """Return the velocity [sqrt(g L)] of a contact, a row (WIDTH,), along floor axis e.
+
+    Source: v + w x r of a rigid body.
+    """
     k = LEVER + 3 * e
     return state[VX + e] + row[k] * state[W] + row[k + 1] * state[W + 1] + row[k + 2] * state[W + 2]
 
@@ -102,6 +105,9 @@ def push(state, row, e, impulse):
 
 @compiled
 def coupling(row, d, e):
-    """Return the velocity [1] along floor axis d for a unit of impulse along e, of the rotation alone."""
+    """Return the velocity [1] along floor axis d for a unit of impulse along e, of the rotation alone.
+
+    Source: I w = r x p of a rigid body; docs/resting.md, "The drop test".
+    """
     i, j = LEVER + 3 * d, RATE + 3 * e
     return row[i] * row[j] + row[i + 1] * row[j + 1] + row[i + 2] * row[j + 2]

@@ -34,20 +34,29 @@ def at_rest():
 
 @compiled
 def place(floor, amplitude, angle):
-    """Return where the floor is along one axis [L], at a phase [rad] of its motion."""
+    """Return where the floor is along one axis [L], at a phase [rad] of its motion.
+
+    Source: a harmonic drive; docs/conveying.md, "The model".
+    """
     return amplitude * (math.sin(angle) + floor.second * math.sin(2.0 * angle + floor.second_phase))
 
 
 @compiled
 def speed(floor, amplitude, angle):
-    """Return how fast the floor moves along one axis [sqrt(g L)], at a phase [rad] of its motion."""
+    """Return how fast the floor moves along one axis [sqrt(g L)], at a phase [rad] of its motion.
+
+    Source: a harmonic drive; docs/conveying.md, "The model".
+    """
     turned = math.cos(angle) + 2.0 * floor.second * math.cos(2.0 * angle + floor.second_phase)
     return amplitude * floor.rate * turned
 
 
 @compiled
 def quickening(floor, time, dt):
-    """Return the change of the floor's velocity [sqrt(g L)] over a step [sqrt(L/g)], along x and z."""
+    """Return the change of the floor's velocity [sqrt(g L)] over a step [sqrt(L/g)], along x and z.
+
+    Source: a harmonic drive; docs/conveying.md, "The model".
+    """
     if floor.rate == 0.0:
         return 0.0, 0.0
     now, then = floor.rate * time, floor.rate * (time + dt)

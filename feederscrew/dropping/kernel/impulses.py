@@ -48,13 +48,19 @@ def stick(state, row, friction):
 
 @compiled
 def along(c, n, k, v, p, q, r):
-    """Return the velocity [sqrt(g L)] of contact n: of the centre, and of the rates on the lever at k."""
+    """Return the velocity [sqrt(g L)] of contact n: of the centre, and of the rates on the lever at k.
+
+    Source: v + w x r of a rigid body.
+    """
     return v + c[n, k] * p + c[n, k + 1] * q + c[n, k + 2] * r
 
 
 @compiled
 def spun(c, n, k, impulse, p, q, r):
-    """Return the rates [sqrt(g/L)] after an impulse [sqrt(g L)] along the axis whose RATE column is k."""
+    """Return the rates [sqrt(g/L)] after an impulse [sqrt(g L)] along the axis whose RATE column is k.
+
+    Source: I w = r x p of a rigid body.
+    """
     return p + c[n, k] * impulse, q + c[n, k + 1] * impulse, r + c[n, k + 2] * impulse
 
 

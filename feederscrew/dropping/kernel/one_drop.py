@@ -30,7 +30,10 @@ def face_below(shape, turn, corner):
 
 @compiled
 def rolling_energy(shape, state, turn, face):
-    """Return the energy [g L] of rolling about the axis of a rolling face: no impact turns it into height."""
+    """Return the energy [g L] of rolling about the axis of a rolling face: no impact turns it into height.
+
+    Source: own; docs/resting.md, "The drop test".
+    """
     a = shape.axes[face]
     x = turn[0] * a[0] + turn[1] * a[1] + turn[2] * a[2]
     y = turn[3] * a[0] + turn[4] * a[1] + turn[5] * a[2]
@@ -117,6 +120,8 @@ def settle_all(shape, work, starts, restitutions, frictions, steps, faces, times
 
 def settle(shape, work, restitution, friction, steps):
     """Follow one body until its face is decided.
+
+    Source: docs/resting.md, "The drop test".
 
     Parameters
     ----------

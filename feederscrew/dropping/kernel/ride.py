@@ -108,6 +108,8 @@ def ride_all(shape, work, floor, starts, restitutions, frictions, steps, looks, 
 def ride(shape, work, floor, restitution, friction, steps, looks, faces, places):
     """Follow one body on a moving floor.
 
+    Source: docs/resting.md, "On the vibrating plate".
+
     Parameters
     ----------
     shape : Shape

@@ -52,14 +52,20 @@ def aim(row, friction, ahead, aside):
 
 @compiled
 def given(row, e, by):
-    """Return the velocity [1] of a contact along floor axis e for a unit of what presses another."""
+    """Return the velocity [1] of a contact along floor axis e for a unit of what presses another.
+
+    Source: own; docs/resting.md, "The drop test".
+    """
     k = LEVER + 3 * e
     return by[LAST + e] + row[k] * by[CHANGE] + row[k + 1] * by[CHANGE + 1] + row[k + 2] * by[CHANGE + 2]
 
 
 @compiled
 def pressed(state, first, last, count):
-    """Return the impulse [sqrt(g L)] that makes each contact leave as wanted; 0 where there is no second."""
+    """Return the impulse [sqrt(g L)] that makes each contact leave as wanted; 0 where there is no second.
+
+    Source: own; docs/resting.md, "The drop test".
+    """
     a, here = given(first, 2, first), first[WANTED] - speed(state, first, 2)
     if count == 1:
         return here / a, 0.0

@@ -59,7 +59,10 @@ def flooded(solid, work, height, corner, reach):
 
 @compiled
 def lowest_on(rims, k, turn):
-    """Return the unit vector (3,) [1] from a rim's centre to its lowest point, and how steep it is [1]."""
+    """Return the unit vector (3,) [1] from a rim's centre to its lowest point, and how steep it is [1].
+
+    Source: a circle is lowest where the vertical, seen in its plane, points down.
+    """
     r = rims[k]
     along = turn[6] * r[3] + turn[7] * r[4] + turn[8] * r[5]
     x, y, z = along * r[3] - turn[6], along * r[4] - turn[7], along * r[5] - turn[8]

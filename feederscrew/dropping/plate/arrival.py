@@ -98,6 +98,8 @@ def _without_rides(found):
 def steps_needed(hull, bowl):
     """Return how many steps one part takes on the floor of a bowl, were it followed to the end.
 
+    Source: own; docs/resting.md, "What arrives from the bowl's floor".
+
     Parameters
     ----------
     hull : Hull

@@ -82,6 +82,8 @@ def test(
 ):
     """Put parts on a vibrating plate, one at a time, and follow what they lie on.
 
+    Source: docs/resting.md, "On the vibrating plate".
+
     Parameters
     ----------
     part : Part
@@ -216,5 +218,8 @@ def _last(done):
 
 
 def looks_apart(frequency, seconds):
-    """Return the time between looks [s]: whole periods of the drive, so that the plate stands alike."""
+    """Return the time between looks [s]: whole periods of the drive, so that the plate stands alike.
+
+    Source: docs/resting.md, "On the vibrating plate".
+    """
     return max(int(np.ceil(seconds * frequency / MOST)), 1) / frequency

@@ -15,6 +15,8 @@ SLOW = 0.1  # of the plate's greatest speed upwards: slower contacts do not rebo
 def floor_of(bowl, length, coarse=1.0):
     """Return the plate that moves as the bowl's floor does; level, its x axis along the drive.
 
+    Source: docs/resting.md, "On the vibrating plate".
+
     Parameters
     ----------
     bowl : Bowl

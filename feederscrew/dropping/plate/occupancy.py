@@ -44,6 +44,8 @@ class Occupancy:
 def occupancy(faces, places, rows, count, period, rng):
     """Return shares, rates and velocities.
 
+    Source: docs/resting.md, "On the vibrating plate".
+
     Parameters
     ----------
     faces : (N, K) int
@@ -92,7 +94,10 @@ def occupancy(faces, places, rows, count, period, rng):
 
 
 def lasting(faces):
-    """Return the face (N, K) [1] each part lies on or lay on last; UNSETTLED before the first."""
+    """Return the face (N, K) [1] each part lies on or lay on last; UNSETTLED before the first.
+
+    Source: docs/resting.md, "On the vibrating plate".
+    """
     at = np.where(faces == UNSETTLED, 0, np.arange(faces.shape[1]))
     return np.take_along_axis(faces, np.maximum.accumulate(at, axis=1), axis=1)
 

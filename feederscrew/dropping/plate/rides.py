@@ -29,6 +29,8 @@ class Rides:
 def ride(shape, floor, starts, looks, steps, *, kick=math.inf, jobs=1, progress=None):
     """Follow parts on a plate.
 
+    Source: docs/resting.md, "On the vibrating plate".
+
     Parameters
     ----------
     shape : Shape

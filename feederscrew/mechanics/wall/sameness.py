@@ -18,6 +18,8 @@ DIRECTIONS = 750  # on half the sphere; their images by mirroring are the other 
 def looks(posture, headings):
     """Compute what a part looks like in each of some headings.
 
+    Source: own; docs/mechanics.md, "Headings".
+
     Parameters
     ----------
     posture : Posture

@@ -71,6 +71,8 @@ def stability(faces, contact_area, height):
 def normalised(weights, stable):
     """Return the probabilities of the stable aspects from their weights; the unstable ones have none.
 
+    Source: docs/resting.md, "How were the parts launched?".
+
     Parameters
     ----------
     weights : (A,) float [any one unit]

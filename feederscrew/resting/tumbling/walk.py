@@ -20,13 +20,19 @@ def row(array, k):
 
 @compiled
 def dot(a, b):
-    """Return the scalar product of two triples (3,), in the product of their units [any]."""
+    """Return the scalar product of two triples (3,), in the product of their units [any].
+
+    Source: its definition.
+    """
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @compiled
 def triple(a, b, c):
-    """Return a . (b x c) of triples (3,): of unit vectors, a volume [1]."""
+    """Return a . (b x c) of triples (3,): of unit vectors, a volume [1].
+
+    Source: its definition.
+    """
     return (
         a[0] * (b[1] * c[2] - b[2] * c[1])
         + a[1] * (b[2] * c[0] - b[0] * c[2])
@@ -36,7 +42,10 @@ def triple(a, b, c):
 
 @compiled
 def toward(a, b, step):
-    """Return the unit vector [1] along a + step b, of triples (3,)."""
+    """Return the unit vector [1] along a + step b, of triples (3,).
+
+    Source: a point of the great circle through both.
+    """
     x, y, z = a[0] + step * b[0], a[1] + step * b[1], a[2] + step * b[2]
     n = 1.0 / math.sqrt(x * x + y * y + z * z)
     return n * x, n * y, n * z
