@@ -113,3 +113,50 @@ def test_a_fault_names_the_argument_not_an_option(bracket, conditions, line):
     with pytest.raises(fs.ConfigError) as caught:
         fs.drop(bracket, **conditions)
     assert str(caught.value) == line
+
+
+WRONG = {
+    "aspects(p, surface='icy')": "surface: is 'icy' - give soft, medium and hard or an exponent",
+    "tooling(p, b, play='2 kg')": "play: '2 kg' is a mass, not a length - give it in mm",
+    "tooling(p, b, purity=2)": "purity: is 2 - give a number from 0 to 1",
+    "tooling(p, b, 5)": "aspect: is 5 - give the name of an aspect, 'A'",
+    "tooling(p, b, known=4)": "known: is 4 - give what shares returned",
+    "trial(p, b, 7)": "aspect: is 7 - give the name of an aspect, 'A'",
+    "trial(p, b, seconds='2 mm')": "seconds: '2 mm' is a length, not a time - give it in s",
+    "trial(p, b, landing=-2)": "landing: is -2 - give a number from 1",
+    "trial(p, b, seed=-1)": "seed: is -1 - give a number from 0",
+    "design(p, '60/min', known=3)": "known: is 3 - give what shares returned",
+    "design(p, '60/min', aspect=4)": "aspect: is 4 - give the name of an aspect, 'A'",
+    "design(p, '60/min', outcome='round')": "outcome: is 'round' - give any, lying and hanging",
+    "design(p, '60/min', diameter=(2, 1))": "diameter: is from 2 to 1 - give the smaller and the larger",
+    "design([], '60/min')": "part: is [] - give a Part, as load returns it",
+    "report(p, fill=3)": "fill: is 3 - give a number from 1e-06 to 1",
+    "report(p, bowl='bowl.yaml')": "bowl: is 'bowl.yaml' - give a dict of path and overrides",
+    "report(p, bowl={'file': 1})": "bowl: has a key 'file' - give a dict of path and overrides",
+}
+
+
+@pytest.mark.parametrize("call", WRONG)
+def test_a_wrong_call_is_a_line_that_names_the_argument(bracket, call):
+    """They were a KeyError, a TypeError of an addition, an AttributeError of a number, or no fault."""
+    with pytest.raises(fs.ConfigError) as caught:
+        eval(f"fs.{call}", {"fs": fs, "p": bracket, "b": fs.read_bowl()})
+    assert str(caught.value) == WRONG[call]
+
+
+def test_an_unknown_keyword_of_a_search_is_told_with_those_that_are_known(bracket):
+    for search in (fs.tooling, fs.trial):
+        with pytest.raises(TypeError, match="'colour' - known here are rule, "):
+            search(bracket, fs.read_bowl(), colour=1)
+    with pytest.raises(TypeError, match="'colour' - known here are aspect, up, "):
+        fs.design(bracket, "60/min", colour=1)
+
+
+def test_quantities_of_a_search_are_texts_or_numbers(bracket):
+    from feederscrew.api import asked, chains
+
+    found = asked.searched({"play": "0.2 mm", "seconds": "1 min", "step": 0.001, "up": "B"}, chains.SEARCH)
+    assert found.pop("up") == "B"
+    assert found == pytest.approx({"play": 2e-4, "seconds": 60.0, "step": 1e-3})
+    assert asked.pair("diameter", "300 mm", "length") == pytest.approx((0.3, 0.3))
+    assert asked.pair("diameter", (0.2, "1 m"), "length") == pytest.approx((0.2, 1.0))

@@ -13,6 +13,7 @@ from feederscrew.errors import ArgumentError
 from feederscrew.part import Part
 from feederscrew.rates.well_oriented import RECOMMENDED
 from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.rules.surface import EXPONENTS
 from feederscrew.studies.rate import Shares, shares
 from feederscrew.units import QuantityError, listed, quantity
 
@@ -133,6 +134,52 @@ def amount(name: str, value: Quantity, dimension: str, low: float = -math.inf) -
     return check.argument(name, number, low)
 
 
+def pair(name: str, value: Any, dimension: str) -> tuple[float, float]:
+    """Return the smaller and the larger of two quantities in SI units; one stands for both."""
+    ends = value if isinstance(value, (tuple, list)) else (value, value)
+    if len(ends) != 2:
+        raise ArgumentError(name, f"has {len(ends)} values", "give one, or the smaller and the larger")
+    low, high = (amount(name, end, dimension, 0.0) for end in ends)
+    if low > high:
+        raise ArgumentError(name, f"is from {low:g} to {high:g}", "give the smaller and the larger")
+    return low, high
+
+
+def searched(given: Mapping[str, Any], kinds: Mapping[str, str]) -> dict[str, Any]:
+    """Return the keywords of a search, quantities in SI units.
+
+    Parameters
+    ----------
+    given : dict
+        By name: a text or a number.
+    kinds : dict of str to str
+        What each may be: a dimension of ``units.UNITS``, 'share', 'count', 'seed', 'aspect', or 'any'
+        for what the search looks at itself.
+
+    Raises
+    ------
+    ArgumentError
+        If one is not what it may be; the line names it.
+    TypeError
+        If there is no such keyword.
+    """
+    _understood(given, tuple(kinds))
+    return {name: _as(name, value, kinds[name]) for name, value in given.items()}
+
+
+def _as(name: str, value: Any, kind: str) -> Any:
+    """One keyword of a search."""
+    if kind == "aspect":
+        return an_aspect(value)
+    if kind == "any" or value is None:
+        return value
+    if kind == "share":
+        return check.argument(name, value, 0.0, 1.0)
+    if kind in ("count", "seed"):
+        return count(name, value, 0 if kind == "seed" else 1)
+    return amount(name, value, kind, 0.0)
+
+
 def angle(name: str, value: Quantity | None) -> float | None:
     """Return an angle [rad] of '90 deg' or of radians; None stays None."""
     return None if value is None else amount(name, value, "angle")
@@ -156,6 +203,38 @@ def conditions(given: Mapping[str, Condition]) -> dict[str, str | None]:
     return {name: _typed(name, value) for name, value in given.items()}
 
 
+def an_aspect(name: str | None) -> str | None:
+    """Return the name of an aspect; None stays None."""
+    check.kind("aspect", "" if name is None else name, str, "give the name of an aspect, 'A'")
+    return name
+
+
+def the_shares(known: object) -> Shares | None:
+    """Return shares as ``shares`` gave them; None stays None."""
+    if known is not None:
+        check.kind("known", known, Shares, "give what shares returned")
+    return cast(Shares | None, known)
+
+
+def a_file_of_bowl(given: object) -> BowlFile:
+    """Return the keywords of ``read_bowl``; raises ArgumentError where they are no dict of these."""
+    mend = "give a dict of path and overrides"
+    check.kind("bowl", {} if given is None else given, Mapping, mend)
+    found = cast(BowlFile, given or {})
+    if strange := sorted(set(found) - {"path", "overrides"}):
+        raise ArgumentError("bowl", f"has a key {strange[0]!r}", mend)
+    return found
+
+
+def surface(given: str | float | None) -> str | float | None:
+    """Return a surface by its name, or the exponent that stands for it; None stays None."""
+    if isinstance(given, str):
+        if given not in EXPONENTS:
+            raise ArgumentError("surface", f"is {given!r}", f"give {listed(list(EXPONENTS))} or an exponent")
+        return given
+    return None if given is None else check.argument("surface", given, 0.0)
+
+
 def rule(asked: ProbabilitySource) -> str:
     """Return whose probabilities are asked for."""
     return asked.get("rule", RECOMMENDED)
@@ -173,10 +252,7 @@ def answered(part: Part, bowl: Bowl, asked: ProbabilitySource) -> Shares:
         a_file("probabilities", own["probabilities"])
     own["fed"] = count("fed", own.get("fed"))
     own["seed"] = count("seed", own.pop("seed", 1), 0)
-    if known is None:
-        return shares(part, bowl, **own)
-    check.kind("known", known, Shares, "give what shares returned")
-    return known
+    return shares(part, bowl, **own) if the_shares(known) is None else known
 
 
 def settings(asked: BowlFile) -> tuple[Any, ...]:

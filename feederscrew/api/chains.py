@@ -3,14 +3,26 @@
 from collections.abc import Sequence
 from typing import Any, Unpack
 
+from feederscrew import check
 from feederscrew.api import asked
 from feederscrew.api.asked import BowlFile, ProbabilitySource, Quantity
 from feederscrew.bowl import Bowl
 from feederscrew.part import Part
+from feederscrew.studies.rate import LEAST
 from feederscrew.studies.report import ReportStudy
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.studies.trial import TrialStudy
 from feederscrew.thesis.reproduced import Reproduction
+
+SEARCH = {
+    "rule": "any", "purity": "share", "efficiency": "share", "turn": "any", "seed": "seed",
+    "verdicts": "count", "seconds": "time", "told": "any", "outcome": "any", "without": "any", "up": "any",
+    "step": "length", "cutter": "length", "play": "length", "tolerance": "length",
+}  # fmt: skip
+TRIED = {
+    "rule": "any", "known": "any", "measured": "any", "landing": "count", "poured": "any",
+    "seconds": "time", "progress": "any", "before": "any",
+}  # fmt: skip
 
 
 def tooling(
@@ -39,7 +51,8 @@ def tooling(
     known : Shares, optional
         Of ``shares``.
     **search
-        rule, purity, efficiency, turn, seed, verdicts, seconds: as for ``feeder tooling``.
+        rule, purity, efficiency, turn, seed, verdicts, seconds, outcome, without, up, step, cutter, play,
+        tolerance: as for ``feeder tooling``.
 
     Returns
     -------
@@ -47,10 +60,13 @@ def tooling(
     """
     from feederscrew.studies.tooling import tooling as study
 
-    own = search if margin is None else search | {"margin": asked.amount("margin", margin, "length", 0.0)}
+    own = asked.searched(search, SEARCH)
+    if margin is not None:
+        own["margin"] = asked.amount("margin", margin, "length", 0.0)
     solid, lies = asked.a_part(part, mesh=True), asked.angle("heading", heading)
-    found = None if known is None else known.aspects
-    return study(solid, asked.a_bowl(bowl), aspect, heading=lies, known=found, **own)
+    shared = asked.the_shares(known)
+    found = None if shared is None else shared.aspects
+    return study(solid, asked.a_bowl(bowl), asked.an_aspect(aspect), heading=lies, known=found, **own)
 
 
 def trial(
@@ -94,7 +110,10 @@ def trial(
 
     solid, driven = asked.a_part(part, mesh=True), asked.some_bowls(bowls)
     parts, queue = asked.count("parts", parts), asked.count("queue", queue)
-    return study(solid, driven, aspect, parts=parts, queue=queue, seed=seed, jobs=jobs, **others)
+    own = asked.searched(others, TRIED)
+    asked.the_shares(own.get("known"))
+    own |= {"seed": asked.count("seed", seed, 0), "jobs": asked.count("jobs", jobs)}
+    return study(solid, driven, asked.an_aspect(aspect), parts=parts, queue=queue, **own)
 
 
 def report(
@@ -131,7 +150,7 @@ def report(
     from feederscrew.studies.report import report as study
 
     own: dict[str, Any] = {name: value for name, value in answer.items() if name not in ("rule", "known")}
-    file = bowl or {}
+    file = asked.a_file_of_bowl(bowl)
     path = file.get("path")
     return study(
         asked.a_part(part),
@@ -141,7 +160,7 @@ def report(
         heading=asked.angle("heading", heading),
         rule=asked.rule(answer),
         gap=asked.amount("gap", gap, "length", 0.0),
-        fill=fill,
+        fill=check.argument("fill", fill, LEAST, 1.0),
         target=None if target is None else asked.amount("target", target, "rate"),
         **own,
     )

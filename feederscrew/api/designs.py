@@ -8,8 +8,15 @@ from feederscrew.api.asked import Quantity
 from feederscrew.bowl import Bowl
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.record import DesignStudy
+from feederscrew.errors import ArgumentError
 from feederscrew.part import Part
 from feederscrew.studies.rate import LEAST
+from feederscrew.units import listed
+
+SEARCH = {
+    "aspect": "aspect", "up": "any", "outcome": "any", "without": "any", "diameter": "any", "rule": "any",
+    "budget": "count", "draws": "count", "seed": "seed", "jobs": "count",
+}  # fmt: skip
 
 
 def design(
@@ -53,15 +60,20 @@ def design(
     from feederscrew import bowl as bowls
     from feederscrew.designing.families import family
     from feederscrew.designing.loop import design as study
-    from feederscrew.designing.record import DesignRequest
+    from feederscrew.designing.record import OUTCOMES, DesignRequest
 
+    if "diameter" in search and search["diameter"] is not None:
+        search["diameter"] = asked.pair("diameter", search["diameter"], "length")
     request = DesignRequest(
         target=asked.amount("target", target, "rate", LEAST),
         heading=asked.angle("heading", heading),
         tolerance=asked.amount("tolerance", tolerance, "length", 0.0),
-        **search,
+        **asked.searched(search, SEARCH),
     )
+    if request.outcome not in OUTCOMES:
+        raise ArgumentError("outcome", f"is {request.outcome!r}", f"give {listed(list(OUTCOMES))}")
     plain = bowls.default() if bowl is None else asked.a_bowl(bowl)
-    if not isinstance(part, Part):
+    if isinstance(part, (list, tuple)) and part:
         return family([asked.a_part(one, mesh=True) for one in part], plain, given, request)
+    known = asked.the_shares(known)
     return study(asked.a_part(part, mesh=True), plain, given, request, known=known)

@@ -92,7 +92,7 @@ def aspects(
     as_published : bool
         Count each class once in the PMI rule, as the thesis's tables do.
     surface : str or float, optional
-        'hard', 'soft' or an exponent of the surface-weighted rule.
+        'hard', 'medium', 'soft' or an exponent of the surface-weighted rule.
     launch : str, optional
         What is done to the part; 'feed' without it.
     drops : int, optional
@@ -103,7 +103,7 @@ def aspects(
     AspectsStudy
         Its ``aspects`` are the record of arrays, in SI units; ``to_frame()`` is ``aspects.csv``.
     """
-    own = {"surface": surface, "drops": drops} | ({} if launch is None else {"launch": launch})
+    own = {"surface": asked.surface(surface), "drops": drops} | ({} if launch is None else {"launch": launch})
     part = asked.a_part(part)
     return resting.aspects(part, unstable=unstable, as_published=as_published, **own)  # type: ignore[arg-type]
 
