@@ -18,7 +18,7 @@ from feederscrew import bowl as bowls
 from feederscrew.output import style, tables
 from feederscrew.output.aspects import tables as aspects_tables
 from feederscrew.output.page.as_html import html
-from feederscrew.output.page.blocks import Chapter, Page, Picture, Table, Views
+from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Picture, Table, Views
 from feederscrew.output.report import page
 from feederscrew.output.report.chapters import CHAPTERS
 from feederscrew.output.report.scene import over_cuts
@@ -288,6 +288,27 @@ def test_a_trial_plays(visit, tmp_path):
     assert told["paused"]["sum"] == told["still"]["sum"]
     assert len({told[name]["sum"] for name in ("start", "paused", "end")}) == 3
     assert 0.0 < times["again"] < times["end"]  # from the start once it has come to the end
+
+
+SORTED = """<script>
+window.addEventListener("load", () => {
+  const head = document.querySelector("th .sort");
+  const read = () => [...document.querySelectorAll("tbody td")].map((cell) => cell.textContent).join("");
+  const seen = [document.querySelectorAll("button").length, read()];
+  head.click(); seen.push(read());
+  head.dispatchEvent(new KeyboardEvent("keydown", { key: "Enter" })); seen.push(read());
+  document.title = seen.join();
+});
+</script></body>"""
+
+
+def test_a_click_or_a_key_on_a_heading_sorts_the_rows(visit):
+    """By a heading without a button: with one in it a browser prints no heading on later pages."""
+    rows = tuple((MarkedCell(letter),) for letter in "bca")
+    text = html(Page("all", "", (Chapter((Matrix(("part",), rows, sortable=True),)),)))
+    dom, console = visit(text.replace("</body>", SORTED), "--dump-dom")
+    assert console == []
+    assert re.search(r"<title>(.*?)</title>", dom)[1] == "0,bca,abc,cba"
 
 
 def test_on_a_telephone_nothing_moves_the_page_sideways(visit):

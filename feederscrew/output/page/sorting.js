@@ -25,8 +25,12 @@ for (const table of document.querySelectorAll("table.sortable")) {
   const order = (a, b) => typeof a === typeof b ? (a < b ? -1 : a > b ? 1 : 0) : typeof a === "number" ? -1 : 1;
   [...table.tHead.rows[0].cells].forEach((head, column) => {
     if (!head.textContent.trim()) return;
-    const button = document.createElement("button");
-    button.type = "button"; button.className = "sort"; button.append(...head.childNodes); head.append(button);
+    const button = document.createElement("span");  // with a real button in it no head is printed on later pages
+    button.role = "button"; button.tabIndex = 0; button.className = "sort";
+    button.append(...head.childNodes); head.append(button);
+    button.addEventListener("keydown", (event) => {
+      if (event.key === "Enter" || event.key === " ") { event.preventDefault(); button.click(); }
+    });
     button.addEventListener("click", () => {
       const down = head.getAttribute("aria-sort") === "ascending";
       for (const other of table.tHead.rows[0].cells) other.removeAttribute("aria-sort");
