@@ -16,6 +16,8 @@ from feederscrew.bowl.direction import shares
 from feederscrew.bowl.record import Machine
 from feederscrew.machine import unbalanced
 
+MAINS = (50.0, 60.0)  # [Hz]
+HALF_WAVE = 0.75  # [1] of its amplitude: mean pull of a magnet on the half wave, (1 + 1 / 2) / 2
 POISSON = 0.3  # [1] of steel; the twist of a leaf depends on it through G / E = 1 / (2 (1 + nu))
 
 
@@ -99,12 +101,23 @@ def upright_pull(force: float, machine: Machine) -> float:
         Amplitude along the springs' motion, which rises at their angle: an upright pull works by its sine.
     machine : Machine
 
+    """
+    return float(force / np.sin(machine.spring_angle))
+
+
+def mean_pull(pull: float, frequency: float) -> float:
+    """Return the mean of a magnet's pull [N], of its amplitude [N] at the frequency of the drive [Hz].
+
+    Source: pull goes with the square of the flux, and flux with the integral of the voltage.
+
     Notes
     -----
     A magnet only pulls. On the full wave its pull goes with 1 + cos(w t): the mean is as large as the
-    amplitude, and the peak twice that; on the half wave the mean is three quarters of it.
+    amplitude, and the peak twice that. The half wave drives at the frequency of the mains. Its flux goes with
+    1 - cos(w t), and the constant part of its square is three quarters of the part that drives. What a
+    converter feeds is taken as the full wave.
     """
-    return float(force / np.sin(machine.spring_angle))
+    return pull * (HALF_WAVE if any(abs(frequency - mains) < 1e-6 for mains in MAINS) else 1.0)
 
 
 def twist(machine: Machine) -> float:

@@ -75,7 +75,7 @@ class MachineSheet(Shown):
     gain: float  # [1]
     stress: float  # [Pa] amplitude in a leaf
     force: float  # [N] amplitude along the springs' motion that keeps the stroke
-    magnet: float  # [N] amplitude of a magnet that pulls upright; its mean is as much
+    magnet: float  # [N] amplitude of a magnet that pulls upright
     radii: np.ndarray  # (N,) [m]
     angles: np.ndarray  # (N,) [rad] of the motion to the horizontal
     changes: tuple[tuning.LeafSet, ...]

@@ -16,6 +16,7 @@ from feederscrew.machine.springs import (
     held_fast,
     leaf_stiffness,
     leaf_stress,
+    mean_pull,
     springs,
     twist,
     upright_pull,
@@ -177,6 +178,16 @@ def test_an_upright_magnet_works_by_the_sine_of_the_springs_angle():
     along = np.cos(phase)  # velocity along the springs, of any amplitude
     rise = along * np.sin(np.radians(20))
     assert np.mean(pull * np.cos(phase) * rise) == pytest.approx(np.mean(force * np.cos(phase) * along))
+
+
+@pytest.mark.parametrize(("frequency", "mean"), [(50.0, 0.75), (60.0, 0.75), (100.0, 1.0), (73.0, 1.0)])
+def test_the_mean_of_a_magnets_pull_is_that_of_its_flux_squared(frequency, mean):
+    """It was the amplitude on every supply. On the half wave flux is the integral of the mains' sine."""
+    turn = 2.0 * np.pi * (np.arange(720) + 0.5) / 720
+    pull = (1.0 - np.cos(turn)) ** 2 if frequency in (50.0, 60.0) else 1.0 - np.cos(turn)
+    amplitude = -2.0 * np.mean(pull * np.cos(turn))
+    assert mean_pull(amplitude, frequency) == pytest.approx(np.mean(pull), rel=1e-9)
+    assert mean_pull(1.0, frequency) == mean
 
 
 def test_a_weak_set_is_not_chosen():

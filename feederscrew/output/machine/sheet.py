@@ -3,6 +3,7 @@
 import numpy as np
 
 from feederscrew import units
+from feederscrew.machine.springs import MAINS, mean_pull
 
 MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
 N_MM, MPA = units.factor("N/mm", "stiffness"), units.factor("MPa", "stress")
@@ -120,7 +121,7 @@ def _drive(study):
 
 def supply(frequency):
     """Return the mains and waves that give a frequency [Hz], as text."""
-    for mains in (50.0, 60.0):
+    for mains in MAINS:
         for wave, times in (("half wave", 1.0), ("full wave", 2.0)):
             if abs(frequency - times * mains) < 1e-6:
                 return f"{mains:.0f} Hz {wave}, {frequency:.4g}"
@@ -170,7 +171,8 @@ def _springs(study):
     most = study.bowl.sizing.fatigue_stress / MPA
     yield from _other_leaves(study)
     yield "leaf stress [MPa]", f"{study.stress / MPA:.3g} (bears {most:.4g})"
-    pull = f"{study.magnet:.3g} upright about a mean of {study.magnet:.3g}"
+    mean = mean_pull(study.magnet, study.stroke.frequency)
+    pull = f"{study.magnet:.3g} upright about a mean of {mean:.3g}"
     yield "force of the magnet [N]", f"{pull}; {study.force:.3g} along the motion"
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from feederscrew import units
+from feederscrew.machine.springs import mean_pull
 from feederscrew.output import tables
 from feederscrew.output.machine import sheet as sheets
 from feederscrew.output.solidbowl import tables as solids
@@ -127,7 +128,7 @@ def _springs(study):
         "fatigue_stress_mpa": study.bowl.sizing.fatigue_stress / MPA,
         "drive_force_n": study.force,
         "magnet_force_n": study.magnet,
-        "magnet_force_mean_n": study.magnet,
+        "magnet_force_mean_n": mean_pull(study.magnet, study.stroke.frequency),
         "magnet_angle_deg": 90.0,
     }
 
