@@ -29,8 +29,8 @@ def _asked(command):
 @quantity.with_default(
     "--margin",
     "length",
-    "0.25 mm",
-    "Least margin by which the wanted orientation passes and the others fail.",
+    "0.15 mm",
+    "Least margin by which the wanted orientation passes and the others fail, beside play and tolerance.",
     positive=True,
 )
 @quantity.with_default(
@@ -70,9 +70,9 @@ def _asked(command):
 )
 @click.option("--up", default="", metavar="NAME,...", help="Other aspects that count as the one wanted: B,C.")
 @quantity.with_default("--cutter", "length", "0 mm", "Radius that corners of holes are rounded to.")
-@quantity.with_default("--play", "length", "0 mm", "Play of parts at the wall: every margin is larger by it.")
+@quantity.with_default("--play", "length", "0.05 mm", "Play of parts at the wall, on top of every margin.")
 @quantity.with_default(
-    "--tolerance", "length", "0 mm", "Tolerance of the part's size: every margin is larger by it."
+    "--tolerance", "length", "0.05 mm", "Tolerance of the part's size, on top of every margin."
 )
 @click.option("--cad", is_flag=True, help="Write tooling.step as well; needs feederscrew[cad].")
 @click.option("--turn", is_flag=True, help="Allow steps and ledges that turn parts over, before the cuts.")

@@ -25,6 +25,7 @@ HOWS = (
     (2.5e-4, (), "any"),
 )  # fmt: skip
 ENOUGH = 0.985  # purity at which a chain is not made longer
+ON_THE_TRACK = ("bank",)  # is the bowl's own, and tried by the loop
 VERDICTS = 3000  # of the search for holes: values that a shop's tolerance does not lose are found early
 GUARDS = tuple(KINDS[name] for name in ("gap", "canyon", "narrowed_track"))
 LEAST_WINDOW = 1e-3  # [m] between what passes such a drop and what it rejects
@@ -137,11 +138,11 @@ def proposed(part, bowl, aspects, row, known, request, how):
     if "any" not in (outcome, request.outcome) and outcome != request.outcome:
         return None
     outcome = request.outcome if outcome == "any" else outcome
-    without = tuple(dict.fromkeys((*request.without, *left_out)))
+    without = tuple(dict.fromkeys((*request.without, *left_out, *ON_THE_TRACK)))
     found = tooling(
         part, bowl, one.aspect, heading=one.heading, rule=request.rule, margin=margin, known=aspects,
         seed=request.seed, verdicts=VERDICTS, outcome=outcome, without=without,
-        purity=ENOUGH, up=request.up,
+        purity=ENOUGH, up=request.up, play=0.0, tolerance=0.0,  # draws have them
     ).design  # fmt: skip
     if found is None or not found.efficiency > 0.0 or not (found.cuts or found.before):
         return None
@@ -151,7 +152,7 @@ def proposed(part, bowl, aspects, row, known, request, how):
     if found.isolated:
         return made
     through = known_through(part, aspects, replace(bowl, devices=made.devices))
-    return _guarded_stops(made, through, request.rule) if found.purity >= ENOUGH else None
+    return _guarded_stops(made, through, request.rule) if found.hopeful >= ENOUGH else None
 
 
 def _guarded_stops(proposal, through, rule):

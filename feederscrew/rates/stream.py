@@ -31,6 +31,7 @@ class Orientations:
     fates: tuple[str, ...]  # (M,) what becomes of most: carried, returned or stopped
     stops: np.ndarray  # (M, stations) share of each that stands before each station
     clearing: np.ndarray  # (M,) [s] how long what devices return blocks the track, in the mean of the row
+    doubtful: np.ndarray  # (M,) [1] share of each that leaves as well where no verdict is sure to return it
     gap: float = 0.0  # [m] free between parts at the entry, which the devices need
     tipping: TrackTipping | None = None  # on the track of a bowl; None where no drive is known
 
@@ -78,6 +79,11 @@ class Orientations:
     def leaves(self):
         """(M,) share that leaves the bowl, in any state."""
         return np.where(self.rolls_back, 0.0, self.through)
+
+    @property
+    def may_leave(self):
+        """(M,) share that leaves the bowl, or is not sure to be returned."""
+        return np.where(self.rolls_back, 0.0, self.through + self.doubtful)
 
     @property
     def carried(self):
@@ -158,6 +164,7 @@ def along(lying, aspects, chain=(), sigma=0.0, bowl=None):
         fates=found.fates,
         stops=found.stops,
         clearing=check.frozen(_clearing(found, lying, chain, bowl)),
+        doubtful=found.doubtful,
         gap=0.0 if bowl is None else needed(chain, lying, bowl),
         tipping=tips,
     )

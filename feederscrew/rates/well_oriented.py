@@ -65,7 +65,7 @@ class Rate(Shown):
     probability: Range  # of the aspect and the heading; the range is the rule's own, or over all rules
     through: float  # share of them that passes every station
     fill: float  # share of the track that is occupied
-    purity: float  # share of what leaves the bowl that is well oriented; NaN where nothing leaves
+    purity: float  # of what leaves, or is not sure to be returned, well oriented; NaN where nothing leaves
     row: int  # of the wanted orientation
     orientations: Orientations
     jams: float = 0.0  # [1/s] parts that come to stand before a device; the rate holds between jams only
@@ -174,7 +174,9 @@ def _rate(found, speed, target, rule, gap, fill):
     most = speed * (1.0 / fed(found, row).length)
     made = offered * Range(share, *efficiency_ends(found, row, rule))
     chance, enters = entering(found, rule)
-    leaving = float((chance * found.leaves).sum() / enters) if enters > 0.0 else 0.0
+    alike = np.arange(len(chance)) == row
+    leaves = np.where(alike, found.leaves, found.may_leave)
+    leaving = float((chance * leaves).sum() / enters) if enters > 0.0 else 0.0
     through = float(found.through[row])
     return Rate(
         parts=Range(*(min(one, cap) for one, cap in zip(made.all, most.all))),

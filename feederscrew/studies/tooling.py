@@ -20,8 +20,9 @@ from feederscrew.studies.rate import arriving
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.kinds import KINDS, made
 from feederscrew.tooling.fates import at_entry
+from feederscrew.tooling.isolating import held
 from feederscrew.tooling.isolating.chain import FINE, STEP, WHERE, Wishes
-from feederscrew.tooling.isolating.design import MARGIN, design, place
+from feederscrew.tooling.isolating.design import MARGIN, PLAY, TOLERANCE, design, place
 from feederscrew.tooling.isolating.hole_search import VERDICTS, HoleSearch
 from feederscrew.tooling.isolating.proposal import Design
 from feederscrew.tooling.mirrored import named
@@ -158,7 +159,7 @@ def tooling(
     shares = np.nan_to_num([one.chances[rule] for one in every])
     wanted = None if aspect is None else place(every, aspect, heading, part.source)
     search = HoleSearch(seed=seed, verdicts=verdicts, until=time.monotonic() + seconds)
-    margin += wishes.pop("play", 0.0) + wishes.pop("tolerance", 0.0)
+    margin += wishes.pop("play", PLAY) + wishes.pop("tolerance", TOLERANCE)
     may_use = asked_for(part, bowl, found, **wishes)
     asked_of_each = {"purity": purity, "efficiency": efficiency, "turn": turn, "before": bowl.devices}
     asked_of_each |= {"wishes": may_use}
@@ -252,6 +253,18 @@ def _separation(bowl: Bowl, wishes: Wishes) -> Device | None:
 
 
 def _designed(
+    every: Sequence[Orientation], shares: np.ndarray, wanted: int, bowl: Bowl, **asked: Any
+) -> Design:
+    """The design of an orientation; one that rolls on the level comes on a bank or out of a groove."""
+    leaning = held.stretches(every[wanted], bowl.friction.wall, asked["before"], asked["wishes"])
+    if leaning:
+        found = _on_this_track(held.led_on(every, leaning), shares, wanted, bowl, **asked)
+        if found.isolated or found.cuts:
+            return held.with_stretches(found, leaning)
+    return _on_this_track(every, shares, wanted, bowl, **asked)
+
+
+def _on_this_track(
     every: Sequence[Orientation], shares: np.ndarray, wanted: int, bowl: Bowl, **asked: Any
 ) -> Design:
     """The design of an orientation that the drive leaves lying on what is cut; if there is none, said so."""

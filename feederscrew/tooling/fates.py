@@ -74,6 +74,16 @@ class DeviceFlow:
                 found[:, int(device.fate(met) == STOPPED), 1 + step] += lost[:, state]
         return check.frozen(found)
 
+    @cached_property
+    def doubtful(self):
+        """(M,) [1] share of each orientation that leaves as well where no verdict is sure to return it."""
+        reached = self.starts[:, None] * np.eye(len(self.starts), len(self.states))
+        for matrix, shown in zip(self.matrices, self.verdicts):
+            unsure = [one is not None and not one.sure and one.passes < 1.0 for one in shown]
+            ways = np.where(np.array(unsure)[:, None], np.eye(len(matrix)), matrix)
+            reached = np.einsum("ms,st->mt", reached, ways)
+        return check.frozen(np.maximum(reached.sum(axis=1) - self.leaving.sum(axis=1), 0.0))
+
     @property
     def stops(self):
         """(M, 1 + D) [1] share of each orientation that stands before each device."""

@@ -10,13 +10,15 @@ from feederscrew.tooling.isolating import chain, hole_search, rails, round_corne
 from feederscrew.tooling.isolating.proposal import task as asked_for
 from feederscrew.tooling.isolating.proposal import told, weights, without
 
-MARGIN = 2.5e-4  # [m] to either side
+MARGIN = 1.5e-4  # [m] to either side, beside ...
+PLAY, TOLERANCE = 5e-5, 5e-5  # [m] ... what parts come off the wall, and what their size is off
+WHOLE = MARGIN + PLAY + TOLERANCE  # [m]
 MOST_HOLES = 3  # cut-outs in one chain
 GAIN = 1.25  # turning devices are taken where they bring so many times the parts, if no efficiency is asked
 
 
 def design(
-    every, shares, wanted, *, margin=MARGIN, search=None, holes=True, purity=1.0, efficiency=0.0,
+    every, shares, wanted, *, margin=WHOLE, search=None, holes=True, purity=1.0, efficiency=0.0,
     turn=False, before=(), gentle=False, wishes=None,
 ):  # fmt: skip
     """Return the chain of fewest devices that isolates an orientation.

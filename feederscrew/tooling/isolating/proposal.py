@@ -23,10 +23,11 @@ class Design:
     cuts: tuple[Cut, ...]  # in the order parts meet them
     margin: float  # [m] the least, of passing and of returning; NaN without any device
     efficiency: float  # [1] share of the parts offered that leave in this orientation
-    purity: float  # [1] share of what leaves that is in this orientation
+    purity: float  # [1] share of what leaves, or is not sure to be returned, that is in this orientation
     left_over: tuple[str, ...]  # what leaves as well
     reasons: tuple[str, ...]  # why, a sentence each
     late: bool = False  # the time limit stopped the search: another machine may find more
+    hopeful: float = np.nan  # [1] purity where a trial confirms what is not sure to be returned
     steady: bool = True  # the drive leaves the wanted orientation lying on what the cuts leave of its foot
 
     @property
@@ -114,6 +115,7 @@ def told(given, cuts, returned, same=None, late=False):
     flow = course((*given.before, *(cut.device for cut in cuts)), every)
     states = sorted({flow.leaves_as(k) for k in np.flatnonzero(given.same)})
     out = (shares[:, None] * flow.leaving).sum(axis=0)
+    doubt = float((shares * flow.doubtful)[~given.same].sum())  # may leave as well: no trial has said
     total, leaving = shares.sum(), out.sum()
     cuts = _with_stops(given, flow, cuts)
     stands = any(cut.stops for cut in cuts)
@@ -126,7 +128,8 @@ def told(given, cuts, returned, same=None, late=False):
         cuts=cuts,
         margin=float(min(margins, default=np.nan)),
         efficiency=float(out[states].sum() / total) if total > 0.0 else 0.0,
-        purity=float(out[states].sum() / leaving) if leaving > 0.0 else np.nan,
+        purity=float(out[states].sum() / (leaving + doubt)) if leaving > 0.0 else np.nan,
+        hopeful=float(out[states].sum() / leaving) if leaving > 0.0 else np.nan,
         left_over=tuple(one.name for k, one in enumerate(flow.states) if out[k] > 0.0 and k not in states),
         reasons=(
             *(f"{' '.join(cut.stops)} come to stand at the {cut.device.kind}" for cut in cuts if cut.stops),
@@ -148,12 +151,12 @@ def _separated(given, cuts):
     climb = one.track.climb
     slower = replace(steeper, angle=climb, text=f"{{climb: {np.degrees(climb):.6g} deg}}")
     last = next((k for k, cut in enumerate(cuts) if cut.device.hangs), len(cuts))
-    back = (_plain_cut(slower),) if last < len(cuts) else ()
-    return (*cuts[:first], _plain_cut(steeper), *cuts[first:last], *back, *cuts[last:])
+    back = (plain_cut(slower),) if last < len(cuts) else ()
+    return (*cuts[:first], plain_cut(steeper), *cuts[first:last], *back, *cuts[last:])
 
 
-def _plain_cut(device):
-    """A stretch of track as a Cut: it passes all."""
+def plain_cut(device):
+    """Return a stretch of track as a Cut: it passes all."""
     return Cut(device, np.nan, np.nan, device, device, ())
 
 
