@@ -3,6 +3,7 @@
 from feederscrew.bowl.key import Key
 from feederscrew.bowl.machine_keys import MACHINE, SIZING
 from feederscrew.bowl.solid_keys import DRIVE, HAND, SOLID
+from feederscrew.bowl.unbalance import KEYS as UNBALANCE
 
 KEYS = (
     Key(
@@ -83,6 +84,7 @@ KEYS = (
     ),
     *HAND,
     *MACHINE,
+    *UNBALANCE,
     *DRIVE,
     *SIZING,
     *SOLID,

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import units
+from feederscrew.bowl import unbalance
 from feederscrew.bowl.devices import SECTION
 from feederscrew.bowl.direction import vibration_angle
 from feederscrew.bowl.record import Bowl, Drive, Friction, Machine, Sizing, Track
@@ -89,6 +90,7 @@ def record(settings: Sequence[Setting]) -> Bowl:
     for name, value in fields.items():
         section, _, word = name.rpartition(".")
         sections.setdefault(section, {})[word] = value
+    sections["machine"] = unbalance.known(sections["machine"], sections["sizing"]["hand"])
     top_level = sections.pop("")
     return Bowl(
         **{name: RECORDS[name](**values) for name, values in sections.items()},
@@ -191,7 +193,8 @@ def _of_the_machine(key: Key, given: Mapping[str, Setting]) -> Setting:
     if key.name == "drive.frequency":
         supply = _effective(BY_NAME["machine.supply"], given)
         return _derived(key, supply.value, "from machine.supply")
-    names = [one.name for one in KEYS if one.field.startswith("machine.")]
+    own = [one for one in KEYS if one.field.startswith("machine.") and one.word not in unbalance.WORDS]
+    names = [one.name for one in own]
     machine = Machine(**{name.partition(".")[2]: _effective(BY_NAME[name], given).value for name in names})
     radius, climb = (_effective(BY_NAME[name], given).value for name in ("track.radius", "track.climb"))
     return _derived(key, vibration_angle(machine, radius, climb), "from machine")

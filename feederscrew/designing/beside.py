@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl import unbalance
 from feederscrew.bowl.settings import of_device
 from feederscrew.errors import FeederError
 from feederscrew.solidbowl.materials import STEEL
@@ -133,3 +134,5 @@ def _machine(machine):
     yield "spring_angle", f"{np.degrees(machine.spring_angle):.6g} deg"
     yield "leaf_thickness", f"{1e3 * machine.leaf_thickness:.6g} mm"
     yield "leaves", f"{machine.leaves:.0f}"
+    for word, value in unbalance.told(machine).items():
+        yield word, f"{value:.12g} {'m' if word in unbalance.CENTRE else 'kg m2'}"

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.bowl import unbalance
 from feederscrew.bowl.direction import shares
 from feederscrew.bowl.record import EVEN, Bowl, Machine, Sizing, Unbalance
 from feederscrew.machine.sizing import Size
@@ -35,7 +36,8 @@ def machine_for(bowl: Bowl, size: Size, given: Any) -> Machine:
         "spring_radius": rules.spring_radius * radius,
     }
     made = replace(bowl.machine, **{name: value for name, value in guess.items() if name not in given})
-    made = replace(made, unbalance=_unbalance(size, made))
+    if not set(unbalance.WORDS) & set(given):
+        made = replace(made, unbalance=_unbalance(size, made))
     if "spring_angle" in given:
         return made
     return replace(

@@ -21,6 +21,7 @@ DIP = 0.06  # [rad] the track begins so far below the floor: no edge where it gr
 CLEAR = 2e-3  # [m] more than a part needs, below rails
 NARROW = 0.75  # of the radius: no track is wider
 LOWEST = 10e-3  # [m] over the floor of a track that goes down
+STEEP = 1.5  # of the tangent of a bank: beside the chord of an arc a twist takes some of the height
 TURN = 2.0 * np.pi
 
 
@@ -55,9 +56,9 @@ class BowlPlan:
 
     @property
     def segments(self):
-        """How many facets a full turn has; where the track is steeper than 45 deg across, more."""
+        """How many facets a full turn has; where the track is steep across, more."""
         banks = self.way.bank, *(bank for _, _, bank in self.way.leans)
-        chord = self.chord / max(1.0, *(float(np.tan(bank)) for bank in banks))
+        chord = self.chord / max(1.0, *(STEEP * float(np.tan(bank)) for bank in banks))
         return int(np.ceil(TURN / (2.0 * np.arccos(1.0 - chord / self.way.radius)) / 4.0)) * 4
 
     @property

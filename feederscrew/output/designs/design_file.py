@@ -3,11 +3,12 @@
 import datetime
 
 from feederscrew import __version__, units
+from feederscrew.bowl import unbalance
 from feederscrew.bowl.devices import SECTION
 from feederscrew.bowl.verified import fingerprint
 from feederscrew.output.tooling.bowl_file import device_value
 
-PER_MINUTE = units.factor("/min", "rate")
+PER_MINUTE, MM = units.factor("/min", "rate"), units.factor("mm", "length")
 DRIVE = (
     ("amplitude", "mm", "length"), ("frequency", "Hz", "frequency"), ("vibration_angle", "deg", "angle"),
     ("phase", "deg", "angle"),
@@ -45,6 +46,7 @@ def bowl_file(study, settings, sheet=None):
     own = {"drive": study.bowl.drive, "track": study.bowl.track}
     own |= {} if sheet is None else {"machine": sheet.bowl.machine}
     set_here = {f"{section}.{row[0]}" for section in own for row in OWN[section]} | {"drive.peak_to_peak"}
+    set_here |= {f"machine.{word}" for word in unbalance.WORDS if "machine" in own}
     given = [s for s in settings if s.given and s.key.field != SECTION and s.key.name not in set_here]
     lines = [f"# {study.status}: {study.wanted} of {study.part.name}, from feeder design."]
     lines += [f"{s.key.word}: {s.text}" for s in given if not s.key.section]
@@ -53,6 +55,8 @@ def bowl_file(study, settings, sheet=None):
         lines += [f"  {s.key.word}: {s.text}" for s in given if s.key.section == section]
         if section in own:
             lines += [f"  {word}: {_text(own[section], word, *unit)}" for word, *unit in OWN[section]]
+        if section == "machine" and section in own:
+            lines += [f"  {word}: {text}" for word, text in _unbalance(own[section])]
     if study.bowl.devices:
         lines += [f"{SECTION}:  # along the track, in the order parts meet them"]
         lines += [f"  - {one.kind}: {device_value(one)}" for one in study.bowl.devices]
@@ -62,6 +66,12 @@ def bowl_file(study, settings, sheet=None):
     else:
         lines += ["# Nothing is verified: it was stopped before a queue was followed."]
     return "\n".join(lines) + "\n"
+
+
+def _unbalance(machine):
+    for word, value in unbalance.told(machine).items():
+        length = word in unbalance.CENTRE
+        yield word, f"{value / MM:.9g} mm" if length else f"{value:.9g} kg m2"
 
 
 def _text(record, word, unit, dimension):
