@@ -222,6 +222,7 @@ _DEVICES = {  # what is written after 'kind:', by the dimension of the kind
     "length": _LENGTH,
     "angle": _quantity("angle"),
     "climb": _mapping(climb=_quantity("angle")),
+    "groove": _mapping(angle=_quantity("angle")),
     "jet": _mapping(nozzle=_LENGTH, pressure=_quantity("pressure"), height=_LENGTH),
     "span": _mapping(from_=_LENGTH, to=_LENGTH),
     "rails": _mapping(("lead_in",), from_=_LENGTH, to=_LENGTH, lead_in=_LEAD),
