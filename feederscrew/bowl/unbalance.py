@@ -48,14 +48,14 @@ def known(values: Mapping[str, Any], hand: str) -> dict[str, Any]:
 
     Parameters
     ----------
-    values : dict of str to float
+    values : dict of str to float [SI]
         By word of a key of the machine.
     hand : str
         Of the track: 'left' turns the other way as it rises.
 
     Returns
     -------
-    dict
+    dict [SI]
         Without unbalance where all those keys are zero: nothing is known.
 
     Raises
