@@ -10,6 +10,7 @@ from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
 from feederscrew.dropping.launches import named
 from feederscrew.geometry import vectors
+from feederscrew.output.trial import tables
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies import rate
@@ -296,6 +297,10 @@ def test_a_hop_over_the_tooling_is_said(bowl):
     found = studies.trial(PART, [one, hard], "A", parts=2)
     assert any("hop" in told and told.startswith("amplitude 0.4 mm") for told in found.warnings)
     assert found.highest >= 0.15e-3
+    spread = [told for told in found.warnings if "restitution of single impacts spreads from 0.145" in told]
+    assert len(spread) == 1 and spread[0].startswith("amplitude 0.4 mm")
+    calm, thrown = (run["point_restitution_doubt"] for run in tables.document(found)["drives"])
+    assert calm is None and thrown["velocity_less_mm_s"] > 1.05 * thrown["velocity_more_mm_s"] > 0.0
 
 
 def test_a_station_is_drawn_with_its_hole():
