@@ -161,7 +161,6 @@ MORE = {
     "cli.trial.trial": 13,
     "cli.tune.tune": 11,
     "designing.robust.robust_run": 10,
-    "designing.trying.queue": 9,
     "designing.trying.single": 10,
     "dropping.drop_test.test": 11,
     "dropping.kernel.falling.advance": 9,

@@ -161,6 +161,12 @@ def slowest(bowl):
     return min(speed(rubbed(bowl, share)) for share in WORST)
 
 
+def kept(bowl):
+    """Return the share [1] of its velocity that a bowl keeps at the worst friction; 0 where it has none."""
+    own = speed(bowl)
+    return min(slowest(bowl) / own, 1.0) if own > 0.0 else 0.0
+
+
 def rubbed(bowl, share):
     """Return a bowl with a share of its friction."""
     values = {name: getattr(bowl.friction, name) for name in vars(bowl.friction)}

@@ -133,7 +133,9 @@ def proved(search, candidate, *, whole):
     )
     study = _queued(study, queues.filled(line, whole=whole))
     study = _queued(study, queues.longer(line, study))
-    return replace(study, risks=risks.risks(ways.lying[row], bowl.friction.kinetic, study.queues))
+    every = [ways.lying[k] for k in trying.often(weights)]
+    found = risks.risks(ways.lying[row], bowl, study.queues, every=every, seed=request.seed)
+    return replace(study, risks=found)
 
 
 def _queued(study, found):
@@ -155,6 +157,7 @@ def _unproved(search, candidate, known):
         attempts=tuple(search.attempts),
         source=known.aspects.source(request.rule),
         static_rate=_static(search, candidate),
+        slowed=calm_drive.kept(bowl),
         trials=tuple(TrialRun(bowl, throw_number(bowl), ways, weights, one) for one in candidate.tried.seen),
         tooling=beside.tooled(
             search.part, bowl, known.aspects, ways, weights, candidate.proposal, request, margin

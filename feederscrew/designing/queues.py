@@ -7,14 +7,16 @@ import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import trying
-from feederscrew.designing.record import NORMAL, PURE, RATE_KEPT, FilledQueue
+from feederscrew.designing.record import PURE, RATE_KEPT, FilledQueue
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
+from feederscrew.trial.queue import GAPS, queue_of
 
-FILLS = (("low", 6, 20.0), (NORMAL, 12, 60.0), ("high", 18, 20.0))  # name, parts, seconds
-MORE = 3  # times as long again at normal fill, at most, where that decides
+FILLS = (("low", trying.LOW), ("normal", GAPS), ("high", 0.0))  # free way between parts over their length
+PARTS, SECONDS = 12, 60.0  # in a queue at a time; for so long
+MORE = 3  # times as long again at the fill that brings least, at most, where that decides
 ADDED = ("seconds", "counted", "delivered", "right", "left", "returned", "jams", "climbs")
 
 
@@ -31,15 +33,16 @@ class FollowedRow:
     seed: int
     told: Callable | None = None  # called with what is being followed, a sentence
 
-    def followed(self, fill, parts, seconds, seed):
-        """Return the FilledQueue of so many parts in so many seconds."""
+    def followed(self, fill, gaps, seed):
+        """Return the FilledQueue of PARTS that come with a mean free way of so many lengths between them."""
         if self.told:
-            self.told(f"queue of {parts} at {fill} fill, {seconds:g} s")
-        seen = trying.queue(
-            self.part, self.bowl, self.aspects, self.known, self.shares, self.states, parts=parts,
-            seconds=seconds, seed=seed,
+            self.told(f"queue of {PARTS} at {fill} fill, {SECONDS:g} s")
+        poses = trying.counted(self.known, self.states)
+        seen = queue_of(
+            self.part, self.bowl, self.aspects, self.known.lying, poses, self.shares, parts=PARTS,
+            seconds=SECONDS, seed=seed, gaps=gaps,
         )  # fmt: skip
-        return _counted(fill, seen, self.states)
+        return _counted(fill, gaps, seen, self.states)
 
 
 def filled(row, *, whole=True):
@@ -57,15 +60,15 @@ def filled(row, *, whole=True):
         Fewer where the user stopped it, or where one does not hold.
     """
     found = []
-    for name, parts, seconds in FILLS:
-        found.append(row.followed(name, parts, seconds, row.seed))
+    for name, gaps in FILLS:
+        found.append(row.followed(name, gaps, row.seed))
         if found[-1].partial or not (whole or _holds(found[-1])):
             break
     return tuple(found)
 
 
 def longer(row, study):
-    """Follow the queue at normal fill for longer, where that decides what a minute cannot tell.
+    """Follow the queue that brings least for longer, where that decides what a minute cannot tell.
 
     How long is settled beforehand, so that it does not end when it happens to look well.
 
@@ -78,13 +81,13 @@ def longer(row, study):
     Returns
     -------
     tuple of FilledQueue
-        Those of the study, that at normal fill with what was seen since.
+        Those of the study, that one with what was seen since.
     """
     found, count = study.queues, minutes(study)
-    place = next((k for k, one in enumerate(found) if one.fill == NORMAL), 0)
+    place = found.index(study.slowest) if count else 0
     for k in range(1, count + 1):
-        _, parts, seconds = next(one for one in FILLS if one[0] == NORMAL)
-        joined = _joined(found[place], row.followed(NORMAL, parts, seconds, row.seed + k))
+        least = found[place]
+        joined = _joined(least, row.followed(least.fill, least.gaps, row.seed + k))
         found = (*found[:place], joined, *found[place + 1 :])
         if joined.partial:
             break
@@ -98,10 +101,10 @@ def minutes(study):
     asked for lies in its interval.
     """
     found, need = study.queues, RATE_KEPT * study.request.target
-    if len(found) < len(FILLS) or study.jams or study.partial or study.normal is None:
+    if len(found) < len(FILLS) or study.jams or study.partial:
         return 0
     right, left, back = (sum(getattr(one, name) for one in found) for name in ("right", "left", "returned"))
-    own, rate = study.normal, study.delivered[0]
+    own, rate = study.slowest, study.delivered[0]
     if not right:
         return 0
     kept = [1.0 + k * own.seconds / study.queue_seconds for k in range(MORE + 1)]  # times as many parts
@@ -124,9 +127,10 @@ def _holds(one):
     return not one.jams and one.right >= PURE * one.left - 1
 
 
-def _counted(name, seen, states):
+def _counted(name, gaps, seen, states):
     return FilledQueue(
         fill=name,
+        gaps=gaps,
         parts=seen.parts,
         seconds=seen.seconds,
         counted=seen.counted,

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
+from feederscrew.designing.risks import Risk
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
 from feederscrew.studies.tooling import ToolingStudy, listed
@@ -15,7 +16,6 @@ from feederscrew.units import counted
 OUTCOMES = ("any", "lying", "hanging")
 HOLDS, FALLS_SHORT, NONE = "holds", "falls short", "none"
 RATE_KEPT, PURE, DRAWS_HELD = 0.9, 0.98, 0.95  # [1] of the target, of what leaves, of the draws
-NORMAL = "normal"  # the fill whose rate counts
 
 
 @dataclass(frozen=True)
@@ -84,6 +84,7 @@ class FilledQueue:
     """What a queue did at one fill."""
 
     fill: str  # 'low', 'normal', 'high'
+    gaps: float  # [1] mean free way between parts as they come, over their length
     parts: int
     seconds: float  # [s] followed
     counted: float  # [s] of them since the first part came to the outlet
@@ -105,12 +106,20 @@ class FilledQueue:
     @property
     def ends(self):
         """95 % interval of that rate [1/s]: of the share of what is offered that leaves right."""
-        offered = self.left + self.returned
-        if not offered or not self.rate > 0.0:
-            return 0.0, self.rate
-        low, high = (float(end[0]) for end in wilson([self.right], offered))
-        share = self.right / offered
-        return self.rate * low / share, self.rate * high / share
+        if not self.pace > 0.0:
+            return 0.0, 0.0
+        low, high = (float(end[0]) for end in wilson([self.right], self.offered))
+        return self.pace * low, self.pace * high
+
+    @property
+    def offered(self):
+        """Whole parts of which something became."""
+        return self.left + self.returned
+
+    @property
+    def pace(self):
+        """Parts [1/s] that are offered; 0 where none leaves as wanted."""
+        return self.rate * self.offered / self.right if self.right else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,12 +136,13 @@ class DesignStudy:
     attempts: tuple[Attempt, ...] = ()
     robust: RobustRun = field(default_factory=lambda: RobustRun(0, 0, ""))
     queues: tuple[FilledQueue, ...] = ()
-    risks: tuple[str, ...] = ()
+    risks: tuple[Risk, ...] = ()
     nearest: tuple[str, ...] = ()  # what would hold instead
     partial: bool = False
     tooling: ToolingStudy | None = None  # the chain as `feeder tooling` knows it; None without one
     source: str = ""  # whose shares were taken
     static_rate: float = 0.0  # [1/s] that the static rule promises
+    slowed: float = 1.0  # [1] of its velocity that the drive keeps at the worst friction
     trials: tuple[TrialRun, ...] = ()  # its short trial: what is wanted, then the others
 
     @property
@@ -152,21 +162,26 @@ class DesignStudy:
         return self.part.warnings
 
     @property
-    def normal(self):
-        """The queue at normal fill, or None."""
-        return next((one for one in self.queues if one.fill == NORMAL), None)
+    def slowest(self):
+        """The queue to which parts come most slowly: the lowest of fill; None without one."""
+        return min(self.queues, key=lambda one: one.pace, default=None)
 
     @property
     def delivered(self):
-        """Wanted parts [1/s] at normal fill: value, low and high end."""
-        if self.normal is None or not self.normal.rate > 0.0:
+        """Wanted parts [1/s] at the fill that brings least: value, low and high end.
+
+        The share that leaves as wanted is that of all fills; the pace at which parts come is that fill's.
+        """
+        if self.slowest is None or not self.slowest.pace > 0.0:
             return 0.0, 0.0, 0.0
-        right, left, back = (
-            sum(getattr(one, k) for one in self.queues) for k in ("right", "left", "returned")
-        )
-        low, high = (float(end[0]) for end in wilson([right], left + back))  # of all fills: one share
-        share, rate = right / (left + back), self.normal.rate
-        return rate, rate * low / share, rate * high / share
+        right, offered = (sum(getattr(one, k) for one in self.queues) for k in ("right", "offered"))
+        low, high = (float(end[0]) for end in wilson([right], offered))
+        return tuple(self.slowest.pace * share for share in (right / offered, low, high))
+
+    @property
+    def worst(self):
+        """Wanted parts [1/s] at the fill that brings least and at the worst friction."""
+        return self.delivered[0] * self.slowed
 
     @property
     def purity(self):
@@ -234,6 +249,12 @@ def _shortfalls(study):
             f"delivers {minute * study.delivered[0]:.3g}/min (at least {minute * low:.3g}) of the "
             f"{minute * study.request.target:.3g}/min asked for"
         )
+    for one in study.queues:
+        if one.ends[1] < RATE_KEPT * study.request.target:
+            yield (
+                f"at {one.fill} fill {minute * one.rate:.3g}/min are delivered (at most "
+                f"{minute * one.ends[1]:.3g})"
+            )
     if not purity >= PURE:
         text = "nothing left the queue" if np.isnan(purity) else f"purity {100.0 * purity:.3g} %"
         yield f"{text}, {100.0 * PURE:.3g} % are asked for"

@@ -1,16 +1,41 @@
-"""Risks that are said before steel is cut: parts that shingle, and parts that climbed in the queue."""
+"""Risks that are said before steel is cut: parts that shingle, hook, nest, wedge, or climbed in the queue."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew import check
+from feederscrew.designing import tangling, wedging
+from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import turned
+from feederscrew.tooling.isolating.chain import millimetres
 from feederscrew.units import counted
 
 LIFT = (
     0.25e-3  # [m] by which one part may lie higher than the next: play, burrs and dirt, as a design's margin
 )
 CLEARS = 2  # status of a linear programme without a solution: so much higher nothing meets
+SHINGLES, CLIMBS, HOOKS, NESTS, WEDGES = "shingles", "climbs", "hooks", "nests", "wedges"
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """A part and its like, or the walls that it stands between, as it is drawn."""
+
+    axes: np.ndarray  # (3, 3) [1] of the picture as rows, in the file's axes: along, across, up
+    turn: np.ndarray | None = None  # (3, 3) [1] of the second part, in the file's axes
+    place: np.ndarray | None = None  # (3,) [m] of its centre of mass from that of the first, in those axes
+    walls: float = np.nan  # [m] apart, square to what is across; NaN of two parts
+
+
+@dataclass(frozen=True, eq=False)
+class Risk:
+    """What may go wrong between parts."""
+
+    kind: str  # 'shingles', 'climbs', 'hooks', 'nests', 'wedges'
+    text: str
+    pair: Pair | None = None  # what is drawn of it
 
 
 def wedge(one, lift=LIFT):
@@ -20,7 +45,7 @@ def wedge(one, lift=LIFT):
     together until their hulls touch, L apart. Pushed on, the higher one rises as the plane does in which they
     touch: by -dL/d(lift) along the track for each unit upwards.
 
-    Source: own; docs/design.md, "7. Limitations".
+    Source: own; docs/design.md, "7. Risks between parts".
 
     Parameters
     ----------
@@ -34,11 +59,11 @@ def wedge(one, lift=LIFT):
         quarter of a turn where upright sides meet, more where the plane pushes the higher one down, 0 where
         one clears the other.
     """
-    return min(_rise(one, sign, lift) for sign in (1.0, -1.0))
+    return min(_rise(one, sign, lift)[0] for sign in (1.0, -1.0))
 
 
 def _rise(one, sign, lift):
-    """The angle where the part behind is higher (+1) or the part before (-1).
+    """The angle where the part behind is higher (+1) or the part before (-1), and how far apart they are.
 
     L is the largest q_x - p_x of points q of the part behind and p of the part before that meet: a linear
     programme in the shares of the corners, whose multiplier of the height is dL/d(lift).
@@ -53,33 +78,98 @@ def _rise(one, sign, lift):
     right = [1.0, 1.0, 0.0, sign * lift]  # shares of q, of p; beside each other; p_z - q_z
     found = linprog(np.append(-x, x), A_eq=rows, b_eq=right, method="highs")
     if found.status == CLEARS:
-        return 0.0
-    return math.atan2(1.0, sign * found.eqlin.marginals[3])
+        return 0.0, 0.5 * float(np.ptp(x))
+    return math.atan2(1.0, sign * found.eqlin.marginals[3]), -float(found.fun)
 
 
-def risks(one, friction, queues):
-    """Say what may go wrong between parts, a sentence each.
+def risks(one, bowl, queues, *, every=(), seed=1):
+    """Say what may go wrong between parts.
 
     Parameters
     ----------
     one : Orientation
-        That is wanted.
-    friction : float [1]
-        Of part on part.
+        That is wanted, of a part from a mesh.
+    bowl : Bowl
+        Its friction is also that of part on part.
     queues : sequence of FilledQueue
         What was seen.
+    every : sequence of Orientation
+        All that come often enough to matter.
+    seed : int
+
+    Returns
+    -------
+    tuple of Risk
     """
-    found, held = [], math.atan(friction)
-    angle, higher = wedge(one), f"where one lies {1e3 * LIFT:.3g} mm higher than the next it"
+    part = one.posture.solid
+    found = [*_shingling(one, bowl.friction.kinetic), *_climbing(queues)]
+    found += [*_nesting(part, bowl), *_tangling(part, bowl, seed), *_wedging(every or (one,), bowl)]
+    return tuple(found)
+
+
+def _shingling(one, friction):
+    held = math.atan(friction)
+    angle, apart, sign = min((*_rise(one, sign, LIFT), sign) for sign in (1.0, -1.0))
+    higher = f"where one lies {1e3 * LIFT:.3g} mm higher than the next it"
+    if angle >= held:
+        return
     if angle <= 0.0:
-        found.append(f"{one.name} may shingle: {higher} slides onto it")
-    elif angle < held:
-        found.append(
+        text = f"{one.name} may shingle: {higher} slides onto it"
+    else:
+        text = (
             f"{one.name} may shingle: {higher} is pushed up a side of {math.degrees(angle):.3g} deg, and "
             f"friction holds it up to {math.degrees(held):.3g} deg"
         )
+    before = vectors.product(np.array([apart, 0.0, -sign * LIFT]), one.axes)
+    yield Risk(SHINGLES, text, Pair(one.axes, np.eye(3), check.frozen(before)))
+
+
+def _climbing(queues):
     climbs = sum(seen.climbs for seen in queues)
     if climbs:
         seconds = sum(seen.seconds for seen in queues)
-        found.append(f"parts climbed on others {counted(climbs, 'time')} in {seconds:.3g} s of queue")
-    return tuple(found)
+        yield Risk(CLIMBS, f"parts climbed on others {counted(climbs, 'time')} in {seconds:.3g} s of queue")
+
+
+def _nesting(part, bowl):
+    found = tangling.stack(part, bowl.friction.static)
+    if found is not None:
+        held, side = math.degrees(math.atan(bowl.friction.static)), math.degrees(found.side)
+        text = (
+            f"parts may nest: one goes {millimetres(found.depth)} of {millimetres(found.height)} into the "
+            f"next; its sides are {side:.3g} deg off that way, and friction holds it up to {held:.3g} deg"
+        )
+        yield Risk(NESTS, text, Pair(np.eye(3), np.eye(3), found.place))
+
+
+def _tangling(part, bowl, seed):
+    found = tangling.tangle(part, (bowl.friction.static, bowl.friction.kinetic), seed)
+    if found is None:
+        return
+    pulls = f"{found.held} of {found.pulls} pulls do not part two of them"
+    pair = Pair(np.eye(3), found.turn, found.place)
+    if np.isfinite(found.opening):
+        text = (
+            f"parts may hook into each other: {pulls}; {millimetres(found.section)} of them come through a "
+            f"mouth of {millimetres(found.opening)}"
+        )
+        yield Risk(HOOKS, text, pair)
+    else:
+        yield Risk(HOOKS, f"parts may catch in each other: {pulls}", pair)
+
+
+def _wedging(every, bowl):
+    """Those that come between the wall and what stands at the free edge, such as the chute's other wall."""
+    wall, width = bowl.friction.wall, bowl.track.width
+    for one in every:
+        between = wedging.walls_between(one, wall)
+        if between is None or not between[0] < width < between[1]:
+            continue
+        text = (
+            f"{one.name} may wedge across a chute as wide as the track, {millimetres(width)}: friction holds "
+            f"it between walls {millimetres(between[0])} to {millimetres(between[1])} apart"
+        )
+        c, s = math.cos(wedging.strut(one, width)), math.sin(wedging.strut(one, width))
+        x, y, z = one.axes
+        yield Risk(WEDGES, text, Pair(np.array([c * x - s * y, s * x + c * y, z]), walls=width))
+        return

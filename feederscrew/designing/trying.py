@@ -5,15 +5,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.rates import spacing, stream
-from feederscrew.resting.aspects import Aspects
 from feederscrew.tooling.hanging import Hanging
 from feederscrew.trial import course
-from feederscrew.trial.queue import queue_of
 
 SELDOM = 5e-3  # [1] orientations that come less often are left out
 HELD = (course.HANGING, course.STOPPED)  # what is stuck on the bare track is pushed on by a queue
 FEW = 8  # so many other orientations are tried more than once
-GAP = 1.2  # pitch of parts that come in a row, over their length
+LOW = 0.5  # mean free way between parts at low fill, over their length: a third of the row is empty
+GAP = 1.0 + LOW  # pitch of parts that come in a row at low fill, over their length
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,11 +188,3 @@ def _places(seen, own):
         )
         found[name] = found.get(name, 0) + 1
     return found
-
-
-def queue(part, bowl, aspects: Aspects, known, shares, states, *, parts, seconds, seed):
-    """Follow a queue of which some states are wanted; as ``trial.queue.queue_of``."""
-    return queue_of(
-        part, bowl, aspects, known.lying, counted(known, states), shares, parts=parts, seconds=seconds,
-        seed=seed,
-    )  # fmt: skip

@@ -25,7 +25,7 @@ from feederscrew.studies.rate import shares as arriving
 from feederscrew.trial import course, outlet
 from feederscrew.trial import landing as landings
 from feederscrew.trial.outlet import Outlet
-from feederscrew.trial.queue import queue_of
+from feederscrew.trial.queue import GAPS, queue_of
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.shape import solid_of
 
@@ -163,7 +163,9 @@ def trial(
     count = parts or (FEW if queue else PARTS)
     launch = LAUNCH if found.recommended is None else found.recommended.launch
     fall = None if landing is None else {"launch": launch, "parts": landing, "jobs": jobs}
-    crowd = None if queue is None else {"parts": queue, "seconds": seconds, "poured": poured}
+    crowd = None
+    if queue is not None:
+        crowd = {"parts": queue, "seconds": seconds, "gaps": None if poured else GAPS}
     made: list[TrialRun] = []
     stopped = False
     for bowl in bowls:

@@ -52,7 +52,7 @@ class QueuedParts:
         return self.delivered / self.counted if self.counted > 0.0 else 0.0
 
 
-def queue_of(part, bowl, aspects, every, poses, shares, *, parts, seconds, seed, poured=False, progress=None):
+def queue_of(part, bowl, aspects, every, poses, shares, *, parts, seconds, seed, gaps=GAPS, progress=None):
     """Follow a queue of parts that come without end: what leaves is offered again at the end of the row.
 
     Parameters
@@ -72,8 +72,9 @@ def queue_of(part, bowl, aspects, every, poses, shares, *, parts, seconds, seed,
     parts : int
     seconds : float [s]
     seed : int
-    poured : bool
-        Whether they fall onto the track in any attitude, not laid down in a row.
+    gaps : float [1] or None
+        Mean free way between parts as they come in a row, over their length, beside the room that devices
+        need; 0 where they come touching. None: they fall onto the track in any attitude, not in a row.
     progress : function, optional
         Told how many periods of the drive are done, of how many.
 
@@ -86,7 +87,7 @@ def queue_of(part, bowl, aspects, every, poses, shares, *, parts, seconds, seed,
     KeyboardInterrupt
         If the user stops it before the first period is done.
     """
-    queue = _Queue(part, bowl, aspects, every, poses, shares, parts, poured, seed)
+    queue = _Queue(part, bowl, aspects, every, poses, shares, parts, gaps, seed)
     count = max(round(seconds * bowl.drive.frequency), 1)
     try:
         for turn in range(count):
@@ -102,12 +103,12 @@ def queue_of(part, bowl, aspects, every, poses, shares, *, parts, seconds, seed,
 class _Queue:
     """The queue while it moves; lengths in units of the part's, times in seconds."""
 
-    def __init__(self, part, bowl, aspects, every, poses, shares, parts, poured, seed):
+    def __init__(self, part, bowl, aspects, every, poses, shares, parts, gaps, seed):
         self.part, self.bowl, self.every = part, bowl, every
         solid, length, self.principal = solid_of(part)
         solid = rounded(solid, course.axes(every, self.principal))
         self.known = known = runs.setting(solid, length, bowl)
-        self.poured, self.parts, self.chances = poured, parts, np.cumsum(shares)
+        self.gaps, self.parts, self.chances = gaps, parts, np.cumsum(shares)
         self.rng = np.random.default_rng((seed, parts))
         longest = max(one.length for one in every)
         turn = PART_OF_TURN * 2.0 * np.pi * bowl.track.radius - 2.0 * longest  # some rolls back
@@ -160,11 +161,11 @@ class _Queue:
         k = min(int(np.searchsorted(self.chances, self.rng.random() * self.chances[-1])), len(self.every) - 1)
         one = self.every[k]
         track = one.track
-        if not self.poured:
+        if self.gaps is not None:
             play = starts.PLAY * self.rng.random()
             state = whereabouts.laid(one, self.principal, self.known.length, track, place=0.0)
             state = starts.clear(state, self.known.solid, track, self.known.length, play, one.wall_leans)
-            gap = self.apart + 2.0 * GAPS * self.rng.random() * one.length / self.known.length
+            gap = self.apart + 2.0 * self.gaps * self.rng.random() * one.length / self.known.length
             return state, gap
         radius, state = self.known.solid.radius, np.zeros(body.STATE)
         turn = self.rng.standard_normal(4)
@@ -269,7 +270,7 @@ class _Queue:
         return QueuedParts(
             parts=self.parts,
             on_track=self.most,
-            poured=self.poured,
+            poured=self.gaps is None,
             seconds=seconds,
             counted=counted,
             delivered=self.whole + part - self.start if counted else 0.0,

@@ -7,9 +7,11 @@ import pytest
 import shapes
 import trimesh
 
+from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Track
-from feederscrew.designing import risks
+from feederscrew.designing import risks, wedging
 from feederscrew.designing.record import FilledQueue
+from feederscrew.output.designs import pairs
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
 
@@ -27,6 +29,14 @@ def keel():
     return feet[0], feet[1]
 
 
+def found(one, friction, queues=(), width=1.0):
+    """Risks of an orientation on a track of a width [m], at one friction [1] everywhere."""
+    plain = bowls.default()
+    rubbed = replace(plain.friction, static=friction, kinetic=friction, wall=friction)
+    bowl = replace(plain, friction=rubbed, track=replace(plain.track, width=width))
+    return list(risks.risks(one, bowl, queues))
+
+
 def lathe(outline):
     """A part of revolution from radii and heights [mm]."""
     return shapes.part(trimesh.creation.revolve(np.array(outline), sections=64))
@@ -41,20 +51,20 @@ def wedge_of(part, kind="flat"):
 def test_a_foot_under_sides_that_rise_wedges_by_the_flatter_one_whichever_leads(keel):
     for one in keel:
         assert np.degrees(risks.wedge(one)) == pytest.approx(20.0, abs=1e-6)
-        (said,) = risks.risks(one, 0.6, ())
-        assert said == (
+        (said,) = found(one, 0.6)
+        assert said.text == (
             f"{one.name} may shingle: where one lies 0.25 mm higher than the next it is pushed up a side of "
             "20 deg, and friction holds it up to 31 deg"
         )
-        assert risks.risks(one, np.tan(np.radians(19.0)), ()) == ()
+        assert found(one, np.tan(np.radians(19.0))) == []
 
 
 def test_a_thin_disc_slides_onto_the_next_and_a_thicker_one_does_not():
     thin, thick = (lathe([(0.0, 0.0), (6.0, 0.0), (6.0, t), (0.0, t)]) for t in (0.2, 0.5))
     assert wedge_of(thin) == 0.0 and wedge_of(thick) == pytest.approx(90.0, abs=1e-6)
     (lying,) = [one for one in orientations(thin, find(thin), LEVEL) if one.kind == "flat"]
-    (said,) = risks.risks(lying, 0.1, ())
-    assert said.endswith("higher than the next it slides onto it")
+    (said,) = found(lying, 0.1)
+    assert said.text.endswith("higher than the next it slides onto it")
 
 
 def test_a_chamfer_does_no_harm_where_enough_of_the_rim_stands_upright():
@@ -85,6 +95,56 @@ def test_round_sides_meet_half_way_up_whatever_their_facets():
 
 
 def test_what_climbed_in_the_queue_is_said(keel):
-    seen = FilledQueue("normal", 12, 30.0, 29.0, 20.0, 20, 20, 0, 0, 3)
-    (said,) = risks.risks(keel[0], 0.3, (seen, replace(seen, climbs=0)))
-    assert said == "parts climbed on others 3 times in 60 s of queue"
+    seen = FilledQueue("normal", 0.2, 12, 30.0, 29.0, 20.0, 20, 20, 0, 0, 3)
+    (said,) = found(keel[0], 0.3, (seen, replace(seen, climbs=0)))
+    assert said.text == "parts climbed on others 3 times in 60 s of queue" and said.pair is None
+
+
+def test_the_one_that_shingles_is_drawn_touching_the_next_and_higher(keel):
+    for one in keel:
+        (said,) = found(one, 0.6)
+        along, aside, up = said.pair.axes @ said.pair.place
+        assert aside == pytest.approx(0.0, abs=1e-9) and abs(up) == pytest.approx(risks.LIFT, abs=1e-9)
+        reach = risks.LIFT / np.tan(np.radians(20.0))
+        whole = np.ptp(one.outline[:, 0])
+        assert along == pytest.approx(whole - reach, abs=1e-6)  # they lap by what the flatter side gives
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.4])
+def test_a_strut_between_walls_is_held_up_to_the_angle_of_friction(heading):
+    """A plate of 30 x 12 mm, whichever way it lies: its diagonal is the strut."""
+    part = shapes.part(shapes.box(30, 12, 3))
+    (one, *_) = [
+        one for one in orientations(part, find(part), LEVEL) if one.height == pytest.approx(3e-3, rel=1e-6)
+    ]
+    one = replace(one, heading=one.heading + heading)
+    longest = np.hypot(30e-3, 12e-3)
+    low, high = wedging.walls_between(one, 0.5)
+    breadth = np.ptp(one.outline[:, 1])
+    assert high == pytest.approx(longest, rel=1e-9)
+    assert low == pytest.approx(max(longest / np.sqrt(1.0 + 0.5**2), breadth), rel=1e-9)
+    width = 0.5 * (low + high)
+    turn = wedging.strut(one, width)
+    x, y = one.outline.T
+    assert np.ptp(np.sin(turn) * x + np.cos(turn) * y) == pytest.approx(width, rel=5e-3)
+    (said,) = found(one, 0.5, width=width)
+    assert said.kind == "wedges" and said.pair.walls == pytest.approx(width)
+    assert found(one, 0.5, width=1.01 * high) == found(one, 0.5, width=0.99 * low) == []
+
+
+def test_what_is_as_broad_whichever_way_it_is_turned_is_no_strut():
+    disc = lathe([(0.0, 0.0), (6.0, 0.0), (6.0, 3.0), (0.0, 3.0)])
+    (lying, *_) = [one for one in orientations(disc, find(disc), LEVEL) if one.height < 3.1e-3]
+    assert wedging.walls_between(lying, 0.6) is None
+
+
+@pytest.mark.parametrize("kind", ["shingles", "wedges"])
+def test_each_pair_is_drawn_without_one_in_the_other(keel, kind):
+    (one, _) = keel
+    width = np.mean(wedging.walls_between(one, 0.6))
+    said = next(some for some in found(one, 0.6, width=width) if some.kind == kind)
+    first, second = pairs.bodies(one.posture.solid, said.pair)
+    bodies = [trimesh.Trimesh(*some) for some in (first, second)]
+    assert not bodies[1].contains(first[0]).any()
+    assert not bodies[0].contains(second[0]).any()
+    assert pairs.drawn(one.posture.solid, said).axes[0].images

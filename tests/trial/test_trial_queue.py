@@ -108,25 +108,25 @@ def test_a_row_that_reaches_round_the_bowl_stays_on_the_track():
     assert found.returned == found.jams == 0
 
 
-@pytest.mark.parametrize("poured", [False, True])
-def test_parts_enter_one_behind_the_other_with_a_fifth_of_a_length_between_them(poured):
-    """In a row free ways are even from 0 to 0.4 lengths, between poured parts there are none; none waits."""
+@pytest.mark.parametrize("gaps", [queue.GAPS, 0.5, 0.0, None])
+def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is_asked_for(gaps):
+    """In a row they are even from 0 to twice the mean; parts that are poured or come touching have none."""
     shares = np.array([one is FLAT for one in EVERY], float)
-    made = queue._Queue(PART, STILL, ASPECTS, EVERY, EVERY, shares, 300, poured, 3)
+    made = queue._Queue(PART, STILL, ASPECTS, EVERY, EVERY, shares, 300, gaps, 3)
     ends = np.array([made.crowd.extents(n)[:2] for n in range(300)])
     free = (ends[:-1, 0] - ends[1:, 1]) * LENGTH / FLAT.length
     assert not made.waiting and ends[0, 1] <= 1e-9 and made.most == 300
-    if poured:
-        assert np.abs(free).max() < 1e-9
+    if gaps:
+        assert free.min() > 0.0 and 1.9 * gaps < free.max() < 2.0 * gaps
+        assert free.mean() == pytest.approx(gaps, abs=4.0 * 2.0 * gaps / np.sqrt(12 * 300))
     else:
-        assert free.min() > 0.0 and free.max() < 0.4
-        assert free.mean() == pytest.approx(0.2, abs=4.0 * 0.4 / np.sqrt(12 * 300))
+        assert np.abs(free).max() < 1e-9
 
 
 def test_parts_wait_where_the_track_before_the_first_device_is_full():
     tight = replace(STILL, track=replace(STILL.track, radius=0.08, width=0.04))
     shares = np.array([one is FLAT for one in EVERY], float)
-    made = queue._Queue(PART, tight, ASPECTS, EVERY, EVERY, shares, 40, False, 3)
+    made = queue._Queue(PART, tight, ASPECTS, EVERY, EVERY, shares, 40, queue.GAPS, 3)
     lying = np.flatnonzero(made.crowd.on)
     rears = [made.crowd.extents(n)[0] * LENGTH for n in lying]
     room = 0.5 * 2.0 * np.pi * 0.08 - 2.0 * max(one.length for one in EVERY)
@@ -162,7 +162,7 @@ def test_a_row_pushes_what_a_blade_holds(tmp_path):
 
 
 def test_poured_parts_come_to_lie_and_travel():
-    found = queued(BOWL, parts=3, seconds=1.0, seed=2, poured=True)
+    found = queued(BOWL, parts=3, seconds=1.0, seed=2, gaps=None)
     assert found.poured and found.on_track == 3 and found.depth < 1e-3
 
 

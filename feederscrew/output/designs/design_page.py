@@ -1,7 +1,7 @@
 """A design on one page to hand on: the answer first, then what it stands on."""
 
 from feederscrew.designing import record
-from feederscrew.output.designs import figures, tables
+from feederscrew.output.designs import figures, pairs, tables
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import (
     Chapter,
@@ -80,7 +80,15 @@ def _answer(study, d):
     if d["bowl"]:
         yield Table(tables.two_columns(tables.dimensions(d)))
     if study.risks:
-        yield Notes(tuple(study.risks), loud=True)
+        yield Notes(tuple(one.text for one in study.risks), loud=True)
+        yield from _pairs(study)
+
+
+def _pairs(study):
+    """Pictures of what may go wrong between two parts, or a part and two walls."""
+    for one in study.risks:
+        if one.pair is not None:
+            yield Picture(f"risk_{one.kind}.png", png(pairs.drawn(study.part, one)), one.text, printed=True)
 
 
 def _said(study):

@@ -32,6 +32,9 @@ def offers(study, settings, built=None):
         offer.table("design_trials.csv", tables.attempts, study),
         offer.picture("design_history.png", "Each short trial of the loop", _history, study),
     ]
+    for one in study.risks:
+        if one.pair is not None:
+            found.append(offer.picture(f"risk_{one.kind}.png", one.text, _pair, study.part, one))
     if study.bowl is None:
         return found
     found.append(offer.text("design.yaml", design_file.bowl_file, study, settings, sheet))
@@ -50,6 +53,12 @@ def _page(study, built):
     from feederscrew.output.designs import design_page
 
     return design_page.page(study, built)
+
+
+def _pair(part, risk):
+    from feederscrew.output.designs import pairs
+
+    return pairs.drawn(part, risk)
 
 
 def _history(study):

@@ -28,6 +28,7 @@ def document(study):
         "delivered_per_minute": rates[0] / PER_MINUTE,
         "delivered_low": rates[1] / PER_MINUTE,
         "delivered_high": rates[2] / PER_MINUTE,
+        "worst_friction_per_minute": study.worst / PER_MINUTE,
         "static_per_minute": study.static_rate / PER_MINUTE,
         "purity": None if np.isnan(purity) else purity,
         "purity_low": purity_low,
@@ -42,7 +43,8 @@ def document(study):
         },
         "chain": [{"device": one.kind, "value": one.text} for one in study.devices],
         "why": study.why,
-        "risks": list(study.risks),
+        "risks": [one.text for one in study.risks],
+        "findings": [risk(one) for one in study.risks],
         "trial_parts": study.trial_parts,
         "answer": study.source,
         "seed": study.request.seed,
@@ -70,10 +72,21 @@ def bowl(study):
     }
 
 
+def risk(one):
+    """Return a Risk as a dict: of two parts how the second lies to the first, in the axes of the file."""
+    pair = None if one.pair is None else {}
+    if pair is not None and one.pair.turn is not None:
+        pair = {"turn": one.pair.turn.tolist(), "place_mm": (one.pair.place / MM).tolist()}
+    elif pair is not None:
+        pair = {"walls_mm": one.pair.walls / MM}
+    return {"kind": one.kind, "text": one.text, "pair": pair}
+
+
 def queue(one):
     """Return a FilledQueue as a dict."""
     return {
         "fill": one.fill,
+        "free_way": one.gaps,
         "parts": one.parts,
         "seconds": one.seconds,
         "delivered_per_minute": one.rate / PER_MINUTE,
@@ -151,9 +164,10 @@ def outcome(d):
         ("leaves as", d["wanted"] or "-"),
         ("asked for [1/min]", f"{d['target_per_minute']:.4g}"),
         (
-            "delivered in the queue [1/min]",
+            "delivered at the lowest fill [1/min]",
             f"{d['delivered_per_minute']:.4g} ({d['delivered_low']:.4g} to {d['delivered_high']:.4g})",
         ),
+        ("the same at the worst friction [1/min]", f"{d['worst_friction_per_minute']:.4g}"),
         ("promised by the static rule [1/min]", f"{d['static_per_minute']:.4g}"),
         (
             "purity [%]",

@@ -26,7 +26,9 @@ def designed_block(folder, size, *more):
 
     shapes.box(*size).export(folder / "cube.stl")
     patch = pytest.MonkeyPatch()
-    patch.setattr(queues, "FILLS", (("low", 2, 0.5), ("normal", 4, 2.0)))
+    patch.setattr(queues, "PARTS", 4)
+    patch.setattr(queues, "SECONDS", 2.0)
+    patch.setattr(queues, "FILLS", queues.FILLS[1:])
     line = ["design", folder / "cube.stl", "--target", "40/min", "--draws", "2", "--jobs", "1", *more]
     try:
         done = CliRunner().invoke(feeder, [*map(str, line), "--format", "json", "--no-pictures"])

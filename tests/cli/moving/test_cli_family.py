@@ -12,7 +12,9 @@ from feederscrew.designing import beside, queues
 def cubes(tmp_path, monkeypatch):
     """Two cubes of other sizes, queues that are soon over, and no solid."""
     monkeypatch.setattr(beside, "built", lambda study, settings: beside.Built())
-    monkeypatch.setattr(queues, "FILLS", (("low", 2, 0.5), ("normal", 4, 2.0)))
+    monkeypatch.setattr(queues, "PARTS", 4)
+    monkeypatch.setattr(queues, "SECONDS", 2.0)
+    monkeypatch.setattr(queues, "FILLS", queues.FILLS[1:])
     found = [tmp_path / "small.stl", tmp_path / "large.stl"]
     for path, size in zip(found, (9, 11), strict=True):
         shapes.box(size, size, size).export(path)

@@ -51,7 +51,7 @@ def test_both_jobs_are_designed_by_one_command_each():
         words = shlex.split(line.replace("docs/", f"{PAGE.parent}/"))
         asked = command.make_context("design", words).params
         told = dict(re.split(r"  +", row, maxsplit=1) for row in shown.splitlines())
-        low = float(told["delivered in the queue [1/min]"].partition("(")[2].split()[0])
+        low = float(told["delivered at the lowest fill [1/min]"].partition("(")[2].split()[0])
         assert told["status"] == "holds" and low >= 0.9 * 60.0 * asked["target"]
         assert float(told["asked for [1/min]"]) == pytest.approx(60.0 * asked["target"])
         wanted.append(asked["outcome"])
