@@ -111,7 +111,8 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
     partial.
 
     Of several parts each is designed for one track and one chain of devices, as far as they go: what is
-    changed from one to the next is listed in family/changeover.csv. Each has its own folder.
+    changed from one to the next is listed in family/changeover.csv and on the page family/family.html. Each
+    has its own folder.
 
     With -o: design.yaml, a bowl file that says what its trial showed, and design.html, the page to hand on.
     Also acceptance.csv, design_trials.csv, and the files of feeder tooling and feeder bowl, with the bowl as
@@ -194,7 +195,7 @@ def _family(out, parts, asked, written):
     from feederscrew import bowl as bowls
     from feederscrew.designing import families
     from feederscrew.output import offers
-    from feederscrew.output.designs import family
+    from feederscrew.output.designs import family, family_page
 
     settings, path, pictures = written
     families.named_apart(parts)
@@ -205,5 +206,5 @@ def _family(out, parts, asked, written):
             _written(out, folder, one, settings, pictures)
     inputs = {name: value for part in parts for name, value in part.inputs.items()}
     with out.folder("family", inputs | bowls.identity(path), bowls.texts(settings)) as folder:
-        offers.write(folder, family.offers(found), pictures=pictures)
+        offers.write(folder, family_page.offers(found), pictures=pictures)
         out.show(family.summary(found), family.document(found))

@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from feederscrew.designing import beside, calm_drive, exploring, nearest, proposals, queues, risks, trying
+from feederscrew.designing import beside, calm_drive, exploring, nearest, proposals, queues, trying
+from feederscrew.designing.hazards import risks
 from feederscrew.designing.record import DRAWS_HELD, RATE_KEPT, DesignStudy
 from feederscrew.designing.robust import robust_run
 from feederscrew.designing.searching import Search

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
-from feederscrew.designing.risks import Risk
+from feederscrew.designing.hazards.risks import Risk
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
 from feederscrew.studies.tooling import ToolingStudy, listed

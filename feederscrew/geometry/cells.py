@@ -31,6 +31,10 @@ class Cells:
         found = np.rint((points - self.origin) / self.size).astype(int)
         return np.clip(found, 0, np.array(self.solid.shape) - 1)
 
+    def at(self, points):
+        """Return the cells of points (N, 3) as an index of its arrays."""
+        return tuple(self.places(points).T)
+
     @property
     def rim(self):
         """Cells (I, J, K) of the solid beside one that is not of it."""

@@ -37,6 +37,8 @@ def leads(document):
 def beside(document, verified, part, bowl):
     """Return a document with the trial's figures beside its own; the lower rate leads.
 
+    A trial that counted several aspects as one leads in any case: the rule counts one orientation.
+
     Parameters
     ----------
     document : dict
@@ -58,7 +60,7 @@ def beside(document, verified, part, bowl):
     own = {name: document[name] for name in known if name in document}
     if not own:
         return document
-    lead = tried if tried["parts_per_minute"] <= own["parts_per_minute"] else own
+    lead = tried if verified.up or tried["parts_per_minute"] <= own["parts_per_minute"] else own
     led = {name: lead[name] for name in own}
     return document | led | {"parts_per_minute_static": own["parts_per_minute"]}
 
@@ -67,6 +69,7 @@ def _block(verified, tried):
     return {
         "status": verified.status,
         "wanted": verified.wanted,
+        "up": verified.up,
         **tried,
         "purity": verified.purity,
         "jams": verified.jams,

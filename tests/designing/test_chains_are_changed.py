@@ -153,5 +153,5 @@ def test_a_sensor_sees_something_of_every_drawn_part():
 def test_a_row_with_gaps_for_a_sensor_delivers_less(block):
     _, ways, names = block
     seen = tried(ways, {names["A@0"]}, (), (), names["A@0"])
-    wide = replace(seen, apart=1.2 * float((seen.shares * ways.lengths).sum()))
+    wide = replace(seen, apart=trying.GAP * float((seen.shares * ways.lengths).sum()))
     assert wide.rate == pytest.approx(0.5 * seen.rate)

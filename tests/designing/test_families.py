@@ -10,7 +10,7 @@ from feederscrew import bowl as bowls
 from feederscrew.designing import families
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
 from feederscrew.errors import FeederError
-from feederscrew.output.designs import family
+from feederscrew.output.designs import family, family_page
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.isolating.chain import Cut
 
@@ -28,7 +28,7 @@ def cut(kind, value, low, high):
 
 def design(part, *cuts, bowl=BOWL, held=20):
     """A design that holds, of some cuts."""
-    queue = FilledQueue("normal", 12, 60.0, 60.0, 45.0, 45, 45, 5, 0, 0)
+    queue = FilledQueue("normal", 0.2, 12, 60.0, 60.0, 45.0, 45, 45, 5, 0, 0)
     own = replace(bowl, devices=tuple(one.device for one in cuts))
     return DesignStudy(
         part, DesignRequest(0.5), own, "A@0", 0, cuts=cuts, robust=RobustRun(20, held, ""), queues=(queue,)
@@ -125,3 +125,14 @@ def test_parts_of_one_name_are_refused():
     for names in ((SMALL, SMALL), (SMALL, replace(LARGE, name="Family"))):
         with pytest.raises(FeederError, match=r"results would be overwritten - rename a file$"):
             families.named_apart(names)
+
+
+def test_the_page_of_a_family_has_the_changeover_and_what_each_part_delivers():
+    first = design(SMALL, cut("gap", 4.0, 3.0, 5.0))
+    other = design(LARGE, cut("gap", 6.0, 5.5, 7.0), held=10)
+    page = family_page.page(families.FamilyStudy((first, other)))
+    assert "one bowl for several parts: falls short" in page and "do not share one chain" in page
+    assert "gap 1" in page and "swapped" in page and "4 mm" in page and "6 mm" in page
+    same = family_page.page(families.FamilyStudy((first, replace(first, part=LARGE))))
+    assert "Nothing is changed from one part to the next." in same
+    assert "One track and one chain of devices suit all parts" in same

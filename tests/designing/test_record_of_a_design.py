@@ -10,6 +10,7 @@ from scipy.stats import binom
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import queues
+from feederscrew.designing.hazards.risks import Risk
 from feederscrew.designing.record import (
     Attempt,
     DesignRequest,
@@ -17,7 +18,6 @@ from feederscrew.designing.record import (
     FilledQueue,
     RobustRun,
 )
-from feederscrew.designing.risks import Risk
 from feederscrew.output import tables as tables_of
 from feederscrew.output.designs import design_file, design_page, tables
 from feederscrew.output.page import blocks

@@ -6,7 +6,7 @@ import shapely
 import shapes
 import trimesh
 
-from feederscrew.designing import tangling
+from feederscrew.designing.hazards import nesting, tangling
 from feederscrew.geometry import vectors
 from feederscrew.geometry.cells import cells, chords, handles
 
@@ -76,20 +76,20 @@ def test_the_pair_that_hooks_does_not_overlap_and_each_goes_through_the_other(ho
 )
 def test_what_never_comes_together_or_comes_apart_by_itself_is_no_risk(part):
     assert tangling.tangle(part, RUBBED) is None
-    assert tangling.stack(part, 0.6) is None
+    assert nesting.stack(part, 0.6) is None
 
 
 @pytest.mark.parametrize("sections", [24, 60])
 def test_cups_nest_where_their_sides_are_steeper_than_friction_holds(sections):
     """The inside of one meets the next one's foot, of 6 mm, where it is as wide: 4.32 mm up."""
     part = cup(6.0, 9.0, sections=sections)
-    found = tangling.stack(part, 0.6)
+    found = nesting.stack(part, 0.6)
     apart = 0.8 + 0.8 * 13.2 / 3.0
     assert 1e3 * found.height == pytest.approx(14.0, rel=1e-6)
     assert 1e3 * (found.height - found.depth) == pytest.approx(apart, rel=0.05)
     assert np.degrees(found.side) == pytest.approx(np.degrees(np.arctan(3.0 / 13.2)), abs=0.3)
-    assert tangling.stack(part, np.tan(np.radians(11.0))) is None
-    assert tangling.stack(cup(3.0, 17.0), 0.6) is None  # 45 deg: it lets go
+    assert nesting.stack(part, np.tan(np.radians(11.0))) is None
+    assert nesting.stack(cup(3.0, 17.0), 0.6) is None  # 45 deg: it lets go
 
 
 def test_handles_and_chords_of_plain_bodies():

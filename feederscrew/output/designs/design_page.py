@@ -1,7 +1,7 @@
 """A design on one page to hand on: the answer first, then what it stands on."""
 
 from feederscrew.designing import record
-from feederscrew.output.designs import figures, pairs, tables
+from feederscrew.output.designs import figures, risk_pictures, tables
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import (
     Chapter,
@@ -88,7 +88,9 @@ def _pairs(study):
     """Pictures of what may go wrong between two parts, or a part and two walls."""
     for one in study.risks:
         if one.pair is not None:
-            yield Picture(f"risk_{one.kind}.png", png(pairs.drawn(study.part, one)), one.text, printed=True)
+            yield Picture(
+                f"risk_{one.kind}.png", png(risk_pictures.drawn(study.part, one)), one.text, printed=True
+            )
 
 
 def _said(study):

@@ -4,7 +4,6 @@ from itertools import zip_longest
 
 from feederscrew import units
 from feederscrew.designing.families import SEEN
-from feederscrew.output import offers as offer
 from feederscrew.output.designs import tables
 
 DRIVE = (
@@ -86,11 +85,3 @@ def summary(study):
     for what, how, values in changes(study):
         rows.append((f"{how}: {what}", "; ".join(values)))
     return tables.two_columns([line for row in rows for line in tables.folded(*row)])
-
-
-def offers(study):
-    """Offer the files of a FamilyStudy itself, as a list of Offer; each part has its own folder."""
-    return [
-        offer.document("family.json", document, study),
-        offer.table("changeover.csv", changeover, study),
-    ]

@@ -56,9 +56,9 @@ def _page(study, built):
 
 
 def _pair(part, risk):
-    from feederscrew.output.designs import pairs
+    from feederscrew.output.designs import risk_pictures
 
-    return pairs.drawn(part, risk)
+    return risk_pictures.drawn(part, risk)
 
 
 def _history(study):

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import turned
 from feederscrew.tooling.devices.pieces import GRIP, Jet
 
@@ -122,35 +123,38 @@ def _share(one, diameter, height):
     points, faces = one.posture.surface, one.posture.solid.faces
     plan = turned(points[:, :2], one.heading) + [0.0, one.distance]
     corners = np.column_stack([plan, points[:, 2]])[faces]
-    sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    sides = vectors.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     corners, sides = corners[sides[:, 1] < 0.0], sides[sides[:, 1] < 0.0]  # those that face the wall
     turn, off = GOLDEN * np.arange(RAYS), np.sqrt((np.arange(RAYS) + 0.5) / RAYS)
     places = off[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
     ways = np.column_stack([SPREAD * places[:, 0], np.ones(RAYS), SPREAD * places[:, 1]])
     mouths = 0.5 * diameter * places + [0.0, height]
+    mouths = np.column_stack([mouths[:, 0], np.zeros(RAYS), mouths[:, 1]])
     out = down = 0.0
-    for mouth, way in zip(mouths, ways):
-        k = _first_met(corners, sides, np.array([mouth[0], 0.0, mouth[1]]), way)
-        if k is not None:
+    for way, k in zip(ways, _first_met(corners, sides, mouths, ways)):
+        if k >= 0:
             size = np.sqrt((sides[k] ** 2).sum())
             into = (sides[k] * way).sum() / (size * np.sqrt((way**2).sum()))
             out, down = out + into * sides[k, 1] / size, down - into * sides[k, 2] / size
     return float(out) / RAYS, float(down) / RAYS
 
 
-def _first_met(corners, sides, mouth, way):
-    """Which of some triangles (F, 3, 3) [m] with normals (F, 3) a ray meets first; None where none."""
-    slope = (sides * way).sum(axis=1)
-    fall = ((corners[:, 0] - mouth) * sides).sum(axis=1)
-    far = np.divide(fall, slope, out=np.full(len(sides), np.inf), where=slope < 0.0)
-    spots = mouth + np.where(np.isfinite(far), far, 0.0)[:, None] * way
-    inside = far >= 0.0
+def _first_met(corners, sides, mouths, ways):
+    """Which (R,) of some triangles (F, 3, 3) [m] with normals (F, 3) each ray meets first; -1 of none."""
+    if not len(sides):
+        return np.full(len(ways), -1)
+    slope = (sides * ways[:, None]).sum(axis=2)
+    fall = ((corners[:, 0] - mouths[:, None]) * sides).sum(axis=2)
+    far = np.divide(fall, slope, out=np.full(slope.shape, np.inf), where=slope < 0.0)
+    ray, facet = np.nonzero(np.isfinite(far) & (far >= 0.0))
+    spots = mouths[ray] + far[ray, facet][:, None] * ways[ray]
+    inside = np.ones(len(ray), bool)
     for a in range(3):
-        along, to = corners[:, (a + 1) % 3] - corners[:, a], spots - corners[:, a]
-        inside &= (np.cross(along, to) * sides).sum(axis=1) >= 0.0
-    if not inside.any():
-        return None
-    return int(np.argmin(np.where(inside, far, np.inf)))
+        along, to = (corners[:, (a + 1) % 3] - corners[:, a])[facet], spots - corners[facet, a]
+        inside &= (vectors.cross(along, to) * sides[facet]).sum(axis=1) >= 0.0
+    nearest = np.full(far.shape, np.inf)
+    nearest[ray[inside], facet[inside]] = far[ray[inside], facet[inside]]
+    return np.where(np.isfinite(nearest.min(axis=1)), nearest.argmin(axis=1), -1)
 
 
 def _solid_at_middle(one):

@@ -127,6 +127,21 @@ def test_the_acceptance_sheet_is_read_back_filled_in(designed, run):
     assert "measured is 'many', not a number - write a number alone" in odd.stderr
 
 
+def test_a_trial_that_counted_several_aspects_as_one_leads_though_the_rule_says_less(designed, run):
+    _, folder = designed
+    text = (folder / "design.yaml").read_text()
+    for word, rate in (("delivered", 900), ("delivered_low", 800), ("delivered_high", 1000)):
+        text = re.sub(rf"  {word}: .*", f"  {word}: {rate}/min", text)
+    part = folder.parent / "cube.stl"
+    for up, told in (("", None), ('  up: "A, B"\n', 900.0)):
+        Path("up.yaml").write_text(text.replace("  target:", f"{up}  target:"))
+        lines = ("rate", part), ("bowl", part, "--target", "40/min")
+        for line in lines:
+            found = json.loads(run(*line, "--config", "up.yaml", "--format", "json").stdout)
+            own = found["parts_per_minute_static"]
+            assert own < 800.0 and found["parts_per_minute"] == pytest.approx(told or own)
+
+
 def test_report_bowl_and_batch_lead_with_a_trial_that_delivers_less(designed, run):
     _, folder = designed
     text = (folder / "design.yaml").read_text()

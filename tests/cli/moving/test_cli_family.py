@@ -33,6 +33,9 @@ def test_two_cubes_run_in_one_bowl(run, cubes, tmp_path):
     assert len({(one["diameter_mm"], one["track_width_mm"], one["bank_deg"]) for one in bowls}) == 1
     first, *rows = (tmp_path / "results/family/changeover.csv").read_text().splitlines()
     assert first == "what,how,small,large" and len(rows) == len(document["changeover"])
+    page = (tmp_path / "results/family/family.html").read_text()
+    assert "one bowl for several parts: holds" in page and "changeover.csv" in page
+    assert all(f"{one}/design.html" in page for one in ("small", "large"))
     for name in ("small", "large"):
         assert (tmp_path / "results" / name / "design.yaml").read_text().startswith("# holds: ")
 

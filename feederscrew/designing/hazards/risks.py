@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew import check
-from feederscrew.designing import tangling, wedging
+from feederscrew.designing.hazards import nesting, tangling, wedging
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import turned
 from feederscrew.tooling.isolating.chain import millimetres
@@ -132,7 +132,7 @@ def _climbing(queues):
 
 
 def _nesting(part, bowl):
-    found = tangling.stack(part, bowl.friction.static)
+    found = nesting.stack(part, bowl.friction.static)
     if found is not None:
         held, side = math.degrees(math.atan(bowl.friction.static)), math.degrees(found.side)
         text = (
