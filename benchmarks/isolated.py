@@ -4,7 +4,7 @@ Example: python benchmarks/isolated.py parts/dowel_6x20.stl parts/washer_m6.stl
          python benchmarks/isolated.py --verdicts 300 --seconds 60 some/part.stl
 
 For each part the orientations that one part in twenty or more comes in, in the bowl of the defaults with a
-track of 40 mm. A line a part, of docs/tooling.md: how many are isolated by what drops parts alone, with
+track of 40 mm. A line a part: how many are isolated by what drops parts alone, with
 what clears itself, and with a sorter; of the one that isolates most, its chain, the share of the parts that
 leaves by the static rule, and what a queue of twelve does with it. Shares are by the centroid solid angle.
 """
