@@ -131,7 +131,7 @@ def _lugs(made, body, turn, planes):
     kept = shapely.MultiLineString([_turned(one, -turn) for one in edges])
     found = lugs.lugs(body, planes, kept, _box(made.vertices, turn))
     if planes and not found:
-        raise FeederError("join", "no lug for a screw has room at the seams", "take --join dowels")
+        raise FeederError("join", "no lug for a screw has room at the seams", "take dowels")
     return found
 
 

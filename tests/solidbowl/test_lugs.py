@@ -118,4 +118,4 @@ def test_a_bowl_that_fits_whole_has_no_lugs_and_a_wall_without_room_is_said(monk
     monkeypatch.setattr(lugs, "KEPT", 1.0)
     with pytest.raises(FeederError) as fault:
         segments.segments(solid, (0.2, 0.2, 0.2), segments.SCREWS)
-    assert str(fault.value) == "join: no lug for a screw has room at the seams - take --join dowels"
+    assert str(fault.value) == "join: no lug for a screw has room at the seams - take dowels"
