@@ -12,6 +12,7 @@ import shapes
 import trimesh
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl.verified import fingerprint
 from feederscrew.errors import Faults
 from feederscrew.geometry.polygons import turned
 from feederscrew.part import load
@@ -136,6 +137,19 @@ def test_a_sorter_of_two_orientations_passes_both(tmp_path):
     again = both.with_play(2e-3, "2 mm")
     assert again.text == f"{{of: [{', '.join(names)}], play: 2 mm, sees: outline}}"
     assert len(both.standing(BOWL.track, every).sensor.wanted) == 2
+
+
+@pytest.mark.parametrize("turn", np.random.default_rng(3).uniform(0.0, 360.0, 40))
+def test_a_sorter_read_back_is_the_one_that_was_written(tmp_path, turn):
+    """To the last digits of its headings: what was verified of it stays so."""
+    like, also = ("A", np.radians(turn), 1e-3), (("B", np.radians(0.37 * turn)),)
+    one = KINDS["sorter"]("b.yaml", like=like, also=also).with_play(2e-3, "2 mm")
+    (tmp_path / "b.yaml").write_text(f"devices:\n  - sorter: {one.text}\n")
+    (back,) = bowls.read(tmp_path / "b.yaml").devices
+    assert (back.like[0], back.also[0][0]) == ("A", "B")
+    assert back.like[1:] == pytest.approx(one.like[1:], rel=1e-14, abs=0.0)
+    assert back.also[0][1] == pytest.approx(one.also[0][1], rel=1e-14, abs=0.0)
+    assert fingerprint(replace(BOWL, devices=(back,))) == fingerprint(replace(BOWL, devices=(one,)))
 
 
 def test_a_screw_that_hangs_is_seen_head_first_and_thread_first():

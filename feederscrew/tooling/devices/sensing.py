@@ -68,12 +68,13 @@ class Sorter(Device):
         return made
 
     def with_play(self, play, text):
-        """Return the same sorter with other play [m], written as some text."""
-        aspect, heading, _ = self.like
-        names = [f"{name}@{np.degrees(turn):.6g}" for name, turn in ((aspect, heading), *self.also)]
+        """Return the same sorter with other play [m], written as some text, and headings as it says."""
+        turns = [(name, f"{np.degrees(turn):.6g}") for name, turn in (self.like[:2], *self.also)]
+        names = [f"{name}@{turn}" for name, turn in turns]
         named_ones = names[0] if len(names) == 1 else f"[{', '.join(names)}]"
         written = f"{{of: {named_ones}, play: {text}, sees: {self.sees}}}"
-        return replace(self, like=(aspect, heading, float(play)), text=written)
+        first, *also = ((name, float(np.radians(float(turn)))) for name, turn in turns)
+        return replace(self, like=(*first, float(play)), also=tuple(also), text=written)
 
     def differs(self, met):
         """Return by how much [m] an orientation is seen to differ from the nearest of the wanted ones.
