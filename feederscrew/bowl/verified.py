@@ -3,7 +3,7 @@
 import hashlib
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from os import PathLike
 
 from feederscrew import documents, units
@@ -12,6 +12,7 @@ from feederscrew.part.record import Part
 from feederscrew.tooling.devices.base import Device
 
 SECTION = "verified"
+SHARED = {one.name for one in fields(Device)}  # what every device has
 
 
 @dataclass(frozen=True)
@@ -91,7 +92,15 @@ def _device(one: Device) -> str:
     flat = [end for pair in one.corners for end in pair]
     others = [end for other in one.also for end in other]
     numbers = " ".join(f"{end:.5g}" for end in (*one.span, *flat, *one.like[1:], *others[1::2]))
-    return f"{one.kind} {limit} {(*one.like[:1], *others[::2])} {numbers}"
+    own = (_own(getattr(one, each.name)) for each in fields(one) if each.name not in SHARED)
+    return f"{one.kind} {limit} {(*one.like[:1], *others[::2])} {numbers} {' '.join(own)}"
+
+
+def _own(value: object) -> str:
+    """What only devices of some kinds have, such as an angle: to four digits, as files write six."""
+    if isinstance(value, tuple):
+        return f"({' '.join(map(_own, value))})"
+    return f"{value:.4g}" if isinstance(value, float) and math.isfinite(value) else str(value)
 
 
 def verified(path: str | PathLike[str] | None) -> Verified | None:
