@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 import shapely.affinity
 
+from feederscrew.geometry import shaded
 from feederscrew.geometry.polygons import turned
 
 FINE = 1e-4  # [m] between places of a border at which two are compared
@@ -64,7 +65,7 @@ def askew(one, sees):
 def fitted(seen, wanted, enough=0.0):
     """Return by how much [m] an area seen from above differs from another one, turned until it fits best.
 
-    Once they differ by no more than ``enough`` [m] no better fit is sought.
+    Once they differ by no more than ``enough`` [m], or by more at any turn, no better fit is sought.
     """
 
     def off(turn):
@@ -76,7 +77,10 @@ def fitted(seen, wanted, enough=0.0):
     if best <= enough:
         return best
     turns = np.linspace(-ABOUT, ABOUT, COARSE)
-    k = int(np.argmin([off(turn) for turn in turns]))
+    tried = [off(turn) for turn in turns]
+    k = int(np.argmin(tried))
+    if tried[k] - _between(seen, turns[1] - turns[0]) > enough > 0.0:
+        return min(best, tried[k])
     low, high = turns[max(k - 1, 0)], turns[min(k + 1, COARSE - 1)]
     first, second = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
     here, there = off(first), off(second)
@@ -90,6 +94,16 @@ def fitted(seen, wanted, enough=0.0):
             second = low + GOLDEN * (high - low)
             there = off(second)
     return min(best, here, there)
+
+
+def _between(seen, step):
+    """By how much [m] an area may fit better than at the nearest of turns that are a step [rad] apart.
+
+    A turn by half a step moves no place of it by more than its distance from the middle times that, and its
+    front and its side, to which it is laid, as far again, each across the other.
+    """
+    far = np.sqrt((shapely.get_coordinates(seen) ** 2).sum(axis=1)).max()
+    return float((1.0 + np.sqrt(2.0)) * far * 0.5 * step)
 
 
 def apart(first, second):
@@ -135,7 +149,7 @@ def area(points, faces, sees, resolution=0.0, line=0.0):
     sees : str
         As for ``outline``.
     resolution : float [m]
-        Of the sensor: corners are seen at multiples of it.
+        Of the sensor: corners of what it sees are at multiples of it.
     line : float [m]
         As for ``outline``.
 
@@ -148,11 +162,9 @@ def area(points, faces, sees, resolution=0.0, line=0.0):
         return _relief(points[faces], line, resolution)
     seen = points[:, :2] if sees == "outline" else points[:, [0, 2]]
     seen = seen - [seen[:, 0].max(), seen[:, 1].min() if sees == "outline" else 0.0]
-    corners = (np.round(seen / resolution) * resolution if resolution > 0.0 else seen)[faces]
-    a, b, c = corners.transpose(1, 0, 2)
-    twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-    whole = shapely.union_all(shapely.polygons(corners[twice > 1e-14]))  # one side of it covers all
-    return _without_slits(whole).simplify(PLAIN * np.ptp(points, axis=0).max())
+    whole = _without_slits(shaded.area(seen, faces)).simplify(PLAIN * np.ptp(points, axis=0).max())
+    coarse = shapely.set_precision(whole, resolution) if resolution > 0.0 else whole
+    return whole if coarse.is_empty else coarse
 
 
 def _relief(facets, line, resolution):

@@ -210,6 +210,32 @@ def test_an_outline_is_turned_until_it_fits_and_no_further():
     assert sensor_views.fitted(askew(3.0), other) == pytest.approx(1e-3, abs=5e-5)
 
 
+def test_what_fits_at_no_turn_is_not_turned_any_further(monkeypatch):
+    """Bent bars of several sizes: the answer is that of the whole search, and most need a third of it."""
+    calls, apart = [], sensor_views.apart
+    monkeypatch.setattr(sensor_views, "apart", lambda *both: calls.append(both) or apart(*both))
+    bent = shapely.Polygon(
+        [(0, 0), (-0.023, 0), (-0.023, 0.014), (-0.019, 0.014), (-0.019, 0.006), (0, 0.006)]
+    )
+    early = 0
+    for size in (0.6, 0.93, 0.99, 1.1, 1.3):
+        for degrees in (-12.0, -3.0, 7.0):
+            other = shapely.affinity.scale(bent, size, 1.0 / size, origin=(0.0, 0.0))
+            other = shapely.affinity.rotate(other, degrees, (0.0, 0.0))
+            seen = shapely.affinity.translate(other, -other.bounds[2], -other.bounds[1])
+            whole = sensor_views.fitted(seen, bent)
+            for play in (5e-4, 1.5e-3, 4e-3):
+                calls.clear()
+                assert (sensor_views.fitted(seen, bent, play) <= play) == (whole <= play)
+                early += whole > play and len(calls) == 1 + sensor_views.COARSE
+    assert early >= 5
+    step = 2.0 * sensor_views.ABOUT / (sensor_views.COARSE - 1)
+    moved = shapely.affinity.rotate(bent, 0.5 * step, (0.0, 0.0), use_radians=True)
+    laid = shapely.affinity.translate(moved, -moved.bounds[2], -moved.bounds[1])
+    first = shapely.affinity.translate(bent, -bent.bounds[2], -bent.bounds[1])
+    assert apart(laid, first) <= sensor_views._between(first, step) < 4.0 * apart(laid, first)
+
+
 def test_what_is_seen_from_the_side_may_come_askew():
     """A block is longer then by l cos 4 deg + w sin 4 deg - l, and what is that much longer may be it."""
     one, turn = FLAT, np.radians(4.0)

@@ -1,0 +1,50 @@
+"""The area that the facets of a body cover, seen along one axis."""
+
+import numpy as np
+import shapely
+
+LEAST = 1e-14  # [m2] twice the area of a facet that counts
+
+
+def area(corners, faces):
+    """Return the area covered by facets that are seen from their outer side: all of a closed body.
+
+    Source: own; the sides along which two such facets do not go on border the pieces that are covered or not,
+    and how many facets cover a piece is how often those sides go round it.
+
+    Parameters
+    ----------
+    corners : (V, 2) float [m]
+    faces : (F, 3) int
+        Counter-clockwise as seen where their outer side is.
+
+    Returns
+    -------
+    shapely geometry
+    """
+    a, b, c = corners[faces].transpose(1, 0, 2)
+    twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+    first, last, times = _rims(faces[twice > LEAST], len(corners))
+    long = (corners[first] != corners[last]).any(axis=1)
+    here, there, times = corners[first[long]], corners[last[long]], times[long]
+    sides = shapely.union_all(shapely.linestrings(np.stack([here, there], axis=1)))
+    pieces = shapely.get_parts(shapely.polygonize(shapely.get_parts(sides)))
+    inside = shapely.get_coordinates(shapely.point_on_surface(pieces))
+    return shapely.union_all(pieces[_rounds(inside, here, there, times) > 0])
+
+
+def _rims(faces, count):
+    """Sides (E,), (E,) int of facets that no facet beside them undoes, and how often each is left, (E,)."""
+    first, last = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    keys, own = np.unique(np.minimum(first, last) * count + np.maximum(first, last), return_inverse=True)
+    times = np.bincount(own, weights=np.where(first < last, 1.0, -1.0), minlength=len(keys)).astype(int)
+    left = times != 0
+    return keys[left] // count, keys[left] % count, times[left]
+
+
+def _rounds(places, here, there, times):
+    """How often (P,) directed sides go round places (P, 2), each of them so many times (E,)."""
+    x, y = places[:, None, 0], places[:, None, 1]
+    aside = (there - here)[:, 0] * (y - here[:, 1]) - (there - here)[:, 1] * (x - here[:, 0])
+    up, down = (here[:, 1] <= y) & (there[:, 1] > y), (there[:, 1] <= y) & (here[:, 1] > y)
+    return ((up & (aside > 0.0)) * times - (down & (aside < 0.0)) * times).sum(axis=1)
