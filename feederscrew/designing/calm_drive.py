@@ -1,5 +1,6 @@
 """The bowl and the track for a part, and drives that do not make it hop."""
 
+import functools
 import math
 from dataclasses import dataclass, replace
 
@@ -176,6 +177,11 @@ def rubbed(bowl, share):
 
 def speed(bowl):
     """Return the velocity of the point mass [m/s]; 0 where the bowl does not convey."""
+    return _speed(replace(bowl, devices=()))
+
+
+@functools.lru_cache(maxsize=4096)
+def _speed(bowl):
     try:
         found = answer.answer(bowl).velocity
     except ConfigError:

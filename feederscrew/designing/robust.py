@@ -17,6 +17,7 @@ from feederscrew.geometry import vectors
 from feederscrew.part.hull import convex_hull
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
+from feederscrew.tooling.fates import at_entry
 
 FRICTION, DRIVE, CUT = (0.6, 1.4), (0.9, 1.1), 1e-4  # [1], [1], [m] to either side
 CARRIED, CLEAN = " is carried through", 0.985  # and the purity from which that is let be
@@ -214,9 +215,10 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs):
         aspects = find(other)
         bare = stream.orientations(other, aspects, bowl.track, (), bowl=driven)
         driven = replace(driven, devices=_named(driven.devices, known.lying, bare.lying))
-        ways = stream.along(bare.lying, aspects, driven.devices, bowl=driven)
-        rows = [matched(known.lying[k], ways.lying) for k in chosen]
-        alike = [matched(known.lying[k], ways.lying) for k in wanted] if len(wanted) > 1 else []
+        lying = at_entry(bare.lying, driven.devices)
+        rows = [matched(known.lying[k], lying) for k in chosen]
+        alike = [matched(known.lying[k], lying) for k in wanted] if len(wanted) > 1 else []
+        ways = stream.along(bare.lying, aspects, driven.devices, bowl=driven, rows={*rows, *alike})
         even = np.full(len(ways.lying), 1.0 / len(ways.lying))
         tried = trying.single(
             other, driven, ways, even, [rows[0], *alike], rows=list(dict.fromkeys(rows)), each=1, jobs=jobs,

@@ -144,11 +144,11 @@ def orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None):
     return along(tooling.orientations(part, aspects, track), aspects, chain, sigma, bowl)
 
 
-def along(lying, aspects, chain=(), sigma=0.0, bowl=None):
-    """Return what becomes of known orientations; the rest as for ``orientations``."""
+def along(lying, aspects, chain=(), sigma=0.0, bowl=None, rows=None):
+    """Return what becomes of known orientations, or of some rows alone; the rest as for ``orientations``."""
     lying, tips = (lying, None) if bowl is None else marked(lying, bowl)
     lying = at_entry(lying, chain)
-    found = course(chain, lying, sigma)
+    found = course(chain, lying, sigma, rows)
     rules = {rule: np.array([one.chances[rule] for one in lying]) for rule in aspects.chances}
     return Orientations(
         lying=lying,

@@ -109,7 +109,7 @@ class DeviceFlow:
         return reached
 
 
-def course(devices, every, sigma=0.0):
+def course(devices, every, sigma=0.0, rows=None):
     """Return what becomes of every orientation along a chain of devices.
 
     Source: a chain of conditional shares; docs/tooling.md, "1. The method".
@@ -122,6 +122,8 @@ def course(devices, every, sigma=0.0):
         Of the part.
     sigma : float [m]
         Standard deviation of play and tolerance together, of every device.
+    rows : sequence of int, optional
+        Those that are followed, with what they become; the others count as if they did not come.
 
     Returns
     -------
@@ -136,11 +138,16 @@ def course(devices, every, sigma=0.0):
         raise fault
     every = tuple(every)
     states, here = list(every), list(every)  # `here`: as they are at this device, a slot below them or not
+    starts = [float(not one.returned and (rows is None or k in rows)) for k, one in enumerate(every)]
     verdicts, ways, came = [], [], []
     for device in devices:
         came.append(tuple(here))
-        listed = [verdict(device, one, every, sigma) for one in here]
-        ways.append([_way(device, k, one, found, states) for k, (one, found) in enumerate(zip(here, listed))])
+        asked = _followed(ways, len(here), rows)
+        listed = [verdict(device, one, every, sigma) if k in asked else None for k, one in enumerate(here)]
+        ways.append([
+            _way(device, k, one, found, states) if found else ()
+            for k, (one, found) in enumerate(zip(here, listed))
+        ])  # fmt: skip
         verdicts.append(listed)
         here = [device.onward(one) for one in here] + states[len(here) :]
         if device.hangs:
@@ -151,8 +158,18 @@ def course(devices, every, sigma=0.0):
         matrices=check.frozen(_matrices(ways, len(states))),
         devices=tuple(devices),
         came=tuple(came),
-        starts=check.frozen(np.array([0.0 if one.returned else 1.0 for one in every])),
+        starts=check.frozen(np.array(starts)),
     )
+
+
+def _followed(ways, count, rows):
+    """The states (set of int) in which some rows come to the next device; all where None are given."""
+    if rows is None:
+        return set(range(count))
+    found = set(rows)
+    for way in ways:
+        found = {onto for k in found for onto, share in way[k] if share > 0.0}
+    return found
 
 
 def at_entry(every, devices):

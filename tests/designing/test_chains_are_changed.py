@@ -14,6 +14,7 @@ from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.tooling import sensor_views
 from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.verdicts import verdict
 
 PARTS = Path(__file__).resolve().parents[2] / "parts"
 
@@ -155,3 +156,25 @@ def test_a_row_with_gaps_for_a_sensor_delivers_less(block):
     seen = tried(ways, {names["A@0"]}, (), (), names["A@0"])
     wide = replace(seen, apart=trying.GAP * float((seen.shares * ways.lengths).sum()))
     assert wide.rate == pytest.approx(0.5 * seen.rate)
+
+
+def test_of_a_drawn_part_only_what_is_tried_is_judged(monkeypatch, block):
+    """Through a sorter and rails: what is asked for becomes of it what becomes of it among all others."""
+    part, ways, names = block
+    one = ways.lying[names["A@0"]]
+    like = {"like": (one.aspect, one.heading, 1e-3), "text": "test"}
+    chain = (made("gap", "test", limit=7e-3, text="7 mm"), made("sorter", "test", **like))
+    own = {"aspects": find(part), "chain": chain, "bowl": bowls.default()}
+    whole, judged = stream.along(ways.lying, **own), []
+    monkeypatch.setattr(
+        "feederscrew.tooling.fates.verdict",
+        lambda device, one, *more: judged.append(one) or verdict(device, one, *more),
+    )
+    rows = [names["A@90"], names["A@0"], names["B@0"]]
+    some = stream.along(ways.lying, **own, rows=set(rows))
+    assert np.array_equal(some.leaving[rows], whole.leaving[rows])
+    assert [one.name for one in some.states] == [one.name for one in whole.states]
+    assert np.array_equal(some.leaves_as[rows], whole.leaves_as[rows])
+    assert [some.fates[k] for k in rows] == [whole.fates[k] for k in rows]
+    assert len(judged) == len(rows) + int((whole.passes[rows, 1] > 0.0).sum()) < 2 * len(ways.lying)
+    assert {some.fates[names["A@0"]], some.fates[names["A@90"]]} == {"carried", "returned"}
