@@ -130,8 +130,9 @@ def proved(search, candidate, *, whole):
         return study
     search.told(f"queue: {candidate.attempt.wanted}, {', '.join(candidate.proposal.chain) or 'no device'}")
     line = queues.FollowedRow(
-        part, bowl, known.aspects, ways, weights, candidate.tried.states, request.seed, search.told
-    )
+        part, bowl, known.aspects, ways, weights, candidate.tried.states, request.seed, search.told,
+        RATE_KEPT * request.target,
+    )  # fmt: skip
     study = _queued(study, queues.filled(line, whole=whole))
     study = _queued(study, queues.longer(line, study))
     every = [ways.lying[k] for k in trying.often(weights)]
@@ -174,7 +175,8 @@ def _counting(name, request):
 
 def whole(study):
     """Return whether a design was proved to the end, holding or not."""
-    return study.robust.draws >= study.request.draws and len(study.queues) == len(queues.FILLS)
+    followed = sum(one.seconds > 0.99 * queues.SECONDS for one in study.queues)
+    return study.robust.draws >= study.request.draws and followed == len(queues.FILLS)
 
 
 def _static(search, candidate):

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from feederscrew.designing import trying
+from feederscrew.designing import pulses, trying
 from feederscrew.rates import stream
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import KINDS
@@ -146,7 +146,7 @@ def proposed(part, bowl, aspects, row, known, request, how):
     ).design  # fmt: skip
     if found is None or not found.efficiency > 0.0 or not (found.cuts or found.before):
         return None
-    cuts = tuple(rounded(cut, known.lying, row) for cut in found.cuts)
+    cuts = tuple(pulses.quickened(rounded(cut, known.lying, row), known.lying) for cut in found.cuts)
     step = f"proposed with margins of {millimetres(margin)}"
     made = Proposal(row, cuts, tuple(found.before), step, alike(known.lying, row, request.up))
     if found.isolated:
@@ -221,7 +221,8 @@ def better(proposal, tried, every, drawn=None):
     if drawn is not None:
         return widened(proposal, every) if "lost" in drawn.worst else None
     wider = widened(proposal, every) if lost else None
-    return wider or mended(proposal, tried, every) or guarded(proposal, tried, every)
+    moved_one = wider or mended(proposal, tried, every) or pulses.longer(proposal, tried, every)
+    return moved_one or guarded(proposal, tried, every)
 
 
 def widened(proposal, every):

@@ -12,10 +12,11 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
-from feederscrew.trial.queue import GAPS, queue_of
+from feederscrew.trial.queue import GAPS, Until, queue_of
 
 FILLS = (("low", trying.LOW), ("normal", GAPS), ("high", 0.0))  # free way between parts over their length
 PARTS, SECONDS = 12, 60.0  # in a queue at a time; for so long
+FILLED = 20.0  # [s] in which the track has filled: no rate is judged before
 MORE = 3  # times as long again at the fill that brings least, at most, where that decides
 ADDED = ("seconds", "counted", "delivered", "right", "left", "returned", "jams", "climbs")
 
@@ -32,15 +33,23 @@ class FollowedRow:
     states: tuple[int, ...]  # in which parts are wanted to leave
     seed: int
     told: Callable | None = None  # called with what is being followed, a sentence
+    least: float = 0.0  # wanted parts [1/s] below which a fill does not hold
 
-    def followed(self, fill, gaps, seed):
-        """Return the FilledQueue of PARTS that come with a mean free way of so many lengths between them."""
+    def followed(self, fill, gaps, seed, denied=None):
+        """Return the FilledQueue of PARTS that come with a mean free way of so many lengths between them.
+
+        It ends as soon as ``denied`` says of what was seen so far, a FilledQueue, that it does not hold.
+        """
         if self.told:
             self.told(f"queue of {PARTS} at {fill} fill, {SECONDS:g} s")
         poses = trying.counted(self.known, self.states)
+
+        def ends(seen):
+            return denied(_counted(fill, gaps, seen, self.states))
+
         seen = queue_of(
             self.part, self.bowl, self.aspects, self.known.lying, poses, self.shares, parts=PARTS,
-            seconds=SECONDS, seed=seed, gaps=gaps,
+            seconds=Until(SECONDS, ends if denied else None), seed=seed, gaps=gaps,
         )  # fmt: skip
         return _counted(fill, gaps, seen, self.states)
 
@@ -52,7 +61,7 @@ def filled(row, *, whole=True):
     ----------
     row : FollowedRow
     whole : bool
-        Whether it goes on after a fill that jams or is not pure.
+        Whether each is followed to its end, and after one that does not hold the next.
 
     Returns
     -------
@@ -60,9 +69,15 @@ def filled(row, *, whole=True):
         Fewer where the user stopped it, or where one does not hold.
     """
     found = []
+
+    def denied(one):
+        return _denied((*found, one), row.least)
+
     for name, gaps in FILLS:
-        found.append(row.followed(name, gaps, row.seed))
-        if found[-1].partial or not (whole or _holds(found[-1])):
+        one = row.followed(name, gaps, row.seed, None if whole else denied)
+        last = one.partial or not (whole or not denied(one))
+        found.append(one)
+        if last:
             break
     return tuple(found)
 
@@ -122,9 +137,17 @@ def _joined(first, second):
     return replace(first, **sums, partial=second.partial)
 
 
-def _holds(one):
-    """Whether a fill may be one of a design that holds."""
-    return not one.jams and one.right >= PURE * one.left - 1
+def _denied(found, least):
+    """Whether fills are none of a design that holds, whatever is seen of the last one and the next ones.
+
+    One has jammed, more of another orientation have left than all of them may have at this pace, or the
+    upper end of the last one's rate is below the least [1/s].
+    """
+    last = found[-1]
+    left, right, seconds = (sum(getattr(one, name) for one in found) for name in ("left", "right", "seconds"))
+    whole = left * max(len(FILLS) * SECONDS / seconds, 1.0)
+    slow = last.seconds >= FILLED and last.ends[1] < least
+    return bool(last.jams or left - right > (1.0 - PURE) * whole or slow)
 
 
 def _counted(name, gaps, seen, states):

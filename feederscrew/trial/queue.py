@@ -1,6 +1,7 @@
 """A queue of parts through a chain of devices: in a row or poured, touching and pushing each other."""
 
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,7 @@ from feederscrew.trial.shape import solid_of
 
 GAPS = 0.2  # of a part's length: mean free way between parts as they come in a row
 HOLD = 1.0  # [s] a part that stands at a device with nothing before it is taken out by hand after so long
+LOOKS = 10.0  # [s] after which a queue that may be ended is looked at, each time
 MOVED = 0.05  # of the unit of length: a part that has come no further stands
 PART_OF_TURN = 0.5  # of the bowl's circumference, less two lengths: more parts than fit there wait to enter
 CARRIED = 0.1  # of its weight that other parts carry, and ...
@@ -52,6 +54,14 @@ class QueuedParts:
         return self.delivered / self.counted if self.counted > 0.0 else 0.0
 
 
+@dataclass(frozen=True)
+class Until:
+    """How long a queue is followed: for some time, or until what was seen of it is enough."""
+
+    seconds: float  # [s] at most
+    enough: Callable | None = None  # given what was seen so far, QueuedParts, each LOOKS seconds
+
+
 def queue_of(part, bowl, aspects, every, poses, shares, *, parts, seconds, seed, gaps=GAPS, progress=None):
     """Follow a queue of parts that come without end: what leaves is offered again at the end of the row.
 
@@ -70,7 +80,7 @@ def queue_of(part, bowl, aspects, every, poses, shares, *, parts, seconds, seed,
     shares : (M,) float [1]
         In which they come; sums to 1.
     parts : int
-    seconds : float [s]
+    seconds : float [s] or Until
     seed : int
     gaps : float [1] or None
         Mean free way between parts as they come in a row, over their length, beside the room that devices
@@ -88,12 +98,15 @@ def queue_of(part, bowl, aspects, every, poses, shares, *, parts, seconds, seed,
         If the user stops it before the first period is done.
     """
     queue = _Queue(part, bowl, aspects, every, poses, shares, parts, gaps, seed)
-    count = max(round(seconds * bowl.drive.frequency), 1)
+    until = seconds if isinstance(seconds, Until) else Until(seconds)
+    count, look = (max(round(span * bowl.drive.frequency), 1) for span in (until.seconds, LOOKS))
     try:
         for turn in range(count):
             queue.ride(turn)
             if progress:
                 progress(turn + 1, count)
+            if until.enough and (turn + 1) % look == 0 and until.enough(queue.told(partial=False)):
+                return queue.told(partial=False)
     except KeyboardInterrupt:
         if not queue.periods:
             raise
@@ -125,9 +138,8 @@ class _Queue:
         self.way, self.free, self.touch, self.depth = [], [], [], 0.0
         self.pressure, self.whole, self.first, self.most = np.zeros(len(self.windows)), 0, None, 0
         self.periods, self.waiting, self.deep = 0, list(range(parts)), solid.radius * length
-        self.coming = None  # drawn, without room yet
+        self.coming, self.start = None, 0.0  # drawn, without room yet; how much of the first one had left
         self.enter()
-        self.start = 0.0
 
     @property
     def time(self):
@@ -274,8 +286,8 @@ class _Queue:
             seconds=seconds,
             counted=counted,
             delivered=self.whole + part - self.start if counted else 0.0,
-            leaving=check.frozen(self.leaving),
-            aspects=check.frozen(self.aspects),
+            leaving=check.frozen(np.array(self.leaving)),
+            aspects=check.frozen(np.array(self.aspects)),
             returned=self.returned,
             jams=self.jams,
             climbs=self.climbs,

@@ -117,6 +117,34 @@ def test_a_queue_is_followed_for_longer_only_where_that_decides():
     assert asked(72, 81, 182) == 0
 
 
+@pytest.mark.parametrize(
+    "counts, followed",
+    [
+        ([(45, 45), (45, 45), (45, 45)], ["low", "normal", "high"]),
+        ([(44, 45), (44, 45), (44, 45)], ["low", "normal", "high"]),  # 3 of 135, of which 2.7 may: at the end
+        ([(43, 45), (43, 45), (45, 45)], ["low", "normal"]),  # 4 of 90 and of the 135 to come
+        ([(42, 45), (45, 45), (45, 45)], ["low"]),
+        ([(20, 20), (45, 45), (45, 45)], ["low"]),  # 20 a minute, of 36
+    ],
+)
+def test_what_surely_does_not_hold_is_followed_no_further(counts, followed):
+    seen = []
+
+    class Known(queues.FollowedRow):
+        def followed(self, fill, gaps, seed, denied=None):
+            right, left = counts[len(seen)]
+            seen.append(fill)
+            one = FilledQueue(fill, gaps, 12, 60.0, 60.0, float(left), right, left, 180, 0, 0)
+            assert denied is None or not denied(replace(one, right=0, left=0, seconds=10.0, counted=0.0))
+            assert denied is None or denied(replace(one, jams=1))
+            return one
+
+    row = Known(PART, None, None, None, None, (0,), seed=7, least=36.0 / 60.0)
+    assert [one.fill for one in queues.filled(row, whole=False)] == followed == seen
+    seen.clear()
+    assert len(queues.filled(row)) == 3
+
+
 def test_what_is_followed_for_longer_is_one_queue_of_other_seeds():
     seeds = []
 

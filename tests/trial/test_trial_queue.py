@@ -236,3 +236,21 @@ def test_what_has_no_room_yet_comes_next_however_long_it_is():
         row.crowd.take(int(n))
     row.enter()
     assert len(row.waiting) < len(came)
+
+
+def test_a_queue_of_which_enough_is_seen_ends_there(monkeypatch):
+    """It is looked at after each fifth of a second; what was seen until then is that of a shorter queue."""
+    monkeypatch.setattr(queue, "LOOKS", 0.2)
+    own, seen = {"parts": 2, "seed": 3}, []
+
+    def enough(found):
+        seen.append(found)
+        return len(seen) == 2
+
+    ended = queued(BOWL, seconds=queue.Until(1.0, enough), **own)
+    short = queued(BOWL, seconds=0.4, **own)
+    assert [one.seconds for one in seen] == pytest.approx([0.2, 0.4]) and not ended.partial
+    assert (ended.seconds, ended.velocity, ended.gap) == (short.seconds, short.velocity, short.gap)
+    assert (
+        seen[0].leaving is not ended.leaving and queued(BOWL, seconds=queue.Until(0.1), **own).seconds == 0.1
+    )

@@ -1,0 +1,74 @@
+"""How long the pulse of air is that a sensor sets off: the shorter, the more parts pass it a minute."""
+
+from dataclasses import replace
+
+from feederscrew.tooling.devices.sensing import PULSE
+from feederscrew.tooling.verdicts import Meeting
+
+SENSES = "sorter"  # the kind of device that has a sensor and a pulse
+STEP, LEAST = 5e-3, 2  # [s] to which a pulse is set, and of how many of them the shortest one is
+RESERVE = 4.0  # times as long as takes off what stands before the nozzles: they do not blow at its middle
+LONGER = 2.0  # times, where something is carried through all the same
+
+
+def quickened(cut, every):
+    """Return a cut whose pulse is the shortest that blows off what it returns, with a reserve.
+
+    Source: own; docs/design.md, "The loop".
+
+    Parameters
+    ----------
+    cut : Cut
+    every : sequence of Orientation
+        Of the part.
+
+    Returns
+    -------
+    Cut
+        Itself where its pulse is as short, or it has none.
+    """
+    device = cut.device
+    if device.kind != SENSES:
+        return cut
+    gone = [Meeting(one, every) for one in every if one.name in cut.returns]
+    pushes = [device.jet.push(met.one, every) for met in gone]
+    for steps in range(LEAST, round(device.time / STEP)):
+        time = steps * STEP
+        if all(met.blown(*push, time / RESERVE) > 0.0 for met, push in zip(gone, pushes)):
+            return replace(cut, device=_timed(device, time))
+    return cut
+
+
+def longer(proposal, tried, every):
+    """Return a proposal with a longer pulse where something is carried through that it should blow off.
+
+    Parameters
+    ----------
+    proposal : Proposal
+    tried : Tried
+    every : sequence of Orientation
+
+    Returns
+    -------
+    Proposal or None
+        None where nothing is, or the pulse is as long as it was proposed.
+    """
+    for place, cut in enumerate(proposal.cuts):
+        device = cut.device
+        slipped = any(tried.wrong[n] and every[k].name in cut.returns for n, k in enumerate(tried.rows))
+        if device.kind != SENSES or not slipped or device.time >= PULSE:
+            continue
+        other = _timed(device, min(LONGER * device.time, PULSE))
+        cuts = (*proposal.cuts[:place], replace(cut, device=other), *proposal.cuts[place + 1 :])
+        return replace(proposal, cuts=cuts, step=f"pulse of {_milliseconds(other.time)}")
+    return None
+
+
+def _timed(device, time):
+    """A sorter with a pulse of some time [s], as a bowl file has it."""
+    said = device.text.partition(", jet: ")[0].removesuffix("}")
+    return replace(device, time=time, text=f"{said}, jet: {{time: {_milliseconds(time)}}}}}")
+
+
+def _milliseconds(time):
+    return f"{1e3 * time:.0f} ms"
