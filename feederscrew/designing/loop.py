@@ -128,7 +128,7 @@ def proved(search, candidate, *, whole):
     study = replace(study, robust=tested, partial=tested.partial)
     if tested.partial or not (whole or tested.share >= DRAWS_HELD):
         return study
-    search.told(f"queue: {candidate.attempt.wanted}, {', '.join(candidate.proposal.chain) or 'no device'}")
+    search.told(f"queue: {candidate.attempt.wanted}, {candidate.proposal.told}")
     line = queues.FollowedRow(
         part, bowl, known.aspects, ways, weights, candidate.tried.states, request.seed, search.told,
         RATE_KEPT * request.target,

@@ -72,6 +72,11 @@ class Proposal:
         """The devices as a bowl file has them."""
         return tuple(f"{one.kind}: {one.text}" for one in self.devices)
 
+    @property
+    def told(self):
+        """The devices in a sentence, headings in whole degrees."""
+        return ", ".join(f"{one.kind}: {one.short}" for one in self.devices) or "no device"
+
 
 def alike(lying, row, up):
     """Return the rows beside a wanted one that count as it: those of aspects that may be up too."""

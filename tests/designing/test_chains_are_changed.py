@@ -139,6 +139,14 @@ def test_parts_may_hop_through_what_only_sees_and_blows(block):
     assert [one.met for one in (sorter, gap, steeper)] == [False, True, False]
 
 
+def test_what_is_tried_is_told_with_headings_in_whole_degrees():
+    sorter = made("sorter", "test", text="{of: A@178.007, play: 3.65 mm, sees: outline}")
+    gap = made("gap", "test", limit=9e-3, text="9 mm")
+    said = proposals.Proposal(0, (), (gap, sorter), "test").told
+    assert said == "gap: 9 mm, sorter: {of: A@178, play: 3.65 mm, sees: outline}"
+    assert proposals.Proposal(0, (), (), "test").told == "no device"
+
+
 def test_a_sensor_sees_something_of_every_drawn_part():
     bracket = load(PARTS / "lbracket_30x20x15.stl")
     other = robust.drawn_part(bracket, 1e-4, np.random.default_rng((1, 1)))
