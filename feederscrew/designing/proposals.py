@@ -5,12 +5,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew.designing import pulses, trying
+from feederscrew.designing.slots import STEP, widened
 from feederscrew.rates import stream
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import KINDS
-from feederscrew.tooling.hanging import neck
 from feederscrew.tooling.isolating.chain import judged, limits, millimetres
-from feederscrew.tooling.isolating.rails import RAIL
 
 ROWS = 6  # orientations for which chains are proposed, the most frequent first
 DROPS = ("wiper", "sorter", "cut_out")  # what is left out at first: drops alone
@@ -29,8 +28,6 @@ ON_THE_TRACK = ("bank",)  # is the bowl's own, and tried by the loop
 VERDICTS = 3000  # of the search for holes: values that a shop's tolerance does not lose are found early
 GUARDS = tuple(KINDS[name] for name in ("gap", "canyon", "narrowed_track"))
 LEAST_WINDOW = 1e-3  # [m] between what passes such a drop and what it rejects
-WIDER, HELD = 0.35, 0.8  # of what the head is wider than the slot; of the head, that a slot may be
-STEP = 5e-5  # [m] to which a shop makes a value
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,29 +225,6 @@ def better(proposal, tried, every, drawn=None):
     wider = widened(proposal, every) if lost else None
     moved_one = wider or mended(proposal, tried, every) or pulses.longer(proposal, tried, every)
     return moved_one or guarded(proposal, tried, every)
-
-
-def widened(proposal, every):
-    """Return the proposal with a wider slot between its rails; None without rails that can be wider.
-
-    A part lies askew along the wall: it comes to rails narrowed to its shank beside them, and slides on. The
-    slot grows towards the head, about its middle, as long as the head is held by the rails.
-    """
-    for place, cut in enumerate(proposal.cuts):
-        found = neck(every[proposal.row]) if cut.device.hangs else None
-        if found is None:
-            continue
-        first, last = cut.device.span
-        more = float(np.round(0.5 * WIDER * (found.head - (last - first)) / STEP) * STEP)
-        span = max(first - more, RAIL), last + more
-        if more < STEP or span == cut.device.span or last - first > HELD * found.head:
-            continue
-        device = cut.device.with_span(span)
-        must = np.array([one.name in cut.returns for one in every])
-        other = judged(every, proposal.row, device, must, cut.smallest, cut.largest)
-        cuts = (*proposal.cuts[:place], other, *proposal.cuts[place + 1 :])
-        return replace(proposal, cuts=cuts, step=f"slot widened to {millimetres(span[1] - span[0])}")
-    return None
 
 
 def guarded(proposal, tried, every):
