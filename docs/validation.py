@@ -12,10 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
+from feederscrew.dropping.ensemble import wilson
+from feederscrew.dropping.launch_file import FACES
 from feederscrew.part import load
 from feederscrew.studies.aspects import aspects
 from feederscrew.studies.compare import compare_sets
-from feederscrew.studies.simulated.tosses import follow
+from feederscrew.studies.simulated.tosses import SURE, follow
 
 PAGE = Path(__file__).resolve().parent / "validation.md"
 MEASURED = PAGE.parent / "measured"
@@ -118,9 +120,24 @@ def tosses():
             f"{1e3 * np.percentile(study.off, 75):.1f}",
             *([percent(found.expected), f"{found.sure}: {percent(found.sure_told)}"] if runs > 1 else "  "),
         ])  # fmt: skip
+    rows.append(["of these, those no width was chosen on", *judged(study)])
     head = ["ours", "upper side as measured [%]", "nearest at release [%]", "median distance [mm]",
             "three quarters within [mm]", "mean p [%]", "p of at least 0.95: right [%]"]  # fmt: skip
     return table(head, rows)
+
+
+def judged(study):
+    """Return what the other half of the tosses says, of which MODEL_DOUBT knows nothing."""
+    half = slice(1, None, 2)
+    measured = np.array([FACES.index(face) for face in study.launches.faces])
+    right, p, off = (study.result.faces == measured)[half], study.p[half], 1e3 * study.off[half]
+    (low, high), sure = wilson(right.sum(), len(right)), p >= SURE
+    return [
+        f"{percent(right.mean())} ({percent(low)} to {percent(high)})",
+        percent((study.result.released == measured)[half].mean()),
+        *(f"{np.percentile(off, share):.1f}" for share in (50, 75)),
+        percent(p.mean()), f"{sure.sum()}: {percent(right[sure].mean())}",
+    ]  # fmt: skip
 
 
 def air_jet():
