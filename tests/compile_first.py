@@ -20,16 +20,16 @@ devices:
 """
 COMMANDS = {
     "part": "trial {part} --parts 1 --jobs 1 --rule quasistatic",
-    "verdicts": "trial {part} --parts 1 --jobs 1 --rule quasistatic --config {bowl}",
-    "holes": "tooling {bracket} --aspect A --rule quasistatic --config {bowl}",
+    "verdicts": "rate {part} --aspect A --rule quasistatic --config {bowl}",
+    "holes": "tooling {bracket} --aspect A --rule quasistatic --config {bowl} --static",
     "crowd": "trial {part} --parts 1 --jobs 1 --rule quasistatic --queue 2 --seconds 0.05",
     "drop": "drop {part} --drops 1 --jobs 1",
     "plate": "drop {part} --plate --drops 1 --seconds 0.1 --jobs 1",
     "hull": "aspects {ball} --rule closed",
 }
-SHARED_OUT = (  # as long as each other
-    ("part", "drop", "plate", "hull", "sweep"),
-    ("crowd", "verdicts", "holes"),
+SHARED_OUT = (  # nothing in both: the trial of a part is most of it, and a crowd's takes what that compiled
+    ("part", "crowd"),
+    ("sweep", "verdicts", "holes", "drop", "plate", "hull"),
 )
 
 
