@@ -4,6 +4,7 @@ Example: python docs/readme.py          (writes README.md and the pages of WORKE
          python docs/readme.py --check  (status 1, and the differences, if it is out of date)
 """
 
+import contextlib
 import difflib
 import os
 import re
@@ -25,6 +26,7 @@ ROOT = Path(__file__).resolve().parent.parent
 BLOCK = re.compile(r"```console( sampled| designed)?\n\$ (feeder .*)\n((?:(?!```).*\n)*)```")
 CUT = "...\n"
 FEW = ("--drops", "10")  # in place of those the example asks for
+CHECKED = contextlib.nullcontext  # round a sampled command that is checked: a test takes fewer parts there
 
 
 def filled(text):
@@ -47,7 +49,8 @@ def _block(match):
         words += FEW
     if "--check" in sys.argv and words[0] == "tooling" and "--static" not in words:
         words.append("--static")  # what a trial says goes to stderr
-    output = CliRunner().invoke(feeder, words, catch_exceptions=False).stdout
+    with CHECKED() if check else contextlib.nullcontext():
+        output = CliRunner().invoke(feeder, words, catch_exceptions=False).stdout
     if shown.endswith(CUT):
         length = shown.count("\n") - 1
         output = "".join(output.splitlines(keepends=True)[:length]) + CUT

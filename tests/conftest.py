@@ -1,6 +1,8 @@
 """What several test files share."""
 
+import contextlib
 import signal
+from collections import OrderedDict
 
 import compile_first
 import numpy as np
@@ -49,6 +51,20 @@ def few():
     with pytest.MonkeyPatch.context() as patch:
         _set(patch, FEW)
         yield
+
+
+@pytest.fixture(scope="session")
+def fewer():
+    """A context in which few parts are dropped and fed in a test that is marked ``thorough``."""
+
+    @contextlib.contextmanager
+    def context():
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(memory, "_MADE", OrderedDict())
+            _set(patch, FEW)
+            yield
+
+    return context
 
 
 @pytest.fixture(autouse=True)

@@ -266,11 +266,13 @@ Fence("feeder", commands=[click.Command("nap", callback=nap)])(["nap"])
 
 @pytest.mark.long
 @pytest.mark.thorough
-def test_the_readme_says_what_the_program_says(monkeypatch, capsys):
+def test_the_readme_says_what_the_program_says(monkeypatch, capsys, fewer):
     monkeypatch.chdir(ROOT)
     monkeypatch.syspath_prepend(ROOT / "docs")
     monkeypatch.setattr(sys, "argv", ["readme.py", "--check"])
-    status = importlib.import_module("readme").main()
+    readme = importlib.import_module("readme")
+    monkeypatch.setattr(readme, "CHECKED", fewer)
+    status = readme.main()
     assert (status, *capsys.readouterr()) == (0, "", ""), "run: make docs"
 
 
