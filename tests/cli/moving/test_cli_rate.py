@@ -31,7 +31,6 @@ def config(tmp_path):
     return tmp_path / "bowl.yaml"
 
 
-@pytest.mark.thorough
 def test_json(run, config):
     result = run("rate", PART, "--aspect", "D", "--config", config, "--fill", "0.5", "--format", "json")
     document = json.loads(result.stdout)
