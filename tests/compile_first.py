@@ -1,15 +1,18 @@
-"""What the tests need compiled, made once for all their processes, side by side, before the first test.
+"""What the tests need compiled, made once for all their processes.
 
-Run: python tests/compile_first.py            (all, in two processes)
-     python tests/compile_first.py crowd ...  (only those, in this one)
+Run: python tests/compile_first.py            (all)
+     python tests/compile_first.py crowd ...  (only those)
 
-Each kernel is called as a command calls it, with as little to do as it takes.
+The suite begins while the trial is still compiled: tests that need it wait for it. Each kernel is called as
+a command calls it, with as little to do as it takes.
 """
 
+import os
 import shlex
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 PARTS = Path(__file__).parents[1] / "parts"
@@ -27,19 +30,37 @@ COMMANDS = {
     "plate": "drop {part} --plate --drops 1 --seconds 0.1 --jobs 1",
     "hull": "aspects {ball} --rule closed",
 }
-SHARED_OUT = (  # nothing in both: the trial of a part is most of it, and a crowd's takes what that compiled
-    ("part", "crowd"),
-    ("sweep", "verdicts", "holes", "drop", "plate", "hull"),
-)
+TRIAL = ("part", "crowd")  # one process: the crowd's trial takes over what that of a part compiled
+OTHERS = ("sweep", "verdicts", "holes", "drop", "plate", "hull")
+READY = "FEEDER_TESTS_TRIAL"  # names the file that says how compiling the trial ended
 
 
 def compile_side_by_side():
-    """Compile everything, in a process each share; raises CalledProcessError."""
-    calls = [[sys.executable, __file__, *names] for names in SHARED_OUT]
-    children = [subprocess.Popen(call) for call in calls]
-    for call, status in [(call, child.wait()) for call, child in zip(calls, children, strict=True)]:
-        if status:
-            raise subprocess.CalledProcessError(status, call)
+    """Compile all in two processes; return that of the trial, the longer one, which may still be at it.
+
+    Raises CalledProcessError if the other fails.
+    """
+    os.environ[READY] = str(Path(tempfile.mkdtemp()) / "ready")
+    longer = subprocess.Popen([sys.executable, __file__, *TRIAL])
+    subprocess.run([sys.executable, __file__, *OTHERS], check=True)
+    return longer
+
+
+def wait_for_the_trial():
+    """Return once the trial is compiled, if another process does it; it would be done twice."""
+    ready = Path(os.environ.get(READY) or os.devnull)
+    while READY in os.environ and not ready.exists():
+        time.sleep(0.1)
+    if READY in os.environ:
+        assert ready.read_text() == "compiled"
+
+
+def say_ready(how):
+    """Write how compiling the trial ended, for those who wait."""
+    if READY in os.environ:
+        ready = Path(os.environ[READY])
+        ready.with_suffix(".new").write_text(how)
+        ready.with_suffix(".new").rename(ready)
 
 
 def compile_here(name, folder):
@@ -64,9 +85,18 @@ def compile_here(name, folder):
     assert done.exit_code == 0, (words, done.output, done.exception)
 
 
+def main(names):
+    """Compile what is named, or all."""
+    how = "failed"
+    try:
+        for one in names or (*TRIAL, *OTHERS):
+            with tempfile.TemporaryDirectory() as made:
+                compile_here(one, Path(made))
+        how = "compiled"
+    finally:
+        if "part" in names:
+            say_ready(how)
+
+
 if __name__ == "__main__":
-    if not sys.argv[1:]:
-        compile_side_by_side()
-    for one in sys.argv[1:]:
-        with tempfile.TemporaryDirectory() as made:
-            compile_here(one, Path(made))
+    main(sys.argv[1:])

@@ -23,17 +23,46 @@ settings.register_profile("same", derandomize=True, deadline=None)
 settings.load_profile("same")  # the same examples everywhere: new ones are for `make fuzz` to look for
 
 
+COMPILING = pytest.StashKey()
+
+
 def pytest_sessionstart(session):
     """Compile for all processes before they begin, where the whole suite is run by several."""
     config = session.config
     whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS
     if whole and config.getoption("numprocesses", None) and not hasattr(config, "workerinput"):
-        compile_first.compile_side_by_side()
+        config.stash[COMPILING] = compile_first.compile_side_by_side()
+
+
+def pytest_sessionfinish(session):
+    """Wait for what is still compiled."""
+    if COMPILING in session.config.stash:
+        session.config.stash[COMPILING].wait()
+
+
+EARLY = ("solidbowl", "dropping", "conveying", "resting", "screw", "part", "mechanics", "rates", "thesis")
+
+
+def _early(item):
+    """Whether a test runs without the trial: as one of a room before it, or of the bowl as a solid."""
+    return item.path.parent.name in EARLY and item.path.name not in ("test_on_mesh.py", "test_naming.py")
 
 
 def pytest_collection_modifyitems(items):
-    """Begin with what takes longest, so that no process is left with it when the others are done."""
-    items.sort(key=lambda item: item.get_closest_marker("long") is None)
+    """Begin with solids, while the trial is compiled, then what takes longest: nobody is left with it."""
+    items.sort(key=lambda item: (item.path.parent.name != EARLY[0], item.get_closest_marker("long") is None))
+
+
+@pytest.fixture(scope="session")
+def trial_compiled():
+    """The trial, once it is compiled."""
+    compile_first.wait_for_the_trial()
+
+
+@pytest.fixture(autouse=True)
+def _compiled(request):
+    if not _early(request.node):
+        request.getfixturevalue("trial_compiled")
 
 
 FEW = ((aspects, "MOST", 500), *((arrival, name, 60) for name in ("FIRST", "MOST", "LONGEST")))
