@@ -107,7 +107,7 @@ def summary(study, format="csv"):
             "margin_reject_mm": cut.margin_reject / MM,
             "smallest_cut": cut.smallest.text,
             "largest_cut": cut.largest.text,
-            "returns": _returned(study, cut) or _turns(cut),
+            "returns": _returned(study, cut) or _turns(cut) or _serves(cut),
         }
         for cut in study.design.cuts
     ]
@@ -125,6 +125,10 @@ def _short(text, most):
     if corners > 1 and len(text) > most:
         return f"polygon of {corners} corners"
     return re.sub(r"[][{}:]", "", named.whole_degrees(SPAN.sub(r"\1 to \2 mm", text)))
+
+
+def _serves(cut):
+    return f"({cut.device.serves})" if cut.device.serves else ""
 
 
 def _few(text, most):
@@ -269,6 +273,7 @@ def _cut(cut):
         "returns": [name for name in cut.returns if name not in cut.stops],
         "stops": list(cut.stops),
         "text": cut.device.text,
+        "serves": cut.device.serves or None,
         **_turned(cut),
     }
 
@@ -285,10 +290,7 @@ def _turned(cut):
 
 def _turns(cut):
     """'turns A@0 to C@90 (80 %)': what a turning device does, for people."""
-    lines = [
-        f"{start} to {end}" + ("" if share > 0.9995 else f" ({100.0 * share:.3g} %)")
-        for start, end, share in cut.turns
-    ]
+    lines = [f"{a} to {b}" + ("" if x > 0.9995 else f" ({100.0 * x:.3g} %)") for a, b, x in cut.turns]
     return f"turns {', '.join(lines)}; {QUASI_STATIC}" if lines else ""
 
 

@@ -78,6 +78,7 @@ class Device:
     leans: ClassVar[bool] = False  # whether the track leans otherwise from it on
     grooved: ClassVar[bool | None] = None  # whether the track is a V from it on; None: as before it
     layer: ClassVar[str] = ""  # of its edge in a drawing, where it is none of cuts and gates
+    serves: ClassVar[str] = ""  # what one that returns nothing is for
 
     @classmethod
     def read(cls, entry):
@@ -255,10 +256,8 @@ class Device:
 
     def whole(self, width):
         """Return the ConfigError of a hole that leaves nothing of a track of some width [m]."""
-        mend = "give a smaller one, or a wider track"
-        return ConfigError(
-            self.where, f"{self.kind} leaves no track: the track is {1e3 * width:.4g} mm wide", mend
-        )
+        what = f"{self.kind} leaves no track: the track is {1e3 * width:.4g} mm wide"
+        return ConfigError(self.where, what, "give a smaller one, or a wider track")
 
 
 def room_of(every):

@@ -17,6 +17,7 @@ class Groove(Lean):
     """A V from here on, until a bank: the track leans towards its wall, and the wall back by as much."""
 
     kind = "groove"
+    serves = "lets lie along it what is round"
     dimension = "groove"
     example = "{angle: 30 deg}"
     meaning = (

@@ -36,6 +36,7 @@ class Bank(Lean):
     """Another bank from here on."""
 
     kind = "bank"
+    serves = "holds what rolls at the wall"
     dimension = "angle"
     example = "6 deg"
     meaning = (
@@ -78,6 +79,11 @@ class Separation(Lean):
     def read(cls, entry):
         given = values.mapping(entry, ("climb",), "write {climb: -4 deg}")
         return {"angle": values.within(given, "climb", "angle", -STEEPEST, STEEPEST)}
+
+    @property
+    def serves(self):
+        """What it is for: on the way down parts come apart, on the way up rails begin."""
+        return "makes the gaps a sorter needs" if self.angle < 0.0 else "climbs again, as rails need"
 
     def onward(self, one):
         """Return an orientation as it goes on, on the steeper track."""

@@ -7,6 +7,7 @@ import numpy as np
 from feederscrew.errors import FeederError
 from feederscrew.tooling.devices.named import place_of
 from feederscrew.tooling.isolating import chain, hole_search, rails, round_corners, turners
+from feederscrew.tooling.isolating.needed import told_needed
 from feederscrew.tooling.isolating.proposal import task as asked_for
 from feederscrew.tooling.isolating.proposal import told, weights, without
 
@@ -143,10 +144,10 @@ def _plain(given, search, holes):
             break
     if holes:
         cuts, returned = _with_holes(given, cuts, returned, search)
-    found = told(given, cuts, returned, late=search.late)
+    found = told_needed(given, cuts, returned, late=search.late)
     if found.isolated or not given.wishes.allows("sorter"):
         return found
-    seen = told(given, *_chosen(given, weight, {"sensed": True}), late=search.late)
+    seen = told_needed(given, *_chosen(given, weight, {"sensed": True}), late=search.late)
     return seen if seen.isolated else found
 
 

@@ -5,7 +5,8 @@ import numpy as np
 from feederscrew.tooling.devices.hanging_rails import Rails, written
 from feederscrew.tooling.hanging import neck
 from feederscrew.tooling.isolating import chain
-from feederscrew.tooling.isolating.proposal import told, weights
+from feederscrew.tooling.isolating.needed import told_needed
+from feederscrew.tooling.isolating.proposal import weights
 from feederscrew.tooling.verdicts import verdict
 
 PLAY, MOST = 4e-4, 6e-4  # [m] by which a slot is wider than the shank: 0.2 to 0.6 mm
@@ -60,7 +61,7 @@ def design(given):
     last = chain.judged(
         every, wanted, device, margins <= -margin, *_ends(every[wanted], device, given.wishes.step)
     )
-    return told(given, (*cuts, last), returned, same)
+    return told_needed(given, (*cuts, last), returned, same)
 
 
 def _before(given, passed, same, stage):
