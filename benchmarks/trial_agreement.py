@@ -22,6 +22,7 @@ from feederscrew import bowl as bowls
 from feederscrew.part import load
 from feederscrew.studies import tooling, trial
 from feederscrew.tooling.devices.kinds import KINDS
+from feederscrew.tooling.isolating import tracks
 from feederscrew.tooling.isolating.chain import limits
 from feederscrew.trial import course, result
 
@@ -46,17 +47,17 @@ def chain(part, folder):
     first = tooling.tooling(part, bowl, rule=RULE, verdicts=1, seconds=1e-3)
     for k in np.argsort(-first.shares, kind="stable"):
         one = first.orientations[k]
-        found = tooling.tooling(
-            part, bowl, one.aspect, heading=one.heading, known=first.aspects, **own
-        ).design
-        nearest = nearest or (found.cuts and (found, f"{one.name}, not isolated"))
-        if found.isolated and found.cuts and tooling.CARRIED not in found.reasons:
-            nearest = found, one.name
+        study = tooling.tooling(part, bowl, one.aspect, heading=one.heading, known=first.aspects, **own)
+        found = study.design
+        nearest = nearest or (found.cuts and (study, f"{one.name}, not isolated"))
+        if found.isolated and found.cuts and tracks.CARRIED not in found.reasons:
+            nearest = study, one.name
             break
-    lines = [f"  - {cut.device.kind}: {cut.device.text}\n" for cut in nearest[0].cuts]
+    width = [f"track.width={1e3 * nearest[0].bowl.track.width:.6g} mm"]
+    lines = [f"  - {cut.device.kind}: {cut.device.text}\n" for cut in nearest[0].design.cuts]
     path = Path(folder) / f"{part.name}.yaml"
     path.write_text("devices:\n" + "".join(lines))
-    return bowls.read(path, []), nearest[1]
+    return bowls.read(path, width), nearest[1]
 
 
 def single(part, seed, folder):
@@ -124,6 +125,7 @@ def part_of(name):
 def kept(run):
     """(M,) bool, whether the parts of each orientation ended as the static rule says, fate for fate."""
     fates = {"returned": ("returned", "rolled_back"), "stopped": ("stopped", "stuck", "hanging")}
+    fates["carried"] = fates["returned"]  # by the devices, but it rolls back before them
     said = ["passed" if passes else fate for passes, fate in zip(run.predicted, run.known.fates)]
     rows = [fates.get(one, (one,)) for one in said]
     held = [sum(counts[course.FATES.index(fate)] for fate in some) for counts, some in zip(run.counts, rows)]

@@ -13,7 +13,7 @@ from feederscrew.rates import stream
 EACH = 2  # parts of each orientation
 BEST = 3  # designs of a table that are tried, and of one orientation whose first ones are denied
 SEARCHES = 4  # designs that are looked for after a denied one
-KEPT = ("separation", "bank", "groove")  # devices that reject nothing: to leave them out makes no other chain
+KEPT = ("separation", "bank")  # devices that reject nothing: to leave them out makes no other chain
 OFTEN = 0.02  # [1] shares of the orientations that are tried, and the one that is wanted
 
 
@@ -93,7 +93,8 @@ def _devices(found):
 
 
 def _tried(study, one, seed, jobs, before):
-    """One design with parts of its own."""
+    """One design with parts of its own, on a track of its own width."""
+    study = study.on_its_width(one.wanted)
     bowl = replace(study.bowl, devices=one.devices)
     ways = stream.along(study.orientations, study.aspects, bowl.devices, bowl=bowl)
     name, total = ways.lying[one.wanted].name, study.shares.sum()

@@ -144,7 +144,7 @@ def proposed(part, bowl, aspects, row, known, request, how):
     found = tooling(
         part, bowl, one.aspect, heading=one.heading, rule=request.rule, margin=margin, known=aspects,
         seed=request.seed, verdicts=VERDICTS, outcome=outcome, without=without,
-        purity=ENOUGH, up=request.up, play=0.0, tolerance=0.0,  # draws have them
+        purity=ENOUGH, up=request.up, play=0.0, tolerance=0.0, vary=False,  # draws and the loop have them
     ).design  # fmt: skip
     if found is None or not found.efficiency > 0.0 or not (found.cuts or found.before):
         return None

@@ -20,25 +20,18 @@ from feederscrew.studies.rate import arriving
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.kinds import KINDS, made
 from feederscrew.tooling.fates import at_entry
-from feederscrew.tooling.isolating import held
+from feederscrew.tooling.isolating import tracks
 from feederscrew.tooling.isolating.chain import FINE, STEP, WHERE, Wishes
-from feederscrew.tooling.isolating.design import MARGIN, PLAY, TOLERANCE, design, place
+from feederscrew.tooling.isolating.design import MARGIN, PLAY, TOLERANCE, place
 from feederscrew.tooling.isolating.hole_search import VERDICTS, HoleSearch
 from feederscrew.tooling.isolating.proposal import Design
 from feederscrew.tooling.mirrored import named
-from feederscrew.tooling.orientations import Orientation, orientations, placed, speed
+from feederscrew.tooling.orientations import Orientation, orientations, speed
 from feederscrew.units import shown
 
-CARRIED = (
-    "quasi-static: at the bowl's speed a part may be carried over a cut that returns it, laid over by a "
-    "blade or wedged between rails - see feeder trial"
-)
-ROCKS = (
-    "{} may rock on what these cuts leave below it, and no safer value lies between the limits - try it "
-    "with feeder trial"
-)
 STEEP = np.radians(-6.0)  # [rad] climb of a stretch that separates parts
 OUTCOMES = ("lying", "hanging", "any")
+WIDER = "the track has to be {:.4g} mm wide"
 LATE = "the search stopped at the time limit: another machine may find more - raise the limit"
 
 
@@ -71,6 +64,14 @@ class ToolingStudy(Shown):
     def design(self) -> Design | None:
         """The design of the orientation asked for; None where all were."""
         return None if self.wanted is None else self.designs[self.wanted]
+
+    def on_its_width(self, place: int) -> "ToolingStudy":
+        """Return the study on the track that the design of an orientation asks for."""
+        found = self.designs[place]
+        if found is None or found.width is None:
+            return self
+        bowl = replace(self.bowl, track=replace(self.bowl.track, width=found.width))
+        return replace(self, bowl=bowl, orientations=_coming(self.part, self.aspects, bowl))
 
     @property
     def answer(self) -> str:
@@ -137,8 +138,9 @@ def tooling(
         What a design may use, as ``Wishes``: outcome, how parts shall leave ('lying', 'hanging' or 'any');
         without, kinds of devices that are not used ('wiper,cut_out'); step [m], of which values are whole
         multiples; up, other aspects that count as the one wanted ('B,C'); cutter [m], the radius that corners
-        of holes are rounded to; play and tolerance [m], of the part from the wall and of its size, which are
-        added to the margin that is asked for.
+        of holes are rounded to; vary, whether other banks, grooves and widths of the track, sweeps and jets
+        are tried where they give more; play and tolerance [m], of the part from the wall and of its size,
+        which are added to the margin that is asked for.
 
     Returns
     -------
@@ -150,8 +152,7 @@ def tooling(
         If the part has no mesh, is too large for the bowl, or has no such orientation or rule.
     """
     found = arriving(part, bowl, rule) if known is None else known
-    every, _ = marked(named(orientations(part, found, bowl.track)), bowl)
-    every = at_entry(every, bowl.devices)
+    every = _coming(part, found, bowl)
     if rule not in found.chances:
         raise ArgumentError(
             f"rule {rule}", "has no probabilities of this part", hint(rule, list(found.chances))
@@ -160,18 +161,20 @@ def tooling(
     wanted = None if aspect is None else place(every, aspect, heading, part.source)
     search = HoleSearch(seed=seed, verdicts=verdicts, until=time.monotonic() + seconds)
     margin += wishes.pop("play", PLAY) + wishes.pop("tolerance", TOLERANCE)
-    may_use = asked_for(part, bowl, found, **wishes)
+    vary = bool(wishes.pop("vary", True))
+    may_use = replace(asked_for(part, bowl, found, **wishes), vary=vary)
     asked_of_each = {"purity": purity, "efficiency": efficiency, "turn": turn, "before": bowl.devices}
-    asked_of_each |= {"wishes": may_use}
+    asked_of_each |= {"wishes": may_use, "margin": margin, "search": search}
     asked = range(len(every)) if wanted is None else [wanted]
     designs: list[Design | None] = [None] * len(every)
     if told is not None:
         told(0, len(asked))
+    cache: dict[float, _Track] = {bowl.track.width: _Track(bowl, every, shares, {})}
     for done, k in enumerate(asked):
-        designs[k] = _designed(every, shares, k, bowl, margin=margin, search=search, **asked_of_each)
+        designs[k] = _best(part, found, rule, k, cache, asked_of_each)
         if told is not None:
             told(done + 1, len(asked))
-    return ToolingStudy(
+    study = ToolingStudy(
         part=part,
         bowl=bowl,
         aspects=found,
@@ -183,6 +186,47 @@ def tooling(
         wanted=wanted,
         up=may_use.up,
     )
+    return study if wanted is None else study.on_its_width(wanted)
+
+
+@dataclass(frozen=True, eq=False)
+class _Track:
+    """What comes on a track of some width."""
+
+    bowl: Bowl
+    orientations: tuple[Orientation, ...]
+    shares: np.ndarray
+    cache: dict[Any, Any]  # of orientations where it leans
+
+
+def _coming(part: Part, found: Aspects, bowl: Bowl) -> tuple[Orientation, ...]:
+    """Every orientation of a part as it comes in a bowl."""
+    every, _ = marked(named(orientations(part, found, bowl.track)), bowl)
+    return at_entry(every, bowl.devices)
+
+
+def _best(
+    part: Part, found: Aspects, rule: str, wanted: int, cache: dict[float, _Track], asked: dict[str, Any]
+) -> Design:
+    """The design of an orientation on the bowl's track, or on one of another width that gives more."""
+    own = next(iter(cache.values()))
+    best = _designed(own, wanted, asked)
+    if best.isolated or not asked["wishes"].vary or asked["before"]:
+        return best
+    for width in tracks.widths(own.orientations, own.shares, wanted, asked["margin"]):
+        if width not in cache:
+            bowl = replace(own.bowl, track=replace(own.bowl.track, width=width))
+            cache[width] = _Track(bowl, _coming(part, found, bowl), own.shares, {})
+        alike = [one.name for one in cache[width].orientations] == [one.name for one in own.orientations]
+        other = _designed(cache[width], wanted, asked) if alike else None
+        if other is not None and tracks.gains(other, best):
+            best = replace(other, width=width, reasons=(*other.reasons, WIDER.format(1e3 * width)))
+    return best
+
+
+def _designed(there: _Track, wanted: int, asked: dict[str, Any]) -> Design:
+    given = there.orientations, there.shares, wanted, there.bowl
+    return tracks.designed(*given, steady=steady, cache=there.cache, **asked)
 
 
 def tooling_without(
@@ -250,47 +294,3 @@ def _separation(bowl: Bowl, wishes: Wishes) -> Device | None:
     steeper = made("separation", WHERE, angle=STEEP, text=f"{{climb: {np.degrees(STEEP):.6g} deg}}")
     there = replace(bowl, track=replace(bowl.track, climb=STEEP))
     return steeper if wishes.allows("separation") and speed(there) > speed(bowl) else None
-
-
-def _designed(
-    every: Sequence[Orientation], shares: np.ndarray, wanted: int, bowl: Bowl, **asked: Any
-) -> Design:
-    """The design of an orientation; one that rolls on the level comes on a bank or out of a groove."""
-    leaning = held.stretches(every[wanted], bowl.friction.wall, asked["before"], asked["wishes"])
-    if leaning:
-        found = _on_this_track(held.led_on(every, leaning), shares, wanted, bowl, **asked)
-        if found.isolated or found.cuts:
-            return held.with_stretches(found, leaning)
-    return _on_this_track(every, shares, wanted, bowl, **asked)
-
-
-def _on_this_track(
-    every: Sequence[Orientation], shares: np.ndarray, wanted: int, bowl: Bowl, **asked: Any
-) -> Design:
-    """The design of an orientation that the drive leaves lying on what is cut; if there is none, said so."""
-    found = _isolating(every, shares, wanted, **asked)
-    if _steady(found, every, bowl, asked["margin"]):
-        return found
-    holes = any(cut.device.corners for cut in found.cuts)
-    gentle = found if holes else _isolating(every, shares, wanted, gentle=True, **asked)
-    same = (gentle.isolated, gentle.efficiency, gentle.purity) == (
-        found.isolated, found.efficiency, found.purity,
-    )  # fmt: skip
-    if same and _steady(gentle, every, bowl, asked["margin"]):
-        return gentle
-    said = ROCKS.format(every[wanted].name)
-    return replace(found, steady=False, reasons=(*found.reasons, said))
-
-
-def _steady(found: Design, every: Sequence[Orientation], bowl: Bowl, margin: float) -> bool:
-    """Whether the drive leaves the wanted orientation lying at every cut of a design."""
-    return not found.cuts or bool(steady(found.devices, [every[found.wanted]], bowl, margin)[0])
-
-
-def _isolating(every: Sequence[Orientation], shares: np.ndarray, wanted: int, **asked: Any) -> Design:
-    """The design for parts that travel; where none isolates, one for parts that are placed, and said so."""
-    found = design(every, shares, wanted, **asked)
-    if found.isolated or not any(one.carry > 0.0 for one in every):
-        return found
-    still = design(placed(every), shares, wanted, **asked)
-    return replace(still, reasons=(*still.reasons, CARRIED)) if still.isolated else found

@@ -3,6 +3,7 @@
 Source: averaged Coulomb friction on a vibrating surface; docs/tooling.md.
 """
 
+import functools
 import math
 
 from feederscrew.tooling.devices.base import STANDARD_GRAVITY
@@ -71,6 +72,14 @@ def force_to_clear(one, wide, height):
     It drifts to the free edge in the time it takes to pass, or slides outright; or it tips over the side of
     its foot, where force times height is beyond weight times the way from its centre of mass to that side.
     """
+    side, weight = one.foot_reach, one.posture.mass * STANDARD_GRAVITY
+    tips = weight * side / height if height > 0.0 else math.inf
+    return min(_force_to_shift(one, wide), tips)
+
+
+@functools.lru_cache(maxsize=1024)
+def _force_to_shift(one, wide):
+    """The least sideways force [N] that drifts an orientation off the track over a way, or slides it off."""
     weight, friction = one.posture.mass * STANDARD_GRAVITY, max(one.grip, 1e-3)
     way = max(one.track.width - one.distance, 0.0)
     low, high = 0.0, friction * weight
@@ -79,6 +88,4 @@ def force_to_clear(one, wide, height):
         found = speed(middle / one.posture.mass, friction, one.swing)
         gone = found * wide >= way * one.speed
         low, high = (low, middle) if gone else (middle, high)
-    side = one.foot_reach
-    tips = weight * side / height if height > 0.0 else math.inf
-    return min(high, tips)
+    return high

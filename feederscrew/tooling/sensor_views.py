@@ -41,25 +41,34 @@ def difference(one, other, sees):
     """
     if sees == "height":
         return abs(one.height - other.height)
-    return 0.0 if one is other else _difference(one, other, sees)
+    if one is other:
+        return 0.0
+    return _difference(_lies(one, other.distance, sees), _lies(other, other.distance, sees), sees)
 
 
 @functools.lru_cache(maxsize=4096)
 def _difference(one, other, sees):
-    line = other.distance
-    wanted = outline(other, sees, line)
+    wanted = _outline(other, sees)
     if sees == "outline":
-        return fitted(outline(one, sees, line), wanted)
-    return min(apart(outline(one, sees, line, by), wanted) for by in ASKEW)
+        return fitted(_outline(one, sees), wanted)
+    return min(apart(_outline(one, sees, by), wanted) for by in ASKEW)
 
 
-@functools.lru_cache(maxsize=512)
 def askew(one, sees):
     """Return by how much [m] an orientation may differ from itself for a sensor, as parts come askew."""
     if sees in ("outline", "height"):
         return 0.0
-    line = one.distance
-    return max(apart(outline(one, sees, line, by), outline(one, sees, line)) for by in ASKEW)
+    return _askew(_lies(one, one.distance, sees), sees)
+
+
+@functools.lru_cache(maxsize=512)
+def _askew(lies, sees):
+    return max(apart(_outline(lies, sees, by), _outline(lies, sees)) for by in ASKEW)
+
+
+def _lies(one, line, sees):
+    """What a sensor sees depends on: the posture, the heading, and how far from its line it lies [m]."""
+    return one.posture, one.heading, one.distance - line if sees == "relief" else 0.0
 
 
 def fitted(seen, wanted, enough=0.0):
@@ -117,7 +126,6 @@ def _reach(area, other):
     return float(shapely.distance(shapely.points(places), other.boundary).max())
 
 
-@functools.lru_cache(maxsize=2048)
 def outline(one, sees, line=0.0, by=0.0):
     """Return the area that a sensor sees of an orientation [m]: ahead from its front, and from its side.
 
@@ -133,9 +141,15 @@ def outline(one, sees, line=0.0, by=0.0):
     by : float [rad]
         By which it comes turned from its heading.
     """
-    points, faces = one.posture.surface, one.posture.solid.faces
-    plan = turned(points[:, :2], one.heading + by)
-    return area(np.column_stack([plan + [0.0, one.distance], points[:, 2]]), faces, sees, line=line)
+    return _outline(_lies(one, line, sees), sees, by)
+
+
+@functools.lru_cache(maxsize=2048)
+def _outline(lies, sees, by=0.0):
+    posture, heading, away = lies
+    points, faces = posture.surface, posture.solid.faces
+    plan = turned(points[:, :2], heading + by)
+    return area(np.column_stack([plan + [0.0, away], points[:, 2]]), faces, sees)
 
 
 def area(points, faces, sees, resolution=0.0, line=0.0):

@@ -38,7 +38,11 @@ def bracket():
 def test_a_block_is_isolated_by_devices_of_one_number(monkeypatch):
     monkeypatch.setattr(hole_search, "STARTS", 20)
     study = tooling(
-        shapes.part(shapes.box(20, 12, 5)), bowls.read(None, SETTINGS), seconds=20.0, without="sorter"
+        shapes.part(shapes.box(20, 12, 5)),
+        bowls.read(None, SETTINGS),
+        seconds=20.0,
+        without="sorter",
+        vary=False,
     )
     told = [one.reasons[0] for one in study.designs if not one.isolated]
     assert len(told) == 4  # what stands tall on a small foot goes wherever the block lying flat goes
@@ -55,7 +59,9 @@ def test_a_block_is_isolated_by_devices_of_one_number(monkeypatch):
 @pytest.mark.parametrize(("heading", "is_steady"), [(0.0, True)])
 def test_a_cut_leaves_as_much_of_a_foot_as_keeps_it_from_rocking(heading, is_steady):
     bowl = bowls.read(None, [])
-    study = tooling(shapes.part(shapes.box(22, 13, 6)), bowl, "C", heading=heading, verdicts=1, without=ONES)
+    study = tooling(
+        shapes.part(shapes.box(22, 13, 6)), bowl, "C", heading=heading, verdicts=1, without=ONES, vary=False
+    )
     found, one = study.design, study.orientations[study.wanted]
     asked = {"margin": study.margin, "search": hole_search.HoleSearch(verdicts=1)}
     asked["wishes"] = Wishes(without=ONES)
@@ -153,7 +159,7 @@ def test_a_bowl_of_the_design_is_as_pure_and_efficient(bracket, tmp_path):
 def test_a_headed_pin_is_fed_hanging():
     head, shank = shapes.cylinder(5.0, 4.0, 32), shapes.cylinder(2.0, 20.0, 32)
     head.apply_translation([0, 0, 12.0])
-    study = tooling(shapes.part(head.union(shank)), bowls.read(None, SETTINGS), "A", seconds=20.0)
+    study = tooling(shapes.part(head.union(shank)), bowls.read(None, SETTINGS), "A", seconds=20.0, vary=False)
     assert [cut.device.kind for cut in study.design.cuts][-1] == "rails"
     lying = [k for k, one in enumerate(study.orientations) if one.aspect == "A" and one.length > 0.02]
     assert study.design.efficiency == pytest.approx(study.shares[lying].sum() / study.shares.sum())

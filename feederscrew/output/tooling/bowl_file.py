@@ -3,6 +3,8 @@
 from feederscrew.bowl.devices import SECTION
 from feederscrew.tooling.isolating.chain import millimetres
 
+TRACK, WIDTH = "track", "track.width"
+
 
 def bowl_file(study, settings):
     """Return a bowl file: what the user gave, and the devices that isolate the orientation asked for.
@@ -18,15 +20,24 @@ def bowl_file(study, settings):
     -------
     str
     """
+    width = study.design.width
     given = [s for s in settings if s.given and s.key.field != SECTION]
+    given = [s for s in given if width is None or s.key.name != WIDTH]
     lines = [*_head(study), *(f"{s.key.word}: {s.text}" for s in given if not s.key.section)]
     for section in dict.fromkeys(s.key.section for s in given if s.key.section):
         lines += [f"{section}:"]
         lines += [f"  {s.key.word}: {s.text}" for s in given if s.key.section == section]
+        lines += [_wide(width)] if width is not None and section == TRACK else []
+    if width is not None and not any(s.key.section == TRACK for s in given):
+        lines += [f"{TRACK}:", _wide(width)]
     lines += [f"{SECTION}:  # along the track, in the order parts meet them"]
     lines += [f"  - {device.kind}: {device_value(device)}" for device in study.design.before]
     lines += [f"  - {cut.device.kind}: {cut.device.text}{_mark(cut)}" for cut in study.design.cuts]
     return "\n".join(lines) + "\n"
+
+
+def _wide(width):
+    return f"  width: {millimetres(width)}  # as the design asks for"
 
 
 def device_value(device):

@@ -75,7 +75,8 @@ def chain_picture(devices, every, shares):
 
 def _views(study):
     """The part over the cuts in three dimensions, where there is a cut to see."""
-    if all(device.turns or not device.placed for device in study.design.devices):
+    seen = [device.picture for device in study.design.devices if device.placed and not device.turns]
+    if not any(seen):
         return []
 
     given = study.design.devices, study.orientations, study.shares, study.wanted

@@ -15,7 +15,8 @@ HIDDEN = ("reasons",)
 SPARE = (  # left out of a table for people that is too wide, the first ones first
     ("smallest_cut", "largest_cut"),
     ("mirror", "wall_distance_mm", "balcony_mm", "canyon_mm", "gap_mm"),
-    ("height_mm",), ("length_mm", "width_mm"), ("steady",), ("status",), ("purity",), ("left_over",),
+    ("height_mm", "track_width_mm"), ("length_mm", "width_mm"), ("steady",), ("status",), ("purity",),
+    ("left_over",),
 )  # fmt: skip
 SPAN = re.compile(r"\{from: ([\d.]+) mm, to: ([\d.]+) mm\}")
 WIDE = 34  # letters of a text in a table for people
@@ -40,6 +41,7 @@ def document(study):
         "status": status(study, study.wanted),
         "isolated_static": study.design.isolated,
         "steady": study.design.steady,
+        "track_width_mm": study.bowl.track.width / MM,
         "efficiency": study.design.efficiency,
         "purity": study.design.purity,
         "before": [f"{device.kind}: {device.text}" for device in study.design.before],
@@ -107,7 +109,7 @@ def summary(study, format="csv"):
             "margin_reject_mm": cut.margin_reject / MM,
             "smallest_cut": cut.smallest.text,
             "largest_cut": cut.largest.text,
-            "returns": _returned(study, cut) or _turns(cut) or _serves(cut),
+            "returns": _returned(study, cut) or _turns(cut),
         }
         for cut in study.design.cuts
     ]
@@ -125,10 +127,6 @@ def _short(text, most):
     if corners > 1 and len(text) > most:
         return f"polygon of {corners} corners"
     return re.sub(r"[][{}:]", "", named.whole_degrees(SPAN.sub(r"\1 to \2 mm", text)))
-
-
-def _serves(cut):
-    return f"({cut.device.serves})" if cut.device.serves else ""
 
 
 def _few(text, most):
@@ -247,12 +245,13 @@ def _row(one, share):
 
 def _designed(study, place, found):
     if found is None:
-        names = "isolated status devices margin_mm steady efficiency purity left_over reasons".split()
-        return dict.fromkeys(names)
+        names = "isolated status devices track_width_mm margin_mm steady efficiency purity left_over reasons"
+        return dict.fromkeys(names.split())
     return {
         "isolated": study.isolates(place),
         "status": status(study, place),
         "devices": [cut.device.kind for cut in found.cuts],
+        "track_width_mm": None if found.width is None else found.width / MM,
         "margin_mm": found.margin / MM,
         "steady": found.steady if found.cuts else None,
         "efficiency": found.efficiency,
@@ -289,9 +288,10 @@ def _turned(cut):
 
 
 def _turns(cut):
-    """'turns A@0 to C@90 (80 %)': what a turning device does, for people."""
+    """'turns A@0 to C@90 (80 %)': what a turning device does, for people; or what it is for."""
     lines = [f"{a} to {b}" + ("" if x > 0.9995 else f" ({100.0 * x:.3g} %)") for a, b, x in cut.turns]
-    return f"turns {', '.join(lines)}; {QUASI_STATIC}" if lines else ""
+    serves = f"({cut.device.serves})" if cut.device.serves else ""
+    return f"turns {', '.join(lines)}; {QUASI_STATIC}" if lines else serves
 
 
 def _finite(value):

@@ -39,6 +39,7 @@ class Wishes:
     up: tuple[str, ...] = ()  # aspects that count as the one wanted
     cutter: float = 0.0  # [m] radius that corners of holes are rounded to
     separation: Device | None = None  # that comes before a device that needs gaps
+    vary: bool = True  # other tracks, sweeps and jets are tried where they give more
 
     def allows(self, kind):
         """Return whether a kind of device may be used."""
@@ -149,16 +150,14 @@ def fewest(found, others, margin, enough=0.0):
         In the order of ``candidates``.
     """
     best, weight, total = (), 0.0, float(others.sum())
-    devices = list(found)
+    devices = [device for device, some in found.items() if others[some <= -margin].any()]
     for count in range(1, len(devices) + 1):
         if total - weight <= enough:
             break
         for chosen in itertools.combinations(devices, count):
             returned = np.any([found[device] <= -margin for device in chosen], axis=0)
-            if jams(found, chosen, others, margin):
-                continue
             held = float(others[returned].sum())
-            if held > weight + 1e-12:
+            if held > weight + 1e-12 and not jams(found, chosen, others, margin):
                 best, weight = chosen, held
     return best
 
@@ -220,7 +219,7 @@ def shared_out(found, devices, margin):
 
 def _cut(every, wanted, device, must, least, step):
     if not device.bound:
-        return _sensor(every, wanted, device, must, step)
+        return (_sensor if device.like else _air)(every, wanted, device, must, step)
     values, upper = limits(type(device), every), device.bound == "upper"
     values = values + np.where(np.arange(len(every)) == wanted, 0.0, _more(device, every))
     nearest = (values[must].min() if upper else values[must].max()) if must.any() else values[wanted]
@@ -250,6 +249,11 @@ def _sensor(every, wanted, device, must, step):
     own = device.differs(Meeting(every[wanted], every))
     chosen = _surest(every, must, at, 0.5 * (own + widest), least)
     return judged(every, wanted, chosen, must, at(widest), at(least))
+
+
+def _air(every, wanted, device, must, step):
+    goes = [Meeting(one, every) for one, some in zip(every, must) if some]
+    return judged(every, wanted, device, must, *device.window([Meeting(every[wanted], every)], goes))
 
 
 def _more(device, every):

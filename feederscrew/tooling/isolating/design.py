@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew.errors import FeederError
 from feederscrew.tooling.devices.named import place_of
-from feederscrew.tooling.isolating import chain, hole_search, rails, round_corners, turners
+from feederscrew.tooling.isolating import chain, hole_search, rails, round_corners, turners, varied
 from feederscrew.tooling.isolating.needed import told_needed
 from feederscrew.tooling.isolating.proposal import task as asked_for
 from feederscrew.tooling.isolating.proposal import told, weights, without
@@ -15,6 +15,7 @@ MARGIN = 1.5e-4  # [m] to either side, beside ...
 PLAY, TOLERANCE = 5e-5, 5e-5  # [m] ... what parts come off the wall, and what their size is off
 WHOLE = MARGIN + PLAY + TOLERANCE  # [m]
 MOST_HOLES = 3  # cut-outs in one chain
+MORE = 1e-2  # [1] purity by which a chain of varied devices is better
 GAIN = 1.25  # turning devices are taken where they bring so many times the parts, if no efficiency is asked
 
 
@@ -145,18 +146,26 @@ def _plain(given, search, holes):
     if holes:
         cuts, returned = _with_holes(given, cuts, returned, search)
     found = told_needed(given, cuts, returned, late=search.late)
-    if found.isolated or not given.wishes.allows("sorter"):
-        return found
-    seen = told_needed(given, *_chosen(given, weight, {"sensed": True}), late=search.late)
-    return seen if seen.isolated else found
+    sensed = {"sensed": given.wishes.allows("sorter")}
+    for stage in (sensed, sensed | {"varied": given.wishes.vary}):
+        if found.isolated or not any(stage.values()):
+            continue
+        other = told_needed(given, *_chosen(given, weight, stage), late=search.late)
+        purer = stage.get("varied") and other.purity > found.purity + MORE
+        found = other if other.isolated or purer else found
+    return found
 
 
 def _chosen(given, weight, stage):
     """Cuts of the fewest devices of a stage, and which orientations are returned."""
     every, wanted = given.every, given.wanted
     same = np.flatnonzero(given.same & given.often)
-    found = chain.candidates(every, wanted, given.margin, given.wishes, same=same, **stage)
-    alike = given.same & given.often
+    alike, more = given.same & given.often, stage.get("varied", False)
+    asked = {name: value for name, value in stage.items() if name != "varied"}
+    found = chain.candidates(every, wanted, given.margin, given.wishes, same=same, **asked)
+    if more:
+        found |= varied.varied(every, wanted, given.margin, given.wishes, weight, same)
+        found = dict(sorted(found.items(), key=lambda item: bool(item[0].like)))  # what sees comes last
     found = {device: some for device, some in found.items() if (some[alike] >= given.margin).all()}
     counted = np.where(weight > 0.0, given.coming, 0.0) if given.purity < 1.0 else weight
     devices = chain.fewest(found, counted, given.margin, given.allowed)

@@ -9,6 +9,8 @@ from feederscrew.tooling.isolating.proposal import plain_cut
 
 LEAST, MOST, MORE = 6.0, 15.0, 1.0  # [deg] of a bank, and beyond the angle that just holds
 ANGLE = 30.0  # [deg] of a groove's faces
+# [deg] of what is tried beside that: the steepest groove first, in which what turns has farther to fall
+BANKS, GROOVES = (6.0, 10.0, 15.0), (55.0, 45.0, 30.0, 15.0)
 
 
 def stretches(one, wall_friction, before, wishes):
@@ -41,8 +43,34 @@ def stretches(one, wall_friction, before, wishes):
         return (_bank(bank),)
     if not (wishes.allows("groove") and one.rolls_along):
         return ()
-    groove = made("groove", WHERE, angle=math.radians(ANGLE), text=f"{{angle: {ANGLE:g} deg}}")
-    return groove, _bank(LEAST)
+    return _groove(ANGLE), _bank(LEAST)
+
+
+def others(one, found, wishes):
+    """Return other stretches of track that may give an orientation more than a design does, one by one.
+
+    Source: own; docs/tooling.md, "What a design takes".
+
+    Parameters
+    ----------
+    one : Orientation
+        As it comes.
+    found : Design
+        Where it isolates, only what may turn more parts into the orientation is worth another track.
+    wishes : Wishes
+
+    Returns
+    -------
+    list of tuple of Device
+    """
+    if one.track.bank > 0.0 or not wishes.allows("bank"):
+        return []
+    known = {cut.device.text for cut in found.cuts if cut.device.kind == "bank"}
+    made_of = [] if found.isolated else [(_bank(angle),) for angle in BANKS]
+    made_of = [leaning for leaning in made_of if leaning[0].text not in known]
+    if wishes.allows("groove") and one.kind == "rolling" and one.rolls_along:
+        made_of += [(_groove(angle), _bank(LEAST)) for angle in GROOVES]
+    return made_of
 
 
 def led_on(every, leaning):
@@ -55,6 +83,10 @@ def led_on(every, leaning):
 def with_stretches(found, leaning):
     """Return a design with those stretches before its own devices."""
     return replace(found, cuts=(*(plain_cut(device) for device in leaning), *found.cuts))
+
+
+def _groove(angle):
+    return made("groove", WHERE, angle=math.radians(angle), text=f"{{angle: {angle:g} deg}}")
 
 
 def _bank(angle):

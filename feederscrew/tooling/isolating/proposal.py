@@ -28,6 +28,7 @@ class Design:
     reasons: tuple[str, ...]  # why, a sentence each
     late: bool = False  # the time limit stopped the search: another machine may find more
     hopeful: float = np.nan  # [1] purity where a trial confirms what is not sure to be returned
+    width: float | None = None  # [m] of the track, where it is another than the bowl's
     steady: bool = True  # the drive leaves the wanted orientation lying on what the cuts leave of its foot
 
     @property

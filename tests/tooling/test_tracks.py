@@ -1,0 +1,170 @@
+"""Bank, groove, width, sweep and jet are found where they give a chain more."""
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.output.tooling import bowl_file
+from feederscrew.part import load
+from feederscrew.resting.aspects import find
+from feederscrew.studies.tooling import tooling
+from feederscrew.tooling import drift
+from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.devices.nozzles import pressure_of, thrust
+from feederscrew.tooling.isolating import held, tracks, varied
+from feederscrew.tooling.isolating.chain import Wishes
+from feederscrew.tooling.orientations import orientations, travelling
+from feederscrew.tooling.verdicts import Meeting
+
+BOWL = bowls.read(None, [])
+BLOCK = shapes.part(shapes.box(20, 12, 5))
+
+
+def coming(part, bowl=BOWL):
+    every = travelling(orientations(part, find(part), bowl.track), bowl)
+    return every, np.array([one.chances["csa"] for one in every])
+
+
+@pytest.fixture(scope="module")
+def block():
+    return coming(BLOCK)
+
+
+def leaning(angle):
+    groove = made("groove", "design", angle=math.radians(angle), text=f"{{angle: {angle} deg}}")
+    return groove, made("bank", "design", angle=math.radians(6.0), text="6 deg")
+
+
+def test_a_dowel_leaves_out_of_the_groove_in_which_what_lies_across_turns():
+    dowel = load("parts/dowel_6x20.stl")
+    study = tooling(dowel, BOWL, "A", heading=0.0, rule="csa", verdicts=1)
+    level = tooling(dowel, BOWL, "A", heading=0.0, rule="csa", verdicts=1, vary=False)
+    assert [cut.device.text for cut in study.design.cuts] == ["{angle: 55 deg}"]
+    assert study.design.isolated and study.design.efficiency == pytest.approx(0.9927, abs=2e-4)
+    assert level.design.efficiency == pytest.approx(0.8559, abs=2e-4)
+    every, shares = coming(dowel)
+    found = {angle: tracks.coming(every, shares, leaning(angle))[0] for angle in (15.0, 45.0, 55.0)}
+    assert found[45.0] == pytest.approx(shares[0])  # there what lies across stands on its end
+    assert found[15.0] == pytest.approx(shares[0], abs=8e-3)  # and there it rolls back first
+    assert found[55.0] == pytest.approx(
+        shares.sum() - shares[[one.returned for one in every]].sum(), abs=8e-3
+    )
+    none = tooling(dowel, BOWL, "A", heading=0.0, rule="csa", verdicts=1, without="groove").design
+    assert none.efficiency == level.design.efficiency
+
+
+def test_a_track_gives_more_that_isolates_or_is_purer_or_brings_more():
+    best = SimpleNamespace(isolated=False, purity=0.5, efficiency=0.2)
+
+    def other(**values):
+        return SimpleNamespace(**vars(best) | values)
+
+    assert tracks.gains(other(isolated=True, purity=0.4), best)
+    assert not tracks.gains(best, other(isolated=True))
+    assert tracks.gains(other(purity=0.52, efficiency=0.1), best)
+    assert not tracks.gains(other(purity=0.48, efficiency=0.4), best)
+    assert not tracks.gains(other(efficiency=0.205), best) and tracks.gains(other(efficiency=0.22), best)
+    assert not tracks.gains(None, best) and not tracks.gains(best, best)
+
+
+def test_other_tracks_are_tried_for_what_rolls_or_is_not_isolated(block):
+    every, _ = block
+    free = Wishes()
+    loose = SimpleNamespace(isolated=False, cuts=())
+    assert [one[0].text for one in held.others(every[0], loose, free)] == ["6 deg", "10 deg", "15 deg"]
+    assert held.others(every[0], SimpleNamespace(isolated=True, cuts=()), free) == []
+    assert held.others(every[0], loose, Wishes(without=("bank",))) == []
+    steep = replace(every[0], track=replace(every[0].track, bank=0.01))
+    assert held.others(steep, loose, free) == []
+
+
+def test_what_falls_off_has_a_track_as_wide_as_it_is(tmp_path):
+    narrow = bowls.read(None, ["track.width=9 mm"])
+    study = tooling(BLOCK, narrow, "A", heading=math.pi / 2, rule="csa", verdicts=1)  # 20 mm across
+    found, one = study.design, study.orientations[study.wanted]
+    assert found.isolated and found.width == study.bowl.track.width
+    assert one.width + 1e-3 <= found.width < one.width + 2.1e-3 and not one.falls_off
+    assert f"the track has to be {1e3 * found.width:g} mm wide" in found.reasons
+    path = tmp_path / "tooling.yaml"
+    path.write_text(
+        bowl_file.bowl_file(study, bowls.settings(None, ["track.width=9 mm", "track.bank=0 deg"]))
+    )
+    assert bowls.read(path).track.width == pytest.approx(found.width, abs=1e-12)
+    path.write_text(bowl_file.bowl_file(study, bowls.settings(None, [])))
+    assert bowls.read(path).track.width == pytest.approx(found.width, abs=1e-12)
+    assert (
+        tooling(BLOCK, narrow, "A", heading=math.pi / 2, rule="csa", verdicts=1, vary=False).design.width
+        is None
+    )
+
+
+def test_a_narrower_track_lets_a_pulse_blow_off_what_is_heavy(block):
+    every, shares = block
+    assert tracks.widths(every, shares, 0, 2.5e-4) == []  # 9.4 g fly off 25 mm
+    heavy = tuple(replace(one, posture=replace(one.posture, mass=0.1)) for one in every)
+    (width,) = tracks.widths(heavy, shares, 0, 2.5e-4)
+    sorter = tracks._sorter(heavy[0], heavy, 2.5e-4)
+    ways = [tracks._blown(sorter, one, heavy) for one in heavy[1:]]
+    assert width == pytest.approx(math.floor(1e3 * min(ways)) * 1e-3) and heavy[0].width < width < 25e-3
+    there = [replace(one, track=replace(one.track, width=width)) for one in heavy]
+    blown = [Meeting(one, there).blown(*sorter.jet.push(one, tuple(there)), sorter.time) for one in there[1:]]
+    assert min(blown) > 0.0
+    wide = [Meeting(one, heavy).blown(*sorter.jet.push(one, heavy), sorter.time) for one in heavy[1:]]
+    assert min(wide) < 0.0
+
+
+def test_the_force_of_a_jet_lies_amid_what_moves_the_rest_and_what_moves_the_wanted_one(block, tmp_path):
+    every, _ = block
+    flat = next(k for k, one in enumerate(every) if one.name == "A@0")
+    tall = [k for k, one in enumerate(every) if one.height > 10e-3]
+    found = varied._jets(every, [flat], Wishes())
+    device, margins = next((d, m) for d, m in found.items() if (m[tall] < 0.0).all())
+    factors = [device.factor(Meeting(one, every)) for one in every]
+    assert factors[flat] <= 0.5 and min(factors[k] for k in tall) >= 2.0 and margins[flat] > 0.0
+    weakest, strongest = device.window(
+        [Meeting(every[flat], every)], [Meeting(every[k], every) for k in tall]
+    )
+    assert weakest.pressure <= device.pressure <= strongest.pressure
+    assert device.pressure / 1e3 == pytest.approx(round(device.pressure / 1e3))
+    least = [weakest.factor(Meeting(every[k], every)) for k in tall]
+    assert min(least) == pytest.approx(2.0, rel=1e-6)
+    assert varied.amid(strongest, replace(weakest, pressure=0.5 * weakest.pressure)) is None
+    path = tmp_path / "bowl.yaml"
+    path.write_text(f"devices:\n  - jet: {device.text}\n")
+    (again,) = bowls.read(path).devices
+    assert (again.pressure, again.height) == pytest.approx((device.pressure, device.height), rel=1e-9)
+
+
+def test_a_pressure_is_that_of_its_thrust():
+    assert pressure_of(2e-3, thrust(2e-3, 7.3e4), 3e5) == pytest.approx(7.3e4, rel=1e-9)
+    assert pressure_of(2e-3, 5.0, 3e5) == 3e5
+
+
+def test_other_sweeps_are_those_at_which_a_face_clears_itself(block):
+    every, _ = block
+    sweeps = [round(math.degrees(one.sweep)) for one in varied._swept(every, 0, 2.5e-4, Wishes(), ())]
+    assert sweeps == [20, 45, 55]  # friction 0.6: below 59 deg
+    rough = [replace(one, grip=0.9) for one in every]
+    assert [round(math.degrees(one.sweep)) for one in varied._swept(rough, 0, 2.5e-4, Wishes(), ())] == [
+        20,
+        45,
+    ]
+
+
+def test_a_design_takes_a_jet_where_nothing_else_returns_as_much():
+    own = {"rule": "csa", "verdicts": 1, "without": "sorter,wiper,gap,narrowed_track,canyon,pressure_break"}
+    more, less = (tooling(BLOCK, BOWL, "A", heading=0.0, vary=vary, **own).design for vary in (True, False))
+    assert more.purity > less.purity + 0.05
+    assert [cut.device.kind for cut in more.cuts] == ["jet"] and not less.cuts
+
+
+def test_the_force_that_shifts_does_not_hang_on_the_height(block):
+    one = block[0][0]
+    low, high = (drift.force_to_clear(one, 0.02, height) for height in (0.0, 1.0))
+    assert low == drift._force_to_shift(one, 0.02)
+    assert high == pytest.approx(one.posture.mass * 9.80665 * one.foot_reach)
