@@ -5,6 +5,7 @@ import numpy as np
 from feederscrew.dropping.kernel import body
 from feederscrew.trial.kernel import contact, supports
 from feederscrew.trial.kernel.crowd_records import LISTS, Crowd
+from feederscrew.trial.kernel.near_borders import BLOCK
 
 CONTACTS = 96  # of a part with the track at a time
 PAIRS = 400  # contacts between parts at a time
@@ -41,13 +42,14 @@ def crowd_of(solid, surface, count):
         known=numbers(CONTACTS, 4), knowns=places(), lasted=np.full(count, -1.0),
         made=np.full((count, 10), -1.0), made_at=numbers(3),
         ends=places(plates, LISTS), verts=places(3, 2 * corners), offs=numbers(2 * corners),
+        groups=numbers(2 * corners // BLOCK + 1, 6),
         sides=places(SIDES * corners + 100),
         edges=places(NEAR, 3), edge_gaps=numbers(NEAR), posts=places(NEAR, 2), corners=places(NEAR, 3),
         walled=places(corners + 1), wall_gaps=numbers(corners + 1),
         frame=np.zeros(12), shown=np.zeros((corners, 3)), seen=np.zeros(corners, np.int64),
         blocks=np.zeros(edges, np.int64),
         low=np.zeros(max(corners, CONTACTS), np.int64),
-        rims=places(plates * rims, 2), rims_walled=places(rims + 1),
+        rims=places(plates * rims, 2), rims_walled=places(rims + 1), rounds=places(len(surface.borders)),
         levels=np.zeros((corners + 8 * rims + 2 * CONTACTS, supports.COLUMNS)),
         best=np.zeros((supports.WAYS + 1, 2)), near=np.zeros(max(len(surface.borders), 1), np.int64),
         close=np.zeros(max(len(surface.borders), 1), np.int64),

@@ -11,8 +11,8 @@ from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import apart, compiled
 from feederscrew.trial.kernel import supports
 from feederscrew.trial.kernel.contact import KINDS
-from feederscrew.trial.kernel.crowd_records import DEPTH, FIRST, LAST, RIMS, ROUNDED, WALL
-from feederscrew.trial.kernel.plate_views import DEEP, beside, in_body, inside, off_wall, placed
+from feederscrew.trial.kernel.crowd_records import DEPTH, FIRST, LAST, RIMS, ROUND, ROUNDED, WALL
+from feederscrew.trial.kernel.plate_views import DEEP, beside, crossed, in_body, off_wall, placed
 from feederscrew.trial.kernel.supports import COSINES, FALL, SINES, WAYS
 
 AXIS, RADIUS = 3, 6  # columns of a circle, behind its centre
@@ -54,7 +54,7 @@ def _way(m):
 @apart
 def rims_on(surface, solid, crowd, n, k, reach, lying):
     """Add what of circles lies within ``reach`` [L] on a plate's surface; return how many carry it."""
-    plate, frame = surface.plates[k], crowd.frame
+    frame = crowd.frame
     first = crowd.ends[n, k - 1, RIMS] if k else 0
     for m in range(first, crowd.ends[n, k, RIMS]):
         rim = solid.rims[crowd.rims[n, m, 0]]
@@ -66,21 +66,23 @@ def rims_on(surface, solid, crowd, n, k, reach, lying):
             p = in_body(frame, x, y, -FALL)
             p = _furthest(rim, p[0], p[1], p[2])
             a, b, c = placed(frame, p)
-            if -DEEP < c < reach and (crowd.rims[n, m, 1] or _on_top(surface, plate, a, b, c)):
+            if -DEEP < c < reach and (crowd.rims[n, m, 1] or _on_top(surface, crowd, n, k, (a, b, c))):
                 key = KINDS * (OWN + 8 * crowd.rims[n, m, 0] + e + 1e6 * k)
                 lying = supports.add(crowd.levels, lying, (a, b), c, p, key)
     return lying
 
 
 @compiled
-def _on_top(surface, plate, a, b, c):
+def _on_top(surface, crowd, n, k, place):
     """Whether a point lies on a plate's surface: over what is solid, and not at a side."""
-    first, last = int(plate[FIRST]), int(plate[LAST])
-    if not inside(surface.borders, first, last, a, b):
+    plate, (a, b, c), odd = surface.plates[k], place, False
+    for e in range(crowd.ends[n, k - 1, ROUND] if k else 0, crowd.ends[n, k, ROUND]):
+        odd = odd != crossed(surface.borders[crowd.rounds[n, e]], a, b)
+    if not odd:
         return False
     if c > -plate[ROUNDED]:
         return True
-    for e in range(first, last):
+    for e in range(int(plate[FIRST]), int(plate[LAST])):
         if abs(beside(surface.borders[e], a, b)) < -c:
             return False
     return c > -0.5 * plate[DEPTH]

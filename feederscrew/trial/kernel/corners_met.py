@@ -26,9 +26,11 @@ from feederscrew.trial.kernel.crowd_records import (
     WALL,
 )
 from feederscrew.trial.kernel.edges_met import first_of
-from feederscrew.trial.kernel.plate_views import DEEP, SLANT, in_body, in_bowl, placed
+from feederscrew.trial.kernel.near_borders import BLOCK
+from feederscrew.trial.kernel.plate_views import DEEP, SLANT, in_body, in_bowl, level, placed
 
 SHALLOW = 1e-3  # a contact less deep is not looked at again
+ROUNDING = 1e-9  # more than rounding moves a point
 AS_FAR = 4.0  # times its depth: a deeper contact is none where so near to it another is shallower
 
 
@@ -120,13 +122,15 @@ def _foremost(solid, k, a, b, c):
 def _dips(surface, solid, crowd, n, k):
     """Write how deep corners of the part come beside each border near them."""
     first, last = first_of(crowd, n, k, VERTS), crowd.ends[n, k, VERTS]
-    if first == last:
+    if first == last or crowd.verts[n, 1, first] == crowd.verts[n, 2, last - 1]:
         return
     for e in range(crowd.verts[n, 1, first], crowd.verts[n, 2, last - 1]):
         crowd.dips[crowd.sides[n, e]] = 0.0
     frame = crowd.frame
-    for m in range(first, last):
-        if crowd.verts[n, 1, m] < crowd.verts[n, 2, m]:
+    for g in range(first // BLOCK, (last + BLOCK - 1) // BLOCK):
+        if level(frame, crowd.groups[n, g])[0] > ROUNDING:
+            continue
+        for m in range(max(first, BLOCK * g), min(last, BLOCK * (g + 1))):
             p = solid.corners[crowd.verts[n, 0, m]]
             c = frame[6] * p[0] + frame[7] * p[1] + frame[8] * p[2] + frame[11]
             for e in range(crowd.verts[n, 1, m], crowd.verts[n, 2, m]):
@@ -137,27 +141,37 @@ def _dips(surface, solid, crowd, n, k):
 @compiled
 def _corners_on(surface, solid, crowd, n, k, reach):
     """Add contacts of the part's corners with a plate's sides and back; how many lie on its surface."""
-    plate, frame, lows = surface.plates[k], crowd.frame, 0
-    far = crowd.made[n, MOVED] + reach
-    for m in range(first_of(crowd, n, k, VERTS), crowd.ends[n, k, VERTS]):
-        if crowd.offs[n, m] > far:
+    frame, lows, far = crowd.frame, 0, crowd.made[n, MOVED] + reach
+    first, last = first_of(crowd, n, k, VERTS), crowd.ends[n, k, VERTS]
+    for g in range(first // BLOCK, (last + BLOCK - 1) // BLOCK):
+        if level(frame, crowd.groups[n, g])[0] > reach + ROUNDING:
             continue
-        corner = crowd.verts[n, 0, m]
-        p = solid.corners[corner]
-        c = frame[6] * p[0] + frame[7] * p[1] + frame[8] * p[2] + frame[11]
-        if c > reach or c < -plate[DEPTH] - reach:
-            continue
-        a, b, c = placed(frame, p)
-        alone = not solid.ringed[corner]  # else its circle touches, unless a border is near
-        if crowd.verts[n, 1, m] == crowd.verts[n, 2, m]:
-            on_top = c > -DEEP
-            if plate[DEPTH] + c < DEEP and _foremost(solid, corner, -frame[6], -frame[7], -frame[8]):
-                normal, key = in_bowl(plate, 0.0, 0.0, -1.0), 1.0 + KINDS * (corner + 1e6 * k)
-                put(crowd, n, solid, (p[0], p[1], p[2]), normal, -plate[DEPTH] - c, plate[RUBS], key)
-        else:
-            on_top, alone = _by_borders(surface, solid, crowd, n, k, (m, reach, a, b, c)), True
-        if on_top and alone:
-            lows = supports.add(crowd.levels, lows, (a, b), c, p, KINDS * (corner + 1e6 * k))
+        for m in range(max(first, BLOCK * g), min(last, BLOCK * (g + 1))):
+            if crowd.offs[n, m] <= far:
+                lows = _corner_on(surface, solid, crowd, n, k, (m, reach), lows)
+    return lows
+
+
+@compiled
+def _corner_on(surface, solid, crowd, n, k, which, lows):
+    """Add the contact of one of the corners near a plate, as ``_corners_on``."""
+    plate, frame, (m, reach) = surface.plates[k], crowd.frame, which
+    corner = crowd.verts[n, 0, m]
+    p = solid.corners[corner]
+    c = frame[6] * p[0] + frame[7] * p[1] + frame[8] * p[2] + frame[11]
+    if c > reach or c < -plate[DEPTH] - reach:
+        return lows
+    a, b, c = placed(frame, p)
+    alone = not solid.ringed[corner]  # else its circle touches, unless a border is near
+    if crowd.verts[n, 1, m] == crowd.verts[n, 2, m]:
+        on_top = c > -DEEP
+        if plate[DEPTH] + c < DEEP and _foremost(solid, corner, -frame[6], -frame[7], -frame[8]):
+            normal, key = in_bowl(plate, 0.0, 0.0, -1.0), 1.0 + KINDS * (corner + 1e6 * k)
+            put(crowd, n, solid, (p[0], p[1], p[2]), normal, -plate[DEPTH] - c, plate[RUBS], key)
+    else:
+        on_top, alone = _by_borders(surface, solid, crowd, n, k, (m, reach, a, b, c)), True
+    if on_top and alone:
+        lows = supports.add(crowd.levels, lows, (a, b), c, p, KINDS * (corner + 1e6 * k))
     return lows
 
 

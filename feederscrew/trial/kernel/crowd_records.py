@@ -15,7 +15,7 @@ NORMAL, BEND, END, BEFORE = 4, 6, 7, 8  # of a border: normal; a convex corner a
 ONWARDS = 10  # ... how far it goes on in the solid before its start and behind its end (2)
 LEAN, WALL = 3, 5  # how the track leans where a part is: gravity (3), the bowl's axis (2), the wall's (2)
 REACHES, MOVED, FREE = 7, 8, 9  # of what is noted as lists are made
-VERTS, EDGES, POSTS, CORNERS, RIMS, LISTS = range(6)  # lists of what of a part is near a plate
+VERTS, EDGES, POSTS, CORNERS, RIMS, ROUND, LISTS = range(7)  # lists of what of a part is near a plate
 
 
 class Surface(NamedTuple):
@@ -78,12 +78,14 @@ class Crowd(NamedTuple):
     verts: np.ndarray  # (N, 3, ...) int, corners near a plate, and where their borders begin and end
     # (N, ...) of those corners over the plate, or beside it where that is more, as the lists were made
     offs: np.ndarray
+    groups: np.ndarray  # (N, ..., 6) box around each BLOCK of those corners: least places and greatest
     sides: np.ndarray  # (N, ...) int, those borders
     edges: np.ndarray  # (N, ..., 3) int, edges near a border: edge, border, front or back
     edge_gaps: np.ndarray  # (N, ...) how far from the border, as the lists were made
     posts: np.ndarray  # (N, ..., 2) int, edges near what runs straight back from a border's start
     corners: np.ndarray  # (N, ..., 3) int, faces near a border's start: border, front or back, face
     rims: np.ndarray  # (N, ..., 2) int, circles near a plate's surface, and whether no border is near
+    rounds: np.ndarray  # (N, B) int, borders that tell whether a point of the part is over what is solid
     rims_walled: np.ndarray  # (N, K + 1) int, how many circles are near the wall, and which
     walled: np.ndarray  # (N, C + 1) int, how many corners are near the wall, and which
     wall_gaps: np.ndarray  # (N, C + 1) and how far from the wall, as the lists were made

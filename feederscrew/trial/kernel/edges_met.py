@@ -77,35 +77,45 @@ def _put_edge(crowd, n, solid, at, normal, gap, rub, key):
 @compiled
 def edges_on(surface, solid, crowd, n, k, reach, lying):
     """Add contacts of edges with a plate's borders within ``reach`` [L]; return how many carry it."""
-    plate, frame = surface.plates[k], crowd.frame
     far = crowd.made[n, MOVED] + reach + SUNK
     for m in range(first_of(crowd, n, k, EDGES), crowd.ends[n, k, EDGES]):
-        if crowd.edge_gaps[n, m] > far:
-            continue
-        edge, border = crowd.edges[n, m, 0], surface.borders[crowd.edges[n, m, 1]]
-        back = crowd.edges[n, m, 2] > 0
-        i, j = solid.corners[solid.edges[edge, 0]], solid.corners[solid.edges[edge, 1]]
-        a, b, c = placed(frame, i)
-        d, e, f = placed(frame, j)
-        if back:
-            c, f = -plate[DEPTH] - c, -plate[DEPTH] - f
-        ends = (-solid.onwards[edge, 0], 1.0 + solid.onwards[edge, 1])
-        share, u, v, w, gap = crossing((a, b, c), (d - a, e - b, f - c), ends, border, reach)
-        if gap == math.inf or (
-            w < LEVEL and min(c, f, _dip(surface, plate, crowd, crowd.edges[n, m, 1])) > -plate[ROUNDED]
-        ):
-            continue
-        if back:
-            w = -w
-        x, y, z = in_body(frame, u, v, w)
-        if _between(solid, edge, x, y, z):
-            at = _along(i, j, share)
-            key = 3.0 + back + KINDS * (edge + 1e6 * crowd.edges[n, m, 1])
-            if w > supports.LEVEL:
-                place = a + share * (d - a), b + share * (e - b)
-                lying = supports.add(crowd.levels, lying, place, gap, at, key)
-                continue
-            _put_edge(crowd, n, solid, at, in_bowl(plate, u, v, w), gap, plate[RUBS], key)
+        if crowd.edge_gaps[n, m] <= far:
+            lying = _edge_on(surface, solid, crowd, n, k, (m, reach), lying)
+    return lying
+
+
+@compiled
+def _edge_on(surface, solid, crowd, n, k, which, lying):
+    """Add the contact of one edge with a border; as ``edges_on``."""
+    plate, frame, (m, reach) = surface.plates[k], crowd.frame, which
+    edge, border = crowd.edges[n, m, 0], surface.borders[crowd.edges[n, m, 1]]
+    back = crowd.edges[n, m, 2] > 0
+    i, j = solid.corners[solid.edges[edge, 0]], solid.corners[solid.edges[edge, 1]]
+    ends = (-solid.onwards[edge, 0], 1.0 + solid.onwards[edge, 1])
+    c = frame[6] * i[0] + frame[7] * i[1] + frame[8] * i[2] + frame[11]
+    f = frame[6] * j[0] + frame[7] * j[1] + frame[8] * j[2] + frame[11]
+    if back:
+        c, f = -plate[DEPTH] - c, -plate[DEPTH] - f
+    if min(c + ends[0] * (f - c), c + ends[1] * (f - c)) > reach:  # as high as that no border is
+        return lying
+    a, b, _ = placed(frame, i)
+    d, e, _ = placed(frame, j)
+    share, u, v, w, gap = crossing((a, b, c), (d - a, e - b, f - c), ends, border, reach)
+    if gap == math.inf or (
+        w < LEVEL and min(c, f, _dip(surface, plate, crowd, crowd.edges[n, m, 1])) > -plate[ROUNDED]
+    ):
+        return lying
+    if back:
+        w = -w
+    x, y, z = in_body(frame, u, v, w)
+    if not _between(solid, edge, x, y, z):
+        return lying
+    at = _along(i, j, share)
+    key = 3.0 + back + KINDS * (edge + 1e6 * crowd.edges[n, m, 1])
+    if w > supports.LEVEL:
+        place = a + share * (d - a), b + share * (e - b)
+        return supports.add(crowd.levels, lying, place, gap, at, key)
+    _put_edge(crowd, n, solid, at, in_bowl(plate, u, v, w), gap, plate[RUBS], key)
     return lying
 
 
@@ -126,18 +136,17 @@ def crossing(p, along, ends, border, reach):
     least, most = ends
     u, v = border[2] - border[0], border[3] - border[1]
     nx, ny, nz = -c * v, c * u, a * v - b * u  # edge x border
-    size, whole = math.sqrt(nx * nx + ny * ny + nz * nz), math.sqrt((a * a + b * b + c * c) * (u * u + v * v))
-    if size <= PARALLEL * whole:
+    square = nx * nx + ny * ny + nz * nz
+    if square <= PARALLEL * PARALLEL * (a * a + b * b + c * c) * (u * u + v * v):
         return 0.0, 0.0, 0.0, 0.0, math.inf
     flat = nx * border[NORMAL] + ny * border[NORMAL + 1]
+    size = math.sqrt(square)
     if nz + flat < 0.0:
         size = -size
-    nx, ny, nz = nx / size, ny / size, nz / size
-    if nz < -SLANT or flat / size < -SLANT:
-        return 0.0, 0.0, 0.0, 0.0, math.inf
     x, y, z = p[0] - border[0], p[1] - border[1], p[2]
+    nx, ny, nz = nx / size, ny / size, nz / size
     gap = nx * x + ny * y + nz * z
-    if gap > reach or gap < -DEEP:
+    if gap > reach or gap < -DEEP or nz < -SLANT or flat / size < -SLANT:
         return 0.0, 0.0, 0.0, 0.0, math.inf
     x, y, z = x - gap * nx, y - gap * ny, z - gap * nz
     # in the plane of both: share of the edge where it meets the border's line, then of the border

@@ -8,7 +8,6 @@ import math
 
 from feederscrew.dropping.kernel.body import Q, X, Y, Z
 from feederscrew.geometry.compiled import apart, compiled
-from feederscrew.trial.kernel import circles_met
 from feederscrew.trial.kernel.crowd_records import (
     BOX,
     DEPTH,
@@ -20,16 +19,17 @@ from feederscrew.trial.kernel.crowd_records import (
     LISTS,
     MOVED,
     REACHES,
-    RIMS,
+    ROUND,
     VERTS,
 )
-from feederscrew.trial.kernel.near_borders import BLOCK, near_edges, near_faces
+from feederscrew.trial.kernel.near_borders import BLOCK, comes, near_edges, near_faces
+from feederscrew.trial.kernel.near_circles import near_rims
 from feederscrew.trial.kernel.near_wall import near_wall
-from feederscrew.trial.kernel.plate_views import DEEP, beside, inside, placed, seen_by
+from feederscrew.trial.kernel.plate_views import DEEP, beside, inside, level, placed, seen_by
 
 ALONG = 0.25  # so far, in units of its length, along a bare track its lists hold
 AROUND, FURTHER = 0.02, 3.0  # how far around a part is looked, at least, and times how far contacts are
-SIDED = 6  # where it is counted how many borders near corners there are
+SIDED = LISTS  # where it is counted how many borders near corners there are
 
 
 @compiled
@@ -99,10 +99,11 @@ def _near_plate(surface, solid, crowd, n, k, margin):
     plate = surface.plates[k]
     nears = every = blocks = 0
     if _round_it(solid, crowd, plate, surface.borders, margin):
+        _rounds(crowd, n, plate, surface.borders, margin)
         blocks = _seen_edges(solid, crowd, plate, margin)
         nears, every = _near_borders(plate, surface.borders, crowd.box, margin, crowd.near)
     corners = _seen_corners(solid, crowd, plate, margin, nears == 0)
-    _near_rims(surface, solid, crowd, n, k, every, margin)
+    near_rims(surface, solid, crowd, n, k, every, margin)
     _near_corners(surface, solid, crowd, n, k, (nears, every, corners), margin)
     for m in range(nears):
         near_edges(surface, solid, crowd, n, plate, (crowd.near[m], blocks), margin)
@@ -116,34 +117,21 @@ def _round_it(solid, crowd, plate, borders, margin):
     for e in range(2):
         box[2 * e], box[2 * e + 1] = crowd.frame[9 + e] - far, crowd.frame[9 + e] + far
     for k in range(int(plate[FIRST]), int(plate[LAST])):
-        found = found or _comes(borders[k], box, margin)
+        found = found or comes(borders[k], box, margin)
     return found
 
 
 @compiled
-def _near_rims(surface, solid, crowd, n, k, every, margin):
-    """Add the circles near a plate's surface, if no border is near only those that it is below."""
-    plate, plain = surface.plates[k], every == 0
-    for m in range(len(solid.rims)):
-        low, _ = circles_met.lowest(crowd.frame, solid.rims[m])
-        if not -DEEP - margin < low < margin:
-            continue
-        a, b, _ = placed(crowd.frame, solid.rims[m])
-        if plain and not inside(surface.borders, int(plate[FIRST]), int(plate[LAST]), a, b):
-            continue
-        count = crowd.low[RIMS]
-        crowd.rims[n, count, 0], crowd.rims[n, count, 1] = m, plain
-        crowd.low[RIMS] = count + 1
-
-
-@compiled
-def _level(frame, block):
-    """Least and greatest height over a plate of what is in a box."""
-    middle, half = frame[11], 0.0
-    for e in range(3):
-        middle += 0.5 * frame[6 + e] * (block[e] + block[3 + e])
-        half += 0.5 * abs(frame[6 + e]) * (block[3 + e] - block[e])
-    return middle - half, middle + half
+def _rounds(crowd, n, plate, borders, margin):
+    """Add the borders that a line along the plate from a point of the part, in ``crowd.box``, may cross."""
+    box, count = crowd.box, crowd.low[ROUND]
+    for k in range(int(plate[FIRST]), int(plate[LAST])):
+        q, s = borders[k, 1], borders[k, 3]
+        beside = max(q, s) >= box[2] - margin and min(q, s) <= box[3] + margin
+        if beside and max(borders[k, 0], borders[k, 2]) >= box[0] - margin:
+            crowd.rounds[n, count] = k
+            count += 1
+    crowd.low[ROUND] = count
 
 
 @compiled
@@ -161,7 +149,7 @@ def _seen_corners(solid, crowd, plate, margin, plain):
 def _seen_of(solid, crowd, plate, margin, which, blocks):
     count, top, bottom = 0, margin, -plate[DEPTH] - margin
     for j in range(len(blocks)):
-        low, high = _level(crowd.frame, blocks[j])
+        low, high = level(crowd.frame, blocks[j])
         if low > top or high < bottom:
             continue
         for m in range(BLOCK * j, min(BLOCK * (j + 1), len(which))):
@@ -182,7 +170,7 @@ def _seen_edges(solid, crowd, plate, margin):
         box[2 * e], box[2 * e + 1] = math.inf, -math.inf
     for j in range(len(solid.edge_blocks)):
         block = solid.edge_blocks[j]
-        low, high = _level(frame, block)
+        low, high = level(frame, block)
         if low > top + DEEP or high < bottom - DEEP:
             continue
         crowd.blocks[count] = j
@@ -205,22 +193,13 @@ def _near_borders(plate, borders, box, margin, found):
     count, ends = 0, 0
     for turn in range(2):
         for k in range(int(plate[FIRST]), int(plate[LAST])):
-            if (borders[k, END] > 0.5) == (turn == 1) and _comes(borders[k], box, margin):
+            if (borders[k, END] > 0.5) == (turn == 1) and comes(borders[k], box, margin):
                 found[count + ends] = k
                 if turn == 0:
                     count += 1
                 else:
                     ends += 1
     return count, count + ends
-
-
-@compiled
-def _comes(border, box, wide):
-    """Whether a border may come into a box."""
-    p, q, u, v = border[0], border[1], border[2], border[3]
-    if min(p, u) > box[1] + wide or max(p, u) < box[0] - wide:
-        return False
-    return min(q, v) <= box[3] + wide and max(q, v) >= box[2] - wide
 
 
 @compiled
@@ -237,7 +216,7 @@ def _near_corners(surface, solid, crowd, n, k, found, margin):
                 box[2 * e] = min(box[2 * e], crowd.shown[m, e])
                 box[2 * e + 1] = max(box[2 * e + 1], crowd.shown[m, e])
         for e in range(every):
-            if _comes(surface.borders[crowd.near[e]], box, margin + DEEP):
+            if comes(surface.borders[crowd.near[e]], box, margin + DEEP):
                 plain = False
                 if e < nears:
                     crowd.close[few] = crowd.near[e]
@@ -248,6 +227,14 @@ def _near_corners(surface, solid, crowd, n, k, found, margin):
                 continue
         for m in range(begin, end):
             _near_corner(surface, solid, crowd, n, k, (m, few, plain), margin)
+
+
+@compiled
+def _grow(box, p, new):
+    """Let a box hold a point (3,) as well, or that alone."""
+    for e in range(3):
+        box[e] = p[e] if new else min(box[e], p[e])
+        box[3 + e] = p[e] if new else max(box[3 + e], p[e])
 
 
 @compiled
@@ -275,4 +262,5 @@ def _near_corner(surface, solid, crowd, n, k, which, margin):
             sides,
         )
         crowd.offs[n, count] = c if sides == begun else max(c, nearest)
+        _grow(crowd.groups[n, count // BLOCK], solid.corners[crowd.seen[m]], count % BLOCK == 0)
         crowd.low[VERTS], crowd.low[SIDED] = count + 1, sides

@@ -27,6 +27,15 @@ def _apart(box, other):
 
 
 @compiled
+def comes(border, box, wide):
+    """Say whether a border (12,) may come into a box (4,) [L] of places along a plate, or so near to it."""
+    p, q, u, v = border[0], border[1], border[2], border[3]
+    if min(p, u) > box[1] + wide or max(p, u) < box[0] - wide:
+        return False
+    return min(q, v) <= box[3] + wide and max(q, v) >= box[2] - wide
+
+
+@compiled
 def near_edges(surface, solid, crowd, n, plate, found, margin):
     """Add the edges near one border, in front or at the back, and near what runs back from its start.
 
@@ -51,8 +60,24 @@ def near_edges(surface, solid, crowd, n, plate, found, margin):
                 q = placed(crowd.frame, solid.corners[solid.edges[m, 1]])
                 if what == 2:
                     _add_post(crowd, n, m, k, _past(p, q, border, wide) and _between(p, q, depth, margin))
-                else:
+                elif not _far(p, q, border, level, wide):
                     _add_edge(crowd, n, (m, k, what), _between_lines(p, q, border, level), wide)
+
+
+@compiled
+def _far(p, q, border, level, wide):
+    """Whether the boxes of an edge and a border, at a level of its plate, are further apart than that."""
+    if min(p[2], q[2]) > level + wide or max(p[2], q[2]) < level - wide:
+        return True
+    if (
+        min(p[0], q[0]) > max(border[0], border[2]) + wide
+        or max(p[0], q[0]) < min(border[0], border[2]) - wide
+    ):
+        return True
+    return (
+        min(p[1], q[1]) > max(border[1], border[3]) + wide
+        or max(p[1], q[1]) < min(border[1], border[3]) - wide
+    )
 
 
 @compiled

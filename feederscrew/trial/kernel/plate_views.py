@@ -34,6 +34,16 @@ def placed(frame, p):
 
 
 @compiled
+def level(frame, block):
+    """Return the least and the greatest height [L] over a plate of what is in a box (6,) [L]."""
+    middle, half = frame[11], 0.0
+    for e in range(3):
+        middle += 0.5 * frame[6 + e] * (block[e] + block[3 + e])
+        half += 0.5 * abs(frame[6 + e]) * (block[3 + e] - block[e])
+    return middle - half, middle + half
+
+
+@compiled
 def in_body(frame, x, y, z):
     """Return a vector that a plate sees, in the body's axes and its own unit [any]."""
     return (
@@ -68,10 +78,15 @@ def inside(borders, first, last, a, b):
     """Say whether a point (a, b) [L] of a plate is solid: within its borders (B, 12), holes left out."""
     odd = False
     for k in range(first, last):
-        p, q, r, s = borders[k, 0], borders[k, 1], borders[k, 2], borders[k, 3]
-        if (q > b) != (s > b) and a < p + (b - q) / (s - q) * (r - p):
-            odd = not odd
+        odd = odd != crossed(borders[k], a, b)
     return odd
+
+
+@compiled
+def crossed(border, a, b):
+    """Say whether a line from a point (a, b) [L] of a plate along its first axis crosses a border (12,)."""
+    p, q, r, s = border[0], border[1], border[2], border[3]
+    return (q > b) != (s > b) and a < p + (b - q) / (s - q) * (r - p)
 
 
 @compiled
