@@ -28,6 +28,11 @@ ALONG = (
 )
 UNKNOWN = "not known: it hops"
 IN_FLIGHT = "in flight"  # no contact of all
+TURNED_OFF = (
+    "friction turns the part about the wall contact that is left; the velocity is that of a part that keeps "
+    "its heading, and too high - feeder trial follows the turning"
+)
+TURNS = 1.0  # [rad/s2] in 10 ms that is less than a hundredth of a degree
 TURNED = 1.0  # [deg] of heading: less is not worth a word
 LABELS = {
     "normal_force_N": "normal force N",
@@ -224,6 +229,8 @@ def remarks(found):
     elif not cycle.closed.all():
         share = 100.0 * np.mean(~cycle.closed.all(axis=-1))
         lines.append(f"a wall contact is open for {share:.0f} % of the cycle: {_which(cycle.closed)}")
+        if found.posture.kind != "rolling" and np.abs(cycle.turning).max() > TURNS:
+            lines.append(TURNED_OFF)
     if found.posture.kind == "rolling":
         lines.append("rolling aspect: held by the wall, its rolling about the axis is not followed")
     turn = np.degrees(found.seat.twist(found.bowl.track.bank))

@@ -19,6 +19,11 @@ SETS = (
     "--set", "track.bank=10 deg", "--set", "friction.static=0.4",
 )  # fmt: skip
 
+BANKED = (
+    "drive.amplitude=0.15 mm", "drive.frequency=50 Hz", "drive.vibration_angle=25 deg", "friction.static=0.4",
+    "track.radius=2 m", "track.width=60 mm", "track.climb=2 deg", "track.bank=12 deg",
+)  # fmt: skip
+
 
 def document(run, *arguments):
     result = run("track", *arguments, "--format", "json")
@@ -227,3 +232,12 @@ def test_while_it_hops_nothing_is_said_of_the_wall(run, amplitude):
     assert "stays against the wall" in told.stdout and "not known: it hops" in told.stdout
     assert "whether it stays against the wall is not known" in told.stderr
     assert "% of the cycle" not in told.stderr
+
+
+@pytest.mark.parametrize(("wall", "turns"), [("0.5", False), ("0.7", True)])
+def test_what_friction_turns_about_one_wall_contact_is_said_to_be_slower(run, tmp_path, wall, turns):
+    block = tmp_path / "block.stl"
+    shapes.box(20, 12, 5).export(block)
+    sets = [f"--set={one}" for one in BANKED] + [f"--set=friction.wall={wall}"]
+    told = run("track", block, "--aspect", "A", "--heading", "90deg", *sets).output
+    assert ("friction turns the part about the wall contact that is left" in " ".join(told.split())) == turns
