@@ -12,7 +12,7 @@ ARC = 6  # facets of a fillet
 THROUGH = 1.05  # its radius over its distance from the wall: it crosses the wall, and does not touch it
 YOKE = 6e-3  # [m] thickness of what carries the inner rail from below
 QUARTER = 0.5 * np.pi  # [rad] of a curved face: a longer one takes long to cut
-SUNK = 3e-5  # [m] by which a ledge lies below the plate that it begins in: no face on another
+SUNK = 3e-5  # [m] by which a ledge, and the outlet's side, reach into the plate: no face lies on another
 TWISTED = 4  # facets where the bank changes in place of one
 SPAN = 0.1  # [rad] of a curve between two places that it is led through
 
@@ -193,7 +193,7 @@ def sides(plan, kit):
     low, top = height - plan.material.plate - fillet(plan), height + plan.headroom
     lift = plan.width * np.sin(way.bank_at(way.end))
     outer = np.array([[way.end + 2e-3, -wall], [end, -wall], [end, 0.0], [way.end + 2e-3, 0.0]])
-    y = plan.width
+    y = plan.width - SUNK
     inner = np.array([[way.end, y], [end, y], [end, y + wall], [way.end, y + wall]])
     inside = kit.drum(
         float(way.wall_radius(way.at(-2.0 * np.pi)) if plan.stairs else way.radius) + 0.4 * wall,

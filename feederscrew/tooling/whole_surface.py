@@ -4,6 +4,8 @@ Each edge has two facets by the places of its ends alone, as readers of STL see 
 surface touch, in a corner or along an edge, their corners are moved apart, each into its own sheet.
 """
 
+import contextlib
+
 import numpy as np
 from scipy.spatial import cKDTree
 
@@ -13,8 +15,9 @@ from feederscrew.geometry.graphs import components
 from feederscrew.units import factor
 
 MM = factor("mm", "length")
-FINEST = 2e-6  # [m] corners nearer than this become one
+SIMPLER = 0.0, 1e-5, 2e-4, 2e-3  # [mm] corners nearer than this become one: the first that closes
 CRUMB = 1.0  # [mm3] a film of air that closes in itself, or a piece, smaller than this is left out
+ROUNDED = 1e-6  # of a volume: by that and a crumb at most may rounding change it
 NEAR = 2e-4  # [mm] corners nearer than this are at one place; readers of STL unite what lies within 1e-5
 AWAY = 1e-3  # [mm] by which corners that meet are moved apart
 ROUNDS = 60
@@ -39,9 +42,24 @@ def mesh(body):
     FeederError
         If sheets of the surface that touch cannot be told apart.
     """
-    found = body.simplify(FINEST / MM).to_mesh64()
+    for simpler in SIMPLER[:-1]:
+        with contextlib.suppress(FeederError):
+            return _surface(body, simpler)
+    return _surface(body, SIMPLER[-1])
+
+
+def _surface(body, simpler):
+    """The surface of a body, corners nearer than a length [mm] made one; the fault where that changes it.
+
+    The library's own simplifying takes whole wedges off some bodies, whatever the length.
+    """
+    one = body.simplify(simpler) if simpler else body
+    found = one.to_mesh64()
     points = _single(np.asarray(found.vert_properties)[:, :3])
     points, faces = closed(points, _without_crumbs(points, np.asarray(found.tri_verts).astype(int)))
+    a, b, c = points[faces].transpose(1, 0, 2)
+    if abs(float((a * np.cross(b, c)).sum()) / 6.0 - body.volume()) > CRUMB + ROUNDED * body.volume():
+        raise FeederError("the body", "its surface closes another volume", "take other sizes")
     used, faces = np.unique(faces, return_inverse=True)
     points, places = np.unique(points[used], axis=0, return_inverse=True)
     faces = _in_order(places.ravel()[faces.reshape(-1, 3)])

@@ -10,7 +10,7 @@ from test_stepped import STEPPED
 
 from feederscrew.output.solidbowl import drawing_sheet, unrolled_strip
 from feederscrew.solidbowl import facets, leaning, track
-from feederscrew.solidbowl.closed_body import body
+from feederscrew.solidbowl.closed_body import body, pieces
 from feederscrew.solidbowl.exact import exact_body, exact_faces
 from feederscrew.solidbowl.measuring import heights, measures, track_width
 from feederscrew.solidbowl.plan import Asked
@@ -46,6 +46,32 @@ def test_a_bank_further_on_twists_the_track(shape, rng):
         assert track_width(plan, whole, s) == pytest.approx(TRACK.width, abs=NEAR)
     assert measures(solid).outlet_height == pytest.approx(plan.outlet_height, abs=NEAR)
     assert list(ways_down(solid)) == ["gap "]
+
+
+def test_the_inner_side_of_the_outlet_hangs_on_a_track_that_leans():
+    """At 43 deg both ended in one plane, and rounding left a gap between them."""
+    own, asked = SHAPES["stepped"]
+    solid = body(planned((GAP, bank(43.0)), track=own, asked=asked))
+    assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
+    plan = solid.plan
+    whole, lift = facets.unplaced(solid), plan.width * np.sin(np.radians(43.0))
+    place = plan.way.places(plan.way.end + 0.5 * plan.outlet, plan.width + 0.5e-3)  # on the side's top
+    met = facets.below(whole, [*place[:2], 1.0])
+    assert met == pytest.approx(plan.outlet_height + lift + plan.headroom, abs=NEAR)
+
+
+@pytest.mark.parametrize("degrees", [30.0, 12.0])
+def test_the_outlet_is_whole_up_to_its_side(degrees, rng):
+    """A surface that was made simpler had lost a wedge of it, 490 mm3, where side and track only touched."""
+    own, asked = SHAPES["cylinder"]
+    plan = planned((GAP, bank(degrees)), track=own, asked=asked)
+    made_of, (whole, _) = body(plan), pieces(plan)
+    assert made_of.volume * 1e9 == pytest.approx(whole.volume(), rel=1e-6)
+    assert facets.unplaced(made_of).volume() == pytest.approx(whole.volume(), rel=1e-6)
+    for s in rng.uniform(plan.way.end + 1e-3, plan.way.end + plan.outlet - 1e-3, 40):
+        y = rng.uniform(16e-3, plan.width - 1e-4)
+        met = heights(plan, facets.unplaced(made_of), s, y)
+        assert met == pytest.approx(float(plan.way.height(s, y)), abs=NEAR)
 
 
 def test_banks_listed_first_are_those_of_the_whole_track():
