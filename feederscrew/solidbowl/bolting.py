@@ -54,7 +54,10 @@ def check(track, asked, extents, radius):
     if hub(track, asked, radius) > room + 1e-9:
         what = f"{1e3 * across:.4g} mm lies under the track of a bowl this small"
         most = 2e3 * (room - 2.0 * asked.bolt)
-        raise FeederError("machine.bolt_circle", what, f"give at most {most:.4g} mm, or smaller bolts")
+        mend = f"give at most {most:.4g} mm, or smaller bolts"
+        if most <= 0.0:
+            mend = "give a smaller machine.bolt_hole, or a larger bowl"
+        raise FeederError("machine.bolt_circle", what, mend)
     if _apart(asked.bolts, 0.5 * across) < (1.0 + WEB) * asked.bolt - 1e-9:
         what = f"{asked.bolts} and one in the middle, of {1e3 * asked.bolt:.4g} mm,"
         what += f" leave no metal between them on a circle of {1e3 * across:.4g} mm"

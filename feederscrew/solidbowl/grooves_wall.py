@@ -9,6 +9,7 @@ from feederscrew.solidbowl.track import QUARTER, frames, steps
 
 LEAST = np.radians(3.0)  # by which it leans at once: no face lies on the bowl's wall
 FOOT = 5e-4  # [m] by which its face goes on into the track
+HIDDEN = 0.8 * FOOT  # by which the wall is cut lower: three faces that meet in one line cut badly
 BEYOND = 5e-3  # [m] beyond what is cut away
 FAR = 1.0  # [m] beyond everything
 ABOVE = 5e-3  # [m] of the face beyond the tallest part
@@ -99,12 +100,12 @@ def _face(plan, lean):
 
 
 def _cut(plan, lean):
-    """Sections (M, 6, 2) of what is above it, out of the bowl's wall."""
+    """Sections (M, 5, 2) of what is above it, out of the wall: its border is hidden in face and track."""
     up, _, wide = _sloping(plan, lean)
-    top, out, level = wide * up, plan.material.wall + BEYOND, np.zeros(len(lean))
+    foot, top = -BEYOND * up - [0.0, HIDDEN], wide * up - [0.0, HIDDEN]
+    out = plan.material.wall + BEYOND
     far = np.full(len(lean), FAR)
     corners = [
-        (level - FOOT, level), (level, level), top.T, (top[:, 0] + out, top[:, 1]),
-        (top[:, 0] + out, far), (level - FOOT, far),
+        foot.T, top.T, (top[:, 0] + out, top[:, 1]), (top[:, 0] + out, far), (foot[:, 0], far),
     ]  # fmt: skip
     return np.stack([np.column_stack(one) for one in corners], axis=1)

@@ -2,12 +2,20 @@
 
 import numpy as np
 
+from feederscrew.geometry.vectors import product
+from feederscrew.solidbowl import grooves_wall
+from feederscrew.solidbowl.plan import TURN
+from feederscrew.solidbowl.stairs import CONICAL
+
 SPACED = 1.3  # of its length: from part to part
 FIRST = 0.12  # of the track: where the first of them is
+SETTLED = 60  # steps in which a part comes to touch wall and track, at most
+TOUCHING = 5e-6  # [m]
+BELOW = 1e-4  # [m] under the track: a part that reaches so deep hangs, and does not touch the wall
 
 
 def laid(plan, one, vertices, s):
-    """Return a part on the track of a bowl.
+    """Return a part on the track of a bowl, its side at the wall; one that hangs as it hangs.
 
     Parameters
     ----------
@@ -24,11 +32,59 @@ def laid(plan, one, vertices, s):
     (V, 3) float [m]
         In the bowl's axes as its files have them.
     """
-    ahead, inward, up = frame(plan, s, one.distance)
-    points = np.einsum("vi,ki->vk", vertices, one.axes)
-    foot = plan.way.places(s, one.distance)
-    turned = points[:, :1] * ahead + points[:, 1:2] * inward + (points[:, 2:] + one.posture.height) * up
-    return as_filed(plan, turned + foot)
+    points, y = product(vertices, one.axes.T), one.distance
+    points[:, 2] += one.posture.height
+    hangs = points[:, 2].min() < -BELOW
+    for _ in range(0 if hangs else SETTLED):
+        beyond, over = clearances(plan, _set(plan, points, s, y), s)
+        if max(abs(beyond), abs(over)) < TOUCHING:
+            break
+        y += beyond / float(np.cos(plan.way.bank_at(s)))
+        points[:, 2] -= over
+    return as_filed(plan, _set(plan, points, s, y))
+
+
+def _set(plan, points, s, y):
+    """Points (V, 3) in the track's axes, set down at a place."""
+    return plan.way.places(s, y) + product(points, np.stack(frame(plan, s, y)))
+
+
+def clearances(plan, points, near):
+    """Return by how much [m] the farthest of points lies beyond the wall, and the lowest over the track.
+
+    The wall stands upright, leans back along a groove, or leans as a cone: it is met at the height of each
+    point.
+
+    Parameters
+    ----------
+    plan : BowlPlan
+    points : (V, 3) float [m]
+        Outlet at the angle 0 and right-handed.
+    near : float [m]
+        Length along the wall about which they lie.
+    """
+    way, (x, y, z) = plan.way, points.T
+    theta = np.arctan2(y, x)
+    theta = theta + TURN * np.round((float(way.angle(near)) - theta) / TURN)
+    straight = theta > 0.0
+    s = np.where(straight, way.end + y, way.at(theta))
+    out = np.where(straight, x, np.hypot(x, y)) - way.wall_radius(s)
+    beyond = out - np.maximum(z - way.height(s), 0.0) * leaning(plan, s)
+    inward = -out / np.cos(way.bank_at(s))
+    over = np.where(inward < plan.width, z - way.height(s, np.maximum(inward, 0.0)), np.inf)
+    return float(beyond.max()), float(over.min()) if np.isfinite(over).any() else 0.0
+
+
+def leaning(plan, s):
+    """Return how far the wall leans outwards over its height [1], at lengths along it."""
+    if plan.stairs is not None and plan.stairs.shape == CONICAL:
+        return np.where(plan.way.angle(s) < -TURN, 1.0 / np.tan(plan.stairs.slope), 0.0)  # upright above
+    found = np.zeros(np.shape(s))
+    for groove in grooves_wall.spans(plan):
+        start, end, _, opens = groove
+        there = (s >= start) & (s <= end + opens)
+        found = np.where(there, np.tan(grooves_wall.lean_at(groove, s)), found)
+    return found
 
 
 def frame(plan, s, y):

@@ -275,6 +275,35 @@ def test_a_part_on_the_track_has_its_foot_on_it_and_its_side_on_the_wall(rng):
         assert max(np.abs(gaps)) < 6e-5
 
 
+@pytest.mark.parametrize(("bank", "shape"), [(12.0, "stepped"), (0.0, "conical")])
+def test_a_part_touches_the_wall_where_the_track_is_banked_or_the_wall_leans(bank, shape, rng):
+    """It lay 1.9 mm in the wall: its distance is that of the track seen from above."""
+    own = replace(TRACK, bank=np.radians(bank), climb=np.radians(4.5))
+    made = planned(track=own, asked=Asked(shape=shape, left=True, outlet_angle=0.3), turns=1.9)
+    solid, half = body(made), np.array([7e-3, 4e-3, 5e-3])
+    whole = facets.unplaced(solid)
+    corners = half * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    box = SimpleNamespace(axes=np.eye(3), distance=4.1e-3, posture=SimpleNamespace(height=half[2]))
+    for s in rng.uniform(0.06, made.way.end - 0.02, 12):
+        off = []
+        for one in facets.as_planned(made, riding.laid(made, box, corners, s)):
+            out = np.array([*one[:2], 0.0]) / np.hypot(*one[:2])
+            start = one - 5e-4 * out + [0.0, 0.0, 3e-4]  # not along the track
+            off.append(facets.first_met(whole, start, start + 0.1 * out)[0] - 5e-4)
+        lifted = 3e-4 * float(riding.leaning(made, s))
+        assert min(off) == pytest.approx(0.5 * lifted, abs=6e-5 + 0.6 * lifted)
+
+
+def test_a_part_that_hangs_stays_where_its_rails_hold_it():
+    made, half = planned((RAILS,)), np.array([3e-3, 2e-3, 9e-3])
+    box = SimpleNamespace(axes=np.eye(3), distance=5e-3, posture=SimpleNamespace(height=-4e-3))
+    s = made.way.end - 0.03
+    (middle,) = riding.laid(made, box, np.zeros((1, 3)), s)
+    foot = made.way.places(s, 5e-3)
+    assert np.hypot(*(middle - foot)[:2]) < 4e-4 and half[0] > 0.0
+    assert middle[2] - foot[2] == pytest.approx(-4e-3, abs=2e-5)
+
+
 def test_the_same_bytes_twice():
     one, other = (body(planned(CHAINS["narrowed and rails"])) for _ in range(2))
     assert printing.stl(one) == printing.stl(other)
@@ -360,6 +389,11 @@ def model_of(data):
             TRACK, Asked(bolt_circle=0.25), (),
             "machine.bolt_circle: 250 mm lies under the track of a bowl this small - give at most 220 mm, or "
             "smaller bolts",
+        ),
+        (
+            replace(TRACK, width=0.1), Asked(bolt=25e-3), (),
+            "machine.bolt_circle: 120 mm lies under the track of a bowl this small - give a smaller "
+            "machine.bolt_hole, or a larger bowl",
         ),
         (
             TRACK, Asked(bolts=12, bolt_circle=0.04), (),

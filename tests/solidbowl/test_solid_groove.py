@@ -1,6 +1,7 @@
 """A groove in the bowl as a solid: two faces that meet at the foot of its wall."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,8 +11,9 @@ from test_solid import GAP, NEAR, TRACK, One, closed, made, planned
 from test_stepped import STEPPED
 
 from feederscrew.output.solidbowl import drawing_sheet
-from feederscrew.solidbowl import facets, grooves_wall, leaning
-from feederscrew.solidbowl.closed_body import body
+from feederscrew.solidbowl import facets, grooves_wall, leaning, riding
+from feederscrew.solidbowl.closed_body import _wall, body
+from feederscrew.solidbowl.exact import exact_body, exact_faces
 from feederscrew.solidbowl.measuring import heights, measures
 from feederscrew.solidbowl.plan import Asked
 from feederscrew.solidbowl.ways_down import ways_down
@@ -72,6 +74,37 @@ def test_it_begins_where_it_is_listed_and_ends_at_a_bank():
     assert grooves_wall.lean_at((start, end, 0.8, opens), end + opens) == grooves_wall.LEAST
     early = grooved("from the entry")[0].plan
     assert early.way.angle(grooves_wall.spans(early)[0][0]) == pytest.approx(-0.85 * 2.0 * np.pi)
+
+
+@pytest.mark.parametrize("name", ["at the end", "from the entry"])
+def test_the_wall_of_a_cylinder_is_cut_exactly(name):
+    """A corner of the cut on the wall itself was not cut at all."""
+    plan, volumes = grooved(name)[0].plan, []
+    for kit, measured in ((facets, lambda one: one.volume()), (exact_body, exact_faces.volume)):
+        whole = _wall(plan, kit)
+        volumes.append((measured(whole), measured(kit.without(whole, grooves_wall.cuts(plan, kit)))))
+    (bare, cut), exact = volumes
+    assert cut < 0.99 * bare and exact == pytest.approx((bare, cut), rel=1e-3)
+
+
+@pytest.mark.parametrize(("name", "degrees"), [("at the end", 30.0), ("before a bank", 40.0)])
+def test_a_part_lies_in_the_groove_at_both_faces(name, degrees):
+    """A box of 14 x 8 x 6 mm on the track's face: its side touches the face of the wall, as rays meet it."""
+    solid, angle = grooved(name)
+    plan, whole, half = solid.plan, facets.unplaced(solid), np.array([7e-3, 4e-3, 3e-3])
+    corners = half * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    box = SimpleNamespace(axes=np.eye(3), distance=5e-3, posture=SimpleNamespace(height=half[2]))
+    start, end, _, opens = grooves_wall.spans(plan)[0]
+    assert angle == np.radians(degrees)
+    for s in np.linspace(start + opens + 8e-3, min(end, plan.way.end) - 8e-3, 5):
+        off = []
+        for one in facets.as_planned(plan, riding.laid(plan, box, corners, s)):
+            out = np.array([*one[:2], 0.0]) / np.hypot(*one[:2])
+            start = one - 3e-4 * out + [0.0, 0.0, 3e-4]  # not along the track
+            met = facets.first_met(whole, start, start + 0.1 * out)  # nothing above the face
+            off += [met[0] - 3e-4] if met else []
+        assert min(off) == pytest.approx(3e-4 / np.tan(angle), abs=1.2e-4)
+        assert heights(plan, whole, s, 8e-3) == pytest.approx(float(plan.way.height(s, 8e-3)), abs=NEAR)
 
 
 def test_the_sheet_has_the_groove():
