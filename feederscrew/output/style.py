@@ -6,6 +6,7 @@ import re
 from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
 from matplotlib.figure import Figure
 from matplotlib.font_manager import findfont, get_font
+from matplotlib.image import imsave
 from matplotlib.patheffects import withStroke
 
 from feederscrew.output import DPI
@@ -71,6 +72,13 @@ class _Canvas(FigureCanvasAgg):
         return self.renderer
 
 
+class _Pixels(_Canvas):
+    """What a picture is that was drawn already: its file has its pixels; axes would take 130 MB for them."""
+
+    def print_png(self, buffer, *, metadata=None, **_):
+        imsave(buffer, self.image, format="png", dpi=DPI, metadata=metadata)
+
+
 def figure(width=6.4, height=4.0):
     """Return a white figure that lays out its axes by itself, without any global state.
 
@@ -89,6 +97,14 @@ def page(width, height):
     """Return a white figure of so many pixels whose axes are placed by hand."""
     made = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor="white")
     _Canvas(made)
+    return made
+
+
+def pixels(image):
+    """Return a figure of the pixels of an image (rows, columns, 3) uint8 and of nothing else."""
+    rows, columns, _ = image.shape
+    made = page(columns, rows)
+    _Pixels(made).image = image
     return made
 
 

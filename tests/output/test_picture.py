@@ -50,7 +50,7 @@ def standing(part, row=0):
 
 def test_a_ray_meets_the_top_first():
     solid = solid_of(box())
-    distances, normals = solid.hits([[0.0, 0.0, 3.0], [0.9, 0.9, 3.0]], [0.0, 0.0, -1.0])
+    distances, normals, _ = solid.hits([[0.0, 0.0, 3.0], [0.9, 0.9, 3.0]], [0.0, 0.0, -1.0])
     assert distances[0] == pytest.approx(3.0 - 0.005 / solid.size, rel=1e-6)
     assert normals[0] == pytest.approx([0.0, 0.0, 1.0])
     assert np.isinf(distances[1])
@@ -145,7 +145,7 @@ def test_a_large_mesh_is_not_smoothed(monkeypatch):
     monkeypatch.setattr(smoothing, "MOST_FACETS", 10)
     assert smoothing.corner_normals(*cylinder(24)) is None
     solid = render.Rays(*cylinder(24), centre=np.zeros(3))
-    _, normals = solid.hits([[3.0, 0.02, 0.3]], [-1.0, 0.0, 0.0])
+    _, normals, _ = solid.hits([[3.0, 0.02, 0.3]], [-1.0, 0.0, 0.0])
     assert normals[0, 0] == pytest.approx(np.cos(np.pi / 24), rel=1e-6)
 
 

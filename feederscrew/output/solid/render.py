@@ -53,6 +53,8 @@ class Rays:
             Infinite where nothing is met.
         normals : (N, 3) float
             Outward unit normals of the surface there, smooth over curved sides; zero where nothing is met.
+        facets : (N,) int
+            Which are met; ``MISSED`` where none is.
         """
         origins = np.ascontiguousarray(origins, dtype=SINGLE)
         directions = np.broadcast_to(np.asarray(direction, dtype=SINGLE), origins.shape)
@@ -60,7 +62,7 @@ class Rays:
         met = found["primID"] != MISSED
         normals = np.zeros(origins.shape, dtype=SINGLE)
         normals[met] = self._normals(found["primID"][met], found["u"][met], found["v"][met])
-        return np.where(met, found["tfar"], SINGLE(np.inf)), normals
+        return np.where(met, found["tfar"], SINGLE(np.inf)), normals, found["primID"]
 
     def _normals(self, triangle, u, v):
         if self.corner_normals is None:
@@ -92,12 +94,17 @@ class Camera:
 
     def cast(self, solid, across, up):
         """Return depths behind the ray starts (rows, columns) and normals (rows, columns, 3) over a grid."""
+        return self.meet(solid, across, up)[:2]
+
+    def meet(self, solid, across, up):
+        """Return depths, normals and facets (rows, columns), ``MISSED`` without one, over a grid."""
         origins = self.origins(across, up)
-        distances, normals = solid.hits(origins.reshape(-1, 3), -self.back)
-        return distances.reshape(origins.shape[:2]), normals.reshape(origins.shape)
+        distances, normals, facets = solid.hits(origins.reshape(-1, 3), -self.back)
+        grid = origins.shape[:2]
+        return distances.reshape(grid), normals.reshape(origins.shape), facets.reshape(grid)
 
     def sees(self, solid, points, slack=0.01, away=AWAY):
         """Return which of (N, 3) points, less than ``away`` behind the solid, it does not hide; (N,) bool."""
         starts = points + away * self.back
-        distances, _ = solid.hits(starts, -self.back)
+        distances = solid.hits(starts, -self.back)[0]
         return distances > away - slack

@@ -170,7 +170,7 @@ def _shadow(solid, stance):
     lowest = 0.5 * (lowest + highest) - 0.5 * cell * (FLOOR_GRID - 1)
     x, y = np.meshgrid(*(low + cell * np.arange(FLOOR_GRID) for low in lowest), indexing="ij")
     spots = np.stack([x, y, np.full_like(x, -stance.height - 0.01)], axis=-1).reshape(-1, 3)
-    distances, _ = solid.hits(spots @ axes, axes[2])
+    distances = solid.hits(spots @ axes, axes[2])[0]
     cover = np.exp(-np.clip(distances - 0.01, 0.0, None) / 0.35).reshape(x.shape)
     soft = 0.55 * gaussian_filter(cover, 2.0) + 0.45 * gaussian_filter(cover, 7.0)
     return SHADE * soft, lowest, cell

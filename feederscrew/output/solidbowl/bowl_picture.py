@@ -4,7 +4,7 @@ import numpy as np
 
 from feederscrew.output import style
 from feederscrew.output.solid import shading
-from feederscrew.output.solid.render import AWAY, SINGLE, Rays
+from feederscrew.output.solid.render import SINGLE, Rays
 from feederscrew.output.solidbowl import views
 from feederscrew.solidbowl import riding
 
@@ -12,7 +12,7 @@ COLUMNS, ROWS = 1500, 1050  # [px]
 SIDE, HIGH = -118.0, 40.0  # [deg] from where it is seen, from the outlet's begin
 PART = np.array([0.93, 0.55, 0.20])
 MARGIN = 1.03
-BAND = 30  # rows of pixels at a time
+BAND = 16  # rows of pixels at a time
 
 
 def figure(study):
@@ -27,11 +27,7 @@ def figure(study):
     -------
     Figure
     """
-    page = style.page(COLUMNS, ROWS)
-    axes = page.add_axes((0, 0, 1, 1))
-    axes.set_axis_off()
-    axes.imshow(_image(study.solid, study.order.part, COLUMNS, ROWS), interpolation="nearest", aspect="auto")
-    return page
+    return style.pixels(_image(study.solid, study.order.part, COLUMNS, ROWS))
 
 
 def parts(solid, part):
@@ -50,13 +46,12 @@ def _image(solid, part, columns, rows):
     centre = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))
     corners = np.concatenate([solid.vertices, points])
     whole = Rays(corners, np.concatenate([solid.faces, faces + len(solid.vertices)]), centre)
-    alone = None if not len(faces) else Rays(points, faces, centre)
     across, up = _frame(looked.project(whole.points), columns, rows)
     image = np.full((rows, columns, 3), 255, dtype=np.uint8)  # numbers of eight bytes: 100 MB more
     each = shading.SAMPLES
     for first in range(0, rows, BAND):
         place = slice(max(0, each * first - 2), each * (first + BAND) + 2)
-        drawn = _drawn(whole, alone, looked, across, up[place])
+        drawn = _drawn(whole, len(solid.faces), looked, across, up[place])
         kept = drawn[each * first - place.start :][: each * min(BAND, rows - first)]
         image[first : first + BAND] = np.rint(255.0 * shading.averaged(kept))
     return image
@@ -72,16 +67,11 @@ def _frame(seen, columns, rows):
     return middle[0] + across, (middle[1] + up)[::-1]
 
 
-def _drawn(whole, alone, looked, across, up):
-    depths, normals = looked.cast(whole, across, up)
-    met = np.isfinite(depths)
+def _drawn(whole, bowl, looked, across, up):
+    """The samples of some rows; the first ``bowl`` facets are the bowl's, the others those of parts."""
+    depths, normals, met = looked.meet(whole, across, up)
     image = np.ones((*depths.shape, 3), dtype=SINGLE)
-    image[met] = shading.lit(normals[met], looked, shading.STEEL)
-    if alone is not None:
-        size = alone.size / whole.size
-        ours, _ = looked.cast(alone, across / size, up / size)
-        ours = size * (ours - AWAY) + AWAY
-        front = met & (ours <= depths + 1e-3)
-        image[front] = shading.lit(normals[front], looked, PART)
+    for drawn, colour in (((met >= 0) & (met < bowl), shading.STEEL), (met >= bowl, PART)):
+        image[drawn] = shading.lit(normals[drawn], looked, colour)
     image[shading.edges(depths, normals, looked, up[0] - up[1])] = shading.EDGE
     return image
