@@ -58,12 +58,19 @@ def ridden(made, bowl, every):
     if plan.stretch is None:
         return replace(bowl, track=track, devices=()), []
     flat, devices, stretch = _unrolled(plan, body), [], plan.stretch
-    placed = [one for one in bowl.devices if one.placed and not one.leans]
+    placed = [one for one in bowl.devices if one.placed]
     cuts = {cut.label: list(_of(stretch.cuts, cut.label)) for cut in stretch.cuts}
     blades = {one.label: list(_of(stretch.blades, one.label)) for one in stretch.blades}
     for device in placed:
         own = device.standing(bowl.track, every)
-        if own.holes:
+        if own.slopes:
+            own = replace(own, slopes=tuple(_slope(plan, body, device, one) for one in own.slopes))
+        if own.drop > 0.0:
+            drop, aside = _lower(plan, flat, body, own)
+            (cut,) = own.holes
+            beside = np.where(cut.outline == own.aside, aside, cut.outline)
+            own = replace(own, drop=drop, aside=aside, holes=(replace(cut, outline=beside),))
+        elif own.holes:
             cut = cuts[device.label].pop(0)
             start = plan.first + cut.span[0] - min(hole.outline[:, 0].min() for hole in own.holes)
             own = replace(own, holes=_holes(plan, flat, start, own, track.width))
@@ -76,6 +83,65 @@ def ridden(made, bowl, every):
 
 def _of(some, label):
     return (one for one in some if one.label == label)
+
+
+def _slope(plan, body, device, slope):
+    """A slope as the mesh has it, where the track has come to lean so."""
+    s = _leaning(plan, device)
+    bank, climb = _tilt(plan, body, s)
+    wall = _wall_lean(plan, body, s[len(s) // 2]) if slope.wall else slope.wall
+    measured = {"bank": bank, "climb": climb, "wall": wall}
+    return replace(slope, **{k: v for k, v in measured.items() if getattr(slope, k) is not None})
+
+
+def _leaning(plan, device):
+    """Lengths (M,) [m] along the wall where the track leans as a device says, or its groove is open."""
+    way, stretch = plan.way, plan.stretch
+    if device.kind == "separation":
+        starts = [at for at, climb in way.bends if climb == device.angle]
+    else:
+        starts = [end for _, end, bank in way.leans if bank == device.angle] or [0.6 * plan.first]
+    opened = [plan.first + a + opens for a, _, _, opens in stretch.grooves if device.kind == "groove"]
+    start = max(min(starts), *opened) if opened else min(starts)
+    others = (
+        [a for a, _, _ in way.leans if a > start + 1e-4],
+        [at for at, _ in way.bends if at > start + 1e-4],
+    )
+    end = min([way.end, *others[0], *others[1]])
+    return np.linspace(start + 1e-4, end - 1e-4, PLACES)
+
+
+def _tilt(plan, body, s):
+    """Bank and climb [rad] of the mesh at lengths along the wall, where there is metal."""
+    y = np.array([0.25, 0.75]) * plan.width
+    seen = np.array([[measuring.heights(plan, body, one, at) or np.nan for at in y] for one in s])
+    there = np.abs(seen - plan.way.height(s[:, None], y)).max(axis=1) < 1e-3
+    s, seen = s[there], seen[there]
+    bank = np.arcsin(np.mean(seen[:, 1] - seen[:, 0]) / (y[1] - y[0]))
+    return float(bank), float(np.arctan(np.polyfit(s, seen[:, 0], 1)[0]))
+
+
+def _wall_lean(plan, body, s):
+    """By how much [rad] the wall of the mesh leans back beside the track."""
+    theta, start = float(plan.way.angle(s)), float(plan.way.wall_radius(s)) - 1e-3
+    towards = np.array([np.cos(theta), np.sin(theta), 0.0])
+    met = []
+    for over in (2e-3, 5e-3):
+        place = start * towards + [0.0, 0.0, float(plan.way.height(s)) + over]
+        met.append(facets.first_met(body, place, place + 0.1 * towards)[0])
+    return float(np.arctan((met[1] - met[0]) / 3e-3))
+
+
+def _lower(plan, flat, body, own):
+    """How much lower [m] the track goes on at a step or beside a ledge, and how wide the ledge is."""
+    at = next(at for at, drop in plan.way.drops if abs(drop - own.drop) < 1e-9)
+    y = 0.5 * (own.aside + plan.width)
+    before, behind = (measuring.heights(plan, body, s, y) for s in (at - 3e-4, at + 3e-4))
+    drop = float(before - behind + np.tan(plan.way.climb) * 6e-4)
+    if own.aside == 0.0:
+        return drop, 0.0
+    seen = _section(flat, 0.5 * drop).intersection(shapely.box(at + 2e-3, 1e-4, at + 1e-2, plan.width))
+    return drop, float(seen.bounds[3])
 
 
 def _track(plan, body, track):
