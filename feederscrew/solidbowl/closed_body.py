@@ -77,6 +77,19 @@ class BowlSolid:
     @property
     def remarks(self):
         """What must not be overlooked, a tuple of str."""
+        return (*self._shortened, *([] if self.segments is None else self.segments.remarks))
+
+    @property
+    def with_lugs(self):
+        """The bowl as its segments make it up, with the lugs of their screws; itself without."""
+        if self.segments is None or self.segments.joined is None:
+            return self
+        vertices, faces = self.segments.joined
+        volume = float(mass.solid(vertices[faces]).volume)
+        return replace(self, vertices=vertices, faces=faces, volume=volume)
+
+    @property
+    def _shortened(self):
         if self.plan.stairs is not None or self.plan.turns >= SHORTER * self.turns_of_sheet:
             return ()
         what = (

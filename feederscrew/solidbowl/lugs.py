@@ -73,15 +73,22 @@ def lugs(body, planes, kept, extents):
 
     Returns
     -------
-    list of Lug
+    found : list of Lug
+    bare : int
+        Of the ends of seams, those that have none.
+    ends : int
+        Of seams: two of an upright one; a level one goes round and counts once.
     """
-    found = []
+    found, with_one, every = [], set(), set()
     for axis, at in planes:
         for frame in _upright(at, axis, extents) if axis < 2 else _level(at, extents):
+            end = axis, at, *(frame[2] if axis < 2 else ())
+            every.add(end)
             made = _lug(body, frame, axis == 2, extents[2, 0])
             if made is not None and _clear(made, kept, found, planes) and _outside(made, body):
                 found.append(made)
-    return found
+                with_one.add(end)
+    return found, len(every - with_one), len(every)
 
 
 def _upright(at, axis, extents):

@@ -47,11 +47,21 @@ class Segments:
     turned: float  # [rad] of the seams against the bowl's axes
     lugs: np.ndarray  # (N, 3, 3) of each screw: its middle [m], its direction, off the wall
     joined: object  # vertices and faces of the bowl with lugs and their holes; None without
+    ends: tuple[int, int] = (0, 0)  # of seams, that have no screw where screws are asked for; and of how many
 
     @property
     def dowels(self):
         """How many."""
         return len(self.places)
+
+    @property
+    def remarks(self):
+        """What must not be overlooked of its screws, a tuple of str."""
+        bare, ends = self.ends
+        if not bare:
+            return ()
+        what = f"{bare} of {ends} ends of seams have no room for a lug: dowels alone hold them there"
+        return (str(FeederError("join", what, "glue those seams, or take a larger bed")),)
 
     @property
     def screws(self):
@@ -110,7 +120,7 @@ def segments(made, size, joint=DOWELS):
     ]
     dowel = SHARE * min(made.plan.material.wall, made.plan.material.floor)
     holes = [one for plane in planes for one in _dowels(made, body, turn, plane, dowel)]
-    joints = _lugs(made, body, turn, planes) if joint == SCREWS else []
+    joints, *ends = _lugs(made, body, turn, planes) if joint == SCREWS else ([], 0, 0)
     body, joined = _joined(body, joints, turn)
     body = facets.without(body, [facets.rod(*one, dowel, DEEP) for one in holes])
     cells = facets.cut_by(body, planes)
@@ -120,17 +130,18 @@ def segments(made, size, joint=DOWELS):
     pieces = tuple(_piece(f"segment_{k}", one) for k, one in enumerate(found, start=1))
     places = np.array([middle for _, middle in holes]).reshape(-1, 3)
     screwed = np.array([(one.middle, one.along, one.out) for one in joints]).reshape(-1, 3, 3)
-    return Segments(pieces, places, dowel, 2.0 * DEEP, turn, _turned(screwed, turn), joined)
+    screwed = _turned(screwed, turn)
+    return Segments(pieces, places, dowel, 2.0 * DEEP, turn, screwed, joined, tuple(ends))
 
 
 def _lugs(made, body, turn, planes):
-    """The lugs for the screws of all seams."""
+    """The lugs for the screws of all seams, and how many ends of seams have none, of how many."""
     plan = made.plan
     s = np.linspace(_tooled(plan)[0], plan.way.end + plan.outlet, 120)
     edges = [_filed(plan, plan.way.plan(s, y)) for y in (-plan.material.wall, plan.width)]
     kept = shapely.MultiLineString([_turned(one, -turn) for one in edges])
     found = lugs.lugs(body, planes, kept, _box(made.vertices, turn))
-    if planes and not found:
+    if planes and not found[0]:
         raise FeederError("join", "no lug for a screw has room at the seams", "take dowels")
     return found
 

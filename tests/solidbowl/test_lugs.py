@@ -12,7 +12,7 @@ from test_solid import CHAINS, TRACK, closed, planned
 from test_stepped import STEEP, STEPPED
 
 from feederscrew.errors import FeederError
-from feederscrew.output.solidbowl import drawing_sheet, tables
+from feederscrew.output.solidbowl import drawing_sheet, tables, views
 from feederscrew.part import mass
 from feederscrew.solidbowl import facets, lugs, segments
 from feederscrew.solidbowl.closed_body import body, screwed
@@ -106,9 +106,55 @@ def test_screws_are_on_the_parts_list_and_in_the_document():
     told = tables.document(solid)
     assert told["screws"] == len(found.screws) > 0 and told["screw"] == "M3 x 16"
     words = [one.get_text() for one in drawing_sheet.sheet(study(solid)).axes.texts]
-    assert "screws ISO 4762 M3 x 16 with nuts ISO 4032, in the lugs of the seams" in words
+    assert "screws ISO 4762 M3 x 16 with nuts ISO 4032, in lugs of the segments; floor: dowels" in words
+    whole = mass.solid(found.joined[0][found.joined[1]])
+    assert any(f"{1e9 * whole.volume:.6g} mm³" in one for one in words)
+    assert whole.volume > 1.005 * solid.volume
     plain = tables.document(replace(solid, segments=segments.segments(solid, BED)))
     assert plain["screws"] == 0 and plain["screw"] is None
+
+
+def test_the_views_of_the_sheet_have_the_lugs():
+    """From above they stand out of the wall, where nothing was drawn."""
+    solid, found, _ = cut("cylinder")
+    solid = replace(solid, segments=found)
+    plan, far = solid.plan, 1e3 * (solid.plan.way.radius + solid.plan.material.wall)
+    drawn = views.lines(solid.with_lugs.vertices, solid.with_lugs.faces, views.camera(-90.0, 90.0)) * 1e3
+    at = 1e3 * found.screws[:, :2] + 4.0 * found.lugs[:, 2, :2]
+    reach = np.sqrt((drawn**2).sum(axis=-1)).ravel()
+    for one in at:
+        near = np.sqrt(((drawn.reshape(-1, 2) - one) ** 2).sum(axis=1)) < 6.0
+        assert (near & (reach > far + 8.0)).any()
+    paper = drawing_sheet.sheet(study(solid))
+    lines = [one for one in paper.axes.collections if len(one.get_segments()) > len(drawn) // 2]
+    bare = views.lines(solid.vertices, solid.faces, views.camera(-90.0, 90.0))
+    assert any(len(one.get_segments()) == len(drawn) != len(bare) for one in lines) and plan.left
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_ends_of_seams_without_a_screw_are_said(name):
+    solid, found, _ = cut(name)
+    seen = {(axis, at, *np.round(out, 3)) if axis < 2 else (axis, at) for (axis, at), out in
+            ((key(one, along), out) for one, along, out in turned_back(found))}  # fmt: skip
+    bare, ends = found.ends
+    assert len(seen) == ends - bare
+    told = tables.document(replace(solid, segments=found))
+    assert (told["seam_ends"], told["seam_ends_without_screw"]) == (ends, bare)
+    said = replace(solid, segments=found).remarks
+    assert bool(bare) == any(one.startswith(f"join: {bare} of {ends} ends of seams") for one in said)
+
+
+def key(one, along):
+    """Axis and place of the seam that a screw crosses."""
+    axis = int(np.argmax(np.abs(along)))
+    return axis, round(float(one[axis]), 6)
+
+
+def turned_back(found):
+    """Screws in the axes of the seams."""
+    c, s = np.cos(found.turned), np.sin(found.turned)
+    back = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    return np.einsum("ij,nkj->nki", back, found.lugs)
 
 
 def test_a_bowl_that_fits_whole_has_no_lugs_and_a_wall_without_room_is_said(monkeypatch):

@@ -27,7 +27,7 @@ def figure(study):
     -------
     Figure
     """
-    return style.pixels(_image(study.solid, study.order.part, COLUMNS, ROWS))
+    return style.pixels(_image(study.solid.with_lugs, study.order.part, COLUMNS, ROWS))
 
 
 def parts(solid, part):

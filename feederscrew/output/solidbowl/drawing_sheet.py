@@ -1,5 +1,7 @@
 """The drawing sheet of a bowl: A3, to scale, vector; its dimensions are measured on the solid."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from feederscrew.output.solidbowl import lists, unrolled_strip, views
@@ -34,8 +36,9 @@ def pdf(study):
 
 def sheet(study):
     """Return the drawing sheet of a bowl as a Paper."""
-    paper, solid = Paper(), study.solid
-    found = measures(solid)
+    paper, solid = Paper(), study.solid.with_lugs
+    found = measures(study.solid)
+    found = replace(found, extent=tuple(float(x) for x in np.ptp(solid.vertices, axis=0)))
     scale = min(_scale(max(found.extent[:2]) / MM, ROOM), _scale(found.height / MM, HIGH))
     paper.box(*FRAME, width=THICK)
     _above(paper, solid, found, scale)

@@ -52,7 +52,7 @@ def parts(paper, study, at):
         text = f"dowels {size}, between {len(cut.pieces)} segments"
         rows.append([str(len(rows)), str(cut.dowels), text])
     if cut is not None and len(cut.screws):
-        text = f"screws ISO 4762 {lugs.NAME} with nuts ISO 4032, in the lugs of the seams"
+        text = f"screws ISO 4762 {lugs.NAME} with nuts ISO 4032, in lugs of the segments; floor: dowels"
         rows.append([str(len(rows)), str(len(cut.screws)), text])
     rows.append([str(len(rows)), str(plan.bolts + 1), f"bolts for holes of {plan.bolt / MM:.4g} mm"])
     rows.append([str(len(rows)), f"{under.leaves:.0f}", f"leaves {leaf} mm"])
@@ -112,7 +112,7 @@ def _fields(study, solid, found, scale):
         ),
         ("turns", f"{plan.turns:.3g}"),
         ("material", f"{plan.material.name}, {plan.material.density:.4g} kg/m³"),
-        ("mass, volume", f"{solid.mass:.4g} kg, {solid.volume / MM**3:.6g} mm³"),
+        ("mass, volume", f"{solid.mass:.4g} kg, {solid.with_lugs.volume / MM**3:.6g} mm³"),
         ("inertia about axis", f"{solid.inertia:.4g} kg m²"),
         ("centre of mass", f"{centre} mm"),
         ("size", f"{extent} mm"),
