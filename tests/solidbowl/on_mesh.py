@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 from shapely import affinity
 
-from feederscrew.solidbowl import facets, measuring
+from feederscrew.solidbowl import facets, leaning, measuring
 from feederscrew.tooling.devices.pieces import Hole
 
 MM = facets.MM
@@ -55,6 +55,8 @@ def ridden(made, bowl, every):
     """
     plan, body = made.plan, facets.unplaced(made)
     track = _track(plan, body, bowl.track)
+    if leaning.at_entry(bowl.devices):  # its bank stands in their slopes
+        track = replace(track, bank=bowl.track.bank)
     if plan.stretch is None:
         return replace(bowl, track=track, devices=()), []
     flat, devices, stretch = _unrolled(plan, body), [], plan.stretch
@@ -126,10 +128,10 @@ def _wall_lean(plan, body, s):
     theta, start = float(plan.way.angle(s)), float(plan.way.wall_radius(s)) - 1e-3
     towards = np.array([np.cos(theta), np.sin(theta), 0.0])
     met = []
-    for over in (2e-3, 5e-3):
+    for over in (8e-4, 2.2e-3):
         place = start * towards + [0.0, 0.0, float(plan.way.height(s)) + over]
         met.append(facets.first_met(body, place, place + 0.1 * towards)[0])
-    return float(np.arctan((met[1] - met[0]) / 3e-3))
+    return float(np.arctan((met[1] - met[0]) / 1.4e-3))
 
 
 def _lower(plan, flat, body, own):
