@@ -14,6 +14,7 @@ BEYOND = 5e-3  # [m] beyond what is cut away
 FAR = 1.0  # [m] beyond everything
 ABOVE = 5e-3  # [m] of the face beyond the tallest part
 OPENING = 24  # sections of a stretch over which the wall opens
+STRIPS = 8  # of the face upwards: its facets are about as wide as high where it turns fast
 LONGEST = 0.85 * TURN  # [rad] before the outlet: above it the bowl's wall is open
 
 
@@ -81,7 +82,11 @@ def _swept(plan, kit, groove, section):
         if min(start + opens, high) > low or low >= end:
             s = np.linspace(low, high, max(len(s), int(np.ceil(OPENING * (high - low) / opens)) + 1))
         made.append(
-            (section(plan, lean_at(groove, s)) + way.height(s)[:, None, None] * [0.0, 1.0], frames(plan, s))
+            (
+                section(plan, lean_at(groove, s), 1 if kit.SMOOTH else STRIPS)
+                + way.height(s)[:, None, None] * [0.0, 1.0],
+                frames(plan, s),
+            )
         )
     return kit.swept(made)
 
@@ -92,20 +97,23 @@ def _sloping(plan, lean):
     return np.stack([s, c], axis=-1), np.stack([c, -s], axis=-1), plan.headroom + ABOVE
 
 
-def _face(plan, lean):
-    """Sections (M, 4, 2) of the wall: outwards and up from the track's foot."""
+def _face(plan, lean, strips):
+    """Sections (M, K, 2) of the wall: outwards and up from the track's foot."""
     up, back, wide = _sloping(plan, lean)
-    thick = plan.material.wall
-    return np.stack([-FOOT * up, thick * back - FOOT * up, thick * back + wide * up, wide * up], axis=1)
+    along = np.linspace(-FOOT, wide, strips + 1)[:, None]
+    outer = plan.material.wall * back[:, None] + along * up[:, None]
+    return np.concatenate([outer, along[::-1] * up[:, None]], axis=1)
 
 
-def _cut(plan, lean):
-    """Sections (M, 5, 2) of what is above it, out of the wall: its border is hidden in face and track."""
+def _cut(plan, lean, strips):
+    """Sections (M, K, 2) of what is above it, out of the wall: its border is hidden in face and track."""
     up, _, wide = _sloping(plan, lean)
-    foot, top = -BEYOND * up - [0.0, HIDDEN], wide * up - [0.0, HIDDEN]
+    along = np.linspace(-BEYOND, wide, strips + 1)[:, None]
+    sloping = along * up[:, None] - [0.0, HIDDEN]
+    foot, top = sloping[:, 0], sloping[:, -1]
     out = plan.material.wall + BEYOND
     far = np.full(len(lean), FAR)
     corners = [
-        foot.T, top.T, (top[:, 0] + out, top[:, 1]), (top[:, 0] + out, far), (foot[:, 0], far),
+        (top[:, 0] + out, top[:, 1]), (top[:, 0] + out, far), (foot[:, 0], far),
     ]  # fmt: skip
-    return np.stack([np.column_stack(one) for one in corners], axis=1)
+    return np.concatenate([sloping, np.stack([np.column_stack(one) for one in corners], axis=1)], axis=1)

@@ -66,6 +66,7 @@ def drawn(paper, plan, at, scale):
             place, side = (middle + 0.8, at[1] + 0.25 * wide), "left"
         else:
             place, side = _change(paper, one, x, at, wide, scale)
+            place = place if np.isfinite(end) else (x[0] + 0.8, place[1])  # it goes on: within the strip
         paper.text(*place, str(number), size=2.5, ha=side, va="center")
 
 
