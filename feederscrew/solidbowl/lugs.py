@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from feederscrew.errors import FeederError
 from feederscrew.solidbowl import facets
 from feederscrew.solidbowl.plan import TURN
 
@@ -89,6 +90,14 @@ def lugs(body, planes, kept, extents):
                 found.append(made)
                 with_one.add(end)
     return found, len(every - with_one), len(every)
+
+
+def remarks(bare, ends):
+    """Return what must not be overlooked of ends of seams without a lug, of how many; a tuple of str."""
+    if not bare:
+        return ()
+    what = f"{bare} of {ends} ends of seams have no room for a lug: dowels alone hold them there"
+    return (str(FeederError("join", what, "glue those seams, or take a larger bed")),)
 
 
 def _upright(at, axis, extents):

@@ -57,11 +57,7 @@ class Segments:
     @property
     def remarks(self):
         """What must not be overlooked of its screws, a tuple of str."""
-        bare, ends = self.ends
-        if not bare:
-            return ()
-        what = f"{bare} of {ends} ends of seams have no room for a lug: dowels alone hold them there"
-        return (str(FeederError("join", what, "glue those seams, or take a larger bed")),)
+        return lugs.remarks(*self.ends)
 
     @property
     def screws(self):
@@ -120,7 +116,7 @@ def segments(made, size, joint=DOWELS):
     ]
     dowel = SHARE * min(made.plan.material.wall, made.plan.material.floor)
     holes = [one for plane in planes for one in _dowels(made, body, turn, plane, dowel)]
-    joints, *ends = _lugs(made, body, turn, planes) if joint == SCREWS else ([], 0, 0)
+    joints, bare, of = _lugs(made, body, turn, planes) if joint == SCREWS else ([], 0, 0)
     body, joined = _joined(body, joints, turn)
     body = facets.without(body, [facets.rod(*one, dowel, DEEP) for one in holes])
     cells = facets.cut_by(body, planes)
@@ -130,8 +126,7 @@ def segments(made, size, joint=DOWELS):
     pieces = tuple(_piece(f"segment_{k}", one) for k, one in enumerate(found, start=1))
     places = np.array([middle for _, middle in holes]).reshape(-1, 3)
     screwed = np.array([(one.middle, one.along, one.out) for one in joints]).reshape(-1, 3, 3)
-    screwed = _turned(screwed, turn)
-    return Segments(pieces, places, dowel, 2.0 * DEEP, turn, screwed, joined, tuple(ends))
+    return Segments(pieces, places, dowel, 2.0 * DEEP, turn, _turned(screwed, turn), joined, (bare, of))
 
 
 def _lugs(made, body, turn, planes):

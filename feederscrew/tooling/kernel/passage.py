@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from feederscrew.geometry.compiled import compiled, entry
+from feederscrew.geometry.compiled import apart, compiled, entry
 from feederscrew.tooling.kernel.crossing import (
     ALPHA,
     ARC,
@@ -215,7 +215,7 @@ def _section(foot, hole, scratch, i, start, end, active, out):
     _lower(out, min(here, there), first if here < there else second)
 
 
-@compiled
+@apart
 def _margin(foot, hole, scratch, phi, active):
     count = _gather(foot, hole, scratch, phi, active, True, scratch.points)
     return inset_beside(scratch.points, count, foot, scratch.keep, True)
