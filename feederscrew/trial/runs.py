@@ -124,10 +124,12 @@ def ride(known, station, states, times, *, limits, every, places, jobs=1, progre
     """
     one = past(known, station, limits=limits, every=every, places=places)
     one(states[:0], times[:0])  # compiled here, if need be
-    columns, stopped = in_batches(
-        lambda cut: [getattr(one(states[cut], times[cut]), name) for name in COLUMNS],
-        len(states), BATCH, jobs, progress,
-    )  # fmt: skip
+
+    def batch(cut):
+        made = one(states[cut], times[cut])
+        return [getattr(made, name) for name in COLUMNS]
+
+    columns, stopped = in_batches(batch, len(states), BATCH, jobs, progress)
     return Runs(**{name: check.frozen(value) for name, value in zip(COLUMNS, columns)}, partial=stopped)
 
 

@@ -103,6 +103,20 @@ def left(part, bowl, one, place, aside=0.0):
     return ride.states[0][2] * length
 
 
+def test_a_batch_of_parts_is_followed_once(monkeypatch):
+    part, bowl, followed = shapes.part(shapes.box(20, 12, 5)), bowls.read(None, []), []
+    solid, length, principal = shape.solid_of(part)
+    known, every = runs.setting(solid, length, bowl), orientations(part, find(part), bowl.track)
+    states = [whereabouts.laid(every[0], principal, length, bowl.track, place=0.0)] * (runs.BATCH + 2)
+    plain, own = stations.plain(bowl.track, every, 0.02), runs._followed
+    monkeypatch.setattr(runs, "_followed", lambda *how: followed.append(len(how[-1])) or own(*how))
+    limits = (0.01, 0.01, 0.0, 1.0)
+    ride = runs.ride(
+        known, plain, np.array(states), np.zeros(len(states)), limits=limits, every=0.01, places=1
+    )
+    assert followed == [0, runs.BATCH, 2] and len(ride.outcomes) == runs.BATCH + 2
+
+
 @pytest.mark.parametrize("over", [-1e-4, 1e-4])
 @pytest.mark.parametrize(
     ("device", "place", "aside", "inwards"),
