@@ -36,12 +36,12 @@ def model(part, placed, floor, ratio=1.0):
 def end(part, placed, seconds, floor=FLOOR, pull=lambda time: (0.0, 0.0, -G), ratio=1.0):
     """Place and velocity of a part at each step, and the simulated seconds a second."""
     mujoco, made, data = model(part, placed, floor, ratio)
-    path, start = np.empty((round(seconds / STEP), 4)), time.perf_counter()
+    path, start = np.empty((round(seconds / STEP), 4)), time.process_time()
     for row in path:
         made.opt.gravity[:] = pull(data.time + 0.5 * STEP)
         mujoco.mj_step(made, data)
         row[:] = *data.qpos[:3], data.qvel[2]
-    return path, seconds / (time.perf_counter() - start)
+    return path, seconds / (time.process_time() - start)
 
 
 def sliding():
