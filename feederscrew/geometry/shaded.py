@@ -1,4 +1,4 @@
-"""The area that the facets of a body cover, seen along one axis."""
+"""The area that the facets of a body cover, seen along one axis, and that below its highest sides."""
 
 import numpy as np
 import shapely
@@ -48,3 +48,49 @@ def _rounds(places, here, there, times):
     aside = (there - here)[:, 0] * (y - here[:, 1]) - (there - here)[:, 1] * (x - here[:, 0])
     up, down = (here[:, 1] <= y) & (there[:, 1] > y), (there[:, 1] <= y) & (here[:, 1] > y)
     return ((up & (aside > 0.0)) * times - (down & (aside < 0.0)) * times).sum(axis=1)
+
+
+def below(sides, least):
+    """Return the area between a level and the highest of some sides over each place along it.
+
+    Source: own; between two ends of sides next to each other one of them is the highest.
+
+    Parameters
+    ----------
+    sides : (N, 2, 2) float [m]
+        Ends of each: along the level and over it.
+    least : float [m]
+        Ends nearer to each other along it are one.
+
+    Returns
+    -------
+    shapely geometry
+        Pieces apart where there is no side.
+    """
+    order = np.argsort(sides[:, :, 0], axis=1)
+    (x, z), (far, high) = np.take_along_axis(sides, order[:, :, None], axis=1).transpose(1, 2, 0)
+    x, far = (np.round(ends / least).astype(int) for ends in (x, far))
+    places = np.unique(np.concatenate([x, far]))
+    begin, end = places[:-1], places[1:]
+    over = (x[:, None] <= begin) & (end <= far[:, None])
+    slope = (high - z) / np.maximum(far - x, 1)
+    tops = [z[:, None] + slope[:, None] * (at - x[:, None]) for at in (begin, end)]
+    best = np.where(over, tops[0] + tops[1], -np.inf).argmax(axis=0)
+    first, last = (np.maximum(top[best, np.arange(len(best))], 0.0) for top in tops)
+    pieces = [
+        _strip(least * begin[own], least * end[own], first[own], last[own])
+        for own in _runs(over.any(axis=0) & (first + last > 0.0))
+    ]
+    return shapely.union_all(pieces).simplify(least)
+
+
+def _runs(covered):
+    """Slices of a row (M,) of bool in which it is true."""
+    steps = np.flatnonzero(np.diff(np.concatenate([[0], covered.astype(int), [0]])))
+    return [slice(int(a), int(b)) for a, b in zip(steps[::2], steps[1::2])]
+
+
+def _strip(begin, end, first, last):
+    """The area below sides that follow each other, from the first begin to the last end."""
+    top = np.stack([begin, first, end, last], axis=1).reshape(-1, 2)
+    return shapely.Polygon([(begin[0], 0.0), *top.tolist(), (end[-1], 0.0)])

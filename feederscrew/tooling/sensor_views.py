@@ -188,17 +188,12 @@ def _relief(facets, line, resolution):
     facets, off = facets[crossing], off[crossing]
     if not len(facets):
         return shapely.box(-NOTHING, 0.0, 0.0, NOTHING)
-    ends = []
-    for facet, away in zip(facets, off):  # two of its sides cross the line
-        sides = [(k, (k + 1) % 3) for k in range(3) if (away[k] < 0.0) != (away[(k + 1) % 3] < 0.0)]
-        ends.append([_at(facet[a], facet[b], away[a], away[b]) for a, b in sides])
-    ends = np.array(ends)[:, :, [0, 2]]
+    row, k = np.nonzero((off < 0.0) != (np.roll(off, -1, axis=1) < 0.0))  # two sides of each cross the line
+    first, last, before, beyond = (of[row, at] for of in (facets, off) for at in (k, (k + 1) % 3))
+    ends = _at(first, last, before[:, None], beyond[:, None]).reshape(-1, 2, 3)[:, :, [0, 2]]
     ends = ends - [ends[:, :, 0].max(), 0.0]
     ends = np.round(ends / resolution) * resolution if resolution > 0.0 else ends
-    ends[:, :, 1] = np.maximum(ends[:, :, 1], 0.0)
-    low = np.stack([ends[:, :, 0], np.zeros(ends.shape[:2])], axis=2)
-    below = shapely.polygons(np.concatenate([ends, low[:, ::-1]], axis=1))
-    return shapely.union_all(below[shapely.area(below) > 1e-14], grid_size=GRID)
+    return shaded.below(np.stack([ends[:, :, 0], np.maximum(ends[:, :, 1], 0.0)], axis=2), GRID)
 
 
 def _at(first, last, before, beyond):

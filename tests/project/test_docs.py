@@ -26,7 +26,7 @@ def test_the_examples_of_the_library_page_print_what_it_shows(monkeypatch):
         assert printed.getvalue() == shown
 
 
-@pytest.mark.parametrize("name", ["commands", "equations", "rules", "bowl_file", "validation"])
+@pytest.mark.parametrize("name", ["commands", "equations", "rules", "bowl_file", "validation", "designs"])
 def test_a_generated_page_is_as_the_program_is(name):
     call = [sys.executable, f"docs/{name}.py", "--check"]
     done = subprocess.run(call, capture_output=True, text=True, cwd=ROOT)
