@@ -251,7 +251,8 @@ def _at_velocity(search, made, proposal, ways, weights, gain):
     """The bowl at the drive that brings the target, with the gaps that its devices need at that drive."""
     apart = 0.0
     for _ in range(2):
-        bowl = calm_drive.driven(made, asked(search, ways, weights, gain, apart), hops=proposal.may_hop)
+        velocity = max(asked(search, ways, weights, gain, apart), search.least)
+        bowl = calm_drive.driven(made, velocity, hops=proposal.may_hop)
         apart = spacing.needed(proposal.devices, ways.lying, bowl)
         if not apart > 0.0:
             break

@@ -12,6 +12,11 @@ def only_slow(study):
     return sorts and 0.0 < low < RATE_KEPT * study.request.target
 
 
+def only_lost(study):
+    """Return whether draws have denied a design by what is wanted and gets stuck: a drive may be too slow."""
+    return not study.partial and study.robust.share < DRAWS_HELD and " is lost (stopped" in study.robust.worst
+
+
 def nearest(study, search):
     """Return the nearest that would hold, a sentence each.
 

@@ -6,8 +6,8 @@ from feederscrew.tooling.devices.sensing import PULSE
 from feederscrew.tooling.verdicts import Meeting
 
 SENSES = "sorter"  # the kind of device that has a sensor and a pulse
-STEP, LEAST = 5e-3, 2  # [s] to which a pulse is set, and of how many of them the shortest one is
-RESERVE = 4.0  # times as long as takes off what stands before the nozzles: they do not blow at its middle
+STEP, LEAST = 5e-3, 4  # [s] to which a pulse is set, and of how many of them the shortest one is
+RESERVE = 6.0  # times as long as takes off what stands before the nozzles: they do not blow at its middle
 LONGER = 2.0  # times, where something is carried through all the same
 
 

@@ -26,6 +26,7 @@ class Search:
     failed: list = field(default_factory=list)  # the same of others that deliver
     before: object = None
     reserve: float = RESERVE
+    least: float = 0.0  # [m/s] through tooling, where what is wanted was lost at a slower drive
     avoided: dict = field(default_factory=dict)  # kinds of devices at which a row was lost, by row
     most: float = np.inf  # short trials that are worth it
     shares_given: bool = False  # the user says what arrives

@@ -186,14 +186,16 @@ def _relief(facets, line, resolution):
     off = facets[:, :, 1] - line
     crossing = (off.min(axis=1) < 0.0) & (off.max(axis=1) >= 0.0)
     facets, off = facets[crossing], off[crossing]
+    nothing = shapely.box(-NOTHING, 0.0, 0.0, NOTHING)
     if not len(facets):
-        return shapely.box(-NOTHING, 0.0, 0.0, NOTHING)
+        return nothing
     row, k = np.nonzero((off < 0.0) != (np.roll(off, -1, axis=1) < 0.0))  # two sides of each cross the line
     first, last, before, beyond = (of[row, at] for of in (facets, off) for at in (k, (k + 1) % 3))
     ends = _at(first, last, before[:, None], beyond[:, None]).reshape(-1, 2, 3)[:, :, [0, 2]]
     ends = ends - [ends[:, :, 0].max(), 0.0]
     ends = np.round(ends / resolution) * resolution if resolution > 0.0 else ends
-    return shaded.below(np.stack([ends[:, :, 0], np.maximum(ends[:, :, 1], 0.0)], axis=2), GRID)
+    seen = shaded.below(np.stack([ends[:, :, 0], np.maximum(ends[:, :, 1], 0.0)], axis=2), GRID)
+    return nothing if seen.is_empty else seen  # the line may graze a corner
 
 
 def _at(first, last, before, beyond):

@@ -53,7 +53,7 @@ def weighing(every, times):
 def test_a_pulse_is_the_shortest_with_its_reserve_and_the_file_says_so(wedge):
     ways, cut = wedge
     found = []
-    for times in (0.2, 1.0, 2.0, 50.0):
+    for times in (0.2, 0.9, 1.2, 50.0):
         every = weighing(ways.lying, times)
         device = pulses.quickened(cut, every).device
         found.append(device.time)
@@ -80,4 +80,4 @@ def test_what_is_carried_through_makes_the_pulse_longer_up_to_that_of_before(wed
         times.append(device.time)
         assert other.step == f"pulse of {1e3 * device.time:.0f} ms" and device.text.count("jet") == 1
         proposal = other
-    assert times == pytest.approx([0.02, 0.04]) and times[-1] == PULSE
+    assert times == pytest.approx([0.04]) and times[-1] == PULSE

@@ -191,6 +191,10 @@ def test_the_relief_of_a_wedge_is_that_of_its_section():
     coarse = sensor_views.area(wedge, faces, "relief", 4e-3, 3e-3)
     assert set(np.round(1e3 * np.array(coarse.exterior.coords)[:, 1])) <= {0.0, 4.0, 8.0}
     assert sensor_views.area(wedge, faces, "relief", line=9e-3).area < 1e-12
+    turn = np.array([[1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 2.0]]) / 2.0
+    askew = wedge @ turn.T  # the line grazes its rearmost edge, over less than a micrometre
+    grazed = sensor_views.area(askew, faces, "relief", line=float(askew[:, 1].min()) + 1e-7)
+    assert 0.0 < grazed.area < 1e-8 and sensor_views.apart(grazed, seen) > 1e-3
 
 
 def test_an_outline_is_turned_until_it_fits_and_no_further():
