@@ -82,6 +82,7 @@ docs: $(PICTURES:%=docs/%.png) $(READY) ## pictures, outputs and tables of the p
 	$(BIN)/python docs/rules.py
 	$(BIN)/python docs/bowl_file.py
 	$(BIN)/python docs/validation.py
+	$(BIN)/python docs/designs.py
 
 docs/aspects.png: results/$(DEMO)/aspects.csv
 	cp results/$(DEMO)/aspects.png $@
