@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew.solidbowl import facets, grooves_wall
+from feederscrew.solidbowl.plan import SEEN
 
 OVER = 5e-4  # [m] over the track, where its wall is met
 RIM = -0.3 - 1e-4  # [rad] before the outlet, where the rim is measured; beside the corners of facets
@@ -84,7 +85,7 @@ def track_width(plan, body, s):
         facets.first_met(body, start, start + 3.0 * way.radius * along)[0]
         for start in (middle + [0.0, 0.0, OVER], middle + [0.0, 0.0, 2.0 * OVER])
     )
-    under = float(way.height(s, plan.width)) - 0.3 * plan.material.plate
+    under = float(way.height(s, plan.width)) - SEEN * plan.material.plate
     to_middle = float(way.wall_radius(s)) - half * float(np.cos(bank))
     start = to_middle - plan.across  # over the floor, of which the dome may rise above the track further in
     near = start * outward + [0.0, 0.0, under]

@@ -23,6 +23,9 @@ NARROW = 0.75  # of the radius: no track is wider
 LOWEST = 10e-3  # [m] over the floor of a track that goes down
 STEEP = 1.5  # of the tangent of a bank: beside the chord of an arc a twist takes some of the height
 TURN = 2.0 * np.pi
+QUARTER = 0.25 * TURN  # of track at least, over floor and dome: there its width is measured
+SHORTEST = 0.999  # of it: what is told has four digits
+SEEN, CLEARED = 0.3, 3e-4  # of the plate, and [m] over the dome: there the free edge is measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +148,7 @@ def plan(size, track, made_of, tooled, asked, *, extents):
     """
     _check(size, track)
     stepped = stairs(track, made_of, tooled, asked, extents)
-    way, first = _way(size, track, tooled, asked, stepped)
+    way, first = _way(size, track, made_of, tooled, asked, stepped)
     lowest = float(way.wall_radius(0.0))
     bolting.check(track, asked, extents, lowest)
     across = track.width * np.cos(way.least_bank)
@@ -190,7 +193,7 @@ def _check(size, track):
         raise FeederError("track.climb", what, "give a climb, as 3.5 deg, or leave it out")
 
 
-def _way(size, track, tooled, asked, stepped):
+def _way(size, track, made_of, tooled, asked, stepped):
     """The way of the track, and where on it the tooled stretch begins."""
     needed = 0.0 if tooled is None else tooled.length + LEAD
     drops = () if tooled is None else tooled.drops
@@ -204,9 +207,11 @@ def _way(size, track, tooled, asked, stepped):
         end = needed + (asked.outlet_height - gained) / rise
         _check_height(asked.outlet_height, end, most, rise * (most - needed) + gained)
         _check_floor(end, stepped, rise)
-    first = end - needed
+    over = SEEN * made_of.plate + track.width * np.tan(DOME) + CLEARED
+    first, quarter = end - needed, track.radius * _quarter(stepped) + over / rise
     if first < 0.0:
-        raise _too_short(asked.outlet_height, end, needed, gained)
+        raise _too_short(asked.outlet_height, end, needed, gained + rise * max(quarter - needed, 0.0))
+    _check_long(asked.outlet_height, end, quarter, gained - rise * needed, rise)
     way = Way(
         radius=track.radius, climb=track.climb, bank=track.bank, end=float(end),
         drops=tuple((first + at, drop) for at, drop in drops),
@@ -216,6 +221,22 @@ def _way(size, track, tooled, asked, stepped):
     )  # fmt: skip
     _check_bends(way, stepped, round_once, 0.0 if tooled is None else tooled.tallest)
     return way, float(first)
+
+
+def _quarter(stepped):
+    """Length of a quarter turn, over the wall's radius at its end."""
+    flare = 0.0 if stepped is None else stepped.flare
+    return QUARTER if flare == 0.0 else -float(np.expm1(-flare * QUARTER)) / flare
+
+
+def _check_long(height, end, least, gained, rise):
+    if end >= least * SHORTEST:
+        return
+    what = f"{1e3 * end:.4g} mm of track, less than a quarter turn"
+    if height > 0.0:
+        mend = f"give at least {1e3 * (rise * least + gained):.4g} mm"
+        raise FeederError("sizing.outlet_height", f"{1e3 * height:.4g} mm leaves {what}", mend)
+    raise FeederError("sizing.depth", f"it leaves {what}", "give a larger one, or a smaller track.climb")
 
 
 def _gained(track, tooled, needed):
@@ -259,9 +280,8 @@ def _check_floor(end, stepped, rise):
         raise FeederError("sizing.outlet_height", what, mend)
 
 
-def _too_short(height, end, needed, gained):
+def _too_short(height, end, needed, least):
     if height > 0.0:
-        least = gained
         what = f"{1e3 * height:.4g} mm leaves {1e3 * end:.4g} mm of track"
         what += f", and the devices take {1e3 * needed:.4g} mm"
         return FeederError("sizing.outlet_height", what, f"give at least {1e3 * least:.4g} mm")

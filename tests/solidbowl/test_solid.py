@@ -417,7 +417,17 @@ def model_of(data):
         (
             TRACK, Asked(outlet_height=0.003), CHAINS["gap"],
             "sizing.outlet_height: 3 mm leaves 49.05 mm of track, and the devices take 56.8 mm - give at "
-            "least 3.474 mm",
+            "least 16.66 mm",
+        ),
+        (
+            TRACK, Asked(outlet_height=0.01), CHAINS["gap"],
+            "sizing.outlet_height: 10 mm leaves 163.5 mm of track, less than a quarter turn - give at least "
+            "16.66 mm",
+        ),
+        (
+            TRACK, Asked(outlet_height=1e-4), (),
+            "sizing.outlet_height: 0.1 mm leaves 1.635 mm of track, less than a quarter turn - give at "
+            "least 16.66 mm",
         ),
     ],
 )  # fmt: skip
@@ -425,6 +435,18 @@ def test_faults(track, asked, devices, line):
     with pytest.raises(FeederError) as fault:
         planned(devices, track=track, asked=asked)
     assert str(fault.value) == line
+
+
+@pytest.mark.parametrize(
+    ("shape", "climb", "least"), [("cylinder", 3.5, 16.66e-3), ("stepped", 4.5, 20.45e-3)]
+)
+def test_the_lowest_outlet_that_is_told_has_a_width_to_measure(shape, climb, least):
+    own, asked = replace(TRACK, climb=np.radians(climb)), Asked(shape=shape, outlet_height=least)
+    found = measures(body(planned(track=own, asked=asked)))
+    assert found.track_width == pytest.approx(0.02, abs=NEAR)
+    assert found.outlet_height == pytest.approx(least, abs=NEAR)
+    with pytest.raises(FeederError, match=r"^sizing\.depth: it leaves .* less than a quarter turn - give a"):
+        planned(track=own, asked=Asked(shape=shape), turns=0.2)
 
 
 def test_a_turn_below_a_cut_is_found():
