@@ -53,9 +53,12 @@ class Ours:
         """The end of one part after so long, the states without dimensions."""
         start = time.process_time()
         ride = runs.ride(
-            self.known, self.stage, np.array(state)[None], np.zeros(1), every=1 / 60.0, places=2000,
-            limits=(seconds, 2 * seconds, 0.0, 10.0),
-        )  # fmt: skip
+            runs.past(
+                self.known, self.stage, every=1 / 60.0, places=2000, limits=(seconds, 2 * seconds, 0.0, 10.0)
+            ),
+            np.array(state)[None],
+            np.zeros(1),
+        )
         return ride, seconds / (time.process_time() - start)
 
     def lying(self, height, length, place=0.0):

@@ -52,7 +52,7 @@ def headings(part):
     laid = [replace(flat[0], heading=turn, distance=OFF) for turn in turns]
     states = np.array([whereabouts.laid(one, principal, length, bowl.track, place=0.0) for one in laid])
     limits = course._limits(bowl, stage, every)
-    ride = runs.ride(known, stage, states, np.zeros(TRIED), jobs=2, **limits)
+    ride = runs.ride(runs.past(known, stage, **limits), states, np.zeros(TRIED), jobs=2)
     seen = looks.Looks(every, solid, length, principal, bowl.track.radius).of(ride.states)
     for one in flat:
         count = int((seen == every.index(one)).sum())

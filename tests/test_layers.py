@@ -178,7 +178,6 @@ MORE = {
     "studies.simulated.drop.drop": 11,
     "studies.simulated.plate.plate": 11,
     "studies.tooling.tooling": 15,
-    "studies.trial._further": 9,
     "studies.trial.trial": 15,
     "studies.tune.tune": 13,
     "tooling.isolating.design.design": 12,
@@ -189,11 +188,8 @@ MORE = {
     "trial.kernel.pairs._cross": 12,
     "trial.kernel.travel.travel": 9,
     "trial.kernel.travel.travel_all": 11,
-    "trial.landing._fallen": 9,
     "trial.landing.landing": 10,
-    "trial.queue.__init__": 10,
     "trial.queue.queue_of": 11,
-    "trial.runs.ride": 9,
 }  # have more than that: to be taken apart, the list only gets shorter
 
 

@@ -181,7 +181,7 @@ def trial(
             seen = course.course(part, bowl, ways.lying, tried, bowl.devices, **own)
             more: dict[str, Any] = {}
             if not seen.partial:
-                more, stopped = _further(part, bowl, found, ways, shares, fall, crowd, seed, progress)
+                more, stopped = _further(part, bowl, found, ways, shares, (fall, crowd), seed, progress)
             made.append(TrialRun(bowl, throw_number(bowl), ways, shares, seen, **more))
         except KeyboardInterrupt:
             if not made:
@@ -198,13 +198,12 @@ def _further(
     found: Aspects,
     ways: stream.Orientations,
     shares: np.ndarray,
-    fall: Mapping[str, Any] | None,
-    crowd: Mapping[str, Any] | None,
+    asked: Sequence[Mapping[str, Any] | None],
     seed: int,
     progress: Callable[..., None] | None,
 ) -> tuple[dict[str, Any], bool]:
     """Parts that fall onto the track and a queue, as far as asked for; and whether the user stopped them."""
-    made, own = {}, {"seed": seed, "progress": progress}
+    made, own, (fall, crowd) = {}, {"seed": seed, "progress": progress}, asked
     try:
         if fall:
             made["landing"] = landings.landing(part, bowl, found, ways.lying, ways.states, **fall, **own)

@@ -80,7 +80,7 @@ def landing(part, bowl, aspects, every, poses, *, launch, parts, seed=1, jobs=1,
         If the user stops it before all have come to lie and the first of them are through.
     """
     below = AspectsBelow(part, aspects)
-    ride, times = _fallen(part, bowl, every, below.shape, named(launch), parts, seed, jobs, progress)
+    ride, times = _fallen(part, bowl, every, below.shape, (named(launch), parts, seed), jobs, progress)
     if ride.partial:
         raise KeyboardInterrupt
     entered = below.of(ride.states)
@@ -96,9 +96,9 @@ def landing(part, bowl, aspects, every, poses, *, launch, parts, seed=1, jobs=1,
     return _told(launch, parts - count, aspects, poses, seen, below)
 
 
-def _fallen(part, bowl, every, shape, launch, parts, seed, jobs, progress):
+def _fallen(part, bowl, every, shape, started, jobs, progress):
     """Runs of parts from their launch to where they lie, and the times [s] at which they began."""
-    solid, length, principal = solid_of(part)
+    (launch, parts, seed), (solid, length, principal) = started, solid_of(part)
     solid = rounded(solid, course.axes(every, principal))
     known = runs.setting(solid, length, bowl)
     states, times = starts.falling(bowl, launch, shape, parts, length, seed)
@@ -108,11 +108,11 @@ def _fallen(part, bowl, every, shape, launch, parts, seed, jobs, progress):
     first = stations.at_entry(bowl.devices, bowl.track, every)
     stage = replace(stations.plain(bowl.track, every, 2.0 * room, first), exit=np.inf)
     seconds = known.unit * (flight + EXACT.settling)
-    ride = runs.ride(
-        known, stage, whereabouts.moved(states, room / length, known.radius), times,
-        limits=(seconds, 2.0 * seconds, 0.0, np.inf), every=seconds, places=1, jobs=jobs,
-        progress=progress and (lambda done: progress(done, parts)),
-    )  # fmt: skip
+    limits = (seconds, 2.0 * seconds, 0.0, np.inf)
+    one = runs.past(known, stage, limits=limits, every=seconds, places=1)
+    told = progress and (lambda done: progress(done, parts))
+    begun = whereabouts.moved(states, room / length, known.radius)
+    ride = runs.ride(one, begun, times, jobs=jobs, progress=told)
     return ride, times
 
 

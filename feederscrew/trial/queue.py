@@ -97,7 +97,7 @@ def queue_of(part, bowl, aspects, every, poses, shares, *, parts, seconds, seed,
     KeyboardInterrupt
         If the user stops it before the first period is done.
     """
-    queue = _Queue(part, bowl, aspects, every, poses, shares, parts, gaps, seed)
+    queue = _Queue(part, bowl, aspects, every, poses, shares, (parts, gaps, seed))
     until = seconds if isinstance(seconds, Until) else Until(seconds)
     count, look = (max(round(span * bowl.drive.frequency), 1) for span in (until.seconds, LOOKS))
     try:
@@ -116,8 +116,8 @@ def queue_of(part, bowl, aspects, every, poses, shares, *, parts, seconds, seed,
 class _Queue:
     """The queue while it moves; lengths in units of the part's, times in seconds."""
 
-    def __init__(self, part, bowl, aspects, every, poses, shares, parts, gaps, seed):
-        self.part, self.bowl, self.every = part, bowl, every
+    def __init__(self, part, bowl, aspects, every, poses, shares, row):
+        self.part, self.bowl, self.every, (parts, gaps, seed) = part, bowl, every, row
         solid, length, self.principal = solid_of(part)
         solid = rounded(solid, course.axes(every, self.principal))
         self.known = known = runs.setting(solid, length, bowl)

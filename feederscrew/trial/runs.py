@@ -89,24 +89,17 @@ def setting(solid, length, bowl):
     )
 
 
-def ride(known, station, states, times, *, limits, every, places, jobs=1, progress=None):
+def ride(one, states, times, *, jobs=1, progress=None):
     """Follow parts past one station.
 
     Parameters
     ----------
-    known : BowlOfPart
-    station : Stage
+    one : function
+        Of ``past``: follows some of them, one after the other.
     states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
         At the start.
     times : (N,) float [s]
         Of the start, which sets the phase of the drive.
-    limits : (float [s], float [s], float [m], float [m])
-        After how long a part is given up; the time in which it must get on, and how far; how far it may go
-        back from where it began.
-    every : float [s]
-        Between two places noted; whole steps.
-    places : int
-        Noted at most.
     jobs : int
         Cores to use; the outcome does not depend on it.
     progress : function, optional
@@ -122,7 +115,6 @@ def ride(known, station, states, times, *, limits, every, places, jobs=1, progre
     KeyboardInterrupt
         If no batch was finished.
     """
-    one = past(known, station, limits=limits, every=every, places=places)
     one(states[:0], times[:0])  # compiled here, if need be
 
     def batch(cut):
@@ -134,9 +126,21 @@ def ride(known, station, states, times, *, limits, every, places, jobs=1, progre
 
 
 def past(known, station, *, limits, every, places):
-    """Return the function that follows parts past one station, one after the other; as ``ride``.
+    """Return the function that follows parts past one station, one after the other.
 
     It takes states (N, 13) and times (N,) [s] and gives Runs.
+
+    Parameters
+    ----------
+    known : BowlOfPart
+    station : Stage
+    limits : (float [s], float [s], float [m], float [m])
+        After how long a part is given up; the time in which it must get on, and how far; how far it may go
+        back from where it began.
+    every : float [s]
+        Between two places noted; whole steps.
+    places : int
+        Noted at most.
     """
     surface, limits = surface_of(known, station), limits_of(known, station, limits)
     return partial(
@@ -188,7 +192,7 @@ def onwards(borders, spans):
 
 
 def limits_of(known, station, limits):
-    """Return when a part is done with a station as the kernel takes it, with the limits of ``ride``."""
+    """Return when a part is done with a station as the kernel takes it, with the limits of ``past``."""
     return crowd_records.Limits(
         exit=station.exit / known.length,
         drop=station.drop / known.length,

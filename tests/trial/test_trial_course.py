@@ -99,7 +99,9 @@ def left(part, bowl, one, place, aside=0.0):
     known = runs.setting(solid, length, still)
     cut = stations.station(bowl.devices[0], still.track, orientations(part, find(part), still.track))
     state = whereabouts.laid(one, principal, length, still.track, place=place, aside=aside)
-    ride = runs.ride(known, cut, state[None], np.zeros(1), limits=(0.6, 1.0, 0.0, 1.0), every=0.01, places=9)
+    ride = runs.ride(
+        runs.past(known, cut, limits=(0.6, 1.0, 0.0, 1.0), every=0.01, places=9), state[None], np.zeros(1)
+    )
     return ride.states[0][2] * length
 
 
@@ -112,7 +114,7 @@ def test_a_batch_of_parts_is_followed_once(monkeypatch):
     monkeypatch.setattr(runs, "_followed", lambda *how: followed.append(len(how[-1])) or own(*how))
     limits = (0.01, 0.01, 0.0, 1.0)
     ride = runs.ride(
-        known, plain, np.array(states), np.zeros(len(states)), limits=limits, every=0.01, places=1
+        runs.past(known, plain, limits=limits, every=0.01, places=1), np.array(states), np.zeros(len(states))
     )
     assert followed == [0, runs.BATCH, 2] and len(ride.outcomes) == runs.BATCH + 2
 

@@ -37,7 +37,7 @@ def in_groove(bowl, angle, radius=50.0):
 
 def gone(known, way, state, seconds):
     limits = (seconds, 2.0 * seconds, 0.0, 10.0)
-    return runs.ride(known, way, state[None], np.zeros(1), limits=limits, every=1.0, places=1)
+    return runs.ride(runs.past(known, way, limits=limits, every=1.0, places=1), state[None], np.zeros(1))
 
 
 @pytest.mark.parametrize("angle", [20.0, 45.0])

@@ -48,7 +48,7 @@ def rode(block, one, bowl, state, seconds, every=None):
     period = 1.0 / bowl.drive.frequency
     limits = (seconds, 2.0 * seconds, 0.0, 10.0)
     return known, runs.ride(
-        known, way, state[None], np.zeros(1), limits=limits, every=every or period, places=2000
+        runs.past(known, way, limits=limits, every=every or period, places=2000), state[None], np.zeros(1)
     )
 
 
@@ -167,9 +167,16 @@ def lies_on_the_track(part, bowl, launched, settled):
     states, seconds = np.array(launched.states), settled * known.unit
     states[:, body.Y] += 0.5 * bowl.track.width / length
     ride = runs.ride(
-        known, stations.plain(bowl.track, every, 1.0), whereabouts.moved(states, 0.5 / length, known.radius),
-        np.zeros(len(states)), limits=(seconds, 2.0 * seconds, 0.0, np.inf), every=seconds, places=1,
-    )  # fmt: skip
+        runs.past(
+            known,
+            stations.plain(bowl.track, every, 1.0),
+            limits=(seconds, 2.0 * seconds, 0.0, np.inf),
+            every=seconds,
+            places=1,
+        ),
+        whereabouts.moved(states, 0.5 / length, known.radius),
+        np.zeros(len(states)),
+    )
     return looks.AspectsBelow(part, find(part)).of(ride.states)
 
 
@@ -210,7 +217,9 @@ def test_nothing_passes_the_edges_below_the_surface(block, axes, place, speed, l
     inside, half = 0.0, 0.5e-3 * np.array([20.0, 12.0, 5.0])
     for _ in range(12):
         ride = runs.ride(
-            known, stage, state[None], np.zeros(1), limits=(2e-3, 1.0, 0.0, 1.0), every=1.0, places=1
+            runs.past(known, stage, limits=(2e-3, 1.0, 0.0, 1.0), every=1.0, places=1),
+            state[None],
+            np.zeros(1),
         )
         state = np.array(ride.states[0])
         own = (points - length * state[:3]) @ whereabouts.matrix(state) @ principal.T
@@ -236,7 +245,9 @@ def test_a_round_part_is_held_where_the_free_edge_cuts_off_the_lowest_of_its_cir
             state[body.Q : body.Q + 4] = whereabouts.quaternion(axes @ principal)
             state[:3] = np.array([0.0, 60.0 + beyond - 3.0 * np.sin(turn), 1.62]) * 1e-3 / length
             ride = runs.ride(
-                known, stage, state[None], np.zeros(1), limits=(0.02, 1.0, 0.0, 1.0), every=1.0, places=1
+                runs.past(known, stage, limits=(0.02, 1.0, 0.0, 1.0), every=1.0, places=1),
+                state[None],
+                np.zeros(1),
             )
             lowest.append(1e3 * length * ride.states[0][body.Z])
     assert min(lowest) > 1.62 - 0.02  # [mm]: its facets lie 0.014 mm inside the circle

@@ -112,7 +112,7 @@ def test_a_row_that_reaches_round_the_bowl_stays_on_the_track():
 def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is_asked_for(gaps):
     """In a row they are even from 0 to twice the mean; parts that are poured or come touching have none."""
     shares = np.array([one is FLAT for one in EVERY], float)
-    made = queue._Queue(PART, STILL, ASPECTS, EVERY, EVERY, shares, 300, gaps, 3)
+    made = queue._Queue(PART, STILL, ASPECTS, EVERY, EVERY, shares, (300, gaps, 3))
     ends = np.array([made.crowd.extents(n)[:2] for n in range(300)])
     free = (ends[:-1, 0] - ends[1:, 1]) * LENGTH / FLAT.length
     assert not made.waiting and ends[0, 1] <= 1e-9 and made.most == 300
@@ -126,7 +126,7 @@ def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is
 def test_parts_wait_where_the_track_before_the_first_device_is_full():
     tight = replace(STILL, track=replace(STILL.track, radius=0.08, width=0.04))
     shares = np.array([one is FLAT for one in EVERY], float)
-    made = queue._Queue(PART, tight, ASPECTS, EVERY, EVERY, shares, 40, queue.GAPS, 3)
+    made = queue._Queue(PART, tight, ASPECTS, EVERY, EVERY, shares, (40, queue.GAPS, 3))
     lying = np.flatnonzero(made.crowd.on)
     rears = [made.crowd.extents(n)[0] * LENGTH for n in lying]
     room = 0.5 * 2.0 * np.pi * 0.08 - 2.0 * max(one.length for one in EVERY)
@@ -224,7 +224,7 @@ def test_a_part_lies_on_its_aspect_at_any_heading():
 def test_what_has_no_room_yet_comes_next_however_long_it_is():
     even = np.full(len(EVERY), 1.0 / len(EVERY))
     small = replace(BOWL, track=replace(BOWL.track, radius=0.15))
-    row = queue._Queue(PART, small, ASPECTS, EVERY, EVERY, even, 40, False, 5)
+    row = queue._Queue(PART, small, ASPECTS, EVERY, EVERY, even, (40, False, 5))
     waits, came = row.coming, list(row.waiting)
     assert waits is not None and came  # the row reaches back to where the track begins
     for _ in range(20):

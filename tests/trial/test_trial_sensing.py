@@ -55,7 +55,7 @@ def test_what_a_jet_does_on_a_part_that_tumbles_is_paid_for():
     state[body.Z] += 20e-3 / length
     state[body.VX], state[body.W : body.W + 3] = 2.0, (20.0, 33.0, 27.0)
     limits = (0.5, 1.0, 0.0, 10.0)
-    ride = runs.ride(known, station, state[None], np.zeros(1), limits=limits, every=0.1, places=9)
+    ride = runs.ride(runs.past(known, station, limits=limits, every=0.1, places=9), state[None], np.zeros(1))
     assert 0.0 < ride.gains[0] < 1e-6
 
 

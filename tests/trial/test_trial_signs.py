@@ -34,7 +34,9 @@ def gone(bowl, state, seconds):
     every = orientations(PART, find(PART), bowl.track)
     known, stage = runs.setting(SOLID, LENGTH, bowl), stations.plain(bowl.track, every, 0.5)
     limits = (seconds, 2.0 * seconds, 0.0, 10.0)
-    return known, runs.ride(known, stage, state[None], np.zeros(1), limits=limits, every=1.0, places=1)
+    return known, runs.ride(
+        runs.past(known, stage, limits=limits, every=1.0, places=1), state[None], np.zeros(1)
+    )
 
 
 def lying(bowl, aside=None):
