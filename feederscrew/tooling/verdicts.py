@@ -79,8 +79,10 @@ class Meeting:
         """Return how far [m] a force [N] for some time [s] carries it over a track that stands still.
 
         ``down`` [N] presses it on the track meanwhile. Less what it has to go to leave it: negative where
-        it stays.
+        it stays, as what hangs between rails does.
         """
+        if self.hanging:
+            return self.one.distance - self.one.track.width
         weight = self.one.posture.mass * STANDARD_GRAVITY
         left = force - self.grip * max(weight + down, 0.0)
         if left <= 0.0:

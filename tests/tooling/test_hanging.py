@@ -1,6 +1,7 @@
 """Headed parts hanging between rails: an orientation of its own from there on."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -111,3 +112,16 @@ def test_a_conical_head_rests_on_its_cone():
     assert hung.height == pytest.approx(2.5e-3, abs=1e-4)  # the cone is 6 mm wide 2.5 mm below its top
     assert len(hung.foot.rings) == 2
     assert hung.margin > 0.0
+
+
+def test_air_does_not_blow_off_what_rails_hold_and_a_groove_has_no_place_behind_them(pin, tmp_path):
+    jet = made("jet", "test", nozzle=2e-3, pressure=1e5, height=2e-3)
+    along = next(one for one in pin if one.length > 0.02 and one.height < 0.012)
+    sorter = made("sorter", "test", like=(along.aspect, along.heading, 1e-3), sees="height")
+    for device in (jet, sorter):
+        found = course([rails(pin), device], [replace(one, grip=0.6, speed=0.02, swing=0.06) for one in pin])
+        assert found.leaving[:, -1].sum() == pytest.approx(2.0)  # head ahead and head behind
+    path = tmp_path / "bowl.yaml"
+    path.write_text("devices:\n  - rails: {from: 4 mm, to: 8 mm}\n  - groove: {angle: 30 deg}\n")
+    with pytest.raises(FeederError, match="no meaning for parts that hang"):
+        course(bowls.read(path).devices, pin)

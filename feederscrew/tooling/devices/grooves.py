@@ -24,6 +24,7 @@ class Groove(Lean):
         "the track is a V from here on, until a bank: it and its wall rise by so much to either side; round "
         "parts lie along it and roll no more, on a friction that acts as mu / cos(angle)"
     )
+    hanging = False
     leans = True
     grooved = True
     layer = "SLOPE"

@@ -54,6 +54,9 @@ class SteadyJet(Device):
         return (out - met.grip * max(down, 0.0)) / met.force_to_clear(wide, self.height)
 
     def judged(self, met):
+        """Return what it does: what hangs between rails is held by them."""
+        if met.hanging:
+            return met.passing()
         factor = self.factor(met)
         way = met.one.track.width - met.one.distance
         margin = way * (1.0 - factor)
