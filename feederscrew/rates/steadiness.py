@@ -12,8 +12,7 @@ from feederscrew.rates.rocking import Rocker, goes_over, over_period
 from feederscrew.rates.tipping import FLAT, plain, seated
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling import touching
-from feederscrew.tooling.falling_through import lets_go
-from feederscrew.tooling.holding import may_turn_and_lie_over
+from feederscrew.tooling.falling_through import surely_gone
 from feederscrew.tooling.orientations import gyration, rolls_across, speed
 
 INSTANTS = 12  # of one period
@@ -76,9 +75,7 @@ def gone(devices, lying, passes):
     for row, (one, shares) in enumerate(zip(lying, np.asarray(passes)[:, 1:])):
         first = next((k for k, share in enumerate(shares) if share < 0.5), None)
         if first is not None and not one.returned:
-            device = devices[first]
-            turned = device.face is not None and may_turn_and_lie_over(one, device.limit)
-            found[row] = lets_go(device, one) and not turned
+            found[row] = surely_gone(devices[first], one)
     return found
 
 

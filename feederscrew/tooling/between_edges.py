@@ -83,7 +83,7 @@ def _bridges(ring, width):
     Its lower level chord is as long as the edges are apart.
     """
     levels = np.unique(ring[:, 1])
-    spans = np.array([np.ptp(_at(ring, level)[0]) for level in levels])
+    spans = _spans(ring, levels)
     wide = np.flatnonzero(spans >= width)
     if not len(wide):
         return None
@@ -93,6 +93,17 @@ def _bridges(ring, width):
         level = levels[k - 1] + share * (levels[k] - levels[k - 1])
     places, normals = _at(ring, level)
     return tuple((np.array([places[end], level]), normals[end]) for end in (places.argmin(), places.argmax()))
+
+
+def _spans(ring, levels):
+    """Return how long (L,) the chords of a convex outline at some levels (L,) are: as ``_at`` has them."""
+    along, start = sides(ring), ring[:, 1]
+    low, high = np.minimum(start, start + along[:, 1]), np.maximum(start, start + along[:, 1])
+    met = (low <= levels[:, None]) & (levels[:, None] <= high)
+    rise = np.where(along[:, 1] == 0.0, 1.0, along[:, 1])
+    share = np.clip((levels[:, None] - start) / rise, 0.0, 1.0)
+    places = ring[:, 0] + share * along[:, 0]
+    return np.where(met, places, -np.inf).max(axis=1) - np.where(met, places, np.inf).min(axis=1)
 
 
 def _at(ring, level):

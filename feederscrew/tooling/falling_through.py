@@ -9,6 +9,7 @@ import shapely.affinity
 from feederscrew.geometry.polygons import outline
 from feederscrew.tooling import between_edges
 from feederscrew.tooling.devices.hole_shapes import BEHIND
+from feederscrew.tooling.holding import may_turn_and_lie_over
 
 AZIMUTHS, TILTS = 8, 10  # ways it can tip: about level axes all round, by steps up to a right angle
 CLEAR = 2.5e-4  # [m] a hole is larger than the shadow that goes through it, all round
@@ -68,6 +69,27 @@ def lets_go(device, one):
     if span is None:
         return falls_through(one, cut) and _drops_between(one, cut)
     return fits_as_it_lies(one, cut) or (falls_through(one, cut) and _slips(one, span))
+
+
+@functools.lru_cache(maxsize=8192)
+def surely_gone(device, one):
+    """Return whether an orientation that a device does not let pass is surely returned by it.
+
+    Source: own; docs/tooling.md, "1. The method".
+
+    Parameters
+    ----------
+    device : Device
+    one : Orientation
+        That travels.
+
+    Returns
+    -------
+    bool
+        Whether it is let go of for certain, and does not turn along a swept blade that then lays it over.
+    """
+    turned = device.face is not None and may_turn_and_lie_over(one, device.limit)
+    return lets_go(device, one) and not turned
 
 
 def fits_as_it_lies(one, cut):

@@ -9,6 +9,7 @@ from feederscrew import check
 from feederscrew.bowl.devices import unfit
 from feederscrew.tooling import touching
 from feederscrew.tooling.devices.base import CARRIED, RETURNED, STOPPED, Device, Verdict
+from feederscrew.tooling.falling_through import surely_gone
 from feederscrew.tooling.hanging import Hanging, hung
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.tooling.verdicts import Meeting, verdict
@@ -78,11 +79,19 @@ class DeviceFlow:
     def doubtful(self):
         """(M,) [1] share of each orientation that leaves as well where no verdict is sure to return it."""
         reached = self.starts[:, None] * np.eye(len(self.starts), len(self.states))
-        for matrix, shown in zip(self.matrices, self.verdicts):
-            unsure = [one is not None and not one.sure and one.passes < 1.0 for one in shown]
+        for step, (matrix, shown) in enumerate(zip(self.matrices, self.verdicts)):
+            unsure = [one is not None and self._may_stay(step, k, one) for k, one in enumerate(shown)]
             ways = np.where(np.array(unsure)[:, None], np.eye(len(matrix)), matrix)
             reached = np.einsum("ms,st->mt", reached, ways)
         return check.frozen(np.maximum(reached.sum(axis=1) - self.leaving.sum(axis=1), 0.0))
+
+    def _may_stay(self, step, state, shown):
+        """Whether a device is not sure to return a state that it does not let pass, nor to stop it."""
+        if shown.passes >= 1.0:
+            return False
+        device, one = self.devices[step], self.came[step][state]
+        stands = one.grip <= 0.0 or device.fate(Meeting(one, self.came[0])) == STOPPED
+        return not shown.sure or not (stands or surely_gone(device, one))
 
     @property
     def stops(self):

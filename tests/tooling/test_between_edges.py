@@ -7,13 +7,20 @@ import pytest
 import shapely
 import shapes
 
+from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Track
+from feederscrew.geometry.polygons import outline
+from feederscrew.part import load
 from feederscrew.rates.steadiness import gone
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.between_edges import may_rest
+from feederscrew.tooling.between_edges import _at, _spans, may_rest
+from feederscrew.tooling.devices.base import UNSURE
 from feederscrew.tooling.devices.kinds import made
-from feederscrew.tooling.falling_through import fits_as_it_lies, lets_go
-from feederscrew.tooling.orientations import orientations
+from feederscrew.tooling.falling_through import fits_as_it_lies, lets_go, surely_gone
+from feederscrew.tooling.fates import course
+from feederscrew.tooling.isolating.chain import margin_at
+from feederscrew.tooling.orientations import orientations, travelling
+from feederscrew.tooling.verdicts import verdict
 
 TRACK = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
 RADIUS = 5e-3
@@ -109,3 +116,24 @@ def test_a_blade_with_a_sweep_may_lay_over_what_turns_along_it(block):
     assert gone([low], [block], [[1.0, 0.0]]) == [True]
     assert gone([high], [block], [[1.0, 0.0]]) == [False]
     assert gone([replace(high, sweep=0.5 * np.pi)], [block], [[1.0, 0.0]]) == [True]  # straight across
+
+
+def test_a_design_does_not_count_on_what_may_catch_the_edge_of_a_canyon():
+    """The bracket of parts/ on its two legs, over a strip of 18.85 mm: in a trial it stops there."""
+    bracket, bowl = load("parts/lbracket_30x20x15.stl"), bowls.read(None, [])
+    every = travelling(orientations(bracket, find(bracket), bowl.track), bowl)
+    legs, alone = (next(one for one in every if one.name == name) for name in ("A@90", "A@270"))
+    canyon = made("canyon", "c", limit=18.85e-3)
+    assert verdict(canyon, legs, every).margin < -3e-3 and not surely_gone(canyon, legs)
+    assert margin_at(canyon, legs, every) == -UNSURE and margin_at(canyon, alone, every) > 1e-3
+    assert margin_at(canyon, replace(legs, grip=0.0), every) < -3e-3  # placed, not travelling
+    flow, k = course([canyon], every), every.index(legs)
+    assert flow.leaving[k].sum() == 0.0 and flow.doubtful[k] == pytest.approx(flow.starts[k])
+    falls = next(k for k, one in enumerate(every) if surely_gone(canyon, one) and one.canyon < 18e-3)
+    assert flow.doubtful[falls] == 0.0
+
+
+def test_the_chords_of_an_outline_are_found_all_at_once():
+    ring = outline(shapely.get_coordinates(DISC) * [1.0, 0.7])
+    levels = np.unique(ring[:, 1])
+    np.testing.assert_array_equal(_spans(ring, levels), [np.ptp(_at(ring, level)[0]) for level in levels])

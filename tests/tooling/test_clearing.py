@@ -106,7 +106,7 @@ def test_a_design_stops_nothing_and_its_values_are_on_the_step():
             assert cut.device.kind not in without.split(",")
             value = cut.device.like[2] if cut.device.like else cut.device.limit
             assert (
-                cut.device.leans
+                np.isnan(value)  # of a stretch, or of a jet
                 or value / step == pytest.approx(round(value / step), abs=1e-6)
                 or cut.device.corners
             )
@@ -235,7 +235,7 @@ def test_what_is_not_sure_to_be_returned_counts_against_a_chain():
     part, bowl = shapes.part(shapes.box(6, 6, 20)), bowls.read(None, ["track.width=30 mm"])
     every = travelling(orientations(part, find(part), bowl.track), bowl)
     tall = np.array([one.height > 0.019 for one in every])
-    low, high = made("wiper", "w", limit=10e-3), made("gap", "g", limit=8e-3)
+    low, high = made("wiper", "w", limit=10e-3), made("gap", "g", limit=22e-3)
     flow = course([low], every)
     np.testing.assert_array_equal(flow.doubtful, np.where(tall, flow.starts, 0.0))
     assert not course([low, high], every).doubtful[tall].any()  # the gap is sure of it

@@ -15,6 +15,7 @@ from feederscrew.tooling.fates import course
 from feederscrew.tooling.hanging import Hanging
 from feederscrew.tooling.orientations import orientations
 from feederscrew.tooling.tightest import until_returned
+from feederscrew.tooling.verdicts import verdict
 
 HEAD, SHANK, UNDER = 5e-3, 2e-3, 4e-3  # [m] radii, height of the head
 SLOT = 6e-3
@@ -125,3 +126,11 @@ def test_air_does_not_blow_off_what_rails_hold_and_a_groove_has_no_place_behind_
     path.write_text("devices:\n  - rails: {from: 4 mm, to: 8 mm}\n  - groove: {angle: 30 deg}\n")
     with pytest.raises(FeederError, match="no meaning for parts that hang"):
         course(bowls.read(path).devices, pin)
+
+
+@pytest.mark.parametrize(("near", "sure"), [(3.05e-3, False), (3.15e-3, True)])  # head 5 mm, shank 2 mm
+def test_a_head_that_touches_the_wall_may_wedge(pin, near, sure):
+    along = next(one for one in pin if one.length > 0.02 and one.height < 0.012)
+    device = made("rails", "test", span=(near, near + SLOT), lead=(1e-3, near + SLOT, 0.01, 0.01))
+    found = verdict(device, replace(along, grip=0.1), pin)
+    assert found.hangs and found.sure == sure

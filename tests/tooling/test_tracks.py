@@ -140,6 +140,19 @@ def test_the_force_of_a_jet_lies_amid_what_moves_the_rest_and_what_moves_the_wan
     assert (again.pressure, again.height) == pytest.approx((device.pressure, device.height), rel=1e-9)
 
 
+def test_a_jet_meets_the_end_of_a_part_that_is_higher_than_its_middle():
+    steps = [(0, 0), (16, 0), (16, 4), (4, 4), (4, 9), (0, 9)]  # [mm] a tall end behind or ahead
+    every, _ = coming(shapes.part(shapes.prism(steps, 8.0)))
+    one = max((k for k in every if k.height < 9.5e-3 and k.length > 15e-3), key=lambda k: k.height)
+    jet = made("jet", "j", nozzle=2e-3, pressure=5e4, height=7e-3)
+    met = Meeting(one, every)
+    assert jet.jet.push(one, every)[0] == 0.0 and jet.most(met) > 2.0 * jet.factor(met) > 0.0
+    weak = replace(jet, pressure=pressure_of(2e-3, jet.jet.thrust * 0.75 / jet.most(met), 3e5))
+    assert weak.most(met) == pytest.approx(0.75) and not weak.judged(met).sure
+    weaker = replace(jet, pressure=pressure_of(2e-3, jet.jet.thrust * 0.4 / jet.most(met), 3e5))
+    assert weaker.judged(met).sure and weaker.judged(met).passes == 1.0
+
+
 def test_a_pressure_is_that_of_its_thrust():
     assert pressure_of(2e-3, thrust(2e-3, 7.3e4), 3e5) == pytest.approx(7.3e4, rel=1e-9)
     assert pressure_of(2e-3, 5.0, 3e5) == 3e5

@@ -110,12 +110,13 @@ class Nozzles:
         pushes = [_share(one, self.diameter, float(height)) for height in heights]
         return sum(out - (one.grip or GRIP) * down for out, down in pushes)
 
-    def push(self, one, every):
+    def push(self, one, every, ahead=0.0):
         """Return the force [N] outwards, and down, on an orientation whose centre of mass is before them.
 
-        Air gives a facet what of its momentum goes into that, so a slope is pressed down or lifted as well.
+        Or ``ahead`` [m] of them. Air gives a facet what of its momentum goes into that, so a slope is pressed
+        down or lifted as well.
         """
-        pushes = [_share(one, self.diameter, float(height)) for height in self.heights(every)]
+        pushes = [_share(one, self.diameter, float(height), ahead) for height in self.heights(every)]
         return tuple(self.thrust * sum(push[k] for push in pushes) for k in range(2))
 
     def jets(self, place, every, seconds=math.inf):
@@ -132,15 +133,15 @@ def _heights(nozzles, every):
     return tuple(nozzles._placed(every))
 
 
-def _share(one, diameter, height):
+def _share(one, diameter, height, ahead=0.0):
     """What of a jet's thrust an orientation takes [1]: outwards from the wall, and down."""
-    return _taken(one.posture, one.heading, one.distance, diameter, height)
+    return _taken(one.posture, one.heading, (ahead, one.distance), diameter, height)
 
 
 @functools.lru_cache(maxsize=4096)
-def _taken(posture, heading, distance, diameter, height):
+def _taken(posture, heading, place, diameter, height):
     points, faces = posture.surface, posture.solid.faces
-    plan = turned(points[:, :2], heading) + [0.0, distance]
+    plan = turned(points[:, :2], heading) + place
     corners = np.column_stack([plan, points[:, 2]])[faces]
     sides = vectors.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     corners, sides = corners[sides[:, 1] < 0.0], sides[sides[:, 1] < 0.0]  # those that face the wall

@@ -11,6 +11,7 @@ from feederscrew.tooling.devices.nozzles import SPREAD, Nozzles, pressure_of
 from feederscrew.tooling.devices.pieces import Standing
 
 CLEAR = 2.0  # times the force that just moves a part off: within it, to either side, nothing is sure
+PLACES = 9  # along a part at which a jet meets it
 BORE, PRESSURE = 2e-3, 2e4  # [m], [Pa]
 MOST, STEPS = 3e5, (5e3, 1e3)  # [Pa] of a design: the greatest pressure, and its steps
 
@@ -47,21 +48,35 @@ class SteadyJet(Device):
         return RETURNED
 
     def factor(self, met):
-        """Return its force on an orientation over the one that just moves it off the track [1]."""
+        """Return its mean force on an orientation that passes, over the one that just moves it off [1]."""
+        return float(np.mean(self._factors(met)))
+
+    def most(self, met):
+        """Return the greatest such factor [1] at any place along an orientation."""
+        return float(self._factors(met).max())
+
+    def _factors(self, met):
+        """The same (PLACES,) at places along its length: it may offer more ahead or behind than amid."""
         one = met.one
         wide = self.nozzle + SPREAD * one.width + one.length
-        out, down = self.jet.push(one, met.every or (one,))
-        return (out - met.grip * max(down, 0.0)) / met.force_to_clear(wide, self.height)
+        ends = one.outline[:, 0].min(), one.outline[:, 0].max()
+        shares = (np.arange(PLACES) + 0.5) / PLACES
+        pushes = [
+            self.jet.push(one, met.every or (one,), -float(ends[0] + share * (ends[1] - ends[0])))
+            for share in shares
+        ]
+        force = met.force_to_clear(wide, self.height)
+        return np.array([out - met.grip * max(down, 0.0) for out, down in pushes]) / force
 
     def judged(self, met):
         """Return what it does: what hangs between rails is held by them."""
         if met.hanging:
             return met.passing()
-        factor = self.factor(met)
+        factor, most = self.factor(met), self.most(met)
         way = met.one.track.width - met.one.distance
-        margin = way * (1.0 - factor)
-        if 1.0 / CLEAR < factor < CLEAR:
-            margin = 0.0 if margin >= 0.0 else -UNSURE
+        margin = way * (1.0 - (most if factor < 1.0 else factor))
+        if most > 1.0 / CLEAR and factor < CLEAR:
+            margin = 0.0 if factor < 1.0 else -UNSURE
         return met.verdict(max(margin, -way))
 
     def window(self, passes, returns):
@@ -77,7 +92,7 @@ class SteadyJet(Device):
             The first is the stronger one where none does both.
         """
         force = self.jet.thrust  # the factors are in proportion to it
-        held = max((self.factor(met) for met in passes), default=0.0) / force
+        held = max((self.most(met) for met in passes), default=0.0) / force
         moved = min((self.factor(met) for met in returns), default=math.inf) / force
         weakest = CLEAR / moved if moved > 0.0 else math.inf
         strongest = 1.0 / (CLEAR * held) if held > 0.0 else math.inf

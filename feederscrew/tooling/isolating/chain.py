@@ -7,6 +7,7 @@ import numpy as np
 
 from feederscrew.tooling.devices.base import STOPPED, UNSURE, Device
 from feederscrew.tooling.devices.kinds import KINDS
+from feederscrew.tooling.falling_through import surely_gone
 from feederscrew.tooling.verdicts import Meeting, verdict
 
 WHERE = "design"
@@ -106,10 +107,16 @@ def around():
 
 
 def margin_at(device, one, every):
-    """Return the margin [m] of an orientation at a device; NaN of one that comes to stand there."""
-    document = verdict(device, one, every)
-    stands = document.margin < 0.0 and device.fate(Meeting(one, every)) == STOPPED
-    return np.nan if stands else document.margin
+    """Return the margin [m] of an orientation at a device; NaN of one that comes to stand there.
+
+    None, a hair below 0, of one that travels and may be held there, though it is not supported.
+    """
+    margin = verdict(device, one, every).margin
+    if not margin < 0.0:
+        return margin
+    if device.fate(Meeting(one, every)) == STOPPED:
+        return np.nan
+    return margin if one.grip <= 0.0 or surely_gone(device, one) else max(margin, -UNSURE)
 
 
 def snapped(value, step, up):
@@ -195,17 +202,9 @@ def placed(every, wanted, devices, must, least=np.inf, step=FINE, same=()):
     -------
     tuple of Cut
     """
-    return tuple(
-        _cut(
-            every,
-            pivot(type(device), every, wanted, same) if device.bound else wanted,
-            device,
-            some,
-            least,
-            step,
-        )
-        for device, some in zip(devices, must)
-    )
+    rows = [pivot(type(device), every, wanted, same) if device.bound else wanted for device in devices]
+    given = zip(rows, devices, must)
+    return tuple(_cut(every, row, device, some, least, step) for row, device, some in given)
 
 
 def shared_out(found, devices, margin):
@@ -251,7 +250,7 @@ def _sensor(every, wanted, device, must, step):
     return judged(every, wanted, chosen, must, at(widest), at(least))
 
 
-def _air(every, wanted, device, must, step):
+def _air(every, wanted, device, must, _):
     goes = [Meeting(one, every) for one, some in zip(every, must) if some]
     return judged(every, wanted, device, must, *device.window([Meeting(every[wanted], every)], goes))
 
@@ -289,7 +288,7 @@ def judged(every, wanted, device, must, smallest, largest):
 
 
 def millimetres(value):
-    """Return a length [m] as a bowl file has it, to a tenth of a micrometre: '9.25 mm'."""
+    """Return a length [m] as a bowl file has it: '9.25 mm'."""
     return f"{1e3 * fine(value):.9g} mm"
 
 

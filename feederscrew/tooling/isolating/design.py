@@ -143,9 +143,11 @@ def _plain(given, search, holes):
         cuts, returned = _chosen(given, weight, stage)
         if not _left(given, returned):
             break
-    if holes:
-        cuts, returned = _with_holes(given, cuts, returned, search)
-    found = told_needed(given, cuts, returned, late=search.late)
+    found = told_needed(given, cuts, returned)
+    if holes and not found.isolated:
+        more = told_needed(given, *_with_holes(given, cuts, returned, search))
+        found = found if more.stands and not found.stands else more
+    found = replace(found, late=search.late)
     sensed = {"sensed": given.wishes.allows("sorter")}
     for stage in (sensed, sensed | {"varied": given.wishes.vary}):
         if found.isolated or not any(stage.values()):

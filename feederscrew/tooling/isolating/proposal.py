@@ -32,6 +32,11 @@ class Design:
     steady: bool = True  # the drive leaves the wanted orientation lying on what the cuts leave of its foot
 
     @property
+    def stands(self):
+        """Whether some orientation comes to stand at one of its devices."""
+        return any(cut.stops for cut in self.cuts)
+
+    @property
     def devices(self):
         """Every device along the track: those of the bowl, then the design's own."""
         return (*self.before, *(cut.device for cut in self.cuts))
