@@ -19,6 +19,7 @@ HANGING = "hanging"  # what the hanging pose is called, in place of an aspect
 SUNK = 0.38  # of the shank's radius: how far beyond a rail the middle of its tip has to lie ...
 STRAIGHT = 0.05  # of its diameter: ... unless its tip lies no farther aside than that from its weight
 BARE, FULL = 1.05, 0.9  # of the shank's and of its own width: where the underside of a head begins and ends
+LEVER = 0.1  # of the length, from the head to the weight: in trials those with 0.15 hang, with 0.04 not
 OFF_WALL = 9e-5  # [m] by which a head that hangs stays off the wall at least
 SEATED = 0.1  # of the head's height: how much of a cone's underside counts as resting on the rails
 
@@ -32,6 +33,7 @@ class Neck:
     widest: float  # [m] of that end, in any way it turns about the long axis
     tip: float  # [m] from the foot of the centre of mass, inwards: the long axis at the shank's end
     rise: float  # [1] of the head's underside from the shank outwards: 0 of a flat one, 1 of a cone of 90 deg
+    lever: float  # [m] from the head's end to the centre of mass, along the long axis
     down: np.ndarray  # (3,) [1] from head to shank, in the file's axes
 
 
@@ -109,7 +111,8 @@ def neck(one):
     down, tip = np.einsum("ij,i->j", one.axes, sign * axis), sign * axis[1] * max(sign * places)
     between = (sign * places <= end) & (widths > BARE * shank) & (widths < FULL * head)
     rise = float(between.sum() * np.ptp(places) / SLICES / (0.5 * step))
-    return Neck(float(shank), float(head), widest, float(tip), rise, check.frozen(down))
+    lever = max(-one[4] for one in found if one[3] == sign and one[0] > 0.95 * step)
+    return Neck(float(shank), float(head), widest, float(tip), rise, lever, check.frozen(down))
 
 
 def _turned_about(one, axis, end):
@@ -169,19 +172,18 @@ def tip_goes_down(one, near):
     return abs(found.tip) <= STRAIGHT * found.shank or beyond >= SUNK * 0.5 * found.shank
 
 
-def clear_of_wall(one, span):
-    """Return whether a head that hangs in a slot stays off the wall, wherever its shank stands in the slot.
+def hangs_free(one, span):
+    """Return whether a head that hangs in a slot stays off the wall, and its weight turns the shank down.
 
     Source: own; docs/tooling.md, "1. The method": what touches rail and wall at once may wedge.
     """
     found = neck(one)
-    return found is not None and span[0] + 0.5 * (found.shank - found.widest) >= OFF_WALL
+    free = found is not None and span[0] + 0.5 * (found.shank - found.widest) >= OFF_WALL
+    return free and found.lever >= LEVER * one.length
 
 
 def hung(one, span, known=()):
-    """Return a part hanging between rails that it came to lying.
-
-    Source: own; docs/tooling.md, "1. The method".
+    """Return a part hanging between rails that it came to lying: docs/tooling.md, "1. The method".
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ from feederscrew.tooling import foot as feet
 from feederscrew.tooling.devices.base import STANDARD_GRAVITY, UNSURE, Verdict, share
 from feederscrew.tooling.devices.pieces import GRIP
 from feederscrew.tooling.falling_through import falls_through
-from feederscrew.tooling.hanging import Hanging, clear_of_wall, hanging_margin, head_first, tip_goes_down
+from feederscrew.tooling.hanging import Hanging, hanging_margin, hangs_free, head_first, tip_goes_down
 from feederscrew.tooling.holding import leans, may_lay_aside, may_lay_over, may_wedge, rides, widest
 
 WORN = 2.5e-4  # [m] what an opening holds by less does not hold a part up
@@ -176,9 +176,9 @@ class Meeting:
         """Return whether its head, which comes first, may stick between rails as a wedge."""
         return self.one.grip > 0.0 and head_first(self.one) and may_wedge(self.one, span)
 
-    def clear_of_wall(self, span):
-        """Return whether its head stays off the wall, wherever it hangs in a slot."""
-        return self.one.grip <= 0.0 or clear_of_wall(self.one, span)
+    def hangs_free(self, span):
+        """Return whether its weight turns its shank down, and its head then stays off the wall."""
+        return self.one.grip <= 0.0 or hangs_free(self.one, span)
 
     def goes_down(self, near):
         """Return whether the tip of its shank goes down beside a rail that ends ``near`` [m] the wall."""

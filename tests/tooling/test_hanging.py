@@ -12,7 +12,7 @@ from feederscrew.errors import FeederError
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.fates import course
-from feederscrew.tooling.hanging import Hanging
+from feederscrew.tooling.hanging import Hanging, hangs_free, neck
 from feederscrew.tooling.orientations import orientations
 from feederscrew.tooling.tightest import until_returned
 from feederscrew.tooling.verdicts import verdict
@@ -134,3 +134,17 @@ def test_a_head_that_touches_the_wall_may_wedge(pin, near, sure):
     device = made("rails", "test", span=(near, near + SLOT), lead=(1e-3, near + SLOT, 0.01, 0.01))
     found = verdict(device, replace(along, grip=0.1), pin)
     assert found.hangs and found.sure == sure
+
+
+@pytest.mark.parametrize(("thick", "lever", "sure"), [(4.0, 0.19, True), (11.0, 0.02, False)])
+def test_a_weight_near_the_end_of_a_head_does_not_turn_the_shank_down(thick, lever, sure):
+    """A head 10 mm wide on a shank of 5.6 mm, 24 mm long in all."""
+    head, shank = shapes.cylinder(5.0, thick, 32), shapes.cylinder(2.8, 24.0 - thick, 32)
+    head.apply_translation([0, 0, 12.0])
+    part = shapes.part(head.union(shank))
+    every = orientations(
+        part, find(part), bowls.read(None, ("track.radius=100 m", "track.width=60 mm")).track
+    )
+    one = next(k for k in every if k.length > 0.02 and neck(k) is not None)
+    assert neck(one).lever / one.length == pytest.approx(lever, abs=0.02)
+    assert hangs_free(one, (3.2e-3, 9.2e-3)) == sure and not hangs_free(one, (2.1e-3, 8.1e-3))

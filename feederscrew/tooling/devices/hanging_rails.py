@@ -94,7 +94,7 @@ class Rails(Device):
         first = self.entry.span
         over = met.over_slot(first)
         held = met.held_by_head(self.span[1] - self.span[0], first[1] - first[0]) if over < 0.0 else -np.inf
-        free = met.goes_down(first[0]) and met.clear_of_wall(self.span)
+        free = met.goes_down(first[0]) and met.hangs_free(self.span)
         if held > 0.0 and (met.wedges(first) or not free):
             return met.verdict(0.0, hangs=True)
         margin = min(held, -over) if held > 0.0 else over
