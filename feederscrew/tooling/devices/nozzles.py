@@ -20,7 +20,6 @@ SPREAD = math.tan(math.radians(11.0))  # [1] growth of a free jet's radius: 10 t
 RAYS, GOLDEN = 24, math.pi * (3.0 - math.sqrt(5.0))  # of a jet; [rad] from one to the next
 TRIED, ENOUGH = 12, 0.5  # heights at which an orientation is blown at, and the least share of the thrust
 REACH = 0.5  # [m] no track is wider
-HALVINGS = 50
 ACROSS = (0.0, 1.0, 0.0)  # straight across the track
 
 
@@ -45,20 +44,6 @@ def thrust(diameter, pressure):
         return 2.4 / CHOKED * whole * area - AMBIENT * area
     ratio = AMBIENT / whole
     return 2.0 * area * whole * 3.5 * (ratio ** (1.0 / 1.4) - ratio)
-
-
-def pressure_of(diameter, force, most):
-    """Return the pressure [Pa] above the ambient at which a nozzle has a thrust [N], at most some.
-
-    Source: ``thrust``, which rises with the pressure, halved.
-    """
-    low, high = 0.0, most
-    if thrust(diameter, most) <= force:
-        return most
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if thrust(diameter, middle) >= force else (middle, high)
-    return high
 
 
 @dataclass(frozen=True)

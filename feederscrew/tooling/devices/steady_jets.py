@@ -1,19 +1,18 @@
 """Air that blows all the time: jet."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import MM, RETURNED, UNSURE, Device, room_of
-from feederscrew.tooling.devices.nozzles import SPREAD, Nozzles, pressure_of
+from feederscrew.tooling.devices.nozzles import SPREAD, Nozzles
 from feederscrew.tooling.devices.pieces import Standing
 
 CLEAR = 2.0  # times the force that just moves a part off: within it, to either side, nothing is sure
 PLACES = 9  # along a part at which a jet meets it
 BORE, PRESSURE = 2e-3, 2e4  # [m], [Pa]
-MOST, STEPS = 3e5, (5e3, 1e3)  # [Pa] of a design: the greatest pressure, and its steps
 
 
 @dataclass(frozen=True)
@@ -78,37 +77,6 @@ class SteadyJet(Device):
         if most > 1.0 / CLEAR and factor < CLEAR:
             margin = 0.0 if factor < 1.0 else -UNSURE
         return met.verdict(max(margin, -way))
-
-    def window(self, passes, returns):
-        """Return the weakest and the strongest such jet of which some are sure to pass and others to go.
-
-        Parameters
-        ----------
-        passes, returns : sequence of Meeting
-
-        Returns
-        -------
-        SteadyJet, SteadyJet
-            The first is the stronger one where none does both.
-        """
-        force = self.jet.thrust  # the factors are in proportion to it
-        held = max((self.most(met) for met in passes), default=0.0) / force
-        moved = min((self.factor(met) for met in returns), default=math.inf) / force
-        weakest = CLEAR / moved if moved > 0.0 else math.inf
-        strongest = 1.0 / (CLEAR * held) if held > 0.0 else math.inf
-        return self.blowing(weakest), self.blowing(strongest)
-
-    def blowing(self, force):
-        """Return it with the pressure at which its thrust is a force [N], as far as a design goes."""
-        return self.with_pressure(pressure_of(self.nozzle, force, MOST))
-
-    def with_pressure(self, pressure):
-        """Return it with another pressure [Pa], written anew."""
-        text = (
-            f"{{nozzle: {self.nozzle / MM:.6g} mm, pressure: {pressure / 1e5:.6g} bar, "
-            f"height: {self.height / MM:.6g} mm}}"
-        )
-        return replace(self, pressure=float(pressure), text=text)
 
     def standing(self, track, every):
         room = room_of(every)

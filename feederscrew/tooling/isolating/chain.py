@@ -218,7 +218,7 @@ def shared_out(found, devices, margin):
 
 def _cut(every, wanted, device, must, least, step):
     if not device.bound:
-        return (_sensor if device.like else _air)(every, wanted, device, must, step)
+        return _sensor(every, wanted, device, must, step)
     values, upper = limits(type(device), every), device.bound == "upper"
     values = values + np.where(np.arange(len(every)) == wanted, 0.0, _more(device, every))
     nearest = (values[must].min() if upper else values[must].max()) if must.any() else values[wanted]
@@ -248,11 +248,6 @@ def _sensor(every, wanted, device, must, step):
     own = device.differs(Meeting(every[wanted], every))
     chosen = _surest(every, must, at, 0.5 * (own + widest), least)
     return judged(every, wanted, chosen, must, at(widest), at(least))
-
-
-def _air(every, wanted, device, must, _):
-    goes = [Meeting(one, every) for one, some in zip(every, must) if some]
-    return judged(every, wanted, device, must, *device.window([Meeting(every[wanted], every)], goes))
 
 
 def _more(device, every):

@@ -166,7 +166,7 @@ def _chosen(given, weight, stage):
     asked = {name: value for name, value in stage.items() if name != "varied"}
     found = chain.candidates(every, wanted, given.margin, given.wishes, same=same, **asked)
     if more:
-        found |= varied.varied(every, wanted, given.margin, given.wishes, weight, same)
+        found |= varied.varied(every, wanted, given.margin, given.wishes, same)
         found = dict(sorted(found.items(), key=lambda item: bool(item[0].like)))  # what sees comes last
     found = {device: some for device, some in found.items() if (some[alike] >= given.margin).all()}
     counted = np.where(weight > 0.0, given.coming, 0.0) if given.purity < 1.0 else weight
