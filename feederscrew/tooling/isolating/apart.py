@@ -75,7 +75,9 @@ def _inside(apart):
 def smallest_change(wanted, other, margin):
     """Return in words the least [m] that has to be added to what some device measures of a part."""
     feature, step = _nearest(wanted, other)
-    return f"{1e3 * max(2.0 * margin - step, 0.0):.2g} mm more in {feature} would part them"
+    if step >= 2.0 * margin:
+        return f"{feature} differs by {1e3 * step:.2g} mm, but no chain that was tried can use it"
+    return f"{1e3 * (2.0 * margin - step):.2g} mm more in {feature} would part them"
 
 
 def carries_more(one, other, margin):
