@@ -142,7 +142,7 @@ def test_the_hull_drawn_at_the_worst_place_is_that_of_the_verdict(lying):
 
 @pytest.fixture(scope="module")
 def isolated():
-    """The bracket's aspect A at 270 deg, which one canyon isolates, and its settings."""
+    """The bracket's aspect A at 270 deg, which a hole isolates, and its settings."""
     settings = bowls.settings(None, ["track.width=45 mm"])
     part = parts.load(PART)
     return tooling(part, bowls.record(settings), "A", heading=1.5 * np.pi), settings
