@@ -138,7 +138,7 @@ def tooling(
         What a design may use, as ``Wishes``: outcome, how parts shall leave ('lying', 'hanging' or 'any');
         without, kinds of devices that are not used ('wiper,cut_out'); step [m], of which values are whole
         multiples; up, other aspects that count as the one wanted ('B,C'); cutter [m], the radius that corners
-        of holes are rounded to; vary, whether other banks, grooves and widths of the track, sweeps and jets
+        of holes are rounded to; vary, whether other banks, grooves and widths of the track and sweeps
         are tried where they give more; play and tolerance [m], of the part from the wall and of its size,
         which are added to the margin that is asked for.
 

@@ -40,7 +40,7 @@ class Wishes:
     up: tuple[str, ...] = ()  # aspects that count as the one wanted
     cutter: float = 0.0  # [m] radius that corners of holes are rounded to
     separation: Device | None = None  # that comes before a device that needs gaps
-    vary: bool = True  # other tracks, sweeps and jets are tried where they give more
+    vary: bool = True  # other tracks and sweeps are tried where they give more
 
     def allows(self, kind):
         """Return whether a kind of device may be used."""
