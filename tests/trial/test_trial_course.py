@@ -81,6 +81,18 @@ def test_a_part_at_the_limit_of_a_device(bowl, device, length, passes):
         assert (seen.ended == 2).all()
 
 
+def test_a_step_wins_nothing_that_gravity_and_the_drive_did_not_give(tmp_path):
+    """A bracket that falls down a step onto an edge won 6 to 8 um at once there."""
+    path = tmp_path / "falls.yaml"
+    path.write_text("devices:\n  - step: 4 mm\n  - gap: 7 mm\n")
+    bracket, bowl = load("parts/lbracket_30x20x15.stl"), bowls.read(path, [])
+    every = orientations(bracket, find(bracket), bowl.track)
+    long_side_up = [k for k, one in enumerate(every) if one.name == "D@1"]
+    for seed in (1, 3):
+        seen = course.course(bracket, bowl, every, long_side_up, bowl.devices, parts=1, seed=seed)
+        assert seen.gains.max() < 5e-7
+
+
 def test_a_part_that_falls_over_the_free_edge_does_not_sink_into_the_track():
     """An L on the end of its long leg, across, the short one towards the edge, tips and slides down it."""
     part, bowl = shapes.part(shapes.prism(L_SHAPE, 11)), bowls.read(None, [])

@@ -58,15 +58,42 @@ def _moving(solid, crowd, island):
 
 
 @compiled
+def _scaled(crowd, island, scale):
+    """Scale the velocities of an island's parts."""
+    for m in range(island[0], island[1]):
+        for k in range(3):
+            crowd.states[crowd.order[m], VX + k] *= scale
+            crowd.states[crowd.order[m], W + k] *= scale
+
+
+@compiled
 def _no_more(solid, crowd, island, limit):
     """Scale all velocities so that the kinetic energy is at most ``limit``."""
-    moving = _moving(solid, crowd, island)
+    moving, limit = _moving(solid, crowd, island), max(limit, 0.0)
     if moving > limit:
-        scale = math.sqrt(max(limit, 0.0) / moving)
-        for m in range(island[0], island[1]):
-            for k in range(3):
-                crowd.states[crowd.order[m], VX + k] *= scale
-                crowd.states[crowd.order[m], W + k] *= scale
+        _scaled(crowd, island, math.sqrt(limit / moving))
+
+
+@compiled
+def _no_more_than_given(solid, crowd, island, late):
+    """Scale all velocities so that a step wins no more than gravity, drive and jets give along its way.
+
+    The way is that of the velocities after the step, by a share ``late`` [1], and of those before it.
+    """
+    moving, begun, by_end = 0.0, 0.0, 0.0
+    for m in range(island[0], island[1]):
+        n = crowd.order[m]
+        start, end, given = crowd.before[n], crowd.states[n], crowd.given[n]
+        moving += body.moving_energy(end, solid.inertia)
+        begun += body.moving_energy(start, solid.inertia)
+        for k in range(3):
+            begun += (1.0 - late) * given[k] * start[VX + k]
+            by_end += late * given[k] * end[VX + k]
+            begun += 0.5 * given[3 + k] * solid.inertia[k] * crowd.free[n, k]
+            by_end += 0.5 * given[3 + k] * solid.inertia[k] * end[W + k]
+    if moving > max(begun + by_end, 0.0):
+        scale = (by_end + math.sqrt(max(by_end**2 + 4.0 * moving * begun, 0.0))) / (2.0 * moving)
+        _scaled(crowd, island, min(max(scale, 0.0), 1.0))
 
 
 @apart
@@ -94,14 +121,13 @@ def pushed(surface, solid, floor, crowd, island, time, dt):
         warm = dt / crowd.lasted[n] if warm > 0.0 and crowd.lasted[n] > 0.0 else 0.0
     if count == 0 or (strikes and share > AT_ONCE):
         return deepest, strikes, share
-    limit = _moving(solid, crowd, island)
     contact.solve(surface, crowd, crowd.states, island, True, 0.0 if strikes else warm)
     share = 1.0
     for m in range(island[0], island[1]):
         n = crowd.order[m]
         crowd.lasted[n] = -1.0 if strikes else dt
         share = min(share, reversal(crowd, n))
-    _no_more(solid, crowd, island, limit)
+    _no_more_than_given(solid, crowd, island, 1.0 if strikes else 0.5)
     return deepest, strikes, share
 
 
