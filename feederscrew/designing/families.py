@@ -12,7 +12,6 @@ from feederscrew.tooling.devices.kinds import KINDS
 PROPOSED = tuple(sorted(name for name, kind in KINDS.items() if kind.proposed))
 TRACK = ("track.radius", "track.width", "track.bank", "track.climb")
 OWN = "family"  # the folder of what is of all parts
-SEEN = "sorter"  # is shown another part: nothing of it is changed by hand
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +39,7 @@ class FamilyStudy:
 
 def iron(study):
     """Return what of a design is steel: its track, and its devices but what a sensor is shown."""
-    devices = tuple((one.kind, one.sees if one.kind == SEEN else one.text) for one in study.devices)
+    devices = tuple((one.kind, one.sees if one.senses else one.text) for one in study.devices)
     track = study.bowl.track
     return (track.radius, track.width, track.bank, track.climb), devices
 
@@ -162,8 +161,8 @@ def common_limits(chains):
     found = []
     for cuts in zip(*chains, strict=True):
         own = [cut.device for cut in cuts]
-        if own[0].kind == SEEN or not own[0].bound:
-            if own[0].kind != SEEN and len({one.text for one in own}) > 1:
+        if own[0].senses or not own[0].bound:
+            if not own[0].senses and len({one.text for one in own}) > 1:
                 return None
             found.append(None)
             continue

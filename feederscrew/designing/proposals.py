@@ -12,10 +12,11 @@ from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.isolating.chain import judged, limits, millimetres
 
 ROWS = 6  # orientations for which chains are proposed, the most frequent first
-DROPS = ("wiper", "sorter", "cut_out")  # what is left out at first: drops alone
+SENSORS = tuple(name for name, kind in KINDS.items() if kind.senses)
+DROPS = ("wiper", *SENSORS, "cut_out")  # what is left out at first: drops alone
 SOLID = ("cut_out",)  # and then: holes of several corners, which a shop's tolerance soon spoils
 # all that parts meet: what a sensor sees and air blows off is left
-MET = tuple(sorted(name for name, kind in KINDS.items() if kind.proposed and name != "sorter"))
+MET = tuple(sorted(name for name, kind in KINDS.items() if kind.proposed and not kind.senses))
 # margin [m] to either side, what is left out, and how parts leave: in turn
 HOWS = (
     (5e-4, DROPS, "any"), (5e-4, SOLID, "hanging"), (5e-4, MET, "hanging"),

@@ -5,7 +5,6 @@ from dataclasses import replace
 from feederscrew.tooling.devices.sensing import PULSE
 from feederscrew.tooling.verdicts import Meeting
 
-SENSES = "sorter"  # the kind of device that has a sensor and a pulse
 STEP, LEAST = 5e-3, 4  # [s] to which a pulse is set, and of how many of them the shortest one is
 RESERVE = 6.0  # times as long as takes off what stands before the nozzles: they do not blow at its middle
 LONGER = 2.0  # times, where something is carried through all the same
@@ -28,7 +27,7 @@ def quickened(cut, every):
         Itself where its pulse is as short, or it has none.
     """
     device = cut.device
-    if device.kind != SENSES:
+    if not device.senses:
         return cut
     gone = [Meeting(one, every) for one in every if one.name in cut.returns]
     pushes = [device.jet.push(met.one, every) for met in gone]
@@ -56,7 +55,7 @@ def longer(proposal, tried, every):
     for place, cut in enumerate(proposal.cuts):
         device = cut.device
         slipped = any(tried.wrong[n] and every[k].name in cut.returns for n, k in enumerate(tried.rows))
-        if device.kind != SENSES or not slipped or device.time >= PULSE:
+        if not device.senses or not slipped or device.time >= PULSE:
             continue
         other = _timed(device, min(LONGER * device.time, PULSE))
         cuts = (*proposal.cuts[:place], replace(cut, device=other), *proposal.cuts[place + 1 :])
@@ -65,9 +64,7 @@ def longer(proposal, tried, every):
 
 
 def _timed(device, time):
-    """A sorter with a pulse of some time [s], as a bowl file has it."""
-    said = device.text.partition(", jet: ")[0].removesuffix("}")
-    return replace(device, time=time, text=f"{said}, jet: {{time: {_milliseconds(time)}}}}}")
+    return device.with_pulse(time, _milliseconds(time))
 
 
 def _milliseconds(time):

@@ -3,7 +3,6 @@
 from itertools import zip_longest
 
 from feederscrew import units
-from feederscrew.designing.families import SEEN
 from feederscrew.output.designs import tables
 
 DRIVE = (
@@ -62,7 +61,7 @@ def _devices(study):
         own = [[one for one in member.devices if one.kind == kind] for member in study.members]
         for place, row in enumerate(zip_longest(*own), start=1):
             values = tuple(NOTHING if one is None else one.text for one in row)
-            seen = kind == SEEN and len({None if one is None else one.sees for one in row}) == 1
+            seen = row[0] is not None and row[0].senses and len({one and one.sees for one in row}) == 1
             yield f"{kind} {place}", TAUGHT if seen else SWAPPED, values
 
 

@@ -78,6 +78,7 @@ class Device:
     leans: ClassVar[bool] = False  # whether the track leans otherwise from it on
     grooved: ClassVar[bool | None] = None  # whether the track is a V from it on; None: as before it
     layer: ClassVar[str] = ""  # of its edge in a drawing, where it is none of cuts and gates
+    senses: ClassVar[bool] = False  # whether it sees parts and blows off others: air, no edge that is met
     serves: ClassVar[str] = ""  # what one that returns nothing is for
 
     @classmethod

@@ -41,6 +41,7 @@ class Sorter(Device):
         "nozzles: 4} may follow; parts must come with gaps"
     )
     proposed = True
+    senses = True
     feature = "outline seen by a sensor"
     picture = "above"
     layer = "SENSOR"
@@ -75,6 +76,11 @@ class Sorter(Device):
         written = f"{{of: {named_ones}, play: {text}, sees: {self.sees}}}"
         first, *also = ((name, float(np.radians(float(turn)))) for name, turn in turns)
         return replace(self, like=(*first, float(play)), also=tuple(also), text=written)
+
+    def with_pulse(self, time, written):
+        """Return the same sorter with a pulse of some time [s], which its text calls so."""
+        said = self.text.partition(", jet: ")[0].removesuffix("}")
+        return replace(self, time=time, text=f"{said}, jet: {{time: {written}}}}}")
 
     def differs(self, met):
         """Return by how much [m] an orientation is seen to differ from the nearest of the wanted ones.

@@ -46,6 +46,11 @@ class Wishes:
         """Return whether a kind of device may be used."""
         return kind not in self.without
 
+    @property
+    def sensed(self):
+        """Whether a sensor may be used."""
+        return any(self.allows(kind.kind) for kind in around())
+
 
 def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=False, same=()):
     """Return every device of one number that the wanted orientation passes by a margin.
@@ -103,7 +108,7 @@ def pivot(kind, every, wanted, same=()):
 
 def around():
     """Return the kinds that a design tries with the wanted orientation's own outline."""
-    return [kind for kind in KINDS.values() if kind.proposed and hasattr(kind, "around")]
+    return [kind for kind in KINDS.values() if kind.proposed and kind.senses]
 
 
 def margin_at(device, one, every):

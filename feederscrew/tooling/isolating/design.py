@@ -148,7 +148,7 @@ def _plain(given, search, holes):
         more = told_needed(given, *_with_holes(given, cuts, returned, search))
         found = found if more.stands and not found.stands else more
     found = replace(found, late=search.late)
-    sensed = {"sensed": given.wishes.allows("sorter")}
+    sensed = {"sensed": given.wishes.sensed}
     for stage in (sensed, sensed | {"varied": given.wishes.vary}):
         if found.isolated or not any(stage.values()):
             continue

@@ -50,7 +50,7 @@ def design(given):
     gone = falls | ~given.stays | (given.coming <= 0.0)
     passed = gone | same
     for stage in STAGES:
-        if not stage.get("sensed") or given.wishes.allows("sorter"):
+        if not stage.get("sensed") or given.wishes.sensed:
             cuts, returned = _before(given, passed, same, stage)
         left = ~returned & ~passed & given.often
         if given.coming[left].sum() <= given.coming[same].sum() * (1.0 / given.purity - 1.0):
