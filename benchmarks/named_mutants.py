@@ -75,6 +75,17 @@ EQUIVALENT = {
         "SETTLES, FOLLOWED =",
     ): "sliding repeats itself, and what goes over has, long before",
     ("rates/rocking.py", "QUIET ="): "a part that comes down so slowly is at rest within the same instant",
+    ("rates/rocking.py", "after / side"): "the side is 1 or -1",
+    (
+        "rates/rocking.py",
+        "_senses(motions,",
+    ): "how the part slides does not depend on the unit of its velocity",
+    ("rates/steadiness.py", "margin + SAME"): "any number about rounding tells the same",
+    ("rates/tipping.py", "INSTANTS ="): "any number of instants that shows a stroke",
+    ("rates/tipping.py", "BESIDE /"): "as with BESIDE itself",
+    ("tooling/holding.py", "FAR ="): "any length beyond every foot",
+    ("tooling/holding.py", "points[:, :3]"): "heights are not looked at",
+    ("machine/throughput.py", "STEPS + 2"): "a stroke beyond the greatest is held at it",
     ("rates/tipping.py", "BESIDE ="): "any width beyond every force's place: it tips over the ends alone",
 }
 """File and what stands in a changed line of it, and why no test can notice the change."""

@@ -6,8 +6,12 @@ import awkward
 import numpy as np
 import pytest
 
+from feederscrew.conveying import answer
+from feederscrew.errors import FeederError
 from feederscrew.machine import sizing, throughput
+from feederscrew.mechanics.wall.stable_headings import headings
 from feederscrew.rates import stream
+from feederscrew.resting.posture import posture
 
 LYING = sizing.Lying(longest=0.031, tallest=0.026, length=0.03, width=0.0175)
 
@@ -75,3 +79,76 @@ def test_what_no_stroke_brings_is_told_in_parts_a_minute_and_millimetres_peak_to
     told = str(throughput.unreachable(2.0, 3.0, (0.05, 0.4e-3)))
     assert "no bowl reaches 120/min" in told
     assert "the most is 9/min at 0.8 mm peak to peak" in told
+
+
+def test_where_no_part_passes_the_devices_are_to_blame_and_not_the_climb():
+    """Something leaves but for the climb, or nothing leaves anyway."""
+    part, aspects = awkward.part()
+    bowl = awkward.bowl()
+    known = stream.orientations(part, aspects, bowl.track, bowl=bowl)
+    none = replace(known, passes=np.zeros_like(known.passes))
+    with pytest.raises(FeederError, match="devices: let no part pass"):
+        throughput.flow(none, "csa")
+    rolls = tuple(replace(one, may_roll_back=True) for one in known.lying)
+    with pytest.raises(FeederError, match=r"track\.climb"):
+        throughput.flow(replace(known, lying=rolls), "csa")
+
+
+def test_the_steepest_climb_is_that_to_which_the_springs_as_they_are_carry_a_part():
+    """Springs of 25 deg to a track that climbs by 2 deg stand at 27 deg to the level, whatever the climb."""
+    bowl = awkward.bowl("drive.vibration_angle=25 deg", "track.bank=0 deg")
+    found = throughput.steepest(bowl)
+
+    def speed(climb):
+        drive = replace(bowl.drive, vibration_angle=np.radians(27.0) - climb)
+        return answer.answer(replace(bowl, drive=drive, track=replace(bowl.track, climb=climb))).velocity
+
+    assert np.radians(2.0) < found < np.radians(20.0)
+    assert speed(found - 1e-4) > 0.0 and not speed(found + 1e-4) > 0.0
+
+
+def test_a_stroke_without_a_steady_state_is_slower_than_every_other():
+    slides = awkward.bowl("track.climb=40 deg", "track.bank=0 deg")
+    assert throughput._speeds(slides, np.array([1e-4, 2e-4]), (1.0,)).tolist() == [-np.inf, -np.inf]
+
+
+def test_a_part_takes_the_longest_way_along_the_wall_and_the_widest_across():
+    """Wanted in one orientation, only that counts; the nearest heading is meant, any turns away."""
+    part, aspects = awkward.part()
+    found = [
+        headings(posture(part, aspects, name), sizing.STRAIGHT)
+        for name in np.array(aspects.names)[aspects.stable]
+    ]
+    every = sizing.lying(part, aspects)
+    assert every.length == every.longest == max(one.lengths.max() for one in found)
+    assert every.width == max(one.widths.max() for one in found)
+    uneven = 0
+    for one in found[:2]:
+        for heading, length, width in zip(one.headings, one.lengths, one.widths):
+            for turns in (-1, 1):
+                own = sizing.lying(part, aspects, (one.aspect, heading + 2.0 * np.pi * turns + 1e-3))
+                assert (own.length, own.width, own.longest) == (length, width, every.longest)
+                uneven += abs(length - width) > 1e-3
+            laid = sizing.shape(part, aspects, sizing.STRAIGHT, (one.aspect, heading))
+            assert laid.length == length and np.ptp(laid.outline[:, 0]) == pytest.approx(length)
+    assert uneven
+
+
+def test_on_a_track_of_a_given_width_the_bowl_is_wide_enough_for_it_and_for_its_bend():
+    """A part of length L in a bend of diameter D stands off by L^2 / (2 D) in its middle."""
+    rules = replace(awkward.bowl().sizing, diameter_per_width=7.0)
+    least = sizing._diameters(LYING, 1e-3, rules, 0.0215, False)
+    assert least["width of the track"] == pytest.approx(7.0 * 0.0215)
+    bend = least["bend on this track"]
+    assert bend == pytest.approx(0.03**2 / (2.0 * 3e-3))  # 21.5 - 17.5 - 1 mm are free
+    assert 0.5 * bend - np.sqrt(0.25 * bend**2 - 0.015**2) == pytest.approx(0.5 * 3e-3, rel=0.05)
+
+
+@pytest.mark.parametrize(("share", "fits"), [(1.97, False), (2.03, True)])
+def test_a_bowl_that_is_given_is_twice_as_wide_as_the_part_is_long(share, fits):
+    rules = awkward.bowl().sizing
+    if fits:
+        sizing._check_diameter(share * LYING.longest, LYING, "a part", rules, fixed=True)
+        return
+    with pytest.raises(FeederError, match=r"track\.radius"):
+        sizing._check_diameter(share * LYING.longest, LYING, "a part", rules, fixed=True)

@@ -100,3 +100,21 @@ def test_a_round_part_rides_over_a_hole_that_it_sinks_into_by_less_than_it_climb
     assert not holding.rides(along, 1e-3 * (short + 0.03), 15e-3)
     assert not any(holding.rides(one, 1e-3, np.inf) for one in every if one.length < 0.019)
     assert holding.widest([(0.0, 0.0), (4e-3, 1e-3), (0.0, 3e-3)]) == pytest.approx(3e-3)
+
+
+@pytest.mark.parametrize(("over", "lays"), [(-0.03e-3, False), (0.03e-3, True)])
+def test_a_climb_takes_its_part_of_what_the_track_pushes(pin, over, lays):
+    """F (z - mu L) + h sin c = b cos c with F (1 - mu^2) = mu cos c - sin c, at L = 6, b = 3, h = 10 mm."""
+    climb = np.radians(5.0)
+    push = (0.5 * np.cos(climb) - np.sin(climb)) / 0.75
+    height = 3e-3 + (3e-3 * np.cos(climb) - 10e-3 * np.sin(climb)) / push
+    steep = replace(pin, track=replace(TRACK, climb=climb))
+    assert holding.may_lay_over(steep, height + over) == lays
+
+
+@pytest.mark.parametrize("sweep", [0.3, 0.7])
+def test_a_swept_blade_lays_a_pin_aside_from_a_height_on(pin, sweep):
+    """Over a side 3 mm from the weight: mu z cos(a) = 3 mm, a the lesser of both its angles to the push."""
+    height = 3e-3 / (0.5 * max(np.cos(sweep), np.sin(sweep)))
+    assert not holding.may_lay_aside(pin, 0.99 * height, sweep)
+    assert holding.may_lay_aside(pin, 1.01 * height, sweep)

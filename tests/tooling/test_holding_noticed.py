@@ -140,3 +140,86 @@ def square_of_gyration(one):
     seen = whole @ one.axes[[0, 2]].T
     squares = (seen.sum(axis=1) ** 2 + (seen**2).sum(axis=1)).sum(axis=1) / 20.0
     return (volumes * squares).sum() / volumes.sum()
+
+
+def test_a_blade_meets_the_foremost_place_of_what_is_higher_than_it():
+    """Each face cut at the blade's height by itself: how far what is left reaches, and how low there."""
+    seen = set()
+    for one in awkward.lying():
+        points = one.posture.surface
+        c, s = np.cos(one.heading), np.sin(one.heading)
+        ahead, height = c * points[:, 0] - s * points[:, 1], points[:, 2]
+        for share in (0.13, 0.37, 0.61, 0.83):
+            low = share * height.max()
+            kept = [
+                place
+                for face in one.posture.solid.faces
+                for place in above([(ahead[k], height[k]) for k in face], low)
+            ]
+            reach = max(place[0] for place in kept)
+            level = min(place[1] for place in kept if place[0] >= reach - 1e-7)
+            assert holding._met(one, low) == pytest.approx((reach, level), abs=1e-9)
+            seen.add(level > low + 1e-6)
+            seen.add(bool(reach < ahead.max() - 1e-6))
+    assert seen == {True, False}
+
+
+def above(corners, low):
+    """Corners of a triangle, how far ahead and how high, from a height on, and where its sides cross that."""
+    for (x, z), (u, w) in zip(corners, [*corners[1:], corners[0]]):
+        if z >= low:
+            yield x, z
+        if (z - low) * (w - low) < 0.0:
+            yield x + (low - z) / (w - z) * (u - x), low
+
+
+def test_the_rear_side_is_a_barrier_of_its_own_and_a_face_holds_what_its_momentum_does_not_lift():
+    """Corners of a skew body seen across the track: its barriers by trying every angle."""
+    every = placed(awkward.lying())
+    uneven = []
+    for one in every:
+        if one.falls_off or one.kind != "flat":
+            continue
+        turn = turning.pitched(one, every)
+        points = one.posture.solid.vertices - one.posture.solid.centre_of_mass
+        seen = points @ np.array([one.axes[0], -one.axes[2]]).T  # ahead and down
+        assert turn.lift == pytest.approx(lifted(seen, 1.0), abs=2e-8)
+        assert turn.back == pytest.approx(lifted(seen, -1.0), abs=2e-8)
+        uneven.append(abs(turn.lift - turn.back) / one.height)
+    assert max(uneven) > 0.05
+
+
+def lifted(seen, side):
+    """Rise [m] of the weight over the edge to a side, of corners (V, 2) to that side and down.
+
+    Turned on by small angles, the lowest corner is as far below the weight as it is high; the first highest.
+    """
+    turns = np.linspace(0.0, 0.5 * np.pi, 20001)
+    heights = (side * seen[:, :1] * np.sin(turns) + seen[:, 1:] * np.cos(turns)).max(axis=0)
+    falls = np.flatnonzero(np.diff(heights) < 0.0)
+    return heights[falls[0] if len(falls) else -1] - heights[0]
+
+
+def test_a_face_holds_a_fall_of_which_housners_impact_leaves_less_than_its_edge_lifts():
+    """A skew body is set down on a face from another one: what the drop may be."""
+    every = placed(awkward.lying())
+    judged = 0
+    for one in every:
+        solid = one.posture.solid
+        hull = turning.convex_hull(solid.vertices, solid.centre_of_mass, solid.source)
+        x, y, z = one.axes
+        below = hull.vertices @ np.array([x, -z]).T
+        height = max(v[1] for v in below)
+        foot = [v[0] for v in below if v[1] > height - 1e-7]
+        arm = square_of_gyration(one)
+        still = arm + height**2
+        kept = still + min(foot) * max(foot)
+        limit = turning._holds(hull, one, (x, y, -z))
+        if kept <= 0.0:
+            assert limit == np.inf
+            continue
+        left = kept**2 / ((still + min(foot) ** 2) * (still + max(foot) ** 2))
+        rise = lifted(below, 1.0)
+        assert limit == pytest.approx(rise / left + height - one.posture.height, rel=1e-5, abs=1e-7)
+        judged += abs(min(foot) + max(foot)) > 0.05 * height
+    assert judged
