@@ -81,9 +81,9 @@ def cases():
 @entry
 def follow(solid, work, corner, until, steps):
     """Follow a body that sticks to a floor at rest."""
-    floor, time, gap = at_rest(), 0.0, 0.0
+    floor, time, gap, pairing = at_rest(), 0.0, 0.0, falling.Pairing(0.0, 5.0)
     while time < until:
-        corner, gap, dt, _, _ = falling.advance(solid, work, floor, time, corner, gap, 0.0, 5.0, steps)
+        corner, gap, dt, _, _ = falling.advance(solid, work, floor, time, corner, gap, pairing, steps)
         time += dt
 
 

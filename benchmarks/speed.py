@@ -133,7 +133,7 @@ def rates(shape, count, launch=THROW, steps=None):
     starts = sample(launch, shape, count, np.random.default_rng(1))
     faces, times, work = np.empty(count, int), np.empty(count), one_drop.scratch(shape)
     steps = steps or one_drop.Steps()
-    given = shape, work, starts.states, starts.restitutions, starts.frictions, steps, faces, times
+    given = shape, work, starts.launched(), steps, faces, times
     return count / seconds(one_drop.settle_all, *given, repeats=2), faces
 
 

@@ -247,10 +247,7 @@ def _batch(shape, steps, starts, part):
     """Faces, times, energies and restitutions of some drops."""
     energies = starts.energies[part]
     faces, times = np.full(len(energies), kernel.UNSETTLED), np.zeros(len(energies))
-    kernel.settle_all(
-        shape, kernel.scratch(shape), starts.states[part], starts.restitutions[part],
-        starts.frictions[part], steps, faces, times,
-    )  # fmt: skip
+    kernel.settle_all(shape, kernel.scratch(shape), starts.launched(part), steps, faces, times)
     return faces, times, energies, starts.restitutions[part]
 
 

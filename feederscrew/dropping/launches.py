@@ -8,6 +8,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.conveying.sensitivity import even_range
 from feederscrew.dropping.kernel import body
+from feederscrew.dropping.kernel.falling import Launched
 from feederscrew.dropping.rims import lowest_on
 from feederscrew.resting.rules.recommended import launch_named
 
@@ -79,6 +80,10 @@ class Starts:
     def some(self, part):
         """Return those of a slice."""
         return Starts(self.states[part], self.restitutions[part], self.frictions[part], self.energies[part])
+
+    def launched(self, part=slice(None)):
+        """Return those of a slice as the kernels take them: a Launched."""
+        return Launched(self.states[part], self.restitutions[part], self.frictions[part])
 
 
 def sample(launch, shape, count, rng):

@@ -217,10 +217,9 @@ def _followed(known, surface, limits, looks, states, times):
     ends, count = np.array(states, float), len(states)
     outcomes, notes = np.zeros(count, np.int64), np.zeros((count, travel.NOTES + 2))
     paths = np.full((count, places, 8), np.nan)
-    travel.travel_all(
-        surface, limits, known.solid, known.floor, crowd_of(known.solid, surface, 1), ends,
-        np.asarray(times) / known.unit, stride, paths, notes, outcomes,
-    )  # fmt: skip
+    sent = crowd_records.Sent(ends, np.asarray(times) / known.unit, stride, paths, notes, outcomes)
+    crowd = crowd_of(known.solid, surface, 1)
+    travel.travel_all(surface, limits, known.solid, known.floor, crowd, sent)
     paths *= np.array([known.unit, *[known.length] * 3, 1.0, 1.0, 1.0, 1.0])
     return Runs(
         outcomes=outcomes, states=ends, seconds=notes[:, travel.TIME] * known.unit,

@@ -166,9 +166,7 @@ def test_a_sliding_block_stops_where_friction_says():
 def run(shape, count, steps, seed=3, preset="feed"):
     starts = sample(PRESETS[preset], shape, count, np.random.default_rng(seed))
     faces, times = np.empty(count, int), np.empty(count)
-    one_drop.settle_all(
-        shape, scratch(shape), starts.states, starts.restitutions, starts.frictions, steps, faces, times
-    )
+    one_drop.settle_all(shape, scratch(shape), starts.launched(), steps, faces, times)
     return faces
 
 

@@ -35,11 +35,10 @@ def ride(shape, plate, state, looks, friction, restitution=0.0, steps=None):
     """Faces and places of one ride."""
     work = falling.scratch(shape)
     work.state[:] = state
-    faces, places = np.full(len(looks), -1), np.full((len(looks), 2), np.nan)
     steps = steps or drive.steps_of(plate)
-    taken = shaken.ride(shape, work, plate, restitution, friction, steps, looks, faces, places)
-    assert taken == len(looks)
-    return faces, places
+    seen = shaken.ride(shape, work, plate, falling.Pairing(restitution, friction), steps, looks)
+    assert seen.taken[0] == len(looks)
+    return seen.faces[0], seen.places[0]
 
 
 @pytest.mark.parametrize("amplitude", [0.2, 0.1])
@@ -78,16 +77,13 @@ def test_a_floor_that_does_not_move_is_the_floor_of_a_drop_test():
     """To the share of drops by which stopping early and running to rest may differ."""
     starts = sample(PRESETS["roll"], BOX, 150, np.random.default_rng(4))
     faces, times = np.empty(150, int), np.empty(150)
-    given = starts.states, starts.restitutions, starts.frictions
+    given = starts.launched()
     one_drop.settle_all(
-        BOX, one_drop.scratch(BOX), *given, one_drop.Steps(early=False, longest=60.0), faces, times
+        BOX, one_drop.scratch(BOX), given, one_drop.Steps(early=False, longest=60.0), faces, times
     )
-    seen, places = np.full((150, 1), -1), np.zeros((150, 1, 2))
-    shaken.ride_all(
-        BOX, falling.scratch(BOX), at_rest(), *given, one_drop.Steps(), np.array([60.0]), seen, places,
-        np.zeros(150, int), np.inf,
-    )  # fmt: skip
-    assert (seen[:, 0] == faces).mean() >= 0.985
+    seen = shaken.unseen(150, np.array([60.0]))
+    shaken.ride_all(BOX, falling.scratch(BOX), at_rest(), given, one_drop.Steps(), seen, np.inf)
+    assert (seen.faces[:, 0] == faces).mean() >= 0.985
 
 
 def exact(bowl):

@@ -159,7 +159,7 @@ def test_a_disc_that_rolls_upright_keeps_its_energy_and_goes_straight():
     time, steps = 0.0, Steps(rolling=0.0, pivot=0.0)
     while time < 5.0:
         corner, gap, dt, count, _ = falling.advance(
-            shape.solid, work, at_rest(), time, corner, gap, 0.3, 0.4, steps
+            shape.solid, work, at_rest(), time, corner, gap, falling.Pairing(0.3, 0.4), steps
         )
         time += dt
         assert count == 2

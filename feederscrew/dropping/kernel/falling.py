@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from feederscrew import check
 from feederscrew.dropping.kernel import body, floor_contacts, impulses, touch
 from feederscrew.dropping.kernel import floor_motion as floors
 from feederscrew.dropping.kernel.body import VX, VZ, W, X, Z
@@ -71,6 +72,26 @@ class Steps(NamedTuple):
         100_000  # steps after which it does, whatever the time: of 100,000 drops none took half of them
     )
     early: bool = True  # stop as soon as the face is decided, not at rest
+
+
+class Pairing(NamedTuple):
+    """How the materials of a body and of the floor meet."""
+
+    restitution: float  # of a point that strikes it
+    friction: float
+
+
+class Launched(NamedTuple):
+    """How N bodies are let go, and how each of them and the floor meet."""
+
+    states: np.ndarray  # (N, STATE)
+    restitutions: np.ndarray  # (N,)
+    frictions: np.ndarray  # (N,)
+
+
+def launched_one(state, restitution, friction):
+    """Return one body that is let go in a state (STATE,): Launched, of arrays as the kernels know them."""
+    return Launched(*(check.frozen(np.array([one], float)) for one in (state, restitution, friction)))
 
 
 @compiled
@@ -200,7 +221,7 @@ def resist(state, inertia, lever, dt):
 
 
 @shared
-def advance(solid, work, floor, time, corner, gap, restitution, friction, steps):
+def advance(solid, work, floor, time, corner, gap, pairing, steps):
     """Take one step of the body: through the air, or on the floor after the impact if it falls.
 
     Returns
@@ -208,6 +229,7 @@ def advance(solid, work, floor, time, corner, gap, restitution, friction, steps)
     corner, gap, time taken, points that touched the floor before, whether they struck it
     """
     state, contacts, count, struck, rise = work.state, work.contacts, 0, False, math.inf
+    restitution, friction = pairing
     if gap <= steps.tolerance:
         count = touch.touching(solid, work, state[Z], corner, steps.tolerance)
         floor_contacts.arms(work, count)

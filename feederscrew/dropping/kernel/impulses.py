@@ -65,8 +65,9 @@ def spun(c, n, k, impulse, p, q, r):
 
 
 @compiled
-def relax(c, n, friction, u, v, w, p, q, r):
-    """Do one projected Gauss-Seidel step on contact n; return velocities [sqrt(g L)], rates [sqrt(g/L)]."""
+def relax(c, n, friction, moves):
+    """Do one projected Gauss-Seidel step on contact n; return velocities [sqrt(g L)] and rates (6,)."""
+    u, v, w, p, q, r = moves
     x, y, z = c[n, IMPULSE], c[n, IMPULSE + 1], c[n, IMPULSE + 2]
     up = max(z + c[n, MASS + 2] * (c[n, WANTED] - along(c, n, LEVER + 6, w, p, q, r)), 0.0)
     w += up - z
@@ -147,7 +148,7 @@ def sweep(state, contacts, count, friction, sweeps, converged):
         state[W], state[W + 1], state[W + 2] = p, q, r
         size = 0.0
         for n in range(count):
-            u, v, w, p, q, r = relax(contacts, n, friction, u, v, w, p, q, r)
+            u, v, w, p, q, r = relax(contacts, n, friction, (u, v, w, p, q, r))
             size += contacts[n, IMPULSE + 2]
         change = abs(u - state[VX]) + abs(v - state[VX + 1]) + abs(w - state[VZ])
         change += abs(p - state[W]) + abs(q - state[W + 1]) + abs(r - state[W + 2])

@@ -4,15 +4,22 @@ import math
 
 import numpy as np
 
-from feederscrew import check
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VY, VZ, W, Z
-from feederscrew.dropping.kernel.falling import Steps, advance, scratch, start
+from feederscrew.dropping.kernel.falling import (
+    Launched,
+    Pairing,
+    Steps,
+    advance,
+    launched_one,
+    scratch,
+    start,
+)
 from feederscrew.dropping.kernel.floor_motion import at_rest
 from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.resting.tumbling.walk import LOST, roll_from_corner, roll_from_facet
 
-__all__ = ["STEADY", "UNSETTLED", "Steps", "face_below", "scratch", "settle", "settle_all"]
+__all__ = ["STEADY", "UNSETTLED", "Launched", "Steps", "face_below", "scratch", "settle", "settle_all"]
 
 UNSETTLED = -1
 STILL = 1e-6  # kinetic energy below which a part does not move
@@ -89,12 +96,13 @@ def record(trace, k, time, state):
 
 
 @entry
-def settle_all(shape, work, starts, restitutions, frictions, steps, faces, times):
-    """Drop every row of (N, 13) starts; fills (N,) faces and times."""
+def settle_all(shape, work, launched, steps, faces, times):
+    """Drop all N bodies that are launched; fills (N,) faces and times."""
     floor = at_rest()
-    for n in range(len(starts)):
+    for n in range(len(launched.states)):
+        pairing = Pairing(launched.restitutions[n], launched.frictions[n])
         for k in range(body.STATE):
-            work.state[k] = starts[n, k]
+            work.state[k] = launched.states[n, k]
         face, time, rows, rests, quiet = UNSETTLED, 0.0, 0, 0, 0
         corner, gap = start(shape.solid, work)
         for _ in range(steps.most):
@@ -104,7 +112,7 @@ def settle_all(shape, work, starts, restitutions, frictions, steps, faces, times
                 record(work.trace, rows, time, work.state)
                 rows += 1
             corner, gap, dt, count, struck = advance(
-                shape.solid, work, floor, time, corner, gap, restitutions[n], frictions[n], steps
+                shape.solid, work, floor, time, corner, gap, pairing, steps
             )
             time += dt
             if count == 0:
@@ -112,7 +120,7 @@ def settle_all(shape, work, starts, restitutions, frictions, steps, faces, times
             rests = 0 if struck else rests + 1
             quiet = quiet + 1 if body.moving_energy(work.state, shape.solid.inertia) < STILL else 0
             if rests % (2 if count >= 3 else 8) == 0:
-                face = decided(shape, work.state, work.turn, corner, count, frictions[n], quiet, steps)
+                face = decided(shape, work.state, work.turn, corner, count, pairing.friction, quiet, steps)
                 if face != UNSETTLED:
                     break
         faces[n], times[n], work.rows[0] = face, time, rows
@@ -136,6 +144,5 @@ def settle(shape, work, restitution, friction, steps):
     face, time, rows of the trace filled
     """
     faces, times = np.zeros(1, int), np.zeros(1)
-    given = (check.frozen(np.array(one, float)) for one in ([work.state], [restitution], [friction]))
-    settle_all(shape, work, *given, steps, faces, times)
+    settle_all(shape, work, launched_one(work.state, restitution, friction), steps, faces, times)
     return int(faces[0]), float(times[0]), int(work.rows[0])

@@ -1,13 +1,13 @@
 """Compiled ride: one body on a vibrating floor, looked at again and again."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from feederscrew import check
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VY, W, X, Y
-from feederscrew.dropping.kernel.falling import advance, start
+from feederscrew.dropping.kernel.falling import Pairing, advance, launched_one, start
 from feederscrew.dropping.kernel.one_drop import STEADY, UNSETTLED, face_below, rolling_energy
 from feederscrew.geometry.compiled import compiled, entry
 
@@ -15,6 +15,23 @@ SURE = 0.5  # of the barrier: what tilt and spin of a part that lies on a face m
 CALM = 3  # periods for which a part must lie on one face to stay, on a floor that throws nothing up
 ROLLING = 15  # ... and on a face on which it rolls
 PATIENCE = 50  # steps for each that a floor without events would take
+
+
+class Seen(NamedTuple):
+    """What is seen of N bodies at K looks."""
+
+    looks: np.ndarray  # (K,) times at which to look, ascending
+    faces: np.ndarray  # (N, K) int, face it lies on, UNSETTLED while it may be tipping over
+    places: np.ndarray  # (N, K, 2) of its centre of mass over the floor, NaN where no look was taken
+    taken: (
+        np.ndarray
+    )  # (N,) int, looks taken; fewer than K only where the motion took far more steps than due
+
+
+def unseen(count, looks):
+    """Return what is to be filled in of so many bodies: Seen."""
+    faces = np.full((count, len(looks)), UNSETTLED)
+    return Seen(looks, faces, np.full((*faces.shape, 2), np.nan), np.zeros(count, int))
 
 
 @compiled
@@ -66,17 +83,19 @@ def calm_enough(shape, floor, face, calm):
 
 
 @entry
-def ride_all(shape, work, floor, starts, restitutions, frictions, steps, looks, faces, places, taken, kick):
-    """Ride every row of (N, 13) starts; fills (N, K) faces, (N, K, 2) places and (N,) looks taken.
+def ride_all(shape, work, floor, launched, steps, seen, kick):
+    """Let all N bodies that are launched ride, and fill in what is seen of them.
 
     With a finite ``kick``, a part that so much energy cannot tip any more, or that has come to lie still on
     a floor that throws nothing up, stays on its face and where it is at all looks that are left.
     """
-    state, most = work.state, int(PATIENCE * looks[-1] / min(steps.contact, floor.step))
+    state, looks = work.state, seen.looks
+    most = int(PATIENCE * looks[-1] / min(steps.contact, floor.step))
     period = 2.0 * math.pi / floor.rate if floor.rate > 0.0 else math.inf
-    for n in range(len(starts)):
+    for n in range(len(launched.states)):
+        pairing = Pairing(launched.restitutions[n], launched.frictions[n])
         for k in range(body.STATE):
-            state[k] = starts[n, k]
+            state[k] = launched.states[n, k]
         time, look, rests, periods, calm, before, stays = 0.0, 0, 0, 1, 0, UNSETTLED, UNSETTLED
         corner, gap = start(shape.solid, work)
         for _ in range(most):
@@ -88,24 +107,24 @@ def ride_all(shape, work, floor, starts, restitutions, frictions, steps, looks, 
                     stays = face
             while look < len(looks) and (time >= looks[look] or stays != UNSETTLED):
                 here = stays != UNSETTLED
-                faces[n, look] = stays if here else lying(shape, state, work.turn, corner)
+                seen.faces[n, look] = stays if here else lying(shape, state, work.turn, corner)
                 late = 0.0 if here else time - looks[look]
-                places[n, look, 0] = state[X] - late * state[VX]
-                places[n, look, 1] = state[Y] - late * state[VY]
+                seen.places[n, look, 0] = state[X] - late * state[VX]
+                seen.places[n, look, 1] = state[Y] - late * state[VY]
                 look += 1
             if look == len(looks):
                 break
             corner, gap, dt, count, struck = advance(
-                shape.solid, work, floor, time, corner, gap, restitutions[n], frictions[n], steps
+                shape.solid, work, floor, time, corner, gap, pairing, steps
             )
             time += dt
             rests = 0 if struck else rests + min(count, 1)
             if kick < math.inf and count > 0 and rests % (2 if count >= 3 else 8) == 0:
                 stays = held_fast(shape, state, work.turn, corner, kick)
-        taken[n] = look
+        seen.taken[n] = look
 
 
-def ride(shape, work, floor, restitution, friction, steps, looks, faces, places):
+def ride(shape, work, floor, pairing, steps, looks):
     """Follow one body on a moving floor.
 
     Source: docs/resting.md, "On the vibrating plate".
@@ -116,21 +135,16 @@ def ride(shape, work, floor, restitution, friction, steps, looks, faces, places)
     work : Scratch
         Its ``state`` holds the start, relative to the floor, and the end afterwards.
     floor : Floor
-    restitution, friction : float [1]
+    pairing : Pairing
     steps : Steps
     looks : (K,) float [sqrt(L/g)]
         Times at which to look, ascending.
-    faces : (K,) int
-        Filled with the face it lies on, UNSETTLED while it may be tipping over.
-    places : (K, 2) float [L]
-        Filled with where its centre of mass is over the floor.
 
     Returns
     -------
-    int
-        Looks taken; fewer than K only where the motion takes far more steps than it should.
+    Seen
+        Of the one body.
     """
-    given = (check.frozen(np.array(one, float)) for one in ([work.state], [restitution], [friction]))
-    taken = np.zeros(1, int)
-    ride_all(shape, work, floor, *given, steps, looks, faces[None], places[None], taken, math.inf)
-    return int(taken[0])
+    seen = unseen(1, looks)
+    ride_all(shape, work, floor, launched_one(work.state, *pairing), steps, seen, math.inf)
+    return seen

@@ -12,7 +12,7 @@ from feederscrew.dropping.launches import sample
 from feederscrew.dropping.plate import drive
 from feederscrew.dropping.plate.occupancy import Occupancy, lasting, occupancy
 from feederscrew.dropping.plate.rides import Rides, joined, ride
-from feederscrew.dropping.rigid_body import shape_of_part
+from feederscrew.dropping.rigid_body import Shape, shape_of_part
 from feederscrew.errors import ArgumentError
 from feederscrew.records import Shown
 from feederscrew.resting.tumbling.by_class import ground
@@ -124,7 +124,7 @@ def test(
     shape, length = shape_of_part(part, found)
     seconds = SECONDS if seconds is None else seconds
     count, results = USUAL if drops is None else drops, []
-    plate = partial(_plate, found, aspects, shape, length, seconds, pace)
+    way = _Way(found.rows, len(aspects.names), shape, length, seconds, pace, seed, jobs)
     came = (conditions.launch_of(preset, length, own, bowl.gravity) for bowl in bowls)
     launches = [_surfaced(launch, bowl, own, pace) for launch, bowl in zip(came, bowls)]
     if before:
@@ -132,7 +132,7 @@ def test(
     for k, bowl in enumerate(bowls):
         try:
             tell = _after(k * count, len(bowls) * count, progress)
-            results.append(plate(bowl, launches[k], count, seed, jobs, tell))
+            results.append(_plate(way, bowl, launches[k], count, tell))
         except KeyboardInterrupt:
             if not results:
                 raise
@@ -159,19 +159,34 @@ def _surfaced(launch, bowl, own, pace):
     return launch.scattering() if pace.scatters and single and thrown else launch
 
 
-def _plate(found, aspects, shape, length, seconds, pace, bowl, launch, count, seed, jobs, progress):
+@dataclass(frozen=True, eq=False)
+class _Way:
+    """A part, and the way in which it is followed on every plate."""
+
+    rows: np.ndarray  # (F,) int, class of each of its faces
+    classes: int
+    shape: Shape
+    length: float  # [m] the unit of length
+    seconds: float  # [s]
+    pace: Pace
+    seed: int
+    jobs: int
+
+
+def _plate(way, bowl, launch, count, progress):
     """The test on one plate."""
+    shape, length, pace = way.shape, way.length, way.pace
     floor, unit = drive.floor_of(bowl, length, pace.coarse), np.sqrt(length / bowl.gravity)
-    period = looks_apart(bowl.drive.frequency, seconds)
-    number = max(round(seconds / period), LEAST)
+    period = looks_apart(bowl.drive.frequency, way.seconds)
+    number = max(round(way.seconds / period), LEAST)
     looks = (np.ceil(pace.settling * unit / period) + np.arange(number + 1)) * period / unit
-    starts = sample(launch, shape, count, np.random.default_rng(seed))
+    starts = sample(launch, shape, count, np.random.default_rng(way.seed))
     steps, kick = drive.steps_of(floor, pace.coarse), drive.kick_of(floor, pace.kick)
     _must_end(looks[-1] / min(steps.contact, floor.step))
-    follow = partial(ride, shape, floor, looks=looks, steps=steps, kick=kick, jobs=jobs)
-    rides = _enough(follow, starts, pace, found.rows, len(aspects.names), progress)
-    rng = np.random.default_rng((seed, len(rides.faces)))
-    seen = occupancy(rides.faces, length * rides.places[:, :, 0], found.rows, len(aspects.names), period, rng)
+    follow = partial(ride, shape, floor, looks=looks, steps=steps, kick=kick, jobs=way.jobs)
+    rides = _enough(follow, starts, pace, way.rows, way.classes, progress)
+    rng = np.random.default_rng((way.seed, len(rides.faces)))
+    seen = occupancy(rides.faces, length * rides.places[:, :, 0], way.rows, way.classes, period, rng)
     return Shaken(
         bowl=bowl,
         launch=conditions.described(launch, length, bowl.gravity),

@@ -9,7 +9,6 @@ import numpy as np
 from feederscrew import check
 from feederscrew.dropping.kernel import falling
 from feederscrew.dropping.kernel import ride as shaken
-from feederscrew.dropping.kernel.one_drop import UNSETTLED
 from feederscrew.dropping.pool import in_batches
 from feederscrew.geometry.compiled import on_disk
 
@@ -83,11 +82,7 @@ def compiled():
 
 def _batch(shape, floor, starts, looks, steps, kick, part):
     """Faces and places of some parts, and whether every look was taken."""
-    states = starts.states[part]
-    faces = np.full((len(states), len(looks)), UNSETTLED)
-    places, taken = np.full((*faces.shape, 2), np.nan), np.zeros(len(states), int)
-    shaken.ride_all(
-        shape, falling.scratch(shape), floor, states, starts.restitutions[part], starts.frictions[part],
-        steps, looks, faces, places, taken, kick,
-    )  # fmt: skip
-    return faces, places, taken == len(looks)
+    launched = starts.launched(part)
+    seen = shaken.unseen(len(launched.states), looks)
+    shaken.ride_all(shape, falling.scratch(shape), floor, launched, steps, seen, kick)
+    return seen.faces, seen.places, seen.taken == len(looks)

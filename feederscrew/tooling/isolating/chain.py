@@ -41,6 +41,7 @@ class Wishes:
     cutter: float = 0.0  # [m] radius that corners of holes are rounded to
     separation: Device | None = None  # that comes before a device that needs gaps
     vary: bool = True  # other tracks and sweeps are tried where they give more
+    gentle: bool = False  # cuts take no more of the wanted orientation's foot than they must
 
     def allows(self, kind):
         """Return whether a kind of device may be used."""

@@ -21,7 +21,7 @@ GAIN = 1.25  # turning devices are taken where they bring so many times the part
 
 def design(
     every, shares, wanted, *, margin=WHOLE, search=None, holes=True, purity=1.0, efficiency=0.0,
-    turn=False, before=(), gentle=False, wishes=None,
+    turn=False, before=(), wishes=None,
 ):  # fmt: skip
     """Return the chain of fewest devices that isolates an orientation.
 
@@ -49,17 +49,16 @@ def design(
         Whether devices that turn parts over may be used, where returning them wastes too much.
     before : sequence of Device
         Of the bowl itself: the design is found behind them.
-    gentle : bool
-        Whether cuts leave as much of the wanted orientation's foot as returning the others allows.
     wishes : chain.Wishes, optional
-        How parts leave, which devices may be used, and the step of values.
+        How parts leave, which devices may be used, the step of values, and whether cuts leave as much of the
+        wanted orientation's foot as returning the others allows.
 
     Returns
     -------
     Design
     """
     search = search or hole_search.HoleSearch()
-    given = asked_for(every, shares, wanted, margin, purity, before, gentle=gentle, wishes=wishes)
+    given = asked_for(every, shares, wanted, margin, purity, before, wishes=wishes)
     found = _returning(given, search.started(), holes)
     if turn and not (found.isolated and found.efficiency >= efficiency > 0.0):
         found = _with_turning(given, found, search, holes, efficiency)
@@ -93,7 +92,6 @@ def _with_turning(given, found, search, holes, efficiency):
             given.purity,
             given.before,
             cuts,
-            given.gentle,
             given.wishes,
         )
         other = _returning(behind, search.started(), holes)
@@ -173,7 +171,7 @@ def _chosen(given, weight, stage):
     devices = chain.fewest(found, counted, given.margin, given.allowed)
     gone = ~given.stays | ((given.coming <= 0.0) & (given.shares > 0.0))
     must = [some & ~gone for some in chain.shared_out(found, devices, given.margin)] if devices else []
-    least = given.margin if given.gentle else np.inf
+    least = given.margin if given.wishes.gentle else np.inf
     cuts = chain.placed(every, wanted, devices, must, least, given.wishes.step, same)
     return cuts, np.any([gone, *must], axis=0)
 

@@ -54,7 +54,6 @@ class DesignTask:
     before: tuple[Device, ...]  # of the bowl
     coming: np.ndarray  # (M,) [1] share that comes to the design lying so
     turners: tuple[Cut, ...] = ()  # turning devices of the design, before all that return
-    gentle: bool = False  # cuts take no more of the wanted orientation's foot than they must
     wishes: Wishes = field(default_factory=Wishes)  # what it may use
 
     @property
@@ -80,12 +79,12 @@ class DesignTask:
         return float(self.coming[self.wanted] * (1.0 / self.purity - 1.0))
 
 
-def task(every, shares, wanted, margin, purity, before, turners=(), gentle=False, wishes=None):
+def task(every, shares, wanted, margin, purity, before, turners=(), wishes=None):
     """Return what a design has to do behind the devices of the bowl and its own turning devices."""
     every = tuple(every)
     flow = course((*before, *(cut.device for cut in turners)), every)
     coming = (shares[:, None] * flow.leaving).sum(axis=0)[: len(every)]
-    own = tuple(turners), gentle, wishes or Wishes()
+    own = tuple(turners), wishes or Wishes()
     return DesignTask(every, shares, wanted, margin, purity, tuple(before), coming, *own)
 
 

@@ -169,7 +169,8 @@ def _on_this_track(every, shares, wanted, bowl, steady, asked, holes=True):
     if stays(found):
         return found
     cut = any(one.device.corners for one in found.cuts)
-    gentle = found if cut else _isolating(every, shares, wanted, holes=holes, gentle=True, **asked)
+    asked = asked | {"wishes": replace(asked["wishes"], gentle=True)}
+    gentle = found if cut else _isolating(every, shares, wanted, holes=holes, **asked)
     same = (gentle.isolated, gentle.efficiency, gentle.purity) == (
         found.isolated, found.efficiency, found.purity,
     )  # fmt: skip

@@ -89,13 +89,17 @@ def apart_by(states, crowd, k, e):
 
 
 @compiled
-def _speed(row, a, k, u, v, w, p, q, r):
+def _speed(row, a, k, moves):
+    """Velocity along the axis at ``a``, with levers at ``k``, from a body's velocities and rates (6,)."""
+    u, v, w, p, q, r = moves
     along = row[a] * u + row[a + 1] * v + row[a + 2] * w
     return along + row[k] * p + row[k + 1] * q + row[k + 2] * r
 
 
 @compiled
-def _pushed(row, a, k, impulse, u, v, w, p, q, r):
+def _pushed(row, a, k, impulse, moves):
+    """Velocities and rates (6,) of a body after an impulse along the axis at ``a``, with rates at ``k``."""
+    u, v, w, p, q, r = moves
     u, v, w = u + row[a] * impulse, v + row[a + 1] * impulse, w + row[a + 2] * impulse
     return u, v, w, p + row[k] * impulse, q + row[k + 1] * impulse, r + row[k + 2] * impulse
 
@@ -109,22 +113,22 @@ def _rubbing(ahead, aside, most):
 
 
 @compiled
-def _relax(row, rough, u, v, w, p, q, r):
-    """One projected Gauss-Seidel step on a contact: velocities, rates and the change of its impulse."""
+def _relax(row, rough, moves):
+    """One projected Gauss-Seidel step on a contact: velocities and rates (6,), its impulse's change."""
     x, y, z = row[IMPULSE], row[IMPULSE + 1], row[IMPULSE + 2]
-    up = max(z + row[MASS + 2] * (row[WANTED] - _speed(row, TOWARDS, LEVER + 6, u, v, w, p, q, r)), 0.0)
-    u, v, w, p, q, r = _pushed(row, TOWARDS, RATE + 6, up - z, u, v, w, p, q, r)
+    up = max(z + row[MASS + 2] * (row[WANTED] - _speed(row, TOWARDS, LEVER + 6, moves)), 0.0)
+    moves = _pushed(row, TOWARDS, RATE + 6, up - z, moves)
     change = abs(up - z)
     if rough and (up > 0.0 or z > 0.0):
-        ahead = x - row[MASS] * _speed(row, AXES, LEVER, u, v, w, p, q, r)
-        aside = y - row[MASS + 1] * _speed(row, AXES + 3, LEVER + 3, u, v, w, p, q, r)
+        ahead = x - row[MASS] * _speed(row, AXES, LEVER, moves)
+        aside = y - row[MASS + 1] * _speed(row, AXES + 3, LEVER + 3, moves)
         ahead, aside = _rubbing(ahead, aside, up * (row[BACK] if ahead > 0.0 else row[AHEAD]))
-        u, v, w, p, q, r = _pushed(row, AXES, RATE, ahead - x, u, v, w, p, q, r)
-        u, v, w, p, q, r = _pushed(row, AXES + 3, RATE + 3, aside - y, u, v, w, p, q, r)
+        moves = _pushed(row, AXES, RATE, ahead - x, moves)
+        moves = _pushed(row, AXES + 3, RATE + 3, aside - y, moves)
         row[IMPULSE], row[IMPULSE + 1] = ahead, aside
         change += abs(ahead - x) + abs(aside - y)
     row[IMPULSE + 2] = up
-    return u, v, w, p, q, r, change
+    return moves, change
 
 
 @compiled
@@ -145,14 +149,12 @@ def _begun(state, rows, count, warm):
 def _relax_part(state, rows, count, rough):
     """One step on all contacts of one part with the track; change and sum of their impulses."""
     change = size = 0.0
-    u, v, w = state[VX], state[VX + 1], state[VZ]
-    p, q, r = state[W], state[W + 1], state[W + 2]
+    moves = state[VX], state[VX + 1], state[VZ], state[W], state[W + 1], state[W + 2]
     for m in range(count):
-        u, v, w, p, q, r, more = _relax(rows[m], rough, u, v, w, p, q, r)
+        moves, more = _relax(rows[m], rough, moves)
         change += more
         size += rows[m, IMPULSE + 2]
-    state[VX], state[VX + 1], state[VZ] = u, v, w
-    state[W], state[W + 1], state[W + 2] = p, q, r
+    state[VX], state[VX + 1], state[VZ], state[W], state[W + 1], state[W + 2] = moves
     return change, size
 
 

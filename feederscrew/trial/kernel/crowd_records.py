@@ -53,6 +53,20 @@ class Limits(NamedTuple):
     free: float  # from the wall, beyond which the track does not hold it any more
 
 
+class Sent(NamedTuple):
+    """Arrays for N parts that are sent one at a time, each noted at K places."""
+
+    states: np.ndarray  # (N, 13) at the start; filled with those at the end
+    times: np.ndarray  # (N,) at the start: the phase of the drive
+    every: int  # steps between two places noted
+    # (N, K, 8) filled with time, position and attitude, from the first row on; nothing more once it is full
+    paths: np.ndarray
+    # (N, NOTES + 2) filled with the time taken, the way along the wall, the greatest depth and the greatest
+    # rise of the energy over what gravity and the drive gave; then what the last is reckoned with
+    notes: np.ndarray
+    outcomes: np.ndarray  # (N,) int, filled with what became of each
+
+
 class Crowd(NamedTuple):
     """Arrays for N parts of one shape with C corners: their motion, what is near them, their contacts."""
 

@@ -253,13 +253,16 @@ def edges_on(crowd, solid, i, j, reach, count):
             for n in range(block * BLOCK, min((block + 1) * BLOCK, len(solid.edges))):
                 r, s = solid.corners[solid.edges[n, 0]], solid.corners[solid.edges[n, 1]]
                 if not _beside(p, q, r, s, reach):
-                    count = _cross(crowd, solid, i, j, k, n, p, q, r, s, reach, count)
+                    count = _cross(crowd, solid, (i, j), (k, n), reach, count)
     return count
 
 
 @compiled
-def _cross(crowd, solid, i, j, k, n, p, q, r, s, reach, count):
-    """The contact of edge k, from p to q, of part i with edge n, from r to s, of part j, if they touch."""
+def _cross(crowd, solid, parts, edges, reach, count):
+    """Add the contact of two edges (2,) of two parts (2,), if they touch; how many rows there are now."""
+    ours, theirs = edges
+    p, q = crowd.shown[solid.edges[ours, 0]], crowd.shown[solid.edges[ours, 1]]
+    r, s = solid.corners[solid.edges[theirs, 0]], solid.corners[solid.edges[theirs, 1]]
     a, b, c = q[0] - p[0], q[1] - p[1], q[2] - p[2]
     u, v, w = s[0] - r[0], s[1] - r[1], s[2] - r[2]
     nx, ny, nz = b * w - c * v, c * u - a * w, a * v - b * u
@@ -272,15 +275,15 @@ def _cross(crowd, solid, i, j, k, n, p, q, r, s, reach, count):
     share, place = (pa * uu - pu * au) / size**2, (pa * au - pu * aa) / size**2
     if not (0.0 <= share <= 1.0 and 0.0 <= place <= 1.0):
         return count
-    side = solid.sides[n]
+    side = solid.sides[theirs]
     lean = nx * (side[0] + side[3]) + ny * (side[1] + side[4]) + nz * (side[2] + side[5])
     size = -size if lean > 0.0 else size  # away from the second part
     nx, ny, nz = nx / size, ny / size, nz / size
     gap = -(x * nx + y * ny + z * nz)
-    if not -DEEP < gap < reach or not _wedged(crowd.frame, solid.sides[k], side, nx, ny, nz):
+    if not -DEEP < gap < reach or not _wedged(crowd.frame, solid.sides[ours], side, nx, ny, nz):
         return count
     spot = (r[0] + place * u, r[1] + place * v, r[2] + place * w)
-    return _touch(crowd, solid, (i, j), spot, (nx, ny, nz), gap, count)
+    return _touch(crowd, solid, parts, spot, (nx, ny, nz), gap, count)
 
 
 @compiled

@@ -53,9 +53,10 @@ def over(surface, solid, floor, crowd, island, time, notes):
 
 
 @compiled
-def travel(surface, limits, solid, floor, crowd, time, every, path, notes):
-    """Follow the one part of a crowd until it passed, dropped out or its time [sqrt(L/g)] is up."""
-    state, dt, begun, start = crowd.states[0], floor.step, time, way(surface, crowd.states[0])
+def travel(surface, limits, solid, floor, crowd, sent, n):
+    """Follow a crowd's one part, the n-th that is sent, until it passed, dropped out or its time is up."""
+    state, dt, start = crowd.states[0], floor.step, way(surface, crowd.states[0])
+    time, begun, path, notes = sent.times[n], sent.times[n], sent.paths[n], sent.notes[n]
     crowd.lasted[0] = crowd.made[0, REACHES] = crowd.blown[0, jets.AGAIN] = -1.0
     crowd.knowns[0] = 0
     steps, noted, outcome = math.ceil(limits.longest / dt), 0, RUNNING
@@ -68,7 +69,7 @@ def travel(surface, limits, solid, floor, crowd, time, every, path, notes):
                 outcome = STANDS
                 break
             mark, level = place, state[Z]
-        if k % every == 0 and noted < len(path):
+        if k % sent.every == 0 and noted < len(path):
             path[noted, 0] = time - begun
             for e in range(3):
                 path[noted, 1 + e] = state[e]
@@ -93,7 +94,7 @@ def travel(surface, limits, solid, floor, crowd, time, every, path, notes):
 
 
 @entry
-def travel_all(surface, limits, solid, floor, crowd, starts, times, every, paths, notes, outcomes):
+def travel_all(surface, limits, solid, floor, crowd, sent):
     """Follow every part from its start, one at a time.
 
     Parameters
@@ -105,27 +106,16 @@ def travel_all(surface, limits, solid, floor, crowd, starts, times, every, paths
         Its ``step`` is the time step.
     crowd : Crowd
         Of one part.
-    starts : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
-        Hold the ends afterwards.
-    times : (N,) float [sqrt(L/g)]
-        At the start: the phase of the drive.
-    every : int
-        Steps between two places noted.
-    paths : (N, K, 8) float [sqrt(L/g), L, 1]
-        Filled with time, position and attitude, from the first row on; nothing more once it is full.
-    notes : (N, NOTES + 2) float [sqrt(L/g), L, L, g L]
-        Filled with the time taken, the way along the wall, the greatest depth and the greatest rise of the
-        energy over what gravity and the drive gave; then what the last is reckoned with.
-    outcomes : (N,) int
-        Filled with PASSED, RETURNED, STANDS, ROLLED or, where its time was up, RUNNING.
+    sent : Sent
+        Outcomes are PASSED, RETURNED, STANDS, ROLLED or, of one whose time was up, RUNNING.
     """
     crowd.order[0] = 0
-    for n in range(len(starts)):
+    for n in range(len(sent.states)):
         for k in range(body.STATE):
-            crowd.states[0, k] = starts[n, k]
-        outcomes[n] = travel(surface, limits, solid, floor, crowd, times[n], every, paths[n], notes[n])
+            crowd.states[0, k] = sent.states[n, k]
+        sent.outcomes[n] = travel(surface, limits, solid, floor, crowd, sent, n)
         for k in range(body.STATE):
-            starts[n, k] = crowd.states[0, k]
+            sent.states[n, k] = crowd.states[0, k]
 
 
 @compiled
