@@ -30,8 +30,9 @@ demo: $(READY) ## resting table and picture of a bracket, sliding map of a bowl
 	@echo "Pictures:"
 	@ls results/$(DEMO)/*.png results/bowl/*.png
 
+# The suite starts hundreds of processes: where Python is told to keep no bytecode, each would compile the program.
 test: lint ## format, lint, types and every test, warnings as errors
-	$(BIN)/python -m pytest -n 2 --dist worksteal
+	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n 2 --dist worksteal
 
 check: test ## the same: all that CI runs
 
