@@ -1,6 +1,7 @@
 """What several test files share."""
 
 import contextlib
+import gc
 import signal
 from collections import OrderedDict
 
@@ -11,7 +12,7 @@ from click.testing import CliRunner
 from hypothesis import settings
 
 from feederscrew.dropping.plate import arrival
-from feederscrew.studies import aspects
+from feederscrew.studies import aspects, tune
 from feederscrew.studies.simulated import memory
 from feederscrew_cli.main import feeder
 
@@ -53,6 +54,12 @@ def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: (item.path.parent.name != EARLY[0], item.get_closest_marker("long") is None))
 
 
+def pytest_collection_finish():
+    """Collect garbage seldom, and not among what has been imported by now: it all stays."""
+    gc.freeze()
+    gc.set_threshold(50_000, 20, 20)
+
+
 @pytest.fixture(scope="session")
 def trial_compiled():
     """The trial, once it is compiled."""
@@ -65,7 +72,14 @@ def _compiled(request):
         request.getfixturevalue("trial_compiled")
 
 
-FEW = ((aspects, "MOST", 500), *((arrival, name, 60) for name in ("FIRST", "MOST", "LONGEST")))
+def _counts(dropped, fed, led):
+    return (
+        *((aspects, "MOST", dropped), (tune, "FEW", led)),
+        *((arrival, name, fed) for name in ("FIRST", "MOST", "LONGEST")),
+    )
+
+
+FEW, FEWEST = _counts(500, 60, tune.FEW), _counts(100, 20, 15)
 MANY = [(module, name, getattr(module, name)) for module, name, _ in FEW]
 
 
@@ -84,13 +98,13 @@ def few():
 
 @pytest.fixture(scope="session")
 def fewer():
-    """A context in which few parts are dropped and fed in a test that is marked ``thorough``."""
+    """A context in a test that is marked ``thorough`` for what is read by its headings alone."""
 
     @contextlib.contextmanager
     def context():
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(memory, "_MADE", OrderedDict())
-            _set(patch, FEW)
+            _set(patch, FEWEST)
             yield
 
     return context
