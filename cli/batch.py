@@ -23,6 +23,12 @@ class Jobs(click.ParamType):
         return int(value)
 
 
+def _grouped(command):
+    """Hand over what is computed as ``asked``, and what of it as ``choices``."""
+    choices = options.packed(command, "choices", ("rule", "launch", "drops", "pictures"))
+    return options.packed(choices, "asked", ("sources", "configs", "overrides"))
+
+
 @grouped.command(short_help="Aspects, conveying and rate of any number of parts, in parallel.")
 @click.argument("sources", metavar="PARTS...", nargs=-1, required=True, type=options.FILE)
 @click.option(
@@ -53,8 +59,9 @@ class Jobs(click.ParamType):
 @click.option("--resume", is_flag=True, help="Go on where a batch stopped: only what is missing or changed.")
 @options.pictures
 @options.output
+@_grouped
 @click.pass_context
-def batch(ctx, sources, configs, overrides, rule, launch, drops, jobs, scheduler, resume, pictures, out):
+def batch(ctx, asked, choices, jobs, scheduler, resume, out):
     """Example: feeder batch parts/ --config bowl.yaml -o results/all --jobs 2
 
     Compute every part in every bowl: its aspects, how it travels, and a rate. The rate is that of the
@@ -73,14 +80,14 @@ def batch(ctx, sources, configs, overrides, rule, launch, drops, jobs, scheduler
 
     if out.directory is None:
         raise click.UsageError("Missing option '-o' - say where the results go")
-    requests = batches.gather(sources, configs, overrides)
+    requests = batches.gather(**asked)
     out.warn(*dict.fromkeys(line for request in requests for line in request.conditions.warnings))
     workers = batches.crew(jobs, None if _typed(ctx, "jobs") else scheduler)
-    choices = batches.Choices(rule=rule, drops=drops, launch=launch, pictures=pictures)
     with Progress(len(requests), not out.quiet) as progress:
         found = batches.run(
-            requests, out.directory, workers=workers, choices=choices, resume=resume, tell=progress.tell
-        )
+            requests, out.directory, workers=workers, choices=batches.Choices(**choices), resume=resume,
+            tell=progress.tell,
+        )  # fmt: skip
     out.depend(found.targets, found.sources)
     _report(found, out)
     ctx.exit(1 if found.faults else 0)

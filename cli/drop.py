@@ -36,6 +36,11 @@ def conditions(command):
     return command
 
 
+def _tested(command):
+    """Hand over how often and how it is dropped; the command receives ``test``."""
+    return options.packed(command, "test", ("drops", "until", "seed", "jobs", "trace"))
+
+
 @grouped.command(short_help="A virtual drop test: how often a part lands on each aspect.")
 @options.part
 @conditions
@@ -56,7 +61,8 @@ def conditions(command):
 @plates.plate
 @options.pictures
 @options.output
-def drop(part, launch, drops, until, seed, jobs, trace, launches, plate, pictures, out, **own):
+@_tested
+def drop(part, launch, test, launches, plate, pictures, out, **own):
     """Example: feeder drop parts/lbracket_30x20x15.stl --launch feed --until 1% -o results
 
     Drop PART on a hard plane, again and again, and count the aspects it comes to rest on. Each launch is
@@ -88,10 +94,11 @@ def drop(part, launch, drops, until, seed, jobs, trace, launches, plate, picture
     In these, friction, restitution and the state vary by what is not known of them. Measured ends (xe_m,
     ye_m, face_up_end) stand beside them. With -o: tosses.csv, tosses.json and tosses.png.
     """
+    until, trace = test.pop("until"), test.pop("trace")
     _fitting(until, trace, plate, out)
     if plate and launches:
         raise click.UsageError("--launches is for a plane at rest - leave out --launches or --plate")
-    test = {"drops": drops, "seed": seed, "jobs": jobs or os.cpu_count()}
+    test["jobs"] = test["jobs"] or os.cpu_count()
     if plate:
         plates.run(part, plate, launch, own, test, pictures, out)
     elif launches:

@@ -22,14 +22,15 @@ CHAIN = (
         "--fill", "number", "1", "Share of the track that is occupied.", positive=True, most=1.0
     ),
 )
+WANTED = ("aspect", "heading", "rule", "gap", "fill")
 
 
 def chain(command):
     """Add the options of the wanted orientation, and of what the rate depends on.
 
-    The command receives ``aspect``, ``heading``, ``rule``, ``gap`` and ``fill``.
+    The command receives ``wanted``: ``aspect``, ``heading``, ``rule``, ``gap`` and ``fill``.
     """
-    return options.stacked(command, *CHAIN)
+    return options.stacked(options.packed(command, "wanted", WANTED), *CHAIN)
 
 
 LEAVES_MOST = click.option(
@@ -41,7 +42,7 @@ LEAVES_MOST = click.option(
 
 def any_chain(command):
     """As ``chain``, but ``aspect`` may be left out."""
-    return options.stacked(command, LEAVES_MOST, *CHAIN[1:])
+    return options.stacked(options.packed(command, "wanted", WANTED), LEAVES_MOST, *CHAIN[1:])
 
 
 LAUNCHED = click.option(

@@ -12,7 +12,7 @@ from feederscrew_cli import grouped, options, orientation
 @orientation.doubt
 @options.bowl
 @options.output
-def rate(part, aspect, heading, rule, gap, fill, taken, play, tolerance, bowl, out):
+def rate(part, wanted, taken, play, tolerance, bowl, out):
     """Example: feeder rate parts/lbracket_30x20x15.stl --aspect A --config bowl.yaml
 
     Parts per minute in the wanted aspect and heading. The queue before the devices holds every
@@ -38,12 +38,9 @@ def rate(part, aspect, heading, rule, gap, fill, taken, play, tolerance, bowl, o
     solid, settings = out.part(part), out.settings(bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
     record = bowls.record(settings)
-    known = orientation.shares(out, solid, record, taken, rule)
+    known = orientation.shares(out, solid, record, taken, wanted["rule"])
     with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
-        found = study(
-            solid, record, aspect, known=known,
-            heading=heading, rule=rule, gap=gap, fill=fill, sigma=math.hypot(play, tolerance),
-        )  # fmt: skip
+        found = study(solid, record, known=known, sigma=math.hypot(play, tolerance), **wanted)
         tried = bowls.verified(bowl["path"])
         document = proof.beside(tables.document(found), tried, solid, record)
         out.warn(*found.warnings, *tables.remarks(found), *proof.warnings(tried, solid, record))

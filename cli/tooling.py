@@ -7,7 +7,7 @@ from feederscrew_cli.angle import Angle
 from feederscrew_cli.progress import Progress
 
 ASKED = (
-    *("heading", "margin", "purity", "efficiency", "outcome", "without"),
+    *("aspect", "rule", "heading", "margin", "purity", "efficiency", "outcome", "without"),
     *("step", "up", "cutter", "play", "tolerance", "turn", "seed", "verdicts", "seconds"),
 )
 
@@ -99,7 +99,7 @@ def _asked(command):
 @options.pictures
 @options.output
 @_asked
-def tooling(part, aspect, rule, asked, cad, static, taken, bowl, pictures, out):
+def tooling(part, asked, cad, static, taken, bowl, pictures, out):
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
     Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect, the
@@ -132,13 +132,13 @@ def tooling(part, aspect, rule, asked, cad, static, taken, bowl, pictures, out):
     solid, settings = out.part(part), out.settings(bowl)
     effective = columns.conditions(solid) | bowls.texts(settings)
     record = bowls.record(settings)
-    known = orientation.shares(out, solid, record, taken, rule)
+    known = orientation.shares(out, solid, record, taken, asked["rule"])
     with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
-        given = {"known": known.aspects, "rule": rule, **asked}
+        given = {"known": known.aspects, **asked}
         with Progress(None, not out.quiet, "orientations") as bar:
-            found = study(solid, record, aspect, told=bar.reach, **given)
+            found = study(solid, record, told=bar.reach, **given)
         if not static:
-            again = partial(tooling_without, part=solid, bowl=record, aspect=aspect, **given)
+            again = partial(tooling_without, part=solid, bowl=record, **given)
             found = own_trial.own_trials(found, again, before=lambda: waiting.trial(out))
         document = tables.document(found) | {"trial": own_trial.document(found.trials)}
         denied, agreed = tables.trials(found)

@@ -7,11 +7,18 @@ import click
 from feederscrew_cli import grouped, options, orientation, waiting
 from feederscrew_cli.interrupt import held_back
 
+SENT = ("aspect", "rule", "parts", "landing", "queue", "poured", "seconds", "measured", "seed", "jobs")
+
+
+def _sent(command):
+    """Hand over how parts are sent; the command receives ``sent``."""
+    return options.packed(command, "sent", SENT, _together)
+
 
 def _queued(command):
-    """Add the options of a queue; the command receives ``queued``."""
+    """Add the options of a queue."""
     return options.stacked(
-        options.packed(command, "queued", ("queue", "poured", "seconds", "measured"), _together),
+        command,
         click.option(
             "--queue",
             type=click.IntRange(1, 1000),
@@ -41,7 +48,7 @@ def _queued(command):
 
 
 def _together(queue, **others):
-    """The options of a queue by keyword; a wrong call if there is none."""
+    """All of them by keyword; a wrong call if there are options of a queue without one."""
     for name, given in (("--poured", others["poured"]), ("--with", others["measured"])):
         if given and not queue:
             raise click.UsageError(f"{name} is for a queue - give --queue N as well")
@@ -83,7 +90,8 @@ def _together(queue, **others):
 @options.bowl
 @options.pictures
 @options.output
-def trial(part, aspect, rule, taken, parts, landing, queued, amplitudes, seed, jobs, bowl, pictures, out):
+@_sent
+def trial(part, sent, taken, amplitudes, bowl, pictures, out):
     """Example: feeder trial parts/lbracket_30x20x15.stl --config tooling.yaml --parts 100 -o results
 
     Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed.
@@ -115,18 +123,17 @@ def trial(part, aspect, rule, taken, parts, landing, queued, amplitudes, seed, j
     solid, settings = out.part(part), out.settings(bowl)
     driven = bowls.strokes(bowls.record(settings), amplitudes)
     effective = columns.conditions(solid) | bowls.texts(settings)
-    known = orientation.shares(out, solid, driven[0], taken, rule)
-    measured = queued.pop("measured")
+    known = orientation.shares(out, solid, driven[0], taken, sent["rule"])
+    measured = sent.pop("measured")
     beside = studies.at_outlet(measured, known) if measured else None
     inputs = solid.inputs | known.inputs | ({measured: beside.sha256} if beside else {})
     with out.folder(solid.name, inputs, effective) as folder:
-        if queued["queue"]:
+        if sent["queue"]:
             waiting.queue(out)
         with waiting.bar(out, "runs") as bar:
             found = studies.trial(
-                solid, driven, aspect,
-                rule=rule, known=known, measured=beside, parts=parts, landing=landing, **queued, seed=seed,
-                jobs=jobs or os.cpu_count(), progress=bar.reach, before=lambda: waiting.trial(out),
+                solid, driven, known=known, measured=beside, progress=bar.reach,
+                before=lambda: waiting.trial(out), **sent | {"jobs": sent["jobs"] or os.cpu_count()},
             )  # fmt: skip
         document = tables.document(found)
         out.warn(*found.warnings)

@@ -20,7 +20,7 @@ from feederscrew_cli.quantity import Quantity
 @click.option("--worst", is_flag=True, help="Give the rate at the worst friction and restitution.")
 @options.bowl
 @options.output
-def tune(part, target, aspect, heading, rule, gap, fill, taken, worst, bowl, out):
+def tune(part, target, wanted, taken, worst, bowl, out):
     """Example: feeder tune parts/lbracket_30x20x15.stl --aspect A --target 20/min
 
     Every setting of amplitude, vibration angle or frequency alone that gives the target to 3 %. One-way
@@ -44,12 +44,12 @@ def tune(part, target, aspect, heading, rule, gap, fill, taken, worst, bowl, out
     effective = columns.conditions(solid) | bowls.texts(settings)
     waiting.conveying(out)
     record = bowls.record(settings)
-    arriving, rough = orientation.arriving(out, solid, taken, rule), orientation.few(solid, taken, rule)
+    shares = solid, taken, wanted["rule"]
+    arriving, rough = orientation.arriving(out, *shares), orientation.few(*shares)
     with out.folder(solid.name, solid.inputs | arriving(record).inputs, effective) as folder:
         found = study(
-            solid, record, aspect, target, arriving=arriving, rough=rough,
-            progress=waiting.told(out, "settings"),
-            heading=heading, rule=rule, gap=gap, fill=fill, worst=worst,
+            solid, record, target=target, arriving=arriving, rough=rough, worst=worst,
+            progress=waiting.told(out, "settings"), **wanted,
         )  # fmt: skip
         tried = bowls.verified(bowl["path"])
         out.warn(*found.warnings, *tables.remarks(found), *proof.warnings(tried, solid, record))

@@ -154,12 +154,6 @@ def test_no_function_is_long():
 
 PARAMETERS = 8  # of a function
 MORE = {
-    "cli.batch.batch": 12,
-    "cli.drop.drop": 12,
-    "cli.rate.rate": 11,
-    "cli.tooling.tooling": 10,
-    "cli.trial.trial": 13,
-    "cli.tune.tune": 11,
     "designing.robust.robust_run": 10,
     "designing.trying.single": 10,
     "dropping.drop_test.test": 11,

@@ -193,4 +193,4 @@ def _riders(
 
 
 def _tooled(devices: Sequence[Device]) -> bool:
-    return any(device.kind != "yield" for device in devices)
+    return any(device.placed for device in devices)

@@ -273,13 +273,10 @@ def _landed(one, hull, axes, every):
     corners = vectors.product(hull.vertices, axes.T)
     height = -corners[:, 2].min()
     corners[:, 2] += height
-    low = corners[corners[:, 2] < TOUCHES * np.ptp(corners, axis=0).max(), :2]
-    plan = outline(corners[:, :2])
     lying = replace(
         one.posture,
         height=float(height),
-        contact=outline(low) if len(low) > 2 else plan,
-        outline=plan,
+        outline=outline(corners[:, :2]),
         corners=check.frozen(corners),
         axes=check.frozen(axes),
     )

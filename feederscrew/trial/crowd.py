@@ -44,7 +44,7 @@ def crowded(bowl, every, devices, room):
     """
     track, place, level, windows, placed, blows = bowl.track, 0.0, 0.0, [], [], []
     size = staging.size_of(every)
-    for device in [device for device in devices if device.kind != "yield"]:
+    for device in [device for device in devices if device.placed]:
         standing, start = device.standing(track, every), place + (0.5 + staging.SPARE) * size
         last = staging.passed(standing, start, size)
         placed.append((standing, start, last))
