@@ -8,7 +8,7 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.mechanics.track.frame import seat
-from feederscrew.rates import stream
+from feederscrew.rates import steadiness, stream
 from feederscrew.rates.rocking import over_period
 from feederscrew.rates.steadiness import steady
 from feederscrew.resting.aspects import find
@@ -96,3 +96,16 @@ def test_what_is_round_is_sure_of_nothing_without_a_bank():
         return found.sure[row]
 
     assert not said(0.0) and said(3.0)
+
+
+@pytest.mark.parametrize(
+    ("kind", "limit", "takes"),
+    [
+        ("wiper", 3e-3, False),
+        ("gap", 3e-3, True),
+        ("narrowed_track", 9e-3, True),
+        ("narrowed_track", 11e-3, False),
+    ],
+)
+def test_a_blade_takes_nothing_from_under_a_part_and_a_gap_what_it_is_wide(upright, kind, limit, takes):
+    assert bool(steadiness._takes(made(kind, "test", limit=limit), upright)) == takes
