@@ -84,7 +84,7 @@ EQUIVALENT = {
     ("rates/tipping.py", "INSTANTS ="): "any number of instants that shows a stroke",
     ("rates/tipping.py", "BESIDE /"): "as with BESIDE itself",
     ("tooling/holding.py", "FAR ="): "any length beyond every foot",
-    ("tooling/holding.py", "points[:, :3]"): "heights are not looked at",
+    ("tooling/holding.py", ":3], one.heading"): "heights are not looked at",
     ("machine/throughput.py", "STEPS + 2"): "a stroke beyond the greatest is held at it",
     ("rates/tipping.py", "BESIDE ="): "any width beyond every force's place: it tips over the ends alone",
 }
