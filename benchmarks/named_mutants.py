@@ -83,6 +83,7 @@ EQUIVALENT = {
     ("rates/steadiness.py", "margin + SAME"): "any number about rounding tells the same",
     ("rates/tipping.py", "INSTANTS ="): "any number of instants that shows a stroke",
     ("rates/tipping.py", "BESIDE /"): "as with BESIDE itself",
+    ("tooling/turning.py", "np.empty(2"): "only the first place is read",
     ("tooling/holding.py", "FAR ="): "any length beyond every foot",
     ("tooling/holding.py", ":3], one.heading"): "heights are not looked at",
     ("machine/throughput.py", "STEPS + 2"): "a stroke beyond the greatest is held at it",

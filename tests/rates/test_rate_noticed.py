@@ -115,3 +115,17 @@ def test_what_the_first_device_that_returns_it_may_leave_is_not_surely_gone(monk
     passes = np.array([[1.0, 1.0, 0.0], [1.0, 0.0, 1.0], [1.0, 0.0, 0.0], [1.0, 1.0, 1.0]])
     monkeypatch.setattr(steadiness, "surely_gone", lambda device, one: device == "sure")
     assert steadiness.gone(["unsure", "sure"], lying, passes).tolist() == [True, True, False, True]
+
+
+def test_no_more_leave_than_fit_on_the_track_behind_what_turns_them_lengthwise(known):
+    """All of them turned into the longest orientation: one a length, however many came."""
+    row = int(np.argmax(known.lengths))
+    leaving = np.zeros_like(known.leaving)
+    leaving[:, row] = 1.0
+    states = np.arange(len(known.aspects))
+    turned = replace(known, leaving=leaving, passes=np.ones_like(known.passes), leaves_as=states)
+    long = known.lengths[row]
+    assert well_oriented.mean_length(turned, "csa") < 0.9 * long
+    assert well_oriented.parts_per_metre(turned, target(known, row), "csa") == pytest.approx(1.0 / long)
+    parts = well_oriented.rate(turned, SPEED, target(known, row), "csa").parts
+    assert parts.all == pytest.approx([speed / long for speed in SPEED.all])
