@@ -30,7 +30,7 @@ demo: $(READY) ## resting table and picture of a bracket, sliding map of a bowl
 	@echo "Pictures:"
 	@ls results/$(DEMO)/*.png results/bowl/*.png
 
-# The suite starts hundreds of processes: where Python is told to keep no bytecode, each would compile the program.
+# Bytecode is kept where Python is told not to: without it each process of the suite compiles what it imports.
 test: lint ## format, lint, types and every test, warnings as errors
 	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n 2 --dist worksteal
 

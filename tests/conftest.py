@@ -12,6 +12,7 @@ from click.testing import CliRunner
 from hypothesis import settings
 
 from feederscrew.dropping.plate import arrival
+from feederscrew.output import style
 from feederscrew.studies import aspects, tune
 from feederscrew.studies.simulated import memory
 from feederscrew_cli.main import feeder
@@ -24,6 +25,7 @@ settings.register_profile("same", derandomize=True, deadline=None)
 settings.load_profile("same")  # the same examples everywhere: new ones are for `make fuzz` to look for
 
 
+COARSE = 40  # pixels of a picture to the inch of its figure
 COMPILING = pytest.StashKey()
 
 
@@ -120,6 +122,13 @@ def many(request, monkeypatch):
         memory.forget()
     else:
         yield
+
+
+@pytest.fixture(autouse=True)
+def coarse(request, monkeypatch):
+    """Pictures of commands and batches with few pixels; tests/output looks at them as they are."""
+    if request.path.parent.name == "batch" or "cli" in request.path.parts:
+        monkeypatch.setattr(style, "DPI", COARSE)
 
 
 @pytest.fixture

@@ -49,7 +49,8 @@ def cluster(folder, workers=2):
 
 
 @pytest.mark.long
-def test_a_cluster_gives_the_bytes_of_the_processes_even_if_it_loses_a_worker(tmp_path, three):  # noqa: F811
+def test_a_cluster_may_lose_a_worker_and_says_when_it_loses_its_scheduler(tmp_path, three):  # noqa: F811
+    """It gives the bytes of the processes. Without a scheduler: one line, and what is finished is kept."""
     for number in range(3):
         block(tmp_path / f"in/more_{number}.stl", 5.0 + number, 4.0, 3.0)
     requests = asked(tmp_path / "in")
@@ -63,7 +64,16 @@ def test_a_cluster_gives_the_bytes_of_the_processes_even_if_it_loses_a_worker(tm
                 running[-1].send_signal(signal.SIGKILL)
 
         ran(requests, tmp_path / "there", workers=batch.Cluster(address), tell=lose_one)
-    assert tree(tmp_path / "there") == tree(tmp_path / "here")
+        assert len(finished) == 6 and tree(tmp_path / "there") == tree(tmp_path / "here")
+        with pytest.raises(FeederError) as fault:
+            ran(three, tmp_path / "out", workers=batch.Cluster(address), tell=lambda kept: running[0].kill())
+    assert fault.value.lines == (
+        f"{address}: the scheduler is lost - mend it, then start this command again with `resume`:"
+        " what is finished is kept",
+    )
+    rest = Here()
+    ran(three, tmp_path / "out", workers=rest, resume=True)
+    assert len(rest.done) < 3
 
 
 class Held:
@@ -110,18 +120,6 @@ def test_what_a_worker_had_done_before_it_died_is_waited_for_again(monkeypatch):
 
     monkeypatch.setattr("feederscrew.batch.cluster.time.sleep", done_again)
     assert list(gathered) == ["b"]
-
-
-def test_a_lost_scheduler_is_one_line_and_what_is_finished_is_kept(tmp_path, three):  # noqa: F811
-    with cluster(tmp_path, workers=1) as (address, running), pytest.raises(FeederError) as fault:
-        ran(three, tmp_path / "out", workers=batch.Cluster(address), tell=lambda kept: running[0].kill())
-    assert fault.value.lines == (
-        f"{address}: the scheduler is lost - mend it, then start this command again with `resume`:"
-        " what is finished is kept",
-    )
-    rest = Here()
-    ran(three, tmp_path / "out", workers=rest, resume=True)
-    assert len(rest.done) < 3
 
 
 def test_no_scheduler_is_one_line(tmp_path, three, monkeypatch):  # noqa: F811
