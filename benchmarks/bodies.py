@@ -16,6 +16,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.resting.rules import recommended
 from feederscrew.resting.rules.surface import surface_weights
 from feederscrew.resting.tumbling.by_class import ground
+from feederscrew.running import RunSettings
 
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
@@ -69,8 +70,8 @@ class Body:
     def tally(self, launch):
         """Counts of a drop test."""
         if launch not in self.tallies:
-            own = dict.fromkeys(conditions.KEYS)
-            tested = drop_test.test(self.part, self.aspects, launch, own, drops=self.drops, jobs=self.jobs)
+            own, run = dict.fromkeys(conditions.KEYS), RunSettings(jobs=self.jobs)
+            tested = drop_test.test(self.part, self.aspects, launch, own, drops=self.drops, run=run)
             self.tallies[launch] = tested.tally
             self._keep()
         return self.tallies[launch]

@@ -10,6 +10,7 @@ import argparse
 import math
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,7 @@ from feederscrew.resting.aspects import find
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 import shapes
 
+TWO, FOUR = (replace(bowl_test.EXACT, seconds=seconds) for seconds in (2.0, 4.0))
 ANGLE = math.radians(20.0)
 NOTHING = dict.fromkeys(("fall", "spin", "speed", "restitution", "friction"))
 
@@ -44,7 +46,7 @@ def flat():
         bowl_list = [plate(ratio, restitution) for ratio in (0.5, 0.9, 1.2, 1.5, 2.0, 2.5)]
         own = NOTHING | {"fall": "0 mm"}
         for bowl, seen in zip(
-            bowl_list, bowl_test.test(part, find(part), bowl_list, "place", own, drops=20, seconds=2.0)
+            bowl_list, bowl_test.test(part, find(part), bowl_list, "place", own, drops=20, pace=TWO)
         ):
             deepest = np.argmin(find(part).heights)
             ours, exact = seen.occupancy.velocities[deepest, 0], answer.answer(bowl).velocity
@@ -66,7 +68,7 @@ def t_shapes(parts):
         for ratio in (1.5, 2.0, 2.5):
             start = time.process_time()
             (seen,) = bowl_test.test(
-                part, aspects, [plate(ratio, 0.3)], "drop", NOTHING, drops=parts, seconds=4.0
+                part, aspects, [plate(ratio, 0.3)], "drop", NOTHING, drops=parts, pace=FOUR
             )
             took = (time.process_time() - start) / parts
             course = seen.occupancy.course[:, deepest]

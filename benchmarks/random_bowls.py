@@ -21,6 +21,7 @@ from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
 from feederscrew.output.solidbowl import printing
 from feederscrew.resting.aspects import find
+from feederscrew.running import RunSettings
 from feederscrew.solidbowl import cuts, facets, leaning, measuring, riding
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.materials import NAMES, material
@@ -227,7 +228,7 @@ def rides(one):
     tooled = 0.0 if solid.plan.stretch is None else solid.plan.stretch.length
     course.RUN_UP = max(np.pi * bowl.track.radius - tooled, longest) / longest  # half a turn in all
     seen = [
-        course.course(one.part, own, every, rows, some, parts=len(rows), seed=3)
+        course.course(one.part, own, every, course.Sending(rows, len(rows)), some, run=RunSettings(3))
         for own, some in ((bowl, bowl.devices), (found, stations))
     ]
     names = [course.FATES[fate] for fate in seen[0].fates], [course.FATES[fate] for fate in seen[1].fates]

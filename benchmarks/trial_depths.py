@@ -19,6 +19,7 @@ from feederscrew.errors import FeederError
 from feederscrew.part import load
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
+from feederscrew.running import RunSettings
 from feederscrew.trial import course
 
 PAGE = Path(__file__).parent.parent / "docs/trial.md"
@@ -52,9 +53,9 @@ def ridden(part, lines):
     """Return part-seconds, processor time [s], depth [mm] and energy won [um] of a part on one chain."""
     bowl = bowl_with(lines)
     ways = stream.orientations(part, find(part), bowl.track, bowl.devices, bowl=bowl)
-    tried, own = list(range(len(ways.lying))), {"parts": TRIED, "seed": SEED}
+    sent = course.Sending(range(len(ways.lying)), TRIED)
     begun = time.process_time()
-    seen = course.course(part, bowl, ways.lying, tried, bowl.devices, **own)
+    seen = course.course(part, bowl, ways.lying, sent, bowl.devices, run=RunSettings(SEED))
     spent = time.process_time() - begun
     return seen.seconds.sum(), spent, 1e3 * seen.depths.max(), 1e6 * seen.gains.max()
 

@@ -10,6 +10,7 @@ import trial_parts
 
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
+from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.trial import course
@@ -24,7 +25,7 @@ SHARES, TRIED = (-0.25, 0.25, 0.5, 0.75, 1.0, 1.25), 4
 def passed(part, bowl, every, place, gap):
     """How many of some parts laid in one orientation pass a gap [m]."""
     device = made("gap", "here", limit=gap)
-    seen = course.course(part, bowl, every, [place], [device], parts=TRIED, seed=2)
+    seen = course.course(part, bowl, every, course.Sending([place], TRIED), [device], run=RunSettings(2))
     return int((seen.fates == course.PASSED).sum())
 
 

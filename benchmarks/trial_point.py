@@ -36,7 +36,7 @@ def velocity(amplitude):
     bowl = bowls.read(None, (*OWN, f"drive.amplitude={amplitude} mm", "track.bank=0 deg"))
     every = orientations(BLOCK, find(BLOCK), bowl.track)
     flat = [k for k, one in enumerate(every) if one.height < 6e-3]
-    seen = course.course(BLOCK, bowl, every, flat[:1] * 4, (), parts=4)
+    seen = course.course(BLOCK, bowl, every, course.Sending(flat[:1] * 4, 4), ())
     found = float(np.nanmean(seen.velocities))
     return answer.throw_number(bowl), 1e3 * found, 1e3 * answer.answer(bowl).velocity
 

@@ -16,6 +16,7 @@ from feederscrew import bowl as bowls
 from feederscrew.part import load
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
+from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.trial import course, looks, runs
 
@@ -36,9 +37,10 @@ def counted(part, kind, limit):
     bowl, aspects = bowls.read(None, OWN), find(part)
     device = made(kind, "here", limit=1e-3 * limit, text=f"{limit} mm")
     ways = stream.orientations(part, aspects, bowl.track, (device,), bowl=bowl)
-    every, below = list(range(len(ways.lying))), looks.AspectsBelow(part, aspects)
-    own = {"poses": ways.states, "leaves": course.rightly(ways.leaving), "seed": 5, "jobs": 2}
-    seen = course.course(part, bowl, ways.lying, every, (device,), parts=TRIED * len(every), **own)
+    every, below = range(len(ways.lying)), looks.AspectsBelow(part, aspects)
+    own = {"poses": ways.states, "leaves": course.rightly(ways.leaving), "run": RunSettings(5, 2)}
+    sent = course.Sending(every, TRIED * len(every))
+    seen = course.course(part, bowl, ways.lying, sent, (device,), **own)
     if len(seen.rides) < 2:
         return np.zeros(4, int)
     ride, riders = seen.rides[-1], seen.riders[-1]

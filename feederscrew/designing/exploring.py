@@ -207,8 +207,7 @@ def _screened(search, candidate):
     request = search.request
     drawn = robust_run(
         search.part, candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.rows,
-        draws=min(SCREENED, request.draws), tolerance=request.tolerance,
-        seed=request.seed, jobs=request.jobs,
+        draws=min(SCREENED, request.draws), tolerance=request.tolerance, run=request.run,
     )  # fmt: skip
     if drawn.partial:
         raise KeyboardInterrupt
@@ -262,7 +261,7 @@ def _at_velocity(search, made, proposal, ways, weights, gain):
 def _short(search, bowl, ways, weights, proposal):
     """The short trial: what is wanted first; where none of it leaves, the others are not tried."""
     request, rows = search.request, trying.often(weights, (proposal.row,))
-    own = {"seed": request.seed, "jobs": request.jobs, "before": search.before}
+    own = {"run": replace(request.run, before=search.before)}
     right = set(trying.wanted_rows(ways, proposal.states(ways)))
     first = [k for k in rows if k in right] or [proposal.row]
     tried = trying.single(search.part, bowl, ways, weights, proposal.rows, rows=first, each=EACH, **own)

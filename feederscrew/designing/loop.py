@@ -128,7 +128,7 @@ def proved(search, candidate, *, whole):
     search.told(f"draws: {candidate.attempt.wanted}, {request.draws} of part, friction, drive and cuts")
     tested = robust_run(
         part, bowl, ways, weights, candidate.proposal.rows, draws=request.draws,
-        tolerance=request.tolerance, seed=request.seed, jobs=request.jobs,
+        tolerance=request.tolerance, run=request.run,
     )  # fmt: skip
     study = replace(study, robust=tested, partial=tested.partial)
     if tested.partial or not (whole or tested.share >= DRAWS_HELD):

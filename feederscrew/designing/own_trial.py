@@ -9,6 +9,7 @@ from feederscrew.designing.proposals import alike
 from feederscrew.designing.robust import denied
 from feederscrew.errors import FeederError
 from feederscrew.rates import stream
+from feederscrew.running import RunSettings
 
 EACH = 2  # parts of each orientation
 BEST = 3  # designs of a table that are tried, and of one orientation whose first ones are denied
@@ -61,7 +62,8 @@ def own_trials(study, again=None, *, seed=1, jobs=1, before=None):
     """
     known = [one for one in study.designs if one is not None and one.devices and one.efficiency > 0.0]
     best = sorted(known, key=lambda one: (-one.isolated, -one.efficiency, one.wanted))
-    tried = tuple(_tried(study, one, seed, jobs, before) for one in best[:BEST])
+    run = RunSettings(seed, jobs, before=before)
+    tried = tuple(_tried(study, one, run) for one in best[:BEST])
     first = replace(study, trials=tried)
     if study.design is None or again is None or not tried or not tried[0].faults:
         return first
@@ -69,7 +71,7 @@ def own_trials(study, again=None, *, seed=1, jobs=1, before=None):
         other = again(kinds)
         if not _isolates(other) or _devices(other.design) in [one.devices for one in tried]:
             continue
-        tried = (*tried, _tried(other, other.design, seed, jobs, before))
+        tried = (*tried, _tried(other, other.design, run))
         if not tried[-1].faults:
             return replace(other, trials=(tried[-1], *tried[:-1]))
         if len(tried) == BEST:
@@ -92,7 +94,7 @@ def _devices(found):
     return tuple(f"{device.kind}: {device.text}" for device in found.devices)
 
 
-def _tried(study, one, seed, jobs, before):
+def _tried(study, one, run):
     """One design with parts of its own, on a track of its own width."""
     study = study.on_its_width(one.wanted)
     bowl = replace(study.bowl, devices=one.devices)
@@ -103,7 +105,7 @@ def _tried(study, one, seed, jobs, before):
     try:
         tried = trying.single(
             study.part, bowl, ways, shares, (one.wanted, *alike(ways.lying, one.wanted, study.up)), rows=rows,
-            each=EACH, seed=seed, jobs=jobs, before=before,
+            each=EACH, run=run,
         )  # fmt: skip
     except FeederError as fault:  # the bowl does not convey
         return TriedDesign(name, one.wanted, _devices(one), one.efficiency, 0.0, np.nan, 0, (fault.what,))

@@ -12,7 +12,8 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
-from feederscrew.trial.queue import GAPS, Until, queue_of
+from feederscrew.running import RunSettings
+from feederscrew.trial.queue import GAPS, QueuePlan, queue_of
 
 FILLS = (("low", trying.LOW), ("normal", GAPS), ("high", 0.0))  # free way between parts over their length
 PARTS, SECONDS = 12, 60.0  # in a queue at a time; for so long
@@ -48,8 +49,8 @@ class FollowedRow:
             return denied(_counted(fill, gaps, seen, self.states))
 
         seen = queue_of(
-            self.part, self.bowl, self.aspects, self.known.lying, poses, self.shares, parts=PARTS,
-            seconds=Until(SECONDS, ends if denied else None), seed=seed, gaps=gaps,
+            self.part, self.bowl, self.aspects, self.known.lying, poses, self.shares,
+            QueuePlan(PARTS, SECONDS, gaps, ends if denied else None), RunSettings(seed),
         )  # fmt: skip
         return _counted(fill, gaps, seen, self.states)
 

@@ -8,6 +8,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.designing.hazards.risks import Risk
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
+from feederscrew.running import RunSettings
 from feederscrew.studies.tooling import ToolingStudy, listed
 from feederscrew.tooling.devices.base import Device
 from feederscrew.trial.result import TrialRun
@@ -35,6 +36,11 @@ class DesignRequest:
     draws: int = 20
     seed: int = 1
     jobs: int = 1
+
+    @property
+    def run(self):
+        """Return how its trials and draws run."""
+        return RunSettings(self.seed, self.jobs)
 
     def __post_init__(self):
         for name in ("up", "without"):  # names may come as a text

@@ -17,6 +17,7 @@ from feederscrew.geometry import vectors
 from feederscrew.part.hull import convex_hull
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
+from feederscrew.running import RunSettings
 from feederscrew.tooling.fates import at_entry
 
 FRICTION, DRIVE, CUT = (0.6, 1.4), (0.9, 1.1), 1e-4  # [1], [1], [m] to either side
@@ -161,7 +162,7 @@ def matched(one, every):
     return min(range(len(every)), key=lambda k: away(every[k]))
 
 
-def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, seed, jobs=1, told=None):
+def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, run):
     """Try draws of part, friction, drive and cuts.
 
     Parameters
@@ -177,9 +178,8 @@ def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, seed, job
     draws : int
     tolerance : float [m]
         Of the part.
-    seed, jobs : int
-    told : callable, optional
-        Called with how many draws are done of how many.
+    run : RunSettings
+        Its progress is told how many draws are done, of how many.
 
     Returns
     -------
@@ -191,13 +191,12 @@ def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, seed, job
     try:
         for draw in range(draws):
             faults, speed = _draw(
-                part, bowl, known, shares, np.atleast_1d(wanted), tolerance, (seed, draw), jobs
+                part, bowl, known, shares, np.atleast_1d(wanted), tolerance, (run.seed, draw), run.jobs
             )
             held, done = held + (not faults), draw + 1
             wrong.update(set(faults))
             speeds.append(speed)
-            if told:
-                told(done, draws)
+            run.tell(done, draws)
     except KeyboardInterrupt:
         if not done:
             raise
@@ -221,8 +220,8 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs):
         ways = stream.along(bare.lying, aspects, driven.devices, bowl=driven, rows={*rows, *alike})
         even = np.full(len(ways.lying), 1.0 / len(ways.lying))
         tried = trying.single(
-            other, driven, ways, even, [rows[0], *alike], rows=list(dict.fromkeys(rows)), each=1, jobs=jobs,
-            seed=sum(seed),
+            other, driven, ways, even, [rows[0], *alike], rows=list(dict.fromkeys(rows)), each=1,
+            run=RunSettings(sum(seed), jobs),
         )  # fmt: skip
     except FeederError as fault:  # the drawn bowl does not convey, or the part does not fit
         return [fault.what], 0.0

@@ -133,7 +133,7 @@ def often(shares, rows=()):
     return [int(k) for k in order if shares[k] >= SELDOM or k in rows]
 
 
-def single(part, bowl, known, shares, wanted, *, rows, each, seed, jobs=1, before=None):
+def single(part, bowl, known, shares, wanted, *, rows, each, run):
     """Try parts one at a time.
 
     Parameters
@@ -150,9 +150,7 @@ def single(part, bowl, known, shares, wanted, *, rows, each, seed, jobs=1, befor
         Those to be tried.
     each : int
         Parts of each.
-    seed, jobs : int
-    before : callable, optional
-        Called before anything is compiled.
+    run : RunSettings
 
     Returns
     -------
@@ -160,8 +158,8 @@ def single(part, bowl, known, shares, wanted, *, rows, each, seed, jobs=1, befor
     """
     rows, states = np.asarray(rows, int), wanted_states(known, np.atleast_1d(wanted))
     seen = course.course(
-        part, bowl, known.lying, rows, bowl.devices, parts=each * len(rows), poses=counted(known, states),
-        leaves=course.rightly(known.leaving), seed=seed, jobs=jobs, before=before,
+        part, bowl, known.lying, course.Sending(rows, each * len(rows)), bowl.devices,
+        poses=counted(known, states), leaves=course.rightly(known.leaving), run=run,
     )  # fmt: skip
     out, whole = seen.orientations[-1], np.isin(seen.fates, (course.PASSED, course.TURNED))
     own = [seen.entered == k for k in rows]

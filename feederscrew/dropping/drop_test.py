@@ -14,6 +14,7 @@ from feederscrew.dropping.traces import DropTrace, follow
 from feederscrew.geometry.compiled import on_disk
 from feederscrew.records import Shown
 from feederscrew.resting.tumbling.by_class import Ground, ground
+from feederscrew.running import USUAL_RUN
 
 USUAL = 10_000  # drops, where the user names neither a number nor a width
 
@@ -33,20 +34,7 @@ class Result(Shown):
     single: float | None = None  # [1] restitution given as one value, which scatters as that of impacts does
 
 
-def test(
-    part,
-    aspects,
-    preset,
-    own,
-    *,
-    drops=None,
-    until=None,
-    seed=1,
-    jobs=1,
-    progress=None,
-    traced=0,
-    before=None,
-):
+def test(part, aspects, preset, own, *, drops=None, until=None, traced=0, run=USUAL_RUN):
     """Drop a part and count the aspects it rests on.
 
     Parameters
@@ -63,15 +51,10 @@ def test(
         How many; with ``until`` at most so many.
     until : str, optional
         Go on until every class's 95 % interval is this narrow to either side, '1%'.
-    seed : int
-    jobs : int
-        Cores to use; the counts do not depend on it.
-    progress : function, optional
-        As in ``ensemble.drop``.
-    before : function, optional
-        Called once all inputs are found right, before anything is compiled.
     traced : int
         Of how many drops, from the first, the motion is kept as well.
+    run : RunSettings
+        Its progress as in ``ensemble.drop``.
 
     Returns
     -------
@@ -89,24 +72,23 @@ def test(
     shape, length = shape_of_part(part, found)
     launch, single = conditions.launch_of(preset, length, own), conditions.single(own.get("restitution"))
     launch = launch if single is None else launch.scattering()
-    if before:
-        before()
+    run.begin()
     count = len(aspects.names)
     dropped = ensemble.drop(
         shape,
         launch,
-        np.random.default_rng(seed),
+        np.random.default_rng(run.seed),
         count=USUAL if drops is None and until is None else drops,
         aim=None if width is None else Aim(width, found.rows, count),
-        jobs=jobs,
-        progress=progress,
+        jobs=run.jobs,
+        progress=run.progress,
     )
     counted = ensemble.tally(dropped, found.rows, count, surface=own.get("restitution") is not None)
-    starts = sample(launch, shape, min(traced, len(dropped.faces)), np.random.default_rng(seed))
+    starts = sample(launch, shape, min(traced, len(dropped.faces)), np.random.default_rng(run.seed))
     traces = follow(shape, length, principal_axes(part.inertia)[1], starts, dropped, found.rows)
     described = conditions.described(launch, length)
     heights = check.frozen(_heights(shape, length, found.rows, aspects.heights))
-    return Result(described, seed, found, dropped, counted, heights, width, traces, single)
+    return Result(described, run.seed, found, dropped, counted, heights, width, traces, single)
 
 
 def _heights(shape, length, rows, heights):

@@ -1,7 +1,7 @@
 """The study of ``feeder trial``: parts of true shape on the vibrating, tooled track, one and many."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from typing import Any
 
@@ -20,12 +20,13 @@ from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH
+from feederscrew.running import RunSettings
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.rate import shares as arriving
 from feederscrew.trial import course, outlet
 from feederscrew.trial import landing as landings
 from feederscrew.trial.outlet import Outlet
-from feederscrew.trial.queue import GAPS, queue_of
+from feederscrew.trial.queue import GAPS, QueuePlan, queue_of
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.shape import solid_of
 
@@ -162,10 +163,9 @@ def trial(
         )
     count = parts or (FEW if queue else PARTS)
     launch = LAUNCH if found.recommended is None else found.recommended.launch
-    fall = None if landing is None else {"launch": launch, "parts": landing, "jobs": jobs}
-    crowd = None
-    if queue is not None:
-        crowd = {"parts": queue, "seconds": seconds, "gaps": None if poured else GAPS}
+    fall = None if landing is None else {"launch": launch, "parts": landing}
+    crowd = None if queue is None else QueuePlan(queue, seconds, None if poured else GAPS)
+    run = RunSettings(seed, jobs, progress)
     made: list[TrialRun] = []
     stopped = False
     for bowl in bowls:
@@ -174,14 +174,16 @@ def trial(
         ways = arrivals.oriented(ways, known.measured)
         tried = _tried(part, found, ways, aspect)
         shares = _shares(ways, rule, tried)
-        own: dict[str, Any] = {"parts": max(count, len(tried)), "seed": seed, "jobs": jobs, "before": before}
-        own |= {"poses": ways.states, "leaves": course.rightly(ways.leaving)}
-        own["progress"] = _after(len(made), progress, len(bowls))
+        own = replace(run, progress=_after(len(made), progress, len(bowls)), before=before)
+        sent = course.Sending(tried, max(count, len(tried)))
         try:
-            seen = course.course(part, bowl, ways.lying, tried, bowl.devices, **own)
+            seen = course.course(
+                part, bowl, ways.lying, sent, bowl.devices,
+                poses=ways.states, leaves=course.rightly(ways.leaving), run=own,
+            )  # fmt: skip
             more: dict[str, Any] = {}
             if not seen.partial:
-                more, stopped = _further(part, bowl, found, ways, shares, (fall, crowd), seed, progress)
+                more, stopped = _further(part, bowl, found, ways, shares, fall, crowd, run)
             made.append(TrialRun(bowl, throw_number(bowl), ways, shares, seen, **more))
         except KeyboardInterrupt:
             if not made:
@@ -198,17 +200,17 @@ def _further(
     found: Aspects,
     ways: stream.Orientations,
     shares: np.ndarray,
-    asked: Sequence[Mapping[str, Any] | None],
-    seed: int,
-    progress: Callable[..., None] | None,
+    fall: Mapping[str, Any] | None,
+    crowd: QueuePlan | None,
+    run: RunSettings,
 ) -> tuple[dict[str, Any], bool]:
     """Parts that fall onto the track and a queue, as far as asked for; and whether the user stopped them."""
-    made, own, (fall, crowd) = {}, {"seed": seed, "progress": progress}, asked
+    made: dict[str, Any] = {}
     try:
         if fall:
-            made["landing"] = landings.landing(part, bowl, found, ways.lying, ways.states, **fall, **own)
+            made["landing"] = landings.landing(part, bowl, found, ways.lying, ways.states, **fall, run=run)
         if crowd and not any(one.partial for one in made.values()):
-            made["queue"] = queue_of(part, bowl, found, ways.lying, ways.states, shares, **crowd, **own)
+            made["queue"] = queue_of(part, bowl, found, ways.lying, ways.states, shares, crowd, run)
     except KeyboardInterrupt:
         return made, True
     return made, False

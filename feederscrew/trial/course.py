@@ -1,5 +1,6 @@
 """Many parts, one at a time, through a chain of devices: what becomes of each, and where."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +9,7 @@ from feederscrew import check
 from feederscrew.conveying import answer
 from feederscrew.dropping.pool import gather
 from feederscrew.geometry import vectors
+from feederscrew.running import USUAL_RUN
 from feederscrew.trial import runs, sensed_rides, starts, stations, whereabouts
 from feederscrew.trial.looks import Looks
 from feederscrew.trial.rounding import rounded
@@ -22,6 +24,23 @@ SLOWEST = 1e-3  # [m/s] a slower bowl is given up after the time this takes
 GETS_ON = 0.03  # of the way it should come: a slower part does not get on
 BELOW = 1e-4  # [m] under the track: a part that reaches so deep hangs
 AT = 5e-4  # [m] from a device: a part that near is at it
+
+
+@dataclass(frozen=True, eq=False)
+class Sending:
+    """Which N parts are sent: laid down in some of M orientations, or on the track already."""
+
+    tried: Sequence[int] = ()  # orientations in which they are laid down, in turn
+    parts: int = 0  # N of them
+    begun: tuple | None = None  # (states, times, entered) of parts that are on the track already, as
+    # `runs.ride` takes them, and how each counts among the M; none is laid down then
+
+    def on_track(self, lay):
+        """Return states (N, 13), times (N,) [s] and orientations (N,): begun, or as ``lay`` lays them."""
+        if self.begun is not None:
+            return self.begun
+        entered = np.resize(np.asarray(self.tried, int), self.parts)
+        return *lay(entered), entered
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,10 +64,7 @@ class Course:
     partial: bool
 
 
-def course(
-    part, bowl, every, tried, devices, *,
-    parts, poses=None, leaves=None, begun=None, seed=1, jobs=1, progress=None, before=None,
-):  # fmt: skip
+def course(part, bowl, every, sent, devices, *, poses=None, leaves=None, run=USUAL_RUN):
     """Send parts through a chain of devices.
 
     Parameters
@@ -57,27 +73,17 @@ def course(
         From a mesh.
     bowl : Bowl
     every : sequence of Orientation
-        Of the part.
-    tried : sequence of int
-        Which of them are laid down, in turn.
+        Of the part, M of them.
+    sent : Sending
     devices : sequence of Device
         In the order parts meet them.
-    parts : int
     poses : sequence of Orientation, optional
         S of them, those of ``every`` first, in which parts may be found; those of ``every`` without it.
     leaves : (M, S) bool, optional
         In which of them an orientation may leave and still be said to pass; as it came without it.
-    begun : (states, times, entered), optional
-        Parts that are on the track already, as `runs.ride` takes them, and how each counts among the M;
-        none is laid down then.
-    seed : int
-        Of play, heading and phase of the drive; each part draws its own.
-    jobs : int
-        Cores to use; the outcome does not depend on it.
-    progress : function, optional
-        Told how many parts are through, of how many.
-    before : function, optional
-        Called before anything is compiled.
+    run : RunSettings
+        Its seed is of play, heading and phase of the drive: each part draws its own. Its progress is told how
+        many parts are through, of how many.
 
     Returns
     -------
@@ -91,12 +97,10 @@ def course(
     solid, length, principal = solid_of(part)
     solid = rounded(solid, axes(every, principal))
     known, chain = runs.setting(solid, length, bowl), _chain(bowl, every, devices)
-    if before:
-        before()
-    if begun is None:
-        entered = np.resize(np.asarray(tried, int), parts)
-        begun = (*starts.laid_down(bowl, every, entered, solid, principal, length, seed), entered)
-    states, times, entered = begun
+    run.begin()
+    states, times, entered = sent.on_track(
+        lambda rows: starts.laid_down(bowl, every, rows, solid, principal, length, run.seed)
+    )
     looks = Looks(every if poses is None else poses, solid, length, principal, bowl.track.radius)
     leaves = np.eye(len(every), len(looks.known), dtype=bool) if leaves is None else leaves
     rides = [sensed_rides.past(known, station, **_limits(bowl, station, every)) for station in chain]
@@ -106,12 +110,11 @@ def course(
         return _through(known, chain, rides, states[[n]], times[[n]])
 
     def work(begin):
-        for done, task in enumerate([begin(through, n) for n in range(parts)]):
+        for done, task in enumerate([begin(through, n) for n in range(len(entered))]):
             task.result()
-            if progress:
-                progress(done + 1, parts)
+            run.tell(done + 1, len(entered))
 
-    made, stopped = gather(work, jobs)
+    made, stopped = gather(work, run.jobs)
     found = _Found(chain, entered[: len(made)], looks)
     for place in range(len(chain)):
         riders = np.flatnonzero([len(one) > place for one in made])

@@ -7,6 +7,7 @@ import numpy as np
 from feederscrew import check
 from feederscrew.dropping.launches import named
 from feederscrew.dropping.plate.bowl_test import EXACT
+from feederscrew.running import USUAL_RUN
 from feederscrew.trial import course, runs, starts, stations, whereabouts
 from feederscrew.trial.looks import OTHER, AspectsBelow
 from feederscrew.trial.rounding import rounded
@@ -50,7 +51,7 @@ class Landing:
         return float(self.leaving[:-1].max(initial=0) / self.left) if self.left else np.nan
 
 
-def landing(part, bowl, aspects, every, poses, *, launch, parts, seed=1, jobs=1, progress=None):
+def landing(part, bowl, aspects, every, poses, *, launch, parts, run=USUAL_RUN):
     """Let parts fall onto the bare, moving track and send those that lie on it through the devices.
 
     Parameters
@@ -66,9 +67,8 @@ def landing(part, bowl, aspects, every, poses, *, launch, parts, seed=1, jobs=1,
     launch : str
         A key of ``dropping.launches.PRESETS``: height, spin and speed.
     parts : int
-    seed, jobs : int
-    progress : function, optional
-        Told how many parts are done, of how many, first with the landing.
+    run : RunSettings
+        Its progress is told how many parts are done, of how many, first with the landing.
 
     Returns
     -------
@@ -80,7 +80,8 @@ def landing(part, bowl, aspects, every, poses, *, launch, parts, seed=1, jobs=1,
         If the user stops it before all have come to lie and the first of them are through.
     """
     below = AspectsBelow(part, aspects)
-    ride, times = _fallen(part, bowl, every, below.shape, (named(launch), parts, seed), jobs, progress)
+    run.begin()
+    ride, times = _fallen(part, bowl, every, below.shape, named(launch), parts, run)
     if ride.partial:
         raise KeyboardInterrupt
     entered = below.of(ride.states)
@@ -90,18 +91,18 @@ def landing(part, bowl, aspects, every, poses, *, launch, parts, seed=1, jobs=1,
     radius = bowl.track.radius / solid_of(part)[1]
     states = whereabouts.moved(ride.states[on], -whereabouts.ways(ride.states[on], radius), radius)
     leaves = np.ones((len(aspects.names), len(poses)), bool)
-    own = {"begun": (states, (times + ride.seconds)[on], entered[on]), "jobs": jobs, "progress": progress}
-    count = int(on.sum())
-    seen = course.course(part, bowl, every, (), bowl.devices, parts=count, poses=poses, leaves=leaves, **own)
-    return _told(launch, parts - count, aspects, poses, seen, below)
+    sent = course.Sending(begun=(states, (times + ride.seconds)[on], entered[on]))
+    own = {"poses": poses, "leaves": leaves, "run": replace(run, before=None)}
+    seen = course.course(part, bowl, every, sent, bowl.devices, **own)
+    return _told(launch, parts - int(on.sum()), aspects, poses, seen, below)
 
 
-def _fallen(part, bowl, every, shape, started, jobs, progress):
+def _fallen(part, bowl, every, shape, launch, parts, run):
     """Runs of parts from their launch to where they lie, and the times [s] at which they began."""
-    (launch, parts, seed), (solid, length, principal) = started, solid_of(part)
+    solid, length, principal = solid_of(part)
     solid = rounded(solid, course.axes(every, principal))
     known = runs.setting(solid, length, bowl)
-    states, times = starts.falling(bowl, launch, shape, parts, length, seed)
+    states, times = starts.falling(bowl, launch, shape, parts, length, run.seed)
     flight, fastest = np.sqrt(2.0 * launch.fall[1]), launch.speed[1]
     room = fastest * flight + fastest**2 / (2.0 * max(bowl.friction.kinetic, 0.05)) + solid.radius
     room = min(length * room, MOST * 2.0 * np.pi * bowl.track.radius)
@@ -110,9 +111,8 @@ def _fallen(part, bowl, every, shape, started, jobs, progress):
     seconds = known.unit * (flight + EXACT.settling)
     limits = (seconds, 2.0 * seconds, 0.0, np.inf)
     one = runs.past(known, stage, limits=limits, every=seconds, places=1)
-    told = progress and (lambda done: progress(done, parts))
     begun = whereabouts.moved(states, room / length, known.radius)
-    ride = runs.ride(one, begun, times, jobs=jobs, progress=told)
+    ride = runs.ride(one, begun, times, jobs=run.jobs, progress=lambda done: run.tell(done, parts))
     return ride, times
 
 

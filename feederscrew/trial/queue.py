@@ -55,14 +55,20 @@ class QueuedParts:
 
 
 @dataclass(frozen=True)
-class Until:
-    """How long a queue is followed: for some time, or until what was seen of it is enough."""
+class QueuePlan:
+    """How many parts are in a queue, how they come, and how long they are followed."""
 
+    parts: int
     seconds: float  # [s] at most
-    enough: Callable | None = None  # given what was seen so far, QueuedParts, each LOOKS seconds
+    gaps: float | None = GAPS  # [1] mean free way between parts as they come in a row, over their length,
+    # beside the room that devices need; 0 where they come touching. None: they fall onto the track in any
+    # attitude, not in a row
+    enough: Callable | None = (
+        None  # given what was seen so far, QueuedParts, each LOOKS seconds: whether to end
+    )
 
 
-def queue_of(part, bowl, aspects, every, poses, shares, *, parts, seconds, seed, gaps=GAPS, progress=None):
+def queue_of(part, bowl, aspects, every, poses, shares, plan, run):
     """Follow a queue of parts that come without end: what leaves is offered again at the end of the row.
 
     Parameters
@@ -79,14 +85,9 @@ def queue_of(part, bowl, aspects, every, poses, shares, *, parts, seconds, seed,
         S of them in which parts may leave: those, then those that hang.
     shares : (M,) float [1]
         In which they come; sums to 1.
-    parts : int
-    seconds : float [s] or Until
-    seed : int
-    gaps : float [1] or None
-        Mean free way between parts as they come in a row, over their length, beside the room that devices
-        need; 0 where they come touching. None: they fall onto the track in any attitude, not in a row.
-    progress : function, optional
-        Told how many periods of the drive are done, of how many.
+    plan : QueuePlan
+    run : RunSettings
+        Its progress is told how many periods of the drive are done, of how many. A queue takes one core.
 
     Returns
     -------
@@ -97,15 +98,14 @@ def queue_of(part, bowl, aspects, every, poses, shares, *, parts, seconds, seed,
     KeyboardInterrupt
         If the user stops it before the first period is done.
     """
-    queue = _Queue(part, bowl, aspects, every, poses, shares, (parts, gaps, seed))
-    until = seconds if isinstance(seconds, Until) else Until(seconds)
-    count, look = (max(round(span * bowl.drive.frequency), 1) for span in (until.seconds, LOOKS))
+    run.begin()
+    queue = _Queue(part, bowl, aspects, (every, shares), poses, plan, run.seed)
+    count, look = (max(round(span * bowl.drive.frequency), 1) for span in (plan.seconds, LOOKS))
     try:
         for turn in range(count):
             queue.ride(turn)
-            if progress:
-                progress(turn + 1, count)
-            if until.enough and (turn + 1) % look == 0 and until.enough(queue.told(partial=False)):
+            run.tell(turn + 1, count)
+            if plan.enough and (turn + 1) % look == 0 and plan.enough(queue.told(partial=False)):
                 return queue.told(partial=False)
     except KeyboardInterrupt:
         if not queue.periods:
@@ -116,12 +116,12 @@ def queue_of(part, bowl, aspects, every, poses, shares, *, parts, seconds, seed,
 class _Queue:
     """The queue while it moves; lengths in units of the part's, times in seconds."""
 
-    def __init__(self, part, bowl, aspects, every, poses, shares, row):
-        self.part, self.bowl, self.every, (parts, gaps, seed) = part, bowl, every, row
+    def __init__(self, part, bowl, aspects, offered, poses, plan, seed):
+        self.part, self.bowl, (every, shares), parts = part, bowl, offered, plan.parts
         solid, length, self.principal = solid_of(part)
         solid = rounded(solid, course.axes(every, self.principal))
         self.known = known = runs.setting(solid, length, bowl)
-        self.gaps, self.parts, self.chances = gaps, parts, np.cumsum(shares)
+        self.every, self.gaps, self.parts, self.chances = every, plan.gaps, parts, np.cumsum(shares)
         self.rng = np.random.default_rng((seed, parts))
         longest = max(one.length for one in every)
         turn = PART_OF_TURN * 2.0 * np.pi * bowl.track.radius - 2.0 * longest  # some rolls back

@@ -12,6 +12,7 @@ from feederscrew.designing import proposals, robust, trying
 from feederscrew.part import load
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
+from feederscrew.running import RunSettings
 from feederscrew.tooling import sensor_views
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.verdicts import verdict
@@ -70,7 +71,7 @@ def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one(block):
     shares = np.arange(1.0, len(ways.lying) + 1.0)
     assert trying.gain(ways, shares, states) == pytest.approx(shares[[along, *same]].sum())
     bowl = bowls.default()
-    one = {"rows": (along, across), "each": 1, "seed": 1}
+    one = {"rows": (along, across), "each": 1, "run": RunSettings(1)}
     alone = trying.single(part, bowl, ways, shares, along, **one)
     both = trying.single(part, bowl, ways, shares, (along, *same), **one)
     assert (list(alone.right), list(alone.wrong)) == ([1, 0], [0, 1])

@@ -17,6 +17,7 @@ from feederscrew.dropping.pool import gather
 from feederscrew.errors import ArgumentError, ConfigError
 from feederscrew.resting.aspects import find
 from feederscrew.resting.rules import recommended
+from feederscrew.running import RunSettings
 
 BOX, LENGTH = drop_bodies.box((1.0, 1.3, 1.7))
 ROWS = np.array([0, 0, 1, 1, 2, 2])
@@ -217,7 +218,9 @@ def test_thick_coins_flipped_by_hand(thick, measured):
     """With an axis that points anywhere they were 0.12 and 0.32 on edge."""
     part = shapes.part(shapes.cylinder(10.0, 20.0 * thick, 96))
     aspects = find(part)
-    found = drop_test.test(part, aspects, "flip", dict.fromkeys(conditions.KEYS), drops=4000, seed=5)
+    found = drop_test.test(
+        part, aspects, "flip", dict.fromkeys(conditions.KEYS), drops=4000, run=RunSettings(5)
+    )
     edge = found.tally.p[np.abs(aspects.heights - 0.01) < 1e-4].sum()
     assert edge == pytest.approx(measured, abs=0.03)
 

@@ -15,6 +15,7 @@ from feederscrew.output.drop import trace_curve, trace_strip, trace_tables
 from feederscrew.output.tables import data_frame
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
+from feederscrew.running import RunSettings
 from feederscrew.studies.simulated.drop import DropStudy
 
 PARTS = Path(__file__).parents[2] / "parts"
@@ -181,7 +182,7 @@ def test_the_table_is_what_was_followed(bracket):
 
 def test_the_same_seed_gives_the_same_bytes(bracket):
     part, aspects, result = bracket
-    again = followed(PARTS / "lbracket_30x20x15.stl", drops=20, jobs=2)[2]
+    again = followed(PARTS / "lbracket_30x20x15.stl", drops=20, run=RunSettings(jobs=2))[2]
     one, two = (tables.text(trace_tables.traces(DropStudy(part, aspects, r)), "csv") for r in (result, again))
     assert one == two
     shown = telling(result.traces)

@@ -1,5 +1,7 @@
 """The dynamic bowl test: its statistics in closed form, and what it must say of parts on a plate."""
 
+from dataclasses import replace
+
 import drop_bodies
 import numpy as np
 import pytest
@@ -129,10 +131,15 @@ def bowl(*own):
     return bowls.record(bowls.settings(path=None, overrides=own))
 
 
-def shaken(part, *bowl_list, preset="drop", **more):
+def followed(seconds):
+    """How plates are told to follow their parts."""
+    return replace(bowl_test.EXACT, seconds=seconds)
+
+
+def shaken(part, *bowl_list, preset="drop", seconds=1.0, **more):
     given = dict.fromkeys(("fall", "spin", "speed", "restitution", "friction"))
-    more = {"drops": 40, "seconds": 1.0} | more
-    return bowl_test.test(part, find(part), bowl_list, preset, given, **more)
+    more = {"drops": 40} | more
+    return bowl_test.test(part, find(part), bowl_list, preset, given, pace=followed(seconds), **more)
 
 
 def test_the_outcome_does_not_depend_on_the_jobs():
@@ -174,7 +181,7 @@ def test_the_plate_is_the_bowls_and_the_surface_too_unless_given():
     own = dict.fromkeys(("fall", "spin", "speed", "restitution", "friction"))
     slippery = [bowl("friction.static=0.05", "drive.amplitude=0.2 mm")]
     rough = [bowl("friction.static=0.8", "drive.amplitude=0.2 mm")]
-    given = {"drops": 10, "seconds": 0.5}
+    given = {"drops": 10, "pace": followed(0.5)}
     speeds = [
         bowl_test.test(part, find(part), bowls_of, "place", texts, **given)[0].occupancy.velocity[0]
         for bowls_of, texts in ((slippery, own), (rough, own), (slippery, own | {"friction": "0.8"}))
@@ -228,7 +235,7 @@ def test_a_launch_keeps_its_speed_whatever_the_gravity():
     part = shapes.part(shapes.box(12.0, 12.0, 3.0))
     own = dict.fromkeys(("fall", "spin", "restitution")) | {"speed": "0.1 m/s", "friction": "0"}
     plates = [bowl("drive.amplitude=0 mm", f"gravity={gravity} m/s2") for gravity in (9.81, 1.0)]
-    earth, moon = bowl_test.test(part, find(part), plates, "place", own, drops=16, seconds=0.2)
+    earth, moon = bowl_test.test(part, find(part), plates, "place", own, drops=16, pace=followed(0.2))
     assert earth.launch["speed_mm_s"] == moon.launch["speed_mm_s"] == pytest.approx([100.0, 100.0])
     assert abs(earth.occupancy.velocity[0]) > 1e-3  # not all ways cancel
     assert moon.occupancy.velocity[0] == pytest.approx(earth.occupancy.velocity[0], rel=1e-3)

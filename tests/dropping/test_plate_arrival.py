@@ -14,6 +14,8 @@ from feederscrew.rates import arrivals
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import shares
 
+HALF = replace(bowl_test.EXACT, seconds=0.5)
+
 
 def plate(amplitude):
     return bowls.record(bowls.settings(path=None, overrides=(f"drive.amplitude={amplitude} mm",)))
@@ -24,7 +26,7 @@ def shaken():
     """Few parts on a gentle floor."""
     part = shapes.part(shapes.box(8.0, 12.0, 15.0))
     aspects = find(part)
-    return part, aspects, bowl_test.test(part, aspects, [plate(0.02)], "feed", {}, drops=30, seconds=0.5)[0]
+    return part, aspects, bowl_test.test(part, aspects, [plate(0.02)], "feed", {}, drops=30, pace=HALF)[0]
 
 
 def changed(shaken, **values):
@@ -106,11 +108,11 @@ def test_on_a_floor_that_throws_parts_as_many_are_followed_as_the_share_needs(mo
     part, bowl = shapes.part(shapes.box(8.0, 12.0, 20.0)), plate(0.4)
     runs = []
 
-    def test(*_, drops, seconds, pace, **__):
-        runs.append((drops, seconds, pace.done))
+    def test(*_, drops, pace, **__):
+        runs.append((drops, pace.seconds, pace.done))
         error = np.array([0.4, 0.4, 0.0]) / np.sqrt(drops)
         seen = SimpleNamespace(error=error, plate_low=np.full(3, 0.3), plate_high=np.full(3, 0.4))
-        return [bowl_test.Shaken(bowl, {}, 1.7, drops, seconds, seen, 0, False, rides="kept")]
+        return [bowl_test.Shaken(bowl, {}, 1.7, drops, pace.seconds, seen, 0, False, rides="kept")]
 
     def judged(run):
         return arrival.Arrival(0, 0, 0, run.seconds == arrival.SPELLS[1], "", run)

@@ -105,10 +105,10 @@ def test_a_stop_before_the_longer_spell_keeps_the_shorter(part, plain, monkeypat
     monkeypatch.setattr(floor, "judged", lambda _: floor.Arrival(0, 0, 0, False, "open", ran[0]))
     ran = []
 
-    def test(*_, seconds, **__):
+    def test(*_, pace, **__):
         if ran:
             raise KeyboardInterrupt
-        ran.append(floor.bowl_test.Shaken(plain, {}, 1.0, 5, seconds, None, 0, False))
+        ran.append(floor.bowl_test.Shaken(plain, {}, 1.0, 5, pace.seconds, None, 0, False))
         return ran
 
     monkeypatch.setattr(floor.bowl_test, "test", test)

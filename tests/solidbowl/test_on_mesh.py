@@ -10,6 +10,7 @@ from test_solid import RULES
 
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
+from feederscrew.running import RunSettings
 from feederscrew.solidbowl import cuts
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.materials import material
@@ -62,7 +63,7 @@ def test_the_mesh_measures_what_was_planned(ridden):
 def test_a_part_ends_on_the_mesh_as_on_the_analytic_track(ridden):
     bowl, part, every, _, found, devices = ridden
     seen = [
-        course.course(part, own, every, LYING, some, parts=2, seed=3)
+        course.course(part, own, every, course.Sending(LYING, 2), some, run=RunSettings(3))
         for own, some in ((bowl, bowl.devices), (found, devices))
     ]
     np.testing.assert_array_equal(seen[1].fates, seen[0].fates)
@@ -93,7 +94,7 @@ def test_other_parts_end_on_the_mesh_as_on_the_analytic_track(name, tmp_path):
     assert np.degrees(found.track.bank) == pytest.approx(bank, abs=0.1)
     rows = tuple(range(min(4, len(every))))
     seen = [
-        course.course(part, own, every, rows, some, parts=len(rows), seed=3)
+        course.course(part, own, every, course.Sending(rows, len(rows)), some, run=RunSettings(3))
         for own, some in ((bowl, bowl.devices), (found, stations))
     ]
     np.testing.assert_array_equal(seen[1].fates, seen[0].fates)
@@ -132,7 +133,7 @@ def test_parts_end_alike_where_the_wall_steps_out_or_leans(name, tmp_path):
     assert found.track.climb == pytest.approx(bowl.track.climb, abs=2e-5)
     rows = tuple(range(len(every)))
     seen = [
-        course.course(part, own, every, rows, some, parts=len(rows), seed=3)
+        course.course(part, own, every, course.Sending(rows, len(rows)), some, run=RunSettings(3))
         for own, some in ((bowl, bowl.devices), (found, stations))
     ]
     np.testing.assert_array_equal(seen[1].fates, seen[0].fates)

@@ -13,6 +13,7 @@ from feederscrew.geometry import vectors
 from feederscrew.output.trial import tables
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
+from feederscrew.running import RunSettings
 from feederscrew.studies import rate
 from feederscrew.studies import trial as studies
 from feederscrew.tooling.orientations import orientations
@@ -51,7 +52,7 @@ def sent(bowl, length, parts=2):
     """What became of the flat block of a length along the wall."""
     every = orientations(PART, find(PART), bowl.track)
     flat = [k for k, one in enumerate(every) if one.height < 6e-3 and abs(one.length - length) < 1e-3]
-    return course.course(PART, bowl, every, flat, bowl.devices, parts=parts, seed=3)
+    return course.course(PART, bowl, every, course.Sending(flat, parts), bowl.devices, run=RunSettings(3))
 
 
 @pytest.mark.parametrize(
@@ -89,7 +90,9 @@ def test_a_step_wins_nothing_that_gravity_and_the_drive_did_not_give(tmp_path):
     every = orientations(bracket, find(bracket), bowl.track)
     long_side_up = [k for k, one in enumerate(every) if one.name == "D@1"]
     for seed in (1, 3):
-        seen = course.course(bracket, bowl, every, long_side_up, bowl.devices, parts=1, seed=seed)
+        seen = course.course(
+            bracket, bowl, every, course.Sending(long_side_up, 1), bowl.devices, run=RunSettings(seed)
+        )
         assert seen.gains.max() < 5e-7
 
 
@@ -100,7 +103,7 @@ def test_a_part_that_falls_over_the_free_edge_does_not_sink_into_the_track():
     across = [
         k for k, one in enumerate(every) if one.aspect == "F" and one.distance < 7e-3 and one.length < 0.012
     ]
-    seen = course.course(part, bowl, every, across, (), parts=2, seed=1)
+    seen = course.course(part, bowl, every, course.Sending(across, 2), (), run=RunSettings(1))
     assert (seen.fates == course.RETURNED).all() and seen.depths.max() < 5e-5
 
 
@@ -197,7 +200,7 @@ def test_a_part_with_many_corners_at_the_wall_stays_on_the_track():
     bowl, part = bowls.read(None, []), load("parts/squarenut_m5.stl")
     every = orientations(part, find(part), bowl.track)
     upright = [k for k, one in enumerate(every) if one.height > 7e-3 and one.width < 5e-3]
-    seen = course.course(part, bowl, every, upright[:1], (), parts=1)
+    seen = course.course(part, bowl, every, course.Sending(upright[:1], 1), ())
     assert seen.fates[0] == course.PASSED and seen.depths[0] < 2e-5
 
 
@@ -235,7 +238,7 @@ def test_a_washer_lies_on_a_few_points_of_its_rim():
     washer, bowl = load("parts/washer_m6.stl"), bowls.read(None, [])
     every = orientations(washer, find(washer), bowl.track)
     flat = next(k for k, one in enumerate(every) if one.height < 2e-3)
-    seen = course.course(washer, bowl, every, [flat], (), parts=1)
+    seen = course.course(washer, bowl, every, course.Sending([flat], 1), ())
     assert seen.fates[0] == course.PASSED and seen.depths[0] < 1e-5 and seen.gains[0] < 1e-6
     assert seen.velocities[0] == pytest.approx(answer.answer(bowl).velocity, rel=0.05)
 
@@ -264,7 +267,8 @@ def test_the_order_of_work_changes_nothing(bowl):
     one = bowl("gap: 9 mm")
     every = orientations(PART, find(PART), one.track)
     both = [
-        course.course(PART, one, every, [0, 1], one.devices, parts=6, seed=7, jobs=jobs) for jobs in (1, 2)
+        course.course(PART, one, every, course.Sending([0, 1], 6), one.devices, run=RunSettings(7, jobs))
+        for jobs in (1, 2)
     ]
     np.testing.assert_array_equal(both[0].seconds, both[1].seconds)
     np.testing.assert_array_equal(both[0].rides[-1].states, both[1].rides[-1].states)
@@ -273,15 +277,15 @@ def test_the_order_of_work_changes_nothing(bowl):
 def test_an_interrupt_keeps_every_part_that_is_through(bowl):
     one = bowl("narrowed_track: 8 mm")
     every = orientations(PART, find(PART), one.track)
-    own, told = {"parts": 8, "seed": 7}, []
+    eight, told = course.Sending([0, 1], 8), []
 
     def stop(done, total):
         told.append((done, total))
         if done == 3:
             raise KeyboardInterrupt
 
-    part = course.course(PART, one, every, [0, 1], one.devices, progress=stop, **own)
-    whole = course.course(PART, one, every, [0, 1], one.devices, **own)
+    part = course.course(PART, one, every, eight, one.devices, run=RunSettings(7, progress=stop))
+    whole = course.course(PART, one, every, eight, one.devices, run=RunSettings(7))
     assert told == [(1, 8), (2, 8), (3, 8)]
     assert part.partial and not whole.partial and 3 <= len(part.fates) < 8
     for name in ("fates", "ended", "seconds"):
@@ -346,16 +350,20 @@ def test_a_corner_that_slides_along_the_wall_does_not_slip_past_a_gate(bowl):
     gate = bowl("profile: [[0 mm, 0 mm], [16 mm, 0 mm], [16 mm, 8.4 mm], [0 mm, 8.4 mm]]")
     every = orientations(wedge, find(wedge), gate.track)
     sharp = [k for k, one in enumerate(every) if abs(one.height - 11e-3) < 1e-5 and one.length > 15.9e-3]
-    seen = course.course(wedge, gate, every, sharp, gate.devices, parts=len(sharp), seed=1)
+    seen = course.course(
+        wedge, gate, every, course.Sending(sharp, len(sharp)), gate.devices, run=RunSettings(1)
+    )
     assert len(sharp) >= 2 and (seen.fates == course.STOPPED).all()
 
 
 def test_parts_that_fall_onto_the_track_go_on_as_they_come_to_lie(bowl):
     one, aspects = bowl("narrowed_track: 9 mm"), find(PART)
     every = orientations(PART, aspects, one.track)
-    own = {"launch": "drop", "parts": 24, "seed": 2}
-    both = [landing.landing(PART, one, aspects, every, every, jobs=jobs, **own) for jobs in (1, 2)]
+    own, begun = {"launch": "drop", "parts": 24}, []
+    kinds = [RunSettings(2, jobs, before=lambda: begun.append(1)) for jobs in (1, 2)]
+    both = [landing.landing(PART, one, aspects, every, every, run=run, **own) for run in kinds]
     fell = both[0]
+    assert begun == [1, 1]  # once each, not again where those that lie go on
     np.testing.assert_array_equal(fell.fates, both[1].fates)
     assert fell.lost + fell.landed.sum() == 24 and 0 < fell.lost < 24
     assert fell.landed[0] > fell.landed[1:].sum()  # most lie flat

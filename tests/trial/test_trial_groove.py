@@ -89,6 +89,6 @@ def test_a_dowel_along_a_groove_passes_it():
     bowl, every, *_ = in_groove(replace(BOWL, track=replace(BOWL.track, climb=3.0 * DEG)), 30.0, radius=0.15)
     row = [k for k, one in enumerate(every) if one.name == "A@0"]
     chain = (made("groove", "g", angle=30.0 * DEG), made("bank", "b", angle=8.0 * DEG))
-    found = course.course(DOWEL, bowl, every, row, chain, parts=2)
+    found = course.course(DOWEL, bowl, every, course.Sending(row, 2), chain)
     assert list(found.fates) == [course.PASSED] * 2
     assert found.depths.max() < 5e-5

@@ -7,6 +7,7 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
+from feederscrew.running import RunSettings
 from feederscrew.solidbowl import cuts
 from feederscrew.tooling.devices.hole_shapes import beyond_borders
 from feederscrew.tooling.orientations import orientations, travelling
@@ -72,5 +73,5 @@ def test_a_block_that_the_corners_carry_gets_over(slanted):
     row = next(k for k, one in enumerate(every) if one.length > 0.0216 and one.height < 0.0072)
     said = verdict(slanted.devices[0], every[row], every)
     assert said.passes == 1.0 and said.margin > 1e-3
-    seen = course.course(PART, slanted, every, [row], slanted.devices, parts=3, seed=3)
+    seen = course.course(PART, slanted, every, course.Sending([row], 3), slanted.devices, run=RunSettings(3))
     assert list(seen.fates) == [course.PASSED] * 3

@@ -7,7 +7,8 @@ import trimesh
 from feederscrew import bowl as bowls
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
-from feederscrew.trial.queue import queue_of
+from feederscrew.running import RunSettings
+from feederscrew.trial.queue import QueuePlan, queue_of
 
 CORNERS = [(-5, -5, 5), (5, 5, 5), (5, -5, -5), (-5, 5, 5), (-5, -5, -5), (5, 5, -5), (5, -5, 5), (-5, 5, -5)]
 FACES = [
@@ -22,6 +23,7 @@ def test_every_cube_of_a_queue_on_a_bare_track_leaves():
     aspects = find(part)
     bowl = bowls.read(None, ["track.width=20 mm", "track.bank=3 deg", "track.climb=3.5 deg"])
     known = stream.orientations(part, aspects, bowl.track, bowl=bowl)
-    seen = queue_of(part, bowl, aspects, known.lying, known.states, np.ones(1), parts=12, seconds=2.0, seed=1)
+    states = known.lying, known.states
+    seen = queue_of(part, bowl, aspects, *states, np.ones(1), QueuePlan(12, 2.0), RunSettings(1))
     assert seen.returned == 0 and seen.jams == 0
     assert seen.leaving[0] == seen.leaving.sum() > 2

@@ -11,6 +11,7 @@ from feederscrew.conveying import answer
 from feederscrew.dropping.kernel import body
 from feederscrew.resting.aspects import find
 from feederscrew.resting.counts import profiles
+from feederscrew.running import USUAL_RUN, RunSettings
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import crowd, looks, outlet, queue, runs, shape, whereabouts
 from feederscrew.trial.kernel import travel
@@ -42,9 +43,9 @@ def parts_on(bowl, *places, heights=None, friction=None):
     return on
 
 
-def queued(bowl, **own):
+def queued(bowl, *planned, run=USUAL_RUN, **own):
     shares = np.array([one is FLAT for one in EVERY], float)
-    return queue.queue_of(PART, bowl, ASPECTS, EVERY, EVERY, shares, **own)
+    return queue.queue_of(PART, bowl, ASPECTS, EVERY, EVERY, shares, queue.QueuePlan(*planned, **own), run)
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.4])
@@ -93,7 +94,7 @@ def test_falling_over_each_other_wins_no_energy():
 
 
 def test_a_row_on_the_bare_track_delivers_what_its_velocity_brings():
-    found = queued(BOWL, parts=4, seconds=3.0, seed=1)
+    found = queued(BOWL, 4, 3.0)
     assert found.velocity == pytest.approx(answer.answer(BOWL).velocity, rel=0.03)
     assert 0.0 < found.rate <= found.velocity / 0.02 * 1.001
     assert found.rate == pytest.approx(found.velocity / (0.02 + found.gap), rel=0.25)
@@ -103,7 +104,7 @@ def test_a_row_on_the_bare_track_delivers_what_its_velocity_brings():
 def test_a_row_that_reaches_round_the_bowl_stays_on_the_track():
     # 12 blocks on a track of 80 mm in radius: the last enter beyond a quarter of the turn
     tight = replace(BOWL, track=replace(BOWL.track, radius=0.08, width=0.04))
-    found = queued(tight, parts=12, seconds=0.5, seed=1)
+    found = queued(tight, 12, 0.5)
     assert found.on_track * 0.02 > 0.5 * np.pi * 0.08
     assert found.returned == found.jams == 0
 
@@ -112,7 +113,7 @@ def test_a_row_that_reaches_round_the_bowl_stays_on_the_track():
 def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is_asked_for(gaps):
     """In a row they are even from 0 to twice the mean; parts that are poured or come touching have none."""
     shares = np.array([one is FLAT for one in EVERY], float)
-    made = queue._Queue(PART, STILL, ASPECTS, EVERY, EVERY, shares, (300, gaps, 3))
+    made = queue._Queue(PART, STILL, ASPECTS, (EVERY, shares), EVERY, queue.QueuePlan(300, 1.0, gaps), 3)
     ends = np.array([made.crowd.extents(n)[:2] for n in range(300)])
     free = (ends[:-1, 0] - ends[1:, 1]) * LENGTH / FLAT.length
     assert not made.waiting and ends[0, 1] <= 1e-9 and made.most == 300
@@ -126,7 +127,7 @@ def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is
 def test_parts_wait_where_the_track_before_the_first_device_is_full():
     tight = replace(STILL, track=replace(STILL.track, radius=0.08, width=0.04))
     shares = np.array([one is FLAT for one in EVERY], float)
-    made = queue._Queue(PART, tight, ASPECTS, EVERY, EVERY, shares, (40, queue.GAPS, 3))
+    made = queue._Queue(PART, tight, ASPECTS, (EVERY, shares), EVERY, queue.QueuePlan(40, 1.0), 3)
     lying = np.flatnonzero(made.crowd.on)
     rears = [made.crowd.extents(n)[0] * LENGTH for n in lying]
     room = 0.5 * 2.0 * np.pi * 0.08 - 2.0 * max(one.length for one in EVERY)
@@ -154,7 +155,7 @@ def test_what_blew_on_a_part_does_not_blow_on_the_next_in_its_place():
 def test_a_row_pushes_what_a_blade_holds(tmp_path):
     path = tmp_path / "bowl.yaml"
     path.write_text("devices:\n  - wiper: 4 mm\n")
-    found = queued(bowls.read(path, OWN), parts=3, seconds=7.0, seed=1)
+    found = queued(bowls.read(path, OWN), 3, 7.0)
     assert found.jams >= 1 and found.returned == 0 and found.delivered == 0.0
     assert found.touching > 0.03
     weight = PART.mass * BOWL.gravity
@@ -162,7 +163,7 @@ def test_a_row_pushes_what_a_blade_holds(tmp_path):
 
 
 def test_poured_parts_come_to_lie_and_travel():
-    found = queued(BOWL, parts=3, seconds=1.0, seed=2, gaps=None)
+    found = queued(BOWL, 3, 1.0, gaps=None, run=RunSettings(2))
     assert found.poured and found.on_track == 3 and found.depth < 1e-3
 
 
@@ -172,7 +173,7 @@ def test_an_interrupt_keeps_the_periods_until_then():
         if done == 6:
             raise KeyboardInterrupt
 
-    found = queued(BOWL, parts=2, seconds=3.0, seed=1, progress=stop)
+    found = queued(BOWL, 2, 3.0, run=RunSettings(1, progress=stop))
     assert found.partial and found.seconds == pytest.approx(0.1)
 
 
@@ -200,7 +201,7 @@ def test_the_track_goes_on_lower_behind_a_step(tmp_path):
 
 
 def test_what_left_stands_beside_what_was_measured():
-    told = replace(queued(BOWL, parts=1, seconds=0.02, seed=1), aspects=np.array([9, 3, 0, 2]))
+    told = replace(queued(BOWL, 1, 0.02), aspects=np.array([9, 3, 0, 2]))
     columns = profiles.parse("aspect,MDFT\nA,0.5\nB,0.3\nC,0.2\n", "counts.csv", ASPECTS.names)
     shares = np.full(len(EVERY), 1.0 / len(EVERY))
     seen = outlet.outlet(told, EVERY, shares, ASPECTS.names, columns)
@@ -224,7 +225,7 @@ def test_a_part_lies_on_its_aspect_at_any_heading():
 def test_what_has_no_room_yet_comes_next_however_long_it_is():
     even = np.full(len(EVERY), 1.0 / len(EVERY))
     small = replace(BOWL, track=replace(BOWL.track, radius=0.15))
-    row = queue._Queue(PART, small, ASPECTS, EVERY, EVERY, even, (40, False, 5))
+    row = queue._Queue(PART, small, ASPECTS, (EVERY, even), EVERY, queue.QueuePlan(40, 1.0, 0.0), 5)
     waits, came = row.coming, list(row.waiting)
     assert waits is not None and came  # the row reaches back to where the track begins
     for _ in range(20):
@@ -241,16 +242,17 @@ def test_what_has_no_room_yet_comes_next_however_long_it_is():
 def test_a_queue_of_which_enough_is_seen_ends_there(monkeypatch):
     """It is looked at after each fifth of a second; what was seen until then is that of a shorter queue."""
     monkeypatch.setattr(queue, "LOOKS", 0.2)
-    own, seen = {"parts": 2, "seed": 3}, []
+    two, seen = queue.QueuePlan(2, 1.0), []
 
     def enough(found):
         seen.append(found)
         return len(seen) == 2
 
-    ended = queued(BOWL, seconds=queue.Until(1.0, enough), **own)
-    short = queued(BOWL, seconds=0.4, **own)
+    def followed(plan):
+        return queued(BOWL, **vars(plan), run=RunSettings(3))
+
+    ended = followed(replace(two, enough=enough))
+    short = followed(replace(two, seconds=0.4))
     assert [one.seconds for one in seen] == pytest.approx([0.2, 0.4]) and not ended.partial
     assert (ended.seconds, ended.velocity, ended.gap) == (short.seconds, short.velocity, short.gap)
-    assert (
-        seen[0].leaving is not ended.leaving and queued(BOWL, seconds=queue.Until(0.1), **own).seconds == 0.1
-    )
+    assert seen[0].leaving is not ended.leaving and followed(replace(two, seconds=0.1)).seconds == 0.1

@@ -9,13 +9,14 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.dropping.kernel import body
 from feederscrew.resting.aspects import find
+from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.devices.nozzles import Nozzles, thrust
 from feederscrew.tooling.orientations import orientations, speed, travelling
 from feederscrew.tooling.verdicts import verdict
 from feederscrew.trial import air, course, crowd, runs, stations, whereabouts
 from feederscrew.trial.kernel import jets
-from feederscrew.trial.queue import queue_of
+from feederscrew.trial.queue import QueuePlan, queue_of
 from feederscrew.trial.shape import solid_of
 
 BOWL = bowls.read(None, ["track.width=40 mm"])
@@ -28,7 +29,7 @@ OWN = {"like": (ALONG.aspect, ALONG.heading, 5e-4)}
 
 def test_the_trial_blows_off_what_a_sorter_sees_differ():
     sorter = made("sorter", "here", **OWN)
-    seen = course.course(PART, BOWL, EVERY, range(len(EVERY)), [sorter], parts=len(EVERY))
+    seen = course.course(PART, BOWL, EVERY, course.Sending(range(len(EVERY)), len(EVERY)), [sorter])
     for k, fate in zip(seen.entered, seen.fates):
         said = verdict(sorter, EVERY[k], EVERY)
         tall = EVERY[k].length < 0.0051  # has turned half way round by then: the jet spins it along the track
@@ -40,7 +41,7 @@ def test_a_steady_jet_and_a_steeper_way_do_in_the_trial_what_they_say():
     chain = [made("separation", "here", angle=np.radians(-6.0))]
     chain += [made("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)]
     tall = next(k for k, one in enumerate(EVERY) if one.length > 0.0119 and one.height > 0.0199)
-    seen = course.course(PART, BOWL, EVERY, [EVERY.index(ALONG), tall], chain, parts=2)
+    seen = course.course(PART, BOWL, EVERY, course.Sending([EVERY.index(ALONG), tall], 2), chain)
     assert seen.fates.tolist() == [course.PASSED, course.RETURNED] and seen.ended[1] == 2
     steep = replace(BOWL, track=replace(BOWL.track, climb=np.radians(-6.0)))
     assert seen.velocities[0] == pytest.approx(speed(steep), rel=0.03)  # it comes first: from the entry on
@@ -62,14 +63,14 @@ def test_what_a_jet_does_on_a_part_that_tumbles_is_paid_for():
 def test_a_sensor_of_heights_lets_what_is_as_high_pass():
     sorter = made("sorter", "here", **OWN, sees="height")
     across = next(k for k, one in enumerate(EVERY) if one.length < 0.0121 and one.height < 0.0051)
-    seen = course.course(PART, BOWL, EVERY, [across], [sorter], parts=1)
+    seen = course.course(PART, BOWL, EVERY, course.Sending([across], 1), [sorter])
     assert seen.fates[0] == course.PASSED
 
 
 def test_a_queue_blows_off_what_differs_and_what_cannot_be_told_from_its_neighbour():
     bowl = replace(BOWL, devices=(made("sorter", "here", **OWN),))
     shares = np.array([float(one is ALONG) for one in EVERY])
-    alone = queue_of(PART, bowl, ASPECTS, EVERY, EVERY, shares, parts=1, seconds=5.0, seed=1)
+    alone = queue_of(PART, bowl, ASPECTS, EVERY, EVERY, shares, QueuePlan(1, 5.0), RunSettings(1))
     assert alone.leaving.sum() and not alone.returned and alone.velocity > 0.0
     line = crowd.crowded(bowl, EVERY, bowl.devices, 0.1)
     solid, length, _ = solid_of(PART)

@@ -8,6 +8,7 @@ from feederscrew import check
 from feederscrew.dropping.ensemble import NORMAL, half_width
 from feederscrew.dropping.plate import bowl_test, drive
 from feederscrew.dropping.plate.occupancy import Occupancy
+from feederscrew.running import RunSettings
 
 LAUNCH = "feed"
 SPELLS = (0.5, 2.0)  # [s] on the floor: the longer one where the shorter decides nothing
@@ -71,16 +72,16 @@ def arrival(part, aspects, bowl, *, drops=None, seed=1, jobs=1, progress=None):
     KeyboardInterrupt
         If the user stops it before anything is known.
     """
-    found, last = None, 0.0
+    found, last, run = None, 0.0, RunSettings(seed, jobs, progress)
     for count, seconds, pace in _runs(bowl, drops):
         if found is not None and seconds == last:
             count = count or enough(found)
             pace = replace(pace, done=found.shaken.rides)
         if found is not None and not _wanted(found, last, count, seconds):
             continue
-        own = {"drops": count, "seconds": seconds, "seed": seed, "jobs": jobs, "progress": progress}
+        own = {"drops": count, "pace": replace(pace, seconds=seconds), "run": run}
         try:
-            shaken = bowl_test.test(part, aspects, [bowl], LAUNCH, {}, pace=pace, **own)[0]
+            shaken = bowl_test.test(part, aspects, [bowl], LAUNCH, {}, **own)[0]
         except KeyboardInterrupt:
             if found is None:
                 raise

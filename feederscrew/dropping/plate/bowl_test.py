@@ -16,8 +16,9 @@ from feederscrew.dropping.rigid_body import Shape, shape_of_part
 from feederscrew.errors import ArgumentError
 from feederscrew.records import Shown
 from feederscrew.resting.tumbling.by_class import ground
+from feederscrew.running import USUAL_RUN, RunSettings
 
-USUAL, SECONDS = 400, 5.0  # parts, and how long each is followed [s]
+USUAL = 400  # parts, where the user names no number
 ROUND = 400  # parts between two looks at the intervals
 MOST_STEPS = 20_000_000  # for one part: a minute of computing; 10 mm for ten minutes take 4,000,000
 LEAST, MOST = 8, 600  # looks at a part, one a period or one in so many
@@ -27,6 +28,7 @@ LEAST, MOST = 8, 600  # looks at a part, one a period or one in so many
 class Pace:
     """How finely and how long a part is followed before it counts, and how many are."""
 
+    seconds: float = 5.0  # [s] each part is followed once it counts
     coarse: float = 1.0  # [1] by how much steps are longer than those that velocities need
     settling: float = 30.0  # [sqrt(L / g)] before the count begins: the launch has died away
     kick: float = np.inf  # [1] times the floor's own energy: a part that this does not tip stays
@@ -65,21 +67,7 @@ class Shaken(Shown):
         return round(self.parts * (1.0 - float(self.occupancy.course[-1].sum())))
 
 
-def test(
-    part,
-    aspects,
-    bowls,
-    preset,
-    own,
-    *,
-    drops=None,
-    seconds=None,
-    seed=1,
-    jobs=1,
-    progress=None,
-    before=None,
-    pace=EXACT,
-):
+def test(part, aspects, bowls, preset, own, *, drops=None, pace=EXACT, run=USUAL_RUN):
     """Put parts on a vibrating plate, one at a time, and follow what they lie on.
 
     Source: docs/resting.md, "On the vibrating plate".
@@ -98,15 +86,11 @@ def test(
         Ranges that replace the preset's, and the bowl's restitution and friction.
     drops : int, optional
         Parts on each plate; the same launches on all.
-    seconds : float, optional [s]
-        How long each is followed.
-    seed, jobs : int
-        As for a drop test.
     pace : Pace
-    before : function, optional
-        Called once all inputs are found right, before anything is compiled.
-    progress : function, optional
-        Called after every batch with the parts done, on all plates together, and how many there will be.
+        How long each is followed, and how finely.
+    run : RunSettings
+        Its progress is told after every batch of the parts done, on all plates together, and how many there
+        will be.
 
     Returns
     -------
@@ -122,16 +106,14 @@ def test(
     """
     found = ground(part, aspects)
     shape, length = shape_of_part(part, found)
-    seconds = SECONDS if seconds is None else seconds
     count, results = USUAL if drops is None else drops, []
-    way = _Way(found.rows, len(aspects.names), shape, length, seconds, pace, seed, jobs)
+    way = _Way(found.rows, len(aspects.names), shape, length, pace, run)
     came = (conditions.launch_of(preset, length, own, bowl.gravity) for bowl in bowls)
     launches = [_surfaced(launch, bowl, own, pace) for launch, bowl in zip(came, bowls)]
-    if before:
-        before()
+    run.begin()
     for k, bowl in enumerate(bowls):
         try:
-            tell = _after(k * count, len(bowls) * count, progress)
+            tell = _after(k * count, len(bowls) * count, run.progress)
             results.append(_plate(way, bowl, launches[k], count, tell))
         except KeyboardInterrupt:
             if not results:
@@ -167,25 +149,23 @@ class _Way:
     classes: int
     shape: Shape
     length: float  # [m] the unit of length
-    seconds: float  # [s]
     pace: Pace
-    seed: int
-    jobs: int
+    run: RunSettings
 
 
 def _plate(way, bowl, launch, count, progress):
     """The test on one plate."""
     shape, length, pace = way.shape, way.length, way.pace
     floor, unit = drive.floor_of(bowl, length, pace.coarse), np.sqrt(length / bowl.gravity)
-    period = looks_apart(bowl.drive.frequency, way.seconds)
-    number = max(round(way.seconds / period), LEAST)
+    period = looks_apart(bowl.drive.frequency, pace.seconds)
+    number = max(round(pace.seconds / period), LEAST)
     looks = (np.ceil(pace.settling * unit / period) + np.arange(number + 1)) * period / unit
-    starts = sample(launch, shape, count, np.random.default_rng(way.seed))
+    starts = sample(launch, shape, count, np.random.default_rng(way.run.seed))
     steps, kick = drive.steps_of(floor, pace.coarse), drive.kick_of(floor, pace.kick)
     _must_end(looks[-1] / min(steps.contact, floor.step))
-    follow = partial(ride, shape, floor, looks=looks, steps=steps, kick=kick, jobs=way.jobs)
+    follow = partial(ride, shape, floor, looks=looks, steps=steps, kick=kick, jobs=way.run.jobs)
     rides = _enough(follow, starts, pace, way.rows, way.classes, progress)
-    rng = np.random.default_rng((way.seed, len(rides.faces)))
+    rng = np.random.default_rng((way.run.seed, len(rides.faces)))
     seen = occupancy(rides.faces, length * rides.places[:, :, 0], way.rows, way.classes, period, rng)
     return Shaken(
         bowl=bowl,

@@ -12,6 +12,7 @@ from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules.recommended import launch_named
+from feederscrew.running import RunSettings
 
 BESIDE = ("csa", "surface")  # rules that the drops are shown with
 
@@ -102,7 +103,7 @@ def drop(
     found = find(part) if aspects is None else aspects
     result = drop_test.test(
         part, found, launch, dict(conditions or {}),
-        drops=drops, until=until, seed=seed, jobs=jobs, traced=traced, progress=progress, before=before,
+        drops=drops, until=until, traced=traced, run=RunSettings(seed, jobs, progress, before),
     )  # fmt: skip
     return DropStudy(part, found, result)
 

@@ -1,7 +1,7 @@
 """The study of ``feeder drop --plate``: a virtual dynamic bowl test of one part."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
@@ -10,6 +10,7 @@ from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules.recommended import launch_named
+from feederscrew.running import RunSettings
 from feederscrew.studies.simulated.drop import check_run
 
 LEAST = 1e-6  # [s]
@@ -85,12 +86,14 @@ def plate(
     """
     launch_named(launch)
     check_run(drops, seed, jobs)
+    pace = bowl_test.EXACT
     if seconds is not None:
         check.argument("seconds", seconds, LEAST)
+        pace = replace(pace, seconds=seconds)
     found = find(part)
     plates = bowl_test.test(
         part, found, bowls, launch, dict(conditions or {}),
-        drops=drops, seconds=seconds, seed=seed, jobs=jobs, progress=progress, before=before,
+        drops=drops, pace=pace, run=RunSettings(seed, jobs, progress, before),
     )  # fmt: skip
     given = names or ["bowl"] * len(bowls)
     return PlateStudy(part, found, seed, tuple(plates), tuple(given[: len(plates)]))

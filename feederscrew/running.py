@@ -1,0 +1,27 @@
+"""How a run of the library goes on: from which seed, on how many cores, and who is told of it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class RunSettings:
+    """What is the same for every run of parts: no field but the seed changes an outcome."""
+
+    seed: int = 1  # of all that is drawn at random
+    jobs: int = 1  # cores to use
+    progress: Callable[..., None] | None = None  # told how much is done, and of how much
+    before: Callable[..., None] | None = None  # called once all inputs are found right, before compiling
+
+    def begin(self) -> None:
+        """Call ``before`` where there is one."""
+        if self.before:
+            self.before()
+
+    def tell(self, done: int, total: int) -> None:
+        """Tell how much is done, and of how much, where somebody asks."""
+        if self.progress:
+            self.progress(done, total)
+
+
+USUAL_RUN = RunSettings()
