@@ -154,7 +154,6 @@ def test_no_function_is_long():
 
 PARAMETERS = 8  # of a function
 MORE = {
-    "output.style.draw_text": 9,
     "studies.aspects.aspects": 9,
     "studies.bowl.bowl": 10,
     "studies.rate.rate": 10,
@@ -165,7 +164,6 @@ MORE = {
     "studies.tooling.tooling": 15,
     "studies.trial.trial": 15,
     "studies.tune.tune": 13,
-    "tooling.isolating.design.design": 11,
 }  # have more than that: to be taken apart, the list only gets shorter
 
 

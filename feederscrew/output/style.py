@@ -32,8 +32,9 @@ class _Writer(RendererAgg):
         super().__init__(*size)
         self._known = {}  # texts and fonts: as they can be drawn, and width, height, descent
 
-    def draw_text(self, gc, x, y, s, prop, angle, ismath=False, mtext=None):
-        super().draw_text(gc, x, y, self._drawable(s, prop)[0], prop, angle, ismath=False, mtext=mtext)
+    def draw_text(self, gc, x, y, s, prop, angle, **more):
+        more["ismath"] = False  # a name with a dollar sign is no formula
+        super().draw_text(gc, x, y, self._drawable(s, prop)[0], prop, angle, **more)
 
     def get_text_width_height_descent(self, s, prop, ismath):
         return self._drawable(s, prop)[1]

@@ -24,7 +24,7 @@ from feederscrew.tooling.isolating import tracks
 from feederscrew.tooling.isolating.chain import FINE, STEP, WHERE, Wishes
 from feederscrew.tooling.isolating.design import MARGIN, PLAY, TOLERANCE, place
 from feederscrew.tooling.isolating.hole_search import VERDICTS, HoleSearch
-from feederscrew.tooling.isolating.proposal import Design
+from feederscrew.tooling.isolating.proposal import Design, Goal
 from feederscrew.tooling.mirrored import named
 from feederscrew.tooling.orientations import Orientation, orientations, speed
 from feederscrew.units import shown
@@ -162,9 +162,9 @@ def tooling(
     search = HoleSearch(seed=seed, verdicts=verdicts, until=time.monotonic() + seconds)
     margin += wishes.pop("play", PLAY) + wishes.pop("tolerance", TOLERANCE)
     vary = bool(wishes.pop("vary", True))
-    may_use = replace(asked_for(part, bowl, found, **wishes), vary=vary)
-    asked_of_each = {"purity": purity, "efficiency": efficiency, "turn": turn, "before": bowl.devices}
-    asked_of_each |= {"wishes": may_use, "margin": margin, "search": search}
+    may_use = replace(asked_for(part, bowl, found, **wishes), vary=vary, turn=turn)
+    asked_of_each = {"goal": Goal(purity, efficiency), "before": bowl.devices, "wishes": may_use}
+    asked_of_each |= {"margin": margin, "search": search}
     asked = range(len(every)) if wanted is None else [wanted]
     designs: list[Design | None] = [None] * len(every)
     if told is not None:

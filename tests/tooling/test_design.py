@@ -17,12 +17,14 @@ from feederscrew.tooling.devices.kinds import made as device_of
 from feederscrew.tooling.isolating import apart, hole_search
 from feederscrew.tooling.isolating.chain import Wishes
 from feederscrew.tooling.isolating.design import design, place
+from feederscrew.tooling.isolating.proposal import Goal
 from feederscrew.tooling.mirrored import named
 from feederscrew.tooling.orientations import orientations
 from feederscrew.tooling.verdicts import verdict
 
 MARGIN = 2.5e-4
 ONES = ("sorter",)
+PLAIN = Wishes(without=("cut_out",))
 SETTINGS = ("track.radius=150 mm", "track.width=200 mm")
 
 
@@ -77,7 +79,7 @@ def test_a_cut_leaves_as_much_of_a_foot_as_keeps_it_from_rocking(heading, is_ste
 def test_every_cut_holds_what_it_says(bracket):
     _, _, every, shares = bracket
     wanted = next(k for k, one in enumerate(every) if one.height > 0.0295)
-    found = design(every, shares, wanted, holes=False)
+    found = design(every, shares, wanted, wishes=PLAIN)
     assert found.cuts
     for cut in found.cuts:
         margins = {one.name: verdict(cut.device, one, every).margin for one in every}
@@ -143,7 +145,7 @@ def test_where_no_hole_is_found_that_of_the_mirror_images_is_mirrored(bracket, m
 def test_a_bowl_of_the_design_is_as_pure_and_efficient(bracket, tmp_path):
     part, aspects, every, shares = bracket
     wanted = int(np.argmax([one.canyon for one in every]))
-    found = design(every, shares, wanted, holes=False)
+    found = design(every, shares, wanted, wishes=PLAIN)
     lines = "".join(f"  - {cut.device.kind}: {cut.device.text}\n" for cut in found.cuts)
     path = tmp_path / "tooling.yaml"
     path.write_text(f"track: {{radius: 150 mm, width: 200 mm}}\ndevices:\n{lines}")
@@ -174,7 +176,7 @@ def test_rails_end_on_the_track():
     flat = [k for k, one in enumerate(every) if one.aspect in "AB" and not one.falls_off]
     assert flat
     for wanted in flat:
-        cuts = design(every, np.ones(len(every)), wanted, holes=False).cuts
+        cuts = design(every, np.ones(len(every)), wanted, wishes=PLAIN).cuts
         assert all(cut.device.span[1] < track.width for cut in cuts if cut.device.kind == "rails")
 
 
@@ -207,7 +209,9 @@ def test_a_part_too_large_for_the_bowl_and_a_card_without_a_mesh():
 def test_a_purity_that_is_enough_makes_a_shorter_chain(bracket):
     _, _, every, shares = bracket
     wanted = next(k for k, one in enumerate(every) if one.height < 0.016)
-    whole, part = (design(every, shares, wanted, holes=False, purity=share) for share in (1.0, 0.3))
+    whole, part = (
+        design(every, shares, wanted, goal=Goal(purity=share), wishes=PLAIN) for share in (1.0, 0.3)
+    )
     assert len(part.cuts) <= len(whole.cuts)
     assert part.isolated
     assert 0.3 <= part.purity <= whole.purity + 1e-12
@@ -218,10 +222,10 @@ def test_the_design_is_found_behind_the_devices_of_the_bowl(bracket, tmp_path):
     part, _, every, shares = bracket
     wanted = int(np.argmax([one.canyon for one in every]))
     before = (device_of("wiper", "bowl.yaml:2:3", limit=0.019, text="19 mm"),)
-    found = design(every, shares, wanted, holes=False, before=before)
+    found = design(every, shares, wanted, wishes=PLAIN, before=before)
     assert not found.cuts and "is returned by the devices" in found.reasons[0]
     low = max((k for k, one in enumerate(every) if one.height < 0.016), key=lambda k: shares[k])
-    own = {"holes": False, "wishes": Wishes(without=ONES)}
+    own = {"wishes": Wishes(without=(*ONES, "cut_out"))}
     alone, behind = (design(every, shares, low, before=some, **own) for some in ((), before))
     assert behind.devices[0] == before[0]
     assert "wiper" in [cut.device.kind for cut in alone.cuts]

@@ -1,6 +1,7 @@
 """Steps and ledges that turn parts over: closed forms of a block, matrices, and chains of them."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,12 +14,15 @@ from feederscrew.resting.aspects import find
 from feederscrew.tooling import turning
 from feederscrew.tooling.devices.kinds import KINDS, made
 from feederscrew.tooling.fates import course
+from feederscrew.tooling.isolating.chain import Wishes
 from feederscrew.tooling.isolating.design import design
+from feederscrew.tooling.isolating.proposal import Goal
 from feederscrew.tooling.orientations import orientations
 
 TRACK = bowls.read(None, ("track.radius=100 m", "track.width=200 mm", "track.bank=0 deg")).track
 A, B, C = 20e-3, 12e-3, 5e-3  # the sides of the block
 LYING = {"length": A, "width": B, "height": C}
+PLAIN = Wishes(without=("cut_out",))
 
 
 def block(a=20, b=12, c=5):
@@ -138,12 +142,14 @@ def test_turning_brings_more_where_returning_wastes():
     lying = block(20, 12, 10)  # a ledge turns what lies flat onto its side, which holds it
     shares = np.array([one.chances["recommended"] for one in lying])
     wanted = pick(lying, A, B)
-    plain, turned = (design(lying, shares, wanted, holes=False, turn=turn) for turn in (False, True))
+    plain, turned = (
+        design(lying, shares, wanted, wishes=replace(PLAIN, turn=turn)) for turn in (False, True)
+    )
     assert turned.isolated
     assert turned.efficiency > 1.5 * plain.efficiency
     assert any(KINDS[cut.device.kind].turns for cut in turned.cuts)
     flow = course(turned.devices, lying)
     assert turned.efficiency == pytest.approx((shares * flow.leaving[:, wanted]).sum())
-    short = design(lying, shares, wanted, holes=False, efficiency=0.99)
+    short = design(lying, shares, wanted, goal=Goal(efficiency=0.99), wishes=PLAIN)
     assert "the efficiency asked for is missed by" in short.reasons[-1]
     assert "`turn` allows" in short.reasons[-1]

@@ -42,6 +42,7 @@ class Wishes:
     separation: Device | None = None  # that comes before a device that needs gaps
     vary: bool = True  # other tracks and sweeps are tried where they give more
     gentle: bool = False  # cuts take no more of the wanted orientation's foot than they must
+    turn: bool = False  # devices that turn parts over, where returning them wastes too much
 
     def allows(self, kind):
         """Return whether a kind of device may be used."""

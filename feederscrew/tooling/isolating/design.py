@@ -8,8 +8,8 @@ from feederscrew.errors import FeederError
 from feederscrew.tooling.devices.named import place_of
 from feederscrew.tooling.isolating import chain, hole_search, rails, round_corners, turners, varied
 from feederscrew.tooling.isolating.needed import told_needed
+from feederscrew.tooling.isolating.proposal import ALL, told, weights, without
 from feederscrew.tooling.isolating.proposal import task as asked_for
-from feederscrew.tooling.isolating.proposal import told, weights, without
 
 MARGIN = 1.5e-4  # [m] to either side, beside ...
 PLAY, TOLERANCE = 5e-5, 5e-5  # [m] ... what parts come off the wall, and what their size is off
@@ -19,10 +19,7 @@ MORE = 1e-2  # [1] purity by which a chain of varied devices is better
 GAIN = 1.25  # turning devices are taken where they bring so many times the parts, if no efficiency is asked
 
 
-def design(
-    every, shares, wanted, *, margin=WHOLE, search=None, holes=True, purity=1.0, efficiency=0.0,
-    turn=False, before=(), wishes=None,
-):  # fmt: skip
+def design(every, shares, wanted, *, margin=WHOLE, search=None, goal=ALL, before=(), wishes=None):
     """Return the chain of fewest devices that isolates an orientation.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -39,34 +36,29 @@ def design(
         To either side.
     search : hole_search.HoleSearch, optional
         Seed and limits of the search for holes.
-    holes : bool
-        Whether holes of several corners may be cut.
-    purity : float [1]
-        Of what leaves, that is enough; the chain is not made longer for more.
-    efficiency : float [1]
-        Of what is offered, that is asked for: as long as it is missed, ways on are tried.
-    turn : bool
-        Whether devices that turn parts over may be used, where returning them wastes too much.
+    goal : proposal.Goal
+        Purity and efficiency that are enough.
     before : sequence of Device
         Of the bowl itself: the design is found behind them.
     wishes : chain.Wishes, optional
-        How parts leave, which devices may be used, the step of values, and whether cuts leave as much of the
-        wanted orientation's foot as returning the others allows.
+        How parts leave, which devices may be used, holes of several corners ('cut_out') and those that turn
+        parts over among them, the step of values, and whether cuts leave as much of the wanted orientation's
+        foot as returning the others allows.
 
     Returns
     -------
     Design
     """
     search = search or hole_search.HoleSearch()
-    given = asked_for(every, shares, wanted, margin, purity, before, wishes=wishes)
-    found = _returning(given, search.started(), holes)
-    if turn and not (found.isolated and found.efficiency >= efficiency > 0.0):
-        found = _with_turning(given, found, search, holes, efficiency)
-    short = _short(given, found, efficiency, turn)
+    given = asked_for(every, shares, wanted, margin, goal.purity, before, wishes=wishes)
+    found = _returning(given, search.started())
+    if given.wishes.turn and not (found.isolated and found.efficiency >= goal.efficiency > 0.0):
+        found = _with_turning(given, found, search, goal.efficiency)
+    short = _short(given, found, goal.efficiency)
     return replace(found, reasons=(*found.reasons, *short)) if short else found
 
 
-def _returning(given, search, holes):
+def _returning(given, search):
     """The best chain of devices that only return parts: they leave lying, or hanging."""
     if any(device.hangs for device in given.before):
         return told(given, (), np.zeros(len(given.every), dtype=bool))
@@ -74,27 +66,21 @@ def _returning(given, search, holes):
     hung = rails.design(given) if outcome != "lying" and given.wishes.allows("rails") else None
     if outcome == "hanging":
         return without(given, "does not hang between rails") if hung is None else hung
-    found = _plain(given, search, holes and given.wishes.allows("cut_out"))
+    found = _plain(given, search)
     if hung is None or (hung.isolated, hung.efficiency) <= (found.isolated, found.efficiency):
         return found
     return hung
 
 
-def _with_turning(given, found, search, holes, efficiency):
+def _with_turning(given, found, search, efficiency):
     """The design with turning devices before all others, where it delivers enough more."""
     enough = GAIN if efficiency <= 0.0 else 1.0
     for cuts in turners.chains(given):
         behind = asked_for(
-            given.every,
-            given.shares,
-            given.wanted,
-            given.margin,
-            given.purity,
-            given.before,
-            cuts,
-            given.wishes,
-        )
-        other = _returning(behind, search.started(), holes)
+            given.every, given.shares, given.wanted, given.margin, given.purity, given.before,
+            cuts, given.wishes,
+        )  # fmt: skip
+        other = _returning(behind, search.started())
         more = other.efficiency > enough * found.efficiency + 1e-12
         if other.isolated and (more or not found.isolated):
             found = other
@@ -103,7 +89,7 @@ def _with_turning(given, found, search, holes, efficiency):
     return found
 
 
-def _short(given, found, efficiency, turn):
+def _short(given, found, efficiency):
     """By how much what was asked for is missed, and why, a sentence each."""
     one, said = given.every[given.wanted], []
     if found.efficiency < efficiency:
@@ -112,7 +98,7 @@ def _short(given, found, efficiency, turn):
             f"{100.0 * comes:.3g} % of the parts come as {one.name}, and devices that return parts add none; "
             "`turn` allows devices that turn parts over"
         )
-        if turn:
+        if given.wishes.turn:
             why = "no step or ledge, nor two of them, turns more parts into it that can then be isolated"
         miss = 100.0 * (efficiency - found.efficiency)
         said.append(f"the efficiency asked for is missed by {miss:.3g} % of the parts: {why}")
@@ -122,7 +108,7 @@ def _short(given, found, efficiency, turn):
     return said
 
 
-def _plain(given, search, holes):
+def _plain(given, search):
     """The chain of devices that return the others and leave the wanted one lying."""
     every, wanted = given.every, given.wanted
     if every[wanted].turns_over:
@@ -135,7 +121,7 @@ def _plain(given, search, holes):
         return without(given, "is returned by the devices of the bowl file")
     weight = weights(given)
     weight[given.same] = 0.0
-    holes = holes and given.same.sum() == 1  # a hole is searched for one orientation
+    holes = given.wishes.allows("cut_out") and given.same.sum() == 1  # a hole is searched for one orientation
     stages = ({"clearing": False}, {}) if given.wishes.allows("wiper") else ({"clearing": False},)
     for stage in stages:
         cuts, returned = _chosen(given, weight, stage)

@@ -42,6 +42,17 @@ class Design:
         return (*self.before, *(cut.device for cut in self.cuts))
 
 
+@dataclass(frozen=True)
+class Goal:
+    """How much of what a design has to reach is enough."""
+
+    purity: float = 1.0  # [1] of what leaves; the chain is not made longer for more
+    efficiency: float = 0.0  # [1] of what is offered: as long as it is missed, ways on are tried
+
+
+ALL = Goal()
+
+
 @dataclass(frozen=True, eq=False)
 class DesignTask:
     """One orientation to be isolated behind some devices; M orientations."""

@@ -43,7 +43,7 @@ def designed(every, shares, wanted, bowl, *, steady, cache=None, **asked):
     cache : dict, optional
         Of orientations on tracks that lean, kept for other designs of the same part.
     **asked
-        As of ``design``: margin, search, purity, efficiency, turn, before and wishes.
+        As of ``design``: margin, search, goal, before and wishes.
 
     Returns
     -------
@@ -53,8 +53,10 @@ def designed(every, shares, wanted, bowl, *, steady, cache=None, **asked):
     best = _held(every, shares, wanted, bowl, steady, cache, asked)
     if not asked["wishes"].vary or asked["before"] or every[wanted].returned:
         return best
-    there = bowl, steady, cache, asked | {"turn": False}
-    for leaning in held.others(every[wanted], best, asked["wishes"]):
+    wishes = asked["wishes"]
+    quick = replace(wishes, turn=False, without=(*wishes.without, "cut_out"))  # on tracks that lean
+    there = bowl, steady, cache, asked | {"wishes": quick}
+    for leaning in held.others(every[wanted], best, wishes):
         other = _leaning(every, shares, wanted, leaning, there, quick=True)
         if gains(other, best):
             whole = _leaning(every, shares, wanted, leaning, there)
@@ -79,9 +81,9 @@ def _leaning(every, shares, wanted, leaning, there, quick=False):
     if not come[wanted] > 0.0:
         return None
     if quick:
-        found = design(behind, come, wanted, holes=False, **asked)
+        found = design(behind, come, wanted, **asked)
     else:
-        found = _on_this_track(behind, come, wanted, bowl, steady, asked, holes=False)
+        found = _on_this_track(behind, come, wanted, bowl, steady, asked)
     found = replace(found, efficiency=found.efficiency * float(come.sum() / shares.sum()))
     return held.with_stretches(found, leaning if found.cuts else leaning[:1])
 
@@ -158,19 +160,19 @@ def _blown(sorter, one, every):
     return one.track.width + met.blown(*sorter.jet.push(one, every), sorter.time)
 
 
-def _on_this_track(every, shares, wanted, bowl, steady, asked, holes=True):
+def _on_this_track(every, shares, wanted, bowl, steady, asked):
     """The design of an orientation that the drive leaves lying on what is cut; if there is none, said so."""
 
     def stays(found):
         lying = [every[found.wanted]]
         return not found.cuts or bool(steady(found.devices, lying, bowl, asked["margin"])[0])
 
-    found = _isolating(every, shares, wanted, holes=holes, **asked)
+    found = _isolating(every, shares, wanted, **asked)
     if stays(found):
         return found
     cut = any(one.device.corners for one in found.cuts)
     asked = asked | {"wishes": replace(asked["wishes"], gentle=True)}
-    gentle = found if cut else _isolating(every, shares, wanted, holes=holes, **asked)
+    gentle = found if cut else _isolating(every, shares, wanted, **asked)
     same = (gentle.isolated, gentle.efficiency, gentle.purity) == (
         found.isolated, found.efficiency, found.purity,
     )  # fmt: skip
