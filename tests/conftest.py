@@ -124,11 +124,13 @@ def many(request, monkeypatch):
         yield
 
 
-@pytest.fixture(autouse=True)
-def coarse(request, monkeypatch):
-    """Pictures of commands and batches with few pixels; tests/output looks at them as they are."""
-    if request.path.parent.name == "batch" or "cli" in request.path.parts:
-        monkeypatch.setattr(style, "DPI", COARSE)
+@pytest.fixture(scope="module", autouse=True)
+def coarse(request):
+    """Pictures with few pixels, but where a file of tests looks at them."""
+    with pytest.MonkeyPatch.context() as patch:
+        if not getattr(request.module, "LOOKED_AT", False):
+            patch.setattr(style, "DPI", COARSE)
+        yield
 
 
 @pytest.fixture

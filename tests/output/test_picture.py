@@ -10,6 +10,8 @@ from feederscrew.output.solid import marks, render, shading, smoothing, stance
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import find
 
+LOOKED_AT = True
+
 CORNERS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 QUADS = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
 FACES = np.array([t for a, b, c, d in QUADS for t in ((a, b, c), (a, c, d))])

@@ -30,6 +30,8 @@ from feederscrew.studies.floor import floor
 from feederscrew.studies.headings import headings
 from feederscrew.studies.track import track
 
+LOOKED_AT = True
+
 PARTS = Path(__file__).parents[2] / "parts"
 NUT = load(PARTS / "squarenut_m5.stl")
 HOPS = read(None, ("drive.amplitude=2 mm",))

@@ -10,6 +10,8 @@ from feederscrew.output import style
 from feederscrew.output.aspects import bars
 from feederscrew.resting.rules import registry
 
+LOOKED_AT = True
+
 NAMES = ["A", "B", "C"]
 PROFILES = {"pmi": np.array([0.5, 0.3, 0.2]), "csa": np.array([0.6, 0.4, np.nan])}
 

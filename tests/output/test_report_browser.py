@@ -31,6 +31,8 @@ from feederscrew.studies.trial import trial
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.orientations import orientations
 
+LOOKED_AT = True
+
 BRACKET = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 FLAGS = (

@@ -43,6 +43,8 @@ from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.strip import bent, strip
 from feederscrew.tooling.verdicts import verdict
 
+LOOKED_AT = True
+
 PART = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
 BOWL = """\
 track:
