@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+LOOKED_AT = True  # the library page shows the size of a picture
 ROOT = Path(__file__).parents[2]
 EXAMPLE = re.compile(r"```python\n(.*?)```\n(?:\n```\n(.*?)```)?", re.DOTALL)
 
