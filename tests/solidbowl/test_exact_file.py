@@ -37,7 +37,7 @@ def test_what_to_install(monkeypatch):
 @pytest.mark.parametrize(
     ("shape", "chain", "climb", "width"),
     [
-        ("stepped", "jets", 4.5, 20e-3),
+        ("stepped", "none", 4.5, 20e-3),
         ("conical", "none", 6.24, 29.1e-3),  # lost wall and floor where edges had to meet exactly
     ],
 )
