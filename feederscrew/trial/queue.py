@@ -60,12 +60,11 @@ class QueuePlan:
 
     parts: int
     seconds: float  # [s] at most
-    gaps: float | None = GAPS  # [1] mean free way between parts as they come in a row, over their length,
-    # beside the room that devices need; 0 where they come touching. None: they fall onto the track in any
-    # attitude, not in a row
-    enough: Callable | None = (
-        None  # given what was seen so far, QueuedParts, each LOOKS seconds: whether to end
-    )
+    # [1] mean free way between parts as they come in a row, over their length, beside the room that devices
+    # need; 0 where they come touching. None: they fall onto the track in any attitude, not in a row
+    gaps: float | None = GAPS
+    # given what was seen so far, QueuedParts, each LOOKS seconds: whether to end
+    enough: Callable | None = None
 
 
 def queue_of(part, bowl, aspects, every, poses, shares, plan, run):
