@@ -112,11 +112,17 @@ class Orientations:
     def sure(self):
         """(M,) bool, whether it comes along the bare track as it lies, and no momentum decides at a device.
 
-        On the track it shall neither rock nor roll: nothing holds what is round at the wall without a bank.
+        On the track it shall neither rock nor roll: nothing holds what is round at the wall without a bank,
+        and no bank brings back to it what rolls along the track, since that does not slip.
         """
         rocks = False if self.tipping is None else self.tipping.tips & ~self.tipping.over
-        loose = np.array([one.kind == "rolling" and one.track.bank <= 0.0 for one in self.lying], dtype=bool)
+        loose = np.array([_loose(one) for one in self.lying], dtype=bool)
         return self.decided & ~(self.rolls_back | rocks | loose)
+
+
+def _loose(one):
+    """Whether nothing brings back to the wall what is round and has left it."""
+    return one.kind == "rolling" and (one.track.bank <= 0.0 or not (one.rolls_along or one.groove))
 
 
 def orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None):
