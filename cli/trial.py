@@ -128,8 +128,6 @@ def trial(part, sent, taken, amplitudes, bowl, pictures, out):
     beside = studies.at_outlet(measured, known) if measured else None
     inputs = solid.inputs | known.inputs | ({measured: beside.sha256} if beside else {})
     with out.folder(solid.name, inputs, effective) as folder:
-        if sent["queue"]:
-            waiting.queue(out)
         with waiting.bar(out, "runs") as bar:
             found = studies.trial(
                 solid, driven, known=known, measured=beside, progress=bar.reach,

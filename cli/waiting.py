@@ -29,14 +29,6 @@ def trial(out):
         out.say("Compiling the trial's kernel, once on this machine: about a minute.")
 
 
-def queue(out):
-    """Say so when the first queue on this machine must wait for the compiler."""
-    from feederscrew.trial import crowd
-
-    if not crowd.compiled():
-        out.say("Compiling the queue's kernel, once on this machine: about a minute.")
-
-
 def conveying(out):
     """Say so when the first map on this machine must wait for the compiler."""
     from feederscrew.conveying import sweep

@@ -1,7 +1,7 @@
 """What the tests need compiled, made once for all their processes.
 
 Run: python tests/compile_first.py            (all)
-     python tests/compile_first.py crowd ...  (only those)
+     python tests/compile_first.py trial ...  (only those)
 
 The suite begins while the trial is still compiled: tests that need it wait for it. Each kernel is called as
 a command calls it, with as little to do as it takes.
@@ -22,15 +22,14 @@ devices:
   - cut_out: [[0 mm, 1 mm], [4 mm, 1 mm], [4 mm, 3 mm], [0 mm, 3 mm]]
 """
 COMMANDS = {
-    "part": "trial {part} --parts 1 --jobs 1 --rule quasistatic",
+    "trial": "trial {part} --parts 1 --jobs 1 --rule quasistatic",
     "verdicts": "rate {part} --aspect A --rule quasistatic --config {bowl}",
-    "holes": "tooling {bracket} --aspect A --rule quasistatic --config {bowl} --static",
-    "crowd": "trial {part} --parts 1 --jobs 1 --rule quasistatic --queue 2 --seconds 0.05",
+    "holes": "tooling {key} --aspect A --rule quasistatic --config {bowl} --static",
     "drop": "drop {part} --drops 1 --jobs 1",
     "plate": "drop {part} --plate --drops 1 --seconds 0.1 --jobs 1",
     "hull": "aspects {ball} --rule closed",
 }
-TRIAL = ("part", "crowd")  # one process: the crowd's trial takes over what that of a part compiled
+TRIAL = ("trial",)  # the longer of two processes
 OTHERS = ("sweep", "verdicts", "holes", "drop", "plate", "hull")
 READY = "FEEDER_TESTS_TRIAL"  # names the file that says how compiling the trial ended
 
@@ -77,7 +76,7 @@ def compile_here(name, folder):
     from feederscrew_cli.main import feeder
 
     files = {"bowl": folder / "bowl.yaml", "ball": folder / "ball.stl"}
-    files |= {"part": PARTS / "squarenut_m5.stl", "bracket": PARTS / "lbracket_30x20x15.stl"}
+    files |= {"part": PARTS / "squarenut_m5.stl", "key": PARTS / "key_a_d12x20.stl"}
     files["bowl"].write_text(BOWL)
     trimesh.creation.icosphere(subdivisions=4).export(files["ball"])
     words = shlex.split(COMMANDS[name].format(**files))
@@ -94,7 +93,7 @@ def main(names):
                 compile_here(one, Path(made))
         how = "compiled"
     finally:
-        if "part" in names:
+        if "trial" in names:
             say_ready(how)
 
 

@@ -3,14 +3,20 @@
 import numpy as np
 
 from feederscrew.dropping.kernel import body
-from feederscrew.trial.kernel import contact, supports
-from feederscrew.trial.kernel.crowd_records import LISTS, Crowd
+from feederscrew.trial.kernel import contact, supports, travel
+from feederscrew.trial.kernel.crowd_records import LISTS, Crowd, Limits, Sent, Together
 from feederscrew.trial.kernel.near_borders import BLOCK
 
 CONTACTS = 96  # of a part with the track at a time
 PAIRS = 400  # contacts between parts at a time
 NEAR = 4000  # edges near borders at a time, and faces near their corners
 SIDES = 12  # borders near a corner, in the mean
+ALONE = Together(active=np.zeros(0, bool), time=0.0, steps=0, notes=np.zeros(travel.NOTES + 2))
+NOBODY = Sent(
+    states=np.zeros((0, body.STATE)), times=np.zeros(0), every=1, paths=np.zeros((0, 0, 8)),
+    notes=np.zeros((0, travel.NOTES + 2)), outcomes=np.zeros(0, np.int64),
+)  # fmt: skip
+ENDLESS = Limits(*(0.0 for _ in Limits._fields))  # of nobody
 
 
 def crowd_of(solid, surface, count):
@@ -62,3 +68,17 @@ def crowd_of(solid, surface, count):
         ours=np.zeros(edges, np.int64), theirs=np.zeros(edges, np.int64),
         faces=np.zeros(len(solid.triangles), np.int64),
     )  # fmt: skip
+
+
+def move_on(known, surface, crowd, together):
+    """Move a crowd on, all of it at once; fills ``crowd.strains`` and the notes of ``together``.
+
+    Parameters
+    ----------
+    known : Known
+    surface : Surface
+    crowd : Crowd
+    together : Together
+    """
+    crowd.strains[:] = 0.0
+    travel.ride(surface, ENDLESS, known.solid, known.floor, crowd, NOBODY, together)

@@ -5,9 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew import check
-from feederscrew.geometry.compiled import on_disk
 from feederscrew.trial import air, runs, sensed_rides, staging, stations, whereabouts
-from feederscrew.trial.arrays import crowd_of
+from feederscrew.trial.arrays import crowd_of, move_on
 from feederscrew.trial.kernel import crowd_records, jets, travel
 
 PERIODS = 8  # over which a sensor takes the speed of a part: within one it may hop or be pushed
@@ -109,10 +108,9 @@ class PartsOnTrack:
     def ride(self, turn):
         """Move all through one period of the drive, the ``turn``-th; how deep anything was in anything."""
         notes = np.zeros(travel.NOTES + 2)
-        travel.follow(
-            self.surface, self.solid, self.known.floor, self.arrays, self.on,
-            turn * self.period, round(self.period / self.known.floor.step), notes,
-        )  # fmt: skip
+        steps = round(self.period / self.known.floor.step)
+        together = crowd_records.Together(self.on, turn * self.period, steps, notes)
+        move_on(self.known, self.surface, self.arrays, together)
         return notes[travel.SUNK]
 
     def slides_off(self, n):
@@ -171,8 +169,3 @@ class PartsOnTrack:
     def extents(self, n):
         """Return how far part n reaches along the wall, rear and front, and its lowest point."""
         return whereabouts.extents(self.arrays.states[n], self.solid.corners, self.known.radius)
-
-
-def compiled():
-    """Say whether the kernel of the queue is on disk already."""
-    return on_disk(travel.follow)

@@ -11,7 +11,7 @@ from feederscrew.dropping.plate import drive
 from feederscrew.dropping.pool import in_batches
 from feederscrew.geometry.compiled import on_disk
 from feederscrew.trial import air
-from feederscrew.trial.arrays import crowd_of
+from feederscrew.trial.arrays import ALONE, crowd_of
 from feederscrew.trial.kernel import crowd_records, travel
 
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = (
@@ -208,7 +208,7 @@ def limits_of(known, station, limits):
 
 def compiled():
     """Say whether the kernel of the trial is on disk already."""
-    return on_disk(travel.travel_all)
+    return on_disk(travel.ride)
 
 
 def _followed(known, surface, limits, looks, states, times):
@@ -219,7 +219,7 @@ def _followed(known, surface, limits, looks, states, times):
     paths = np.full((count, places, 8), np.nan)
     sent = crowd_records.Sent(ends, np.asarray(times) / known.unit, stride, paths, notes, outcomes)
     crowd = crowd_of(known.solid, surface, 1)
-    travel.travel_all(surface, limits, known.solid, known.floor, crowd, sent)
+    travel.ride(surface, limits, known.solid, known.floor, crowd, sent, ALONE)
     paths *= np.array([known.unit, *[known.length] * 3, 1.0, 1.0, 1.0, 1.0])
     return Runs(
         outcomes=outcomes, states=ends, seconds=notes[:, travel.TIME] * known.unit,

@@ -12,7 +12,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import runs, shape, starts, stations, whereabouts
 from feederscrew.trial.arrays import crowd_of
-from feederscrew.trial.kernel import motion
+from feederscrew.trial.kernel import corners_met, crowd_records, jets, motion, travel
 
 OWN = [
     "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",
@@ -108,6 +108,28 @@ def test_a_part_comes_to_a_stand_as_soon_as_friction_has_taken_its_speed(ahead, 
     one.states[0], one.order[0], one.knowns[0] = lying(bowl, aside=5e-3), 0, 0
     one.states[0, body.VX] = ahead * share * friction * step  # what friction takes in that share of a step
     one.lasted[0] = one.made[0, -1] = -1.0  # nothing is known of a step before
-    motion.met(surface, SOLID, one, (0, 1), step)
+    motion.ready(surface, one, (0, 1))
+    corners_met.found(surface, SOLID, one, 0, motion.ahead(SOLID, one.states[0], step))
     found = motion.pushed(surface, SOLID, known.floor, one, (0, 1), 0.0, step)
     assert found[2] == pytest.approx(share, rel=0.02)
+
+
+def test_energy_is_reckoned_along_the_way_that_a_part_goes(monkeypatch):
+    """The guard behind a solve takes the velocities after the step by the share that then moves the part."""
+    bowl = still(climb=0.0, bank=0.0, radius=50.0)
+    known = runs.setting(SOLID, LENGTH, bowl)
+    every = orientations(PART, find(PART), bowl.track)
+    surface, step = runs.surface_of(known, stations.plain(bowl.track, every, 0.5)), known.floor.step
+    one, told = crowd_of(SOLID, surface, 1), []
+    one.states[0] = lying(bowl, aside=5e-3)
+    one.states[0, body.Z] += 2e-3  # it strikes, then slides
+    one.states[0, body.VX] = 0.3
+    one.lasted[0] = one.made[0, crowd_records.REACHES] = one.blown[0, jets.AGAIN] = -1.0
+    move = motion.moved
+    monkeypatch.setattr(motion, "_no_more_than_given", lambda *given: told.append(("guard", given[-1])))
+    monkeypatch.setattr(motion, "moved", lambda *given: (told.append(("moved", given[2])), move(*given)))
+    for k in range(60):
+        travel.over(surface, SOLID, known.floor, one, (0, 1), k * step, np.zeros(travel.NOTES + 2))
+    solved = [k for k, (what, _) in enumerate(told) if what == "guard" and told[k + 1][0] == "moved"]
+    assert {told[k][1] for k in solved} == {0.5, 1.0}
+    assert all(told[k][1] == told[k + 1][1] for k in solved)

@@ -8,8 +8,9 @@ from feederscrew import check
 from feederscrew.bowl import default
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
-from feederscrew.trial import air, crowd, runs, staging, stations, whereabouts
+from feederscrew.trial import air, arrays, crowd, runs, staging, stations, whereabouts
 from feederscrew.trial.kernel import travel
+from feederscrew.trial.kernel.crowd_records import Together
 
 HELD = 0.75  # of the pulls, that do not part the two: then they may hook
 PULL, SECONDS = 0.12, 0.06  # [sqrt(g L)] by which a pull changes their velocities; [sqrt(L/g)] to the next
@@ -84,14 +85,13 @@ class Pulled:
 
     def pull(self, way):
         """Pull both by a velocity (3,) [sqrt(g L)] away from each other; how deep they were in each other."""
-        pair, states = self.pair, self.pair.arrays.states
+        pair, states, notes = self.pair, self.pair.arrays.states, np.zeros(travel.NOTES + 2)
         states[:, 3:6] -= states[:, 3:6].mean(axis=0)  # they fall freely: that is left out
         states[:, 2] += HIGH - states[:, 2].mean()
         states[0, 3:6] -= way
         states[1, 3:6] += way
-        notes, floor = np.zeros(travel.NOTES + 2), self.known.floor
-        steps = max(round(SECONDS / floor.step), 1)
-        travel.follow(pair.surface, self.solid, floor, pair.arrays, pair.on, 0.0, steps, notes)
+        steps = max(round(SECONDS / self.known.floor.step), 1)
+        arrays.move_on(self.known, pair.surface, pair.arrays, Together(pair.on, 0.0, steps, notes))
         return notes[travel.SUNK]
 
 

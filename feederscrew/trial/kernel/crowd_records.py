@@ -67,6 +67,15 @@ class Sent(NamedTuple):
     outcomes: np.ndarray  # (N,) int, filled with what became of each
 
 
+class Together(NamedTuple):
+    """How a crowd of N parts moves on, all at once."""
+
+    active: np.ndarray  # (N,) bool, which of them are on the track
+    time: float  # at the start
+    steps: int  # of the floor
+    notes: np.ndarray  # (NOTES + 2,) as of ``Sent``
+
+
 class Crowd(NamedTuple):
     """Arrays for N parts of one shape with C corners: their motion, what is near them, their contacts."""
 

@@ -6,7 +6,7 @@ from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VY, VZ, W, X, Y
 from feederscrew.dropping.kernel.floor_contacts import IMPULSE, WANTED
 from feederscrew.geometry.compiled import apart, compiled
-from feederscrew.trial.kernel import contact, corners_met, pairs, track_leans
+from feederscrew.trial.kernel import contact, track_leans
 from feederscrew.trial.kernel.contact import GAP
 from feederscrew.trial.kernel.pushes import give, reversal, wanted, wanted_of_pairs
 
@@ -28,9 +28,8 @@ def ahead(solid, state, dt):
 
 
 @compiled
-def met(surface, solid, crowd, island, dt):
-    """Find the contacts of an island's parts with the track and each other, as dt [sqrt(L/g)] begins."""
-    reach = 0.0
+def ready(surface, crowd, island):
+    """Note where and how an island's parts are as a step begins, and how the track leans there."""
     for m in range(island[0], island[1]):
         n = crowd.order[m]
         state = crowd.states[n]
@@ -40,13 +39,6 @@ def met(surface, solid, crowd, island, dt):
         off = math.sqrt(x * x + y * y)
         crowd.tangents[n, 0], crowd.tangents[n, 1] = y / off, x / off
         track_leans.lean_here(surface, crowd, n)
-        own = ahead(solid, state, dt)
-        reach = max(reach, own)
-        corners_met.found(surface, solid, crowd, n, own)
-    crowd.paired[0] = 0
-    for m in range(island[0], island[1]):
-        for k in range(island[0], m):
-            pairs.met(solid, crowd, crowd.order[m], crowd.order[k], reach)
 
 
 @compiled
@@ -171,43 +163,6 @@ def _moved(crowd, n, share, dt):
     body.rotate(state, p, q, r, dt)
 
 
-@apart
-def step(surface, solid, floor, crowd, island, time, dt):
-    """Take a step of an island's parts, or the share of it until one strikes or its sliding turns round.
-
-    Parameters
-    ----------
-    surface : Surface
-    solid : TrueSolid
-    floor : Floor
-    crowd : Crowd
-    island : (int, int)
-        From where to where in ``crowd.order`` they are.
-    time, dt : float [sqrt(L/g)]
-
-    Returns
-    -------
-    depth : float [L]
-        Of the deepest contact.
-    taken : float [sqrt(L/g)]
-    """
-    met(surface, solid, crowd, island, dt)
-    deepest, strikes, share = pushed(surface, solid, floor, crowd, island, time, dt)
-    if AT_ONCE < share < 1.0 - AT_ONCE:
-        dt *= share
-        for m in range(island[0], island[1]):
-            body.keep(crowd.before[crowd.order[m]], crowd.states[crowd.order[m]])
-        deepest, strikes, share = pushed(surface, solid, floor, crowd, island, time, dt)
-    for m in range(island[0], island[1]):
-        n = crowd.order[m]
-        contact.remember(crowd, n)
-        _moved(crowd, n, 1.0 if strikes else 0.5, dt)
-    _strained(crowd)
-    if deepest < -TROUBLE:
-        lift(surface, solid, crowd, island, dt)
-    return deepest, dt
-
-
 @compiled
 def _strained(crowd):
     """Add up what parts push each other along the track, and what they carry of each other."""
@@ -220,6 +175,23 @@ def _strained(crowd):
         crowd.strains[j, BEHIND] += max(-along, 0.0) * impulse
         if abs(row[towards + 2]) > UPWARD:
             crowd.strains[i if row[towards + 2] > 0.0 else j, BELOW] += impulse
+
+
+@compiled
+def moved(crowd, island, share, dt):
+    """Move an island's parts by their velocities, a share of those after the step; keep their impulses."""
+    for m in range(island[0], island[1]):
+        n = crowd.order[m]
+        contact.remember(crowd, n)
+        _moved(crowd, n, share, dt)
+    _strained(crowd)
+
+
+@compiled
+def back(crowd, island):
+    """Take an island's parts back to where and how they were at the start of a step."""
+    for m in range(island[0], island[1]):
+        body.keep(crowd.before[crowd.order[m]], crowd.states[crowd.order[m]])
 
 
 @compiled

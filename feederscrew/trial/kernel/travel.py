@@ -5,7 +5,7 @@ import math
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VY, X, Y, Z
 from feederscrew.geometry.compiled import apart, compiled, entry
-from feederscrew.trial.kernel import jets, motion, pairs
+from feederscrew.trial.kernel import corners_met, jets, motion, pairs
 from feederscrew.trial.kernel.crowd_records import REACHES
 
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = range(5)  # STANDS gets on no more, ROLLED went back
@@ -40,11 +40,31 @@ def slides_to(surface, state):
 
 @apart
 def over(surface, solid, floor, crowd, island, time, notes):
-    """Move an island's parts through a step of the floor; ``notes`` gets depth [L] and energy [g L]."""
+    """Move an island's parts through a step of the floor; ``notes`` gets depth [L] and energy [g L].
+
+    What strikes or turns its sliding round within it ends a share of the step, and the rest follows.
+    """
     rest = floor.step
     while rest > LEFT * floor.step:
-        now = time + floor.step - rest
-        deepest, taken = motion.step(surface, solid, floor, crowd, island, now, rest)
+        now, taken = time + floor.step - rest, rest
+        motion.ready(surface, crowd, island)
+        reach = 0.0
+        for m in range(island[0], island[1]):
+            own = motion.ahead(solid, crowd.states[crowd.order[m]], taken)
+            corners_met.found(surface, solid, crowd, crowd.order[m], own)
+            reach = max(reach, own)
+        crowd.paired[0] = 0
+        for m in range(island[0], island[1]):
+            for k in range(island[0], m):
+                pairs.met(solid, crowd, crowd.order[m], crowd.order[k], reach)
+        deepest, strikes, share = motion.pushed(surface, solid, floor, crowd, island, now, taken)
+        if motion.AT_ONCE < share < 1.0 - motion.AT_ONCE:
+            taken *= share
+            motion.back(crowd, island)
+            deepest, strikes, share = motion.pushed(surface, solid, floor, crowd, island, now, taken)
+        motion.moved(crowd, island, 1.0 if strikes else 0.5, taken)
+        if deepest < -motion.TROUBLE:
+            motion.lift(surface, solid, crowd, island, taken)
         notes[SUNK] = max(notes[SUNK], -deepest)
         rest -= taken
         notes[NOTES] += motion.unpaid(solid, crowd, island, taken)
@@ -53,69 +73,34 @@ def over(surface, solid, floor, crowd, island, time, notes):
 
 
 @compiled
-def travel(surface, limits, solid, floor, crowd, sent, n):
-    """Follow a crowd's one part, the n-th that is sent, until it passed, dropped out or its time is up."""
-    state, dt, start = crowd.states[0], floor.step, way(surface, crowd.states[0])
-    time, begun, path, notes = sent.times[n], sent.times[n], sent.paths[n], sent.notes[n]
+def _sent_off(crowd, sent, n):
+    """Lay the n-th part that is sent onto the track, with nothing known of what it touches."""
+    for k in range(body.STATE):
+        crowd.states[0, k] = sent.states[n, k]
     crowd.lasted[0] = crowd.made[0, REACHES] = crowd.blown[0, jets.AGAIN] = -1.0
-    crowd.knowns[0] = 0
-    steps, noted, outcome = math.ceil(limits.longest / dt), 0, RUNNING
-    often, mark, level = math.ceil(limits.patience / dt), start, state[Z]
-    for k in range(steps):
-        if k % often == often - 1:
-            place = way(surface, state)
-            on = -BACKWARDS * limits.progress < place - mark < limits.progress
-            if on and level - state[Z] < limits.progress:
-                outcome = STANDS
-                break
-            mark, level = place, state[Z]
-        if k % sent.every == 0 and noted < len(path):
-            path[noted, 0] = time - begun
-            for e in range(3):
-                path[noted, 1 + e] = state[e]
-            for e in range(4):
-                path[noted, 4 + e] = state[body.Q + e]
-            noted += 1
-        over(surface, solid, floor, crowd, (0, 1), time, notes)
-        time = begun + (k + 1) * dt
-        if state[Z] < -solid.radius - limits.drop or across(surface, state) > limits.free:
-            outcome = RETURNED
-            break
-        place = way(surface, state)
-        if place > limits.exit:
-            held = state[Z] > limits.under and slides_to(surface, state) < limits.edge
-            outcome = PASSED if held else RETURNED
-            break
-        if place < limits.back:
-            outcome = ROLLED
-            break
-    notes[TIME], notes[MOVED] = time - begun, way(surface, state) - start
-    return outcome
+    crowd.knowns[0] = crowd.order[0] = 0
 
 
-@entry
-def travel_all(surface, limits, solid, floor, crowd, sent):
-    """Follow every part from its start, one at a time.
+@compiled
+def _note(place, state, time):
+    """Write time, position and attitude into a place (8,) of a path."""
+    place[0] = time
+    for e in range(3):
+        place[1 + e] = state[e]
+    for e in range(4):
+        place[4 + e] = state[body.Q + e]
 
-    Parameters
-    ----------
-    surface : Surface
-    limits : Limits
-    solid : TrueSolid
-    floor : Floor
-        Its ``step`` is the time step.
-    crowd : Crowd
-        Of one part.
-    sent : Sent
-        Outcomes are PASSED, RETURNED, STANDS, ROLLED or, of one whose time was up, RUNNING.
-    """
-    crowd.order[0] = 0
-    for n in range(len(sent.states)):
-        for k in range(body.STATE):
-            crowd.states[0, k] = sent.states[n, k]
-        sent.outcomes[n] = travel(surface, limits, solid, floor, crowd, sent, n)
-        for k in range(body.STATE):
-            sent.states[n, k] = crowd.states[0, k]
+
+@compiled
+def _what_became(surface, limits, solid, state):
+    """Return RUNNING, or how a part with that state has left the stretch."""
+    if state[Z] < -solid.radius - limits.drop or across(surface, state) > limits.free:
+        return RETURNED
+    place = way(surface, state)
+    if place > limits.exit:
+        held = state[Z] > limits.under and slides_to(surface, state) < limits.edge
+        return PASSED if held else RETURNED
+    return ROLLED if place < limits.back else RUNNING
 
 
 @compiled
@@ -146,12 +131,51 @@ def _islands(solid, crowd, active, dt):
 
 
 @entry
-def follow(surface, solid, floor, crowd, active, time, steps, notes):
-    """Move all active parts so many steps; fills ``crowd.strains`` (N, 2) [sqrt(g L)] and ``notes``."""
-    for n in range(len(crowd.states)):
-        crowd.strains[n, motion.BEHIND] = crowd.strains[n, motion.BELOW] = 0.0
-    for k in range(steps):
-        found = _islands(solid, crowd, active, floor.step)
+def ride(surface, limits, solid, floor, crowd, sent, together):
+    """Follow every part that is sent from its start, one at a time; where none is, move a crowd on.
+
+    One entry and one function for both: what they share is most of it, and is compiled once.
+
+    Parameters
+    ----------
+    surface : Surface
+    limits : Limits
+        Of the parts that are sent.
+    solid : TrueSolid
+    floor : Floor
+        Its ``step`` is the time step.
+    crowd : Crowd
+        Of one part where any is sent; else ``strains`` (N, 2) [sqrt(g L)] are added to.
+    sent : Sent
+        Outcomes are PASSED, RETURNED, STANDS, ROLLED or, of one whose time was up, RUNNING.
+    together : Together
+    """
+    dt, state = floor.step, crowd.states[0]
+    for k in range(together.steps):
+        found = _islands(solid, crowd, together.active, dt)
         for m in range(found):
             island = (crowd.islands[m], crowd.islands[m + 1])
-            over(surface, solid, floor, crowd, island, time + k * floor.step, notes)
+            over(surface, solid, floor, crowd, island, together.time + k * dt, together.notes)
+    often = math.ceil(limits.patience / dt)
+    for n in range(len(sent.states)):
+        _sent_off(crowd, sent, n)
+        path, notes, begun, outcome = sent.paths[n], sent.notes[n], sent.times[n], RUNNING
+        start, level, time = way(surface, state), state[Z], begun
+        mark = start
+        for k in range(math.ceil(limits.longest / dt)):
+            if k % often == often - 1:
+                place = way(surface, state)
+                on = -BACKWARDS * limits.progress < place - mark < limits.progress
+                if on and level - state[Z] < limits.progress:
+                    outcome = STANDS
+                    break
+                mark, level = place, state[Z]
+            if k % sent.every == 0 and k // sent.every < len(path):
+                _note(path[k // sent.every], state, time - begun)
+            over(surface, solid, floor, crowd, (0, 1), time, notes)
+            time = begun + (k + 1) * dt
+            outcome = _what_became(surface, limits, solid, state)
+            if outcome != RUNNING:
+                break
+        notes[TIME], notes[MOVED], sent.outcomes[n] = time - begun, way(surface, state) - start, outcome
+        body.keep(state, sent.states[n])
