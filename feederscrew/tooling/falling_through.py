@@ -6,7 +6,6 @@ import numpy as np
 import shapely
 import shapely.affinity
 
-from feederscrew.geometry.polygons import outline
 from feederscrew.tooling import between_edges
 from feederscrew.tooling.devices.hole_shapes import BEHIND
 from feederscrew.tooling.holding import may_turn_and_lie_over
@@ -158,12 +157,13 @@ def _tipped(one):
     c, s = np.cos(one.heading), np.sin(one.heading)
     x, y, z = c * points[:, 0] - s * points[:, 1], s * points[:, 0] + c * points[:, 1], points[:, 2]
     for tilt in np.linspace(0.0, 0.5 * np.pi, TILTS):
-        for azimuth in np.linspace(0.0, 2.0 * np.pi, AZIMUTHS, endpoint=False)[: None if tilt > 0.0 else 1]:
-            a, b = np.cos(azimuth), np.sin(azimuth)
-            along = (a * x + b * y) * np.cos(tilt) + z * np.sin(tilt)
-            beside = -b * x + a * y
-            ring = outline(np.column_stack([a * along - b * beside, b * along + a * beside]))
-            yield shapely.get_coordinates(shapely.Polygon(ring).simplify(PLAIN * size))[:-1]
+        way = np.linspace(0.0, 2.0 * np.pi, AZIMUTHS, endpoint=False)[: None if tilt > 0.0 else 1, None]
+        a, b = np.cos(way), np.sin(way)
+        along = (a * x + b * y) * np.cos(tilt) + z * np.sin(tilt)
+        beside = -b * x + a * y
+        shadows = np.stack([a * along - b * beside, b * along + a * beside], axis=-1)
+        rings = shapely.simplify(shapely.convex_hull(shapely.multipoints(shadows)), PLAIN * size)
+        yield from (shapely.get_coordinates(ring)[:-1] for ring in rings)
 
 
 def _fits(shadow, hole):
