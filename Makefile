@@ -39,7 +39,7 @@ check: test ## the same: all that CI runs
 lint: $(READY_TO_TEST) ## format, lint and types, nothing changed
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
-	$(BIN)/python -m mypy
+	$(BIN)/python -m mypy -n 2
 
 format: $(READY_TO_TEST) ## put the code into the house format
 	$(BIN)/ruff format .

@@ -12,6 +12,7 @@ from feederscrew.output.page.blocks import Picture, Table, Views
 from feederscrew.output.report.chapters import CHAPTERS, page
 from feederscrew.studies.report import report
 
+UNDRAWN = True  # others look at pictures
 PART = Path(__file__).parents[3] / "parts" / "lbracket_30x20x15.stl"
 CARD = PART.with_name("arc_chute.yaml")
 MACHINE = {

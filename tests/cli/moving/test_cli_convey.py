@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+UNDRAWN = True  # others look at pictures
 POINT = (
     "--set",
     "drive.peak_to_peak=1 mm",

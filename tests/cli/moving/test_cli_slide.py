@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+UNDRAWN = True  # others look at pictures
 COLUMNS = "beta_deg,alpha_minus_theta_deg,acceleration_ratio,mu_limit,mu_forward,mu_backward,regime"
 
 

@@ -42,7 +42,7 @@ CALLS = {
     "design": ["--help"],
     "batch": [PART, "-o", "results/all", "--no-pictures", "--jobs", "1", *EXACT],
     "report": ["--help"],  # its files are asked for by name, above
-    "reproduce": ["-o", "results"],
+    "reproduce": [],  # `aspects` draws
     "doctor": [],
 }
 RUN = """

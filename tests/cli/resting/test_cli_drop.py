@@ -18,6 +18,7 @@ from feederscrew.dropping import ensemble
 from feederscrew.output.drop import tables
 from feederscrew_cli import interrupt, progress
 
+UNDRAWN = True  # others look at pictures
 PARTS = Path(__file__).parents[3] / "parts"
 COLUMNS = [
     "aspect",
