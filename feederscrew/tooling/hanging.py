@@ -19,8 +19,6 @@ HANGING = "hanging"  # what the hanging pose is called, in place of an aspect
 SUNK = 0.38  # of the shank's radius: how far beyond a rail the middle of its tip has to lie ...
 STRAIGHT = 0.05  # of its diameter: ... unless its tip lies no farther aside than that from its weight
 BARE, FULL = 1.05, 0.9  # of the shank's and of its own width: where the underside of a head begins and ends
-LEVER = 0.1  # of the length, from the head to the weight: in trials those with 0.15 hang, with 0.04 not
-OFF_WALL = 9e-5  # [m] by which a head that hangs stays off the wall at least
 SEATED = 0.1  # of the head's height: how much of a cone's underside counts as resting on the rails
 
 
@@ -170,16 +168,6 @@ def tip_goes_down(one, near):
         return False
     beyond = one.distance + found.tip - near
     return abs(found.tip) <= STRAIGHT * found.shank or beyond >= SUNK * 0.5 * found.shank
-
-
-def hangs_free(one, span):
-    """Return whether a head that hangs in a slot stays off the wall, and its weight turns the shank down.
-
-    Source: own; docs/tooling.md, "1. The method": what touches rail and wall at once may wedge.
-    """
-    found = neck(one)
-    free = found is not None and span[0] + 0.5 * (found.shank - found.widest) >= OFF_WALL
-    return free and found.lever >= LEVER * one.length
 
 
 def hung(one, span, known=()):

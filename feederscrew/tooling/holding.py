@@ -9,11 +9,14 @@ import numpy as np
 import shapely
 
 from feederscrew.geometry.polygons import outline, turned
+from feederscrew.tooling.hanging import neck
 from feederscrew.tooling.orientations import ROUNDED, rolls_across
 
 SAME = 1e-6  # of the part's height: places so near to the foremost one are met with it
 BESIDE = 1e-2  # of the part's height: places so near to the wall lean on it
 FAR = 10.0  # [m] beyond any foot
+LEVER = 0.1  # of the length, from the head to the weight: in trials those with 0.15 hang, with 0.04 not
+OFF_WALL = 9e-5  # [m] by which a head that hangs stays off the wall at least
 
 
 def may_lay_over(one, low):
@@ -143,6 +146,20 @@ def may_wedge(one, span):
         (run, rise) = (end - start)[np.argmax(met)]
         lean += math.atan2(run, abs(rise))
     return lean <= 2.0 * math.atan(one.grip)
+
+
+def hangs_free(one, span):
+    """Return whether a head that hangs in a slot stays off the wall, and its weight turns the shank down.
+
+    Source: own; docs/tooling.md, "1. The method": what touches rail and wall at once may wedge.
+    """
+    found = neck(one)
+    return found is not None and too_near(found, span) <= 0.0 and found.lever >= LEVER * one.length
+
+
+def too_near(headed, span):
+    """Return how much farther [m] from the wall a slot must be for a head not to touch it, 0 if it is."""
+    return max(OFF_WALL - span[0] - 0.5 * (headed.shank - headed.widest), 0.0)
 
 
 def leans(one, width):

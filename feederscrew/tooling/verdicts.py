@@ -9,8 +9,16 @@ from feederscrew.tooling import foot as feet
 from feederscrew.tooling.devices.base import STANDARD_GRAVITY, UNSURE, Verdict, share
 from feederscrew.tooling.devices.pieces import GRIP
 from feederscrew.tooling.falling_through import falls_through
-from feederscrew.tooling.hanging import Hanging, hanging_margin, hangs_free, head_first, tip_goes_down
-from feederscrew.tooling.holding import leans, may_lay_aside, may_lay_over, may_wedge, rides, widest
+from feederscrew.tooling.hanging import Hanging, hanging_margin, head_first, tip_goes_down
+from feederscrew.tooling.holding import (
+    hangs_free,
+    leans,
+    may_lay_aside,
+    may_lay_over,
+    may_wedge,
+    rides,
+    widest,
+)
 
 WORN = 2.5e-4  # [m] what an opening holds by less does not hold a part up
 FAR = 10.0  # [m] an opening goes on so far below the track and behind the wall

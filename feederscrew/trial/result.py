@@ -10,6 +10,8 @@ from feederscrew.conveying import sensitivity
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.rates import stream
 from feederscrew.rates.steadiness import gone, steady
+from feederscrew.tooling.hanging import neck
+from feederscrew.tooling.holding import too_near
 from feederscrew.trial import course
 from feederscrew.trial.landing import Landing
 from feederscrew.trial.queue import QueuedParts
@@ -27,6 +29,10 @@ BOUNCES = (
 DEEP = (
     "{}: up to {:.2g} mm deep in the track or a device, where corners and edges slipped past each other's "
     "contacts: do not go by this row"
+)
+WEDGES = (
+    "{}: hangs with its head at the wall and its shank at a rail, and may wedge there, which rigid parts of "
+    "a trial do not - put the rails {:.2g} mm farther from the wall"
 )
 ODD = "{}: {} of {} do what the static verdict says ({})"
 
@@ -191,7 +197,7 @@ class TrialRun:
         """Say whether what shall pass leaves, nothing else does, and nothing stops: sure of it or not."""
         passed = self.counts[:, course.PASSED]
         lost = self.predicted & (passed < HELD * self.tried)
-        if lost.any() or self.jams:
+        if lost.any() or self.jams or self.wedging.any():
             return False
         return not self._against(np.where(self.predicted, passed, self.tried - passed)).any()
 
@@ -199,6 +205,14 @@ class TrialRun:
         margin = np.abs(np.nan_to_num(self.margin, nan=np.inf))
         clear = (margin > CLEAR) & self.sure
         return (self.tried > 0) & clear & (holding < HELD * self.tried)
+
+    @cached_property
+    def wedging(self):
+        """Return (M,) [m], by how much too near to the wall the rails are between which each hung; else 0."""
+        spans = [device.span for device in self.bowl.devices if device.hangs]
+        hung = self.counts[:, [course.TURNED, course.HANGING]].any(axis=1)
+        necks = [neck(one) if own else None for one, own in zip(self.known.lying, hung)]
+        return np.array([max((too_near(one, span) for span in spans if one), default=0.0) for one in necks])
 
     @property
     def depths(self):
@@ -220,6 +234,8 @@ class TrialRun:
             if np.isfinite(self.margin[k]):  # the bare track gives none
                 said += f", margin {1e3 * self.margin[k]:.2f} mm"
             yield ODD.format(self.known.lying[k].name, self.holding[k], self.tried[k], said)
+        for k in np.flatnonzero(self.wedging):
+            yield WEDGES.format(self.known.lying[k].name, 1e3 * self.wedging[k])
         for k in np.flatnonzero(self.depths > CLEAR):
             yield DEEP.format(self.known.lying[k].name, 1e3 * self.depths[k])
         if not self.velocity > 0.0:

@@ -12,7 +12,8 @@ from feederscrew.errors import FeederError
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.fates import course
-from feederscrew.tooling.hanging import Hanging, hangs_free, neck
+from feederscrew.tooling.hanging import Hanging, neck
+from feederscrew.tooling.holding import hangs_free
 from feederscrew.tooling.orientations import orientations
 from feederscrew.tooling.tightest import until_returned
 from feederscrew.tooling.verdicts import verdict

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
@@ -11,6 +12,7 @@ from feederscrew.part import load
 from feederscrew.studies import tooling, trial
 from feederscrew.tooling.hanging import neck
 from feederscrew.tooling.verdicts import verdict
+from feederscrew.trial import course
 
 SCREW = Path(__file__).resolve().parents[2] / "parts/hexbolt_m8x25.stl"
 LEAD = "lead_in: {from: 3 mm, to: 12 mm, length: 40 mm, taper: 30 mm}"
@@ -68,3 +70,19 @@ def test_the_screw_is_fed_between_rails_and_its_trial_agrees(devices):
     run = trial.trial(part, [devices(f"rails: {rails.text}")], rule="csa", parts=10, jobs=1).runs[0]
     rows = [k for k, one in enumerate(run.known.lying) if one.name in ("A@188", "A@354")]
     assert run.counts[rows, 0].tolist() == run.tried[rows].tolist()
+
+
+def test_a_trial_says_where_a_head_at_the_wall_may_wedge(devices, tmp_path):
+    """In MuJoCo it stands there: benchmarks/wedging.py."""
+    profile = [(0, 0), (2.5, 0), (2.5, 13.2), (5.0, 15.7), (5.0, 16), (0, 16)]
+    trimesh.creation.revolve(profile, sections=24).export(tmp_path / "screw.stl")
+    part, told = load(tmp_path / "screw.stl"), []
+    for near in (2.2, 3.0):
+        bowl = devices(f"rails: {{from: {near} mm, to: {near + 5.4} mm}}")
+        run = trial.trial(part, [bowl], rule="csa", parts=6, jobs=1).runs[0]
+        row = next(k for k, one in enumerate(run.known.lying) if one.name == "A@189")
+        assert run.counts[row, course.TURNED] > 0  # it hangs and goes on
+        told.append((run.wedging[row], [line for line in run.remarks if "may wedge" in line]))
+    (near, said), (far, nothing) = told
+    assert near == pytest.approx(0.39e-3, abs=0.03e-3) and far == 0.0
+    assert said[0].startswith("A@189: hangs with its head at the wall") and not nothing
