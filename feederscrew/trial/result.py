@@ -197,7 +197,7 @@ class TrialRun:
         """Say whether what shall pass leaves, nothing else does, and nothing stops: sure of it or not."""
         passed = self.counts[:, course.PASSED]
         lost = self.predicted & (passed < HELD * self.tried)
-        if lost.any() or self.jams or self.wedging.any():
+        if lost.any() or self.jams:
             return False
         return not self._against(np.where(self.predicted, passed, self.tried - passed)).any()
 
