@@ -14,6 +14,7 @@ from hypothesis import settings
 
 from feederscrew.dropping.plate import arrival
 from feederscrew.output import style
+from feederscrew.output.solid import pair, shading
 from feederscrew.studies import aspects, tune
 from feederscrew.studies.simulated import memory
 from feederscrew_cli.main import feeder
@@ -136,6 +137,8 @@ def coarse(request):
             patch.setattr(style, "png", lambda figure: PIXEL)
         if not getattr(request.module, "LOOKED_AT", False):
             patch.setattr(style, "DPI", COARSE)
+            patch.setattr(shading, "SAMPLES", 1)
+            patch.setattr(pair, "SAMPLES", 1)
         yield
 
 

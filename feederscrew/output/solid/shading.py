@@ -85,11 +85,11 @@ def picture(solid, stance, frame, colour=STEEL):
             kept = slice(rows.start - cast.start, rows.stop - cast.start)
             part = samples[rows.start - start : rows.stop - start, columns]
             _draw(part, kept, solid, stance.camera, across[columns], up[cast], colour, up[0] - up[1])
-        image[first : first + BAND] = averaged(samples)
+        image[first : first + BAND] = averaged(samples, SAMPLES)
     return image
 
 
-def averaged(samples, each=SAMPLES):
+def averaged(samples, each):
     """Average the samples of each pixel, ``each`` a side; (rows, columns, 3) from 0 to 1."""
     rows, columns = (length // each for length in samples.shape[:2])
     return samples.reshape(rows, each, columns, each, 3).mean(axis=(1, 3)).clip(0.0, 1.0)

@@ -53,7 +53,7 @@ def _image(solid, part, columns, rows):
         place = slice(max(0, each * first - 2), each * (first + BAND) + 2)
         drawn = _drawn(whole, len(solid.faces), looked, across, up[place])
         kept = drawn[each * first - place.start :][: each * min(BAND, rows - first)]
-        image[first : first + BAND] = np.rint(255.0 * shading.averaged(kept))
+        image[first : first + BAND] = np.rint(255.0 * shading.averaged(kept, each))
     return image
 
 
