@@ -190,21 +190,17 @@ class TrialRun:
     @property
     def odd(self):
         """Return (M,) bool, where fewer than ``HELD`` did what a verdict of a clear margin says."""
-        return self._against(self.holding)
+        margin = np.abs(np.nan_to_num(self.margin, nan=np.inf))
+        clear = (margin > CLEAR) & self.sure
+        return (self.tried > 0) & clear & (self.holding < HELD * self.tried)
 
     @property
     def sorts(self):
         """Say whether what shall pass leaves, nothing else does, and nothing stops: sure of it or not."""
         passed = self.counts[:, course.PASSED]
         lost = self.predicted & (passed < HELD * self.tried)
-        if lost.any() or self.jams:
-            return False
-        return not self._against(np.where(self.predicted, passed, self.tried - passed)).any()
-
-    def _against(self, holding):
-        margin = np.abs(np.nan_to_num(self.margin, nan=np.inf))
-        clear = (margin > CLEAR) & self.sure
-        return (self.tried > 0) & clear & (holding < HELD * self.tried)
+        kept = ~self.predicted & (self.tried - passed < HELD * self.tried)
+        return not (lost.any() or kept.any() or self.jams)
 
     @cached_property
     def wedging(self):

@@ -381,3 +381,12 @@ def test_parts_that_fall_anywhere_over_the_track_clear_the_wall():
         assert corners[:, 1].min() > 0.0 and corners[:, 2].min() > 1.99
     assert (states[:, 1] < bowl.track.width / shape.solid_of(PART)[1]).all()
     assert ((times >= 0.0) & (times < 1.0 / bowl.drive.frequency)).all()
+
+
+def test_what_else_leaves_is_no_sorting_however_unsure(bowl):
+    run = studies.trial(PART, [bowl("gap: 2 mm")], "A", parts=4, seed=1).runs[0]
+    row = int(np.flatnonzero(run.counts[:, course.PASSED])[0])
+    passes, margins = run.known.passes.copy(), np.full_like(run.known.margins, np.nan)
+    passes[row] = 0.0  # it is said to be returned, by no margin
+    other = replace(run, known=replace(run.known, passes=passes, margins=margins))
+    assert run.sorts and not other.sorts and not other.predicted[row]
