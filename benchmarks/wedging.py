@@ -17,7 +17,7 @@ HEAD = ((2.5, 13.2), (5.0, 15.7), (5.0, 16.0))  # [mm] radius and height, from t
 SHANK = ((2.5, 0.0), (2.5, 13.2))
 SLOT, FLAT, SHEET = 5.4, 24, 1.0  # [mm]; sides; half of the sheet's thickness [mm]
 STEP, SECONDS = 5e-5, 2.0  # [s]
-NEAR = (3.0, 2.3, 2.2, 2.1)  # [mm] at 2.21 the head touches the wall and the shank the rail
+NEAR = (3.0, 2.3, 2.2, 2.1)  # [mm] at 2.1 an upright one touches the wall and the farther rail
 OFF, ABOVE = 0.02, 0.05  # [mm] from the wall at least, and over the rails, as it begins
 
 
@@ -30,10 +30,8 @@ def mesh(profile):
 
 def model(near, friction):
     """The wall, two rails and the screw between them."""
-    far, own = (
-        near + SLOT,
-        f'friction="{friction} 0 0" solref="0.0005 1" solimp="0.95 0.99 0.0001" condim="3"',
-    )
+    far = near + SLOT
+    own = f'friction="{friction} 0 0" solref="0.0005 1" solimp="0.95 0.99 0.0001" condim="3"'
     place = max(near + 0.5 * SLOT, HEAD[1][0] + OFF), ABOVE - SHANK[1][1] - 0.5 * SLOT + SHANK[0][0]
     rails = "".join(
         f'<geom {own} type="box" size="0.4 {1e-3 * half} {1e-3 * SHEET}" pos="0 {1e-3 * y} {-1e-3 * SHEET}"/>'

@@ -116,13 +116,9 @@ class Orientations:
         and no bank brings back to it what rolls along the track, since that does not slip.
         """
         rocks = False if self.tipping is None else self.tipping.tips & ~self.tipping.over
-        loose = np.array([_loose(one) for one in self.lying], dtype=bool)
+        level = [one.kind == "rolling" and one.track.bank <= 0.0 for one in self.lying]
+        loose = np.array(level, dtype=bool) | [one.along_a_bank for one in self.lying]
         return self.decided & ~(self.rolls_back | rocks | loose)
-
-
-def _loose(one):
-    """Whether nothing brings back to the wall what is round and has left it."""
-    return one.kind == "rolling" and (one.track.bank <= 0.0 or not (one.rolls_along or one.groove))
 
 
 def orientations(part, aspects, track, chain=(), sigma=0.0, bowl=None):

@@ -75,6 +75,11 @@ class Orientation:
         return bool(along >= across)
 
     @property
+    def along_a_bank(self):
+        """Whether it rolls along a banked track, which does not bring it to the wall: it does not slip."""
+        return self.kind == "rolling" and self.track.bank > 0.0 and not (self.rolls_along or self.groove)
+
+    @property
     def wall_leans(self):
         """How far the wall leans back from upright [rad]: it is the other face of a groove."""
         return 0.5 * np.pi - self.groove if self.groove else 0.0

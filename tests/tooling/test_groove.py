@@ -12,6 +12,7 @@ import trimesh
 from feederscrew import bowl as bowls
 from feederscrew.errors import Faults
 from feederscrew.mechanics.wall import lying_in_groove
+from feederscrew.output.rate.tables import remarks
 from feederscrew.output.tooling import drawing, profile
 from feederscrew.part import load
 from feederscrew.rates import spacing, stretches
@@ -116,9 +117,11 @@ def test_a_bank_brings_to_the_wall_only_what_does_not_roll_along_it(dowel):
     """A set screw across a bank of 6 deg came 0.8 mm off the wall in 6 of 6 trials, and fell."""
     part, _ = dowel
     bank = made("bank", "devices", angle=np.radians(6.0), text="6 deg")
-    found = rate(part, BOWL, "A", rule="csa", devices=(bank,)).rate.orientations
+    study = rate(part, BOWL, "A", rule="csa", devices=(bank,))
+    found = study.rate.orientations
     sure = {one.name: bool(found.sure[k]) for k, one in enumerate(found.lying) if one.aspect == "A"}
     assert sure == {"A@0": True, "A@90": False}
+    assert any(line.startswith("A@90") and "no bank brings to the wall" in line for line in remarks(study))
 
 
 @pytest.mark.parametrize("angle", [10.0, 30.0, 50.0])

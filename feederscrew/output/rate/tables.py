@@ -182,15 +182,21 @@ def _tipping(found):
 def _rolling(found):
     """What lies on its round side and may roll back."""
     known = found.orientations.lying
+    along = [one.name for one in known if one.along_a_bank]
+    why = "no bank brings to the wall what rolls along the track: no verdict on it is sure, see feeder trial"
+    loose = [f"{units.listed(along)}: {why}"] if along else []
     back = [one.name for one in known if one.may_roll_back]
     if not back:
-        return []
+        return loose
     lies, rolls, counts = ("lies", "rolls", "counts") if len(back) == 1 else ("lie", "roll", "count")
     said = (
         f"{units.listed(back)} {lies} on the round side, not along the track, and {rolls} back down the climb"
     )
     lost = "; rate is 0" if known[found.row].may_roll_back else ""
-    return [f"{said}: {counts} as returned, but as carried in the highest rate{lost}; see feeder trial"]
+    return [
+        f"{said}: {counts} as returned, but as carried in the highest rate{lost}; see feeder trial",
+        *loose,
+    ]
 
 
 def _scarce(study):
