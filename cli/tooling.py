@@ -109,8 +109,8 @@ def tooling(part, asked, cad, static, taken, bowl, pictures, out):
     still passes. Devices that the bowl file already lists stay before the design.
 
     A few parts of each orientation are sent through what is proposed, of the table through the best
-    three. What that trial says comes first. Where it denies the chain of one orientation, up to two others
-    are tried, without one of its devices. --static leaves the trial out.
+    three. What that trial says comes first. Where it denies the chain of one orientation, up to four others
+    are tried, without one or more of its devices. --static leaves the trial out.
 
     With -o: tooling.csv, tooling.json and tooling.png. An aspect adds tooling.yaml, a bowl file with the
     devices for feeder rate, report and batch. It adds tooling.dxf and tooling.svg, 1:1 in mm, unrolled and

@@ -12,8 +12,9 @@ from feederscrew.rates import stream
 from feederscrew.running import RunSettings
 
 EACH = 2  # parts of each orientation
-BEST = 3  # designs of a table that are tried, and of one orientation whose first ones are denied
-SEARCHES = 4  # designs that are looked for after a denied one
+BEST = 3  # designs of a table that are tried
+TRIES = 5  # designs of one orientation that are tried where the first ones are denied
+SEARCHES = 8  # designs that are looked for after a denied one
 KEPT = ("separation", "bank")  # devices that reject nothing: to leave them out makes no other chain
 OFTEN = 0.02  # [1] shares of the orientations that are tried, and the one that is wanted
 
@@ -49,7 +50,8 @@ def own_trials(study, again=None, *, seed=1, jobs=1, before=None):
     study : ToolingStudy
     again : callable, optional
         Given kinds of devices, returns the same study without them: where the trial denies the chain of the
-        orientation that was asked for, the next best are tried, three in all.
+        orientation that was asked for, others are tried, five in all. The most efficient of those that the
+        trial confirms is taken.
     seed, jobs : int
     before : callable, optional
         Called before anything is compiled.
@@ -67,27 +69,31 @@ def own_trials(study, again=None, *, seed=1, jobs=1, before=None):
     first = replace(study, trials=tried)
     if study.design is None or again is None or not tried or not tried[0].faults:
         return first
-    for kinds in _ways_on(study.design):
+    others, ways, searched = [study], _ways_on((), study.design), 0
+    while ways and searched < SEARCHES and len(tried) < TRIES:
+        kinds, searched = ways.pop(0), searched + 1
         other = again(kinds)
         if not _isolates(other) or _devices(other.design) in [one.devices for one in tried]:
             continue
-        tried = (*tried, _tried(other, other.design, run))
-        if not tried[-1].faults:
-            return replace(other, trials=(tried[-1], *tried[:-1]))
-        if len(tried) == BEST:
+        others, tried = [*others, other], (*tried, _tried(other, other.design, run))
+        if not tried[-1].faults and other.design.efficiency >= study.design.efficiency:
             break
-    return replace(first, trials=tried)
+        ways += _ways_on(kinds, other.design) if tried[-1].faults else []
+    holds = [k for k, one in enumerate(tried) if not one.faults]
+    taken = max(holds, key=lambda k: tried[k].static_efficiency, default=0)
+    return replace(others[taken], trials=(tried[taken], *tried[:taken], *tried[taken + 1 :]))
 
 
 def _isolates(study):
     return study.design.isolated and bool(study.design.cuts) and study.design.efficiency > 0.0
 
 
-def _ways_on(found):
-    """Kinds of devices to do without: each of a chain alone, the last one first, then all of them."""
+def _ways_on(without, found):
+    """Kinds of devices to do without as well: each of a chain alone, the last one first, then all of them."""
     kinds = list(dict.fromkeys(cut.device.kind for cut in reversed(found.cuts)))
     kinds = [kind for kind in kinds if kind not in KEPT]
-    return [*((kind,) for kind in kinds), *([tuple(kinds)] if len(kinds) > 1 else [])][:SEARCHES]
+    every = [(kind,) for kind in kinds] + ([tuple(kinds)] if len(kinds) > 1 else [])
+    return [(*without, *more) for more in every]
 
 
 def _devices(found):

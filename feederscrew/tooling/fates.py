@@ -90,6 +90,8 @@ class DeviceFlow:
         if shown.passes >= 1.0:
             return False
         device, one = self.devices[step], self.came[step][state]
+        if one.along_a_bank:  # off the wall, where a device may miss it
+            return True
         stands = one.grip <= 0.0 or device.fate(Meeting(one, self.came[0])) == STOPPED
         return not shown.sure or not (stands or surely_gone(device, one))
 

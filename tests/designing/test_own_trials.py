@@ -11,6 +11,7 @@ from feederscrew import bowl as bowls
 from feederscrew.designing import own_trial
 from feederscrew.output.tooling import bowl_file, tables
 from feederscrew.studies.tooling import tooling, tooling_without
+from feederscrew.tooling.devices.kinds import made
 
 PART = shapes.part(shapes.box(20, 12, 5))
 
@@ -54,7 +55,7 @@ def test_a_confirmed_design_is_said_to_isolate(monkeypatch, study):
 def test_what_the_trial_denies_is_not_isolated_and_the_next_best_are_tried(monkeypatch, study):
     found = tried(monkeypatch, study, 3)
     assert found.design is study.design
-    assert 2 <= len(found.trials) <= own_trial.BEST
+    assert 2 <= len(found.trials) <= own_trial.TRIES
     told = tables.document(found)
     assert (told["status"], told["isolated"], told["isolated_static"]) == ("denied", False, True)
     assert found.isolates(found.wanted) is False
@@ -73,6 +74,36 @@ def test_the_next_best_that_holds_is_taken(monkeypatch, study):
     assert found.design.devices != study.design.devices
     assert not found.trials[0].faults and found.trials[1].faults
     assert tables.document(found)["status"] == "confirmed"
+    holds = [one.static_efficiency for one in found.trials if not one.faults]
+    assert found.trials[0].static_efficiency == found.design.efficiency == max(holds)
+
+
+def test_of_those_that_hold_the_most_efficient_is_taken(monkeypatch, study):
+    """After the first is denied, what is tried holds: 50, 90 and then 70 % of what the first promised."""
+    shares, asked = iter([0.5, 0.9, 0.7]), []
+
+    def again(kinds):
+        found = tooling_without(kinds, PART, study.bowl, "A", rule="csa", verdicts=1)
+        share = next(shares, None)
+        if share is None:
+            return replace(found, designs=tuple(replace(one, isolated=False) for one in found.designs))
+        asked.append(kinds)
+        wiper = replace(made("wiper", "here", limit=1e-3), text=f"{len(asked)} mm")
+        cut = replace(found.design.cuts[0], device=wiper)
+        less = replace(found.design, cuts=(cut,), isolated=True, efficiency=share * study.design.efficiency)
+        return replace(found, designs=tuple(less for _ in found.designs))
+
+    monkeypatch.setattr(own_trial, "_tried", Verdicts(1))
+    monkeypatch.setattr(own_trial, "_ways_on", lambda *_: [("wiper",)] * 3)
+    found = own_trial.own_trials(study, again)
+    assert len(asked) == 3 and len(found.trials) == 4
+    assert found.design.efficiency == pytest.approx(0.9 * study.design.efficiency)
+    assert [bool(one.faults) for one in found.trials] == [False, True, False, False]
+
+
+def test_of_a_chain_that_is_denied_as_well_less_is_tried(study):
+    first = own_trial._ways_on((), study.design)
+    assert all(("rails", *kinds) in own_trial._ways_on(("rails",), study.design) for kinds in first)
 
 
 def test_without_a_trial_the_static_rule_is_named(study):

@@ -82,6 +82,26 @@ def test_a_hole_lets_through_what_some_tipped_shadow_of_the_part_fits_into(long,
     assert falls_through(slab, cut) == through
 
 
+@pytest.mark.parametrize("heading", [0.0, math.pi])
+def test_a_part_may_tip_about_either_end(heading):
+    """A wedge is the shortest from above where its long face stands upright: its thin end tips up, or down.
+
+    That is 30 * 14 / sqrt(30^2 + 14^2) = 12.7 mm; about its other end it is never shorter than its back, 14 mm.
+    """
+    back, tip = np.array([[15, 0], [15, 14]]), np.array([[-15, 0]])
+    ends = np.concatenate([back, tip])
+
+    class Wedge(Slab):
+        class posture:
+            corners = 1e-3 * np.array([[x, y, z] for x, z in ends for y in (-6, 6)], float)
+
+    def let_through(long):
+        cut = 1e-3 * np.array([[0, 3], [long, 3], [long, 23], [0, 23]], float)
+        return falls_through(type("Turned", (Wedge,), {"heading": heading}), cut)
+
+    assert let_through(13.9) and not let_through(13.0)
+
+
 def test_a_hole_at_the_free_edge_holds_nothing_that_is_narrower_along_the_track():
     cut = 1e-3 * np.array([[0, 45], [60, 45], [60, 50], [0, 50]], float)
     assert falls_through(Slab, cut)
@@ -255,3 +275,14 @@ def test_what_is_not_sure_to_be_returned_counts_against_a_chain():
     assert told_of_it.purity == pytest.approx(
         chance[found.row] / (chance[~tall].sum() + (chance * flow.starts)[tall].sum())
     )
+
+
+def test_what_rolls_along_a_bank_may_miss_every_device():
+    """Off the wall a gate does not meet it: a pin across the track counts against the purity of one along it."""
+    part = shapes.part(shapes.cylinder(3.0, 20.0, 64))
+    bowl = bowls.read(None, ["track.width=30 mm", "track.bank=6 deg"])
+    every = travelling(orientations(part, find(part), bowl.track), bowl)
+    across = np.array([one.along_a_bank for one in every])
+    assert across.any() and not across.all()
+    flow = course([made("gap", "g", limit=2e-3)], every)
+    np.testing.assert_allclose(flow.doubtful[across], flow.starts[across] - flow.leaving.sum(axis=1)[across])

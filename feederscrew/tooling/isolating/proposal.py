@@ -131,7 +131,8 @@ def told(given, cuts, returned, same=None, late=False):
     flow = course((*given.before, *(cut.device for cut in cuts)), every)
     states = sorted({flow.leaves_as(k) for k in np.flatnonzero(given.same)})
     out = (shares[:, None] * flow.leaving).sum(axis=0)
-    doubt = float((shares * flow.doubtful)[~given.same].sum())  # may leave as well: no trial has said
+    unsure = np.where(given.same, 0.0, shares * flow.doubtful)  # may leave as well: no trial has said
+    doubt = float(unsure.sum())
     total, leaving = shares.sum(), out.sum()
     cuts = _with_stops(given, flow, cuts)
     stands = any(cut.stops for cut in cuts)
@@ -150,8 +151,18 @@ def told(given, cuts, returned, same=None, late=False):
         reasons=(
             *(f"{' '.join(cut.stops)} come to stand at the {cut.device.kind}" for cut in cuts if cut.stops),
             *(apart.reason(every[wanted], every[k], given.margin) for k in left),
+            *_against(np.array([one.name for one in every])[(unsure > 0.0) & given.often]),
         ),
         late=late,
+    )
+
+
+def _against(names):
+    """What the purity counts as leaving though the devices reject it."""
+    return (
+        [f"no verdict is sure to return {' '.join(names)}: the purity counts it as leaving"]
+        if len(names)
+        else []
     )
 
 
