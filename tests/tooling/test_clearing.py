@@ -86,7 +86,7 @@ def test_a_hole_lets_through_what_some_tipped_shadow_of_the_part_fits_into(long,
 def test_a_part_may_tip_about_either_end(heading):
     """A wedge is the shortest from above where its long face stands upright: its thin end tips up, or down.
 
-    That is 30 * 14 / sqrt(30^2 + 14^2) = 12.7 mm; about its other end it is never shorter than its back, 14 mm.
+    That is 30 * 14 / sqrt(30^2 + 14^2) = 12.7 mm; about its other end no shadow is shorter than its back.
     """
     back, tip = np.array([[15, 0], [15, 14]]), np.array([[-15, 0]])
     ends = np.concatenate([back, tip])
@@ -278,7 +278,7 @@ def test_what_is_not_sure_to_be_returned_counts_against_a_chain():
 
 
 def test_what_rolls_along_a_bank_may_miss_every_device():
-    """Off the wall a gate does not meet it: a pin across the track counts against the purity of one along it."""
+    """Off the wall a gate does not meet it: a pin that lies across the track may leave."""
     part = shapes.part(shapes.cylinder(3.0, 20.0, 64))
     bowl = bowls.read(None, ["track.width=30 mm", "track.bank=6 deg"])
     every = travelling(orientations(part, find(part), bowl.track), bowl)

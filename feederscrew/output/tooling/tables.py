@@ -159,11 +159,8 @@ def remarks(study, efficiency=0.0):
 def _lead(study, found):
     """What becomes of the orientation asked for: what the trial says first."""
     one, tried = study.orientations[study.wanted], study.trial_of(study.wanted)
-    least = "at least " if found.hopeful > found.purity else ""
-    leave = (
-        f"{100.0 * found.efficiency:.3g} % of the parts offered leave so, "
-        f"{least}{100.0 * found.purity:.4g} % of what leaves"
-    )
+    shares = 100.0 * found.efficiency, "at least " * bool(found.hopeful > found.purity), 100.0 * found.purity
+    leave = "{:.3g} % of the parts offered leave so, {}{:.4g} % of what leaves".format(*shares)
     if not found.efficiency > 0.0:
         leave = "none of the parts offered leaves so"
     if tried is not None and tried.faults:
