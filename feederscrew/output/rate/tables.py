@@ -183,7 +183,10 @@ def _rolling(found):
     """What lies on its round side and may roll back."""
     known = found.orientations.lying
     along = [one.name for one in known if one.along_a_bank]
-    why = "no bank brings to the wall what rolls along the track: no verdict on it is sure, see feeder trial"
+    why = (
+        "no bank brings to the wall what rolls along the track: no verdict on it is sure, and the purity "
+        "counts it as leaving where the track carries it; see feeder trial"
+    )
     loose = [f"{units.listed(along)}: {why}"] if along else []
     back = [one.name for one in known if one.may_roll_back]
     if not back:

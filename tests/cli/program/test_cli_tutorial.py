@@ -37,8 +37,10 @@ def test_the_jobs_of_the_tutorial(tmp_path, monkeypatch):
         dict(re.split(r"  +", row, maxsplit=1) for row in told[k].splitlines()) for k in (2, 6)
     )
     assert float(screw["correctly oriented parts per minute"].split()[0]) > 60.0
-    for job in (screw, terminal):
-        assert float(job["purity, correctly oriented of what leaves [%]"]) == 100.0
+    purities = [float(job["purity, correctly oriented of what leaves [%]"]) for job in (screw, terminal)]
+    assert 70.0 < purities[0] < 100.0 == purities[1]  # no verdict on a screw across the track is sure
+    across = next(row.split() for row in told[3].splitlines() if row.split()[:2] == ["A", "90.00"])
+    assert across[4:6] == ["0", "0"]  # in the trial none of them passes or turns
     for job in (told[3], told[7]):
         fates = {row.split()[0]: row.split() for row in job.splitlines()}
         assert fates["A"] and "yes" not in job.split()  # no orientation against the static rule
