@@ -165,7 +165,13 @@ def test_a_headed_pin_is_fed_hanging():
     assert [cut.device.kind for cut in study.design.cuts][-1] == "rails"
     lying = [k for k, one in enumerate(study.orientations) if one.aspect == "A" and one.length > 0.02]
     assert study.design.efficiency == pytest.approx(study.shares[lying].sum() / study.shares.sum())
-    assert study.design.purity == pytest.approx(1.0)
+    assert study.design.hopeful == pytest.approx(1.0)
+    leaves, across = (
+        study.shares[lying].sum(),
+        study.shares[[one.name == "A@90" for one in study.orientations]],
+    )
+    assert study.design.purity == pytest.approx(leaves / (leaves + across.sum()))  # it rolls along the bank
+    assert across.sum() > 0.1
 
 
 def test_rails_end_on_the_track():
