@@ -14,6 +14,7 @@ AZIMUTHS, TILTS = 8, 10  # ways it can tip: about level axes all round, by steps
 CLEAR = 2.5e-4  # [m] a hole is larger than the shadow that goes through it, all round
 BEYOND = 0.1  # [m] a hole that is open at the track's free edge goes on so far
 SQUARE = 1e-9  # of its own box: what less a hole covers, it is still a rectangle
+SLIGHT = 1e-12  # [m] by which what fits may stand out
 PLAIN = 2e-4  # of the part's size: corners of a shadow that stand out by less are left out
 LONG = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
 FAR, ONE_LINE = 10.0, 1e-6  # [m] along any hole; half the width of a line across which it is measured
@@ -43,7 +44,13 @@ def falls_through(one, cut):
     )
     if hole.is_empty:
         return False
-    return any(_fits(shadow, hole) for shadow in _shadows(one))
+    shadows, sizes = _shadows(one)
+    extent = np.subtract(hole.bounds[2:], hole.bounds[:2])
+    may = np.flatnonzero((sizes <= extent).all(axis=1))
+    if hole.area > (1.0 - SQUARE) * extent.prod():  # it is a rectangle
+        return bool(len(may))
+    parts = [(part, _sides(part)) for part in shapely.get_parts(hole)]
+    return any(_fits(shadows[k], *one) for k in may for one in parts)
 
 
 def lets_go(device, one):
@@ -147,8 +154,9 @@ def _open(cut, width):
 
 @functools.lru_cache(maxsize=512)
 def _shadows(one):
-    """Convex outlines (K, 2) [m] from above, as it lies and as it tips."""
-    return list(_tipped(one))
+    """Convex outlines (K, 2) [m] from above, as it lies and as it tips, and their sizes (S, 2) [m]."""
+    shadows = list(_tipped(one))
+    return shadows, np.array([np.ptp(shadow, axis=0) for shadow in shadows])
 
 
 def _tipped(one):
@@ -166,22 +174,39 @@ def _tipped(one):
         yield from (shapely.get_coordinates(ring)[:-1] for ring in rings)
 
 
-def _fits(shadow, hole):
-    """Whether a convex shadow can be moved to lie within a hole: what is left of it beside its own border."""
-    low, high = shadow.min(axis=0), shadow.max(axis=0)
-    extent = np.subtract(hole.bounds[2:], hole.bounds[:2])
-    if (high - low > extent).any():
-        return False
-    if hole.area > (1.0 - SQUARE) * extent.prod():  # it is a rectangle
-        return True
+def _sides(part):
+    """Half-planes (K, 3) [1, 1, m] that bound a convex polygon: normals and distances; None of another."""
+    if part.interiors or part.area < (1.0 - SQUARE) * part.convex_hull.area:
+        return None
+    ring = shapely.get_coordinates(shapely.geometry.polygon.orient(part).exterior)
+    along = np.diff(ring, axis=0)
+    length = np.hypot(*along.T)
+    normal = np.column_stack([along[:, 1], -along[:, 0]])[length > 0.0] / length[length > 0.0, None]
+    return np.column_stack([normal, (normal * ring[:-1][length > 0.0]).sum(axis=1)])
+
+
+def _fits(shadow, part, sides):
+    """Whether a convex shadow can be moved to lie within a polygon."""
+    return _fits_between(shadow, sides) if sides is not None else _fits_within(shadow, part)
+
+
+def _fits_between(shadow, sides):
+    """Whether it can be moved to lie within half-planes: some corner of where it may be moved to exists."""
+    (a, b), c = sides[:, :2].T, sides[:, 2]
+    room = c - (a[:, None] * shadow[:, 0] + b[:, None] * shadow[:, 1]).max(axis=1)
+    one, other = np.triu_indices(len(sides), 1)
+    turn = a[one] * b[other] - b[one] * a[other]
+    one, other, turn = (k[np.abs(turn) > SQUARE] for k in (one, other, turn))
+    x = (room[one] * b[other] - b[one] * room[other]) / turn
+    y = (a[one] * room[other] - room[one] * a[other]) / turn
+    return bool((a[:, None] * x + b[:, None] * y <= room[:, None] + SLIGHT).all(axis=0).any())
+
+
+def _fits_within(shadow, part):
+    """Whether it can be moved to lie within any polygon: what is left of it beside its own border."""
     shadow = shadow - shadow.mean(axis=0)
-    for part in shapely.get_parts(hole):
-        rings = [part.exterior, *part.interiors]
-        sides = np.concatenate(
-            [np.stack([r[:-1], r[1:]], axis=1) for r in map(shapely.get_coordinates, rings)]
-        )
-        swept = np.concatenate([sides[:, :1] - shadow, sides[:, 1:] - shadow], axis=1)
-        border = shapely.union_all(shapely.convex_hull(shapely.multipoints(swept)))
-        if not part.difference(border).is_empty:
-            return True
-    return False
+    rings = [part.exterior, *part.interiors]
+    sides = np.concatenate([np.stack([r[:-1], r[1:]], axis=1) for r in map(shapely.get_coordinates, rings)])
+    swept = np.concatenate([sides[:, :1] - shadow, sides[:, 1:] - shadow], axis=1)
+    border = shapely.union_all(shapely.convex_hull(shapely.multipoints(swept)))
+    return not part.difference(border).is_empty

@@ -37,7 +37,6 @@ def test_what_to_install(monkeypatch):
 @pytest.mark.parametrize(
     ("shape", "turns", "climb", "width"),
     [
-        ("stepped", 0.5, 4.5, 20e-3),
         ("conical", 0.9, 6.24, 29.1e-3),  # lost wall and floor where edges had to meet exactly
     ],
 )
