@@ -2,6 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypedDict
+
+
+class ToldKeywords(TypedDict, total=False):
+    """Who is told how far something is: keywords of whatever takes long."""
+
+    progress: Callable[..., None] | None
+    before: Callable[..., None] | None
 
 
 @dataclass(frozen=True)

@@ -158,7 +158,6 @@ MORE = {
     "studies.bowl.bowl": 10,
     "studies.rate.rate": 10,
     "studies.rate.shares": 10,
-    "studies.report.report": 17,
     "studies.simulated.drop.drop": 11,
     "studies.simulated.plate.plate": 11,
     "studies.tooling.tooling": 15,

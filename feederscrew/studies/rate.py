@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 
@@ -131,6 +131,21 @@ def _on_the_floor(
 
     floor = (bowl.drive, bowl.restitution, bowl.friction.kinetic, bowl.gravity)
     return memory.once(part, found, (floor, fed, seed), make, lambda arrived: not arrived.shaken.partial)
+
+
+@dataclass(frozen=True)
+class Spacing:
+    """How parts stand along the track."""
+
+    gap: float = 0.0  # [m] between one part and the next
+    fill: float = 1.0  # [1] share of the track that is occupied
+
+
+class SpacingKeywords(TypedDict, total=False):
+    """The same as keywords."""
+
+    gap: float
+    fill: float
 
 
 @dataclass(frozen=True, eq=False)
