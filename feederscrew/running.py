@@ -12,6 +12,13 @@ class ToldKeywords(TypedDict, total=False):
     before: Callable[..., None] | None
 
 
+class RunKeywords(ToldKeywords, total=False):
+    """The fields of RunSettings as keywords."""
+
+    seed: int
+    jobs: int
+
+
 @dataclass(frozen=True)
 class RunSettings:
     """What is the same for every run of parts: no field but the seed changes an outcome."""

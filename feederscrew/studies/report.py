@@ -203,7 +203,7 @@ def report(
     target : float [1/s], optional
         Rate that a bowl is sized for.
     **options
-        gap : float [m], fill : float [1], as for ``studies.rate.rate``.
+        gap : float [m], fill : float [1] : as for ``studies.rate.rate``.
         launch, probabilities, fed, seed, progress, before : as for ``studies.rate.shares``.
         command : str, that repeats the report.
         sent : int, parts of a trial, which is a chapter then.

@@ -6,10 +6,11 @@ from dataclasses import fields
 
 import pytest
 
-from feederscrew.studies import rate, report
+from feederscrew.studies import rate, report, trial
 
 STUDIES = {  # with the records of its keywords, and the names that it hands on
     report.report: ([rate.Spacing], report.ANSWER | report.PAGE),
+    trial.trial: ([trial.TrialOptions], set()),
 }
 
 
