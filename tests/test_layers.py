@@ -160,7 +160,6 @@ MORE = {
     "studies.rate.shares": 10,
     "studies.simulated.drop.drop": 11,
     "studies.simulated.plate.plate": 11,
-    "studies.tooling.tooling": 15,
     "studies.tune.tune": 13,
 }  # have more than that: to be taken apart, the list only gets shorter
 

@@ -6,10 +6,11 @@ from dataclasses import fields
 
 import pytest
 
-from feederscrew.studies import rate, report, trial
+from feederscrew.studies import rate, report, tooling, trial, wishes
 
 STUDIES = {  # with the records of its keywords, and the names that it hands on
     report.report: ([rate.Spacing], report.ANSWER | report.PAGE),
+    tooling.tooling: ([wishes.ToolingOptions], set()),
     trial.trial: ([trial.TrialOptions], set()),
 }
 
