@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any, TypedDict
+from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
@@ -141,11 +141,24 @@ class Spacing:
     fill: float = 1.0  # [1] share of the track that is occupied
 
 
+@dataclass(frozen=True)
+class RateOptions(Spacing):
+    """The same, and how devices spread."""
+
+    sigma: float = 0.0  # [m] standard deviation of play and tolerance together, of every device
+
+
 class SpacingKeywords(TypedDict, total=False):
-    """The same as keywords."""
+    """A Spacing as keywords."""
 
     gap: float
     fill: float
+
+
+class RateKeywords(SpacingKeywords, total=False):
+    """RateOptions as keywords."""
+
+    sigma: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,10 +199,8 @@ def rate(
     heading: float | None = None,
     rule: str = RECOMMENDED,
     devices: Sequence[Device] | None = None,
-    gap: float = 0.0,
-    fill: float = 1.0,
-    sigma: float = 0.0,
     known: Shares | None = None,
+    **options: Unpack[RateKeywords],
 ) -> RateStudy:
     """Study how many well-oriented parts leave a bowl.
 
@@ -207,14 +218,13 @@ def rate(
         Whose probabilities are taken.
     devices : sequence of Device
         Along the track, in the order parts meet them; those of the bowl without it.
-    gap : float [m]
-        Between one part and the next.
-    fill : float [1]
-        Share of the track that is occupied.
-    sigma : float [m]
-        Standard deviation of play and tolerance together, of every device.
     known : Shares, optional
         Of the part; without them those that arrive from the bowl's moving floor.
+    **options
+        With the defaults of ``RateOptions``.
+        gap : float [m], between one part and the next.
+        fill : float [1], share of the track that is occupied.
+        sigma : float [m], standard deviation of play and tolerance together, of every device.
 
     Returns
     -------
@@ -226,12 +236,13 @@ def rate(
         If the part has no outline or no such aspect, no such rule has probabilities of it, or the bowl has
         no steady state.
     """
-    checked(bowl, heading, gap, fill, sigma)
+    own = check.options("rate", RateOptions, options)
+    checked(bowl, heading, own, own.sigma)
     chain = bowl.devices if devices is None else tuple(devices)
     known = shares(part, bowl, rule=rule) if known is None else known
     found = known.aspects
     target = None if aspect is None else well_oriented.wanted(part, found, bowl.track, aspect, heading)
-    ways = well_oriented.orientations(part, found, bowl.track, chain, sigma, bowl)
+    ways = well_oriented.orientations(part, found, bowl.track, chain, own.sigma, bowl)
     lying = arrivals.oriented(ways, known.measured)
     speed = well_oriented.velocity(stretches.queueing(bowl, lying.lying))
     target = most_frequent(lying, rule) if target is None else target
@@ -241,15 +252,15 @@ def rate(
         aspects=found,
         devices=chain,
         rule=rule,
-        rate=well_oriented.rate(lying, speed, target, rule, gap=gap, fill=fill),
+        rate=well_oriented.rate(lying, speed, target, rule, gap=own.gap, fill=own.fill),
         measured=known.measured,
     )
 
 
-def checked(bowl: Bowl, heading: float | None, gap: float, fill: float, sigma: float = 0.0) -> None:
+def checked(bowl: Bowl, heading: float | None, spacing: Spacing, sigma: float = 0.0) -> None:
     """Raise an ArgumentError that names the argument that cannot be used."""
-    check.argument("gap", gap, 0.0)
-    check.argument("fill", fill, LEAST, 1.0)
+    check.argument("gap", spacing.gap, 0.0)
+    check.argument("fill", spacing.fill, LEAST, 1.0)
     check.argument("sigma", sigma, 0.0)
     if heading is not None:
         check.argument("heading", heading)

@@ -6,12 +6,14 @@ from dataclasses import fields
 
 import pytest
 
-from feederscrew.studies import rate, report, tooling, trial, wishes
+from feederscrew.studies import rate, report, tooling, trial, tune, wishes
 
 STUDIES = {  # with the records of its keywords, and the names that it hands on
+    rate.rate: ([rate.RateOptions], set()),
     report.report: ([rate.Spacing], report.ANSWER | report.PAGE),
     tooling.tooling: ([wishes.ToolingOptions], set()),
     trial.trial: ([trial.TrialOptions], set()),
+    tune.tune: ([tune.TuneOptions], set()),
 }
 
 
