@@ -1,7 +1,6 @@
 """The study of ``feeder rate``: well-oriented parts per minute of one part from one bowl."""
 
-import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from typing import Any, TypedDict, Unpack
@@ -20,6 +19,7 @@ from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH, launch_named
 from feederscrew.resting.rules.registry import RECOMMENDED
+from feederscrew.running import CoresKeywords, OnCores
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.simulated import memory
 from feederscrew.tooling.devices.base import Device
@@ -52,9 +52,7 @@ def shares(
     rule: str = RECOMMENDED,
     fed: int | None = None,
     seed: int = SEED,
-    jobs: int | None = None,
-    progress: Callable[..., None] | None = None,
-    before: Callable[..., None] | None = None,
+    **run: Unpack[CoresKeywords],
 ) -> Shares:
     """Return the aspects of a part with the answer that rate, report, tune, batch and tooling take.
 
@@ -76,10 +74,9 @@ def shares(
         Parts that are fed onto the floor; without it as many as make every share known to 2 %.
     seed : int
         Of the parts on the floor.
-    jobs : int, optional
-        Cores for that; all there are without it. Nothing else depends on it.
-    progress, before : function, optional
-        Of drops and of parts on the floor, as for ``studies.aspects``.
+    **run
+        jobs : int, cores for that; all there are without it. Nothing else depends on it.
+        progress, before : function, of drops and of parts on the floor, as for ``studies.aspects``.
 
     Returns
     -------
@@ -90,7 +87,7 @@ def shares(
     FeederError
         Every fault of the file; if the part has no shape to drop.
     """
-    own: dict[str, Any] = {"progress": progress, "before": before, "jobs": jobs}
+    own = check.options("shares", OnCores, run)
     check.argument("seed", seed, 0)
     if fed is not None:
         check.argument("fed", fed, 1)
@@ -100,7 +97,7 @@ def shares(
         return Shares(arrivals.counted(found, measured), measured)
     if launch is not None or rule != RECOMMENDED or part.vertices is None:
         drops = None if rule == RECOMMENDED else 0
-        return Shares(resting(part, launch=launch_named(launch or LAUNCH), drops=drops, **own).aspects)
+        return Shares(resting(part, launch=launch_named(launch or LAUNCH), drops=drops, **run).aspects)
     found = resting(part, drops=0).aspects
     if not bowl.gravity > 0.0:
         conveying(bowl)  # says so
@@ -117,17 +114,14 @@ def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED) -> Aspects:
     return shares(part, bowl, rule=rule).aspects
 
 
-def _on_the_floor(
-    part: Part, found: Aspects, bowl: Bowl, fed: int | None, seed: int, own: Mapping[str, Any]
-) -> Any:
+def _on_the_floor(part: Part, found: Aspects, bowl: Bowl, fed: int | None, seed: int, run: OnCores) -> Any:
     """What lies at the track's entry, followed once in a run."""
     from feederscrew.dropping.plate.arrival import arrival
 
     def make() -> Any:
-        if own["before"]:
-            own["before"](None)
-        cores = own["jobs"] or os.cpu_count() or 1
-        return arrival(part, found, bowl, drops=fed, seed=seed, jobs=cores, progress=own["progress"])
+        if run.before:
+            run.before(None)
+        return arrival(part, found, bowl, drops=fed, seed=seed, jobs=run.cores, progress=run.progress)
 
     floor = (bowl.drive, bowl.restitution, bowl.friction.kinetic, bowl.gravity)
     return memory.once(part, found, (floor, fed, seed), make, lambda arrived: not arrived.shaken.partial)

@@ -6,10 +6,13 @@ from dataclasses import fields
 
 import pytest
 
-from feederscrew.studies import rate, report, tooling, trial, tune, wishes
+from feederscrew import running
+from feederscrew.studies import aspects, rate, report, tooling, trial, tune, wishes
 
 STUDIES = {  # with the records of its keywords, and the names that it hands on
+    aspects.aspects: ([running.OnCores], set()),
     rate.rate: ([rate.RateOptions], set()),
+    rate.shares: ([running.OnCores], set()),
     report.report: ([rate.Spacing], report.ANSWER | report.PAGE),
     tooling.tooling: ([wishes.ToolingOptions], set()),
     trial.trial: ([trial.TrialOptions], set()),
