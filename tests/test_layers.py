@@ -155,8 +155,6 @@ def test_no_function_is_long():
 PARAMETERS = 8  # of a function
 MORE = {
     "studies.bowl.bowl": 10,
-    "studies.simulated.drop.drop": 11,
-    "studies.simulated.plate.plate": 11,
 }  # have more than that: to be taken apart, the list only gets shorter
 
 

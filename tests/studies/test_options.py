@@ -8,9 +8,12 @@ import pytest
 
 from feederscrew import running
 from feederscrew.studies import aspects, rate, report, tooling, trial, tune, wishes
+from feederscrew.studies.simulated import drop, plate
 
 STUDIES = {  # with the records of its keywords, and the names that it hands on
     aspects.aspects: ([running.OnCores], set()),
+    drop.drop: ([running.RunSettings], set()),
+    plate.plate: ([running.RunSettings], set()),
     rate.rate: ([rate.RateOptions], set()),
     rate.shares: ([running.OnCores], set()),
     report.report: ([rate.Spacing], report.ANSWER | report.PAGE),
