@@ -7,11 +7,12 @@ from dataclasses import fields
 import pytest
 
 from feederscrew import running
-from feederscrew.studies import aspects, rate, report, tooling, trial, tune, wishes
+from feederscrew.studies import aspects, bowl, rate, report, solidbowl, tooling, trial, tune, wishes
 from feederscrew.studies.simulated import drop, plate
 
 STUDIES = {  # with the records of its keywords, and the names that it hands on
     aspects.aspects: ([running.OnCores], set()),
+    bowl.bowl: ([solidbowl.SizingOptions], set()),
     drop.drop: ([running.RunSettings], set()),
     plate.plate: ([running.RunSettings], set()),
     rate.rate: ([rate.RateOptions], set()),
