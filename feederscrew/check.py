@@ -1,10 +1,14 @@
 """Checks of what a caller hands to a numerics function; each names the argument."""
 
-from typing import Any
+from collections.abc import Collection, Mapping
+from dataclasses import fields
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
 from feederscrew.errors import ArgumentError
+
+Options = TypeVar("Options")
 
 
 def shaped(name: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:
@@ -106,3 +110,36 @@ def argument(name: str, value: Any, low: float = -np.inf, high: float = np.inf) 
     raise ArgumentError(
         name, f"is {number:g}", f"give a number {' '.join(ends)}" if ends else "give a number"
     )
+
+
+def options(
+    function: str, kind: type[Options], given: Mapping[str, Any], beside: Collection[str] = ()
+) -> Options:
+    """Return the record of the keywords of a function that has many; its fields hold their defaults.
+
+    Parameters
+    ----------
+    function : str
+        The name that its callers know.
+    kind : type
+        A dataclass with a field for each keyword.
+    given : dict
+        The keywords by name.
+    beside : collection of str
+        Keywords that the function takes as well, but hands on as they are.
+
+    Returns
+    -------
+    object of ``kind``
+
+    Raises
+    ------
+    TypeError
+        If the function has no such keyword, as Python says it of any other.
+    """
+    make = cast(Any, kind)
+    own = {one.name for one in fields(make)}
+    for name in given:
+        if name not in own and name not in beside:
+            raise TypeError(f"{function}() got an unexpected keyword argument {name!r}")
+    return cast(Options, make(**{name: value for name, value in given.items() if name in own}))

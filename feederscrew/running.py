@@ -1,7 +1,43 @@
 """How a run of the library goes on: from which seed, on how many cores, and who is told of it."""
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypedDict
+
+
+class ToldKeywords(TypedDict, total=False):
+    """Who is told how far something is: keywords of whatever takes long."""
+
+    progress: Callable[..., None] | None
+    before: Callable[..., None] | None
+
+
+class CoresKeywords(ToldKeywords, total=False):
+    """The fields of OnCores as keywords."""
+
+    jobs: int | None
+
+
+@dataclass(frozen=True)
+class OnCores:
+    """On how many cores something is made that depends on nothing else, and who is told of it."""
+
+    jobs: int | None = None  # all there are without it
+    progress: Callable[..., None] | None = None  # told how much is done, and of how much
+    before: Callable[..., None] | None = None  # called before it begins
+
+    @property
+    def cores(self) -> int:
+        """How many are used."""
+        return self.jobs or os.cpu_count() or 1
+
+
+class RunKeywords(ToldKeywords, total=False):
+    """The fields of RunSettings as keywords."""
+
+    seed: int
+    jobs: int
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from feederscrew.designing.searching import Candidate
 from feederscrew.rates import arrivals, spacing
 from feederscrew.rates.tipping import FLAT
 from feederscrew.studies.rate import shares
-from feederscrew.studies.tooling import may_be_up
+from feederscrew.studies.wishes import may_be_up
 from feederscrew.tooling.hanging import neck
 
 EACH = 2  # parts of each orientation in a short trial

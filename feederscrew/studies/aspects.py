@@ -1,12 +1,11 @@
 """The study of ``feeder aspects``: how one part rests, how often, and what tips it."""
 
-import os
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
+from feederscrew import check
 from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
@@ -14,6 +13,7 @@ from feederscrew.resting.rules import recommended
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
 from feederscrew.resting.rules.surface import EXPONENTS
 from feederscrew.resting.tumbling.by_class import Transition, ground, transitions
+from feederscrew.running import CoresKeywords, OnCores
 from feederscrew.studies.simulated import memory
 
 if TYPE_CHECKING:
@@ -63,9 +63,7 @@ def aspects(
     surface: str | float | None = None,
     launch: str = LAUNCH,
     drops: int | None = None,
-    jobs: int | None = None,
-    progress: Callable[..., None] | None = None,
-    before: Callable[..., None] | None = None,
+    **run: Unpack[CoresKeywords],
 ) -> AspectsStudy:
     """Study how a part comes to rest.
 
@@ -85,12 +83,11 @@ def aspects(
     drops : int, optional
         Drop it so often; with 0 never: the answer is then the closed form. Without it the part is dropped
         until every share is known to AIM.
-    jobs : int, optional
-        Cores to use; all there are without it. Nothing else depends on it.
-    progress : function, optional
-        As in ``ensemble.drop``.
-    before : function, optional
-        Called before a drop test begins, with the number of drops, None where that is not known.
+    **run
+        jobs : int, cores to use; all there are without it. Nothing else depends on it.
+        progress : function, as in ``ensemble.drop``.
+        before : function, called before a drop test begins, with the number of drops, None where that is
+        not known.
 
     Returns
     -------
@@ -101,13 +98,14 @@ def aspects(
     FeederError
         If the centre of mass is not inside the convex hull, or a card is to be dropped.
     """
+    dropping = check.options("aspects", OnCores, run)
     exponent = EXPONENTS[surface] if isinstance(surface, str) else surface
     found = find(part, unstable=unstable, as_published=as_published, exponent=exponent, launch=launch)
     wanted = part.vertices is not None and np.count_nonzero(found.stable) > 1 and exponent is None
     if drops == 0 or (drops is None and not wanted):
         return AspectsStudy(part, found)
     launch = recommended.launch_named(launch)
-    return with_drops(found, _dropped(part, found, launch, drops, jobs, progress, before), launch)
+    return with_drops(found, _dropped(part, found, launch, drops, dropping), launch)
 
 
 def answered(part: Part) -> Aspects:
@@ -115,25 +113,16 @@ def answered(part: Part) -> Aspects:
     return aspects(part).aspects
 
 
-def _dropped(
-    part: Part,
-    found: Aspects,
-    launch: str,
-    drops: int | None,
-    jobs: int | None,
-    progress: Callable[..., None] | None,
-    before: Callable[..., None] | None,
-) -> "DropStudy":
+def _dropped(part: Part, found: Aspects, launch: str, drops: int | None, run: OnCores) -> "DropStudy":
     """The drop test, made once in a run."""
     from feederscrew.studies.simulated.drop import drop
 
     def make() -> "DropStudy":
-        if before:
-            before(many["drops"])
-        return drop(part, launch, **many, jobs=cores, progress=progress, aspects=found)
+        if run.before:
+            run.before(many["drops"])
+        return drop(part, launch, **many, jobs=run.cores, progress=run.progress, aspects=found)
 
     many = {"drops": MOST, "until": AIM} if drops is None else {"drops": drops}
-    cores = jobs or os.cpu_count() or 1
     test = memory.once(part, found, (launch, drops), make, lambda test: not test.result.drops.partial)
     return replace(test, part=part, aspects=found)
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any, cast
+from typing import Any, Unpack, cast
 
 import numpy as np
 
@@ -24,7 +24,6 @@ from feederscrew.rates.tipping import remark
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.solidbowl.closed_body import BowlSolid
-from feederscrew.solidbowl.plan import Asked
 from feederscrew.studies import solidbowl
 from feederscrew.studies.rate import arriving
 from feederscrew.tooling.devices.base import Device
@@ -143,10 +142,8 @@ def bowl(
     aspect: str | None = None,
     heading: float | None = None,
     rule: str = "recommended",
-    gap: float = 0.0,
-    fill: float = 1.0,
     known: Aspects | None = None,
-    solid: Asked | None = None,
+    **options: Unpack[solidbowl.SizingKeywords],
 ) -> MachineSheet:
     """Compute the bowl, the drive and the stroke that bring a part at a rate.
 
@@ -162,11 +159,11 @@ def bowl(
     heading : float [rad], optional
         As for ``queue.wanted``.
     rule : str
-    gap, fill : float [m], [1]
     known : Aspects, optional
         Of the part, with the answer to take, where they are known already.
-    solid : Asked, optional
-        Of the bowl as a solid: its rise and mass take the place of the estimate.
+    **options
+        gap : float [m], fill : float [1] : as for ``studies.rate.rate``.
+        solid : Asked, of the bowl as a solid: its rise and mass take the place of the estimate.
 
     Returns
     -------
@@ -178,7 +175,8 @@ def bowl(
     FeederError
         If no bowl is so large, or none reaches the target.
     """
-    plain = solidbowl.in_material(answer.conveying(bowls.record(settings)), solid)
+    own = check.options("bowl", solidbowl.SizingOptions, options)
+    plain = solidbowl.in_material(answer.conveying(bowls.record(settings)), own.solid)
     found = arriving(part, plain, rule) if known is None else known
     straight = replace(sizing.STRAIGHT, climb=plain.track.climb)
     wanted = None if aspect is None else well_oriented.wanted(part, found, straight, aspect, heading)
@@ -188,9 +186,9 @@ def bowl(
     track = replace(plain.track, radius=0.5 * size.diameter, width=size.track_width, climb=size.climb)
     wanted = None if wanted is None else well_oriented.wanted(part, found, track, *wanted)
     ways = _ways(part, found, track, plain.devices)
-    counted: dict[str, Any] = {"rule": rule, "target": wanted, "gap": gap, "fill": fill}
+    counted: dict[str, Any] = {"rule": rule, "target": wanted, "gap": own.gap, "fill": own.fill}
     plain = replace(plain, track=track)
-    size, made = solidbowl.solid(plain, size, part, ways(None), solid, counted)
+    size, made = solidbowl.solid(plain, size, part, ways(None), own.solid, counted)
     room = cast(float, part.volume if part.hull is None else part.hull.volume)  # a card has no size
     sought = drive_sought.Sought(plain, size, tuple(settings), target, part.mass / room)
     driven, flow = drive_sought.brought(sought, lambda bowl: throughput.flow(ways(bowl), **counted))

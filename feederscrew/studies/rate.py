@@ -1,10 +1,9 @@
 """The study of ``feeder rate``: well-oriented parts per minute of one part from one bowl."""
 
-import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
@@ -20,6 +19,7 @@ from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH, launch_named
 from feederscrew.resting.rules.registry import RECOMMENDED
+from feederscrew.running import CoresKeywords, OnCores
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.simulated import memory
 from feederscrew.tooling.devices.base import Device
@@ -52,9 +52,7 @@ def shares(
     rule: str = RECOMMENDED,
     fed: int | None = None,
     seed: int = SEED,
-    jobs: int | None = None,
-    progress: Callable[..., None] | None = None,
-    before: Callable[..., None] | None = None,
+    **run: Unpack[CoresKeywords],
 ) -> Shares:
     """Return the aspects of a part with the answer that rate, report, tune, batch and tooling take.
 
@@ -76,10 +74,9 @@ def shares(
         Parts that are fed onto the floor; without it as many as make every share known to 2 %.
     seed : int
         Of the parts on the floor.
-    jobs : int, optional
-        Cores for that; all there are without it. Nothing else depends on it.
-    progress, before : function, optional
-        Of drops and of parts on the floor, as for ``studies.aspects``.
+    **run
+        jobs : int, cores for that; all there are without it. Nothing else depends on it.
+        progress, before : function, of drops and of parts on the floor, as for ``studies.aspects``.
 
     Returns
     -------
@@ -90,7 +87,7 @@ def shares(
     FeederError
         Every fault of the file; if the part has no shape to drop.
     """
-    own: dict[str, Any] = {"progress": progress, "before": before, "jobs": jobs}
+    own = check.options("shares", OnCores, run)
     check.argument("seed", seed, 0)
     if fed is not None:
         check.argument("fed", fed, 1)
@@ -100,7 +97,7 @@ def shares(
         return Shares(arrivals.counted(found, measured), measured)
     if launch is not None or rule != RECOMMENDED or part.vertices is None:
         drops = None if rule == RECOMMENDED else 0
-        return Shares(resting(part, launch=launch_named(launch or LAUNCH), drops=drops, **own).aspects)
+        return Shares(resting(part, launch=launch_named(launch or LAUNCH), drops=drops, **run).aspects)
     found = resting(part, drops=0).aspects
     if not bowl.gravity > 0.0:
         conveying(bowl)  # says so
@@ -117,20 +114,45 @@ def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED) -> Aspects:
     return shares(part, bowl, rule=rule).aspects
 
 
-def _on_the_floor(
-    part: Part, found: Aspects, bowl: Bowl, fed: int | None, seed: int, own: Mapping[str, Any]
-) -> Any:
+def _on_the_floor(part: Part, found: Aspects, bowl: Bowl, fed: int | None, seed: int, run: OnCores) -> Any:
     """What lies at the track's entry, followed once in a run."""
     from feederscrew.dropping.plate.arrival import arrival
 
     def make() -> Any:
-        if own["before"]:
-            own["before"](None)
-        cores = own["jobs"] or os.cpu_count() or 1
-        return arrival(part, found, bowl, drops=fed, seed=seed, jobs=cores, progress=own["progress"])
+        if run.before:
+            run.before(None)
+        return arrival(part, found, bowl, drops=fed, seed=seed, jobs=run.cores, progress=run.progress)
 
     floor = (bowl.drive, bowl.restitution, bowl.friction.kinetic, bowl.gravity)
     return memory.once(part, found, (floor, fed, seed), make, lambda arrived: not arrived.shaken.partial)
+
+
+@dataclass(frozen=True)
+class Spacing:
+    """How parts stand along the track."""
+
+    gap: float = 0.0  # [m] between one part and the next
+    fill: float = 1.0  # [1] share of the track that is occupied
+
+
+@dataclass(frozen=True)
+class RateOptions(Spacing):
+    """The same, and how devices spread."""
+
+    sigma: float = 0.0  # [m] standard deviation of play and tolerance together, of every device
+
+
+class SpacingKeywords(TypedDict, total=False):
+    """A Spacing as keywords."""
+
+    gap: float
+    fill: float
+
+
+class RateKeywords(SpacingKeywords, total=False):
+    """RateOptions as keywords."""
+
+    sigma: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,10 +193,8 @@ def rate(
     heading: float | None = None,
     rule: str = RECOMMENDED,
     devices: Sequence[Device] | None = None,
-    gap: float = 0.0,
-    fill: float = 1.0,
-    sigma: float = 0.0,
     known: Shares | None = None,
+    **options: Unpack[RateKeywords],
 ) -> RateStudy:
     """Study how many well-oriented parts leave a bowl.
 
@@ -192,14 +212,13 @@ def rate(
         Whose probabilities are taken.
     devices : sequence of Device
         Along the track, in the order parts meet them; those of the bowl without it.
-    gap : float [m]
-        Between one part and the next.
-    fill : float [1]
-        Share of the track that is occupied.
-    sigma : float [m]
-        Standard deviation of play and tolerance together, of every device.
     known : Shares, optional
         Of the part; without them those that arrive from the bowl's moving floor.
+    **options
+        With the defaults of ``RateOptions``.
+        gap : float [m], between one part and the next.
+        fill : float [1], share of the track that is occupied.
+        sigma : float [m], standard deviation of play and tolerance together, of every device.
 
     Returns
     -------
@@ -211,12 +230,13 @@ def rate(
         If the part has no outline or no such aspect, no such rule has probabilities of it, or the bowl has
         no steady state.
     """
-    checked(bowl, heading, gap, fill, sigma)
+    own = check.options("rate", RateOptions, options)
+    checked(bowl, heading, own, own.sigma)
     chain = bowl.devices if devices is None else tuple(devices)
     known = shares(part, bowl, rule=rule) if known is None else known
     found = known.aspects
     target = None if aspect is None else well_oriented.wanted(part, found, bowl.track, aspect, heading)
-    ways = well_oriented.orientations(part, found, bowl.track, chain, sigma, bowl)
+    ways = well_oriented.orientations(part, found, bowl.track, chain, own.sigma, bowl)
     lying = arrivals.oriented(ways, known.measured)
     speed = well_oriented.velocity(stretches.queueing(bowl, lying.lying))
     target = most_frequent(lying, rule) if target is None else target
@@ -226,15 +246,15 @@ def rate(
         aspects=found,
         devices=chain,
         rule=rule,
-        rate=well_oriented.rate(lying, speed, target, rule, gap=gap, fill=fill),
+        rate=well_oriented.rate(lying, speed, target, rule, gap=own.gap, fill=own.fill),
         measured=known.measured,
     )
 
 
-def checked(bowl: Bowl, heading: float | None, gap: float, fill: float, sigma: float = 0.0) -> None:
+def checked(bowl: Bowl, heading: float | None, spacing: Spacing, sigma: float = 0.0) -> None:
     """Raise an ArgumentError that names the argument that cannot be used."""
-    check.argument("gap", gap, 0.0)
-    check.argument("fill", fill, LEAST, 1.0)
+    check.argument("gap", spacing.gap, 0.0)
+    check.argument("fill", spacing.fill, LEAST, 1.0)
     check.argument("sigma", sigma, 0.0)
     if heading is not None:
         check.argument("heading", heading)

@@ -1,18 +1,21 @@
 """The study of ``feeder report``: what the other studies find of one part in one bowl, each on request."""
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
+from typing import Any, TypedDict, Unpack
 
 from feederscrew import bowl as bowls
+from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.settings import Setting, has_machine
 from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.posture import posture
+from feederscrew.running import ToldKeywords
 from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import convey, solidbowl
@@ -23,7 +26,7 @@ from feederscrew.studies.floor import FloorStudy, floor
 from feederscrew.studies.headings import HeadingsStudy, headings
 from feederscrew.studies.inertia import InertiaStudy, inertia
 from feederscrew.studies.passages import PassagesStudy, passages
-from feederscrew.studies.rate import SEED, RateStudy, Shares, rate, shares
+from feederscrew.studies.rate import RateStudy, Shares, Spacing, SpacingKeywords, rate, shares
 from feederscrew.studies.slide import SlideStudy, slide
 from feederscrew.studies.track import TrackStudy, track
 from feederscrew.studies.trial import TrialStudy, trial
@@ -151,6 +154,29 @@ class ReportStudy(Shown):
         return slide(self.bowl)
 
 
+class AnswerKeywords(ToldKeywords, total=False):
+    """Keywords of ``report`` that ``studies.rate.shares`` receives."""
+
+    launch: str | None
+    probabilities: str | PathLike[str] | None
+    fed: int | None
+    seed: int
+
+
+class PageKeywords(TypedDict, total=False):
+    """Keywords of ``report`` that its record receives."""
+
+    command: str
+    sent: int | None
+
+
+class ReportKeywords(AnswerKeywords, PageKeywords, SpacingKeywords, total=False):
+    """The keywords of ``report`` that few callers need."""
+
+
+ANSWER, PAGE = AnswerKeywords.__optional_keys__, PageKeywords.__optional_keys__
+
+
 def report(
     part: Part,
     path: str | PathLike[str] | None = None,
@@ -158,18 +184,9 @@ def report(
     *,
     aspect: str | None = None,
     heading: float | None = None,
-    rule: str = "recommended",
-    gap: float = 0.0,
-    fill: float = 1.0,
+    rule: str = RECOMMENDED,
     target: float | None = None,
-    launch: str | None = None,
-    probabilities: str | PathLike[str] | None = None,
-    fed: int | None = None,
-    seed: int = SEED,
-    command: str = "",
-    sent: int | None = None,
-    progress: Callable[..., None] | None = None,
-    before: Callable[..., None] | None = None,
+    **options: Unpack[ReportKeywords],
 ) -> ReportStudy:
     """Check everything that can be wrong with the inputs of a report, before anything long is computed.
 
@@ -183,16 +200,13 @@ def report(
     heading : float [rad], optional
     rule : str
         Whose probabilities count for the rate.
-    gap : float [m]
-    fill : float [1]
     target : float [1/s], optional
         Rate that a bowl is sized for.
-    launch, probabilities, fed, seed, progress, before
-        As for ``studies.rate.shares``.
-    command : str
-        That repeats the report.
-    sent : int, optional
-        Parts of a trial, which is a chapter then.
+    **options
+        gap : float [m], fill : float [1] : as for ``studies.rate.rate``.
+        launch, probabilities, fed, seed, progress, before : as for ``studies.rate.shares``.
+        command : str, that repeats the report.
+        sent : int, parts of a trial, which is a chapter then.
 
     Returns
     -------
@@ -203,12 +217,10 @@ def report(
     FeederError
         If there is no such aspect or rule, or the bowl file has faults.
     """
+    spacing = check.options("report", Spacing, options, beside=ANSWER | PAGE)
     settings = bowls.settings(path, overrides)
     bowl = bowls.record(settings)
-    known = shares(
-        part, bowl, launch=launch, probabilities=probabilities, rule=rule, fed=fed, seed=seed,
-        progress=progress, before=before,
-    )  # fmt: skip
+    known = shares(part, bowl, rule=rule, **_of(options, ANSWER))
     found = known.aspects
     rule = found.ranking if rule == RECOMMENDED else rule  # a card has no such answer
     if rule not in found.chances:
@@ -222,12 +234,16 @@ def report(
         aspect=posture(part, found, found.likeliest if aspect is None else aspect).name,
         heading=heading,
         rule=rule,
-        gap=gap,
-        fill=fill,
+        gap=spacing.gap,
+        fill=spacing.fill,
         target=target,
         counted=aspect,
         shares=known,
         inputs=part.inputs | bowls.identity(path) | known.inputs,
-        command=command,
-        sent=sent,
+        **_of(options, PAGE),
     )
+
+
+def _of(options: Mapping[str, Any], names: Collection[str]) -> dict[str, Any]:
+    """Those of some keywords that were given."""
+    return {name: value for name, value in options.items() if name in names}

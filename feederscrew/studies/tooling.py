@@ -1,9 +1,9 @@
 """The study of ``feeder tooling``: which orientation can be isolated, and by which cuts."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
@@ -17,20 +17,15 @@ from feederscrew.rates.tipping import marked, remark
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.rate import arriving
-from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.devices.kinds import KINDS, made
+from feederscrew.studies.wishes import ToolingKeywords, ToolingOptions, asked_for, listed
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating import tracks
-from feederscrew.tooling.isolating.chain import FINE, STEP, WHERE, Wishes
-from feederscrew.tooling.isolating.design import MARGIN, PLAY, TOLERANCE, place
-from feederscrew.tooling.isolating.hole_search import VERDICTS, HoleSearch
+from feederscrew.tooling.isolating.design import MARGIN, place
+from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.isolating.proposal import Design, Goal
 from feederscrew.tooling.mirrored import named
-from feederscrew.tooling.orientations import Orientation, orientations, speed
-from feederscrew.units import shown
+from feederscrew.tooling.orientations import Orientation, orientations
 
-STEEP = np.radians(-6.0)  # [rad] climb of a stretch that separates parts
-OUTCOMES = ("lying", "hanging", "any")
 WIDER = "the track has to be {:.4g} mm wide"
 LATE = "the search stopped at the time limit: another machine may find more - raise the limit"
 
@@ -93,15 +88,8 @@ def tooling(
     heading: float | None = None,
     rule: str = "recommended",
     margin: float = MARGIN,
-    purity: float = 1.0,
-    efficiency: float = 0.0,
-    turn: bool = False,
-    seed: int = 1,
-    verdicts: int = VERDICTS,
-    seconds: float = 600.0,
-    told: Callable[[int, int], None] | None = None,
     known: Aspects | None = None,
-    **wishes: Any,
+    **wishes: Unpack[ToolingKeywords],
 ) -> ToolingStudy:
     """Study which orientations of a part can be isolated by cuts, and how.
 
@@ -118,29 +106,28 @@ def tooling(
         Whose probabilities are taken.
     margin : float [m]
         By which the wanted orientation passes and the others fail, at least.
-    purity : float [1]
-        Of what leaves, that is enough.
-    efficiency : float [1]
-        Of what is offered, that is asked for.
-    turn : bool
-        Whether devices that turn parts over may be used, where returning them wastes too much.
-    seed : int
-        Of the search for holes.
-    verdicts : int
-        Most of them in the search for the holes of one orientation: then the best so far is taken.
-    seconds : float [s]
-        The last resort: what is found until then may differ from machine to machine, and is marked.
-    told : callable, optional
-        Called with how many designs are done of how many, first with none.
     known : Aspects, optional
         Of the part, with the answer to take, where they are known already.
     **wishes
-        What a design may use, as ``Wishes``: outcome, how parts shall leave ('lying', 'hanging' or 'any');
-        without, kinds of devices that are not used ('wiper,cut_out'); step [m], of which values are whole
-        multiples; up, other aspects that count as the one wanted ('B,C'); cutter [m], the radius that corners
-        of holes are rounded to; vary, whether other banks, grooves and widths of the track and sweeps
-        are tried where they give more; play and tolerance [m], of the part from the wall and of its size,
-        which are added to the margin that is asked for.
+        What a design is to reach and may use, with the defaults of ``ToolingOptions``.
+        purity : float [1], of what leaves, that is enough.
+        efficiency : float [1], of what is offered, that is asked for.
+        outcome : str, how parts shall leave: 'lying', 'hanging' or 'any'.
+        without : str or list of str, kinds of devices that are not used: 'wiper,cut_out'.
+        step : float [m], of which values are whole multiples.
+        up : str or list of str, other aspects that count as the one wanted: 'B,C'.
+        cutter : float [m], the radius that corners of holes are rounded to.
+        vary : bool, whether other banks, grooves and widths of the track and sweeps are tried where they
+        give more.
+        turn : bool, whether devices that turn parts over may be used, where returning them wastes too much.
+        play, tolerance : float [m], of the part from the wall and of its size, which are added to the margin
+        that is asked for.
+        seed : int, of the search for holes.
+        verdicts : int, most of them in the search for the holes of one orientation: then the best so far
+        is taken.
+        seconds : float [s], the last resort: what is found until then may differ from machine to machine,
+        and is marked.
+        told : callable, called with how many designs are done of how many, first with none.
 
     Returns
     -------
@@ -151,6 +138,7 @@ def tooling(
     FeederError
         If the part has no mesh, is too large for the bowl, or has no such orientation or rule.
     """
+    own = check.options("tooling", ToolingOptions, wishes)
     found = arriving(part, bowl, rule) if known is None else known
     every = _coming(part, found, bowl)
     if rule not in found.chances:
@@ -159,21 +147,20 @@ def tooling(
         )
     shares = np.nan_to_num([one.chances[rule] for one in every])
     wanted = None if aspect is None else place(every, aspect, heading, part.source)
-    search = HoleSearch(seed=seed, verdicts=verdicts, until=time.monotonic() + seconds)
-    margin += wishes.pop("play", PLAY) + wishes.pop("tolerance", TOLERANCE)
-    vary = bool(wishes.pop("vary", True))
-    may_use = replace(asked_for(part, bowl, found, **wishes), vary=vary, turn=turn)
-    asked_of_each = {"goal": Goal(purity, efficiency), "before": bowl.devices, "wishes": may_use}
+    search = HoleSearch(seed=own.seed, verdicts=own.verdicts, until=time.monotonic() + own.seconds)
+    margin += own.play + own.tolerance
+    may_use = asked_for(part, bowl, found, own)
+    asked_of_each = {"goal": Goal(own.purity, own.efficiency), "before": bowl.devices, "wishes": may_use}
     asked_of_each |= {"margin": margin, "search": search}
     asked = range(len(every)) if wanted is None else [wanted]
     designs: list[Design | None] = [None] * len(every)
-    if told is not None:
-        told(0, len(asked))
+    if own.told is not None:
+        own.told(0, len(asked))
     cache: dict[float, _Track] = {bowl.track.width: _Track(bowl, every, shares, {})}
     for done, k in enumerate(asked):
         designs[k] = _best(part, found, rule, k, cache, asked_of_each)
-        if told is not None:
-            told(done + 1, len(asked))
+        if own.told is not None:
+            own.told(done + 1, len(asked))
     study = ToolingStudy(
         part=part,
         bowl=bowl,
@@ -248,49 +235,3 @@ def tooling_without(
         As for ``tooling``.
     """
     return tooling(part, bowl, aspect, without=(*listed(without), *kinds, "cut_out"), **asked)
-
-
-def asked_for(
-    part: Part,
-    bowl: Bowl,
-    found: Aspects,
-    *,
-    outcome: str = "any",
-    without: str | Sequence[str] = (),
-    step: float = STEP,
-    up: str | Sequence[str] = (),
-    cutter: float = 0.0,
-) -> Wishes:
-    """Return what a design may use, checked, as Wishes."""
-    if outcome not in OUTCOMES:
-        raise ArgumentError("outcome", f"{outcome!r} is unknown", f"choose {', '.join(OUTCOMES)}")
-    check.argument("step", step, FINE)
-    kinds = listed(without)
-    for kind in kinds:
-        if kind not in KINDS:
-            raise ArgumentError("without", f"unknown device {shown(kind)}", hint(kind, list(KINDS)))
-    wishes = Wishes(outcome, kinds, float(step), may_be_up(part, found, up), float(cutter))
-    return replace(wishes, separation=_separation(bowl, wishes))
-
-
-def listed(names: str | Sequence[str]) -> tuple[str, ...]:
-    """Return the names of a list, or of a text with commas."""
-    names = names.split(",") if isinstance(names, str) else names
-    return tuple(name.strip() for name in names if name.strip())
-
-
-def may_be_up(part: Part, found: Aspects, up: str | Sequence[str]) -> tuple[str, ...]:
-    """Return the names of aspects that may be up as well, checked."""
-    known = {name.casefold() for name in found.names}
-    for name in listed(up):
-        if name.casefold() not in known:
-            mend = f"choose one of {', '.join(found.names)}"
-            raise ArgumentError("up", f"{part.name} has no aspect {shown(name)}", mend)
-    return listed(up)
-
-
-def _separation(bowl: Bowl, wishes: Wishes) -> Device | None:
-    """The stretch that makes gaps in this bowl; None where it may not be used or makes none."""
-    steeper = made("separation", WHERE, angle=STEEP, text=f"{{climb: {np.degrees(STEEP):.6g} deg}}")
-    there = replace(bowl, track=replace(bowl.track, climb=STEEP))
-    return steeper if wishes.allows("separation") and speed(there) > speed(bowl) else None

@@ -3,10 +3,11 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
+from feederscrew import check
 from feederscrew.bowl.devices import strangers
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
@@ -20,7 +21,7 @@ from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH
-from feederscrew.running import RunSettings
+from feederscrew.running import RunKeywords, RunSettings
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.rate import shares as arriving
 from feederscrew.trial import course, outlet
@@ -91,23 +92,36 @@ class TrialStudy(Shown):
         return tuple(listed)
 
 
+@dataclass(frozen=True)
+class TrialOptions(RunSettings):
+    """How many parts are sent and how; an option means what it means for ``trial``."""
+
+    parts: int | None = None
+    landing: int | None = None
+    queue: int | None = None
+    poured: bool = False
+    seconds: float = 10.0  # [s]
+
+
+class TrialKeywords(RunKeywords, total=False):
+    """The same as keywords."""
+
+    parts: int | None
+    landing: int | None
+    queue: int | None
+    poured: bool
+    seconds: float
+
+
 def trial(
     part: Part,
     bowls: Sequence[Bowl],
     aspect: str | None = None,
     *,
-    rule: str = "recommended",
+    rule: str = RECOMMENDED,
     known: Shares | None = None,
     measured: profiles.Measured | None = None,
-    parts: int | None = None,
-    landing: int | None = None,
-    queue: int | None = None,
-    poured: bool = False,
-    seconds: float = 10.0,
-    seed: int = 1,
-    jobs: int = 1,
-    progress: Callable[[int, int], None] | None = None,
-    before: Callable[[], None] | None = None,
+    **options: Unpack[TrialKeywords],
 ) -> TrialStudy:
     """Send parts of true shape along the tooled track of a bowl, at one or several amplitudes.
 
@@ -125,23 +139,17 @@ def trial(
         What arrives; without them what the first bowl's moving floor gives.
     measured : Measured, optional
         From ``at_outlet``: what left a bowl, to stand beside the profile of the queue.
-    parts : int, optional
-        One at a time, the orientations in turn; 200 without it, 60 with a queue.
-    landing : int, optional
-        So many parts fall onto the moving track, as their launch says, as well.
-    queue : int, optional
-        So many parts that push each other, as well.
-    poured : bool
-        Whether those fall onto the track in any attitude; in a row without it.
-    seconds : float [s]
-        The queue is followed.
-    seed : int
-    jobs : int
-        Cores to use; the outcome does not depend on it.
-    progress : callable, optional
-        Called with how many are done, and of how many.
-    before : callable, optional
-        Called before anything is compiled.
+    **options
+        With the defaults of ``TrialOptions``.
+        parts : int, one at a time, the orientations in turn; 200 without it, 60 with a queue.
+        landing : int, so many parts fall onto the moving track, as their launch says, as well.
+        queue : int, so many parts that push each other, as well.
+        poured : bool, whether those fall onto the track in any attitude; in a row without it.
+        seconds : float [s], the queue is followed.
+        seed : int.
+        jobs : int, cores to use; the outcome does not depend on it.
+        progress : callable, called with how many are done, and of how many.
+        before : callable, called before anything is compiled.
 
     Returns
     -------
@@ -154,6 +162,7 @@ def trial(
     KeyboardInterrupt
         If nothing was finished.
     """
+    own = check.options("trial", TrialOptions, options)
     solid_of(part)  # refuses a part without a surface before anything else
     known = arriving(part, bowls[0], rule=rule) if known is None else known
     found = known.aspects
@@ -161,11 +170,11 @@ def trial(
         raise ArgumentError(
             f"rule {rule}", "has no probabilities of this part", hint(rule, list(found.chances))
         )
-    count = parts or (FEW if queue else PARTS)
+    count = own.parts or (FEW if own.queue else PARTS)
     launch = LAUNCH if found.recommended is None else found.recommended.launch
-    fall = None if landing is None else {"launch": launch, "parts": landing}
-    crowd = None if queue is None else QueuePlan(queue, seconds, None if poured else GAPS)
-    run = RunSettings(seed, jobs, progress)
+    fall = None if own.landing is None else {"launch": launch, "parts": own.landing}
+    crowd = None if own.queue is None else QueuePlan(own.queue, own.seconds, None if own.poured else GAPS)
+    run = RunSettings(own.seed, own.jobs, own.progress)
     made: list[TrialRun] = []
     stopped = False
     for bowl in bowls:
@@ -174,12 +183,12 @@ def trial(
         ways = arrivals.oriented(ways, known.measured)
         tried = _tried(part, found, ways, aspect)
         shares = _shares(ways, rule, tried)
-        own = replace(run, progress=_after(len(made), progress, len(bowls)), before=before)
+        here = replace(run, progress=_after(len(made), own.progress, len(bowls)), before=own.before)
         sent = course.Sending(tried, max(count, len(tried)))
         try:
             seen = course.course(
                 part, bowl, ways.lying, sent, bowl.devices,
-                poses=ways.states, leaves=course.rightly(ways.leaving), run=own,
+                poses=ways.states, leaves=course.rightly(ways.leaving), run=here,
             )  # fmt: skip
             more: dict[str, Any] = {}
             if not seen.partial:
@@ -191,7 +200,7 @@ def trial(
             stopped = True
         if stopped or made[-1].partial:
             break
-    return TrialStudy(part, found, rule, seed, tuple(made), stopped, measured)
+    return TrialStudy(part, found, rule, own.seed, tuple(made), stopped, measured)
 
 
 def _further(

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
+from typing import Unpack
 
 from feederscrew import check
 from feederscrew.bowl.devices import strangers
@@ -14,7 +15,7 @@ from feederscrew.rates import drive_settings as knobs
 from feederscrew.rates.stream import along
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
-from feederscrew.studies.rate import LEAST, Shares, checked, shares
+from feederscrew.studies.rate import LEAST, Shares, Spacing, SpacingKeywords, checked, shares
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
 
@@ -49,6 +50,27 @@ class TuneStudy(Shown):
         return (*strangers(self.devices, self.aspects.names), *self.aspects.warnings)
 
 
+@dataclass(frozen=True)
+class TuneOptions(Spacing):
+    """How parts come and what is enough; an option means what it means for ``tune``."""
+
+    devices: Sequence[Device] | None = None
+    worst: bool = False
+    arriving: Callable[[Bowl], Shares] | None = None
+    rough: Callable[[Bowl], Shares] | None = None
+    progress: Callable[[int, int], None] | None = None
+
+
+class TuneKeywords(SpacingKeywords, total=False):
+    """The same as keywords."""
+
+    devices: Sequence[Device] | None
+    worst: bool
+    arriving: Callable[[Bowl], Shares] | None
+    rough: Callable[[Bowl], Shares] | None
+    progress: Callable[[int, int], None] | None
+
+
 def tune(
     part: Part,
     bowl: Bowl,
@@ -57,13 +79,7 @@ def tune(
     *,
     heading: float | None = None,
     rule: str = "recommended",
-    devices: Sequence[Device] | None = None,
-    gap: float = 0.0,
-    fill: float = 1.0,
-    worst: bool = False,
-    arriving: Callable[[Bowl], Shares] | None = None,
-    rough: Callable[[Bowl], Shares] | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    **options: Unpack[TuneKeywords],
 ) -> TuneStudy:
     """Study which amplitude, angle or frequency alone gives a rate.
 
@@ -76,16 +92,17 @@ def tune(
         The one wanted.
     target : float [1/s]
         Well-oriented parts, above 0.
-    heading, rule, devices, gap, fill
+    heading, rule
         As for ``rate``.
-    worst : bool
-        Meet the target at the slowest of every start and surface, as ``well_oriented.velocity``.
-    arriving : function, optional
-        From a bowl to the Shares that arrive at its drive; ``studies.rate.shares`` without it.
-    rough : function, optional
-        The same of FEW parts, which leads to a setting.
-    progress : function, optional
-        Called with how many settings are found, and of how many.
+    **options
+        With the defaults of ``TuneOptions``.
+        devices, gap, fill : as for ``rate``.
+        worst : bool, meet the target at the slowest of every start and surface, as
+        ``well_oriented.velocity``.
+        arriving : function, from a bowl to the Shares that arrive at its drive; ``studies.rate.shares``
+        without it.
+        rough : function, the same of FEW parts, which leads to a setting.
+        progress : function, called with how many settings are found, and of how many.
 
     Returns
     -------
@@ -97,9 +114,11 @@ def tune(
     FeederError
         If the part never leaves in that orientation, or no setting gives the rate.
     """
+    own = check.options("tune", TuneOptions, options)
     check.argument("target", target, LEAST)
-    checked(bowl, heading, gap, fill)
-    chain = bowl.devices if devices is None else tuple(devices)
+    checked(bowl, heading, own)
+    chain = bowl.devices if own.devices is None else tuple(own.devices)
+    arriving, rough = own.arriving, own.rough
     if arriving is None:
         arriving, rough = (partial(shares, part, rule=rule, fed=fed) for fed in (None, FEW))
     ways = _DriveWays(part, bowl, chain, arriving)
@@ -107,21 +126,22 @@ def tune(
     found = ways.shares(bowl).aspects
     wanted = well_oriented.wanted(part, found, bowl.track, aspect, heading)
     # raises where none ever leaves so
-    well_oriented.parts_per_metre(ways.along(None), wanted, rule, gap=gap, fill=fill)
+    well_oriented.parts_per_metre(ways.along(None), wanted, rule, gap=own.gap, fill=own.fill)
     well_oriented.holds(ways.along(bowl), wanted)
 
     def density(ways: _DriveWays, driven: Bowl) -> float:
-        return well_oriented.leaving_per_metre(ways.along(driven), wanted, rule, gap=gap, fill=fill)
+        return well_oriented.leaving_per_metre(ways.along(driven), wanted, rule, gap=own.gap, fill=own.fill)
 
     led = None if lead is None else partial(density, lead)
-    made = knobs.solutions(bowl, target, partial(density, ways), rough=led, worst=worst, progress=progress)
+    asked = {"rough": led, "worst": own.worst, "progress": own.progress}
+    made = knobs.solutions(bowl, target, partial(density, ways), **asked)
     return TuneStudy(
         part=part,
         bowl=bowl,
         aspects=found,
         devices=chain,
         target=target,
-        worst=worst,
+        worst=own.worst,
         settings=tuple(_tuned(one, bowl, ways) for one in made),
     )
 

@@ -1,7 +1,8 @@
 """The study of ``feeder drop``: a virtual drop test of one part on a hard plane."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Unpack
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules.recommended import launch_named
-from feederscrew.running import RunSettings
+from feederscrew.running import RunKeywords, RunSettings
 
 BESIDE = ("csa", "surface")  # rules that the drops are shown with
 
@@ -53,12 +54,9 @@ def drop(
     *,
     drops: int | None = None,
     until: str | None = None,
-    seed: int = 1,
-    jobs: int = 1,
     traced: int = 0,
-    progress: Callable[..., None] | None = None,
-    before: Callable[..., None] | None = None,
     aspects: Aspects | None = None,
+    **run: Unpack[RunKeywords],
 ) -> DropStudy:
     """Study on which aspects a part comes to rest when it is dropped again and again.
 
@@ -74,18 +72,16 @@ def drop(
         How many; with ``until`` at most so many.
     until : str, optional
         Go on until every class's 95 % interval is this narrow to either side, '1%'.
-    seed : int
-        Of the random launches.
-    jobs : int
-        Cores to use; the counts do not depend on it.
     traced : int
         Of how many drops, from the first, the motion is kept as well.
-    progress : function, optional
-        As in ``ensemble.drop``.
-    before : function, optional
-        Called once all inputs are found right, before anything is compiled.
     aspects : Aspects, optional
         Of the part, where they are known already.
+    **run
+        With the defaults of ``RunSettings``.
+        seed : int, of the random launches.
+        jobs : int, cores to use; the counts do not depend on it.
+        progress : function, as in ``ensemble.drop``.
+        before : function, called once all inputs are found right, before anything is compiled.
 
     Returns
     -------
@@ -98,12 +94,13 @@ def drop(
     KeyboardInterrupt
         If the user stops it before there is anything to count; later, the result is partial.
     """
+    own = check.options("drop", RunSettings, run)
     launch_named(launch)
-    check_run(drops, seed, jobs)
+    check_run(drops, own.seed, own.jobs)
     found = find(part) if aspects is None else aspects
     result = drop_test.test(
         part, found, launch, dict(conditions or {}),
-        drops=drops, until=until, traced=traced, run=RunSettings(seed, jobs, progress, before),
+        drops=drops, until=until, traced=traced, run=own,
     )  # fmt: skip
     return DropStudy(part, found, result)
 

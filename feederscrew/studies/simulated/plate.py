@@ -1,7 +1,8 @@
 """The study of ``feeder drop --plate``: a virtual dynamic bowl test of one part."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Unpack
 
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
@@ -10,7 +11,7 @@ from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules.recommended import launch_named
-from feederscrew.running import RunSettings
+from feederscrew.running import RunKeywords, RunSettings
 from feederscrew.studies.simulated.drop import check_run
 
 LEAST = 1e-6  # [s]
@@ -41,10 +42,7 @@ def plate(
     names: Sequence[str] | None = None,
     drops: int | None = None,
     seconds: float | None = None,
-    seed: int = 1,
-    jobs: int = 1,
-    progress: Callable[..., None] | None = None,
-    before: Callable[..., None] | None = None,
+    **run: Unpack[RunKeywords],
 ) -> PlateStudy:
     """Study what parts do on plates that vibrate with the drives of bowls.
 
@@ -64,14 +62,13 @@ def plate(
         Parts on each plate; 400 without it.
     seconds : float, optional [s]
         How long each is followed; 5 without it.
-    seed : int
-        Of the random launches, the same on all plates.
-    jobs : int
-        Cores to use; the outcome does not depend on it.
-    progress : function, optional
-        Called after every batch with the parts done, on all plates together, and how many there will be.
-    before : function, optional
-        Called once all inputs are found right, before anything is compiled.
+    **run
+        With the defaults of ``RunSettings``.
+        seed : int, of the random launches, the same on all plates.
+        jobs : int, cores to use; the outcome does not depend on it.
+        progress : function, called after every batch with the parts done, on all plates together, and how
+        many there will be.
+        before : function, called once all inputs are found right, before anything is compiled.
 
     Returns
     -------
@@ -84,8 +81,9 @@ def plate(
     KeyboardInterrupt
         If nothing was finished.
     """
+    own = check.options("plate", RunSettings, run)
     launch_named(launch)
-    check_run(drops, seed, jobs)
+    check_run(drops, own.seed, own.jobs)
     pace = bowl_test.EXACT
     if seconds is not None:
         check.argument("seconds", seconds, LEAST)
@@ -93,7 +91,7 @@ def plate(
     found = find(part)
     plates = bowl_test.test(
         part, found, bowls, launch, dict(conditions or {}),
-        drops=drops, pace=pace, run=RunSettings(seed, jobs, progress, before),
+        drops=drops, pace=pace, run=own,
     )  # fmt: skip
     given = names or ["bowl"] * len(bowls)
-    return PlateStudy(part, found, seed, tuple(plates), tuple(given[: len(plates)]))
+    return PlateStudy(part, found, own.seed, tuple(plates), tuple(given[: len(plates)]))
