@@ -13,7 +13,8 @@ from feederscrew.tooling.holding import may_turn_and_lie_over
 AZIMUTHS, TILTS = 8, 10  # ways it can tip: about level axes all round, by steps up to a right angle
 CLEAR = 2.5e-4  # [m] a hole is larger than the shadow that goes through it, all round
 BEYOND = 0.1  # [m] a hole that is open at the track's free edge goes on so far
-SQUARE = 1e-9  # of its own box: what less a hole covers, it is still a rectangle
+SQUARE = 1e-9  # of its box or its hull: what covers all but this, is a rectangle or convex
+PARALLEL = 1e-9  # sine between two sides that do not meet
 SLIGHT = 1e-12  # [m] by which what fits may stand out
 PLAIN = 2e-4  # of the part's size: corners of a shadow that stand out by less are left out
 LONG = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
@@ -196,7 +197,7 @@ def _fits_between(shadow, sides):
     room = c - (a[:, None] * shadow[:, 0] + b[:, None] * shadow[:, 1]).max(axis=1)
     one, other = np.triu_indices(len(sides), 1)
     turn = a[one] * b[other] - b[one] * a[other]
-    one, other, turn = (k[np.abs(turn) > SQUARE] for k in (one, other, turn))
+    one, other, turn = (k[np.abs(turn) > PARALLEL] for k in (one, other, turn))
     x = (room[one] * b[other] - b[one] * room[other]) / turn
     y = (a[one] * room[other] - room[one] * a[other]) / turn
     return bool((a[:, None] * x + b[:, None] * y <= room[:, None] + SLIGHT).all(axis=0).any())

@@ -106,6 +106,26 @@ def test_of_a_chain_that_is_denied_as_well_less_is_tried(study):
     assert all(("rails", *kinds) in own_trial._ways_on(("rails",), study.design) for kinds in first)
 
 
+@pytest.mark.parametrize(("limit", "tries", "searches"), [("TRIES", 3, 2), ("SEARCHES", 4, 3)])
+def test_the_search_for_another_chain_has_an_end(monkeypatch, study, limit, tries, searches):
+    """Where every other chain is another one and none holds."""
+    asked = []
+
+    def again(kinds):
+        asked.append(kinds)
+        found = tooling_without(kinds[:1], PART, study.bowl, "A", rule="csa", verdicts=1)
+        wiper = replace(made("wiper", "here", limit=1e-3), text=f"{len(asked)} mm")
+        cut = replace(study.design.cuts[0], device=wiper)
+        other = replace(study.design, cuts=(cut,), isolated=True)
+        return replace(found, designs=tuple(other for _ in found.designs))
+
+    monkeypatch.setattr(own_trial, "_tried", Verdicts(99))
+    monkeypatch.setattr(own_trial, "_ways_on", lambda *_: [("wiper",)] * 3)
+    monkeypatch.setattr(own_trial, limit, 3)
+    found = own_trial.own_trials(study, again)
+    assert (len(found.trials), len(asked)) == (tries, searches)
+
+
 def test_without_a_trial_the_static_rule_is_named(study):
     assert tables.document(study)["status"] == "static"
     none = replace(study, designs=tuple(SimpleNamespace(isolated=False) for _ in study.designs))

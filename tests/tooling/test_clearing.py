@@ -16,7 +16,7 @@ from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate, shares
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling import clearing, sensor_views
+from feederscrew.tooling import clearing, falling_through, sensor_views
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling.devices import hole_shapes
 from feederscrew.tooling.devices.kinds import made
@@ -100,6 +100,21 @@ def test_a_part_may_tip_about_either_end(heading):
         return falls_through(type("Turned", (Wedge,), {"heading": heading}), cut)
 
     assert let_through(13.9) and not let_through(13.0)
+
+
+def test_a_convex_hole_says_what_any_hole_does():
+    """Where shadow and hole are convex, half-planes tell what the union of borders tells."""
+    rng, told = np.random.default_rng(7), []
+    for size in rng.uniform(2e-3, 18e-3, 200):
+        hole = shapely.MultiPoint(rng.uniform(0.0, 1.0, (6, 2)) * [30e-3, 15e-3]).convex_hull
+        shadow = shapely.MultiPoint(rng.uniform(-0.5, 0.5, (8, 2)) * size).convex_hull
+        shadow, sides = shapely.get_coordinates(shadow)[:-1], falling_through._sides(hole)
+        told.append(falling_through._fits(shadow, hole, sides))
+        assert told[-1] == falling_through._fits(shadow, hole, None)
+    assert 50 < sum(told) < 150
+    bent = shapely.Polygon([(0, 0), (9, 0), (9, 9), (5, 4), (0, 9)])
+    pierced = shapely.box(0, 0, 9, 9).difference(shapely.box(4, 4, 4.00001, 4.00001))
+    assert falling_through._sides(bent) is None and falling_through._sides(pierced) is None
 
 
 def test_a_hole_at_the_free_edge_holds_nothing_that_is_narrower_along_the_track():

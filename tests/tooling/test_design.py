@@ -7,14 +7,14 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
-from feederscrew.output.tooling import bowl_file
+from feederscrew.output.tooling import bowl_file, tables
 from feederscrew.rates import well_oriented
 from feederscrew.rates.steadiness import steady
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import made as device_of
-from feederscrew.tooling.isolating import apart, hole_search
+from feederscrew.tooling.isolating import apart, hole_search, proposal
 from feederscrew.tooling.isolating.chain import Wishes
 from feederscrew.tooling.isolating.design import design, place
 from feederscrew.tooling.isolating.proposal import Goal
@@ -165,13 +165,40 @@ def test_a_headed_pin_is_fed_hanging():
     assert [cut.device.kind for cut in study.design.cuts][-1] == "rails"
     lying = [k for k, one in enumerate(study.orientations) if one.aspect == "A" and one.length > 0.02]
     assert study.design.efficiency == pytest.approx(study.shares[lying].sum() / study.shares.sum())
-    assert study.design.hopeful == pytest.approx(1.0)
+    assert study.design.hopeful == pytest.approx(1.0) and study.design.purity_is_least
+    assert study.design.reasons == ("no verdict is sure to return A@90: the purity counts it as leaving",)
+    assert ", purity at least 81.86 %, by " in bowl_file.bowl_file(study, ())
+    assert "leave so, at least 81.86 % of what leaves" in tables.remarks(study)[0]
     leaves, across = (
         study.shares[lying].sum(),
         study.shares[[one.name == "A@90" for one in study.orientations]],
     )
     assert study.design.purity == pytest.approx(leaves / (leaves + across.sum()))  # it rolls along the bank
     assert across.sum() > 0.1
+
+
+def test_what_no_verdict_is_sure_of_counts_against_the_purity(monkeypatch, bracket):
+    """A fifth of all may leave: of the wanted one too, which counts once, and of a rare one, not named."""
+    _, _, every, shares = bracket
+    shares, wanted = np.where(np.arange(len(every)) == 1, 1e-3, shares), 0
+    direct = proposal.course
+
+    def doubted(devices, every):
+        flow = direct(devices, every)
+        vars(flow)["doubtful"] = np.full(len(every), 0.2)  # a cached property
+        return flow
+
+    monkeypatch.setattr(proposal, "course", doubted)
+    given = proposal.task(every, shares, wanted, MARGIN, 1.0, ())
+    found = proposal.told(given, (), np.zeros(len(every), bool))
+    leaves = np.where(given.stays, shares, 0.0)
+    others = 0.2 * (shares.sum() - shares[wanted])
+    assert found.purity == pytest.approx(leaves[wanted] / (leaves.sum() + others), rel=1e-12)
+    assert found.hopeful == pytest.approx(leaves[wanted] / leaves.sum(), rel=1e-12)
+    (said,) = [why for why in found.reasons if why.startswith("no verdict is sure to return ")]
+    named_ones = said.removeprefix("no verdict is sure to return ").partition(":")[0].split()
+    assert every[2].name in named_ones
+    assert not {every[wanted].name, every[1].name} & set(named_ones)
 
 
 def test_rails_end_on_the_track():

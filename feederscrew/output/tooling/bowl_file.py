@@ -56,8 +56,8 @@ def _head(study):
     one, found = study.orientations[study.wanted], study.design
     return [
         f"# Tooling that lets aspect {one.aspect} at heading {one.name.partition('@')[2]} deg leave.",
-        f"# Efficiency {100.0 * found.efficiency:.4g} %, purity {100.0 * found.purity:.4g} %, by "
-        f"{study.answer}.",
+        f"# Efficiency {100.0 * found.efficiency:.4g} %, purity {'at least ' * bool(found.purity_is_least)}"
+        f"{100.0 * found.purity:.4g} %, by {study.answer}.",
         *_tried(study.trial_of(study.wanted)),
     ]
 

@@ -159,7 +159,7 @@ def remarks(study, efficiency=0.0):
 def _lead(study, found):
     """What becomes of the orientation asked for: what the trial says first."""
     one, tried = study.orientations[study.wanted], study.trial_of(study.wanted)
-    shares = 100.0 * found.efficiency, "at least " * bool(found.hopeful > found.purity), 100.0 * found.purity
+    shares = 100.0 * found.efficiency, "at least " * bool(found.purity_is_least), 100.0 * found.purity
     leave = "{:.3g} % of the parts offered leave so, {}{:.4g} % of what leaves".format(*shares)
     if not found.efficiency > 0.0:
         leave = "none of the parts offered leaves so"

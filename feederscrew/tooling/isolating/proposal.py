@@ -10,6 +10,7 @@ from feederscrew.tooling.isolating import apart
 from feederscrew.tooling.isolating.chain import Cut, Wishes
 
 LEAST_SHARE = 5e-3  # [1] orientations that come less often need not be returned
+SLIGHT = 1e-9  # [1] of an orientation: less comes of rounding
 NEVER = 1e-4  # [1] those that come less often change no number: no device is added for them
 
 
@@ -30,6 +31,11 @@ class Design:
     hopeful: float = np.nan  # [1] purity where a trial confirms what is not sure to be returned
     width: float | None = None  # [m] of the track, where it is another than the bowl's
     steady: bool = True  # the drive leaves the wanted orientation lying on what the cuts leave of its foot
+
+    @property
+    def purity_is_least(self):
+        """Whether the purity counts as leaving what no verdict is sure to return."""
+        return self.hopeful > self.purity
 
     @property
     def stands(self):
@@ -131,8 +137,8 @@ def told(given, cuts, returned, same=None, late=False):
     flow = course((*given.before, *(cut.device for cut in cuts)), every)
     states = sorted({flow.leaves_as(k) for k in np.flatnonzero(given.same)})
     out = (shares[:, None] * flow.leaving).sum(axis=0)
-    unsure = np.where(given.same, 0.0, shares * flow.doubtful)  # may leave as well: no trial has said
-    doubt = float(unsure.sum())
+    unsure = np.where(given.same | (flow.doubtful < SLIGHT), 0.0, shares * flow.doubtful)
+    doubt = float(unsure.sum())  # may leave as well: no trial has said
     total, leaving = shares.sum(), out.sum()
     cuts = _with_stops(given, flow, cuts)
     stands = any(cut.stops for cut in cuts)
