@@ -1,13 +1,20 @@
-"""A part that has come past the last device leaves: it does not fall off the end of what is drawn."""
+"""Ends of a track: parts leave behind the last device, and fall over an edge where they do not hold on."""
+
+from dataclasses import replace
 
 import numpy as np
+import pytest
 import shapes
 import trimesh
 
 from feederscrew import bowl as bowls
+from feederscrew.dropping.kernel import body
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
+from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.orientations import orientations
+from feederscrew.trial import runs, shape, stations, whereabouts
 from feederscrew.trial.queue import QueuePlan, queue_of
 
 CORNERS = [(-5, -5, 5), (5, 5, 5), (5, -5, -5), (-5, 5, 5), (-5, -5, -5), (5, 5, -5), (5, -5, 5), (-5, 5, -5)]
@@ -16,6 +23,31 @@ FACES = [
     (7, 1, 5), (5, 6, 2), (1, 6, 5),
 ]  # fmt: skip
 """A cube as a mesh program wrote it, by another diagonal on each face."""
+
+
+@pytest.mark.parametrize("order", [range(8), (3, 7, 1, 0, 5, 2, 6, 4), (6, 5, 2, 7, 4, 1, 0, 3)])
+@pytest.mark.parametrize(("speed", "falls"), [(0.5, False), (0.68, False), (0.8, True)])
+def test_a_cube_stands_over_an_edge_whatever_order_its_corners_have(order, speed, falls):
+    """It slides from 8 mm before an edge on. As it brakes, what carries it is 2 mm ahead of its centre."""
+    place = np.argsort(order)
+    mesh = trimesh.Trimesh(
+        np.array(CORNERS)[list(order)], place[np.roll(FACES, order[0], axis=0)], process=False
+    )
+    part = shapes.part(mesh)
+    level = ["track.radius=50 m", "track.climb=0 deg", "track.bank=0 deg", "friction.static=0.4"]
+    bowl = bowls.read(None, [*level, "track.width=40 mm", "restitution=0"])
+    bowl = replace(bowl, drive=replace(bowl.drive, amplitude=0.0))
+    every = orientations(part, find(part), bowl.track)
+    solid, length, principal = shape.solid_of(part)
+    edge = stations.station(made("gap", "here", limit=0.03), bowl.track, every)
+    state = whereabouts.laid(every[0], principal, length, bowl.track, place=-8e-3, aside=5e-3)
+    state[body.VX] = speed
+    known = runs.setting(solid, length, bowl)
+    past = runs.past(known, edge, limits=(0.5, 1.0, 0.0, 10.0), every=1.0, places=1)
+    end = runs.ride(past, state[None], np.zeros(1))
+    assert (end.states[0, body.Z] < 0.0) == falls
+    if not falls:
+        assert end.ways[0] == pytest.approx(length * speed**2 / (2.0 * 0.4), rel=1e-3)
 
 
 def test_every_cube_of_a_queue_on_a_bare_track_leaves():
