@@ -87,6 +87,14 @@ EQUIVALENT = {
     ("tooling/holding.py", "FAR ="): "any length beyond every foot",
     ("tooling/holding.py", ":3], one.heading"): "heights are not looked at",
     ("machine/throughput.py", "STEPS + 2"): "a stroke beyond the greatest is held at it",
+    ("machine/throughput.py", "STEPS ="): "strokes so near each other find the same one",
+    ("machine/throughput.py", "amplitudes[first - "): "between strokes farther apart lies the same one",
+    ("machine/sizing.py", "across = m"): "from wherever it begins, the diameter settles at the same",
+    ("rates/steadiness.py", "len(hull) >"): "what a strip leaves has more corners, along its edge",
+    (
+        "tooling/turning.py",
+        "if np.ptp(foot) > 0.0 else",
+    ): "a foot without length has nothing ahead to fall over",
     ("rates/tipping.py", "BESIDE ="): "any width beyond every force's place: it tips over the ends alone",
 }
 """File and what stands in a changed line of it, and why no test can notice the change."""

@@ -6,6 +6,8 @@ from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
+from feederscrew.tooling.devices.kinds import KINDS
+
 ROOT = Path(__file__).parent.parent
 ORDER = [
     "errors", "check", "units", "records", "running", "documents", "dxf",
@@ -120,6 +122,20 @@ ALIKE |= {"balance", "cells"}  # the same of a part on the floor and on the trac
 def test_modules_of_one_name_are_of_one_kind():
     names = Counter(path.stem for path in FILES if path.stem != "__init__")
     assert {name for name, count in names.items() if count > 1} <= ALIKE
+
+
+OTHERWISE = {"bank", "gap", "jet", "profile", "step", "tip"}  # kinds of devices whose names have other uses
+
+
+def test_a_device_is_known_by_name_in_its_own_folder_only():
+    others = [path for path in FILES if "devices" not in path.parts]
+    assert len(others) < len(FILES) and set(KINDS) > OTHERWISE
+    for path in others:
+        for node in ast.walk(tree(path)):
+            assert getattr(node, "value", None) not in set(KINDS) - OTHERWISE, f"{path}:{node.lineno}"
+            told = [node.left, *node.comparators] if isinstance(node, ast.Compare) else []
+            by_kind = any(getattr(one, "attr", "") == "kind" for one in told)
+            assert not (by_kind and {getattr(one, "value", "") for one in told} & set(KINDS)), path
 
 
 CROWD = 18  # modules of a folder that are still seen at a glance

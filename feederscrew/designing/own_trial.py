@@ -10,12 +10,14 @@ from feederscrew.designing.robust import denied
 from feederscrew.errors import FeederError
 from feederscrew.rates import stream
 from feederscrew.running import RunSettings
+from feederscrew.tooling.devices.kinds import KINDS, names
 
 EACH = 2  # parts of each orientation
 BEST = 3  # designs of a table that are tried
 TRIES = 5  # designs of one orientation that are tried where the first ones are denied
 SEARCHES = 8  # designs that are looked for after a denied one
-KEPT = ("separation", "bank")  # devices that reject nothing: to leave them out makes no other chain
+# stretches that reject nothing: to leave them out makes no other chain
+KEPT = tuple(name for name in names(leans=True) if not KINDS[name].grooved)
 OFTEN = 0.02  # [1] shares of the orientations that are tried, and the one that is wanted
 
 

@@ -8,15 +8,16 @@ from feederscrew.designing import pulses, trying
 from feederscrew.designing.slots import STEP, widened
 from feederscrew.rates import stream
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling.devices.kinds import KINDS
-from feederscrew.tooling.isolating.chain import judged, limits, millimetres
+from feederscrew.tooling.devices.kinds import names
+from feederscrew.tooling.isolating.chain import judged, limits, numbered
+from feederscrew.tooling.isolating.shop_values import millimetres
 
 ROWS = 6  # orientations for which chains are proposed, the most frequent first
-SENSORS = tuple(name for name, kind in KINDS.items() if kind.senses)
-DROPS = ("wiper", *SENSORS, "cut_out")  # what is left out at first: drops alone
-SOLID = ("cut_out",)  # and then: holes of several corners, which a shop's tolerance soon spoils
+SOLID = names(searched=True)  # left out: holes of several corners, which a shop's tolerance soon spoils
+# and at first what clears itself and what sees: drops alone
+DROPS = (*names(overhead=True, proposed=True), *names(senses=True), *SOLID)
 # all that parts meet: what a sensor sees and air blows off is left
-MET = tuple(sorted(name for name, kind in KINDS.items() if kind.proposed and not kind.senses))
+MET = tuple(sorted(names(proposed=True, senses=False)))
 # margin [m] to either side, what is left out, and how parts leave: in turn
 HOWS = (
     (5e-4, DROPS, "any"), (5e-4, SOLID, "hanging"), (5e-4, MET, "hanging"),
@@ -25,9 +26,9 @@ HOWS = (
     (2.5e-4, (), "any"),
 )  # fmt: skip
 ENOUGH = 0.985  # purity at which a chain is not made longer
-ON_THE_TRACK = ("bank",)  # is the bowl's own, and tried by the loop
+ON_THE_TRACK = names(leans=True, grooved=False)  # a bank is the bowl's own, and tried by the loop
 VERDICTS = 3000  # of the search for holes: values that a shop's tolerance does not lose are found early
-GUARDS = tuple(KINDS[name] for name in ("gap", "canyon", "narrowed_track"))
+GUARDS = tuple(kind for kind in numbered() if kind.carries)
 LEAST_WINDOW = 1e-3  # [m] between what passes such a drop and what it rejects
 
 

@@ -56,7 +56,7 @@ def drawn_bowl(bowl, every, rng):
 def _drawn_device(device, every, rng):
     """A device whose every length is off by up to CUT."""
     more = {}
-    if device.like and device.kind == "profile":
+    if device.like and not device.senses:  # an opening
         device = replace(device, corners=opening(device, every), like=())
     elif device.like:  # a sensor: by how much a part may differ that it takes for the wanted one
         aspect, heading, play = device.like

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew.tooling.hanging import neck
-from feederscrew.tooling.isolating.chain import judged, millimetres
+from feederscrew.tooling.isolating.chain import judged
 from feederscrew.tooling.isolating.rails import RAIL
+from feederscrew.tooling.isolating.shop_values import millimetres
 
 STEP = 5e-5  # [m] to which a shop makes a value
 WIDER, HELD = 0.35, 0.8  # of what the head is wider than the slot; of the head, that a slot may be

@@ -18,6 +18,7 @@ from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.rate import arriving
 from feederscrew.studies.wishes import ToolingKeywords, ToolingOptions, asked_for, listed
+from feederscrew.tooling.devices.kinds import names
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating import tracks
 from feederscrew.tooling.isolating.design import MARGIN, place
@@ -234,4 +235,4 @@ def tooling_without(
     part, bowl, aspect, asked
         As for ``tooling``.
     """
-    return tooling(part, bowl, aspect, without=(*listed(without), *kinds, "cut_out"), **asked)
+    return tooling(part, bowl, aspect, without=(*listed(without), *kinds, *names(searched=True)), **asked)

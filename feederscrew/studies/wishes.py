@@ -4,8 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TypedDict
 
-import numpy as np
-
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.documents import hint
@@ -13,15 +11,15 @@ from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.tooling.devices.base import Device
-from feederscrew.tooling.devices.kinds import KINDS, made
-from feederscrew.tooling.isolating.chain import FINE, WHERE, Wishes
+from feederscrew.tooling.devices.kinds import KINDS, leaning
+from feederscrew.tooling.isolating.chain import WHERE, Wishes
 from feederscrew.tooling.isolating.design import PLAY, TOLERANCE
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.isolating.proposal import Goal
+from feederscrew.tooling.isolating.shop_values import FINE
 from feederscrew.tooling.orientations import speed
 from feederscrew.units import shown
 
-STEEP = np.radians(-6.0)  # [rad] climb of a stretch that separates parts
 OUTCOMES = ("lying", "hanging", "any")
 
 
@@ -105,6 +103,8 @@ def may_be_up(part: Part, found: Aspects, up: str | Sequence[str]) -> tuple[str,
 
 def _separation(bowl: Bowl, wishes: Wishes) -> Device | None:
     """The stretch that makes gaps in this bowl; None where it may not be used or makes none."""
-    steeper = made("separation", WHERE, angle=STEEP, text=f"{{climb: {np.degrees(STEEP):.6g} deg}}")
-    there = replace(bowl, track=replace(bowl.track, climb=STEEP))
-    return steeper if wishes.allows("separation") and speed(there) > speed(bowl) else None
+    for kind in leaning():
+        steeper = kind.parting(WHERE) if wishes.allows(kind.kind) else None
+        if steeper is not None and speed(steeper.onward(bowl)) > speed(bowl):
+            return steeper
+    return None

@@ -42,6 +42,24 @@ def test_parts_a_metre_are_those_counted_on_a_drawn_queue(wanted):
     assert told.parts < 0.9 * throughput.flow(found, "csa", target=target, fill=fill).parts
 
 
+def test_what_the_track_does_not_carry_takes_no_room_on_it():
+    """Of a queue with every second orientation half as often: its parts that leave over its length."""
+    part, aspects = awkward.part()
+    bowl = awkward.bowl()
+    found = stream.orientations(part, aspects, bowl.track, bowl=bowl)
+    passes = found.passes.copy()
+    passes[::2, 0] *= 0.5
+    passes[0, 0] = 0.0
+    some = np.column_stack([passes, np.linspace(0.2, 0.9, len(passes))])  # a device that lets some pass
+    some, gap, fill = replace(found, passes=some), 7.3e-3, 0.8
+    comes = found.rules["csa"] * passes[:, 0] * ~found.rolls_back
+    assert comes.sum() < 0.8 and (comes > 0.0).sum() > 3
+    leave = (comes * some.passes[:, -1]).sum()
+    told = throughput.flow(some, "csa", gap=gap, fill=fill)
+    assert told.share == pytest.approx(leave / comes.sum(), rel=1e-12)
+    assert told.parts == pytest.approx(fill * leave / (comes * (found.lengths + gap)).sum(), rel=1e-12)
+
+
 @pytest.mark.parametrize("shape", ["stepped", "conical"])
 def test_beside_a_slope_a_turn_rises_by_the_slope_and_three_sheets_more(shape):
     """The track, the wall that leads to it and the wall above are a sheet each; the slope is 0.9 in 1."""
@@ -120,6 +138,8 @@ def test_a_part_takes_the_longest_way_along_the_wall_and_the_widest_across():
         for name in np.array(aspects.names)[aspects.stable]
     ]
     every = sizing.lying(part, aspects)
+    stood = [posture(part, aspects, name) for name in np.array(aspects.names)[aspects.stable]]
+    assert every.tallest == max(np.ptp(one.corners[:, 2]) for one in stood)
     assert every.length == every.longest == max(one.lengths.max() for one in found)
     assert every.width == max(one.widths.max() for one in found)
     uneven = 0

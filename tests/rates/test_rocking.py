@@ -73,3 +73,7 @@ def test_a_part_that_gains_support_in_time_comes_back():
     pushed = replace(STEADY, offset=np.full(INSTANTS, 2.1e-3))
     assert goes_over(pushed, PERIOD) and not goes_over(replace(pushed, growth=0.1), PERIOD)
     assert goes_over(replace(pushed, growth=1e-5), PERIOD, start=INSTANTS // 2)
+    grown = [replace(pushed, growth=growth) for growth in np.geomspace(1e-4, 0.1, 60)]
+    over = [goes_over(one, PERIOD) for one in grown]
+    assert 10 < sum(over) < 50
+    assert all([goes_over(one, PERIOD, start=k) for one in grown] == over for k in (7, INSTANTS // 2))

@@ -73,6 +73,17 @@ def test_a_part_that_leans_on_the_wall_dips_by_its_angle():
     assert near == -UNSURE and beyond == pytest.approx(0.3 * 19.5e-3 / (block.canyon + 2e-3) * 1e-3 - 2e-3)
 
 
+def test_a_part_leans_on_the_wall_as_high_as_it_is_there():
+    """A block of 6 mm with a rib of 10 mm along one side: that side at the wall, or the other."""
+    rib = shapes.box(22, 3, 10)
+    rib.apply_translation([0.0, 5.0, 2.0])  # both begin at the same level
+    one = replace(lying(shapes.box(22, 13, 6).union(rib), 10), climbs=3e-4)
+    dips = {holding.leans(replace(one, heading=one.heading + turn), 4e-3) for turn in (0.0, np.pi)}
+    mass = one.posture.height
+    low, high = (3e-4 * (2.0 * height - mass) / 4e-3 for height in (6e-3, 10e-3))
+    assert sorted(dips) == pytest.approx([low, high], rel=1e-9)
+
+
 def test_the_margin_of_what_returns_is_that_of_the_first_device_that_does():
     part = shapes.part(shapes.box(20, 12, 5))
     kinds = (("wiper", 8e-3), ("gap", 10.5e-3), ("wiper", 4e-3))

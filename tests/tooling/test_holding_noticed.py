@@ -129,15 +129,43 @@ def test_the_rear_that_follows_a_part_down_a_step_lifts_it_by_what_its_momentum_
     assert max(uneven) > 0.5
 
 
-def square_of_gyration(one):
-    """Mean square distance from the axis across the track through the centre of mass, over the tetrahedra."""
+def test_what_leans_over_a_ledge_goes_on_by_what_its_momentum_keeps():
+    """It turns about the edge until its inner corner lands, and on about that.
+
+    Points of the part keep the moment of their momentum about the corner; what is left of the energy lifts
+    the centre of mass towards its barrier over the second track.
+    """
+    shares, every = [], placed(awkward.lying())
+    for one in every:
+        turn = turning.rolled(one, every)
+        for width in (0.3 * one.distance, 0.7 * one.distance):
+            over, height, drop = one.distance - width, one.posture.height, 2e-3
+            reach = one.foot.corners[:, 1].max() + over if len(one.foot.corners) else 0.0
+            if not drop < reach or np.arcsin(drop / reach) >= turn.angle:
+                continue
+            tilt = np.arcsin(drop / reach)
+            fell = over * np.sin(tilt) + height * (1.0 - np.cos(tilt))
+            points = np.sqrt(square_of_gyration(one, 0)) * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
+            edge, corner = points + [over, height], points + [over - reach, height]
+            velocity = np.column_stack([-edge[:, 1], edge[:, 0]])
+            moment = (corner[:, 0] * velocity[:, 1] - corner[:, 1] * velocity[:, 0]).sum()
+            left = max(moment, 0.0) ** 2 / (corner**2).sum() / (edge**2).sum() * fell
+            missed, to_fall = turning._leaning(one, turn, width, drop)
+            assert missed == pytest.approx(turn.lift - (drop - fell) - left, rel=1e-6, abs=1e-9)
+            assert to_fall == pytest.approx(drop - fell, rel=1e-9, abs=1e-12)
+            shares.append(left / drop)
+    assert len(shares) > 5 and max(shares) > 0.05
+
+
+def square_of_gyration(one, axis=1):
+    """Mean square distance from an axis of the track through the centre of mass, over the tetrahedra."""
     mesh = one.posture.solid
     corners = mesh.vertices[mesh.faces]
     volumes = np.linalg.det(corners)
     values = corners - mesh.centre_of_mass
     apex = -mesh.centre_of_mass[None, None]
     whole = np.concatenate([np.broadcast_to(apex, (len(values), 1, 3)), values], axis=1)
-    seen = whole @ one.axes[[0, 2]].T
+    seen = whole @ np.delete(one.axes, axis, axis=0).T
     squares = (seen.sum(axis=1) ** 2 + (seen**2).sum(axis=1)).sum(axis=1) / 20.0
     return (volumes * squares).sum() / volumes.sum()
 

@@ -107,7 +107,7 @@ def test_a_narrower_track_lets_a_pulse_blow_off_what_is_heavy(block):
     assert tracks.widths(every, shares, 0, 2.5e-4) == []  # 9.4 g fly off 25 mm
     heavy = tuple(replace(one, posture=replace(one.posture, mass=0.1)) for one in every)
     (width,) = tracks.widths(heavy, shares, 0, 2.5e-4)
-    sorter = tracks._sorter(heavy[0], heavy, 2.5e-4)
+    sorter = made("sorter", "design", like=(heavy[0].aspect, heavy[0].heading, 2.5e-4))
     ways = [tracks._blown(sorter, one, heavy) for one in heavy[1:]]
     assert width == pytest.approx(math.floor(1e3 * min(ways)) * 1e-3) and heavy[0].width < width < 25e-3
     there = [replace(one, track=replace(one.track, width=width)) for one in heavy]

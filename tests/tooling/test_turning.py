@@ -88,6 +88,26 @@ def test_a_ledge_turns_only_what_its_drop_takes_past_the_barrier(lying):
     assert margin == pytest.approx(math.hypot(B / 2, C / 2) - C / 2 - left, rel=1e-4)
 
 
+def test_what_falls_over_an_edge_comes_to_lie_on_the_face_that_was_ahead_or_inwards():
+    """An angle of unequal legs: no two of its faces look alike."""
+    part = shapes.part(shapes.prism(shapes.l_profile(17.0, 11.0, 3.0), 26.0))
+    every = orientations(part, find(part), TRACK)
+    for one in every:
+        for turn, side in ((turning.pitched(one, every), 0), (turning.rolled(one, every), 1)):
+            assert every[turn.onto].axes[2] @ one.axes[side] < -0.4, (one.name, side)
+
+
+def test_what_falls_on_a_face_with_sides_askew_is_sure_where_its_whole_fall_is_less(lying, monkeypatch):
+    """The centre of mass falls by the step and by what the part is lower afterwards."""
+    one = lying[pick(lying, C, B)]
+    landed = lying[turning.pitched(one, lying).onto]
+    monkeypatch.setattr(turning, "_skew_lift", lambda seen: 15e-3 if seen is landed else 1.0)
+    _, margin = turning.over_step(one, lying, 9e-3)
+    fall = 9e-3 + one.posture.height - landed.posture.height
+    assert fall == pytest.approx(9e-3 + 0.5 * (B - C))
+    assert margin == pytest.approx(15e-3 - fall)
+
+
 @settings(max_examples=3, deadline=None)
 @given(st.permutations([4.0, 9.0, 17.0]), st.floats(0.5, 3.0))
 def test_a_block_that_pitches_twice_lies_as_before(sides, size):

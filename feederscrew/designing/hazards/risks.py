@@ -9,7 +9,7 @@ from feederscrew import check
 from feederscrew.designing.hazards import nesting, tangling, wedging
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import turned
-from feederscrew.tooling.isolating.chain import millimetres
+from feederscrew.tooling.isolating.shop_values import millimetres
 from feederscrew.units import counted
 
 LIFT = (

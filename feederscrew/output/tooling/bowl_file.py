@@ -1,7 +1,7 @@
 """A bowl file with the devices of a design, which every command reads back."""
 
 from feederscrew.bowl.devices import SECTION
-from feederscrew.tooling.isolating.chain import millimetres
+from feederscrew.tooling.isolating.shop_values import millimetres
 
 TRACK, WIDTH = "track", "track.width"
 

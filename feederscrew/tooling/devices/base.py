@@ -60,7 +60,7 @@ class Device:
     text: str = ""  # its value as written
 
     kind: ClassVar[str] = "track"  # what it is called in a bowl file
-    dimension: ClassVar[str] = ""  # 'length', 'span', 'polygon', 'opening', 'shares'
+    dimension: ClassVar[str] = ""  # the form of its value: 'length', 'span', 'polygon'
     example: ClassVar[str] = ""  # as written after 'kind:'
     meaning: ClassVar[str] = ""
     hanging: ClassVar[bool] = True  # whether it means anything to parts that hang between rails
@@ -80,6 +80,7 @@ class Device:
     layer: ClassVar[str] = ""  # of its edge in a drawing, where it is none of cuts and gates
     senses: ClassVar[bool] = False  # whether it sees parts and blows off others: air, no edge that is met
     serves: ClassVar[str] = ""  # what one that returns nothing is for
+    searched: ClassVar[bool] = False  # whether a design looks for its shape, by many verdicts
 
     @classmethod
     def read(cls, entry):
@@ -184,12 +185,11 @@ class Device:
         return RETURNED if cut is None or met.falls_through(cut) else STOPPED
 
     def judged(self, met):
-        """Return what it does with an orientation, a Verdict.
+        """Return what it does with an orientation, by what statics knows of it, a Verdict.
 
         Parameters
         ----------
         met : Meeting
-            The orientation, and what statics knows to tell of it.
         """
         return met.passing()
 

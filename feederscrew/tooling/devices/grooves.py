@@ -5,10 +5,13 @@ from dataclasses import dataclass, replace
 
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import room_of
-from feederscrew.tooling.devices.leans import Lean
+from feederscrew.tooling.devices.leans import LEAST, Bank, Lean
 from feederscrew.tooling.devices.pieces import Slope, Standing
 
 FLATTEST, STEEPEST = math.radians(10.0), math.radians(60.0)  # [rad]
+HOLDS = 30.0  # [deg] of a groove's faces
+# [deg] that a design tries beside that: the steepest first, in which what turns has farther to fall
+ANGLES = (55.0, 45.0, 30.0, 15.0)
 LENGTHS = 3.0  # rooms of a part in which what comes across turns along it
 
 
@@ -18,7 +21,7 @@ class Groove(Lean):
 
     kind = "groove"
     serves = "lets lie along it what is round"
-    dimension = "groove"
+    dimension = "faces"
     example = "{angle: 30 deg}"
     meaning = (
         "the track is a V from here on, until a bank: it and its wall rise by so much to either side; round "
@@ -33,6 +36,20 @@ class Groove(Lean):
     def read(cls, entry):
         given = values.mapping(entry, ("angle",), "write {angle: 30 deg}")
         return {"angle": values.within(given, "angle", "angle", FLATTEST, STEEPEST)}
+
+    @classmethod
+    def of(cls, degrees, where):
+        """Return a groove of so many degrees, and the low bank that ends it."""
+        groove = cls(where, angle=math.radians(degrees), text=f"{{angle: {degrees:g} deg}}")
+        return groove, Bank.of(LEAST, where)
+
+    @classmethod
+    def holding(cls, one, wall_friction, where):
+        return cls.of(HOLDS, where) if one.rolls_along else ()
+
+    @classmethod
+    def leanings(cls, one, where):
+        return [cls.of(angle, where) for angle in ANGLES] if one.kind == "rolling" and one.rolls_along else []
 
     def onward(self, one):
         """Return an orientation as it goes on: both faces hold what lies along them."""

@@ -21,7 +21,7 @@ class Rails(Device):
     lead: tuple[float, ...] = ()
 
     kind = "rails"
-    dimension = "rails"
+    dimension = "led_span"
     example = "{from: 4.5 mm, to: 8.5 mm}"
     meaning = (
         "slot between two rails, by their distances from the wall: headed parts whose centre of mass lies "

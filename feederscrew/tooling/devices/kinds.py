@@ -16,7 +16,8 @@ def found():
     for info in pkgutil.iter_modules(devices.__path__):
         module = importlib.import_module(f"{devices.__name__}.{info.name}")
         for one in vars(module).values():
-            if isinstance(one, type) and issubclass(one, Device) and one.dimension:
+            own = isinstance(one, type) and one.__module__ == module.__name__
+            if own and issubclass(one, Device) and one.dimension:
                 classes.append(one)
     for one in sorted(classes, key=lambda one: (not one.placed, one.hangs)):
         KINDS.setdefault(one.kind, one)
@@ -26,6 +27,20 @@ def found():
 def made(kind, where, **values):
     """Return a device of a kind by its name."""
     return KINDS[kind](where, **values)
+
+
+def names(**traits):
+    """Return the names of the kinds that have some traits, such as ``hangs=True``: a tuple of str."""
+    return tuple(
+        name
+        for name, kind in KINDS.items()
+        if all(getattr(kind, one) == value for one, value in traits.items())
+    )
+
+
+def leaning():
+    """Return the kinds (type, ...) that lean the track."""
+    return tuple(kind for kind in KINDS.values() if kind.leans)
 
 
 found()

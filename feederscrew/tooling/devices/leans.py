@@ -10,6 +10,10 @@ from feederscrew.tooling.devices.base import Device, room_of
 from feederscrew.tooling.devices.pieces import Slope, Standing
 
 STEEPEST = math.radians(45.0)  # [rad]
+# [deg] of a bank that holds what rolls: the least, the greatest, and beyond the angle that just holds
+LEAST, MOST, MORE = 6.0, 15.0, 1.0
+BANKS = (6.0, 10.0, 15.0)  # [deg] that a design tries
+PARTING = -6.0  # [deg] climb of a stretch that separates parts
 LINE = 2e-4  # [m] of a line in a drawing
 
 
@@ -18,6 +22,29 @@ class Lean(Device):
     """A stretch of the track that leans otherwise by an angle."""
 
     angle: float = math.nan  # [rad]
+
+    @classmethod
+    def holding(cls, one, wall_friction, where):
+        """Return what holds an orientation that rolls on the level, devices in order; none where it does not.
+
+        Parameters
+        ----------
+        one : Orientation
+        wall_friction : float [1]
+        where : str
+            What asks for it.
+        """
+        return ()
+
+    @classmethod
+    def leanings(cls, one, where):
+        """Return other ways to lean the track for an orientation, a list of tuples of Device."""
+        return []
+
+    @classmethod
+    def parting(cls, where):
+        """Return the stretch of track on which parts come apart, or None."""
+        return None
 
     def edge(self, start, length, width):
         """Return where it begins, unrolled: a line across the track."""
@@ -51,6 +78,22 @@ class Bank(Lean):
     def read(cls, entry):
         return {"angle": values.within({entry.key: entry}, entry.key, "angle", 0.0, STEEPEST)}
 
+    @classmethod
+    def of(cls, degrees, where):
+        """Return the bank of so many degrees."""
+        return cls(where, angle=math.radians(degrees), text=f"{degrees:g} deg")
+
+    @classmethod
+    def holding(cls, one, wall_friction, where):
+        """Return the bank at which the wall's friction holds an orientation, if that is none too steep."""
+        steep = math.degrees(math.atan2(math.tan(max(one.track.climb, 0.0)), max(wall_friction, 0.0)))
+        bank = max(LEAST, math.ceil(steep + MORE))
+        return (cls.of(bank, where),) if wall_friction > 0.0 and bank <= MOST else ()
+
+    @classmethod
+    def leanings(cls, one, where):
+        return [(cls.of(bank, where),) for bank in BANKS]
+
     def onward(self, one):
         """Return an orientation as it goes on: its weight meets the track nearer to the wall."""
         track = replace(one.track, bank=self.angle)
@@ -79,6 +122,10 @@ class Separation(Lean):
     def read(cls, entry):
         given = values.mapping(entry, ("climb",), "write {climb: -4 deg}")
         return {"angle": values.within(given, "climb", "angle", -STEEPEST, STEEPEST)}
+
+    @classmethod
+    def parting(cls, where):
+        return cls(where, angle=math.radians(PARTING), text=f"{{climb: {PARTING:g} deg}}")
 
     @property
     def serves(self):

@@ -58,6 +58,7 @@ class CutOut(Device):
     )
     picture = "above"
     carries = True
+    searched = True
 
     @classmethod
     def read(cls, entry):

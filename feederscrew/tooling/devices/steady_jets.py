@@ -24,7 +24,7 @@ class SteadyJet(Device):
     height: float = math.nan  # [m] of the nozzle over the track
 
     kind = "jet"
-    dimension = "jet"
+    dimension = "nozzle"
     example = "{nozzle: 2 mm, pressure: 0.2 bar, height: 8 mm}"
     meaning = (
         "nozzle in the wall that blows all the time, at a height over the track: returns what it moves over "

@@ -8,12 +8,11 @@ import numpy as np
 from feederscrew.tooling.devices.base import STOPPED, UNSURE, Device
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.falling_through import surely_gone
+from feederscrew.tooling.isolating.shop_values import FINE, STEP, fine, millimetres, snapped
 from feederscrew.tooling.verdicts import Meeting, verdict
 
 WHERE = "design"
 HALVINGS = 10  # of the way from the value nearest to the wanted orientation to the middle
-STEP = 5e-5  # [m] of values that a shop makes
-FINE = 1e-7  # [m] to which a value is rounded
 
 
 @dataclass(frozen=True)
@@ -44,14 +43,19 @@ class Wishes:
     gentle: bool = False  # cuts take no more of the wanted orientation's foot than they must
     turn: bool = False  # devices that turn parts over, where returning them wastes too much
 
-    def allows(self, kind):
-        """Return whether a kind of device may be used."""
-        return kind not in self.without
+    def allows(self, *kinds):
+        """Return whether some kinds of devices may all be used."""
+        return not set(kinds) & set(self.without)
 
     @property
     def sensed(self):
         """Whether a sensor may be used."""
         return any(self.allows(kind.kind) for kind in around())
+
+    @property
+    def clearing(self):
+        """Whether a blade that clears itself may be used."""
+        return any(self.allows(kind.kind) for kind in numbered() if kind.overhead)
 
 
 def candidates(every, wanted, margin, wishes=None, *, clearing=True, sensed=False, same=()):
@@ -124,12 +128,6 @@ def margin_at(device, one, every):
     if device.fate(Meeting(one, every)) == STOPPED:
         return np.nan
     return margin if one.grip <= 0.0 or surely_gone(device, one) else max(margin, -UNSURE)
-
-
-def snapped(value, step, up):
-    """Return the nearest multiple of a step [m] that is not below a value, or not above it."""
-    count = value / step
-    return float((np.ceil(count - 1e-6) if up else np.floor(count + 1e-6)) * step)
 
 
 def numbered():
@@ -287,13 +285,3 @@ def judged(every, wanted, device, must, smallest, largest):
         largest=largest,
         returns=tuple(one.name for one, margin in zip(every, margins) if margin < 0.0),
     )
-
-
-def millimetres(value):
-    """Return a length [m] as a bowl file has it: '9.25 mm'."""
-    return f"{1e3 * fine(value):.9g} mm"
-
-
-def fine(value):
-    """Return a length [m] rounded to what a bowl file says of it."""
-    return float(np.round(value / FINE)) * FINE

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew.errors import FeederError
+from feederscrew.tooling.devices.kinds import names
 from feederscrew.tooling.devices.named import place_of
 from feederscrew.tooling.isolating import chain, hole_search, rails, round_corners, turners, varied
 from feederscrew.tooling.isolating.needed import told_needed
@@ -63,7 +64,7 @@ def _returning(given, search):
     if any(device.hangs for device in given.before):
         return told(given, (), np.zeros(len(given.every), dtype=bool))
     outcome = given.wishes.outcome
-    hung = rails.design(given) if outcome != "lying" and given.wishes.allows("rails") else None
+    hung = rails.design(given) if outcome != "lying" and given.wishes.allows(*names(hangs=True)) else None
     if outcome == "hanging":
         return without(given, "does not hang between rails") if hung is None else hung
     found = _plain(given, search)
@@ -121,8 +122,8 @@ def _plain(given, search):
         return without(given, "is returned by the devices of the bowl file")
     weight = weights(given)
     weight[given.same] = 0.0
-    holes = given.wishes.allows("cut_out") and given.same.sum() == 1  # a hole is searched for one orientation
-    stages = ({"clearing": False}, {}) if given.wishes.allows("wiper") else ({"clearing": False},)
+    holes = given.wishes.allows(*names(searched=True)) and given.same.sum() == 1  # for one orientation alone
+    stages = ({"clearing": False}, {}) if given.wishes.clearing else ({"clearing": False},)
     for stage in stages:
         cuts, returned = _chosen(given, weight, stage)
         if not _left(given, returned):

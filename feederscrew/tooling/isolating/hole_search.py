@@ -11,7 +11,8 @@ from feederscrew.tooling.devices import hole_shapes
 from feederscrew.tooling.devices.base import carried
 from feederscrew.tooling.devices.openings import CutOut
 from feederscrew.tooling.devices.values import crossed
-from feederscrew.tooling.isolating.chain import WHERE, judged, millimetres
+from feederscrew.tooling.isolating.chain import WHERE, judged
+from feederscrew.tooling.isolating.shop_values import millimetres
 from feederscrew.tooling.verdicts import verdict
 
 STARTS = 220  # random holes tried

@@ -7,6 +7,7 @@ from feederscrew.tooling.hanging import neck
 from feederscrew.tooling.isolating import chain
 from feederscrew.tooling.isolating.needed import told_needed
 from feederscrew.tooling.isolating.proposal import weights
+from feederscrew.tooling.isolating.shop_values import fine, snapped
 from feederscrew.tooling.verdicts import verdict
 
 PLAY, MOST = 4e-4, 6e-4  # [m] by which a slot is wider than the shank: 0.2 to 0.6 mm
@@ -99,10 +100,10 @@ def _ends(one, device, step):
 
 
 def _rails(one, found, width, step):
-    width = chain.snapped(width, step, up=True)
+    width = snapped(width, step, up=True)
     middle = max(one.distance - one.shift, 0.5 * found.widest + CLEAR, 0.5 * width + RAIL)
-    first = chain.snapped(middle - 0.5 * width, step, up=True)
-    span = chain.fine(first), chain.fine(first + width)
+    first = snapped(middle - 0.5 * width, step, up=True)
+    span = fine(first), fine(first + width)
     lead = _lead(one, found, span, step)
     if lead[1] >= one.track.width - RAIL or not lead[0] < one.distance - one.shift < lead[1]:
         return None
@@ -117,10 +118,10 @@ def _lead(one, found, span, step):
     """
     tip = one.distance - one.shift + found.tip - SINKS * 0.5 * found.shank
     near = max(min(tip, span[0] - WIDER), RAIL)
-    near = min(chain.snapped(near, step, up=True), span[0])
+    near = min(snapped(near, step, up=True), span[0])
     far = max(span[1] + WIDER, found.widest + 2.0 * CLEAR - near)  # its middle as clear of the wall
     held = 0.2 if found.rise > CONE else 0.5
     far = min(far, near + found.head - max(HELD, held * (found.head - found.shank)))
-    far = max(chain.snapped(far, step, up=False), span[1])
-    sizes = (chain.snapped(share * one.length, step, up=True) for share in (STRAIGHT, TAPER))
-    return tuple(chain.fine(size) for size in (near, far, *sizes))
+    far = max(snapped(far, step, up=False), span[1])
+    sizes = (snapped(share * one.length, step, up=True) for share in (STRAIGHT, TAPER))
+    return tuple(fine(size) for size in (near, far, *sizes))

@@ -4,7 +4,8 @@ import numpy as np
 import shapely
 
 from feederscrew.tooling.isolating import hole_search
-from feederscrew.tooling.isolating.chain import FINE, judged
+from feederscrew.tooling.isolating.chain import judged
+from feederscrew.tooling.isolating.shop_values import FINE
 
 ARC = 6  # chords of a quarter of a round corner
 FAR = 1.0  # [m] beyond any hole

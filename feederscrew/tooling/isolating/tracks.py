@@ -5,8 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from feederscrew.tooling.devices.kinds import names
 from feederscrew.tooling.fates import at_entry, course
 from feederscrew.tooling.isolating import held
+from feederscrew.tooling.isolating.chain import WHERE, around
 from feederscrew.tooling.isolating.design import MORE, design
 from feederscrew.tooling.isolating.proposal import LEAST_SHARE
 from feederscrew.tooling.orientations import placed
@@ -54,7 +56,9 @@ def designed(every, shares, wanted, bowl, *, steady, cache=None, **asked):
     if not asked["wishes"].vary or asked["before"] or every[wanted].returned:
         return best
     wishes = asked["wishes"]
-    quick = replace(wishes, turn=False, without=(*wishes.without, "cut_out"))  # on tracks that lean
+    quick = replace(
+        wishes, turn=False, without=(*wishes.without, *names(searched=True))
+    )  # on tracks that lean
     there = bowl, steady, cache, asked | {"wishes": quick}
     for leaning in held.others(every[wanted], best, wishes):
         other = _leaning(every, shares, wanted, leaning, there, quick=True)
@@ -138,9 +142,10 @@ def widths(every, shares, wanted, margin):
     one, found = every[wanted], []
     if one.falls_off:
         found.append(WHOLE * math.ceil((one.width + BESIDE) / WHOLE))
-    sorter = _sorter(one, every, margin)
+    sensors = [kind(WHERE, like=(one.aspect, one.heading, float(margin))) for kind in around()]
     others = [k for k, share in enumerate(shares) if share >= LEAST_SHARE and k != wanted]
-    ways = [_blown(sorter, every[k], every) for k in others if not every[k].returned]
+    blown = [every[k] for k in others if not every[k].returned]
+    ways = [_blown(sensor, other, every) for sensor in sensors for other in blown]
     narrow = WHOLE * math.floor(min(ways, default=math.inf) / WHOLE) if ways else math.inf
     least = max(one.width, one.balcony) + BESIDE
     if np.isfinite(one.balcony) and least <= narrow < one.track.width:
@@ -148,16 +153,10 @@ def widths(every, shares, wanted, margin):
     return found
 
 
-def _sorter(one, every, margin):
-    from feederscrew.tooling.devices.sensing import Sorter
-
-    return Sorter("design", like=(one.aspect, one.heading, float(margin)))
-
-
-def _blown(sorter, one, every):
-    """How far from the wall [m] the pulse of a sorter carries an orientation."""
+def _blown(sensor, one, every):
+    """How far from the wall [m] the pulse of a sensor's nozzles carries an orientation."""
     met = Meeting(one, every)
-    return one.track.width + met.blown(*sorter.jet.push(one, every), sorter.time)
+    return one.track.width + met.blown(*sensor.jet.push(one, every), sensor.time)
 
 
 def _on_this_track(every, shares, wanted, bowl, steady, asked):

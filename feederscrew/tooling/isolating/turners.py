@@ -6,8 +6,9 @@ import numpy as np
 
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.fates import course
-from feederscrew.tooling.isolating.chain import WHERE, Cut, millimetres
+from feederscrew.tooling.isolating.chain import WHERE, Cut
 from feederscrew.tooling.isolating.proposal import LEAST_SHARE
+from feederscrew.tooling.isolating.shop_values import millimetres
 from feederscrew.tooling.verdicts import Meeting, verdict
 
 ROUND = 1e-4  # [m] to which a height or width is rounded

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.isolating import chain
+from feederscrew.tooling.isolating.shop_values import snapped
 
 SWEEPS = (20.0, 45.0, 55.0)  # [deg] beside the 30 deg of the first design
 
@@ -30,13 +30,13 @@ def varied(every, wanted, margin, wishes, same=()):
     dict of Device to (M,) float [m]
         As from ``chain.candidates``.
     """
-    if not wishes.allows("wiper"):
-        return {}
-    kind = KINDS["wiper"]
-    highest = every[chain.pivot(kind, every, wanted, same)].height
-    limit = chain.snapped(highest + margin, wishes.step, up=True)
-    swept = [replace(kind.proposal(chain.WHERE, limit), sweep=math.radians(sweep)) for sweep in SWEEPS]
-    return {device: _margins(device, every) for device in swept if device.clear_of(every[wanted].grip)}
+    found = {}
+    for kind in (kind for kind in chain.numbered() if kind.overhead and wishes.allows(kind.kind)):
+        highest = every[chain.pivot(kind, every, wanted, same)].height
+        limit = snapped(highest + margin, wishes.step, up=True)
+        swept = [replace(kind.proposal(chain.WHERE, limit), sweep=math.radians(sweep)) for sweep in SWEEPS]
+        found |= {one: _margins(one, every) for one in swept if one.clear_of(every[wanted].grip)}
+    return found
 
 
 def _margins(device, every):
