@@ -2,6 +2,7 @@
 
 import contextlib
 import difflib
+import gc
 import importlib
 import os
 import re
@@ -41,6 +42,7 @@ COMMANDS = {
 }
 COLOUR = False if os.environ.get("NO_COLOR") else None  # None: on a terminal only
 NO_CHOICE = re.compile(r"'([^']*)' is not one of")
+SELDOM = 20_000  # objects made between two searches for garbage: libraries make hardly any as they load
 PIPE_CLOSED = 141  # what a shell reports of any filter whose reader went away
 
 
@@ -68,6 +70,7 @@ class Fence(click.Group):
         """Run one command line and leave the interpreter."""
         arguments = list(sys.argv[1:] if args is None else args)
         _take_any_name()
+        gc.set_threshold(SELDOM)
         try:
             status = super().main(arguments, **{**extra, "standalone_mode": False, "obj": arguments})
         except click.Abort:

@@ -26,7 +26,7 @@ class Looks:
     """
 
     def __init__(self, every, solid, length, principal, radius):
-        self.directions, self.corners = spread(DIRECTIONS), solid.corners
+        self.directions, self.corners = spread(DIRECTIONS), solid.corners[solid.outer]
         self.ups = {
             k: vectors.product(principal.T, one.posture.axes[2])
             for k, one in enumerate(every)

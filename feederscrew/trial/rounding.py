@@ -100,10 +100,10 @@ def circles(corners, axis, gap=COARSEST):
     along, x, y = (vectors.product(corners, one) for one in (axis, across, aside))
     away, turn = np.hypot(x, y), np.arctan2(y, x)
     found = []
-    for ring in _rings(along, away):
+    for ring in (ring for ring in _rings(along, away) if len(ring) >= LEAST):
         ring = ring[np.argsort(turn[ring])]
         gaps = np.diff(turn[ring], append=turn[ring[0]] + 2.0 * np.pi)
-        if len(ring) < LEAST or gaps.max() > gap:
+        if gaps.max() > gap:
             continue
         centre, radius = along[ring].mean() * axis, away[ring].max()
         points, ends = [np.empty((0, 3))], [np.empty((0, 2), int)]
