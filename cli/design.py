@@ -118,6 +118,7 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
     Also acceptance.csv, design_trials.csv, and the files of feeder tooling and feeder bowl, with the bowl as
     a solid.
     """
+    orientation.of_an_aspect(asked)
     with held_back():
         from feederscrew import bowl as bowls
         from feederscrew.designing import loop

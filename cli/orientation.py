@@ -33,6 +33,12 @@ def chain(command):
     return options.stacked(options.packed(command, "wanted", WANTED), *CHAIN)
 
 
+def of_an_aspect(asked):
+    """Refuse a heading without the aspect that it is a heading of."""
+    if asked["heading"] is not None and asked["aspect"] is None:
+        raise click.UsageError("--heading is given without --aspect - name the aspect as well")
+
+
 LEAVES_MOST = click.option(
     "--aspect",
     metavar="NAME",

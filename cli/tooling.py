@@ -125,6 +125,7 @@ def tooling(part, asked, cad, static, taken, bowl, pictures, out):
     from feederscrew.studies.tooling import tooling as study
     from feederscrew.studies.tooling import tooling_without
 
+    orientation.of_an_aspect(asked)
     if cad:
         from feederscrew.output.tooling import written_step as steps
 

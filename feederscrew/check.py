@@ -80,6 +80,12 @@ def frozen(array: Any) -> np.ndarray:
     return array
 
 
+def of_an_aspect(aspect: str | None, heading: float | None) -> None:
+    """Raise an ArgumentError where a heading is given without the aspect that it is a heading of."""
+    if heading is not None and aspect is None:
+        raise ArgumentError("heading", "is given without an aspect", "name the aspect as well")
+
+
 def argument(name: str, value: Any, low: float = -np.inf, high: float = np.inf) -> float:
     """Return a finite number from low to high.
 

@@ -6,9 +6,11 @@ import numpy as np
 
 from feederscrew.designing import pulses, trying
 from feederscrew.designing.slots import STEP, widened
+from feederscrew.errors import FeederError
 from feederscrew.rates import stream
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import names
+from feederscrew.tooling.devices.named import place_of
 from feederscrew.tooling.isolating.chain import judged, limits, numbered
 from feederscrew.tooling.isolating.shop_values import millimetres
 
@@ -100,10 +102,10 @@ def promising(known, shares, request):
     if names:
         asked = [k for k, one in enumerate(known.lying) if one.aspect.casefold() in _folded(names)]
         rows = [k for k in rows if k in asked] or (asked if request.aspect is not None else [])
-    if request.heading is not None and rows:
-        away = [abs(np.angle(np.exp(1j * (known.lying[k].heading - request.heading)))) for k in rows]
-        rows = [rows[int(np.argmin(away))]]
-    return rows
+    if request.heading is None or request.aspect is None:
+        return rows
+    where = known.lying[0].posture.solid.source
+    return [place_of(known.lying, request.aspect, request.heading, where, kind=FeederError)]
 
 
 def bare(known, shares, request, devices):

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing.hazards.risks import Risk
 from feederscrew.dropping.ensemble import wilson
@@ -43,6 +44,7 @@ class DesignRequest:
         return RunSettings(self.seed, self.jobs)
 
     def __post_init__(self):
+        check.of_an_aspect(self.aspect, self.heading)
         for name in ("up", "without"):  # names may come as a text
             object.__setattr__(self, name, listed(getattr(self, name)))
 

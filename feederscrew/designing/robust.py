@@ -18,6 +18,7 @@ from feederscrew.part.hull import convex_hull
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
+from feederscrew.tooling.devices.named import place_of
 from feederscrew.tooling.fates import at_entry
 
 FRICTION, DRIVE, CUT = (0.6, 1.4), (0.9, 1.1), 1e-4  # [1], [1], [m] to either side
@@ -77,7 +78,7 @@ def _named(devices, every, drawn):
     made = []
     for device in devices:
         if device.like:
-            meant = [_meant(named, every) for named in (device.like[:2], *device.also)]
+            meant = [_meant(device, one, every) for one in (device.like[:2], *device.also)]
             found = [drawn[matched(one, drawn)] for one in meant]
             first, *others = ((one.aspect, one.heading) for one in found)
             device = replace(device, like=(*first, *device.like[2:]), also=tuple(others))
@@ -85,16 +86,14 @@ def _named(devices, every, drawn):
     return tuple(made)
 
 
-def _meant(named, every):
-    """The orientation of an aspect and heading [rad]."""
-    aspect, heading = named
-    own = [one for one in every if one.aspect.casefold() == aspect.casefold()]
-    return min(own, key=lambda one: abs(math.remainder(one.heading - heading, 2.0 * math.pi)))
+def _meant(device, named, every):
+    """The orientation of an aspect and heading [rad] that a device names."""
+    return every[place_of(every, *named, device.where, f"{device.kind} names")]
 
 
 def opening(device, every):
     """Return the corners (K, 2) [m] of a gate that is given by an orientation and its play."""
-    grown = _meant(device.like[:2], every).seen.buffer(device.like[2])
+    grown = _meant(device, device.like[:2], every).seen.buffer(device.like[2])
     return tuple(map(tuple, shapely.get_coordinates(grown.exterior)[:-1].tolist()))
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from feederscrew.mechanics.wall.stable_headings import headings
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import posture
+from feederscrew.tooling.devices.named import place
 
 STRAIGHT = Track(climb=0.0, bank=0.0, radius=1e3, width=1.0)  # [m] a wall without a bend
 ROUNDS = 200  # of a search that halves its error in each
@@ -86,7 +86,7 @@ def lying(part: Part, aspects: Aspects, wanted: tuple[str, float] | None = None)
     stood = [posture(part, aspects, aspects.names[row]) for row in np.flatnonzero(aspects.stable)]
     found = [headings(one, STRAIGHT) for one in stood]
     rows = [(one.aspect, *row) for one in found for row in zip(one.headings, one.lengths, one.widths)]
-    counted = rows if wanted is None else [_nearest(rows, *wanted)]
+    counted = rows if wanted is None else [rows[_place([row[:2] for row in rows], wanted)]]
     return Lying(
         longest=float(max(row[2] for row in rows)),
         tallest=float(max(np.max(one.corners[:, 2]) for one in stood)),
@@ -100,7 +100,7 @@ def shape(part: Part, aspects: Aspects, track: Track, wanted: tuple[str, float] 
     name = aspects.names[int(np.flatnonzero(aspects.stable)[0])] if wanted is None else wanted[0]
     stood = posture(part, aspects, name)
     found = headings(stood, track)
-    row = 0 if wanted is None else int(np.argmin(np.abs(found.headings - wanted[1])))
+    row = 0 if wanted is None else _place([(name, heading) for heading in found.headings], wanted)
     outline = check.frozen(turned(stood.outline, found.headings[row]))
     return SizedShape(outline, float(found.distances[row]), float(found.lengths[row]))
 
@@ -200,10 +200,10 @@ def _check_diameter(across: float, part: Lying, given: str, rules: Sizing, *, fi
         raise FeederError("track.radius", what, "leave it out, to have the bowl sized")
 
 
-def _nearest(rows: Sequence[Any], aspect: str, heading: float) -> Any:
-    """The row of an aspect whose heading is nearest to one."""
-    own = [row for row in rows if row[0] == aspect]
-    return min(own, key=lambda row: abs((row[1] - heading + np.pi) % (2.0 * np.pi) - np.pi))
+def _place(known: Sequence[tuple[str, float]], wanted: tuple[str, float]) -> int:
+    """Which of some aspects and headings [rad] is meant."""
+    aspects, headings = zip(*known)
+    return place(aspects, headings, *wanted, "the part")
 
 
 def _rounded_up(value: float, step: float) -> float:

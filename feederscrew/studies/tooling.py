@@ -140,6 +140,7 @@ def tooling(
         If the part has no mesh, is too large for the bowl, or has no such orientation or rule.
     """
     own = check.options("tooling", ToolingOptions, wishes)
+    check.of_an_aspect(aspect, heading)
     found = arriving(part, bowl, rule) if known is None else known
     every = _coming(part, found, bowl)
     if rule not in found.chances:

@@ -13,7 +13,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.documents import hint
 from feederscrew.dropping.plate.drive import throw_number
-from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
 from feederscrew.rates import arrivals, stream
 from feederscrew.rates.well_oriented import RECOMMENDED
@@ -24,6 +24,7 @@ from feederscrew.resting.rules.recommended import LAUNCH
 from feederscrew.running import RunKeywords, RunSettings
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.rate import shares as arriving
+from feederscrew.tooling.devices.named import rows
 from feederscrew.trial import course, outlet
 from feederscrew.trial import landing as landings
 from feederscrew.trial.outlet import Outlet
@@ -258,11 +259,7 @@ def _tried(part: Part, found: Aspects, known: stream.Orientations, aspect: str |
     """Rows of the orientations that are laid down."""
     if aspect is None:
         return list(range(len(known.lying)))
-    rows = [k for k, one in enumerate(known.lying) if one.aspect.casefold() == aspect.strip().casefold()]
-    if not rows:
-        names = ", ".join(found.names)
-        raise FeederError(part.source, f"there is no aspect {aspect[:20]!r}", f"choose one of {names}")
-    return rows
+    return rows(known.aspects, aspect, part.source)
 
 
 def _shares(known: stream.Orientations, rule: str, tried: list[int]) -> np.ndarray:

@@ -36,7 +36,7 @@ def place(aspects, headings, aspect, heading, where, named="", kind=FeederError)
     FeederError
         If the part has no such orientation.
     """
-    known = [k for k, name in enumerate(aspects) if name.casefold() == aspect.strip().casefold()]
+    known = _places(aspects, aspect)
     away = [abs(_turn(headings[k] - heading)) for k in known]
     if known and min(away) <= WITHIN:
         return known[int(np.argmin(away))]
@@ -45,11 +45,22 @@ def place(aspects, headings, aspect, heading, where, named="", kind=FeederError)
         listed = ", ".join(f"{aspects[k]}@{round(np.degrees(headings[k])) % 360}" for k in some)
         what = f"{named} orientation {aspect}@{np.degrees(heading):.4g}, which the part does not have"
         raise kind(where, what, f"known are {listed}")
-    if not known:
-        raise kind(where, f"there is no aspect {aspect[:20]!r}", f"choose one of {_once(aspects)}")
+    rows(aspects, aspect, where, kind)
     listed = ", ".join(f"{np.degrees(headings[k]):.4g}" for k in known)
     what = f"aspect {aspects[known[0]]} has no stable heading {np.degrees(heading):.4g} deg"
     raise kind(where, what, f"choose one of {listed} deg")
+
+
+def rows(aspects, aspect, where, kind=FeederError):
+    """Return the places (list of int) of an aspect's orientations; a FeederError where there is none."""
+    known = _places(aspects, aspect)
+    if not known:
+        raise kind(where, f"there is no aspect {aspect[:20]!r}", f"choose one of {_once(aspects)}")
+    return known
+
+
+def _places(aspects, aspect):
+    return [k for k, name in enumerate(aspects) if name.casefold() == aspect.strip().casefold()]
 
 
 def place_of(every, aspect, heading, where, named="", kind=ConfigError):

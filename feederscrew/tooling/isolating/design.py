@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew.errors import FeederError
 from feederscrew.tooling.devices.kinds import names
-from feederscrew.tooling.devices.named import place_of
+from feederscrew.tooling.devices.named import place_of, rows
 from feederscrew.tooling.isolating import chain, hole_search, rails, round_corners, turners, varied
 from feederscrew.tooling.isolating.needed import told_needed
 from feederscrew.tooling.isolating.proposal import ALL, told, weights, without
@@ -195,7 +195,5 @@ def place(every, aspect, heading, where):
     """
     if heading is not None:
         return place_of(every, aspect, heading, where, kind=FeederError)
-    known = [k for k, one in enumerate(every) if one.aspect.casefold() == aspect.strip().casefold()]
-    if not known:
-        return place_of(every, aspect, np.nan, where, kind=FeederError)
+    known = rows([one.aspect for one in every], aspect, where)
     return max(known, key=lambda k: (not every[k].returned, every[k].heading_share, -k))

@@ -140,6 +140,14 @@ def test_faults_are_one_line(run, block, arguments, line):
     assert (result.exit_code, result.stderr.splitlines()) == (1, [line])
 
 
+@pytest.mark.parametrize("command", [("tooling",), ("design", "--target", "30/min")])
+def test_a_heading_is_one_of_an_aspect_that_is_named(run, block, command):
+    result = run(command[0], block, *command[1:], "--heading", "90deg")
+    told = f"name the aspect as well (see feeder {command[0]} --help)"
+    line = f"Error: --heading is given without --aspect - {told}"
+    assert (result.exit_code, result.stderr.splitlines()) == (2, [line])
+
+
 def test_a_card_has_no_mesh(run):
     result = run("tooling", ROOT / "parts/magnet.yaml")
     assert result.exit_code == 1
