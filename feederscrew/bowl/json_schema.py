@@ -1,8 +1,6 @@
 """The bowl file's JSON Schema, for editors: made from the tables that the checks read."""
 
 import json
-import re
-from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -12,11 +10,10 @@ from feederscrew.bowl import documentation
 from feederscrew.bowl.devices import SECTION
 from feederscrew.bowl.key import Key
 from feederscrew.bowl.schema import BY_NAME, KEYS, SECTIONS, rival
+from feederscrew.value_forms import PLAIN, quantity
 
 DRAFT = "http://json-schema.org/draft-07/schema#"  # the latest one that YAML editors know well
 TITLE = "feeder bowl file"
-NUMBER = r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"
-PLAIN = ("number", "count")  # dimensions without a unit
 ABOUT = {
     "drive": "How the bowl vibrates.",
     "friction": "Coefficients of friction.",
@@ -111,7 +108,7 @@ def _value(key: Key) -> dict[str, Any]:
     left_out = f"Left out: as {key.default}." if follows else f"Default: {key.default}."
     made = {
         "description": f"{key.meaning}. {bounds} {left_out}",
-        **_quantity(key.dimension, key.lowest, key.highest),
+        **quantity(key.dimension, key.lowest, key.highest),
         "x-dimension": key.dimension,
         "x-lowest": key.lowest,
         "x-highest": key.highest,
@@ -142,93 +139,5 @@ def _typed(text: str, dimension: str) -> str | float:
     return int(number) if number.is_integer() else number
 
 
-def _quantity(dimension: str, lowest: str | None = None, highest: str | None = None) -> dict[str, Any]:
-    """A value with its unit; without one a number within bounds, or a text of it."""
-    text = {"type": "string", "pattern": pattern(dimension)}
-    if dimension not in PLAIN:
-        return text
-    number: dict[str, Any] = {"type": "number"}
-    if lowest is not None and highest is not None:
-        number |= {
-            "minimum": units.quantity(lowest, dimension),
-            "maximum": units.quantity(highest, dimension),
-        }
-    return {"anyOf": [number, text]}
-
-
-def pattern(dimension: str) -> str:
-    """Return the regular expression of a quantity as a bowl file writes it."""
-    spelt = [
-        *units.UNITS[dimension],
-        *(name for name, unit in units.SPELLINGS.items() if unit in units.UNITS[dimension]),
-    ]
-    ends = sorted({_loose(name) for name in spelt if name}, key=lambda end: (-len(end), end))
-    behind = f"\\s*({'|'.join(ends)})" if ends else ""
-    return f"^\\s*{NUMBER}{behind}{'?' if dimension in PLAIN and ends else ''}\\s*$"
-
-
-def _loose(unit: str) -> str:
-    """A unit with a superscript or a caret where it has a power, and any blanks."""
-    escaped = re.escape(unit).replace("\\ ", r"[\s*·]+").replace("\\-", "-")
-    return escaped.replace("2", r"\^?[2²]").replace("3", r"\^?[3³]")
-
-
 def _device(kind: Any) -> dict[str, Any]:
-    return {"description": f"{kind.meaning}. Example: {kind.example}", **_DEVICES.get(kind.dimension, {})}
-
-
-_LENGTH = _quantity("length")
-_POLYGON = {
-    "type": "array",
-    "minItems": 3,
-    "items": {"type": "array", "items": _LENGTH, "minItems": 2, "maxItems": 2},
-}
-
-
-def _mapping(optional: Sequence[str] = (), **values: dict[str, Any]) -> dict[str, Any]:
-    """A mapping of exactly these keys; one that Python keeps for itself ends in '_'."""
-    named = {name.rstrip("_"): value for name, value in values.items()}
-    needed = [name for name in named if name not in optional]
-    return {"type": "object", "properties": named, "required": needed, "additionalProperties": False}
-
-
-_DRAWN = _mapping(dxf={"type": "string"}, layer={"type": ["string", "number"]})
-_NAMED = {"type": "string", "pattern": "^.+@.+$"}
-_LIKE = _mapping(of=_NAMED, play=_LENGTH)
-_BLADE = _mapping(
-    ("sweep", "friction", "contour"),
-    clearance=_LENGTH,
-    sweep=_quantity("angle"),
-    friction=_quantity("number", "0", "5"),
-    contour=_POLYGON | {"minItems": 1},
-)
-_SENSOR = _mapping(
-    ("sees", "resolution", "jet"),
-    of={"anyOf": [_NAMED, {"type": "array", "minItems": 1, "items": _NAMED}]},
-    play=_LENGTH,
-    sees={"enum": ["outline", "side", "height", "relief"]},
-    resolution=_LENGTH,
-    jet=_mapping(
-        ("nozzle", "pressure", "height", "time", "nozzles"),
-        nozzle=_LENGTH,
-        pressure=_quantity("pressure"),
-        height=_LENGTH,
-        time=_quantity("time"),
-        nozzles=_quantity("count", "1", "20"),
-    ),
-)
-_LEAD = _mapping(from_=_LENGTH, to=_LENGTH, length=_LENGTH, taper=_LENGTH)
-_DEVICES = {  # what is written after 'kind:', by the dimension of the kind
-    "length": _LENGTH,
-    "angle": _quantity("angle"),
-    "climb": _mapping(climb=_quantity("angle")),
-    "faces": _mapping(angle=_quantity("angle")),
-    "nozzle": _mapping(nozzle=_LENGTH, pressure=_quantity("pressure"), height=_LENGTH),
-    "span": _mapping(from_=_LENGTH, to=_LENGTH),
-    "led_span": _mapping(("lead_in",), from_=_LENGTH, to=_LENGTH, lead_in=_LEAD),
-    "sensor": _SENSOR,
-    "blade": {"anyOf": [_LENGTH, _BLADE]},
-    "polygon": {"anyOf": [_POLYGON, _DRAWN]},
-    "opening": {"anyOf": [_POLYGON, _LIKE]},
-    "shares": {"type": "object", "minProperties": 1, "additionalProperties": _quantity("number", "0", "1")},
-}
+    return {"description": f"{kind.meaning}. Example: {kind.example}", **kind.form}

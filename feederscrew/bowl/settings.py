@@ -68,7 +68,7 @@ def effective(given: Mapping[str, Setting]) -> tuple[Setting, ...]:
 
 def of_device(place: int, device: Device) -> Setting:
     """Return a device as the Setting 'devices.1', for people: 'gap: 9 mm'."""
-    key = Key(f"{SECTION}.{place}", SECTION, device.dimension, "", "", "", device.meaning)
+    key = Key(f"{SECTION}.{place}", SECTION, "", "", "", "", device.meaning)
     return Setting(key, f"{device.kind}: {device.text}", device, device.where)
 
 

@@ -7,8 +7,8 @@ import numpy as np
 import shapely
 
 from feederscrew.bowl.record import Track
-from feederscrew.tooling.devices.base import FRAME, Device, room_of
-from feederscrew.tooling.devices.pieces import BLADE
+from feederscrew.tooling.devices.base import Device, room_of
+from feederscrew.tooling.devices.pieces import BLADE, FRAME
 from feederscrew.tooling.fates import leading
 
 BESIDE = 5e-3  # [m] of track beyond what parts and cuts need, where the whole track is not drawn

@@ -8,23 +8,39 @@ import pytest
 import trimesh
 from click.testing import CliRunner
 
+from feederscrew.bowl import read
+from feederscrew.bowl.json_schema import schema
+from feederscrew.part import load
+from feederscrew.resting.aspects import find
 from feederscrew.tooling import devices
 from feederscrew.tooling.devices import kinds
+from feederscrew.tooling.isolating import chain
+from feederscrew.tooling.orientations import orientations
+from feederscrew.value_forms import pattern
 from feederscrew_cli.main import feeder
 
 FILE = '''
 """A strip removed along the wall, by another name."""
 
+from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import Device
 
 
 class Ravine(Device):
     kind = "ravine"
-    dimension = "length"
+    form = forms.LENGTH | {"title": "its width"}
     example = "8 mm"
     meaning = "strip along the wall"
     picture = "above"
+    bound = "lower"
+    proposed = True
+    rank = 1
+    feature = "what lies beside it"
+
+    @classmethod
+    def needed(cls, one):
+        return one.canyon
 
     @classmethod
     def read(cls, entry):
@@ -71,8 +87,15 @@ def test_a_device_added_in_one_file_is_known_everywhere(ravine):
     assert mesh.is_watertight
     over = mesh.triangles_center[np.abs(mesh.triangles_center[:, 2]) < 1e-6]
     assert len(over) and files["tooling.png"].stat().st_size > 1000
+    made = schema()["properties"]["devices"]["items"]["properties"]["ravine"]
+    assert (made["title"], made["pattern"]) == ("its width", pattern("length"))
     tried = json.loads(ran("trial", part, "--parts", "8", "--rule", "csa", "--format", "json"))[
         "orientations"
     ]
     passed = {(row["aspect"], round(row["heading_deg"])): row["passed"] for row in tried if row["tried"]}
     assert passed["A", 0] == 0 and passed["A", 90] > 0
+    block = load(part)
+    every = orientations(block, find(block), read(bowl[1]).track)
+    across = next(k for k, one in enumerate(every) if one.width == pytest.approx(20e-3, abs=2e-4))
+    (proposed,) = [one for one in chain.candidates(every, across, 5e-4) if one.kind == "ravine"]
+    assert proposed.limit == pytest.approx(10e-3 - 5e-4, abs=2e-4)  # half its width, less the margin

@@ -2,14 +2,15 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from feederscrew import units
+from feederscrew import value_forms as forms
 from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import named
-from feederscrew.tooling.devices.pieces import Blade, Hole, Standing
+from feederscrew.tooling.devices.pieces import Hole, Standing, across
 
 CLOSE = 1e-9  # [m] a part this much over a limit still passes
 UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
@@ -18,7 +19,6 @@ STANDARD_GRAVITY = 9.80665  # [m/s2]
 RETURNED, STOPPED, CARRIED = "returned", "stopped", "carried"  # what becomes of a part at a device
 LONG = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
 ROOM = 1.3  # a device has so many lengths of the longest part to itself
-FRAME = 5e-3  # [m] of a gate above its opening
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Verdict:
 class Device:
     """One device of a chain: its values, and what its kind makes of them.
 
-    A new kind is a class in a module of this folder: it gives ``kind``, ``dimension``, ``example`` and
+    A new kind is a class in a module of this folder: it gives ``kind``, ``form``, ``example`` and
     ``meaning``, and says below what differs from a device that does nothing. Nothing else names a kind.
     """
 
@@ -60,7 +60,7 @@ class Device:
     text: str = ""  # its value as written
 
     kind: ClassVar[str] = "track"  # what it is called in a bowl file
-    dimension: ClassVar[str] = ""  # the form of its value: 'length', 'span', 'polygon'
+    form: ClassVar[dict[str, Any]] = forms.LENGTH  # of its value in a bowl file
     example: ClassVar[str] = ""  # as written after 'kind:'
     meaning: ClassVar[str] = ""
     hanging: ClassVar[bool] = True  # whether it means anything to parts that hang between rails
@@ -264,14 +264,6 @@ class Device:
 def room_of(every):
     """Return the length of track [m] that one has to itself, by the longest orientation."""
     return ROOM * max(one.length for one in every)
-
-
-def across(gate, width, every, place):
-    """Return a Blade square across a track of some width [m], with an opening, at a place [m] along it."""
-    import shapely
-
-    tall = 2.0 * max(max(one.height for one in every), gate.bounds[3]) + FRAME
-    return Blade(shapely.box(0.0, 0.0, width, tall).difference(gate), foot=(place, 0.0))
 
 
 def share(margin, sigma):

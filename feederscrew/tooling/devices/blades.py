@@ -7,19 +7,26 @@ from typing import ClassVar
 
 import numpy as np
 
+from feederscrew import value_forms as forms
 from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import FRAME, STOPPED, Device, room_of
-from feederscrew.tooling.devices.pieces import Blade, Standing
+from feederscrew.tooling.devices.base import STOPPED, Device, room_of
+from feederscrew.tooling.devices.pieces import FRAME, Blade, Standing
 
 SQUARE = 0.5 * math.pi  # [rad] of the face to the direction of travel: straight across the track
 PROPOSED = math.radians(30.0)  # [rad] sweep of a blade that a design tries: 20 to 35 deg clear fastest
 FAR = 10.0  # [m] beyond any track
+SWEPT = forms.mapping(
+    ("sweep", "friction", "contour"),
+    clearance=forms.LENGTH,
+    sweep=forms.ANGLE,
+    friction=forms.quantity("number", "0", "5"),
+    contour=forms.POLYGON | {"minItems": 1},
+)
 
 
 @dataclass(frozen=True)
 class _Overhead(Device):
-    dimension: ClassVar[str] = ""
     bound: ClassVar[str] = "upper"
     overhead: ClassVar[bool] = True
     picture: ClassVar[str] = "side"
@@ -54,7 +61,7 @@ class Wiper(_Overhead):
     contour: tuple[tuple[float, float], ...] = ()  # [m] distance from the wall and clearance there
 
     kind = "wiper"
-    dimension = "blade"
+    form = forms.either(forms.LENGTH, SWEPT)
     example = "6 mm"
     meaning = (
         "blade at a clearance over the track that holds up orientations that stand higher; straight across "
@@ -149,7 +156,6 @@ class HeightBar(_Overhead):
     """A bar across the track."""
 
     kind = "height_bar"
-    dimension = "length"
     example = "6 mm"
     meaning = "bar across the track at a clearance: orientations that stand higher stop before it"
 
@@ -159,6 +165,5 @@ class HoldDown(_Overhead):
     """A bar above the queue."""
 
     kind = "hold_down"
-    dimension = "length"
     example = "6 mm"
     meaning = "bar above the queue that keeps parts down; orientations that do not fit below stop before it"

@@ -1,5 +1,6 @@
 """Gates with an opening: profile."""
 
+from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import named, values
 from feederscrew.tooling.devices.base import STOPPED, Device
 
@@ -10,7 +11,7 @@ class Profile(Device):
     """A gate across the track with an opening."""
 
     kind = "profile"
-    dimension = "opening"
+    form = forms.either(forms.POLYGON, forms.mapping(of=forms.NAMED, play=forms.LENGTH))
     example = "{of: A@90, play: 0.2 mm}"
     meaning = (
         "gate with an opening: a polygon of distances from the wall and heights, or an orientation's own "

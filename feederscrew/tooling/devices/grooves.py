@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass, replace
 
+from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import room_of
 from feederscrew.tooling.devices.leans import LEAST, Bank, Lean
@@ -21,7 +22,7 @@ class Groove(Lean):
 
     kind = "groove"
     serves = "lets lie along it what is round"
-    dimension = "faces"
+    form = forms.mapping(angle=forms.ANGLE)
     example = "{angle: 30 deg}"
     meaning = (
         "the track is a V from here on, until a bank: it and its wall rise by so much to either side; round "

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feederscrew import value_forms as forms
 from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import MM, Device, room_of
@@ -11,6 +12,8 @@ from feederscrew.tooling.devices.ledges import between
 from feederscrew.tooling.devices.pieces import Hole, Standing
 
 LONGEST = 1.0  # [m] of a lead-in
+SPAN = {"from_": forms.LENGTH, "to": forms.LENGTH}
+LEAD = {"length": forms.LENGTH, "taper": forms.LENGTH}
 
 
 @dataclass(frozen=True)
@@ -21,7 +24,7 @@ class Rails(Device):
     lead: tuple[float, ...] = ()
 
     kind = "rails"
-    dimension = "led_span"
+    form = forms.mapping(("lead_in",), **SPAN, lead_in=forms.mapping(**SPAN, **LEAD))
     example = "{from: 4.5 mm, to: 8.5 mm}"
     meaning = (
         "slot between two rails, by their distances from the wall: headed parts whose centre of mass lies "

@@ -17,7 +17,7 @@ def found():
         module = importlib.import_module(f"{devices.__name__}.{info.name}")
         for one in vars(module).values():
             own = isinstance(one, type) and one.__module__ == module.__name__
-            if own and issubclass(one, Device) and one.dimension:
+            if own and issubclass(one, Device) and one is not Device and "kind" in vars(one):
                 classes.append(one)
     for one in sorted(classes, key=lambda one: (not one.placed, one.hangs)):
         KINDS.setdefault(one.kind, one)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import Device, room_of
 from feederscrew.tooling.devices.pieces import Slope, Standing
@@ -64,7 +65,7 @@ class Bank(Lean):
 
     kind = "bank"
     serves = "holds what rolls at the wall"
-    dimension = "angle"
+    form = forms.ANGLE
     example = "6 deg"
     meaning = (
         "the track is banked towards the wall by so much from here on; listed first, from the track's entry: "
@@ -109,7 +110,7 @@ class Separation(Lean):
     """A steeper way down from here on, on which parts travel faster and so come apart."""
 
     kind = "separation"
-    dimension = "climb"
+    form = forms.mapping(climb=forms.ANGLE)
     example = "{climb: -4 deg}"
     meaning = (
         "the track climbs by so much from here on, below 0 it goes down: parts travel faster and come apart, "

@@ -15,7 +15,6 @@ EDGE = 2e-4  # [m] the width with which an edge over which parts turn is drawn
 
 
 class _Turner(Device):
-    dimension: ClassVar[str] = ""
     hanging: ClassVar[bool] = False
     turns: ClassVar[bool] = True
     picture: ClassVar[str] = "turned"
@@ -39,7 +38,6 @@ class Step(_Turner):
     """A drop of the track."""
 
     kind = "step"
-    dimension = "length"
     example = "5 mm"
     meaning = (
         "drop of the track by that height: orientations of a lower barrier pitch over their leading edge; "
@@ -69,7 +67,6 @@ class Tip(_Turner):
     """A ledge above a second track."""
 
     kind = "tip"
-    dimension = "length"
     example = "6 mm"
     meaning = (
         "ledge of that width above a second track, half the part's greatest length lower: orientations whose "

@@ -5,6 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import RETURNED, UNSURE, Device, carried
 
@@ -12,7 +13,6 @@ DISTANCE = "distance from the wall to the centre of mass"
 
 
 class _OneNumber(Device):
-    dimension: ClassVar[str] = ""
     picture: ClassVar[str] = "above"
 
     @classmethod
@@ -24,7 +24,6 @@ class NarrowedTrack(_OneNumber):
     """A track of a lesser width."""
 
     kind = "narrowed_track"
-    dimension = "length"
     example = "9 mm"
     meaning = (
         "track of a lesser width, a balcony; returns orientations whose foot of the centre of mass is not "
@@ -58,7 +57,6 @@ class PressureBreak(_OneNumber):
     """A ledge from which the queue pushes parts off."""
 
     kind = "pressure_break"
-    dimension = "length"
     example = "10 mm"
     meaning = "gap where the queue pushes parts off; returns orientations wider than the ledge left"
     hanging = False
@@ -86,7 +84,6 @@ class Canyon(_OneNumber):
     """A strip removed along the wall."""
 
     kind = "canyon"
-    dimension = "length"
     example = "8 mm"
     meaning = "strip of that width removed along the wall; returns orientations whose foot lies over it"
     bound = "lower"
@@ -117,7 +114,7 @@ class Slot(Device):
     """A long hole along the track."""
 
     kind = "slot"
-    dimension = "span"
+    form = forms.mapping(from_=forms.LENGTH, to=forms.LENGTH)
     example = "{from: 2 mm, to: 5 mm}"
     meaning = "long hole along the track between two distances from the wall"
     picture = "above"

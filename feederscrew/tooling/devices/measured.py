@@ -2,6 +2,7 @@
 
 import math
 
+from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import Device, Verdict
 
@@ -10,7 +11,7 @@ class Yield(Device):
     """A share that passes, by aspect."""
 
     kind = "yield"
-    dimension = "shares"
+    form = forms.by_name(forms.quantity("number", "0", "1"))
     example = "{A: 0.9}"
     meaning = "share that passes, by aspect, as measured; aspects not named pass"
     placed = False

@@ -2,15 +2,17 @@
 
 import numpy as np
 
+from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import hole_shapes, values
 from feederscrew.tooling.devices.base import UNSURE, Device, carried
+
+DRAWN = forms.mapping(dxf=forms.TEXT, layer={"type": ["string", "number"]})
 
 
 class Gap(Device):
     """A gap across the track."""
 
     kind = "gap"
-    dimension = "length"
     example = "9 mm"
     meaning = "gap of that length across the track, its edges parallel, the one that is left radial"
     bound = "lower"
@@ -50,7 +52,7 @@ class CutOut(Device):
     """A hole of several corners."""
 
     kind = "cut_out"
-    dimension = "polygon"
+    form = forms.either(forms.POLYGON, DRAWN)
     example = "[[0 mm, 0 mm], [9 mm, 0 mm], [9 mm, 8 mm]]"
     meaning = (
         "hole in the track: lengths along the wall and distances from it, unrolled; or "

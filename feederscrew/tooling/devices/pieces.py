@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 BLADE = 1.5e-3  # [m] thickness of a blade
+FRAME = 5e-3  # [m] of a gate above its opening
 GRIP = 0.6  # [1] friction of a dry steel track
 
 
@@ -79,3 +80,11 @@ class Standing:
     aside: float = 0.0  # [m] from the wall, where that begins
     hangs: bool = False  # whether parts leave hanging, their centres of mass below the track
     settles: float = 0.0  # of the part's size: how far behind the device parts go on until they are looked at
+
+
+def across(gate, width, every, place):
+    """Return a Blade square across a track of some width [m], with an opening, at a place [m] along it."""
+    import shapely
+
+    tall = 2.0 * max(max(one.height for one in every), gate.bounds[3]) + FRAME
+    return Blade(shapely.box(0.0, 0.0, width, tall).difference(gate), foot=(place, 0.0))

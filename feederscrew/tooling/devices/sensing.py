@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import named, values
 from feederscrew.tooling.devices.base import MM, RETURNED, Device, room_of
 from feederscrew.tooling.devices.nozzles import SPREAD, Nozzles
@@ -14,6 +15,14 @@ VIEWS = ("outline", "side", "height", "relief")
 RESOLUTION = {"outline": 1e-4, "side": 1e-4, "height": 1e-3, "relief": 1e-4}  # [m] camera, fibre, laser
 BORE, PRESSURE, PULSE = 2e-3, 3e5, 0.04  # [m], [Pa], [s] of each nozzle: 1.28 N, 0.051 N s
 REACTION = 0.01  # [s] of sensor and valve: 5 to 15 ms
+NOZZLES = forms.mapping(
+    ("nozzle", "pressure", "height", "time", "nozzles"),
+    nozzle=forms.LENGTH,
+    pressure=forms.quantity("pressure"),
+    height=forms.LENGTH,
+    time=forms.quantity("time"),
+    nozzles=forms.quantity("count", "1", "20"),
+)
 AHEAD = 0.01  # [m] from the sensor to the nozzles: a part is blown at as its middle comes to them
 
 
@@ -30,7 +39,14 @@ class Sorter(Device):
     nozzles: float = 4.0  # one above the other
 
     kind = "sorter"
-    dimension = "sensor"
+    form = forms.mapping(
+        ("sees", "resolution", "jet"),
+        of=forms.either(forms.NAMED, {"type": "array", "minItems": 1, "items": forms.NAMED}),
+        play=forms.LENGTH,
+        sees={"enum": list(VIEWS)},
+        resolution=forms.LENGTH,
+        jet=NOZZLES,
+    )
     example = "{of: A@90, play: 0.5 mm, sees: outline}"
     meaning = (
         "sensor and pulse of air: passes what is seen to differ from an orientation by less than play, blows "

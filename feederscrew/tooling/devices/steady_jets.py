@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import MM, RETURNED, UNSURE, Device, room_of
 from feederscrew.tooling.devices.nozzles import SPREAD, Nozzles
@@ -24,7 +25,7 @@ class SteadyJet(Device):
     height: float = math.nan  # [m] of the nozzle over the track
 
     kind = "jet"
-    dimension = "nozzle"
+    form = forms.mapping(nozzle=forms.LENGTH, pressure=forms.quantity("pressure"), height=forms.LENGTH)
     example = "{nozzle: 2 mm, pressure: 0.2 bar, height: 8 mm}"
     meaning = (
         "nozzle in the wall that blows all the time, at a height over the track: returns what it moves over "

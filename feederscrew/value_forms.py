@@ -1,0 +1,69 @@
+"""Forms of what a bowl file writes, as JSON Schema: quantities, mappings of them, polygons."""
+
+import re
+from collections.abc import Sequence
+from typing import Any
+
+from feederscrew import units
+
+NUMBER = r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"
+PLAIN = ("number", "count")  # dimensions without a unit
+
+
+def quantity(dimension: str, lowest: str | None = None, highest: str | None = None) -> dict[str, Any]:
+    """Return the form of a value with its unit; without one a number within bounds, or a text of it."""
+    text = {"type": "string", "pattern": pattern(dimension)}
+    if dimension not in PLAIN:
+        return text
+    number: dict[str, Any] = {"type": "number"}
+    if lowest is not None and highest is not None:
+        number |= {
+            "minimum": units.quantity(lowest, dimension),
+            "maximum": units.quantity(highest, dimension),
+        }
+    return {"anyOf": [number, text]}
+
+
+def pattern(dimension: str) -> str:
+    """Return the regular expression of a quantity as a bowl file writes it."""
+    spelt = [
+        *units.UNITS[dimension],
+        *(name for name, unit in units.SPELLINGS.items() if unit in units.UNITS[dimension]),
+    ]
+    ends = sorted({_loose(name) for name in spelt if name}, key=lambda end: (-len(end), end))
+    behind = f"\\s*({'|'.join(ends)})" if ends else ""
+    return f"^\\s*{NUMBER}{behind}{'?' if dimension in PLAIN and ends else ''}\\s*$"
+
+
+def _loose(unit: str) -> str:
+    """A unit with a superscript or a caret where it has a power, and any blanks."""
+    escaped = re.escape(unit).replace("\\ ", r"[\s*·]+").replace("\\-", "-")
+    return escaped.replace("2", r"\^?[2²]").replace("3", r"\^?[3³]")
+
+
+def either(*forms: dict[str, Any]) -> dict[str, Any]:
+    """Return the form of what is written in one of several ways."""
+    return {"anyOf": list(forms)}
+
+
+def by_name(form: dict[str, Any]) -> dict[str, Any]:
+    """Return the form of values of one form, each with a name, one at least."""
+    return {"type": "object", "minProperties": 1, "additionalProperties": form}
+
+
+def mapping(optional: Sequence[str] = (), /, **values: dict[str, Any]) -> dict[str, Any]:
+    """Return the form of a mapping of exactly these keys; one that Python keeps for itself ends in '_'."""
+    named = {name.rstrip("_"): value for name, value in values.items()}
+    needed = [name for name in named if name not in optional]
+    return {"type": "object", "properties": named, "required": needed, "additionalProperties": False}
+
+
+LENGTH = quantity("length")
+ANGLE = quantity("angle")
+POLYGON: dict[str, Any] = {
+    "type": "array",
+    "minItems": 3,
+    "items": {"type": "array", "items": LENGTH, "minItems": 2, "maxItems": 2},
+}
+TEXT = {"type": "string"}
+NAMED = {"type": "string", "pattern": "^.+@.+$"}  # an orientation: A@90
