@@ -1,6 +1,7 @@
 """The folders are the pipeline: a room imports only rooms before it, and heavy libraries have one door."""
 
 import ast
+import re
 from collections import Counter
 from functools import cache
 from graphlib import TopologicalSorter
@@ -74,6 +75,17 @@ def test_a_room_imports_only_rooms_before_it():
         outside = (name for name in names if room(name) not in allowed or name.startswith("feederscrew_cli"))
         wrong += [f"{path} imports {name}" for name in outside]
     assert not wrong
+
+
+LATE = {"records": "output"}  # a record loads its views by their name, when one is asked for
+DOTTED = re.compile(r"feederscrew\.[\w.]+")
+
+
+def test_a_room_names_as_text_itself_or_the_views_of_its_records():
+    for path in FILES:
+        here, texts = room(module(path)), (getattr(node, "value", None) for node in ast.walk(tree(path)))
+        for text in (text for text in texts if isinstance(text, str) and DOTTED.fullmatch(text)):
+            assert here is None or room(text) in (here, LATE.get(here)), f"{path}: {text}"
 
 
 def test_a_heavy_library_has_one_door():
