@@ -9,11 +9,10 @@ from typing import Any
 
 # functions that compiled ones may call, not yet registered, and how each is compiled
 PENDING: list[tuple[Callable[..., Any], dict[str, Any]]] = []
-TRIED = (0, 60), (0, 68)  # versions of numba, from and to, that `compiler` was tried with
 NOWHERE = "/dev/null"  # where no folder is: what is not kept is not found
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
 SOURCES = (
-    "geometry/compile*.py",
+    "geometry/compiled.py",
     "conveying/*.py",
     "resting/basins/forest.py",
     "resting/tumbling/*.py",
@@ -122,18 +121,7 @@ def _options(arrays=False, **others):
     from numba.core.options import DefaultOptions
 
     counting = {} if arrays or not hasattr(DefaultOptions, "_nrt") else {"_nrt": False}
-    return {"error_model": "numpy", "no_cfunc_wrapper": True, **counting, **_compiler(), **others}
-
-
-def _compiler():
-    """Option that names our compiler; none where this numba is untried."""
-    from numba import version_info
-
-    if not TRIED[0] <= version_info.short <= TRIED[1]:
-        return {}
-    from feederscrew.geometry import compiler
-
-    return {"pipeline_class": compiler.Kernel}
+    return {"error_model": "numpy", "no_cfunc_wrapper": True, **counting, **others}
 
 
 @functools.cache
