@@ -93,12 +93,19 @@ def test_falling_over_each_other_wins_no_energy():
     assert (np.array([on.extents(n)[2] for n in range(3)]) * LENGTH > -2e-4).all()
 
 
-def test_a_row_on_the_bare_track_delivers_what_its_velocity_brings():
-    found = queued(BOWL, 4, 3.0)
-    assert found.velocity == pytest.approx(answer.answer(BOWL).velocity, rel=0.03)
-    assert 0.0 < found.rate <= found.velocity / 0.02 * 1.001
-    assert found.rate == pytest.approx(found.velocity / (0.02 + found.gap), rel=0.25)
-    assert found.jams == found.returned == found.climbs == 0 and found.depth < 5e-5
+@pytest.mark.parametrize(
+    ("gaps", "seconds", "near"),
+    [
+        (0.0, 3.0, 0.02),
+        (queue.GAPS, 12.0, 0.05),
+    ],  # so few uneven gaps are off by 1 mm in the mean
+)
+def test_a_row_on_the_bare_track_delivers_what_its_velocity_brings(gaps, seconds, near):
+    found = queued(BOWL, 4, seconds, gaps=gaps)
+    assert found.velocity == pytest.approx(answer.answer(BOWL).velocity, rel=0.04)
+    assert found.gap == pytest.approx(gaps * 0.02, abs=1e-4 if gaps == 0.0 else 2e-3)
+    assert found.rate == pytest.approx(found.velocity / (0.02 + found.gap), rel=near)
+    assert found.jams == found.returned == found.climbs == 0 and found.depth < 5e-6
 
 
 def test_a_row_that_reaches_round_the_bowl_stays_on_the_track():
@@ -150,21 +157,6 @@ def test_what_blew_on_a_part_does_not_blow_on_the_next_in_its_place():
     on.lay(0, np.array(on.arrays.states[0]))
     on.ride(0)
     assert abs(on.arrays.states[0, body.VX]) < 1e-3
-
-
-def test_a_row_pushes_what_a_blade_holds(tmp_path):
-    path = tmp_path / "bowl.yaml"
-    path.write_text("devices:\n  - wiper: 4 mm\n")
-    found = queued(bowls.read(path, OWN), 3, 7.0)
-    assert found.jams >= 1 and found.returned == 0 and found.delivered == 0.0
-    assert found.touching > 0.03
-    weight = PART.mass * BOWL.gravity
-    assert 0.01 * weight < found.pressure[0] < 3.0 * weight
-
-
-def test_poured_parts_come_to_lie_and_travel():
-    found = queued(BOWL, 3, 1.0, gaps=None, run=RunSettings(2))
-    assert found.poured and found.on_track == 3 and found.depth < 1e-3
 
 
 def test_an_interrupt_keeps_the_periods_until_then():
