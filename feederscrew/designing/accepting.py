@@ -76,10 +76,10 @@ def sheet(path):
     lines = []
     with Path(path).open(encoding="utf-8-sig", newline="") as file:
         for place, row in enumerate(csv.DictReader(file), start=2):
-            values = {name: _number(path, place, name, row.get(name)) for name in HEAD if name not in TEXT}
+            values: dict = {n: _number(path, place, n, row.get(n)) for n in HEAD if n not in TEXT}
             if values["computed"] is None:
                 raise FeederError(f"{path}:{place}", "has no computed value", "leave that column as it was")
-            texts = {name: (row.get(name) or "").strip() for name in TEXT}
+            texts: dict = {name: (row.get(name) or "").strip() for name in TEXT}
             lines.append(SheetLine(**texts, **values))
     if all(line.measured is None for line in lines):
         raise FeederError(str(path), "nothing was measured", "fill in the column 'measured'")

@@ -37,7 +37,7 @@ class PlainBowl:
 
     bowl: Bowl
     given: frozenset[str]
-    size: sizing.Size
+    size: sizing.Size | None  # None once the bowl has changed
 
 
 def section(part, aspects, plain, given, *, diameter=None, bank=BANKS[0]):
@@ -108,7 +108,8 @@ def driven(made, velocity, *, hops=False):
     """
     if "drive.amplitude" in made.given or "drive.peak_to_peak" in made.given:
         return made.bowl
-    tried, velocity = [], velocity if hops else max(velocity, LEAST)
+    tried: list[tuple[float, int, Bowl]] = []
+    velocity = velocity if hops else max(velocity, LEAST)
     for bowl in _drives(made, hops):
         fastest = _fast(bowl)
         if fastest >= velocity:

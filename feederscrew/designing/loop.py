@@ -6,7 +6,7 @@ from feederscrew.designing import beside, calm_drive, exploring, nearest, propos
 from feederscrew.designing.hazards import risks
 from feederscrew.designing.record import DRAWS_HELD, RATE_KEPT, DesignStudy
 from feederscrew.designing.robust import robust_run
-from feederscrew.designing.searching import Search
+from feederscrew.designing.searching import Candidate, Search
 from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.trial.result import TrialRun
 
@@ -44,7 +44,7 @@ def design(part, plain, given, request, *, known=None, told=None, before=None):
     """
     search = Search(part, request, plain, frozenset(given), told or (lambda text: None), known, before=before)
     search.shares_given = known is not None
-    proofs = []
+    proofs: list[tuple[DesignStudy, Candidate]] = []
     try:
         for candidate in exploring.candidates(search):
             _prove(search, candidate, proofs)

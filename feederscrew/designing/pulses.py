@@ -33,7 +33,7 @@ def quickened(cut, every):
     pushes = [device.jet.push(met.one, every) for met in gone]
     for steps in range(LEAST, round(device.time / STEP)):
         time = steps * STEP
-        if all(met.blown(*push, time / RESERVE) > 0.0 for met, push in zip(gone, pushes)):
+        if all(met.blown(out, down, time / RESERVE) > 0.0 for met, (out, down) in zip(gone, pushes)):
             return replace(cut, device=_timed(device, time))
     return cut
 

@@ -69,7 +69,7 @@ def filled(row, *, whole=True):
     tuple of FilledQueue
         Fewer where the user stopped it, or where one does not hold.
     """
-    found = []
+    found: list[FilledQueue] = []
 
     def denied(one):
         return _denied((*found, one), row.least)

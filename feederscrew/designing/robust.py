@@ -3,6 +3,7 @@
 import math
 from collections import Counter
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import shapely
@@ -55,7 +56,7 @@ def drawn_bowl(bowl, every, rng):
 
 def _drawn_device(device, every, rng):
     """A device whose every length is off by up to CUT."""
-    more = {}
+    more: dict[str, Any] = {}
     if device.like and not device.senses:  # an opening
         device = replace(device, corners=opening(device, every), like=())
     elif device.like:  # a sensor: by how much a part may differ that it takes for the wanted one
@@ -187,7 +188,7 @@ def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, run):
         A draw holds where what is wanted leaves as wanted, and nothing of the others leaves or stays. Each
         draw tries the wanted orientation and some others, drawn by their shares.
     """
-    held, wrong, speeds, done = 0, Counter(), [], 0
+    held, wrong, speeds, done = 0, Counter[str](), [], 0
     try:
         for draw in range(draws):
             faults, speed = _draw(

@@ -64,7 +64,7 @@ class Tried:
     def joined(self, other):
         """Return what both trials of one bowl show, of different orientations."""
         names = ("rows", "parts", "right", "wrong", "held")
-        both = {name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in names}
+        both: dict = {name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in names}
         speeds = [one.velocity for one in (self, other) if one.velocity > 0.0]
         return replace(
             self,
@@ -168,8 +168,9 @@ def single(part, bowl, known, shares, wanted, *, rows, each, run):
         np.isin(seen.fates, HELD),
     )]  # fmt: skip
     moving = seen.velocities[np.isfinite(seen.velocities) & (seen.velocities > 0.0)]
+    parts, right, wrong, held = (np.array(one) for one in count)
     return Tried(
-        known, shares, rows, *(np.array(one) for one in count),
+        known, shares, rows, parts, right, wrong, held,
         places=tuple(_places(seen, one) for one in own),
         velocity=float(moving.mean()) if len(moving) else 0.0,
         state=states[0], states=states, deepest=float(seen.depths.max(initial=0.0)),
@@ -179,7 +180,7 @@ def single(part, bowl, known, shares, wanted, *, rows, each, run):
 
 def _places(seen, own):
     """Where parts ended that did not leave, and how: {'returned at gap': 2}."""
-    found = {}
+    found: dict[str, int] = {}
     for n in np.flatnonzero(own & ~np.isin(seen.fates, (course.PASSED, course.TURNED))):
         name = (
             f"{course.FATES[seen.fates[n]].replace('_', ' ')} at {seen.stations[seen.ended[n]].device.kind}"

@@ -37,7 +37,7 @@ def arrived(aspects, found, seed):
     parts = found.shaken.parts
     if not np.isfinite(found.p).all():
         return replace(aspects, warnings=(*aspects.warnings, NOTHING))
-    said = () if found.settled else (UNDECIDED.format(found.reason),)
+    said: tuple[str, ...] = () if found.settled else (UNDECIDED.format(found.reason),)
     said += (STOPPED.format(parts),) if found.shaken.partial else ()
     rule = f"fed onto the moving floor, {parts} parts, seed {seed}"
     low, high = launched(found.p, found.low, found.high, aspects.stable)

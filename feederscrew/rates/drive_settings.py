@@ -1,6 +1,7 @@
 """Settings of the drive that give a wanted rate, the gentle ones first."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -90,7 +91,7 @@ def solutions(bowl, target, density, *, rough=None, worst=False, progress=None):
         raise FeederError("track.climb", "is steeper than friction holds", "lower the climb")
     starts = [(look, value) for look in looks for value in look.starts(target / density(None))]
     likely, others = _led(starts, target, rough)
-    found, near = [], []
+    found, near = [], list[Solution]()
     for count, (look, value) in enumerate(likely + others):
         if near and count >= len(likely):
             break
@@ -108,7 +109,8 @@ def _led(starts, target, rough):
     """Where fewer parts lead from each start, none beside another: those LED to the rate, and the others."""
     if rough is None:
         return starts, []
-    likely, others = [], []
+    likely: list[tuple[Any, float]] = []
+    others: list[tuple[Any, float]] = []
     for look, value in starts:
         value, rate = _lead(look, value, target, rough)
         if all(key != look.key or abs(value - near) > ALIKE * near for key, near in _places(likely + others)):
@@ -160,7 +162,7 @@ def _settled(look, value, target, density, close=CLOSE):
 
 def _apart(found, target):
     """Those of each key that are no other's neighbour, the nearest to the target of such neighbours."""
-    kept = []
+    kept: list[Solution] = []
     for one in sorted(found, key=lambda one: abs(one.rate - target)):
         others = [other.value for other in kept if other.key == one.key]
         if all(abs(one.value - other) > ALIKE * other for other in others):

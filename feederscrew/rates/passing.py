@@ -29,7 +29,7 @@ def places(known, counts):
     """
     stations = {name: place for place, name in enumerate(known.names)}
     once = {kind: known.stations.index(kind) for kind in known.stations if known.stations.count(kind) == 1}
-    found = []
+    found: list[int] = []
     for line, name in zip(counts.lines, counts.names):
         place, where = (once | stations).get(name), f"{counts.source}:{line}"
         if place is None:

@@ -66,7 +66,7 @@ def tangle(part, friction, seed=1):
     closed = mouth < section if np.isfinite(mouth) else handles(grid.solid) > 0
     most = LOOSE if closed else 1.0
     pulled = Pulled(solid, grid, length, friction)
-    found = [pulled.tried(*pose, most) for pose in poses(grid, np.random.default_rng(seed))]
+    found = [pulled.tried(turn, place, most) for turn, place in poses(grid, np.random.default_rng(seed))]
     found = [one for one in found if one is not None and HELD <= one[3] / one[2] <= most]
     mouth = mouth if mouth >= section else np.nan
     if not found:
@@ -116,7 +116,7 @@ def _within(grid, points):
 
 def _apart(made, radius):
     """The first of the poses of which none is like one before it."""
-    found = []
+    found: list[tuple[np.ndarray, np.ndarray]] = []
     for _, turn, place in made:
         differs = (
             vectors.length(place - other) + radius * np.abs(turn - spun).max() > BESIDE * radius
