@@ -36,11 +36,11 @@ class Search:
     shares_given: bool = False  # the user says what arrives
 
     @property
-    def spent(self):
+    def spent(self) -> bool:
         """Whether the budget of trials is used up."""
         return len(self.attempts) >= min(self.request.budget, self.most)
 
-    def avoid(self, proposal, tried):
+    def avoid(self, proposal: proposals.Proposal, tried: trying.Tried) -> None:
         """Note the devices of a chain at which what is wanted is lost; rails are the only way to hang."""
         lost = {cut.device.kind for cut in proposal.cuts if not cut.device.hangs}
         kinds = sorted(kind for kind in lost if proposals.lost_at(tried, kind))
@@ -48,7 +48,7 @@ class Search:
         self.avoided[proposal.row] = tuple(dict.fromkeys((*known, *kinds)))
 
     @property
-    def best_rate(self):
+    def best_rate(self) -> float:
         """The most that a clean attempt would deliver [1/s]."""
         return max((one.attempt.rate for one in self.passed), default=0.0)
 
