@@ -41,9 +41,11 @@ def report():
 
 def requirements():
     """Libraries that are always needed, and those of each extra by its name."""
-    needed, extras = [], {}
+    extras: dict[str, list[str]] = {}
+    needed = []
     for line in metadata.requires(DISTRIBUTION) or []:
-        name, extra = NAME.match(line)[0], EXTRA.search(line)
+        named, extra = NAME.match(line), EXTRA.search(line)
+        name = named[0] if named else line
         if extra is None:
             needed.append(name)
         elif name != DISTRIBUTION and extra[1] not in DEVELOPERS:

@@ -17,7 +17,7 @@ def held_back():
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    caught = []
+    caught: list[tuple] = []
 
     def catch(*received):
         if caught:

@@ -66,7 +66,7 @@ class Fence(click.Group):
         """In the order of the pipeline, not of the alphabet."""
         return list(self.commands)
 
-    def main(self, args=None, **extra):
+    def main(self, args=None, **extra):  # type: ignore[override]  # it returns in no mode
         """Run one command line and leave the interpreter."""
         arguments = list(sys.argv[1:] if args is None else args)
         _take_any_name()
@@ -117,7 +117,8 @@ def _without_stdout(status):
 def _of_the_system(error):
     """One line of what the system refuses: a full disk, a folder gone, a name it cannot take."""
     if isinstance(error, UnicodeError):
-        return f"a name or text: cannot be converted ({error.reason}) - rename the file in plain letters"
+        reason = getattr(error, "reason", error)  # only those of a codec have one
+        return f"a name or text: cannot be converted ({reason}) - rename the file in plain letters"
     where = error.filename or "output"
     return f"{where}: cannot be read or written ({error.strerror or error}) - check the disk and permissions"
 
@@ -134,7 +135,7 @@ def _lines(error, command):
 def _of_options(fault, options):
     if not isinstance(fault, ArgumentError):
         return fault.lines
-    name, *rest = fault.where.split(" ", 1)
+    name, *rest = str(fault.where).split(" ", 1)
     where = " ".join([options.get(name, "--" + name.replace("_", "-")), *rest])
     return (f"{where}: {fault.what} - {fault.mend}",)
 

@@ -31,7 +31,7 @@ class Named(click.Option):
 
     def get_help_record(self, context):
         """The help with the names behind it."""
-        shown = self.help
+        shown = self.help or ""
         self.help = f"{shown.removesuffix('.')}: {', '.join(self.names())}."
         try:
             return super().get_help_record(context)

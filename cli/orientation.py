@@ -1,5 +1,7 @@
 """The options that say which parts are wanted: shared by the commands that count them."""
 
+from typing import Any
+
 import click
 
 from feederscrew_cli import options, quantity, waiting
@@ -97,7 +99,7 @@ def arriving(out, part, taken, rule):
     """Return a function from a bowl to what ``shares`` returns of it; it shows how far the first one is."""
     from feederscrew.studies import rate as study
 
-    known = {}
+    known: dict[Any, Any] = {}  # Shares by their Bowl
 
     def found(bowl):
         if bowl not in known:
@@ -121,8 +123,8 @@ def few(part, taken, rule):
 def choice(taken):
     """Return the keywords of ``studies.rate.shares`` that the options name; a wrong call if two clash."""
     asked = click.get_current_context().get_parameter_source("rule") is click.core.ParameterSource.COMMANDLINE
-    others = [("--launch", taken["launch"]), ("--rule", asked), ("--fed", taken["fed"])]
-    others = [name for name, given in others if given]
+    ways = [("--launch", taken["launch"]), ("--rule", asked), ("--fed", taken["fed"])]
+    others = [name for name, given in ways if given]
     if taken["probabilities"] is not None and others:
         raise click.UsageError(f"--probabilities takes the place of {others[0]} - leave one of them out")
     if taken["launch"] is not None and taken["fed"] is not None:

@@ -6,6 +6,7 @@ import sys
 import textwrap
 import time
 from dataclasses import dataclass, field
+from typing import Any
 
 import click
 
@@ -170,7 +171,7 @@ def folded(text, width):
     """Return a text in lines of so many letters, what follows set in; as it stands without a width."""
     if width is None or len(text) <= width:
         return text
-    whole = {"break_long_words": False, "break_on_hyphens": False}
+    whole: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
     return textwrap.fill(text, width, subsequent_indent="  ", **whole)
 
 

@@ -6,9 +6,10 @@ import re
 import time
 from concurrent.futures import CancelledError
 from itertools import islice
+from typing import Any
 
 from feederscrew import __version__
-from feederscrew.batch.task import Outcome, libraries
+from feederscrew.batch.task import Outcome, Task, libraries
 from feederscrew.batch.workers import work
 from feederscrew.errors import ArgumentError, FeederError
 
@@ -86,7 +87,7 @@ class Cluster:
                 raise self._fault(f"{worker} has another version of {', '.join(odd)}")
 
     def _gathered(self, client, tasks):
-        running = {}
+        running: dict[Any, Task] = {}  # by its future
         while True:
             with self._attended():
                 room = max(1, AHEAD * sum(client.nthreads().values())) - len(running)

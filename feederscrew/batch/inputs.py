@@ -45,7 +45,7 @@ def gather(sources, configs=(), overrides=()):
     FeederError, Faults
         If a folder or a pattern holds no part, or a list or a bowl cannot be used.
     """
-    faults = []
+    faults: list[FeederError] = []
     wanted = [path for config in configs for path in _expanded(config, CARDS, "bowl")] or [None]
     rows = [row for source in sources for row in _rows(source, faults)]
     lines = dict.fromkeys(wanted, "")
@@ -117,7 +117,7 @@ def _there(path):
 
 def _once(paths):
     """Keep each file by its shortest way: links between folders may lead round in a circle."""
-    shortest = {}
+    shortest: dict[tuple[Path, str], str] = {}
     for path in sorted(paths, key=lambda path: (len(Path(path).parts), path)):
         shortest.setdefault((Path(path).parent.resolve(), Path(path).name), path)
     return sorted(shortest.values())
@@ -155,7 +155,8 @@ def _named(requests):
     """Give the requests folder names that differ on every file system."""
     several = len({request.conditions for request in requests}) > 1
     labels = [_label(request, several) for request in requests]
-    taken, named = set(map(_folded, labels)), set()
+    taken = set(map(_folded, labels))
+    named: set[str] = set()
     found = []
     for request, label in zip(requests, labels):
         name = _unlike(label, named, taken)

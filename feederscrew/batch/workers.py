@@ -9,7 +9,7 @@ import signal
 from multiprocessing import forkserver, resource_tracker
 from multiprocessing.connection import wait
 
-from feederscrew.batch.task import Outcome
+from feederscrew.batch.task import Outcome, Task
 
 ATTEMPTS = 3  # of a part whose worker dies under it
 LIFETIME = 200  # parts of one process: what libraries leak goes with it
@@ -54,7 +54,9 @@ class Processes:
         ------
         Outcome
         """
-        tasks, again, failures, crew = iter(tasks), [], [], []
+        again: list[Task] = []
+        crew: list[_Worker] = []
+        tasks, failures = iter(tasks), []
         try:
             while self._busy(crew, tasks, again):
                 for worker in _ready(crew):
@@ -103,11 +105,10 @@ class Processes:
             task = again.pop() if again else next(tasks, None)
             if task is None:
                 break
+            worker = idle[0] if idle else _Worker(self.context, self.job)
             if not idle:
-                crew.append(idle := _Worker(self.context, self.job))
-            else:
-                idle = idle[0]
-            idle.give(task)
+                crew.append(worker)
+            worker.give(task)
         return [w for w in crew if w.task is not None]
 
 

@@ -27,7 +27,7 @@ class SheetLine:
     sample: float | None  # parts, or seconds
 
     @property
-    def ends(self):
+    def ends(self) -> tuple[float, float]:
         """Ends within which the measured value agrees: those of the sheet, or of a sample of its size."""
         low, high = self.low, self.high
         if self.quantity == YIELD:
@@ -38,7 +38,7 @@ class SheetLine:
         return (0.0 if low is None else low), (float("inf") if high is None else high)
 
     @property
-    def agrees(self):
+    def agrees(self) -> bool | None:
         """Whether it does what was computed, or better; None where nobody measured."""
         if self.measured is None:
             return None
@@ -48,7 +48,7 @@ class SheetLine:
         return self.measured <= high if self.quantity == JAMS else low <= self.measured <= high
 
 
-def is_sheet(path):
+def is_sheet(path: str | Path) -> bool:
     """Return whether a file is an acceptance sheet, by its first line."""
     try:
         with Path(path).open(encoding="utf-8-sig", newline="") as file:
@@ -57,7 +57,7 @@ def is_sheet(path):
         return False
 
 
-def sheet(path):
+def sheet(path: str | Path) -> tuple[SheetLine, ...]:
     """Read an acceptance sheet, as ``feeder design`` writes it and someone has filled it in.
 
     Parameters
@@ -76,10 +76,10 @@ def sheet(path):
     lines = []
     with Path(path).open(encoding="utf-8-sig", newline="") as file:
         for place, row in enumerate(csv.DictReader(file), start=2):
-            values = {name: _number(path, place, name, row.get(name)) for name in HEAD if name not in TEXT}
+            values: dict = {n: _number(path, place, n, row.get(n)) for n in HEAD if n not in TEXT}
             if values["computed"] is None:
                 raise FeederError(f"{path}:{place}", "has no computed value", "leave that column as it was")
-            texts = {name: (row.get(name) or "").strip() for name in TEXT}
+            texts: dict = {name: (row.get(name) or "").strip() for name in TEXT}
             lines.append(SheetLine(**texts, **values))
     if all(line.measured is None for line in lines):
         raise FeederError(str(path), "nothing was measured", "fill in the column 'measured'")
@@ -89,7 +89,7 @@ def sheet(path):
 TEXT = ("quantity", "fill", "unit")
 
 
-def _number(path, place, name, text):
+def _number(path: str | Path, place: int, name: str, text: str | None) -> float | None:
     """A cell as a number; None where it is empty."""
     if text is None or not text.strip():
         return None

@@ -1,13 +1,20 @@
 """What other commands make of a design: the chain as a study of tooling, the machine below the bowl."""
 
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl import unbalance
-from feederscrew.bowl.settings import of_device
+from feederscrew.bowl.record import Bowl, Machine
+from feederscrew.bowl.settings import Setting, of_device
+from feederscrew.designing.proposals import Proposal
+from feederscrew.designing.record import DesignRequest, DesignStudy
 from feederscrew.errors import FeederError
+from feederscrew.part.record import Part
+from feederscrew.rates.stream import Orientations
+from feederscrew.resting.aspects import Aspects
 from feederscrew.solidbowl.materials import STEEL
 from feederscrew.solidbowl.plan import CHORD
 from feederscrew.studies import bowl as machines
@@ -30,7 +37,16 @@ TRACK = (
 )
 
 
-def tooled(part, bowl, aspects, ways, weights, proposal, request, margin):
+def tooled(
+    part: Part,
+    bowl: Bowl,
+    aspects: Aspects,
+    ways: Orientations,
+    weights: np.ndarray,
+    proposal: Proposal,
+    request: DesignRequest,
+    margin: float,
+) -> ToolingStudy | None:
     """Return a chain as `feeder tooling` would have found it; None without one.
 
     Parameters
@@ -73,7 +89,7 @@ class Built:
     why: str = ""  # there is none
 
 
-def built(study, settings):
+def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     """Return the machine below the bowl of a design, sized for it, and that bowl as a solid of steel.
 
     Parameters
@@ -104,7 +120,7 @@ def built(study, settings):
     return Built(sheet, _drawn(sheet, sized), why)
 
 
-def _drawn(sheet, sized):
+def _drawn(sheet: MachineSheet, sized: MachineSheet) -> MachineSheet | None:
     """The sheet with the solid, and how its mass lies about the axis; None without one."""
     if sized.solid is None:
         return None
@@ -112,7 +128,7 @@ def _drawn(sheet, sized):
     return replace(sheet, bowl=replace(sheet.bowl, machine=under), order=sized.order, solid=sized.solid)
 
 
-def _sized(settings, study):
+def _sized(settings: Sequence[Setting], study: DesignStudy) -> tuple[MachineSheet, str]:
     """The bowl of a design, with its solid, or else why there is none."""
     wanted = solidbowl.asked(settings, solid=True, material=STEEL, chord=CHORD)
     try:
@@ -121,11 +137,11 @@ def _sized(settings, study):
         return machines.bowl(settings, study.part, study.request.target), str(fault)
 
 
-def _texts(section, record, rows):
+def _texts(section: str, record: object, rows: Iterable[tuple[str, float, str]]) -> list[str]:
     return [f"{section}.{name}={getattr(record, name) / unit:.9g} {text}" for name, unit, text in rows]
 
 
-def _machine(machine):
+def _machine(machine: Machine) -> Iterator[tuple[str, str]]:
     yield "bowl_mass", f"{machine.bowl_mass:.6g} kg"
     yield "bowl_inertia", f"{machine.bowl_inertia:.6g} kg m2"
     yield "base_mass", f"{machine.base_mass:.6g} kg"

@@ -2,6 +2,7 @@
 
 import functools
 import math
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +13,8 @@ from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.errors import ConfigError
 from feederscrew.machine import sizing
 from feederscrew.machine.stroke import greatest_amplitude
+from feederscrew.part.record import Part
+from feederscrew.resting.aspects import Aspects
 
 CALM = 0.9  # throw number below which no part hops, with a reserve for the drive's own scatter
 HOPPING = (1.2, 1.5, 1.8)  # throw numbers where no tooling has to be met lying
@@ -37,10 +40,18 @@ class PlainBowl:
 
     bowl: Bowl
     given: frozenset[str]
-    size: sizing.Size
+    size: sizing.Size | None  # None once the bowl has changed
 
 
-def section(part, aspects, plain, given, *, diameter=None, bank=BANKS[0]):
+def section(
+    part: Part,
+    aspects: Aspects,
+    plain: Bowl,
+    given: Collection[str],
+    *,
+    diameter: tuple[float, float] | None = None,
+    bank: float = BANKS[0],
+) -> PlainBowl:
     """Return a bowl that is large enough for every way a part lies.
 
     Parameters
@@ -76,11 +87,11 @@ def section(part, aspects, plain, given, *, diameter=None, bank=BANKS[0]):
     return PlainBowl(replace(plain, track=track, devices=()), frozenset(given), size)
 
 
-def _tenths(value, step):
+def _tenths(value: float, step: float) -> float:
     return float(np.ceil(value / step - 1e-9) * step)
 
 
-def driven(made, velocity, *, hops=False):
+def driven(made: PlainBowl, velocity: float, *, hops: bool = False) -> Bowl:
     """Return a bowl whose drive carries a point mass at a velocity, or as near to it as it does calmly.
 
     Parameters
@@ -108,7 +119,8 @@ def driven(made, velocity, *, hops=False):
     """
     if "drive.amplitude" in made.given or "drive.peak_to_peak" in made.given:
         return made.bowl
-    tried, velocity = [], velocity if hops else max(velocity, LEAST)
+    tried: list[tuple[float, int, Bowl]] = []
+    velocity = velocity if hops else max(velocity, LEAST)
     for bowl in _drives(made, hops):
         fastest = _fast(bowl)
         if fastest >= velocity:
@@ -117,7 +129,7 @@ def driven(made, velocity, *, hops=False):
     return max(tried)[2]
 
 
-def _drives(made, hops):
+def _drives(made: PlainBowl, hops: bool) -> Iterator[Bowl]:
     """Bowls whose drive is as strong as it may be, the simplest first."""
     plain, given = made.bowl, made.given
     kinds = [(CALM, *row) for row in STRAIGHT]
@@ -137,13 +149,13 @@ def _drives(made, hops):
         yield with_amplitude(bowl, amplitude)
 
 
-def with_amplitude(bowl, amplitude):
+def with_amplitude(bowl: Bowl, amplitude: float) -> Bowl:
     """Return a bowl at another amplitude [m], rounded to a micrometre."""
     rounded = float(np.floor(amplitude / STROKE_STEP + 1e-6) * STROKE_STEP)
     return replace(bowl, drive=replace(bowl.drive, amplitude=rounded))
 
 
-def _slowed(bowl, velocity):
+def _slowed(bowl: Bowl, velocity: float) -> Bowl:
     """The bowl at the least amplitude that is as fast as that, and no stronger than it was."""
     low, high = 0.0, bowl.drive.amplitude
     for _ in range(HALVINGS):
@@ -152,36 +164,36 @@ def _slowed(bowl, velocity):
     return with_amplitude(bowl, min(high + STROKE_STEP, bowl.drive.amplitude))
 
 
-def _fast(bowl):
+def _fast(bowl: Bowl) -> float:
     """The velocity [m/s] that may be asked of a bowl: its own, or less where the worst friction slows it."""
     return min(speed(bowl), slowest(bowl) / STEADY)
 
 
-def slowest(bowl):
+def slowest(bowl: Bowl) -> float:
     """Return the velocity of the point mass [m/s] at the worst friction."""
     return min(speed(rubbed(bowl, share)) for share in WORST)
 
 
-def kept(bowl):
+def kept(bowl: Bowl) -> float:
     """Return the share [1] of its velocity that a bowl keeps at the worst friction; 0 where it has none."""
     own = speed(bowl)
     return min(slowest(bowl) / own, 1.0) if own > 0.0 else 0.0
 
 
-def rubbed(bowl, share):
+def rubbed(bowl: Bowl, share: float) -> Bowl:
     """Return a bowl with a share of its friction."""
     values = {name: getattr(bowl.friction, name) for name in vars(bowl.friction)}
-    scaled = {name: None if value is None else value * share for name, value in values.items()}
+    scaled: dict = {name: None if value is None else value * share for name, value in values.items()}
     return replace(bowl, friction=replace(bowl.friction, **scaled))
 
 
-def speed(bowl):
+def speed(bowl: Bowl) -> float:
     """Return the velocity of the point mass [m/s]; 0 where the bowl does not convey."""
     return _speed(replace(bowl, devices=()))
 
 
 @functools.lru_cache(maxsize=4096)
-def _speed(bowl):
+def _speed(bowl: Bowl) -> float:
     try:
         found = answer.answer(bowl).velocity
     except ConfigError:

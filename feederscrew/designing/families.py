@@ -87,7 +87,7 @@ def family(parts, plain, given, request, *, told=None, before=None):
     named_apart(parts)
     told = told or (lambda text: None)
     plain, given, first = _common(parts, plain, frozenset(given), request)
-    found = {}
+    found: dict[int, DesignStudy] = {}
     for k in (first, *(k for k in range(len(parts)) if k != first)):
         told(f"{parts[k].name}:")
         lead = found.get(first)
@@ -158,7 +158,7 @@ def common_limits(chains):
         A value each, None of what has no number; that of one of the chains where all admit it, else the
         middle of what they admit. None where some device has no such value.
     """
-    found = []
+    found: list[float | None] = []
     for cuts in zip(*chains, strict=True):
         own = [cut.device for cut in cuts]
         if own[0].senses or not own[0].bound:

@@ -1,20 +1,34 @@
 """The loop: an orientation and its chain, a short trial, what the trial denies changed, and the proof."""
 
+from collections.abc import Callable, Collection
 from dataclasses import replace
 
+from feederscrew.bowl.record import Bowl
 from feederscrew.designing import beside, calm_drive, exploring, nearest, proposals, queues, trying
 from feederscrew.designing.hazards import risks
-from feederscrew.designing.record import DRAWS_HELD, RATE_KEPT, DesignStudy
+from feederscrew.designing.record import DRAWS_HELD, RATE_KEPT, DesignRequest, DesignStudy, FilledQueue
 from feederscrew.designing.robust import robust_run
-from feederscrew.designing.searching import Search
+from feederscrew.designing.searching import Candidate, Search
 from feederscrew.dropping.plate.drive import throw_number
+from feederscrew.part.record import Part
+from feederscrew.studies.rate import Shares
 from feederscrew.trial.result import TrialRun
 
 PROVED = 3  # designs that go through draws and queue
 FASTER = 1.3  # times as fast, where draws lose what is wanted: what creeps over a slot falls in late
+Proofs = list[tuple[DesignStudy, Candidate]]
 
 
-def design(part, plain, given, request, *, known=None, told=None, before=None):
+def design(
+    part: Part,
+    plain: Bowl,
+    given: Collection[str],
+    request: DesignRequest,
+    *,
+    known: Shares | None = None,
+    told: Callable[[str], None] | None = None,
+    before: Callable[[], None] | None = None,
+) -> DesignStudy:
     """Design a bowl that brings a part at a rate, and try it.
 
     Parameters
@@ -44,7 +58,7 @@ def design(part, plain, given, request, *, known=None, told=None, before=None):
     """
     search = Search(part, request, plain, frozenset(given), told or (lambda text: None), known, before=before)
     search.shares_given = known is not None
-    proofs = []
+    proofs: Proofs = []
     try:
         for candidate in exploring.candidates(search):
             _prove(search, candidate, proofs)
@@ -57,15 +71,17 @@ def design(part, plain, given, request, *, known=None, told=None, before=None):
     return replace(best, attempts=tuple(search.attempts), nearest=nearest.nearest(best, search))
 
 
-def _best(search, proofs):
+def _best(search: Search, proofs: Proofs) -> DesignStudy:
     """The best design so far, as far as it was proved; the best attempt where none was."""
     if proofs:
         return max((study for study, _ in proofs), key=merit)
     candidate = _likeliest(search)
-    return _without(search) if candidate is None else _unproved(search, candidate, search.known)
+    if candidate is None or search.known is None:
+        return _without(search)
+    return _unproved(search, candidate, search.known)
 
 
-def _likeliest(search):
+def _likeliest(search: Search) -> Candidate | None:
     """The best of the attempts that deliver anything: clean, then of fewer faults, then faster."""
     order = [one for one in (*search.passed, *search.failed) if one.attempt.rate > 0.0]
     return max(
@@ -75,18 +91,18 @@ def _likeliest(search):
     )
 
 
-def merit(study):
+def merit(study: DesignStudy) -> tuple[bool, bool, float, float]:
     """Return what of two designs is the better one: holds, then clean, then the most parts."""
     return study.status == "holds", study.jams == 0, study.robust.share, study.delivered[1]
 
 
-def _settled(proofs):
+def _settled(proofs: Proofs) -> bool:
     """Whether no further design is to be proved: one holds, was stopped, or enough were."""
     study, _ = proofs[-1]
     return study.status == "holds" or study.partial or len(proofs) >= PROVED
 
 
-def _prove(search, candidate, proofs):
+def _prove(search: Search, candidate: Candidate, proofs: Proofs) -> None:
     """Prove a design as far as it holds; where it lacks nothing but speed, a faster one too."""
     study = proved(search, candidate, whole=False)
     proofs.append((study, candidate))
@@ -103,7 +119,7 @@ def _prove(search, candidate, proofs):
         proofs.append((proved(search, other, whole=False), other))
 
 
-def _make_whole(search, proofs):
+def _make_whole(search: Search, proofs: Proofs) -> None:
     """Prove the best design to the end, though it does not hold; the best attempt where none was proved."""
     if any(study.status == "holds" or study.partial for study, _ in proofs):
         return
@@ -112,14 +128,15 @@ def _make_whole(search, proofs):
         if whole(study):
             return
     else:
-        candidate = _likeliest(search)
-        if candidate is None:
+        likeliest = _likeliest(search)
+        if likeliest is None:
             return
+        candidate = likeliest
     proofs[:] = [one for one in proofs if one[1] is not candidate]
     proofs.append((proved(search, candidate, whole=True), candidate))
 
 
-def proved(search, candidate, *, whole):
+def proved(search: Search, candidate: Candidate, *, whole: bool) -> DesignStudy:
     """Return the design with its draws and its queue; unless ``whole``, only as far as it holds."""
     request, part = search.request, search.part
     known, candidate = exploring.at_its_drive(search, candidate)
@@ -145,11 +162,11 @@ def proved(search, candidate, *, whole):
     return replace(study, risks=found)
 
 
-def _queued(study, found):
+def _queued(study: DesignStudy, found: tuple[FilledQueue, ...]) -> DesignStudy:
     return replace(study, queues=found, partial=any(one.partial for one in found))
 
 
-def _unproved(search, candidate, known):
+def _unproved(search: Search, candidate: Candidate, known: Shares) -> DesignStudy:
     """The design before anything of it is proved."""
     bowl, ways, weights = candidate.bowl, candidate.ways, candidate.weights
     request, margin = search.request, proposals.HOWS[-1][0]
@@ -172,26 +189,26 @@ def _unproved(search, candidate, known):
     )
 
 
-def _counting(name, request):
+def _counting(name: str, request: DesignRequest) -> str:
     """The name of what leaves, with the aspects that count as it."""
     others = [one for one in request.up if one.casefold() != name.partition("@")[0].casefold()]
     return " or ".join((name, *others))
 
 
-def whole(study):
+def whole(study: DesignStudy) -> bool:
     """Return whether a design was proved to the end, holding or not."""
     followed = sum(one.seconds > 0.99 * queues.SECONDS for one in study.queues)
     return study.robust.draws >= study.request.draws and followed == len(queues.FILLS)
 
 
-def _static(search, candidate):
+def _static(search: Search, candidate: Candidate) -> float:
     """Wanted parts [1/s] that the static rule promises."""
     ways, weights = candidate.ways, candidate.weights
     gain = trying.gain(ways, weights, candidate.tried.states)
     return calm_drive.speed(candidate.bowl) * gain / float((weights * ways.lengths).sum())
 
 
-def _without(search):
+def _without(search: Search) -> DesignStudy:
     """What is said where nothing was proved."""
     source = "" if search.known is None else search.known.aspects.source(search.request.rule)
     return DesignStudy(

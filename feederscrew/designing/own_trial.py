@@ -1,6 +1,8 @@
 """The trial of what the static rule proposes: both verdicts side by side."""
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +12,9 @@ from feederscrew.designing.robust import denied
 from feederscrew.errors import FeederError
 from feederscrew.rates import stream
 from feederscrew.running import RunSettings
+from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.tooling.devices.kinds import KINDS, names
+from feederscrew.tooling.isolating.proposal import Design
 
 EACH = 2  # parts of each orientation
 BEST = 3  # designs of a table that are tried
@@ -35,7 +39,7 @@ class TriedDesign:
     faults: tuple[str, ...]  # what the trial denies, a sentence each
 
     @property
-    def sentence(self):
+    def sentence(self) -> str:
         """Both verdicts."""
         said = "the trial agrees" if not self.faults else "the trial denies it: " + "; ".join(self.faults)
         return (
@@ -44,7 +48,14 @@ class TriedDesign:
         )
 
 
-def own_trials(study, again=None, *, seed=1, jobs=1, before=None):
+def own_trials(
+    study: ToolingStudy,
+    again: Callable[[tuple[str, ...]], ToolingStudy] | None = None,
+    *,
+    seed: int = 1,
+    jobs: int = 1,
+    before: Callable[[], Any] | None = None,
+) -> ToolingStudy:
     """Try the chain of the orientation that was asked for, or the best three of a table.
 
     Parameters
@@ -75,22 +86,23 @@ def own_trials(study, again=None, *, seed=1, jobs=1, before=None):
     while ways and searched < SEARCHES and len(tried) < TRIES:
         kinds, searched = ways.pop(0), searched + 1
         other = again(kinds)
-        if not _isolates(other) or _devices(other.design) in [one.devices for one in tried]:
+        found = other.design
+        if found is None or not _isolates(found) or _devices(found) in [one.devices for one in tried]:
             continue
-        others, tried = [*others, other], (*tried, _tried(other, other.design, run))
-        if not tried[-1].faults and other.design.efficiency >= study.design.efficiency:
+        others, tried = [*others, other], (*tried, _tried(other, found, run))
+        if not tried[-1].faults and found.efficiency >= study.design.efficiency:
             break
-        ways += _ways_on(kinds, other.design) if tried[-1].faults else []
+        ways += _ways_on(kinds, found) if tried[-1].faults else []
     holds = [k for k, one in enumerate(tried) if not one.faults]
     taken = max(holds, key=lambda k: tried[k].static_efficiency, default=0)
     return replace(others[taken], trials=(tried[taken], *tried[:taken], *tried[taken + 1 :]))
 
 
-def _isolates(study):
-    return study.design.isolated and bool(study.design.cuts) and study.design.efficiency > 0.0
+def _isolates(found: Design) -> bool:
+    return found.isolated and bool(found.cuts) and found.efficiency > 0.0
 
 
-def _ways_on(without, found):
+def _ways_on(without: tuple[str, ...], found: Design) -> list[tuple[str, ...]]:
     """Kinds of devices to do without as well: each of a chain alone, the last one first, then all of them."""
     kinds = list(dict.fromkeys(cut.device.kind for cut in reversed(found.cuts)))
     kinds = [kind for kind in kinds if kind not in KEPT]
@@ -98,11 +110,11 @@ def _ways_on(without, found):
     return [(*without, *more) for more in every]
 
 
-def _devices(found):
+def _devices(found: Design) -> tuple[str, ...]:
     return tuple(f"{device.kind}: {device.text}" for device in found.devices)
 
 
-def _tried(study, one, run):
+def _tried(study: ToolingStudy, one: Design, run: RunSettings) -> TriedDesign:
     """One design with parts of its own, on a track of its own width."""
     study = study.on_its_width(one.wanted)
     bowl = replace(study.bowl, devices=one.devices)
@@ -129,7 +141,7 @@ def _tried(study, one, run):
     )
 
 
-def document(tried):
+def document(tried: Iterable[TriedDesign]) -> list[dict[str, Any]]:
     """Return TriedDesigns as a list of dicts."""
     return [
         {

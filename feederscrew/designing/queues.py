@@ -7,19 +7,20 @@ import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import trying
-from feederscrew.designing.record import PURE, RATE_KEPT, FilledQueue
+from feederscrew.designing.record import PURE, RATE_KEPT, DesignStudy, FilledQueue
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
 from feederscrew.running import RunSettings
-from feederscrew.trial.queue import GAPS, QueuePlan, queue_of
+from feederscrew.trial.queue import GAPS, QueuedParts, QueuePlan, queue_of
 
 FILLS = (("low", trying.LOW), ("normal", GAPS), ("high", 0.0))  # free way between parts over their length
 PARTS, SECONDS = 12, 60.0  # in a queue at a time; for so long
 FILLED = 20.0  # [s] in which the track has filled: no rate is judged before
 MORE = 3  # times as long again at the fill that brings least, at most, where that decides
 ADDED = ("seconds", "counted", "delivered", "right", "left", "returned", "jams", "climbs")
+Denied = Callable[[FilledQueue], bool]  # of what was seen so far: whether it is known not to hold
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +37,7 @@ class FollowedRow:
     told: Callable | None = None  # called with what is being followed, a sentence
     least: float = 0.0  # wanted parts [1/s] below which a fill does not hold
 
-    def followed(self, fill, gaps, seed, denied=None):
+    def followed(self, fill: str, gaps: float, seed: int, denied: Denied | None = None) -> FilledQueue:
         """Return the FilledQueue of PARTS that come with a mean free way of so many lengths between them.
 
         It ends as soon as ``denied`` says of what was seen so far, a FilledQueue, that it does not hold.
@@ -45,8 +46,8 @@ class FollowedRow:
             self.told(f"queue of {PARTS} at {fill} fill, {SECONDS:g} s")
         poses = trying.counted(self.known, self.states)
 
-        def ends(seen):
-            return denied(_counted(fill, gaps, seen, self.states))
+        def ends(seen: QueuedParts) -> bool:
+            return denied is not None and denied(_counted(fill, gaps, seen, self.states))
 
         seen = queue_of(
             self.part, self.bowl, self.aspects, self.known.lying, poses, self.shares,
@@ -55,7 +56,7 @@ class FollowedRow:
         return _counted(fill, gaps, seen, self.states)
 
 
-def filled(row, *, whole=True):
+def filled(row: FollowedRow, *, whole: bool = True) -> tuple[FilledQueue, ...]:
     """Follow a queue at each fill.
 
     Parameters
@@ -69,9 +70,9 @@ def filled(row, *, whole=True):
     tuple of FilledQueue
         Fewer where the user stopped it, or where one does not hold.
     """
-    found = []
+    found: list[FilledQueue] = []
 
-    def denied(one):
+    def denied(one: FilledQueue) -> bool:
         return _denied((*found, one), row.least)
 
     for name, gaps in FILLS:
@@ -83,7 +84,7 @@ def filled(row, *, whole=True):
     return tuple(found)
 
 
-def longer(row, study):
+def longer(row: FollowedRow, study: DesignStudy) -> tuple[FilledQueue, ...]:
     """Follow the queue that brings least for longer, where that decides what a minute cannot tell.
 
     How long is settled beforehand, so that it does not end when it happens to look well.
@@ -110,7 +111,7 @@ def longer(row, study):
     return found
 
 
-def minutes(study):
+def minutes(study: DesignStudy) -> int:
     """Return for how many times as long again a queue is to be followed: 0 where that decides nothing.
 
     The rate is undecided where it would hold with the same shares of more parts; purity, where what is
@@ -121,7 +122,7 @@ def minutes(study):
         return 0
     right, left, back = (sum(getattr(one, name) for one in found) for name in ("right", "left", "returned"))
     own, rate = study.slowest, study.delivered[0]
-    if not right:
+    if not right or own is None:
         return 0
     kept = [1.0 + k * own.seconds / study.queue_seconds for k in range(MORE + 1)]  # times as many parts
     lows = [float(wilson([right * more], (left + back) * more)[0][0]) for more in kept]
@@ -132,13 +133,13 @@ def minutes(study):
     return enough[0] if right >= PURE * left else MORE
 
 
-def _joined(first, second):
+def _joined(first: FilledQueue, second: FilledQueue) -> FilledQueue:
     """Both as one queue."""
     sums = {name: getattr(first, name) + getattr(second, name) for name in ADDED}
     return replace(first, **sums, partial=second.partial)
 
 
-def _denied(found, least):
+def _denied(found: tuple[FilledQueue, ...], least: float) -> bool:
     """Whether fills are none of a design that holds, whatever is seen of the last one and the next ones.
 
     One has jammed, more of another orientation have left than all of them may have at this pace, or the
@@ -151,7 +152,7 @@ def _denied(found, least):
     return bool(last.jams or left - right > (1.0 - PURE) * whole or slow)
 
 
-def _counted(name, gaps, seen, states):
+def _counted(name: str, gaps: float, seen: QueuedParts, states: tuple[int, ...]) -> FilledQueue:
     return FilledQueue(
         fill=name,
         gaps=gaps,

@@ -1,5 +1,6 @@
 """What is asked of a design, and what it stands on."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -39,11 +40,11 @@ class DesignRequest:
     jobs: int = 1
 
     @property
-    def run(self):
+    def run(self) -> RunSettings:
         """Return how its trials and draws run."""
         return RunSettings(self.seed, self.jobs)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check.of_an_aspect(self.aspect, self.heading)
         for name in ("up", "without"):  # names may come as a text
             object.__setattr__(self, name, listed(getattr(self, name)))
@@ -66,7 +67,7 @@ class Attempt:
     faults: tuple[str, ...]  # 'C@66 is stopped at profile'
 
     @property
-    def clean(self):
+    def clean(self) -> bool:
         """Whether only what is wanted leaves and nothing stays."""
         return self.efficiency > 0.0 and not self.faults
 
@@ -82,7 +83,7 @@ class RobustRun:
     partial: bool = False
 
     @property
-    def share(self):
+    def share(self) -> float:
         """Share of the draws that sort [1]; 0 of none."""
         return self.held / self.draws if self.draws else 0.0
 
@@ -105,14 +106,14 @@ class FilledQueue:
     partial: bool = False  # stopped by the user
 
     @property
-    def rate(self):
+    def rate(self) -> float:
         """Wanted parts [1/s]."""
         if not self.counted > 0.0 or not self.left:
             return 0.0
         return self.delivered / self.counted * self.right / self.left
 
     @property
-    def ends(self):
+    def ends(self) -> tuple[float, float]:
         """95 % interval of that rate [1/s]: of the share of what is offered that leaves right."""
         if not self.pace > 0.0:
             return 0.0, 0.0
@@ -120,12 +121,12 @@ class FilledQueue:
         return self.pace * low, self.pace * high
 
     @property
-    def offered(self):
+    def offered(self) -> int:
         """Whole parts of which something became."""
         return self.left + self.returned
 
     @property
-    def pace(self):
+    def pace(self) -> float:
         """Parts [1/s] that are offered; 0 where none leaves as wanted."""
         return self.rate * self.offered / self.right if self.right else 0.0
 
@@ -154,28 +155,28 @@ class DesignStudy:
     trials: tuple[TrialRun, ...] = ()  # its short trial: what is wanted, then the others
 
     @property
-    def devices(self):
+    def devices(self) -> tuple[Device, ...]:
         """Every device along the track."""
         return () if self.bowl is None else self.bowl.devices
 
     @property
-    def outcome(self):
+    def outcome(self) -> str:
         """Whether what leaves lies on the track or hangs by its head."""
         hangs = any(one.hangs for one in self.devices)
         return self.request.outcome if self.bowl is None else "hanging" if hangs else "lying"
 
     @property
-    def warnings(self):
+    def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
         return self.part.warnings
 
     @property
-    def slowest(self):
+    def slowest(self) -> FilledQueue | None:
         """The queue to which parts come most slowly: the lowest of fill; None without one."""
         return min(self.queues, key=lambda one: one.pace, default=None)
 
     @property
-    def delivered(self):
+    def delivered(self) -> tuple[float, float, float]:
         """Wanted parts [1/s] at the fill that brings least: value, low and high end.
 
         The share that leaves as wanted is that of all fills; the pace at which parts come is that fill's.
@@ -184,15 +185,16 @@ class DesignStudy:
             return 0.0, 0.0, 0.0
         right, offered = (sum(getattr(one, k) for one in self.queues) for k in ("right", "offered"))
         low, high = (float(end[0]) for end in wilson([right], offered))
-        return tuple(self.slowest.pace * share for share in (right / offered, low, high))
+        pace = self.slowest.pace
+        return pace * (right / offered), pace * low, pace * high
 
     @property
-    def worst(self):
+    def worst(self) -> float:
         """Wanted parts [1/s] at the fill that brings least and at the worst friction."""
         return self.delivered[0] * self.slowed
 
     @property
-    def purity(self):
+    def purity(self) -> tuple[float, float]:
         """Share of the wanted orientation in what left all queues [1], and its lower end; NaN of nothing."""
         right, left = (sum(getattr(one, name) for one in self.queues) for name in ("right", "left"))
         if not left:
@@ -200,46 +202,46 @@ class DesignStudy:
         return right / left, float(wilson([right], left)[0][0])
 
     @property
-    def jams(self):
+    def jams(self) -> int:
         """Parts that had to be taken out of the queues."""
         return sum(one.jams for one in self.queues)
 
     @property
-    def queue_seconds(self):
+    def queue_seconds(self) -> float:
         """Time that queues were followed [s]."""
         return float(sum(one.seconds for one in self.queues))
 
     @property
-    def jams_per_hour_high(self):
+    def jams_per_hour_high(self) -> float:
         """Upper end of the jams an hour: three more than were seen, in the time they were looked for."""
         return 3600.0 * (self.jams + 3.0) / self.queue_seconds if self.queue_seconds else np.inf
 
     @property
-    def trial_parts(self):
+    def trial_parts(self) -> int:
         """How many parts were tried one at a time."""
         return sum(one.parts for one in self.attempts)
 
     @property
-    def status(self):
+    def status(self) -> str:
         """One of three words."""
         if self.bowl is None or not self.delivered[0] > 0.0:
             return FALLS_SHORT if self.bowl is not None and (self.queues or self.partial) else NONE
         return HOLDS if not self.shortfalls else FALLS_SHORT
 
     @property
-    def shortfalls(self):
+    def shortfalls(self) -> tuple[str, ...]:
         """Where it does not do what was asked, a sentence each."""
         return tuple(_shortfalls(self))
 
     @property
-    def why(self):
+    def why(self) -> str:
         """Why it does not hold: where it falls short and the nearest that would hold; '' where it holds."""
         if self.status == HOLDS:
             return ""
         return "; ".join((*self.shortfalls, *self.nearest)) or "no orientation gets through its own trial"
 
 
-def _shortfalls(study):
+def _shortfalls(study: DesignStudy) -> Iterator[str]:
     minute, (purity, _) = 60.0, study.purity
     low = study.delivered[1]
     if study.bowl is None:
@@ -257,11 +259,11 @@ def _shortfalls(study):
             f"delivers {minute * study.delivered[0]:.3g}/min (at least {minute * low:.3g}) of the "
             f"{minute * study.request.target:.3g}/min asked for"
         )
-    for one in study.queues:
-        if one.ends[1] < RATE_KEPT * study.request.target:
+    for queue in study.queues:
+        if queue.ends[1] < RATE_KEPT * study.request.target:
             yield (
-                f"at {one.fill} fill {minute * one.rate:.3g}/min are delivered (at most "
-                f"{minute * one.ends[1]:.3g})"
+                f"at {queue.fill} fill {minute * queue.rate:.3g}/min are delivered (at most "
+                f"{minute * queue.ends[1]:.3g})"
             )
     if not purity >= PURE:
         text = "nothing left the queue" if np.isnan(purity) else f"purity {100.0 * purity:.3g} %"

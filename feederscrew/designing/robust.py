@@ -3,6 +3,7 @@
 import math
 from collections import Counter
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import shapely
@@ -56,7 +57,7 @@ def drawn_bowl(bowl, every, rng):
 
 def _drawn_device(device, every, rng):
     """A device whose every length is off by up to CUT."""
-    more = {}
+    more: dict[str, Any] = {}
     if device.like and not device.senses:  # an opening
         device = replace(device, corners=opening(device, every), like=())
     elif device.like:  # a sensor: by how much a part may differ that it takes for the wanted one
@@ -88,7 +89,8 @@ def _named(devices, every, drawn):
 
 def _meant(device, named, every):
     """The orientation of an aspect and heading [rad] that a device names."""
-    return every[place_of(every, *named, device.where, f"{device.kind} names")]
+    aspect, heading = named
+    return every[place_of(every, aspect, heading, device.where, f"{device.kind} names")]
 
 
 def opening(device, every):
@@ -186,7 +188,7 @@ def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, run):
         A draw holds where what is wanted leaves as wanted, and nothing of the others leaves or stays. Each
         draw tries the wanted orientation and some others, drawn by their shares.
     """
-    held, wrong, speeds, done = 0, Counter(), [], 0
+    held, wrong, speeds, done = 0, Counter[str](), [], 0
     try:
         for draw in range(draws):
             faults, speed = _draw(

@@ -1,6 +1,8 @@
 """A slot between rails that is made wider, where a trial loses what shall hang in it."""
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -8,12 +10,13 @@ from feederscrew.tooling.hanging import neck
 from feederscrew.tooling.isolating.chain import judged
 from feederscrew.tooling.isolating.rails import RAIL
 from feederscrew.tooling.isolating.shop_values import millimetres
+from feederscrew.tooling.orientations import Orientation
 
 STEP = 5e-5  # [m] to which a shop makes a value
 WIDER, HELD = 0.35, 0.8  # of what the head is wider than the slot; of the head, that a slot may be
 
 
-def widened(proposal, every):
+def widened(proposal: Any, every: Sequence[Orientation]) -> Any:
     """Return the proposal with a wider slot between its rails; None without rails that can be wider.
 
     A part lies askew along the wall: it comes to rails narrowed to its shank beside them, and slides on. The

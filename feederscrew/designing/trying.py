@@ -1,11 +1,17 @@
 """Short trials of a chain: what of each orientation leaves, how, and what names its device."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
+from feederscrew.bowl.record import Bowl
+from feederscrew.part.record import Part
 from feederscrew.rates import spacing, stream
+from feederscrew.running import RunSettings
 from feederscrew.tooling.hanging import Hanging
+from feederscrew.tooling.orientations import Orientation
 from feederscrew.trial import course
 
 SELDOM = 5e-3  # [1] orientations that come less often are left out
@@ -35,36 +41,36 @@ class Tried:
     seen: tuple = ()  # of Course: what was followed
 
     @property
-    def weights(self):
+    def weights(self) -> np.ndarray:
         """(R,) [1] shares of those tried, over their number of parts."""
         own = self.shares[self.rows]
         return own / max(own.sum(), 1e-300) / np.maximum(self.parts, 1)
 
     @property
-    def efficiency(self):
+    def efficiency(self) -> float:
         """Share of the parts offered that leaves as wanted [1]."""
         return float((self.weights * self.right).sum())
 
     @property
-    def carried(self):
+    def carried(self) -> float:
         """Share of the parts offered that leaves otherwise [1]."""
         return float((self.weights * self.wrong).sum())
 
     @property
-    def stopped(self):
+    def stopped(self) -> float:
         """Share of the parts offered that stays [1]."""
         return float((self.weights * self.held).sum())
 
     @property
-    def purity(self):
+    def purity(self) -> float:
         """Share of the wanted in what leaves [1]; NaN where nothing does."""
         total = self.efficiency + self.carried
         return self.efficiency / total if total > 0.0 else np.nan
 
-    def joined(self, other):
+    def joined(self, other: "Tried") -> "Tried":
         """Return what both trials of one bowl show, of different orientations."""
         names = ("rows", "parts", "right", "wrong", "held")
-        both = {name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in names}
+        both: dict = {name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in names}
         speeds = [one.velocity for one in (self, other) if one.velocity > 0.0]
         return replace(
             self,
@@ -76,7 +82,7 @@ class Tried:
         )
 
     @property
-    def rate(self):
+    def rate(self) -> float:
         """Wanted parts [1/s] that such a bowl delivers, from a row with the gaps that its devices need."""
         pitch = GAP * float((self.shares * self.known.lengths).sum()) + self.apart
         longest = GAP * float(np.mean([self.known.states[k].length for k in self.states]))
@@ -85,7 +91,7 @@ class Tried:
         )
 
 
-def wanted_states(known, rows):
+def wanted_states(known: stream.Orientations, rows: Sequence[int] | np.ndarray) -> tuple[int, ...]:
     """Return the states in which some rows leave, the first one first.
 
     Parameters
@@ -98,12 +104,12 @@ def wanted_states(known, rows):
     return tuple(dict.fromkeys(int(known.leaves_as[k]) for k in (rows[0], *others)))
 
 
-def wanted_rows(known, states):
+def wanted_rows(known: stream.Orientations, states: Sequence[int]) -> list[int]:
     """Return the rows that leave in one of some states as the static rule says."""
     return [k for k in range(len(known.lying)) if known.leaving[k, list(states)].sum() > 0.5]
 
 
-def counted(known, states):
+def counted(known: stream.Orientations, states: Sequence[int]) -> tuple[Orientation, ...]:
     """Return the poses in which parts may be found; of an aspect that counts beside another at any heading.
 
     Parameters
@@ -122,18 +128,28 @@ def counted(known, states):
     return tuple(replace(one, any_heading=one.aspect in names) for one in known.states)
 
 
-def gain(known, shares, states):
+def gain(known: stream.Orientations, shares: np.ndarray, states: Sequence[int]) -> float:
     """Return the share [1] of what comes that leaves in one of some states, as the static rule says."""
     return float((shares[:, None] * known.leaving[:, list(states)]).sum())
 
 
-def often(shares, rows=()):
+def often(shares: np.ndarray, rows: Sequence[int] = ()) -> list[int]:
     """Return the rows (R,) that come often enough to matter, the most frequent first; some in any case."""
     order = np.argsort(-shares, kind="stable")
     return [int(k) for k in order if shares[k] >= SELDOM or k in rows]
 
 
-def single(part, bowl, known, shares, wanted, *, rows, each, run):
+def single(
+    part: Part,
+    bowl: Bowl,
+    known: stream.Orientations,
+    shares: np.ndarray,
+    wanted: int | Sequence[int] | np.ndarray,
+    *,
+    rows: Any,
+    each: int,
+    run: RunSettings,
+) -> Tried:
     """Try parts one at a time.
 
     Parameters
@@ -168,8 +184,9 @@ def single(part, bowl, known, shares, wanted, *, rows, each, run):
         np.isin(seen.fates, HELD),
     )]  # fmt: skip
     moving = seen.velocities[np.isfinite(seen.velocities) & (seen.velocities > 0.0)]
+    parts, right, wrong, held = (np.array(one) for one in count)
     return Tried(
-        known, shares, rows, *(np.array(one) for one in count),
+        known, shares, rows, parts, right, wrong, held,
         places=tuple(_places(seen, one) for one in own),
         velocity=float(moving.mean()) if len(moving) else 0.0,
         state=states[0], states=states, deepest=float(seen.depths.max(initial=0.0)),
@@ -177,9 +194,9 @@ def single(part, bowl, known, shares, wanted, *, rows, each, run):
     )  # fmt: skip
 
 
-def _places(seen, own):
+def _places(seen: course.Course, own: np.ndarray) -> dict[str, int]:
     """Where parts ended that did not leave, and how: {'returned at gap': 2}."""
-    found = {}
+    found: dict[str, int] = {}
     for n in np.flatnonzero(own & ~np.isin(seen.fates, (course.PASSED, course.TURNED))):
         name = (
             f"{course.FATES[seen.fates[n]].replace('_', ' ')} at {seen.stations[seen.ended[n]].device.kind}"

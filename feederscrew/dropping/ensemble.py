@@ -104,7 +104,8 @@ def drop(shape, launch, rng, *, count=None, aim=None, jobs=1, steps=None, progre
 
     work = partial(_rounds, partial(_batch, shape, steps), starts, count, aim, progress or _unheard)
     done, interrupted = gather(work, jobs)
-    return Drops(*(check.frozen(np.concatenate(column)) for column in zip(*done)), interrupted)
+    faces, times, energies, restitutions = (check.frozen(np.concatenate(column)) for column in zip(*done))
+    return Drops(faces, times, energies, restitutions, interrupted)
 
 
 def tally(drops, rows, count, *, surface=False):

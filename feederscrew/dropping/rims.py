@@ -72,7 +72,7 @@ def _under(row, points):
 def _axes(edges, more):
     """Unit axes worth looking along, one of each pair of opposite ones."""
     borders = np.bincount(edges.facets[np.flatnonzero(edges.borders) // 3], minlength=len(edges.normals))
-    found = []
+    found: list[np.ndarray] = []
     for axis in (*edges.normals[borders > FEWEST], *more):
         if np.isfinite(axis).all() and all(np.abs(np.cross(axis, other)).max() > 1e-4 for other in found):
             found.append(np.asarray(axis))
@@ -128,7 +128,7 @@ def _even(lengths, turns):
     if smooth.all():
         return [(np.arange(count), True)]
     start = int(np.argmin(smooth))  # a corner that ends a run
-    found, run = [], []
+    found, run = [], list[int]()
     for k in range(1, count + 1):
         corner = (start + k) % count
         if smooth[corner] and (not run or abs(turns[corner] - turns[run[0]]) < EVEN * turns[run[0]]):
@@ -203,7 +203,7 @@ def true_heights(rims, edges, sinks, heights, radius):
         corners = np.unique(edges.origins[halves[edges.borders[halves]]])
         side = _side(rims, edges.vertices, corners, radius)
         if side is not None:
-            found[k] = _tangent_height(*side, radius)
+            found[k] = _tangent_height(side[0], side[1], radius)
     return found
 
 

@@ -210,8 +210,10 @@ def _summed(launches, length, principal, rows, runs, answers, partial):
         sides[3][n] = second * np.median(times[n][chosen])
     released = _upward(launches.attitudes[:count], np.eye(3))
     settled = (faces != one_drop.UNSETTLED).sum(axis=1)
-    arrays = (check.frozen(array) for array in (shares, best, *sides, settled, released))
-    return Tosses(runs, *arrays, partial)
+    shares, best, lain, places, spreads, seconds, settled, released = (
+        check.frozen(array) for array in (shares, best, *sides, settled, released)
+    )
+    return Tosses(runs, shares, best, lain, places, spreads, seconds, settled, released, partial)
 
 
 def _upward(quaternions, principal):

@@ -29,3 +29,9 @@ def components(i, j, count):
     links = csr_array((np.ones(len(i)), j[np.argsort(i)], starts), shape=(count, count))
     number, component = connected_components(links, directed=False)
     return number, component.astype(int)
+
+
+def component_of(pairs, count):
+    """Return of each node its component (count,) int; pairs (N, 2) int are the two ends of each link."""
+    first, second = pairs.T
+    return components(first, second, count)[1]

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 
 
-def joined(groups):
+def joined(groups) -> tuple[np.ndarray, np.ndarray]:
     """Return the members of groups in one array, and to which of them each belongs.
 
     Parameters

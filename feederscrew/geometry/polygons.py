@@ -139,7 +139,7 @@ def convex(points):
     order = np.lexsort((points[:, 1], points[:, 0]))
     chains = []
     for places in (order, order[::-1]):
-        chain = []
+        chain: list[int] = []
         for k in places.tolist():
             while len(chain) > 1 and _right(points[chain[-2]], points[chain[-1]], points[k]):
                 chain.pop()

@@ -230,7 +230,8 @@ def misfit(columns, right):
     -----
     Modified Gram-Schmidt, each column freed twice from those before it.
     """
-    basis, left = [], np.array(right, float)
+    basis: list[np.ndarray] = []
+    left = np.array(right, float)
     for column in np.asarray(columns, float).T:
         free = column
         for axis in basis * 2:

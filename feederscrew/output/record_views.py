@@ -99,14 +99,14 @@ def _chosen(record, found, name, what):
 def _document(record):
     """Numbers and words of the document that a command writes where it writes no table."""
     for one in _offered(record):
-        if isinstance(one, offers.Offer) and one.name.endswith(".json"):
+        if isinstance(one, offers.Offer) and one.name.endswith(".json") and one.view is not None:
             return {key: value for key, value in one.view().items() if _single(value)}
     return {}
 
 
 def _numbers(record, before=""):
     """Fields of a record and of those in it by their names: single ones, and arrays."""
-    found = {}
+    found: dict[str, Any] = {}
     for field in fields(record):
         value = getattr(record, field.name)
         if is_dataclass(value):

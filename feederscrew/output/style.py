@@ -3,10 +3,12 @@
 import io
 import re
 
+import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
 from matplotlib.figure import Figure
 from matplotlib.font_manager import findfont, get_font
 from matplotlib.image import imsave
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patheffects import withStroke
 
 from feederscrew.output import DPI
@@ -32,9 +34,9 @@ class _Writer(RendererAgg):
         super().__init__(*size)
         self._known = {}  # texts and fonts: as they can be drawn, and width, height, descent
 
-    def draw_text(self, gc, x, y, s, prop, angle, **more):
+    def draw_text(self, gc, x, y, s, prop, *angle, **more):
         more["ismath"] = False  # a name with a dollar sign is no formula
-        super().draw_text(gc, x, y, self._drawable(s, prop)[0], prop, angle, **more)
+        super().draw_text(gc, x, y, self._drawable(s, prop)[0], prop, *angle, **more)
 
     def get_text_width_height_descent(self, s, prop, ismath):
         return self._drawable(s, prop)[1]
@@ -76,8 +78,10 @@ class _Canvas(FigureCanvasAgg):
 class _Pixels(_Canvas):
     """What a picture is that was drawn already: its file has its pixels; axes would take 130 MB for them."""
 
-    def print_png(self, buffer, *, metadata=None, **_):
-        imsave(buffer, self.image, format="png", dpi=DPI, metadata=metadata)
+    image: np.ndarray  # (rows, columns, 3) uint8
+
+    def print_png(self, filename_or_obj, *, metadata=None, **_):
+        imsave(filename_or_obj, self.image, format="png", dpi=DPI, metadata=metadata)
 
 
 def figure(width=6.4, height=4.0):
@@ -88,8 +92,8 @@ def figure(width=6.4, height=4.0):
     width, height : float [in]
         Of the page; a PNG has ``DPI`` pixels an inch.
     """
-    made = Figure(figsize=(width, height), dpi=DPI, layout="constrained", facecolor="white")
-    made.get_layout_engine().set(w_pad=MARGIN, h_pad=MARGIN)
+    layout = ConstrainedLayoutEngine(w_pad=MARGIN, h_pad=MARGIN)
+    made = Figure(figsize=(width, height), dpi=DPI, layout=layout, facecolor="white")
     _Canvas(made)
     return made
 

@@ -56,7 +56,7 @@ def narrowed(columns, texts, width):
     wide = {name: len(cells[0]) for name, cells in columns.items()}
     excess = sum(wide.values()) + len(GAP) * (len(wide) - 1) - width
     while excess > 0:
-        widest = max(texts, key=wide.get, default=None)
+        widest = max(texts, key=wide.__getitem__, default=None)
         if widest is None or wide[widest] <= SLENDER:
             return None
         wide[widest] -= 1
@@ -102,7 +102,7 @@ def _naming(columns, width):
 
 def _groups(names):
     """Names of columns that stay together: a value and the ends of its interval."""
-    groups = []
+    groups: list[list[str]] = []
     for name in names:
         if groups and name.endswith(("_low", "_high")):
             groups[-1].append(name)

@@ -75,7 +75,7 @@ def _block(root, faults):
 
 def _directions(entries, faults):
     """Names with their unit vectors; what is wrong is added to ``faults``."""
-    known = {}  # by folded name: name, vector
+    known: dict[str, tuple[str, tuple[float, ...]]] = {}  # by folded name: name, vector
     for entry in entries:
         try:
             name, down = _name(entry, known), _direction(entry)

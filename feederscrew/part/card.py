@@ -1,5 +1,7 @@
 """Part cards: parts known by published data only, as YAML with the units in the text."""
 
+from typing import Any
+
 import numpy as np
 
 from feederscrew import check, documents, units
@@ -135,7 +137,7 @@ def _aspects(rows, faults):
     if rows.kind != "list" or not rows.items:
         faults.append(ConfigError(rows.where, "aspects is not a list", "write - {aspect: 1, height: 6.9 mm}"))
         return []
-    aspects, seen = [], {}
+    aspects, seen = [], dict[Any, str]()
     for row in rows.items:
         shown = _mapping(row, ASPECT, faults)
         name = shown.get("aspect")
@@ -176,7 +178,7 @@ def _inertia(root, rows, faults):
     printed, where = np.array(rows), root.find("inertia").value.where
     upper = np.triu(printed) + np.triu(printed, 1).T
     if np.allclose(printed, upper, rtol=SLIP, atol=0.0):
-        said = ()
+        said: tuple[str, ...] = ()
     elif np.allclose(np.abs(printed), np.abs(upper), rtol=SLIP, atol=0.0):
         said = (f"{where}: the inertia matrix is not symmetric (signs differ): its upper half is used",)
     else:

@@ -1,14 +1,22 @@
 """Whose probabilities a rate takes: the recommended answer from counts, or from the bowl's own floor."""
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from feederscrew import check
+from feederscrew.bowl.record import Bowl
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
+from feederscrew.rates.stream import Orientations
+from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.counts.profiles import AspectProfile, Measured
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended, launched
 from feederscrew.tooling.devices.named import place
+
+if TYPE_CHECKING:
+    from feederscrew.dropping.plate.arrival import Arrival
 
 UNDECIDED = "the shares at the track's entry are undecided: {}"
 STOPPED = "the parts on the floor were stopped after {}"
@@ -19,7 +27,7 @@ TOO_LONG = (
 NOTHING = "no part came to lie on the moving floor: the closed form is taken"
 
 
-def arrived(aspects, found, seed):
+def arrived(aspects: Aspects, found: "Arrival", seed: int) -> Aspects:
     """Return the aspects with what arrives at the track's entry as their recommended answer.
 
     Parameters
@@ -37,7 +45,7 @@ def arrived(aspects, found, seed):
     parts = found.shaken.parts
     if not np.isfinite(found.p).all():
         return replace(aspects, warnings=(*aspects.warnings, NOTHING))
-    said = () if found.settled else (UNDECIDED.format(found.reason),)
+    said: tuple[str, ...] = () if found.settled else (UNDECIDED.format(found.reason),)
     said += (STOPPED.format(parts),) if found.shaken.partial else ()
     rule = f"fed onto the moving floor, {parts} parts, seed {seed}"
     low, high = launched(found.p, found.low, found.high, aspects.stable)
@@ -45,19 +53,19 @@ def arrived(aspects, found, seed):
     return replace(aspects, recommended=answer, warnings=(*aspects.warnings, *said))
 
 
-def too_long(aspects, bowl):
+def too_long(aspects: Aspects, bowl: Bowl) -> bool:
     """Whether a part would take more steps on the floor of a bowl than one is followed for."""
     from feederscrew.dropping.plate.arrival import MOST_STEPS, steps_needed
 
-    return steps_needed(aspects.ground.hull, bowl) > MOST_STEPS
+    return aspects.ground is not None and steps_needed(aspects.ground.hull, bowl) > MOST_STEPS
 
 
-def not_fed(aspects):
+def not_fed(aspects: Aspects) -> Aspects:
     """Return the aspects of a part that is not fed, with a warning that says so."""
     return replace(aspects, warnings=(*aspects.warnings, TOO_LONG))
 
 
-def counted(aspects, measured):
+def counted(aspects: Aspects, measured: Measured) -> Aspects:
     """Return the aspects with measured counts as their recommended answer.
 
     Parameters
@@ -92,7 +100,7 @@ def counted(aspects, measured):
     return replace(aspects, recommended=answer)
 
 
-def _only(measured):
+def _only(measured: Measured) -> AspectProfile:
     if len(measured.profiles) != 1:
         names = ", ".join(profile.name for profile in measured.profiles[:5])
         what = f"has {len(measured.profiles)} columns of shares ({names})"
@@ -100,7 +108,7 @@ def _only(measured):
     return measured.profiles[0]
 
 
-def oriented(known, measured):
+def oriented(known: Orientations, measured: Measured | None) -> Orientations:
     """Return the orientations with the shares that were counted for each of them.
 
     Parameters

@@ -1,6 +1,8 @@
 """Settings of the drive that give a wanted rate, the gentle ones first."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -24,6 +26,8 @@ LEADS = 2  # steps that fewer parts lead
 ROUNDS, REMEMBERED = 8, 3  # steps towards a setting, and those whose parts lead on
 ALIKE = 0.01  # of a value: two settings are one
 DIGITS = 5  # of a value as it is printed
+Density = Callable[[Bowl | None], float]  # [1/m] as ``solutions`` takes it
+Starts = list[tuple["_Look", float]]  # keys, and values of them
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,24 +41,32 @@ class Solution:
     parts_per_metre: float  # [1/m] well-oriented parts on a length of track, with what arrives at that drive
 
     @property
-    def shown(self):
+    def shown(self) -> float:
         """The value in the key's unit, as it is given back."""
         return float(f"{self.value / units.factor(self.key.unit, self.key.dimension):.12g}")
 
     @property
-    def rate(self):
+    def rate(self) -> float:
         """Well-oriented parts [1/s] at that speed."""
         return self.speed * self.parts_per_metre
 
     @property
-    def order(self):
+    def order(self) -> tuple[int, bool, float]:
         """Sorts the gentle ones first: regime, one velocity before several, softest impact."""
         found = self.answer
         several = found.high - found.low > answer.COEXIST * found.speed
         return GENTLE.index(found.regime), several, found.hardest_impact
 
 
-def solutions(bowl, target, density, *, rough=None, worst=False, progress=None):
+def solutions(
+    bowl: Bowl,
+    target: float,
+    density: Density,
+    *,
+    rough: Density | None = None,
+    worst: bool = False,
+    progress: Callable[[int, int], Any] | None = None,
+) -> list[Solution]:
     """Find every setting of amplitude, angle or frequency alone that gives a rate, with what it lets arrive.
 
     Source: docs/conveying.md, "Commands".
@@ -90,7 +102,7 @@ def solutions(bowl, target, density, *, rough=None, worst=False, progress=None):
         raise FeederError("track.climb", "is steeper than friction holds", "lower the climb")
     starts = [(look, value) for look in looks for value in look.starts(target / density(None))]
     likely, others = _led(starts, target, rough)
-    found, near = [], []
+    found, near = [], list[Solution]()
     for count, (look, value) in enumerate(likely + others):
         if near and count >= len(likely):
             break
@@ -104,11 +116,11 @@ def solutions(bowl, target, density, *, rough=None, worst=False, progress=None):
     return sorted(near or beyond, key=lambda one: one.order)
 
 
-def _led(starts, target, rough):
+def _led(starts: Starts, target: float, rough: Density | None) -> tuple[Starts, Starts]:
     """Where fewer parts lead from each start, none beside another: those LED to the rate, and the others."""
     if rough is None:
         return starts, []
-    likely, others = [], []
+    likely, others = Starts(), Starts()
     for look, value in starts:
         value, rate = _lead(look, value, target, rough)
         if all(key != look.key or abs(value - near) > ALIKE * near for key, near in _places(likely + others)):
@@ -117,11 +129,11 @@ def _led(starts, target, rough):
     return likely, others
 
 
-def _places(starts):
+def _places(starts: Starts) -> list[tuple[Key, float]]:
     return [(look.key, value) for look, value in starts]
 
 
-def _lead(look, value, target, rough):
+def _lead(look: "_Look", value: float, target: float, rough: Density) -> tuple[float, float]:
     """The value that few parts lead to from a start, and the rate they give there.
 
     They are too few for more than their mean at some drives near to each other.
@@ -129,14 +141,14 @@ def _lead(look, value, target, rough):
     known = []
     for _ in range(LEADS):
         known.append(rough(turned(look.bowl, look.key, look.readable(value))))
-        there = look.crossings(target / np.mean(known)) if known[-1] > 0.0 else np.zeros(0)
+        there = look.crossings(target / float(np.mean(known))) if known[-1] > 0.0 else np.zeros(0)
         if not there.size:
             break
         value = float(there[np.argmin(np.abs(there - value))])
     return value, look.speed(value) * float(np.mean(known))
 
 
-def _settled(look, value, target, density, close=CLOSE):
+def _settled(look: "_Look", value: float, target: float, density: Density, close: float = CLOSE) -> Solution:
     """The setting near a start that gives the target with what arrives there, or comes nearest to it.
 
     Each step takes the parts that arrived at the step before it, since another drive brings others; they are
@@ -149,7 +161,7 @@ def _settled(look, value, target, density, close=CLOSE):
         if abs(seen[-1].rate - target) <= close * target or jumps or not seen[-1].parts_per_metre > 0.0:
             break
         led = seen[-REMEMBERED:] if len(seen) > REMEMBERED else seen[-1:]
-        there = look.crossings(target / np.mean([one.parts_per_metre for one in led]))
+        there = look.crossings(target / float(np.mean([one.parts_per_metre for one in led])))
         if not there.size:
             break
         last, value = value, float(there[np.argmin(np.abs(there - value))])
@@ -158,9 +170,9 @@ def _settled(look, value, target, density, close=CLOSE):
     return min(enough or away, key=lambda pair: pair[0])[1]
 
 
-def _apart(found, target):
+def _apart(found: list[Solution], target: float) -> list[Solution]:
     """Those of each key that are no other's neighbour, the nearest to the target of such neighbours."""
-    kept = []
+    kept: list[Solution] = []
     for one in sorted(found, key=lambda one: abs(one.rate - target)):
         others = [other.value for other in kept if other.key == one.key]
         if all(abs(one.value - other) > ALIKE * other for other in others):
@@ -168,12 +180,12 @@ def _apart(found, target):
     return kept
 
 
-def turned(bowl, key, value):
+def turned(bowl: Bowl, key: Key, value: Any) -> Bowl:
     """The bowl with one key of its drive at another value, or at an array of them."""
     return replace(bowl, drive=replace(bowl.drive, **{key.word: value}))
 
 
-def _values(bowl, key):
+def _values(bowl: Bowl, key: Key) -> np.ndarray:
     """Values of a knob worth looking at: within its limits and below the highest throw number."""
     low, high = (units.quantity(limit, key.dimension) for limit in (key.lowest, key.highest))
     drive = bowl.drive
@@ -198,14 +210,14 @@ class _Look:
     values: np.ndarray  # (V,) [SI]
     speeds: np.ndarray  # (V,) [m/s]
 
-    def starts(self, velocity):
+    def starts(self, velocity: float) -> np.ndarray:
         """Values from which a setting is sought: where a velocity is passed, else the fastest there is."""
         there = self.crossings(velocity)
         if there.size or not np.isfinite(self.speeds).any() or np.nanmax(self.speeds) <= 0.0:
             return there
         return self.values[[np.nanargmax(self.speeds)]]
 
-    def crossings(self, velocity):
+    def crossings(self, velocity: float) -> np.ndarray:
         """Where a velocity is passed, (N,): the faster side of it, beyond a jump where it jumps over it."""
         above, known = self.speeds >= velocity, np.isfinite(self.speeds)
         k = np.flatnonzero((above[1:] != above[:-1]) & known[1:] & known[:-1])
@@ -216,27 +228,27 @@ class _Look:
             low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
         return np.where(rises, high, low)
 
-    def readable(self, value):
+    def readable(self, value: float) -> float:
         """The value as it is printed in the key's unit, so that it is the same when it is given back."""
         shown = value / units.factor(self.key.unit, self.key.dimension)
         return units.quantity(f"{shown:.{DIGITS}g} {self.key.unit}", self.key.dimension)
 
-    def solution(self, value, density):
+    def solution(self, value: float, density: Density) -> Solution:
         """What the bowl does at a value, a Solution."""
         driven = turned(self.bowl, self.key, value)
         return Solution(self.key, value, answer.answer(driven), self.speed(value), density(driven))
 
-    def speed(self, value):
+    def speed(self, value: float) -> float:
         """The velocity [m/s] at a value."""
         return float(_speeds(self.bowl, self.key, np.array([value]), self.worst)[0])
 
 
-def _look(bowl, key, worst):
+def _look(bowl: Bowl, key: Key, worst: bool) -> _Look:
     values = _values(bowl, key)
     return _Look(bowl, key, worst, values, _speeds(bowl, key, values, worst))
 
 
-def _speeds(bowl, key, values, worst):
+def _speeds(bowl: Bowl, key: Key, values: np.ndarray, worst: bool) -> np.ndarray:
     """Velocity at each value [m/s]: from rest, or the slowest of every start and surface."""
     there = turned(bowl, key, values)
     here = answer.cells(there)
@@ -247,7 +259,7 @@ def _speeds(bowl, key, values, worst):
     return np.min([one["low"] for one in around], axis=0)  # NaN where one friction has no steady state
 
 
-def _unreachable(looks, target, density):
+def _unreachable(looks: list[_Look], target: float, density: Density) -> ArgumentError:
     """The fault that no setting brings so many parts, and what is the most."""
     bowl = looks[0].bowl
     peaks = [(speed, one.key, value) for one in looks for speed, value in zip(one.speeds, one.values)]

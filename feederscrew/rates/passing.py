@@ -1,13 +1,17 @@
 """What the static rules say passes each device, from the shares of the aspects: for feeding tests."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from feederscrew import check
 from feederscrew.documents import hint
 from feederscrew.errors import FeederError
+from feederscrew.rates.stream import Orientations
+from feederscrew.resting.counts.passed import DeviceCounts
 
 
-def places(known, counts):
+def places(known: Orientations, counts: DeviceCounts) -> np.ndarray:
     """Return the stations of a chain that were counted.
 
     Source: docs/counts.md, "A feeding test, device by device".
@@ -29,7 +33,7 @@ def places(known, counts):
     """
     stations = {name: place for place, name in enumerate(known.names)}
     once = {kind: known.stations.index(kind) for kind in known.stations if known.stations.count(kind) == 1}
-    found = []
+    found: list[int] = []
     for line, name in zip(counts.lines, counts.names):
         place, where = (once | stations).get(name), f"{counts.source}:{line}"
         if place is None:
@@ -42,7 +46,7 @@ def places(known, counts):
     return np.array(found)
 
 
-def ways(known, names):
+def ways(known: Orientations, names: Sequence[str]) -> np.ndarray:
     """Return which share of each aspect's parts comes to each station, and which goes on from it.
 
     Source: own; docs/counts.md, "A feeding test, device by device".
@@ -64,7 +68,7 @@ def ways(known, names):
     return check.frozen(np.einsum("kms,ma->ksa", np.stack([came, on]), of))
 
 
-def passing(flow, shares):
+def passing(flow: np.ndarray, shares: np.ndarray) -> np.ndarray:
     """Return the share that passes of the parts that come, (D,) [1]; NaN where none comes.
 
     Source: own; docs/counts.md, "A feeding test, device by device".
@@ -80,7 +84,7 @@ def passing(flow, shares):
     return np.where(came > 0.0, on / np.where(came > 0.0, came, 1.0), np.nan)
 
 
-def passing_ends(flow, low, high):
+def passing_ends(flow: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, ...]:
     """Return the least and the greatest share that passes if every aspect's share lies within its ends.
 
     Source: a linear programme over a simplex with bounds; docs/conveying.md, "Commands".
@@ -106,7 +110,7 @@ def passing_ends(flow, low, high):
     return tuple(np.array(ends).T)
 
 
-def _extremes(came, on, low, high):
+def _extremes(came: np.ndarray, on: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[float, float]:
     each = np.where(came > 0.0, on / np.where(came > 0.0, came, 1.0), 0.0)
     order = np.argsort(each, kind="stable")
     came, on, low, high = came[order], on[order], low[order], high[order]

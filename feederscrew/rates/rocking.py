@@ -1,13 +1,16 @@
 """Rocking of a part on the vibrating track, followed from stroke to stroke."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew.bowl.record import Bowl
 from feederscrew.geometry.polygons import cross, sides
 from feederscrew.mechanics.cycle import phases
 from feederscrew.mechanics.track import balance
+from feederscrew.mechanics.track.frame import Seat
 
 INSTANTS = 48  # of one period
 SETTLES, FOLLOWED = 12, 60  # periods until the sliding repeats itself, and that the rocking is followed
@@ -28,7 +31,7 @@ class Rocker:
     growth: float = 0.0  # [m/s] of the distance to the near side, from where it is at the start
 
 
-def rocker(place, gyration, bowl):
+def rocker(place: Seat, gyration: Callable[[float], float], bowl: Bowl) -> Rocker:
     """Return a part on the track of a bowl as what rocks over its weakest side.
 
     Parameters
@@ -60,7 +63,7 @@ def rocker(place, gyration, bowl):
     )
 
 
-def goes_over(rocker, period, start=0):
+def goes_over(rocker: Rocker, period: float, start: int = 0) -> bool:
     """Return whether rocking brings the centre of mass of a part over one of its sides.
 
     Parameters
@@ -107,7 +110,7 @@ def goes_over(rocker, period, start=0):
     return False
 
 
-def over_period(place, bowl):
+def over_period(place: Seat, bowl: Bowl) -> tuple[np.ndarray, np.ndarray]:
     """Return what the track does to a part over a settled period.
 
     Source: Housner 1963, the rocking block; docs/trial.md, "What other parts said of the rules".
@@ -131,7 +134,7 @@ def over_period(place, bowl):
     return force, np.nan_to_num(np.array([motion.offset for motion in motions])[senses, rows])
 
 
-def _senses(motions, step):
+def _senses(motions: list[balance.TrackMotion], step: float) -> np.ndarray:
     """How the part slides at each instant of a settled period, (INSTANTS,) int: places in ``SENSES``."""
     gains = [step * motion.acceleration[:, 0] for motion in motions]
     loose, speed = motions[0].slides, 0.0

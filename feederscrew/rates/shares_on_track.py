@@ -2,10 +2,13 @@
 
 import numpy as np
 
+from feederscrew.rates.stream import Orientations
+from feederscrew.tooling.orientations import Orientation
+
 RECOMMENDED = "recommended"  # the rule that has an interval of its own
 
 
-def mean_length(found, rule):
+def mean_length(found: Orientations, rule: str) -> float:
     """Return the mean length along the track of the parts that stay on it [m]; NaN where none does.
 
     What falls off at the entry, or is turned over on the track, goes back at once: it is in nobody's way.
@@ -17,7 +20,7 @@ def mean_length(found, rule):
     return float((weights * found.lengths).sum() / enters) if enters > 0.0 else np.nan
 
 
-def entering(found, rule):
+def entering(found: Orientations, rule: str) -> tuple[np.ndarray, float]:
     """Return the chance (M,) [1] of each orientation by a rule, and the share [1] that stays on the track.
 
     Source: docs/conveying.md, "Commands".
@@ -26,7 +29,7 @@ def entering(found, rule):
     return chance, float((chance * found.stays).sum())
 
 
-def queued(found, row, rule, gap, fill):
+def queued(found: Orientations, row: int, rule: str, gap: float, fill: float) -> float:
     """Return parts on a length of track before the devices [1/m]: all that stay on it.
 
     They come end to end, or as far apart as the devices need.
@@ -37,7 +40,7 @@ def queued(found, row, rule, gap, fill):
     return float(fill / ((found.lengths[row] if np.isnan(length) else length) + max(gap, found.gap)))
 
 
-def efficiency(found, row, rule):
+def efficiency(found: Orientations, row: int, rule: str) -> float:
     """Return the share of the parts offered, which are on the track, that leave in the orientation of a row.
 
     Source: docs/conveying.md, "Commands".
@@ -56,7 +59,7 @@ def efficiency(found, row, rule):
     return float((chance * fed_share(found, row)).sum() / enters) if enters > 0.0 else 0.0
 
 
-def efficiency_ends(found, row, rule):
+def efficiency_ends(found: Orientations, row: int, rule: str) -> tuple[float, ...]:
     """Return the least and the greatest efficiency [1], by the rule's own interval or over all rules."""
     fed, (_, enters) = fed_share(found, row), entering(found, rule)
     if not enters > 0.0:
@@ -67,12 +70,12 @@ def efficiency_ends(found, row, rule):
     return min(all_rules), max(all_rules)
 
 
-def fed(found, row):
+def fed(found: Orientations, row: int) -> Orientation:
     """Return the Orientation in which parts wanted as a row leave: as they lie, or hanging."""
     return found.states[found.leaves_as[row]]
 
 
-def fed_share(found, row):
+def fed_share(found: Orientations, row: int) -> np.ndarray:
     """Return the share (M,) [1] of each orientation that leaves in the state of a wanted row.
 
     Source: docs/conveying.md, "Commands".

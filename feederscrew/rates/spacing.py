@@ -1,12 +1,16 @@
 """How far apart parts have to come for devices that look at one part at a time."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from feederscrew.bowl.record import Bowl
 from feederscrew.rates import stretches
-from feederscrew.tooling.orientations import speed
+from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.orientations import Orientation, speed
 
 
-def needed(chain, lying, bowl):
+def needed(chain: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl) -> float:
     """Return the free way [m] between parts at the track's entry that the devices need.
 
     Source: own; docs/tooling.md, "1. The method".

@@ -1,26 +1,31 @@
 """Whether the drive lets a part lie on what a device leaves of its foot."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from feederscrew.bowl.record import Bowl
 from feederscrew.geometry.polygons import convex, inset
 from feederscrew.mechanics.cycle import phases
 from feederscrew.mechanics.floor.balance import HOP
 from feederscrew.mechanics.track import balance
+from feederscrew.mechanics.track.frame import Seat
 from feederscrew.rates.rocking import Rocker, goes_over, over_period
 from feederscrew.rates.tipping import FLAT, plain, seated
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling import touching
+from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.falling_through import surely_gone
-from feederscrew.tooling.orientations import gyration, rolls_across, speed
+from feederscrew.tooling.orientations import Orientation, gyration, rolls_across, speed
 
 INSTANTS = 12  # of one period
 LANDINGS = 8  # instants of the period at which it comes to lie on the far edge
 SAME = 1e-9  # [m] a device that leaves this much less of the support takes nothing from it
 
 
-def steady(devices, lying, bowl, margin):
+def steady(devices: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl, margin: float) -> np.ndarray:
     """Return which orientations the drive leaves lying on what a chain of devices leaves of their feet.
 
     Source: own; docs/trial.md, "What other parts said of the rules".
@@ -53,7 +58,7 @@ def steady(devices, lying, bowl, margin):
     return np.array([not known or _steady(devices, one, bowl, margin) for one in lying], dtype=bool)
 
 
-def gone(devices, lying, passes):
+def gone(devices: Sequence[Device], lying: Sequence[Orientation], passes: np.ndarray) -> np.ndarray:
     """Return which orientations the first device that does not let them pass is sure to get rid of.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -79,7 +84,7 @@ def gone(devices, lying, passes):
     return found
 
 
-def _steady(devices, one, bowl, margin):
+def _steady(devices: Sequence[Device], one: Orientation, bowl: Bowl, margin: float) -> bool:
     """Whether one orientation is steady at every device."""
     if one.returned or one.touching is None:
         return True
@@ -98,7 +103,7 @@ def _steady(devices, one, bowl, margin):
     return True
 
 
-def _met(devices):
+def _met(devices: Sequence[Device]) -> Iterator[Device]:
     """Those that leave less of a foot, as far as parts come to them as they lie."""
     for device in devices:
         if device.turns or device.hangs:
@@ -107,7 +112,7 @@ def _met(devices):
             yield device
 
 
-def _takes(device, one):
+def _takes(device: Device, one: Orientation) -> bool:
     """Whether a device takes anything from what carries an orientation."""
     span, hole = device.span_on(one.track), device.hole_on(one.track)
     if span is not None:
@@ -117,7 +122,7 @@ def _takes(device, one):
     return hole is not None and feet.least(one.standing, hole)[0] <= one.margin - SAME
 
 
-def _keeps_down(one, span, offset, margin):
+def _keeps_down(one: Orientation, span: tuple[float, float], offset: np.ndarray, margin: float) -> bool:
     """Whether the force of the track stays within what is left of a foot beside a hole along the track."""
     (first, last), radius = span, one.track.radius
     high = radius - first if first > 0.0 else 2.0 * radius
@@ -128,7 +133,9 @@ def _keeps_down(one, span, offset, margin):
     return len(hull) > 2 and bool(inset(hull, offset).min() >= margin)
 
 
-def _keeps_upright(one, hole, place, force, offset, bowl):
+def _keeps_upright(
+    one: Orientation, hole: Any, place: Seat, force: np.ndarray, offset: np.ndarray, bowl: Bowl
+) -> bool:
     """Whether a part neither rocks over the edge that it leaves nor back over the one that it comes to."""
     support, _ = feet.least(one.standing, hole)
     if support > one.margin - SAME:

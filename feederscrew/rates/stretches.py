@@ -1,11 +1,15 @@
 """The bowl as parts travel along a stretch of its track that leans otherwise."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from feederscrew.bowl.record import Bowl
+from feederscrew.tooling.orientations import Orientation
 
-def on_stretch(bowl, one):
+
+def on_stretch(bowl: Bowl, one: Orientation) -> Bowl:
     """Return a bowl in which parts travel as on the stretch on which an orientation lies.
 
     Source: the balance of forces of a part on both faces of a groove; docs/tooling.md, "A groove".
@@ -35,7 +39,7 @@ def on_stretch(bowl, one):
     return replace(bowl, friction=friction, track=replace(bowl.track, climb=one.track.climb, bank=0.0))
 
 
-def queueing(bowl, lying):
+def queueing(bowl: Bowl, lying: Sequence[Orientation]) -> Bowl:
     """Return the bowl as parts queue in it, before the first device that does more than lean the track.
 
     Source: own; docs/tooling.md, "A groove".

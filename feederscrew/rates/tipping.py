@@ -5,21 +5,23 @@ nearest side. Over a settled cycle the moments about that side hold it down, or 
 it: it rocks. It turns over where that, followed from stroke to stroke, lifts its centre of mass over a side.
 """
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from feederscrew import check
+from feederscrew.bowl.record import Bowl
 from feederscrew.errors import ConfigError
 from feederscrew.geometry.polygons import cross, inset, sides
 from feederscrew.mechanics import limits
 from feederscrew.mechanics.cycle import phases
 from feederscrew.mechanics.floor.balance import HOP, TIP
 from feederscrew.mechanics.track import balance
-from feederscrew.mechanics.track.frame import seat
+from feederscrew.mechanics.track.frame import Seat, seat
 from feederscrew.rates.rocking import goes_over, rocker
-from feederscrew.tooling.orientations import gyration, rolls_across, travelling
+from feederscrew.tooling.orientations import Orientation, gyration, rolls_across, travelling
 from feederscrew.units import listed
 
 INSTANTS = 12  # of one period
@@ -49,7 +51,7 @@ class Stands:
     lean: float = np.nan  # [rad] from which it goes on by itself; NaN where it stays
 
     @property
-    def said(self):
+    def said(self) -> str:
         """The verdict in words, with its angles."""
         if self.way == ROCKS:
             tilt, lean = np.degrees(self.tilt), np.degrees(self.lean)
@@ -59,7 +61,7 @@ class Stands:
         )
 
 
-def stands(one, bowl, hops):
+def stands(one: Orientation, bowl: Bowl, hops: bool) -> Stands:
     """Return what the drive of a bowl does to an orientation on the bare track.
 
     Parameters
@@ -85,7 +87,7 @@ def stands(one, bowl, hops):
     return Stands(THROWN if hops else STAYS)
 
 
-def marked(lying, bowl):
+def marked(lying: Sequence[Orientation], bowl: Bowl) -> tuple[tuple[Orientation, ...], TrackTipping]:
     """Return orientations that know what the drive of a bowl does to them on the bare track, and what tips.
 
     Parameters
@@ -104,13 +106,13 @@ def marked(lying, bowl):
     return travelling(over, bowl), found
 
 
-def remark(lying):
+def remark(lying: Iterable[Orientation]) -> tuple[str, ...]:
     """Say which orientations the drive turns over: one sentence, or none."""
     over = [one.name for one in lying if one.turns_over]
     return (f"{listed(over)} can tip over on the track at this drive and count as returned",) if over else ()
 
 
-def tipping(lying, bowl):
+def tipping(lying: Sequence[Orientation], bowl: Bowl) -> TrackTipping:
     """Return which orientations tip on the track of a bowl, and which turn over there.
 
     Parameters
@@ -139,7 +141,7 @@ def tipping(lying, bowl):
 _NEVER = (False, 0.0, np.nan, False)
 
 
-def plain(bowl):
+def plain(bowl: Bowl) -> bool:
     """Return whether a bowl's drive and conveyor are of the plain kind, for which tipping is followed."""
     try:
         return limits.plain(bowl) is bowl
@@ -147,7 +149,7 @@ def plain(bowl):
         return False
 
 
-def _one(one, bowl):
+def _one(one: Orientation, bowl: Bowl) -> tuple[bool, float, float, bool]:
     """Whether one orientation tips, how far a stroke tilts it, from where it goes on, if it goes over."""
     if one.falls_off or one.touching is None or (one.kind != FLAT and rolls_across(one)):
         return _NEVER
@@ -171,7 +173,7 @@ def _one(one, bowl):
     return True, float(tilt), float(lean), bool(over)
 
 
-def seated(one, bank):
+def seated(one: Orientation, bank: float) -> Seat:
     """Return how an orientation lies on a track of some bank [rad], a Seat.
 
     One that rolls tips over the ends of its line only, so its contact is wide beside that.
@@ -184,7 +186,7 @@ def seated(one, bank):
     return replace(place, contact=np.array([[back, -side], [ahead, -side], [ahead, side], [back, side]]))
 
 
-def _to_side(contact, point):
+def _to_side(contact: np.ndarray, point: np.ndarray) -> float:
     """Distance of the foot of the centre of mass from the side that a point lies farthest beyond [m]."""
     along = sides(contact)
     along = along / np.hypot(*along.T)[:, None]

@@ -242,13 +242,13 @@ def _ranked(table, chance, part, moments):
 
 def _named(names, table, chances, order, told):
     """The record, rows in their order."""
-    arrays = {k: check.frozen(v[order]) for k, v in table.items() if isinstance(v, np.ndarray)}
+    columns: dict = {k: check.frozen(v[order]) for k, v in table.items() if isinstance(v, np.ndarray)}
+    columns |= {name: tuple(table[name][k] for k in order) for name in ("kinds", "forms", "polygons")}
     return Aspects(
         names=names,
-        **{name: tuple(table[name][k] for k in order) for name in ("kinds", "forms", "polygons")},
         probabilities={rule: check.frozen(chance[order]) for rule, chance in chances.items()},
         warnings=(*said(table["forms"]), *told),
-        **arrays,
+        **columns,
     )
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from feederscrew.geometry import vectors
-from feederscrew.geometry.graphs import components
+from feederscrew.geometry.graphs import component_of
 from feederscrew.resting.basins.landscape import angle
 
 SAME_WAY = np.radians(3.0)  # a turned face lies on another when their normals agree this well
@@ -40,7 +40,7 @@ def classes(faces, part, moments):
     for rotation in symmetries(faces, part, moments):
         there = _along(vectors.product(axes, rotation.T), axes)
         carried |= there & _laid_on(vectors.product(middles, rotation.T), middles)
-    return components(*np.nonzero(carried & alike), len(faces))[1]
+    return component_of(np.argwhere(carried & alike), len(faces))
 
 
 def _laid_on(turned, middles):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from feederscrew.geometry import groups, vectors
-from feederscrew.geometry.graphs import components
+from feederscrew.geometry.graphs import component_of, components
 from feederscrew.resting import contacts, flats, rounds
 from feederscrew.resting.basins.landscape import RIPPLE_OF_RADIUS, SMOOTH, angle, edges, gentle
 from feederscrew.resting.planes import FLATNESS, planes
@@ -86,7 +86,7 @@ def unstable_faces(hull, taken):
     bend = angle(*(hull.normals[pairs[:, k]] for k in (0, 1)))
     step = np.abs(np.diff(hull.heights[pairs], axis=1))[:, 0]
     joined = (bend < np.radians(0.2)) | ((bend < SMOOTH) & (step < RIPPLE_OF_RADIUS * hull.radius))
-    labels = components(*pairs[joined].T, len(free))[1]
+    labels = component_of(pairs[joined], len(free))
     order = np.flatnonzero(free)[np.argsort(labels[free], kind="stable")]
     parts = np.split(order, np.flatnonzero(np.diff(labels[order])) + 1) if len(order) else []
     largest = np.array([part[np.argmax(hull.areas[part])] for part in parts], dtype=int)
@@ -101,12 +101,12 @@ def _coarse_curves(hull, basins, members):
     meant = flats.meant(hull, basins)[place].any(axis=1)
     strips = ~meant & (basins.rises < COARSE) & (basins.bends < SMOOTH) & (step < EQUAL + basins.bends**2)
     level = ~meant & (step < EQUAL)
-    labels = components(*place[level & strips].T, len(basins.sinks))[1]
+    labels = component_of(place[level & strips], len(basins.sinks))
     for label in np.flatnonzero(np.bincount(labels) > 1):
         group = np.flatnonzero(labels == label)
         if _spread(hull.normals[basins.sinks[group]]) < ARC:
             labels[group] = labels.max() + 1 + np.arange(len(group))
-    around = components(*place[strips].T, len(basins.sinks))[1]
+    around = component_of(place[strips], len(basins.sinks))
     several = np.flatnonzero(np.bincount(around) > 1)
     sides = _smooth_sides(hull, basins, around) if len(several) else None
     for label in several:
@@ -249,7 +249,7 @@ def _seats(hull, triangles, owners, count):
     return normals, heights, roughness
 
 
-def _corners(hull, triangles, owners):
+def _corners(hull, triangles, owners) -> tuple[np.ndarray, np.ndarray]:
     """(N,) corners of the triangles of each face, each once, and their owners."""
     owners, corners = np.divmod(
         np.unique(owners[:, None] * len(hull.vertices) + hull.triangles[triangles]), len(hull.vertices)

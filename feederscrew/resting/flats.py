@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.geometry.graphs import components
+from feederscrew.geometry.graphs import component_of
 from feederscrew.resting.basins.landscape import SMOOTH, angle
 
 ONE_PLANE = np.radians(0.2)  # between triangles of one facet
@@ -28,12 +28,12 @@ def meant(hull, basins):
     """
     first, second = basins.pairs.T
     bends = angle(hull.normals[first], hull.normals[second])
-    facets = components(*basins.pairs[bends < ONE_PLANE].T, len(hull.triangles))[1]
+    facets = component_of(basins.pairs[bends < ONE_PLANE], len(hull.triangles))
     gentlest = np.full(facets.max() + 1, np.inf)
     border = facets[first] != facets[second]
     for side in (first, second):
         np.minimum.at(gentlest, facets[side[border]], bends[border])
-    sides = components(*basins.pairs[bends < SMOOTH].T, len(hull.triangles))[1]
+    sides = component_of(basins.pairs[bends < SMOOTH], len(hull.triangles))
     about = gentlest[facets]
     half, most = (_quantiles(about, hull.areas, sides, share) for share in (0.5, MOST))
     limit = np.minimum(LARGER * half, OUTSIDE * most)

@@ -79,7 +79,7 @@ def _apart(faces, hull, given):
 
 def _matched(apart):
     """Class by name: the nearest two first, each once."""
-    place = {}
+    place: dict[int, int] = {}
     for k, row in zip(*np.unravel_index(np.argsort(apart, axis=None, kind="stable"), apart.shape)):
         if np.isfinite(apart[k, row]) and k not in place and row not in place.values():
             place[int(k)] = int(row)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import cast
 
 import numpy as np
 
@@ -45,8 +46,14 @@ class Posture(Shown):
     @property
     def surface(self):
         """Every corner (V, 3) of the part's mesh as it stands [m], z from the floor."""
-        body = self.solid.vertices - self.solid.centre_of_mass
-        return np.einsum("ij,vj->vi", self.axes, body) + np.array([0.0, 0.0, self.height])
+        solid = cast(Part, self.solid)
+        body = solid.vertices - solid.centre_of_mass
+        return np.einsum("ij,vj->vi", cast(np.ndarray, self.axes), body) + np.array([0.0, 0.0, self.height])
+
+    @property
+    def facets(self):
+        """The facets (F, 3) int of the part's mesh: corners by their rows in ``surface``."""
+        return cast(Part, self.solid).faces
 
     @cached_property
     def on_floor(self):

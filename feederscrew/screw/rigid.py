@@ -53,8 +53,8 @@ class Displacement:
         if isinstance(other, Point):
             return Point(f"{other.name}'", self._moved(other.coordinates))
         if isinstance(other, Screw):
-            turned = (_turned(self.rotation, part) for part in (other.resultant, other.moment))
-            return type(other)(*turned, self @ other.reference)
+            resultant, moment = (_turned(self.rotation, part) for part in (other.resultant, other.moment))
+            return type(other)(resultant, moment, self @ other.reference)
         raise ValueError(f"a displacement moves points, screws and displacements, not {type(other).__name__}")
 
     def inverse(self):

@@ -49,8 +49,9 @@ class BowlSolid:
         """How its mass lies about the axis, over its underside: that lies on the leaves."""
         place = self.centre - [0.0, 0.0, self.plan.underside]
         about = mass.shifted(self.tensor, self.mass, place)
+        x, y, z = map(float, self.mass * place)
         return Unbalance(
-            moment=tuple(map(float, self.mass * place)),
+            moment=(x, y, z),
             upright=(float(about[0, 0]), float(about[1, 1])),
             products=(float(-about[1, 2]), float(-about[0, 2]), float(-about[0, 1])),
             turns=-1.0 if self.plan.left else 1.0,

@@ -90,7 +90,8 @@ def laid_out(track, stations, every):
 
 def _grooves(stations, entry, track, every):
     """Where the wall leans back; a groove at the entry is there from the first of the track on."""
-    found, opens = [], max(one.length for one in every)
+    found: list[tuple[float, ...]] = []
+    opens = max(one.length for one in every)
     for place, one in enumerate(stations):
         for slope in one.device.standing(track, every).slopes:
             at = -np.inf if place < entry else one.start + slope.begin

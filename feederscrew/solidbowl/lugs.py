@@ -80,7 +80,8 @@ def lugs(body, planes, kept, extents):
     ends : int
         Of seams: two of an upright one; a level one goes round and counts once.
     """
-    found, with_one, every = [], set(), set()
+    found: list[Lug] = []
+    with_one, every = set(), set()
     for axis, at in planes:
         for frame in _upright(at, axis, extents) if axis < 2 else _level(at, extents):
             end = axis, at, *(frame[2] if axis < 2 else ())

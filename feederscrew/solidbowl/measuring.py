@@ -45,6 +45,7 @@ def measures(made):
     floor = facets.first_met(body, (*bare, 5e-4), (*bare, -far))
     s = float(way.at(-0.5 * np.pi))
     outlet = way.end + 0.5 * plan.outlet
+    x, y, z = map(float, np.ptp(made.vertices, axis=0))
     return Measures(
         diameter=2.0 * (rim[0] + way.radius - float(way.wall_radius(way.at(at)))),
         wall=rim[1] - rim[0],
@@ -52,7 +53,7 @@ def measures(made):
         height=float(np.ptp(made.vertices[:, 2])),
         track_width=track_width(plan, body, s),
         outlet_height=_outlet_height(plan, body, outlet),
-        extent=tuple(float(x) for x in np.ptp(made.vertices, axis=0)),
+        extent=(x, y, z),
     )
 
 

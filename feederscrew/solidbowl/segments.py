@@ -46,7 +46,7 @@ class Segments:
     dowel_length: float  # [m]
     turned: float  # [rad] of the seams against the bowl's axes
     lugs: np.ndarray  # (N, 3, 3) of each screw: its middle [m], its direction, off the wall
-    joined: object  # vertices and faces of the bowl with lugs and their holes; None without
+    joined: tuple[np.ndarray, np.ndarray] | None  # vertices, faces of the bowl with lugs, bored; None without
     ends: tuple[int, int] = (0, 0)  # of seams, that have no screw where screws are asked for; and of how many
 
     @property
@@ -118,7 +118,7 @@ def segments(made, size, joint=DOWELS):
     holes = [one for plane in planes for one in _dowels(made, body, turn, plane, dowel)]
     joints, bare, of = _lugs(made, body, turn, planes) if joint == SCREWS else ([], 0, 0)
     body, joined = _joined(body, joints, turn)
-    body = facets.without(body, [facets.rod(*one, dowel, DEEP) for one in holes])
+    body = facets.without(body, [facets.rod(axis, middle, dowel, DEEP) for axis, middle in holes])
     cells = facets.cut_by(body, planes)
     found = sorted(
         (piece for cell in cells for piece in facets.parts_of(cell)), key=lambda one: one.bounding_box()
@@ -160,8 +160,8 @@ def _turned(places, turn):
 def _piece(name, body):
     low = body.bounding_box()[:3]
     vertices, faces = whole_surface.mesh(body.translate(tuple(-x for x in low)))
-    size = tuple(float(x) for x in vertices.max(axis=0))
-    return Segment(name, vertices, faces, size, body.volume() * MM**3)
+    x, y, z = map(float, vertices.max(axis=0))
+    return Segment(name, vertices, faces, (x, y, z), body.volume() * MM**3)
 
 
 def _seams(made, size, screwed):
@@ -170,7 +170,7 @@ def _seams(made, size, screwed):
     The box has room for the lugs of screws.
     Of the turns with fewest segments the one whose seams keep farthest from the devices.
     """
-    best = None
+    found = []
     for turn in 0.5 * np.pi * np.arange(TURNS) / TURNS:
         extents = _box(made.vertices, turn)
         counts = _counts(extents, size)
@@ -178,9 +178,8 @@ def _seams(made, size, screwed):
             extents = extents + lugs.STANDS * np.array([[-1.0, 1.0], [-1.0, 1.0], [0.0, 0.0]])
             counts = _counts(extents, size)
         rank = np.prod(counts), -round(_clear(made, turn, counts, extents), 9), float(turn)
-        if best is None or rank < best[0]:
-            best = rank, counts, float(turn), extents
-    _, counts, turn, extents = best
+        found.append((rank, counts, float(turn), extents))
+    _, counts, turn, extents = min(found, key=lambda one: one[0])
     if max(counts) > MOST:
         least = " x ".join(f"{1e3 * (high - low) / MOST:.4g}" for low, high in extents)
         sentence = " x ".join(f"{1e3 * side:.4g}" for side in size)
@@ -215,8 +214,8 @@ def _clear(made, turn, counts, extents):
 def _box_points(made, turn):
     """Places (N, 2) [m] along the devices, in the axes of the seams."""
     plan = made.plan
-    ends = _tooled(plan)
-    s, y = np.meshgrid(np.linspace(*ends, 30), [0.0, plan.width])
+    first, last = _tooled(plan)
+    s, y = np.meshgrid(np.linspace(first, last, 30), [0.0, plan.width])
     return _turned(_filed(plan, plan.way.plan(s.ravel(), y.ravel())), -turn)
 
 
@@ -241,7 +240,7 @@ def _dowels(made, body, turn, plane, size):
     places = np.column_stack([u.ravel(), v.ravel()])
     places = places[shapely.contains_xy(area, *places.T)]
     ring = shapely.MultiPoint(_box_points(made, turn)).convex_hull.buffer(2.0 * size)
-    kept = []
+    kept: list[tuple[int, np.ndarray]] = []
     for place in places:
         middle = np.insert(place, axis, at)
         if shapely.contains_xy(ring, *middle[:2]):

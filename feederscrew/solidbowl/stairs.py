@@ -54,7 +54,7 @@ class Stairs:
         """
         last = way.at(-TURN * np.arange(1, 100))
         turns = int(np.argmax(way.risen(last) < low)) + 1
-        rows, lower = [], []
+        rows: list[np.ndarray] = []
         for k in range(turns, -1, -1):
             s = way.at(np.asarray(theta) - TURN * k)
             lower = np.column_stack([way.wall_radius(s), way.risen(s)])

@@ -33,7 +33,8 @@ def ways_down(made):
     FeederError
         If it comes to lie on something else.
     """
-    plan, found = made.plan, {}
+    found: dict[str, str] = {}
+    plan = made.plan
     if plan.stretch is None:
         return found
     whole = facets.unplaced(made)

@@ -129,12 +129,12 @@ def tune(
     well_oriented.parts_per_metre(ways.along(None), wanted, rule, gap=own.gap, fill=own.fill)
     well_oriented.holds(ways.along(bowl), wanted)
 
-    def density(ways: _DriveWays, driven: Bowl) -> float:
+    def density(ways: _DriveWays, driven: Bowl | None) -> float:
         return well_oriented.leaving_per_metre(ways.along(driven), wanted, rule, gap=own.gap, fill=own.fill)
 
     led = None if lead is None else partial(density, lead)
-    asked = {"rough": led, "worst": own.worst, "progress": own.progress}
-    made = knobs.solutions(bowl, target, partial(density, ways), **asked)
+    to_turn = bowl, target, partial(density, ways)
+    made = knobs.solutions(*to_turn, rough=led, worst=own.worst, progress=own.progress)
     return TuneStudy(
         part=part,
         bowl=bowl,

@@ -53,8 +53,9 @@ def table(number):
     lines = (resources.files("feederscrew.thesis") / "data" / _file(number)).read_text().splitlines()
     head = dict(line[2:].split(": ", 1) for line in lines if line.startswith("#"))
     reader = csv.DictReader(line for line in lines if not line.startswith("#"))
-    keys = [name for name in reader.fieldnames if name in KEYS]
-    columns = tuple(name for name in reader.fieldnames if name not in keys)
+    names = reader.fieldnames or ()
+    keys = [name for name in names if name in KEYS]
+    columns = tuple(name for name in names if name not in keys)
     rows = {" - ".join(row[key] for key in keys): {c: row[c] for c in columns} for row in reader}
     return PrintedTable(head["table"], head["caption"], head["source"], head["units"], columns, rows)
 

@@ -124,10 +124,10 @@ def _holds(two, friction):
         for side in (-1.0, 1.0):
             push = turned(normal, side * np.arctan(friction))
             wrenches.append([*push, cross(point, push)])
-    wrenches, weight = np.array(wrenches), np.array([0.0, 1.0, 0.0])
-    size = np.abs(wrenches[:, 2]).max()
-    wrenches[:, 2] /= size if size > 0.0 else 1.0
-    for three in itertools.combinations(wrenches, 3):
+    rows, weight = np.array(wrenches), np.array([0.0, 1.0, 0.0])
+    size = np.abs(rows[:, 2]).max()
+    rows[:, 2] /= size if size > 0.0 else 1.0
+    for three in itertools.combinations(rows, 3):
         basis = np.array(three)
         if abs(_det(basis)) < NONE:
             continue

@@ -150,7 +150,8 @@ def course(devices, every, sigma=0.0, rows=None):
     every = tuple(every)
     states, here = list(every), list(every)  # `here`: as they are at this device, a slot below them or not
     starts = [float(not one.returned and (rows is None or k in rows)) for k, one in enumerate(every)]
-    verdicts, ways, came = [], [], []
+    ways: list[list] = []  # a list a device, a tuple of Way an orientation
+    verdicts, came = [], []
     for device in devices:
         came.append(tuple(here))
         asked = _followed(ways, len(here), rows)

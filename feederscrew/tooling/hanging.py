@@ -1,7 +1,8 @@
 """Headed parts: a slot between rails lets the shank down and holds the head; from there on they hang."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import cast
 
 import numpy as np
 
@@ -39,7 +40,7 @@ class Neck:
 class Hanging(Orientation):
     """A part that hangs by its head between rails: its foot is what of the head rests on them."""
 
-    neck: Neck | None = None
+    neck: Neck = field(kw_only=True)
     span: tuple[float, ...] = ()  # [m] of the slot, from the wall
     lies_on: tuple[float, ...] = ()  # [m] shank's and head's middle from the foot of the centre of mass
 
@@ -56,7 +57,7 @@ class Hanging(Orientation):
     @cached_property
     def foot(self):
         """What of the head rests on the rails: a Footprint."""
-        size = np.ptp(self.posture.corners, axis=0).max()
+        size = np.ptp(cast(np.ndarray, self.posture.corners), axis=0).max()
         for depth in (touching.TOUCHING * size, SEATED * self.height):
             rings = touching.rings(self._rests(depth), touching.SLIVER * size**2)
             if len(rings) > 1 or depth > touching.TOUCHING * size:
@@ -72,9 +73,9 @@ class Hanging(Orientation):
 
     def _rests(self, depth):
         """What of the part lies lower over the rails than a depth, as an area about the foot."""
-        points, faces = self.posture.surface, self.posture.solid.faces
+        points, faces = self.posture.surface, self.posture.facets
         area = touching.area_below(points[:, :2], points[:, 2], faces, depth, True)
-        reach = np.hypot(*self.posture.corners[:, :2].T).max()
+        reach = np.hypot(*cast(np.ndarray, self.posture.corners)[:, :2].T).max()
         return area.difference(touching.ring(self.span, self.distance, self.track.radius, 2.0 * reach))
 
 

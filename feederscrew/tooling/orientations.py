@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import cast
 
 import numpy as np
 import shapely
@@ -87,7 +88,7 @@ class Orientation:
     @cached_property
     def axes(self):
         """(3, 3) [1] the track's axes as rows, in the file's axes."""
-        c, s, (x, y, z) = np.cos(self.heading), np.sin(self.heading), self.posture.axes
+        c, s, (x, y, z) = np.cos(self.heading), np.sin(self.heading), cast(np.ndarray, self.posture.axes)
         return np.array([c * x - s * y, s * x + c * y, z])
 
     @cached_property
@@ -131,7 +132,7 @@ class Orientation:
         """Its outline seen from the bowl's axis: distances ahead of its weight and heights, shapely."""
         points = self.posture.surface
         plan = turned(points[:, :2], self.heading)
-        seen = area(np.column_stack([plan, points[:, 2]]), self.posture.solid.faces, "side")
+        seen = area(np.column_stack([plan, points[:, 2]]), self.posture.facets, "side")
         return shapely.affinity.translate(seen, plan[:, 0].max())
 
     @cached_property

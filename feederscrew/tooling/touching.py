@@ -72,11 +72,11 @@ def area_below(plan, height, faces, depth, cut):
     """
     low = height[faces] < depth
     whole = plan[faces[low.all(axis=1)]]
-    pieces = [shapely.polygons(whole)] if len(whole) else []
+    made = [shapely.polygons(whole)] if len(whole) else []
     if cut:
         some = faces[low.any(axis=1) & ~low.all(axis=1)]
-        pieces.append(np.array([_below(plan[f], height[f], depth) for f in some], dtype=object))
-    pieces = np.concatenate(pieces) if pieces else np.array([])
+        made.append(np.array([_below(plan[f], height[f], depth) for f in some], dtype=object))
+    pieces = np.concatenate(made) if made else np.array([])
     pieces = pieces[shapely.area(pieces) > 0.0] if len(pieces) else pieces
     return shapely.union_all(shapely.make_valid(pieces), grid_size=1e-9) if len(pieces) else shapely.Polygon()
 

@@ -71,7 +71,8 @@ def along(placed, track, every):
     -------
     Air
     """
-    mass, rows, watches, slopes = every[0].posture.mass, [], [], []
+    rows: list[list[float]] = []
+    mass, watches, slopes = every[0].posture.mass, [], []
     for standing, start, level in placed:
         first = len(rows)
         rows += [_row(jet, start, level, track.radius, mass) for jet in standing.jets]

@@ -177,7 +177,7 @@ def rightly(leaving):
         Share of each orientation that leaves in each state, the M orientations first.
     """
     right = leaving > 0.0
-    return right | (np.eye(*right.shape, dtype=bool) & ~right.any(axis=1)[:, None])
+    return right | (np.eye(len(right), right.shape[1], dtype=bool) & ~right.any(axis=1)[:, None])
 
 
 def _chain(bowl, every, devices):

@@ -1,5 +1,7 @@
 """In which orientation a part lies or hangs, by how far it reaches; on which aspect at any heading."""
 
+from typing import cast
+
 import numpy as np
 
 from feederscrew.dropping.kernel.one_drop import UNSETTLED, face_below
@@ -28,7 +30,7 @@ class Looks:
     def __init__(self, every, solid, length, principal, radius):
         self.directions, self.corners = spread(DIRECTIONS), solid.corners[solid.outer]
         self.ups = {
-            k: vectors.product(principal.T, one.posture.axes[2])
+            k: vectors.product(principal.T, cast(np.ndarray, one.posture.axes)[2])
             for k, one in enumerate(every)
             if isinstance(one, Hanging)
         }
@@ -60,7 +62,7 @@ class Looks:
         best = int(np.argmin(off))
         if self.ups and state[2] < self.low:
             up = {k: float(vectors.dot(whereabouts.matrix(level)[2], one)) for k, one in self.ups.items()}
-            return max((k for k in up if up[k] > SWINGS), key=up.get, default=OTHER)
+            return max((k for k in up if up[k] > SWINGS), key=up.__getitem__, default=OTHER)
         return best if off[best] < self.near else self._turned(reach)
 
     def _turned(self, reach):
@@ -68,7 +70,7 @@ class Looks:
         away = np.minimum(ROUND, 2.0 * np.pi - ROUND)
         off = {k: np.abs(one - reach).max(axis=1) for k, one in self.turned.items()}
         by = {k: float(away[one < self.near].min(initial=np.inf)) for k, one in off.items()}
-        return min((k for k in by if np.isfinite(by[k])), key=by.get, default=OTHER)
+        return min((k for k in by if np.isfinite(by[k])), key=by.__getitem__, default=OTHER)
 
 
 class AspectsBelow:

@@ -96,7 +96,7 @@ def passed(standing, start, size):
     return start + standing.length + (standing.settles + 0.5 + SPARE) * size
 
 
-def built(placed, track, size, ends):
+def built(placed, track, size, ends) -> tuple[np.ndarray, np.ndarray]:
     """Return plates (P, 17) and borders (B, 10) of a stretch of track with devices along it.
 
     Parameters
@@ -123,14 +123,15 @@ def built(placed, track, size, ends):
 def _floor(holes, track, size, ends, own, level, depth=THICK):
     """A level surface: a sector about the bowl's axis between two places, without the holes."""
     behind, width = BEHIND * size, track.extent
-    length = own[1] - own[0]
-    coarse = np.linspace(*own, max(int(length / behind), 2) + 1)  # nothing comes there
-    fine = np.linspace(*own, int(length / np.sqrt(8.0 * track.radius * CHORD)) + 2)[::-1]
+    first, last = own
+    length = last - first
+    coarse = np.linspace(first, last, max(int(length / behind), 2) + 1)  # nothing comes there
+    fine = np.linspace(first, last, int(length / np.sqrt(8.0 * track.radius * CHORD)) + 2)[::-1]
     ring = np.vstack([_arc(coarse, -behind, track.radius), _arc(fine, width, track.radius)])
     area = shapely.Polygon(ring)
     for outline, start in holes:
         taken = np.array(outline, float)
-        taken[:, 0] = np.minimum(taken[:, 0] + start, own[1] + behind)
+        taken[:, 0] = np.minimum(taken[:, 0] + start, last + behind)
         taken = np.array(beyond_borders(taken.tolist(), width - 1e-9, 2.0 * behind))
         area = area.difference(shapely.make_valid(shapely.Polygon(bent(taken, track.radius, chord=CHORD))))
     frame = np.array([[0.0, 0.0, level], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])

@@ -8,6 +8,7 @@ from feederscrew import check
 from feederscrew.designing.hazards.pulling import WAYS
 from feederscrew.geometry import vectors
 from feederscrew.geometry.cells import chords
+from feederscrew.part.record import Part
 from feederscrew.trial.shape import solid_of
 
 LINES, NEAR, NESTED = 60, 0.02, 0.3  # lines through a part; of their longest; of a part that is in its like
@@ -23,12 +24,12 @@ class Stack:
     side: float  # [rad] between that direction and the sides on which they touch
 
     @property
-    def depth(self):
+    def depth(self) -> float:
         """How far the one is in the other [m]."""
         return self.height - float(vectors.norm(self.place))
 
 
-def stack(part, friction):
+def stack(part: Part, friction: float) -> Stack | None:
     """Return how a part sits in its like, shifted and not turned, where friction holds it; else None.
 
     Two such parts touch where the upright chord of the one is longest, its hollows counted in: that is how
@@ -67,7 +68,7 @@ def stack(part, friction):
     return min(found, key=lambda one: vectors.norm(one.place) / one.height, default=None)
 
 
-def _upright(way):
+def _upright(way: np.ndarray) -> np.ndarray:
     """Axes (3, 3) as rows, of which the third is a direction (3,)."""
     aside = np.cross(way, np.eye(3)[int(np.argmin(np.abs(way)))])
     aside = vectors.unit(aside)

@@ -6,11 +6,14 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.bowl import default
+from feederscrew.bowl.record import Track
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
+from feederscrew.geometry.cells import Cells
 from feederscrew.trial import air, arrays, crowd, runs, staging, stations, whereabouts
 from feederscrew.trial.kernel import travel
 from feederscrew.trial.kernel.crowd_records import Together
+from feederscrew.trial.shape import TrueSolid
 
 HELD = 0.75  # of the pulls, that do not part the two: then they may hook
 PULL, SECONDS = 0.12, 0.06  # [sqrt(g L)] by which a pull changes their velocities; [sqrt(L/g)] to the next
@@ -23,7 +26,7 @@ HIGH, FAR = 1e3, 1e6  # over the track and from the wall, in units of length; ra
 class Pulled:
     """Two parts without gravity, which are pulled apart."""
 
-    def __init__(self, solid, grid, length, friction):
+    def __init__(self, solid: TrueSolid, grid: Cells, length: float, friction: tuple[float, float]) -> None:
         bowl = default()
         track = replace(bowl.track, climb=0.0, bank=0.0, radius=FAR * length)
         bowl = replace(bowl, drive=replace(bowl.drive, amplitude=0.0), track=track, devices=())
@@ -34,7 +37,9 @@ class Pulled:
         known = replace(known, friction=np.array([static, kinetic, static, kinetic, static]))
         self.pair = crowd.PartsOnTrack(known, _nowhere(track, length), 2)
 
-    def tried(self, turn, place, most):
+    def tried(
+        self, turn: np.ndarray, place: np.ndarray, most: float
+    ) -> tuple[np.ndarray, np.ndarray, int, int] | None:
         """Return a pose with how often it was pulled, and how often in vain; None of none.
 
         It ends as soon as too few can hold, or of what is to hold in a share ``most`` [1], as too many do.
@@ -51,7 +56,7 @@ class Pulled:
                 return None
         return turn, place, pulls, held
 
-    def parted(self, turn, place, way):
+    def parted(self, turn: np.ndarray, place: np.ndarray, way: np.ndarray) -> bool | None:
         """Return whether a pull (3,) [1] parts the two, or shaking after it; None where they overlap then."""
         states = np.zeros((2, body.STATE))
         states[:, 1:3] = HIGH
@@ -71,7 +76,7 @@ class Pulled:
         return False
 
     @property
-    def through(self):
+    def through(self) -> bool:
         """Whether the two have come through each other."""
         first, second = self.pair.arrays.states
         spots = self.apart + vectors.product(self.rim, whereabouts.matrix(second).T)
@@ -79,11 +84,11 @@ class Pulled:
         return bool((self.grid.inside[self.grid.at(spots)] > LEAKS * self.grid.size).any())
 
     @property
-    def apart(self):
+    def apart(self) -> np.ndarray:
         """From one centre of mass to the other, (3,) [L]."""
         return self.pair.arrays.states[1, :3] - self.pair.arrays.states[0, :3]
 
-    def pull(self, way):
+    def pull(self, way: np.ndarray) -> float:
         """Pull both by a velocity (3,) [sqrt(g L)] away from each other; how deep they were in each other."""
         pair, states, notes = self.pair, self.pair.arrays.states, np.zeros(travel.NOTES + 2)
         states[:, 3:6] -= states[:, 3:6].mean(axis=0)  # they fall freely: that is left out
@@ -95,7 +100,7 @@ class Pulled:
         return notes[travel.SUNK]
 
 
-def _nowhere(track, length):
+def _nowhere(track: Track, length: float) -> crowd.CrowdedTrack:
     """A track that is too far away to be met."""
     made = staging.built([], track, length, (-length, length))
     stage = staging.Stage(
@@ -105,7 +110,7 @@ def _nowhere(track, length):
     return crowd.CrowdedTrack(stage, -length, none, np.zeros(1), length)
 
 
-def _ways():
+def _ways() -> np.ndarray:
     """Directions (26, 3) to faces, edges and corners of a cube."""
     found = np.array([(x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if x or y or z])
     return vectors.unit(found.astype(float))

@@ -1,15 +1,20 @@
 """Risks that are said before steel is cut: parts that shingle, hook, nest, wedge, or climbed in the queue."""
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from feederscrew import check
+from feederscrew.bowl.record import Bowl
 from feederscrew.designing.hazards import nesting, tangling, wedging
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import turned
+from feederscrew.part.record import Part
 from feederscrew.tooling.isolating.shop_values import millimetres
+from feederscrew.tooling.orientations import Orientation
 from feederscrew.units import counted
 
 LIFT = (
@@ -38,7 +43,19 @@ class Risk:
     pair: Pair | None = None  # what is drawn of it
 
 
-def wedge(one, lift=LIFT):
+class QueueSeen(Protocol):
+    """A queue that was followed, as far as it tells of risks."""
+
+    @property
+    def climbs(self) -> int:
+        """How often a part climbed on another."""
+
+    @property
+    def seconds(self) -> float:
+        """How long it was followed [s]."""
+
+
+def wedge(one: Orientation, lift: float = LIFT) -> float:
     """Return the angle [rad] at which a part is pushed up on its like where it lies a little higher.
 
     Two parts of one orientation follow each other along the track, one of them higher by ``lift``. They come
@@ -62,7 +79,7 @@ def wedge(one, lift=LIFT):
     return min(_rise(one, sign, lift)[0] for sign in (1.0, -1.0))
 
 
-def _rise(one, sign, lift):
+def _rise(one: Orientation, sign: float, lift: float) -> tuple[float, float]:
     """The angle where the part behind is higher (+1) or the part before (-1), and how far apart they are.
 
     L is the largest q_x - p_x of points q of the part behind and p of the part before that meet: a linear
@@ -82,7 +99,14 @@ def _rise(one, sign, lift):
     return math.atan2(1.0, sign * found.eqlin.marginals[3]), -float(found.fun)
 
 
-def risks(one, bowl, queues, *, every=(), seed=1):
+def risks(
+    one: Orientation,
+    bowl: Bowl,
+    queues: Sequence[QueueSeen],
+    *,
+    every: Sequence[Orientation] = (),
+    seed: int = 1,
+) -> tuple[Risk, ...]:
     """Say what may go wrong between parts.
 
     Parameters
@@ -103,11 +127,12 @@ def risks(one, bowl, queues, *, every=(), seed=1):
     """
     part = one.posture.solid
     found = [*_shingling(one, bowl.friction.kinetic), *_climbing(queues)]
-    found += [*_nesting(part, bowl), *_tangling(part, bowl, seed), *_wedging(every or (one,), bowl)]
-    return tuple(found)
+    if part is not None:
+        found += [*_nesting(part, bowl), *_tangling(part, bowl, seed)]
+    return (*found, *_wedging(every or (one,), bowl))
 
 
-def _shingling(one, friction):
+def _shingling(one: Orientation, friction: float) -> Iterator[Risk]:
     held = math.atan(friction)
     angle, apart, sign = min((*_rise(one, sign, LIFT), sign) for sign in (1.0, -1.0))
     higher = f"where one lies {1e3 * LIFT:.3g} mm higher than the next it"
@@ -124,14 +149,14 @@ def _shingling(one, friction):
     yield Risk(SHINGLES, text, Pair(one.axes, np.eye(3), check.frozen(before)))
 
 
-def _climbing(queues):
+def _climbing(queues: Sequence[QueueSeen]) -> Iterator[Risk]:
     climbs = sum(seen.climbs for seen in queues)
     if climbs:
         seconds = sum(seen.seconds for seen in queues)
         yield Risk(CLIMBS, f"parts climbed on others {counted(climbs, 'time')} in {seconds:.3g} s of queue")
 
 
-def _nesting(part, bowl):
+def _nesting(part: Part, bowl: Bowl) -> Iterator[Risk]:
     found = nesting.stack(part, bowl.friction.static)
     if found is not None:
         held, side = math.degrees(math.atan(bowl.friction.static)), math.degrees(found.side)
@@ -142,7 +167,7 @@ def _nesting(part, bowl):
         yield Risk(NESTS, text, Pair(np.eye(3), np.eye(3), found.place))
 
 
-def _tangling(part, bowl, seed):
+def _tangling(part: Part, bowl: Bowl, seed: int) -> Iterator[Risk]:
     found = tangling.tangle(part, (bowl.friction.static, bowl.friction.kinetic), seed)
     if found is None:
         return
@@ -158,7 +183,7 @@ def _tangling(part, bowl, seed):
         yield Risk(HOOKS, f"parts may catch in each other: {pulls}", pair)
 
 
-def _wedging(every, bowl):
+def _wedging(every: Sequence[Orientation], bowl: Bowl) -> Iterator[Risk]:
     """Those that come between the wall and what stands at the free edge, such as the chute's other wall."""
     wall, width = bowl.friction.wall, bowl.track.width
     for one in every:

@@ -8,7 +8,8 @@ from feederscrew import check
 from feederscrew.designing.hazards.pulling import HELD, Pulled
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
-from feederscrew.geometry.cells import cells, handles
+from feederscrew.geometry.cells import Cells, cells, handles
+from feederscrew.part.record import Part
 from feederscrew.trial import whereabouts
 from feederscrew.trial.shape import solid_of
 
@@ -33,12 +34,12 @@ class Tangle:
     section: float  # [m] thinnest of the part
 
     @property
-    def share(self):
+    def share(self) -> float:
         """Share of the pulls that do not part them [1]."""
         return self.held / self.pulls
 
 
-def tangle(part, friction, seed=1):
+def tangle(part: Part, friction: tuple[float, float], seed: int = 1) -> Tangle | None:
     """Return the pair of a part that holds best of those that reach into each other; None where none holds.
 
     Pairs are laid out by chance, one of the second part's cells in a hollow of the first. Those that do not
@@ -66,8 +67,8 @@ def tangle(part, friction, seed=1):
     closed = mouth < section if np.isfinite(mouth) else handles(grid.solid) > 0
     most = LOOSE if closed else 1.0
     pulled = Pulled(solid, grid, length, friction)
-    found = [pulled.tried(*pose, most) for pose in poses(grid, np.random.default_rng(seed))]
-    found = [one for one in found if one is not None and HELD <= one[3] / one[2] <= most]
+    tried = [pulled.tried(turn, place, most) for turn, place in poses(grid, np.random.default_rng(seed))]
+    found = [one for one in tried if one is not None and HELD <= one[3] / one[2] <= most]
     mouth = mouth if mouth >= section else np.nan
     if not found:
         return None
@@ -77,7 +78,7 @@ def tangle(part, friction, seed=1):
     return Tangle(check.frozen(turn), check.frozen(place), pulls, held, length * mouth, length * section)
 
 
-def poses(grid, rng):
+def poses(grid: Cells, rng: np.random.Generator) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return the deepest poses of a part in its like that do not overlap: rotations and places.
 
     Parameters
@@ -109,14 +110,16 @@ def poses(grid, rng):
     return _apart(sorted(made, key=lambda one: -one[0]), float(vectors.length(rim).max()))
 
 
-def _within(grid, points):
+def _within(grid: Cells, points: np.ndarray) -> float:
     """Share of points (N, 3) in the hull."""
     return float(grid.hull[grid.at(points)].mean())
 
 
-def _apart(made, radius):
+def _apart(
+    made: list[tuple[float, np.ndarray, np.ndarray]], radius: float
+) -> list[tuple[np.ndarray, np.ndarray]]:
     """The first of the poses of which none is like one before it."""
-    found = []
+    found: list[tuple[np.ndarray, np.ndarray]] = []
     for _, turn, place in made:
         differs = (
             vectors.length(place - other) + radius * np.abs(turn - spun).max() > BESIDE * radius
@@ -129,13 +132,13 @@ def _apart(made, radius):
     return found
 
 
-def _turn(numbers):
+def _turn(numbers: np.ndarray) -> np.ndarray:
     state = np.zeros(body.STATE)
     state[body.Q : body.Q + 4] = numbers / vectors.norm(numbers)
     return whereabouts.matrix(state)
 
 
-def _section(grid):
+def _section(grid: Cells) -> float:
     """Diameter [L] of the ball that fits into a part wherever it is, but for its edges and corners."""
     own, inside = np.argwhere(grid.solid), grid.inside[grid.solid]
     beside = np.max([np.roll(grid.inside, step, axis) for axis in range(3) for step in (-1, 1)], axis=0)
@@ -146,7 +149,7 @@ def _section(grid):
     return 2.0 * float(np.quantile(least, THINNEST)) - grid.size
 
 
-def _mouth(grid):
+def _mouth(grid: Cells) -> float:
     """Width [L] of the slit that closes a ring of the part; NaN where none does.
 
     The part grows on all sides, until it has a handle more than it had.

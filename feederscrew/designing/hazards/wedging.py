@@ -4,10 +4,12 @@ import math
 
 import numpy as np
 
+from feederscrew.tooling.orientations import Orientation
+
 TURNS = 1.02  # times its breadth along the wall: what is no wider, turned as you like, is no strut
 
 
-def walls_between(one, friction):
+def walls_between(one: Orientation, friction: float) -> tuple[float, float] | None:
     """Return between which distances of two parallel walls a part may wedge; None where it cannot.
 
     A part between upright walls, turned until it touches both, is a strut: two forces along the line through
@@ -37,13 +39,13 @@ def walls_between(one, friction):
     return max(longest * math.cos(math.atan(friction)), breadth), longest
 
 
-def _longest(corners):
+def _longest(corners: np.ndarray) -> float:
     """The greatest distance of two corners (J, 2)."""
     apart = corners[:, None] - corners[None]
     return float(np.sqrt((apart**2).sum(axis=-1)).max())
 
 
-def strut(one, width):
+def strut(one: Orientation, width: float) -> float:
     """Return the heading [rad] by which a part is turned further where it touches walls so far apart.
 
     Parameters

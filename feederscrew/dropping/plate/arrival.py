@@ -196,7 +196,6 @@ def _span(seen, p, settled):
     ends = [seen.plate_low, seen.plate_high, p]
     if not settled:
         ends += [seen.start, seen.limit_low, seen.limit_high]
-    ends = np.stack(ends)
-    nothing = ~np.isfinite(p)
-    low, high = np.nanmin(ends, axis=0), np.nanmax(ends, axis=0)
+    every, nothing = np.stack(ends), ~np.isfinite(p)
+    low, high = np.nanmin(every, axis=0), np.nanmax(every, axis=0)
     return np.where(nothing, 0.0, low), np.where(nothing, 1.0, high)

@@ -163,7 +163,7 @@ def _course(load, moving, sense):
 def _chosen(solve, gravity):
     """At each instant the solution with most closed contacts of which none pulls and no gap closes."""
     least = -PULL * np.max(gravity)
-    chosen = {}
+    chosen: dict[str, np.ndarray] = {}
     for closed in system.SETS:
         found = solve(closed)
         found = found | {"closed": np.broadcast_to(closed, found["walls"].shape)}

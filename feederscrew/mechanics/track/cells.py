@@ -1,6 +1,7 @@
 """The part on the track for arrays of bowl settings: what a map over two of them shows."""
 
 from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -89,7 +90,8 @@ def _seats(posture, bowl, heading, shape):
     names = ("climb", "bank", "radius", "width")
     values = np.stack([np.broadcast_to(getattr(bowl.track, name), shape).ravel() for name in names])
     kinds, place = np.unique(np.round(values, ROUNDED), axis=1, return_inverse=True)
-    groups, known = {}, {}
+    groups: dict[Any, tuple[Any, list[int]]] = {}  # by the name of a seat: itself, and its tracks
+    known: dict[Any, Any] = {}
     for k, kind in enumerate(kinds.T):
         key, seat_there = _seat(posture, bowl, heading, Track(*kind), known)
         if seat_there is not None:
@@ -135,7 +137,7 @@ def _fields(bowl):
 
 def _picked(bowl, shape, here):
     """The bowl at chosen cells, every field a (cells,) array."""
-    changed = {}
+    changed: dict[str, dict[str, Any]] = {}
     for section, name, value in _fields(bowl):
         changed.setdefault(section, {})[name] = np.broadcast_to(value, shape)[here]
     top = changed.pop("")

@@ -105,7 +105,7 @@ def becomes(one, every, angle):
     angle : float [rad]
         Of both faces from level.
     """
-    shares = {}
+    shares: dict[int, float] = {}
     for turn in (-YAW, YAW):
         reach = _comes_to_lie(one.posture, one.heading, angle, turn)
         place = _like(reach, one, every)

@@ -55,13 +55,14 @@ def falls(posture, reach, track):
     most = reach[:, 1].max()
     if posture.kind == "rolling":
         return bool(inward > most + SAME * size)
-    return bool(inward > np.interp(ahead, *reach.T, left=most, right=most) + SAME * size)
+    along, off = reach.T
+    return bool(inward > np.interp(ahead, along, off, left=most, right=most) + SAME * size)
 
 
 def _reach(points):
     """(K, 2) the side of the hull of points that is away from the wall, along the track."""
     places = np.column_stack([NOISE * np.round(points[:, 0] / NOISE), points[:, 1]])
-    chain = []
+    chain: list[np.ndarray] = []
     for point in places[np.lexsort((-places[:, 1], places[:, 0]))]:
         if chain and point[0] == chain[-1][0]:
             continue  # nearer to the wall than the one before

@@ -2,6 +2,7 @@
 
 import io
 import textwrap
+from typing import Any
 
 from matplotlib import image
 
@@ -94,6 +95,6 @@ def _shortened(text, most):
 
 
 def _png(pixels):
-    buffer = io.BytesIO()
-    image.imsave(buffer, pixels, format="png", metadata={"Software": None})
+    buffer, metadata = io.BytesIO(), dict[str, Any](Software=None)  # None: no such entry
+    image.imsave(buffer, pixels, format="png", metadata=metadata)
     return buffer.getvalue()

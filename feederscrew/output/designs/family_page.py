@@ -29,7 +29,7 @@ def _chapters(study):
     changed = family.changeover(study)
     if changed["what"]:
         sheet = frame(changed)
-        blocks = (
+        blocks: tuple = (
             Table(sheet),
             CsvSheet("changeover.csv", text(sheet, "csv"), shown=False),
             Heading("How"),

@@ -74,7 +74,7 @@ def bowl(study):
 
 def risk(one):
     """Return a Risk as a dict: of two parts how the second lies to the first, in the axes of the file."""
-    pair = None if one.pair is None else {}
+    pair: dict | None = None if one.pair is None else {}
     if pair is not None and one.pair.turn is not None:
         pair = {"turn": one.pair.turn.tolist(), "place_mm": (one.pair.place / MM).tolist()}
     elif pair is not None:

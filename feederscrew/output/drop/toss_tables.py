@@ -1,6 +1,7 @@
 """Tosses followed from a file of launches, as a table and as a document."""
 
 from dataclasses import asdict
+from typing import Any
 
 import numpy as np
 
@@ -31,7 +32,7 @@ def tosses(study):
     count = len(found.faces)
     low, high = study.intervals
     names = study.aspects.names
-    measured = {}
+    measured: dict[str, Any] = {}
     if launches.ends is not None:
         ends = launches.ends[:count] / MM
         measured |= {"x_measured_mm": ends[:, 0], "y_measured_mm": ends[:, 1], "off_mm": study.off / MM}

@@ -1,6 +1,7 @@
 """Maps over two quantities with regions marked, and states along a cycle: what floor and track share."""
 
 import textwrap
+from collections.abc import Sequence
 
 import matplotlib
 import numpy as np
@@ -152,7 +153,7 @@ def _throws(axes, grid):
     known = throw[np.isfinite(throw)]
     if not known.size or known.min() == known.max():
         return
-    levels = [level for level in THROWS if known.min() < level < known.max()]
+    levels: Sequence[float] = [level for level in THROWS if known.min() < level < known.max()]
     if len(levels) < 2:
         levels = MaxNLocator(5).tick_values(known.min(), known.max())
     if len(levels):

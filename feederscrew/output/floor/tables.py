@@ -163,10 +163,10 @@ def difference(printed, complete, terms):
     Frame
     """
     rows = [(name, printed[name], complete[name], term) for name, term in terms.items()]
-    names, first, second, listed = zip(*rows)
+    names, first, second, omitted = zip(*rows)
     gap = np.array(first, dtype=float) - np.array(second, dtype=float)
     alike = np.abs(gap) <= 1e-9 * np.maximum(np.abs(first), np.abs(second))
-    listed = ["-" if same else term for same, term in zip(alike, listed)]
+    listed = ["-" if same else term for same, term in zip(alike, omitted)]
     return tables.frame(
         {
             "quantity": names,

@@ -112,7 +112,8 @@ def _name(axes, name, place):
 
 def _arrows(axes, ways, places, sizes, names):
     """The easiest way between every two discs that are shown; the easiest out of each stands out."""
-    lowest, between = {}, {}
+    lowest: dict[int, float] = {}
+    between: dict[tuple[int, int], float] = {}
     for way in ways:
         lowest[way.start] = min(way.lift, lowest.get(way.start, np.inf))
         pair = (way.start, way.end)

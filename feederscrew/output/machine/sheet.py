@@ -210,7 +210,7 @@ def _other_leaves(study):
 
 def _few(sets):
     """Up to five sets, of each thickness the one with the fewest leaves."""
-    first = {}
+    first: dict[float, str] = {}
     for one in sets:
         first.setdefault(one.thickness, f"{one.leaves} of {one.thickness / MM:g} mm")
     return ", ".join(list(first.values())[:5]) or "none of this width and length"

@@ -257,7 +257,10 @@ def _entry(entry):
 
 def _views(views):
     player = PLAYER if views.plays else ""
-    figures = "\n".join(_view(views.of, place, *shown, player) for place, shown in enumerate(views.captions))
+    figures = "\n".join(
+        _view(views.of, place, name, kind, bars, player)
+        for place, (name, kind, bars) in enumerate(views.captions)
+    )
     scene = json.dumps(views.scene, separators=(",", ":")).replace("<", "\\u003c")
     hint = views.hint or (PLAYED if views.plays else HINT)
     kind = "turnable on-paper" if views.printed else "turnable"

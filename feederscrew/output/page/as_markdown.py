@@ -51,8 +51,8 @@ def _block(block, beside):
         case kinds.Links(entries):
             return "\n".join(f"- [{label}](#{anchor}): {text}" for anchor, label, text in entries)
         case kinds.Matrix(heads, rows, _):
-            lines = [heads, ["---"] * len(heads), *([_entry(entry) for entry in row] for row in rows)]
-            return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+            grid = [heads, ["---"] * len(heads), *([_entry(entry) for entry in row] for row in rows)]
+            return "\n".join(f"| {' | '.join(cells)} |" for cells in grid)
     raise ValueError(f"{type(block).__name__} is not a block of a page")
 
 

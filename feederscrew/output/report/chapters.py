@@ -43,7 +43,7 @@ def page(case, step=nullcontext, chapters=CHAPTERS):
     Page
     """
     part, bowl = case.part, case.path or "the default bowl"
-    sections = (_chapter(case, *chapter, step) for chapter in chapters)
+    sections = (_chapter(case, anchor, title, compute, step) for anchor, title, compute in chapters)
     listed = tuple(section for section in sections if section is not None)
     return Page(part.name, f"{part.material}, in {bowl} · feeder {__version__}", listed, "report")
 

@@ -129,7 +129,8 @@ def _bars(found, row):
         share, low, high = (float(ends[row]) for ends in (answer.p, answer.low, answer.high))
         yield ShareBar("recommended", style.ANSWER, share, (low, high))
     for place, (rule, values) in enumerate(found.probabilities.items()):
-        yield ShareBar(*style.method(rule, place), float(values[row]))
+        label, colour = style.method(rule, place)
+        yield ShareBar(label, colour, float(values[row]))
 
 
 def _tile(case):

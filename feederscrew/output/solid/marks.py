@@ -1,5 +1,7 @@
 """What is drawn over a picture of a part: centre of mass, contact polygon, rolling axis, scale."""
 
+from typing import Any
+
 import numpy as np
 from matplotlib.patches import Circle, Polygon, Wedge
 
@@ -9,7 +11,7 @@ STEPS = 60  # pieces an edge of the contact polygon is cut into, to see which ar
 LINE = {"color": style.ACCENT, "linewidth": 1.3, "solid_capstyle": "round"}
 HIDDEN = {"color": style.ACCENT, "linewidth": 0.8, "linestyle": (0, (3, 2)), "alpha": 0.8}
 BEYOND = 0.08  # [size] how far a rolling axis sticks out at both ends
-AXIS = {"color": "#0072b2", "linewidth": 0.9, "linestyle": (0, (9, 2.5, 2, 2.5))}
+AXIS: dict[str, Any] = {"color": "#0072b2", "linewidth": 0.9, "linestyle": (0, (9, 2.5, 2, 2.5))}
 ROUND_LENGTHS = np.array([1.0, 2.0, 5.0])
 
 

@@ -64,8 +64,8 @@ class Paper:
         turn = (turn + 90.0) % 180.0 - 90.0
         turn = 90.0 if abs(turn + 90.0) < 1e-6 else turn
         up = np.array([-np.sin(np.radians(turn)), np.cos(np.radians(turn))])
-        place = 0.5 * (a + b) + 0.8 * up
-        self.text(*place, text, size=size, ha="center", va="bottom", rotation=turn, rotation_mode="anchor")
+        x, y = 0.5 * (a + b) + 0.8 * up
+        self.text(x, y, text, size=size, ha="center", va="bottom", rotation=turn, rotation_mode="anchor")
 
     def table(self, left, top, widths, rows, size=2.2, line=4.6):
         """Draw a table whose first row is its head; return the height of its lower border."""

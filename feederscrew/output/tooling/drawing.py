@@ -142,7 +142,8 @@ def _plan(strip):
 
 def _openings(strip):
     """Openings of gates one after the other to the right of the track, each on its own layer."""
-    right, found = strip.length + APART, []
+    right = strip.length + APART
+    found: list[tuple[str, tuple[np.ndarray, ...]]] = []
     for station in strip.stations:
         if station.openings:
             shown = tuple(np.add(ring, [right, 0.0]) for ring in station.openings)

@@ -140,7 +140,7 @@ def _few(text, most):
 
 def _returned(study, cut):
     """'A@2 A@90, all of B, C': what a device returns, aspects of which it returns every orientation last."""
-    names = {}
+    names: dict[str, set[str]] = {}
     for one in study.orientations:
         names.setdefault(one.aspect, set()).add(one.name)
     whole = [aspect for aspect, all_of in names.items() if all_of <= set(cut.returns)]

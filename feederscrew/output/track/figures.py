@@ -175,7 +175,7 @@ def _drive(found):
     return push * frame(bowl, found.seat.walls).drive
 
 
-def _unit(vector):
+def _unit(vector) -> tuple[np.ndarray, float]:
     """Direction and size."""
     size = float(np.hypot(*vector))
     return (vector / size if size > 0.0 else np.zeros(2)), size

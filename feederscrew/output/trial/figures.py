@@ -74,7 +74,7 @@ def paths(run):
     found, radius = run.course, run.bowl.track.radius
     figure = style.figure(7.2, 0.6 + 2.6 * len(found.rides))
     panels = figure.subplots(len(found.rides), 1, squeeze=False)[:, 0]
-    met = {}  # fates in the picture
+    met: dict[str, None] = {}  # fates in the picture
     for axes, station, ride, riders in zip(panels, found.stations, found.rides, found.riders):
         _track(axes, station, radius)
         widest = 0.0

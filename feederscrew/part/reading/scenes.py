@@ -9,6 +9,7 @@ import struct
 import warnings
 import zipfile
 import zlib
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from feederscrew.part.reading.soup import LARGEST, Soup
 
 MOST = 20_000_000  # facets, instances counted
 ARCHIVES = (zipfile.BadZipFile, zlib.error)  # what damaged archives raise
+REFUSED: tuple[type[Exception], ...] = (*DAMAGE, *ARCHIVES, DeprecationWarning)
 THREEMF_UNITS = {  # the units of the specification, and one of ours with how many of it they are
     "micron": ("mm", 1e-3),
     "centimeter": ("cm", 1.0),
@@ -61,8 +63,9 @@ def soup(data, kind, where):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             warnings.simplefilter("error", DeprecationWarning)  # numpy's way to say 'not a number'
-            return _joined(*_meshes(data, kind, where), data, kind)
-    except (*DAMAGE, *ARCHIVES, DeprecationWarning) as error:
+            meshes, unit = _meshes(data, kind, where)
+            return _joined(meshes, unit, data, kind)
+    except REFUSED as error:
         raise MeshError(where, f"is a damaged {format.title} ({_reason(error)})", AGAIN) from None
 
 
@@ -70,7 +73,8 @@ def _meshes(data, kind, where):
     """Every mesh of the scene where its instances stand, and the scene's unit."""
     import trimesh
 
-    loader, options = FORMATS[kind].loader, {"skip_materials": True} if kind == "obj" else {}
+    loader = FORMATS[kind].loader
+    options: dict[str, Any] = {"skip_materials": True} if kind == "obj" else {}
     if kind == "step":
         data = step.glb(data)
     if kind == "3mf":
@@ -93,8 +97,8 @@ def _joined(meshes, unit, data, kind):
             raise ValueError("a facet names a corner that is not there")
     sizes = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     vertices = np.concatenate([np.empty((0, 3)), *(mesh.vertices for mesh in meshes)])
-    faces = [mesh.faces + start for mesh, start in zip(meshes, sizes)]
-    faces = np.concatenate([np.empty((0, 3), dtype=int), *faces])
+    moved = [mesh.faces + start for mesh, start in zip(meshes, sizes)]
+    faces = np.concatenate([np.empty((0, 3), dtype=int), *moved])
     if kind == "step":  # through GLB: in metres, whatever the file was drawn in
         unit = step.unit(data)
         vertices = vertices / units.factor(unit, "length")

@@ -29,7 +29,7 @@ def refuse_bombs(data):
             raise ValueError(f"its components stand for more than {MOST} bodies")
         if not level:
             return
-        deeper = Counter()
+        deeper: Counter[str] = Counter()
         for name, count in level.items():
             for inner, times in parts[name].items():
                 deeper[inner] += count * times
@@ -41,7 +41,8 @@ def _components(data):
     """How often each object names each other one, and how often the build names each."""
     from lxml import etree
 
-    parts, wanted = defaultdict(Counter), Counter()
+    parts: defaultdict[str, Counter[str]] = defaultdict(Counter)
+    wanted: Counter[str] = Counter()
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         name = next(name for name in archive.namelist() if "3d/3dmodel.model" in name.lower())
         with archive.open(name) as model:

@@ -80,7 +80,7 @@ def _planes(corners, normals):
     return weld.distinct(np.round(np.column_stack([normals, offsets]) * FINE))[1]
 
 
-def _in_columns(corners, normals):
+def _in_columns(corners, normals) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(3, 3, F) coordinates of the corners from one of them, (3, F) normals, (F,) offsets of the planes."""
     places = np.ascontiguousarray((corners - corners[0, 0]).transpose(1, 2, 0))
     normals = np.ascontiguousarray(normals.T)

@@ -35,8 +35,8 @@ def holes(vertices, edges):
     rims = _rims(heads.tolist(), tails.tolist())
     hole = np.repeat(np.arange(len(rims)), [len(rim) for rim in rims])
     corners = vertices[np.concatenate(rims)]
-    middles = np.column_stack([np.bincount(hole, column) for column in corners.T])
-    middles /= np.bincount(hole)[:, None]
+    sums = np.column_stack([np.bincount(hole, column) for column in corners.T])
+    middles = sums / np.bincount(hole)[:, None]
     radii = np.zeros(len(rims))
     np.maximum.at(radii, hole, np.linalg.norm(corners - middles[hole], axis=1))
     widest = int(np.argmax(radii))
@@ -62,7 +62,7 @@ def caps(vertices, rims):
 
 def _rims(tails, heads):
     """Sides strung together to closed rims that pass no corner twice, as lists of corners."""
-    onward = {}
+    onward: dict[int, list[int]] = {}
     for tail, head in zip(tails, heads):
         onward.setdefault(tail, []).append(head)
     rims = []

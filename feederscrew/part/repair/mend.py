@@ -38,7 +38,7 @@ def mended(vertices, faces, tolerance, where):
     MeshError
         If the facets cannot be turned one way round, or cancel out.
     """
-    said = ()
+    said: tuple[str, ...] = ()
     for step in (_without_repeats, _near_corners_joined, _one_way_round, _seams_closed):
         edges = gate_edges.table(faces, len(vertices))
         if edges.paired:
@@ -67,7 +67,7 @@ def _without_repeats(vertices, faces, edges, tolerance, where):
     kept = np.sort(kept[runs[kept]])
     back_to_back = (np.bincount(group) - np.abs(net)).sum() // 2
     repeated = len(faces) - len(kept) - 2 * back_to_back
-    said = ()
+    said: tuple[str, ...] = ()
     if repeated:
         said += (f"{_many(repeated, 'duplicate facet', 'duplicate facets')} removed",)
     if back_to_back:

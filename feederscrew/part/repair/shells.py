@@ -31,7 +31,8 @@ def shells(edges, faces):
         only if they do not close without each other.
     shell : (F,) int
     """
-    number, shell = components(*edges.mates(edges.count == 2).T, len(faces))
+    one, other = edges.mates(edges.count == 2).T
+    number, shell = components(one, other, len(faces))
     crowded = edges.count > 2
     if not crowded.any():
         return number, shell

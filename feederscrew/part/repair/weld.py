@@ -30,7 +30,7 @@ def welded(vertices, faces):
     return compacted(vertices[first], group[faces])
 
 
-def compacted(vertices, faces):
+def compacted(vertices, faces) -> tuple[np.ndarray, np.ndarray]:
     """The same triangles without collapsed facets and without corners that no facet uses."""
     a, b, c = faces.T
     collapsed = (a == b) | (b == c) | (c == a)

@@ -60,10 +60,13 @@ def parse(lines, where):
     faults : list of FeederError
         A key given twice or without a value, a launch or a digest that is none.
     """
-    values, faults = {}, []
+    values: dict[str, str] = {}
+    faults = []
     for number, line in lines:
         match = LINE.match(line.strip())
-        key = match and match[1].lower().replace(" ", "_").replace("-", "_")
+        if match is None:
+            continue
+        key = match[1].lower().replace(" ", "_").replace("-", "_")
         if key not in KEYS:
             continue
         fault = _fault(f"{where}:{number}", key, match[2], values)
@@ -75,7 +78,8 @@ def parse(lines, where):
 
 
 def _cleaned(key, value):
-    return DIGEST.fullmatch(value)[1].lower() if key == "mesh" else value
+    digest = DIGEST.fullmatch(value) if key == "mesh" else None
+    return value if digest is None else digest[1].lower()
 
 
 def _fault(where, key, value, known):

@@ -73,7 +73,8 @@ def understood(table, where, sha256):
     if sorted(columns) != [PASSED, REJECTED]:
         result = ", ".join(table.header[1:]) or "missing"
         raise FeederError(f"{where}:{table.first}", f"the columns after device are {result:.60}", EXAMPLE)
-    faults, lines = Few(where), {}
+    lines: dict[str, int] = {}
+    faults = Few(where)
     for number, row in table.rows:
         _judge(f"{where}:{number}", row, columns, lines, faults)
         lines.setdefault(row[0], number)

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -154,7 +155,8 @@ def measured(table, where, sha256, names, taken=()):
     header, rows = _counted(table)
     line = f"{where}:{table.first}"
     columns = _columns(line, header, taken)
-    by, faults, cells = header[0].lower(), Few(where), {}
+    cells: dict[Any, tuple[int, list[str]]] = {}  # by aspect and heading: line and texts
+    by, faults = header[0].lower(), Few(where)
     for number, row in rows:
         key = _row(f"{where}:{number}", row, columns, cells, names, by, faults)
         cells.setdefault(key, (number, row[1:]))

@@ -111,8 +111,8 @@ def _by_ratio(title, data):
         handles += axes.plot(
             data.ratios, 100.0 * values, dashes, color=colour, linewidth=1.8, label=f"aspect {name}"
         )
-    for (label, points), marker in zip(data.points.items(), MARKERS):
-        handles += _points(axes, label, *points, *marker)
+    for (label, (ratios, values)), (marker, filled) in zip(data.points.items(), MARKERS):
+        handles += _points(axes, label, ratios, values, marker, filled)
     axes.set_ylim(bottom=0.0)
     _legend_below(figure, handles)
     return figure

@@ -100,7 +100,7 @@ def _summary(items):
 
 
 def _totals(items):
-    counts = sum((item.counts for item in items), Counter())
+    counts: Counter[str] = sum((item.counts for item in items), Counter())
     return (
         f"{counts[EXACT]} cells are exact to print, {counts[EXPLAINED]} are explained, "
         f"{counts[DIFFERS]} differ; {counts[GIVEN]} are given."

@@ -129,7 +129,7 @@ class Separation(Lean):
         return cls(where, angle=math.radians(PARTING), text=f"{{climb: {PARTING:g} deg}}")
 
     @property
-    def serves(self):
+    def serves(self):  # type: ignore[override]  # of others a text of the class
         """What it is for: on the way down parts come apart, on the way up rails begin."""
         return "makes the gaps a sorter needs" if self.angle < 0.0 else "climbs again, as rails need"
 

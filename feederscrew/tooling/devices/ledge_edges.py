@@ -90,7 +90,7 @@ class Tip(_Turner):
         needed = met.one.balcony
         margin = self.limit - needed if np.isfinite(needed) else -met.one.standing.reach
         beyond = 1.0 - met.share(margin)
-        turned = ()
+        turned: tuple[tuple[int, float], ...] = ()
         if beyond > 0.0:
             turned, certain = met.rolled_over(self.limit)
             turned = tuple((place, beyond * part) for place, part in turned)

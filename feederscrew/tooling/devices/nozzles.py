@@ -171,7 +171,7 @@ def _solid_at_middle(one):
 
 def _meeting(spans, radius):
     """Return the fewest heights [m] of which each span (low, high) has one, a radius within its ends."""
-    found = []
+    found: list[float] = []
     for low, high in sorted(spans, key=lambda span: span[1]):
         if not any(low <= height <= high for height in found):
             found.append(max(high - radius, 0.5 * (low + high)))

@@ -30,6 +30,7 @@ AHEAD = 0.01  # [m] from the sensor to the nozzles: a part is blown at as its mi
 class Sorter(Device):
     """A sensor that compares each part with the wanted one, and a pulse of air."""
 
+    like: tuple[str, float, float] = ()  # type: ignore[assignment]  # a sorter is always like something
     sees: str = "outline"
     resolution: float = math.nan  # [m] of the sensor; NaN: as common
     nozzle: float = BORE  # [m]

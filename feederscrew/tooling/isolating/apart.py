@@ -108,7 +108,8 @@ def difference(wanted, other):
     left = np.abs(away - (there * shift).sum(axis=1))
     where = there[int(np.argmax(np.round(left, 9)))]
     axis = int(np.argmax(np.abs(where)))
-    return Difference(float(left.max()), SIDES[axis][int(where[axis] < 0.0)], tuple(float(x) for x in shift))
+    x, y, z = map(float, shift)
+    return Difference(float(left.max()), SIDES[axis][int(where[axis] < 0.0)], (x, y, z))
 
 
 def _nearest(wanted, other):

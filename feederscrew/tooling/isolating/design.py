@@ -1,6 +1,7 @@
 """Which devices let one orientation leave and return all the others."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -143,7 +144,7 @@ def _plain(given, search):
     return found
 
 
-def _chosen(given, weight, stage):
+def _chosen(given, weight, stage) -> tuple[Any, np.ndarray]:
     """Cuts of the fewest devices of a stage, and which orientations are returned."""
     every, wanted = given.every, given.wanted
     same = np.flatnonzero(given.same & given.often)

@@ -159,7 +159,7 @@ class _Judge:
 
     def searched(self, rng):
         """The best hole found, as (corners, margins), if it passes the wanted one and returns any other."""
-        found = []
+        found: list[tuple] = []  # (score, margins, corners), the best first
         for _ in range(STARTS):
             if self.search.over():
                 break

@@ -156,7 +156,8 @@ def widths(every, shares, wanted, margin):
 def _blown(sensor, one, every):
     """How far from the wall [m] the pulse of a sensor's nozzles carries an orientation."""
     met = Meeting(one, every)
-    return one.track.width + met.blown(*sensor.jet.push(one, every), sensor.time)
+    outwards, down = sensor.jet.push(one, every)
+    return one.track.width + met.blown(outwards, down, sensor.time)
 
 
 def _on_this_track(every, shares, wanted, bowl, steady, asked):

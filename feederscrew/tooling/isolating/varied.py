@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.isolating import chain
 from feederscrew.tooling.isolating.shop_values import snapped
 
@@ -30,7 +31,7 @@ def varied(every, wanted, margin, wishes, same=()):
     dict of Device to (M,) float [m]
         As from ``chain.candidates``.
     """
-    found = {}
+    found: dict[Device, np.ndarray] = {}
     for kind in (kind for kind in chain.numbered() if kind.overhead and wishes.allows(kind.kind)):
         highest = every[chain.pivot(kind, every, wanted, same)].height
         limit = snapped(highest + margin, wishes.step, up=True)
