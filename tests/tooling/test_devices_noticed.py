@@ -13,6 +13,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.tooling import strip
 from feederscrew.tooling.devices.base import UNSURE
 from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.isolating import chain
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.verdicts import Meeting, verdict
 
@@ -125,3 +126,67 @@ def test_a_gap_is_not_sure_of_what_it_is_as_much_too_long_for_as_the_part_travel
         assert verdict(beyond, one).margin == pytest.approx(-1e-6, rel=1e-3)
         judged += abs(one.carry - one.carry_ahead) > 1e-5
     assert judged > 3
+
+
+@pytest.fixture(scope="module")
+def rod():
+    """A rod along the wall, of R = 3 mm and 20 mm long: over a slot w wide it sinks R - sqrt(R2 - w2 / 4)."""
+    part = shapes.part(shapes.cylinder(3.0, 20.0, 256))
+    every = travelling(orientations(part, find(part), BOWL.track), BOWL)
+    return next(one for one in every if one.kind == "rolling" and one.rolls_along)
+
+
+@pytest.mark.parametrize(("wide", "rides"), [(2.1, True), (2.2, False)])
+def test_over_a_slot_a_rod_rides_that_sinks_no_deeper_than_the_drive_lifts_it(rod, wide, rides):
+    """0.2 mm of 3 mm: w = 2 sqrt(9 - 2.8^2) = 2.15 mm."""
+    y, half = rod.distance, 0.5e-3 * wide
+    found = verdict(made("slot", "test", span=(y - half, y + half)), replace(rod, climbs=0.2e-3))
+    assert found.passes == 0.0 and found.sure != rides
+    assert found.margin == -UNSURE if rides else found.margin < -1e-3
+
+
+@pytest.mark.parametrize(("wide", "rides"), [(2.75, True), (2.87, False)])
+def test_over_a_shorter_hole_a_rod_only_dips(rod, wide, rides):
+    """By a sixth, of a hole of 12 mm under 10 mm ahead; but what an edge is rounded by costs nothing.
+
+    (s - 0.05 mm) / 6 = 0.1 mm - 0.05 mm, so s = 0.35 mm and w = 2 sqrt(9 - 2.65^2) = 2.81 mm. Placed it falls
+    2 mm over the edge, of which it travels 1 mm.
+    """
+    low, high = rod.distance - 0.5e-3 * wide, rod.distance + 0.5e-3 * wide
+    hole = made("cut_out", "test", corners=((0.0, low), (12e-3, low), (12e-3, high), (0.0, high)))
+    found = verdict(hole, replace(rod, climbs=0.1e-3, carry=1e-3))
+    assert found.passes == 0.0 and found.margin == pytest.approx(-UNSURE if rides else -1e-3, rel=1e-2)
+    assert hole.goes_on(40e-3) == 12e-3
+
+
+@pytest.mark.parametrize(("low", "high", "beside"), [(15, 25, 0), (20, 25, 1), (-5, 0, 1), (-5, 5, 0)])
+def test_a_hole_may_reach_beyond_the_track_but_not_lie_beside_it(low, high, beside):
+    corners = ((0.0, 1e-3 * low), (9e-3, 1e-3 * low), (5e-3, 1e-3 * high))
+    assert len(made("cut_out", "test", corners=corners).misfits(20e-3)) == beside
+
+
+@pytest.mark.parametrize(("limit", "left"), [(12e-3, (12e-3, 20e-3)), (20e-3, None), (25e-3, None)])
+def test_a_ledge_as_wide_as_the_track_takes_nothing_from_it(limit, left):
+    for kind in ("narrowed_track", "pressure_break"):
+        assert made(kind, "test", limit=limit).span_on(NARROW) == left
+    assert made("narrowed_track", "test", limit=limit).acts(NARROW) == (left is not None)
+
+
+def test_a_design_tries_first_what_drops_parts_and_last_what_stands_in_their_way():
+    kinds = chain.numbered()
+    assert len({kind.rank for kind in kinds}) == len(kinds)
+    assert [kind.carries for kind in kinds] == [True, True, True, False, False]
+    assert [kind.overhead for kind in kinds] == [False, False, False, False, True]
+
+
+def test_what_no_width_carries_fails_on_every_ledge_by_as_far_as_its_foot_reaches():
+    """A block 12 x 5 mm and 20 high at a bank of 30 deg: 10 tan 30 = 5.8 mm is beyond its foot's 2.5 mm."""
+    part = shapes.part(shapes.box(20, 12, 5))
+    every = orientations(part, find(part), BOWL.track)
+    tall = next(one for one in every if one.height > 19e-3 and one.length > 11e-3)
+    one = replace(tall, track=replace(BOWL.track, bank=np.radians(30.0)))
+    found = verdict(made("narrowed_track", "test", limit=11e-3), one)
+    assert found.passes == 0.0
+    assert found.margin == pytest.approx(
+        -1e-3 * np.hypot(6.0, 2.5 + 10.0 * np.tan(np.radians(30.0))), rel=1e-3
+    )
