@@ -12,6 +12,7 @@ from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
 from feederscrew.tooling import strip
 from feederscrew.tooling.devices.base import UNSURE
+from feederscrew.tooling.devices.blades import SQUARE
 from feederscrew.tooling.devices.kinds import made
 from feederscrew.tooling.isolating import chain
 from feederscrew.tooling.orientations import orientations, travelling
@@ -190,3 +191,33 @@ def test_what_no_width_carries_fails_on_every_ledge_by_as_far_as_its_foot_reache
     assert found.margin == pytest.approx(
         -1e-3 * np.hypot(6.0, 2.5 + 10.0 * np.tan(np.radians(30.0))), rel=1e-3
     )
+
+
+@pytest.mark.parametrize(
+    ("sweep", "own", "fate"),
+    [
+        (30.0, np.nan, "returned"), (58.0, np.nan, "returned"), (60.0, np.nan, "stopped"),
+        (60.0, 0.5, "returned"), (64.0, 0.5, "stopped"), (90.0, 0.0, "stopped"),
+    ],
+)  # fmt: skip
+def test_a_face_sweeps_off_below_a_right_angle_less_its_angle_of_friction(rod, sweep, own, fate):
+    """atan 0.6 = 31 deg of the track, atan 0.5 = 27 deg of the face; one straight across stops all."""
+    wiper = made(
+        "wiper", "test", limit=1e-3, sweep=np.radians(sweep) if sweep < 90.0 else SQUARE, friction=own
+    )
+    assert wiper.fate(Meeting(replace(rod, grip=0.6))) == fate
+
+
+def test_below_a_blade_is_what_its_lower_edge_leaves():
+    """Over 20 mm: 6 mm all along, or from 6 to 4 mm over 9 mm and 4 mm from there on."""
+    plain = made("wiper", "test", limit=6e-3)
+    assert plain.opening((), 20e-3).area == pytest.approx(120e-6)
+    falling = replace(plain, contour=((0.0, 6e-3), (9e-3, 4e-3)))
+    assert falling.opening((), 20e-3).area == pytest.approx(45e-6 + 44e-6)
+
+
+@pytest.mark.parametrize(("at_wall", "tallest"), [(6e-3, 60e-3), (90e-3, 20e-3)])
+def test_a_blade_is_higher_than_every_orientation_and_than_its_own_edge(rod, at_wall, tallest):
+    wiper = made("wiper", "test", limit=6e-3, contour=((0.0, at_wall), (9e-3, 4e-3)))
+    (blade,) = wiper.standing(NARROW, (rod, replace(rod, height=tallest))).blades
+    assert blade.solid.bounds[3] > max(at_wall, tallest) and blade.solid.is_valid
