@@ -59,8 +59,8 @@ FILES = {
     ),
     "tooling/holding.py": ("tests/tooling/test_holding.py", "tests/tooling/test_holding_noticed.py"),
     "tooling/turning.py": ("tests/tooling/test_turning.py", "tests/tooling/test_holding_noticed.py"),
-    "trial/course.py": ("tests/trial/test_trial_course.py",),
-    "trial/result.py": ("tests/trial/test_trial_course.py", "tests/cli/moving/test_cli_trial.py"),
+    "trial/course.py": ("tests/studies/test_trial_numbers.py", "tests/trial/test_trial_course.py"),
+    "trial/result.py": ("tests/studies/test_trial_numbers.py", "tests/cli/moving/test_cli_trial.py"),
 }
 COPIED = (
     "feederscrew",
