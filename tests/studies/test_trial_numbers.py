@@ -129,9 +129,10 @@ def test_a_velocity_is_the_mean_over_the_second_half_of_a_path_round_the_bowl():
     way = np.concatenate([0.06 * times[:5], 0.12 + 0.03 * (times[5:] - 2.0)])
     path = np.full((12, 3), np.nan)
     path[:9] = np.column_stack([times, 0.14 * np.sin(way / 0.15), 0.15 - 0.14 * np.cos(way / 0.15)])
-    short = np.where(np.arange(12)[:, None] < 3, path, np.nan)
-    ride = SimpleNamespace(paths=[path, path, short], outcomes=[runs.PASSED, runs.RETURNED, runs.PASSED])
-    np.testing.assert_allclose(course.velocities(ride, 0.15), [0.03, np.nan, np.nan], rtol=1e-9)
+    four, three = (np.where(np.arange(12)[:, None] < count, path, np.nan) for count in (4, 3))
+    outcomes = [runs.PASSED, runs.RETURNED, runs.PASSED, runs.STANDS]
+    found = course.velocities(SimpleNamespace(paths=[path, path, four, three], outcomes=outcomes), 0.15)
+    np.testing.assert_allclose(found, [0.03, np.nan, 0.06, np.nan], rtol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -156,3 +157,16 @@ def test_where_a_part_stands_says_what_became_of_it(outcome, rear, front, low, f
         station = SimpleNamespace(below=below, drop=3e-3, cut=(0.1, 0.13))
         found = course._Found._fate(SimpleNamespace(looks=looks), station, outcome, None, 10e-3)
         assert found == (STOPPED if fate == HANGING and not below else fate)
+
+
+def test_what_leaves_otherwise_than_it_may_was_turned_wherever_it_turned():
+    """Two stations; all come to the last one as they were laid down, and one leaves it as none is known."""
+    for may, fates in (([[1, 0], [0, 1]], [PASSED, TURNED, PASSED, TURNED, RETURNED]),
+                       ([[0, 1], [0, 1]], [TURNED, PASSED, PASSED, TURNED, RETURNED])):  # fmt: skip
+        found = course._Found((None, None), np.array([0, 0, 1, 1, 0]), None)
+        assert (found.orientations[0] == [0, 0, 1, 1, 0]).all() and (found.orientations[1:] < UNKNOWN).all()
+        found.orientations[1] = [0, 0, 1, 1, 0]
+        found.orientations[2] = [0, 1, 1, UNKNOWN, GONE]
+        found.fates[:] = [PASSED, PASSED, PASSED, PASSED, RETURNED]
+        made = found.course(1.0, np.eye(3), np.array(may, bool), False)
+        assert made.fates.tolist() == fates
