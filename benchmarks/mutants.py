@@ -2,8 +2,8 @@
 
 Example: python benchmarks/mutants.py --each 12 --seed 1
 
-Numbers, signs, operators, comparisons, and minima are changed in eight files of a copy of the repository; of
-each file so many changes are drawn, and its own tests are run on them until one fails. What survives is
+Numbers, signs, operators, comparisons, and minima are changed in thirteen files of a copy of the repository;
+of each file so many changes are drawn, and its own tests are run on them until one fails. What survives is
 printed with its line: either a test is missing, or the change has no consequence.
 """
 
@@ -40,8 +40,27 @@ FILES = {
         "tests/rates/test_rate_noticed.py",
         "tests/rates/test_passing.py",
     ),
+    "tooling/devices/blades.py": (
+        "tests/tooling/test_devices_noticed.py",
+        "tests/tooling/test_verdicts.py",
+        "tests/tooling/test_clearing.py",
+    ),
+    "tooling/devices/ledges.py": (
+        "tests/tooling/test_devices_noticed.py",
+        "tests/tooling/test_verdicts.py",
+        "tests/tooling/test_holding.py",
+        "tests/rates/test_steadiness.py",
+    ),
+    "tooling/devices/openings.py": (
+        "tests/tooling/test_devices_noticed.py",
+        "tests/tooling/test_verdicts.py",
+        "tests/tooling/test_holding.py",
+        "tests/rates/test_steadiness.py",
+    ),
     "tooling/holding.py": ("tests/tooling/test_holding.py", "tests/tooling/test_holding_noticed.py"),
     "tooling/turning.py": ("tests/tooling/test_turning.py", "tests/tooling/test_holding_noticed.py"),
+    "trial/course.py": ("tests/studies/test_trial_numbers.py", "tests/trial/test_trial_course.py"),
+    "trial/result.py": ("tests/studies/test_trial_numbers.py", "tests/cli/moving/test_cli_trial.py"),
 }
 COPIED = (
     "feederscrew",
@@ -132,8 +151,8 @@ def named(folder, seconds, rows=NAMED):
     for name, old, new, test in rows:
         path = folder / "feederscrew" / name
         text = path.read_text() if path.exists() else ""
-        if old not in text:
-            print(f"{name}: {old!r} is not in it any more", flush=True)
+        if text.count(old) != 1:
+            print(f"{name}: {old!r} is in it {text.count(old)} times, not once", flush=True)
             continue
         path.write_text(text.replace(old, new))
         plain = {"NUMBA_DISABLE_JIT": "1"} if name.startswith("trial/kernel") else {}
@@ -195,7 +214,7 @@ if __name__ == "__main__":
         "files",
         nargs="*",
         choices=[[], *FILES],
-        help="of feederscrew/; without any, all eight and those once unnoticed",
+        help="of feederscrew/; without any, all thirteen and those once unnoticed",
     )
     parser.add_argument("--named", action="store_true", help="only those that once stayed unnoticed")
     parser.add_argument("--each", type=int, default=12, help="changes of each file")

@@ -3,6 +3,9 @@
 SIZING = "tests/machine/test_sizing_rules.py"
 ROCKING = "tests/rates/test_rocking_noticed.py"
 HOLDING = "tests/tooling/test_holding_noticed.py"
+DEVICES = "tests/tooling/test_devices_noticed.py"
+CONDITION = "tests/machine/test_condition.py"
+STEADY = "tests/rates/test_steadiness.py -k round"
 JUDGED = "tests/resting/test_judged_by_measurement.py"
 SLIDES = "tests/trial/test_trial_signs.py -k 'slides and 0.2'"
 STANDS = "tests/trial/test_trial_signs.py -k stand"
@@ -32,7 +35,8 @@ NAMED = (
     ("rates/steadiness.py", "1.0 / bowl.drive.frequency", "1.25 / bowl.drive.frequency", ROCKING),
     ("rates/tipping.py", "> back * stroke", "> 2.0 * back * stroke", ROCKING),
     ("rates/tipping.py", "rate + np.sqrt(rate**2", "rate - np.sqrt(rate**2", ROCKING),
-    ("tooling/holding.py", "-one.shift", "one.shift", HOLDING),
+    ("tooling/holding.py", "[(0.0, -one.shift), (-FAR, -one.shift)]",
+     "[(0.0, one.shift), (-FAR, one.shift)]", HOLDING),
     ("tooling/verdicts.py", "WORN = 2.5e-4", "WORN = 3e-4", HOLDING),
     ("tooling/verdicts.py", "WORN = 2.5e-4", "WORN = 2e-4", HOLDING),
     ("tooling/verdicts.py", "may_wedge(self.one, span)", "False", HOLDING),
@@ -43,6 +47,17 @@ NAMED = (
      "height * (1.0 + math.cos(tilt))\n    return _carr", HOLDING),
     ("tooling/turning.py", "foot.max(), foot.min(), one.posture",
      "foot.max(), foot.max(), one.posture", HOLDING),
+    ("rates/stream.py", "one.track.bank <= 0.0", "one.track.bank > 0.0", STEADY),
+    ("machine/condition.py", "stiff, soft = (", "soft, stiff = (", CONDITION),
+    ("tooling/strip.py", "max(needed) + BESIDE", "max(needed) - BESIDE", DEVICES),
+    ("tooling/devices/blades.py", "(y / lean, z)", "(y * lean, z)", DEVICES),
+    ("tooling/devices/blades.py", "edge[-1, 0] / lean", "edge[-1, 0] * lean", DEVICES),
+    ("tooling/devices/blades.py", "track.extent / math.tan", "track.extent * math.tan", DEVICES),
+    ("tooling/devices/blades.py", "lean = width / math.tan", "lean = width * math.tan", DEVICES),
+    ("tooling/devices/steady_jets.py", "track.width - met.one", "track.width + met.one", DEVICES),
+    ("tooling/devices/steady_jets.py", "out - met.grip", "out + met.grip", DEVICES),
+    ("tooling/devices/steady_jets.py", "-float(ends[0]", "float(ends[0]", DEVICES),
+    ("tooling/devices/openings.py", "return met.one.carry_ahead", "return met.one.carry", DEVICES),
     (RECOMMENDED, '"drop": 0.4', '"drop": 0.45', JUDGED),
     (RECOMMENDED, '"drop": 0.4', '"drop": 0.35', JUDGED),
     (RECOMMENDED, "LAUNCHED = 0.11", "LAUNCHED = 0.12", JUDGED),
@@ -95,6 +110,7 @@ EQUIVALENT = {
         "tooling/turning.py",
         "if np.ptp(foot) > 0.0 else",
     ): "a foot without length has nothing ahead to fall over",
+    ("trial/course.py", "np.full((count + 1, parts), -"): "every number below -1 is of a part that is gone",
     ("rates/tipping.py", "BESIDE ="): "any width beyond every force's place: it tips over the ends alone",
 }
 """File and what stands in a changed line of it, and why no test can notice the change."""

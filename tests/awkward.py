@@ -61,3 +61,23 @@ def lying(*more):
 def off_the_wall(one, way=OFF):
     """The same orientation so far from the wall."""
     return replace(one, distance=one.distance + way)
+
+
+def second_moments(one):
+    """Mean (3, 3) [m2] of the products of places in track axes, from the centre of mass, over tetrahedra."""
+    mesh = one.posture.solid
+    corners = mesh.vertices[mesh.faces]
+    volumes = np.linalg.det(corners)
+    values = corners - mesh.centre_of_mass
+    apex = -mesh.centre_of_mass[None, None]
+    whole = np.concatenate([np.broadcast_to(apex, (len(values), 1, 3)), values], axis=1)
+    seen = whole @ one.axes.T
+    total = seen.sum(axis=1)
+    squares = np.einsum("ni,nj->nij", total, total) + np.einsum("nki,nkj->nij", seen, seen)
+    return (volumes[:, None, None] * squares).sum(axis=0) / volumes.sum() / 20.0
+
+
+def square_of_gyration(one, axis=1):
+    """Mean square distance [m2] from an axis of the track through the centre of mass."""
+    spread = second_moments(one)
+    return np.trace(spread) - spread[axis, axis]

@@ -2,8 +2,10 @@
 
 from dataclasses import replace
 
+import awkward
 import numpy as np
 import pytest
+import shapely
 import shapes
 
 from feederscrew import bowl as bowls
@@ -206,3 +208,22 @@ def test_the_track_says_what_the_rate_reckons_with(size, aspect, way):
     if way == ROCKS:
         assert stands.tilt == pytest.approx(tips.tilt[row], rel=1e-9)
         assert f"rocks by {np.degrees(stands.tilt):.2g} deg a stroke" in stands.said
+
+
+def test_a_skew_body_goes_on_by_itself_from_where_its_weight_is_over_a_side_of_its_face():
+    """At atan(d / h): h over the face on which it lies, d from one of the sides between its corners."""
+    bowl = awkward.plain_bowl("friction.static=0.9", "friction.kinetic=0.85", "friction.wall=0.8")
+    lying, leans = awkward.lying(), []
+    told = tipping(lying, bowl)
+    for one, tips, tilt, lean in zip(lying, told.tips, told.tilt, told.balance):
+        seen = (one.posture.solid.vertices - one.posture.solid.centre_of_mass) @ one.axes.T
+        height = -seen[:, 2].min()
+        face = shapely.MultiPoint(seen[seen[:, 2] < -height + 1e-7, :2]).convex_hull
+        corners = shapely.get_coordinates(face)
+        along = np.diff(corners, axis=0)
+        sides = abs(along[:, 0] * corners[1:, 1] - along[:, 1] * corners[1:, 0]) / np.hypot(*along.T)
+        assert (tilt > 0.0) == tips == np.isfinite(lean)
+        if tips:
+            assert min(abs(np.arctan2(sides, height) - lean)) < 1e-6
+            leans.append(round(float(lean), 6))
+    assert len(set(leans)) > 3

@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
+import awkward
 import numpy as np
 import pytest
 import shapely
@@ -276,3 +277,19 @@ def test_a_jet_presses_a_slope_down_and_lifts_what_overhangs():
         out, down = nozzles.push(one, every)
         assert out / nozzles.thrust == pytest.approx(np.cos(lean) ** 2, abs=0.03)
         assert down / nozzles.thrust == pytest.approx(np.sin(lean) * np.cos(lean), abs=0.03)
+
+
+@pytest.mark.parametrize(("push", "press"), [(1.3, 0.0), (1.9, 0.7), (1.1, -0.4), (0.9, 0.3), (9.0, -2.0)])
+def test_a_pulse_carries_a_part_as_far_as_its_motion_in_small_steps(push, press):
+    """So many times its weight times friction, for 8 ms, pressed down or lifted; then friction stops it."""
+    friction, step = awkward.bowl().friction.static, 1e-6
+    for one in awkward.lying()[::4]:
+        mass = one.posture.mass
+        force, down = push * friction * mass * 9.80665, press * mass * 9.80665
+        speed = way = 0.0
+        for _ in range(8000):
+            speed += step * max((force - friction * max(mass * 9.80665 + down, 0.0)) / mass, 0.0)
+            way += step * speed
+        way += speed**2 / (2.0 * friction * 9.80665)
+        left = max(way, 0.0) - (one.track.width - one.distance)
+        assert Meeting(one).blown(force, down, 8e-3) == pytest.approx(left, rel=1e-3)

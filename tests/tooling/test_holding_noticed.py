@@ -118,7 +118,7 @@ def test_the_rear_that_follows_a_part_down_a_step_lifts_it_by_what_its_momentum_
         down = np.array([[np.cos(slope), np.sin(slope)], [-np.sin(slope), np.cos(slope)]])
         centre = down @ [-front, one.posture.height]  # from the front end
         fall = centre[1] - one.posture.height
-        spread = square_of_gyration(one)
+        spread = awkward.square_of_gyration(one)
         points = np.sqrt(spread) * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
         ahead, behind = points + [-front, one.posture.height], points + [-rear, one.posture.height]
         velocity = np.column_stack([-ahead[:, 1], ahead[:, 0]])
@@ -145,7 +145,9 @@ def test_what_leans_over_a_ledge_goes_on_by_what_its_momentum_keeps():
                 continue
             tilt = np.arcsin(drop / reach)
             fell = over * np.sin(tilt) + height * (1.0 - np.cos(tilt))
-            points = np.sqrt(square_of_gyration(one, 0)) * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
+            points = np.sqrt(awkward.square_of_gyration(one, 0)) * np.array(
+                [[1, 0], [-1, 0], [0, 1], [0, -1]]
+            )
             edge, corner = points + [over, height], points + [over - reach, height]
             velocity = np.column_stack([-edge[:, 1], edge[:, 0]])
             moment = (corner[:, 0] * velocity[:, 1] - corner[:, 1] * velocity[:, 0]).sum()
@@ -155,19 +157,6 @@ def test_what_leans_over_a_ledge_goes_on_by_what_its_momentum_keeps():
             assert to_fall == pytest.approx(drop - fell, rel=1e-9, abs=1e-12)
             shares.append(left / drop)
     assert len(shares) > 5 and max(shares) > 0.05
-
-
-def square_of_gyration(one, axis=1):
-    """Mean square distance from an axis of the track through the centre of mass, over the tetrahedra."""
-    mesh = one.posture.solid
-    corners = mesh.vertices[mesh.faces]
-    volumes = np.linalg.det(corners)
-    values = corners - mesh.centre_of_mass
-    apex = -mesh.centre_of_mass[None, None]
-    whole = np.concatenate([np.broadcast_to(apex, (len(values), 1, 3)), values], axis=1)
-    seen = whole @ np.delete(one.axes, axis, axis=0).T
-    squares = (seen.sum(axis=1) ** 2 + (seen**2).sum(axis=1)).sum(axis=1) / 20.0
-    return (volumes * squares).sum() / volumes.sum()
 
 
 def test_a_blade_meets_the_foremost_place_of_what_is_higher_than_it():
@@ -239,7 +228,7 @@ def test_a_face_holds_a_fall_of_which_housners_impact_leaves_less_than_its_edge_
         below = hull.vertices @ np.array([x, -z]).T
         height = max(v[1] for v in below)
         foot = [v[0] for v in below if v[1] > height - 1e-7]
-        arm = square_of_gyration(one)
+        arm = awkward.square_of_gyration(one)
         still = arm + height**2
         kept = still + min(foot) * max(foot)
         limit = turning._holds(hull, one, (x, y, -z))

@@ -2,8 +2,10 @@
 
 from dataclasses import replace
 
+import awkward
 import numpy as np
 import pytest
+import shapely
 import shapes
 import trimesh
 
@@ -164,3 +166,36 @@ def test_a_headed_pin_has_a_neck():
         assert thin == pytest.approx(0.004, rel=0.02)
         assert wide == pytest.approx(0.010, rel=0.02)
     assert neck(pick(lying(shapes.box(20, 12, 5)), 0.005, 0.020)) is None
+
+
+def test_a_skew_body_touches_a_round_wall_and_covers_the_track_as_its_corners_say():
+    """Seen from the bowl's axis its farthest corner is at the wall, and its nearest place its width away."""
+    for one in awkward.lying():
+        radius = one.track.radius
+        ahead, inwards = one.axes[:2]
+        seen = one.posture.solid.vertices - one.posture.solid.centre_of_mass
+        places = np.column_stack([seen @ ahead, radius - one.distance - seen @ inwards])
+        assert np.hypot(*places.T).max() == pytest.approx(radius, rel=1e-9)
+        near = shapely.MultiPoint(places).convex_hull.distance(shapely.Point(0.0, 0.0))
+        assert one.width == pytest.approx(radius - near, rel=1e-6)
+        assert one.length == pytest.approx(np.ptp(places[:, 0]), rel=1e-9)
+        assert one.posture.height == pytest.approx(-(seen @ one.axes[2]).min(), rel=1e-9)
+
+
+def test_what_travels_tips_over_an_edge_as_an_inverted_pendulum_of_its_own_inertia():
+    """T2 = (k2 + h2) / (g h), and 2 T of its way: over an edge across the track, or over the worst one."""
+    bowl = awkward.bowl()
+    turns = np.linspace(0.0, np.pi, 2001)
+    axes = np.column_stack([np.cos(turns), np.sin(turns), 0.0 * turns])
+    uneven = []
+    for one in awkward.lying():
+        spread, height = awkward.second_moments(one), one.posture.height
+        about = np.trace(spread) - np.einsum("ni,ij,nj->n", axes, spread, axes)
+
+        def way(square, height=height, speed=one.speed):
+            return 2.0 * speed * np.sqrt((square + height**2) / (bowl.gravity * height))
+
+        assert one.carry_ahead == pytest.approx(way(about[1000]), rel=1e-6)  # about the axis across
+        assert one.carry == pytest.approx(way(about.max()), rel=1e-5)
+        uneven.append(one.carry / one.carry_ahead)
+    assert max(uneven) > 1.1 and min(uneven) >= 1.0

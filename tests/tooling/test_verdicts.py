@@ -2,8 +2,10 @@
 
 from dataclasses import replace
 
+import awkward
 import numpy as np
 import pytest
+import shapely
 import shapes
 from scipy.special import ndtr
 
@@ -14,8 +16,8 @@ from feederscrew.resting.aspects import find
 from feederscrew.tooling import foot as feet
 from feederscrew.tooling.devices import hole_shapes
 from feederscrew.tooling.devices.base import share
-from feederscrew.tooling.devices.kinds import KINDS
-from feederscrew.tooling.orientations import orientations
+from feederscrew.tooling.devices.kinds import KINDS, made
+from feederscrew.tooling.orientations import orientations, placed
 from feederscrew.tooling.verdicts import verdict
 
 TRACK = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
@@ -180,3 +182,33 @@ def test_what_is_beyond_the_free_edge_meets_no_gate(block, device):
     assert verdict(gate, one).margin == pytest.approx(-3e-3, rel=1e-2)
     narrow = replace(one, track=replace(TRACK, width=8e-3))
     assert verdict(gate, narrow).margin == pytest.approx(1e-3, rel=1e-2)
+
+
+def beyond(one, low, high):
+    """How far [m] its weight lies inside what a track between two distances off the wall carries of it.
+
+    The hull of what of its foot is left between two circles about the axis of the bowl.
+    """
+    radius, axis = one.track.radius, shapely.Point(0.0, one.track.radius - one.distance)
+    ring = axis.buffer(radius - low, quad_segs=500).difference(axis.buffer(radius - high, quad_segs=500))
+    foot = shapely.union_all([shapely.Polygon(corners) for corners in one.foot.rings])
+    left = foot.intersection(ring).convex_hull
+    weight = shapely.Point(0.0, -one.posture.height * np.tan(one.track.bank))
+    inside = left.contains(weight)
+    return left.boundary.distance(weight) if inside else -left.distance(weight)
+
+
+def test_beside_a_round_edge_a_skew_foot_is_carried_by_what_a_circle_leaves_of_it():
+    """Banked by 3 deg its weight lies nearer to the wall than its foot's own middle."""
+    judged = 0
+    for one in placed(awkward.lying()):
+        if one.kind != "flat" or one.falls_off or not one.foot.rings or len(one.foot.edges):
+            continue
+        assert beyond(one, 0.0, 0.99 * one.balcony) < 0.0 < beyond(one, 0.0, 1.01 * one.balcony)
+        for part in (0.7, 1.2):
+            strip = part * one.canyon
+            found = verdict(made("slot", "test", span=(0.0, strip)), one).margin
+            assert found == pytest.approx(beyond(one, strip, one.track.width), abs=2e-6)
+            assert (found > 0.0) == (part < 1.0)
+        judged += 1
+    assert judged > 3

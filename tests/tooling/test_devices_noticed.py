@@ -1,0 +1,223 @@
+"""What devices make of a part and of their own values, against sums done by hand."""
+
+from dataclasses import replace
+
+import awkward
+import numpy as np
+import pytest
+import shapely
+import shapes
+
+from feederscrew import bowl as bowls
+from feederscrew.resting.aspects import find
+from feederscrew.tooling import strip
+from feederscrew.tooling.devices.base import UNSURE
+from feederscrew.tooling.devices.blades import SQUARE
+from feederscrew.tooling.devices.kinds import made
+from feederscrew.tooling.isolating import chain
+from feederscrew.tooling.orientations import orientations, travelling
+from feederscrew.tooling.verdicts import Meeting, verdict
+
+BOWL = bowls.read(None, ["track.radius=100 m", "track.bank=0 deg", "track.width=40 mm"])
+NARROW = replace(BOWL.track, width=20e-3)
+GRAVITY, STEEL = 9.80665, 7850.0
+
+
+def still(mesh, height):
+    """Orientations of that height [mm] on a track that does not shake: friction alone holds them, 0.6."""
+    part = shapes.part(mesh)
+    every = travelling(orientations(part, find(part), BOWL.track), BOWL)
+    return [
+        replace(one, swing=0.0, speed=0.05, grip=0.6)
+        for one in every
+        if one.height == pytest.approx(1e-3 * height, rel=1e-6)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("sweep", "along", "ahead"),
+    [(30.0, 2.0, 1.732051), (50.0, 1.305407, 0.839100), (90.0, 1.0, 0.0)],  # 1 / sin and 1 / tan
+)
+def test_a_swept_blade_leans_ahead_from_the_wall_to_the_free_edge(sweep, along, ahead):
+    """Its face is 20 mm / sin(sweep) long and ends 20 mm / tan(sweep) farther ahead than it begins."""
+    wiper = made("wiper", "test", limit=6e-3, sweep=np.radians(sweep), contour=((0.0, 6e-3), (9e-3, 4e-3)))
+    every = awkward.lying()
+    standing = wiper.standing(NARROW, every)
+    (blade,) = standing.blades
+    ring = shapely.get_coordinates(blade.solid)[:-1]
+    lower, tall = ring[ring[:, 1] < 7e-3], ring[ring[:, 1] > 7e-3]
+    edge = np.array([(0.0, 6e-3), (9e-3 * along, 4e-3), (20e-3 * along, 4e-3)])
+    np.testing.assert_allclose(lower[np.argsort(lower[:, 0])], edge, rtol=1e-6, atol=1e-12)
+    np.testing.assert_allclose(sorted(tall[:, 0]), [0.0, 20e-3 * along], rtol=1e-6, atol=1e-12)
+    assert tall[:, 1].min() > max(one.height for one in every)
+    (x, y), way = blade.foot, np.array([np.cos(blade.heading), np.sin(blade.heading)])
+    end = np.array([x, y]) + 20e-3 * along * way
+    np.testing.assert_allclose(end - [x, 0.0], [20e-3 * ahead, 20e-3], rtol=1e-6, atol=1e-9)
+    assert y == 0.0 and standing.length == pytest.approx(end[0])
+    assert wiper.goes_on(20e-3) == pytest.approx(20e-3 * ahead, rel=1e-6, abs=1e-12)
+
+
+@pytest.mark.parametrize(("sweep", "ahead"), [(30.0, 1.732051), (50.0, 0.839100), (90.0, 0.0)])
+def test_a_swept_blade_covers_a_leaning_strip_of_the_track(sweep, ahead):
+    wiper = made("wiper", "test", limit=6e-3, sweep=np.radians(sweep))
+    corners = [(70e-3, 0.0), (71.5e-3, 0.0), (71.5e-3 + 20e-3 * ahead, 20e-3), (70e-3 + 20e-3 * ahead, 20e-3)]
+    np.testing.assert_allclose(wiper.footprint(70e-3, 20e-3, 1.5e-3), corners, rtol=1e-6)
+
+
+def test_of_a_very_wide_track_five_millimetres_beside_parts_and_cuts_are_drawn():
+    track, every = replace(BOWL.track, radius=0.15, width=1.0), awkward.lying()
+    widest = max(one.width for one in every)
+    drawn = [
+        strip.strip(track, [made("slot", "test", span=(2e-3, reach))], every).width
+        for reach in (0.5 * widest, 2.0 * widest)
+    ]
+    assert drawn == pytest.approx([widest + 5e-3, 2.0 * widest + 5e-3])
+    assert strip.strip(NARROW, [made("slot", "test", span=(2e-3, 3e-3))], every).width == 20e-3
+
+
+@pytest.mark.parametrize(
+    ("pressure", "least", "most"), [(9e3, 0.2, 0.5), (3e4, 0.5, 4.5), (2e5, 4.5, 9.0), (5e5, 9.0, 30.0)]
+)
+def test_a_jet_is_felt_as_long_as_it_meets_the_tall_end_of_a_part(pressure, least, most):
+    """Of nine places along 16 mm two lie in the tall 4 mm; over the rest it blows at nothing.
+
+    The part weighs 128 mm2 x 8 mm of steel and tips over a foot 4 mm wide about an edge 12 mm below the jet.
+    Half the force at any place moves nothing, and twice in the mean all of it the 36 mm to the free edge.
+    """
+    steps = [(0, 0), (16, 0), (16, 4), (4, 4), (4, 20), (0, 20)]
+    lying = [one for one in still(shapes.prism(steps, 8.0), 20) if one.length > 15.9e-3 and one.width < 9e-3]
+    jet = made("jet", "test", nozzle=0.8e-3, pressure=pressure, height=12e-3)
+    share = jet.jet.thrust / (1024e-9 * STEEL * GRAVITY * 4.0 / 12.0)
+    assert len(lying) == 2 and least < share < most  # the tall end ahead, or behind
+    told = {0.2: 36e-3 * (1.0 - share), 0.5: 0.0, 4.5: -UNSURE, 9.0: -36e-3}[least]
+    for one in lying:
+        assert jet.most(Meeting(one)) == pytest.approx(share, rel=0.015)  # rays to 11 deg askew
+        assert jet.factor(Meeting(one)) == pytest.approx(2.0 / 9.0 * share, rel=0.015)
+        assert verdict(jet, one).margin == pytest.approx(told, rel=0.01, abs=0.0)
+
+
+def test_a_slope_under_a_jet_is_held_by_the_friction_of_what_presses_it_down():
+    """A face that rises at 60 deg takes T sin2 of a level jet outwards and T sin cos down."""
+    slope = np.radians(60.0)
+    rise = 10.0 * np.tan(slope)
+    outline = [(0, 0), (16, 0), (16, 2 + rise), (10, 2 + rise), (0, 2)]
+    area = 16.0 * 2.0 + 0.5 * 10.0 * rise + 6.0 * rise
+    middle = (16.0 * 2.0 * 8.0 + 0.5 * 10.0 * rise * 20.0 / 3.0 + 6.0 * rise * 13.0) / area
+    (one,) = [
+        one
+        for one in still(shapes.prism(outline, 60.0), 2.0 + rise)
+        if one.length > 59e-3 and one.distance == pytest.approx(1e-3 * middle, rel=1e-3)
+    ]
+    side = (16.0 - middle) / 10.0  # of its weight, at 10 mm: less than what friction holds
+    jet = made("jet", "test", nozzle=0.5e-3, pressure=2e4, height=10e-3)
+    taken = np.sin(slope) ** 2 - 0.6 * np.sin(slope) * np.cos(slope)
+    force = area * 60e-9 * STEEL * GRAVITY * min(0.6, side)
+    assert jet.factor(Meeting(one)) == pytest.approx(taken * jet.jet.thrust / force, rel=0.03)
+
+
+def test_a_gap_is_not_sure_of_what_it_is_as_much_too_long_for_as_the_part_travels_on():
+    """From the gap that it passes as placed, up to so much more, nothing is sure; beyond that it falls."""
+    judged = 0
+    for one in awkward.lying():
+        if one.falls_off or one.gap <= 0.0:
+            continue
+        more = made("gap", "test", limit=one.gap).more(Meeting(one))
+        within, beyond = (made("gap", "test", limit=one.gap + more + step) for step in (-1e-6, 1e-6))
+        assert not verdict(within, one).sure and verdict(beyond, one).sure
+        assert verdict(beyond, one).margin == pytest.approx(-1e-6, rel=1e-3)
+        judged += abs(one.carry - one.carry_ahead) > 1e-5
+    assert judged > 3
+
+
+@pytest.fixture(scope="module")
+def rod():
+    """A rod along the wall, of R = 3 mm and 20 mm long: over a slot w wide it sinks R - sqrt(R2 - w2 / 4)."""
+    part = shapes.part(shapes.cylinder(3.0, 20.0, 256))
+    every = travelling(orientations(part, find(part), BOWL.track), BOWL)
+    return next(one for one in every if one.kind == "rolling" and one.rolls_along)
+
+
+@pytest.mark.parametrize(("wide", "rides"), [(2.1, True), (2.2, False)])
+def test_over_a_slot_a_rod_rides_that_sinks_no_deeper_than_the_drive_lifts_it(rod, wide, rides):
+    """0.2 mm of 3 mm: w = 2 sqrt(9 - 2.8^2) = 2.15 mm."""
+    y, half = rod.distance, 0.5e-3 * wide
+    found = verdict(made("slot", "test", span=(y - half, y + half)), replace(rod, climbs=0.2e-3))
+    assert found.passes == 0.0 and found.sure != rides
+    assert found.margin == -UNSURE if rides else found.margin < -1e-3
+
+
+@pytest.mark.parametrize(("wide", "rides"), [(2.75, True), (2.87, False)])
+def test_over_a_shorter_hole_a_rod_only_dips(rod, wide, rides):
+    """By a sixth, of a hole of 12 mm under 10 mm ahead; but what an edge is rounded by costs nothing.
+
+    (s - 0.05 mm) / 6 = 0.1 mm - 0.05 mm, so s = 0.35 mm and w = 2 sqrt(9 - 2.65^2) = 2.81 mm. Placed it falls
+    2 mm over the edge, of which it travels 1 mm.
+    """
+    low, high = rod.distance - 0.5e-3 * wide, rod.distance + 0.5e-3 * wide
+    hole = made("cut_out", "test", corners=((0.0, low), (12e-3, low), (12e-3, high), (0.0, high)))
+    found = verdict(hole, replace(rod, climbs=0.1e-3, carry=1e-3))
+    assert found.passes == 0.0 and found.margin == pytest.approx(-UNSURE if rides else -1e-3, rel=1e-2)
+    assert hole.goes_on(40e-3) == 12e-3
+
+
+@pytest.mark.parametrize(("low", "high", "beside"), [(15, 25, 0), (20, 25, 1), (-5, 0, 1), (-5, 5, 0)])
+def test_a_hole_may_reach_beyond_the_track_but_not_lie_beside_it(low, high, beside):
+    corners = ((0.0, 1e-3 * low), (9e-3, 1e-3 * low), (5e-3, 1e-3 * high))
+    assert len(made("cut_out", "test", corners=corners).misfits(20e-3)) == beside
+
+
+@pytest.mark.parametrize(("limit", "left"), [(12e-3, (12e-3, 20e-3)), (20e-3, None), (25e-3, None)])
+def test_a_ledge_as_wide_as_the_track_takes_nothing_from_it(limit, left):
+    for kind in ("narrowed_track", "pressure_break"):
+        assert made(kind, "test", limit=limit).span_on(NARROW) == left
+    assert made("narrowed_track", "test", limit=limit).acts(NARROW) == (left is not None)
+
+
+def test_a_design_tries_first_what_drops_parts_and_last_what_stands_in_their_way():
+    kinds = chain.numbered()
+    assert len({kind.rank for kind in kinds}) == len(kinds)
+    assert [kind.carries for kind in kinds] == [True, True, True, False, False]
+    assert [kind.overhead for kind in kinds] == [False, False, False, False, True]
+
+
+def test_what_no_width_carries_fails_on_every_ledge_by_as_far_as_its_foot_reaches():
+    """A block 12 x 5 mm and 20 high at a bank of 30 deg: 10 tan 30 = 5.8 mm is beyond its foot's 2.5 mm."""
+    part = shapes.part(shapes.box(20, 12, 5))
+    every = orientations(part, find(part), BOWL.track)
+    tall = next(one for one in every if one.height > 19e-3 and one.length > 11e-3)
+    one = replace(tall, track=replace(BOWL.track, bank=np.radians(30.0)))
+    found = verdict(made("narrowed_track", "test", limit=11e-3), one)
+    assert found.passes == 0.0
+    assert found.margin == pytest.approx(
+        -1e-3 * np.hypot(6.0, 2.5 + 10.0 * np.tan(np.radians(30.0))), rel=1e-3
+    )
+
+
+@pytest.mark.parametrize(
+    ("sweep", "own", "fate"),
+    [
+        (30.0, np.nan, "returned"), (58.0, np.nan, "returned"), (60.0, np.nan, "stopped"),
+        (60.0, 0.5, "returned"), (64.0, 0.5, "stopped"), (90.0, 0.0, "stopped"),
+    ],
+)  # fmt: skip
+def test_a_face_sweeps_off_below_a_right_angle_less_its_angle_of_friction(rod, sweep, own, fate):
+    """atan 0.6 = 31 deg of the track, atan 0.5 = 27 deg of the face; one straight across stops all."""
+    wiper = made(
+        "wiper", "test", limit=1e-3, sweep=np.radians(sweep) if sweep < 90.0 else SQUARE, friction=own
+    )
+    assert wiper.fate(Meeting(replace(rod, grip=0.6))) == fate
+
+
+def test_below_a_blade_is_what_its_lower_edge_leaves():
+    """Over 20 mm: 6 mm all along, or from 6 to 4 mm over 9 mm and 4 mm from there on."""
+    plain = made("wiper", "test", limit=6e-3)
+    assert plain.opening((), 20e-3).area == pytest.approx(120e-6)
+    falling = replace(plain, contour=((0.0, 6e-3), (9e-3, 4e-3)))
+    assert falling.opening((), 20e-3).area == pytest.approx(45e-6 + 44e-6)
+
+
+@pytest.mark.parametrize(("at_wall", "tallest"), [(6e-3, 60e-3), (90e-3, 20e-3)])
+def test_a_blade_is_higher_than_every_orientation_and_than_its_own_edge(rod, at_wall, tallest):
+    wiper = made("wiper", "test", limit=6e-3, contour=((0.0, at_wall), (9e-3, 4e-3)))
+    (blade,) = wiper.standing(NARROW, (rod, replace(rod, height=tallest))).blades
+    assert blade.solid.bounds[3] > max(at_wall, tallest) and blade.solid.is_valid
