@@ -161,33 +161,44 @@ def _of_frequency(one: MeasuredMachine, sheet: Any) -> Iterator[Any]:
     yield f"the drive runs at {one.frequency:.3g} Hz, not at {one.should['frequency']:.3g} Hz"
 
 
-def _of_stroke(one: MeasuredMachine, sheet: Any, ratio: float) -> Iterator[Any]:
-    """Causes where the stroke is another one."""
+def _of_stroke(one: MeasuredMachine, sheet: Any, ratio: float) -> list[str]:
+    """Causes where the stroke is another one; each after the first is another way to explain it."""
     if abs(ratio - 1.0) <= APART:
-        return
-    drive, damping = one.should["frequency"], sheet.bowl.machine.damping
-    g = float(gain(drive, one.natural_frequency, damping)) * ratio
-    stiff, soft = (_tuned(g, drive, damping, ends) for ends in ((1.0, FARTHEST), (1.0 / FARTHEST, 1.0)))
-    known = one.natural_frequency
-    if ratio < 1.0:
-        if stiff and stiff > known:
-            yield (
-                f"natural frequency at {stiff:.4g} Hz where {known:.4g} Hz is right: too many leaves, or a "
-                "lighter bowl - take a leaf off"
-            )
-        if soft:
-            yield (
-                f"or at {soft:.4g} Hz, below the drive: a leaf is broken or loose, or the bowl is heavier - "
-                "tighten the clamps, look for a cracked leaf"
-            )
-        yield f"or the controller gives {100.0 * ratio:.0f} % of its setting, or a part touches the frame"
-        return
-    if stiff:
-        yield (
-            f"natural frequency at {stiff:.4g} Hz where {known:.4g} Hz is right, nearer to the drive: a leaf "
-            "is missing, or the bowl is heavier - add a leaf before the stroke grows by itself"
+        return []
+    drive, damping, known = one.should["frequency"], sheet.bowl.machine.damping, one.natural_frequency
+    wanted = float(gain(drive, known, damping)) * ratio
+    sides = [(1.0, FARTHEST), (1.0 / FARTHEST, 1.0)]  # of the drive's frequency, that of the machine first
+    own, other = (_tuned(wanted, drive, damping, ends) for ends in sides[:: 1 if known >= drive else -1])
+    likely = [_retuned(own, known, drive)] if own else []
+    if ratio > 1.0:
+        return _either(
+            [*likely, f"the controller is set {100.0 * (ratio - 1.0):.0f} % too high - turn it down"]
         )
-    yield f"or the controller is set {100.0 * (ratio - 1.0):.0f} % too high - turn it down"
+    if other:
+        beyond = "below" if other < drive else "above"
+        likely.append(f"at {other:.4g} Hz, {beyond} the drive: {_why(other, known, nearer=False)}")
+    weak = f"the controller gives {100.0 * ratio:.0f} % of its setting, or a part touches the frame"
+    return _either([*likely, weak])
+
+
+def _either(causes: list[str]) -> list[str]:
+    return [f"or {cause}" if k else cause for k, cause in enumerate(causes)]
+
+
+def _retuned(now: float, known: float, drive: float) -> str:
+    """What may have moved the natural frequency [Hz] on its side of the drive's."""
+    nearer = abs(now - drive) < abs(known - drive)
+    where = f"natural frequency at {now:.4g} Hz where {known:.4g} Hz is right"
+    return f"{where}{', nearer to the drive' * nearer}: {_why(now, known, nearer)}"
+
+
+def _why(now: float, known: float, nearer: bool) -> str:
+    soon = " before the stroke grows by itself" if nearer else ""
+    if now > known:
+        return f"too many leaves, or a lighter bowl - take a leaf off{soon}"
+    if nearer:
+        return f"a leaf is missing, or the bowl is heavier - add a leaf{soon}"
+    return "a leaf is broken or loose, or the bowl is heavier - tighten the clamps, look for a cracked leaf"
 
 
 def _tuned(wanted: float, drive: float, damping: float, ends: tuple[float, float]) -> float | None:

@@ -66,6 +66,31 @@ def test_too_large_a_stroke_is_that_of_a_machine_nearer_to_the_drive():
     assert "set 50 % too high" in high
 
 
+@pytest.mark.parametrize(
+    ("ratio", "said"),
+    [
+        (1.5, "too many leaves, or a lighter bowl - take a leaf off before"),
+        (0.6, "a leaf is broken or loose"),
+    ],
+)
+def test_of_a_machine_below_the_drive_more_leaves_bring_it_nearer(ratio, said):
+    """Drawn for 95 Hz at a drive of 100 Hz: what is stiffer moves more, what is softer less."""
+    sheet = SimpleNamespace(**vars(SHEET) | {"emptying": SimpleNamespace(
+        levels=np.array([1.0, 0.0]), strokes=np.array([0.8, 1.0]), natural_frequencies=np.array([94.0, 95.0])
+    )})  # fmt: skip
+    first, *others = condition.found(sheet, {"stroke": ratio * STROKE}).causes
+    now = DRIVE / np.sqrt(1.0 + abs(1.0 - (DRIVE / 95.0) ** 2) / ratio)
+    assert said in first and hertz(first) == pytest.approx([now, 95.0], rel=1e-3)
+    assert (now > 95.0) == (ratio > 1.0)
+    assert all(one.startswith("or ") for one in others) and not first.startswith("or ")
+
+
+def test_a_stroke_that_no_tuning_explains_is_the_controllers():
+    assert causes(stroke=400.0 * STROKE) == (
+        f"the controller is set {100.0 * 399.0:.0f} % too high - turn it down",
+    )
+
+
 @pytest.mark.parametrize(("ratio", "right"), [(0.89, False), (0.91, True), (1.09, True), (1.11, False)])
 def test_a_tenth_of_the_stroke_is_as_it_should_be(ratio, right):
     for values in ({"stroke": ratio * STROKE}, {"acceleration": ratio * PEAK}):
