@@ -118,6 +118,8 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
     Also acceptance.csv, design_trials.csv, and the files of feeder tooling and feeder bowl, with the bowl as
     a solid.
     """
+    if others:
+        _of_one_part(asked, taken, part)
     orientation.of_an_aspect(asked)
     with held_back():
         from feederscrew import bowl as bowls
@@ -130,7 +132,6 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
     request = DesignRequest(**asked | {"jobs": asked["jobs"] or os.cpu_count()}, rule=rule)
     named = any(value is not None for value in taken.values())
     if others:
-        _of_one_part(asked, taken, part)
         parts = [out.part(part | {"source": source}) for source in (part["source"], *others)]
         _family(out, parts, (record, given, request), (settings, bowl["path"], pictures))
         return
