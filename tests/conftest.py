@@ -3,6 +3,7 @@
 import base64
 import contextlib
 import gc
+import os
 import signal
 from collections import OrderedDict
 
@@ -22,6 +23,8 @@ from feederscrew_cli.main import feeder
 # A shell that starts the tests in the background ignores these, and so would every command they start.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+os.environ["FEEDER_CACHE"] = ""  # what tests simulate is kept by none of their commands
 
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.load_profile("same")  # the same examples everywhere: new ones are for `make fuzz` to look for

@@ -1,4 +1,4 @@
-"""Simulations that a run has made already, by all that decides them."""
+"""Simulations that a run has made already, or an earlier one, by all that decides them."""
 
 import hashlib
 from collections import OrderedDict
@@ -9,6 +9,7 @@ import numpy as np
 
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
+from feederscrew.studies.simulated import on_disk
 
 KEPT = 32  # of them
 _MADE: OrderedDict = OrderedDict()
@@ -39,9 +40,12 @@ def once(
     """
     key = _identity(part, aspects, more)
     if key not in _MADE:
-        made = make()
-        if not whole(made):
-            return made
+        made = on_disk.read(key)
+        if made is None:
+            made = make()
+            if not whole(made):
+                return made
+            on_disk.write(key, made)
         _MADE[key] = made
         while len(_MADE) > KEPT:
             _MADE.popitem(last=False)
