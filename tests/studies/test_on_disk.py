@@ -78,9 +78,10 @@ def test_without_a_place_to_write_all_goes_on(runs, monkeypatch, tmp_path):
 def test_the_oldest_go_and_what_is_kept_cannot_be_changed(monkeypatch, tmp_path):
     monkeypatch.setenv(on_disk.VARIABLE, str(tmp_path))
     monkeypatch.setattr(on_disk, "MOST", 3)
+    (tmp_path / "mine.txt").write_text("older than all")
     for k in range(5):
         on_disk.write(bytes([k]), np.arange(3.0))
-    assert len(list(tmp_path.iterdir())) == 3
+    assert len(list(tmp_path.iterdir())) == 4 and (tmp_path / "mine.txt").exists()
     found = on_disk.read(bytes([4]))
     with pytest.raises(ValueError, match="read-only"):
         found[0] = 1.0

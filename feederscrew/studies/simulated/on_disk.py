@@ -20,6 +20,7 @@ import numpy as np
 VARIABLE = "FEEDER_CACHE"  # names the folder; empty: nothing is kept
 LARGEST = 4_000_000  # bytes of one
 MOST = 500  # of them: the oldest go
+END = ".simulated"  # of their names: nothing else in the folder is touched
 DIGEST = hashlib.sha256().digest_size
 MADE_WITH = ("numpy", "scipy", "numba")
 
@@ -44,10 +45,10 @@ def write(key: bytes, made: Any) -> None:
         return
     with contextlib.suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=folder, delete=False) as file:
+        with tempfile.NamedTemporaryFile(dir=folder, suffix=END, delete=False) as file:
             file.write(hashlib.sha256(data).digest() + data)
         Path(file.name).replace(folder / _name(key))
-        oldest = sorted(folder.iterdir(), key=lambda one: one.stat().st_mtime)
+        oldest = sorted(folder.glob(f"*{END}"), key=lambda one: one.stat().st_mtime)
         for one in oldest[: max(len(oldest) - MOST, 0)]:
             one.unlink()
 
@@ -63,7 +64,7 @@ def _folder() -> Path | None:
 
 
 def _name(key: bytes) -> str:
-    return hashlib.sha256(key + _code()).hexdigest()
+    return hashlib.sha256(key + _code()).hexdigest() + END
 
 
 @functools.cache
