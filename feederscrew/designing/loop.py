@@ -3,6 +3,8 @@
 from collections.abc import Callable, Collection
 from dataclasses import replace
 
+import numpy as np
+
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import beside, calm_drive, exploring, nearest, proposals, queues, trying
 from feederscrew.designing.hazards import risks
@@ -10,8 +12,12 @@ from feederscrew.designing.record import DRAWS_HELD, RATE_KEPT, DesignRequest, D
 from feederscrew.designing.robust import robust_run
 from feederscrew.designing.searching import Candidate, Search
 from feederscrew.dropping.plate.drive import throw_number
+from feederscrew.geometry import vectors
 from feederscrew.part.record import Part
+from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import Shares
+from feederscrew.tooling.isolating.design import place
+from feederscrew.tooling.orientations import orientations
 from feederscrew.trial.result import TrialRun
 
 PROVED = 3  # designs that go through draws and queue
@@ -56,6 +62,7 @@ def design(
     FeederError
         If the part has no surface, fits no bowl, or has no such aspect.
     """
+    _check_named(part, plain, request, known)
     search = Search(part, request, plain, frozenset(given), told or (lambda text: None), known, before=before)
     search.shares_given = known is not None
     proofs: Proofs = []
@@ -94,6 +101,16 @@ def _likeliest(search: Search) -> Candidate | None:
 def merit(study: DesignStudy) -> tuple[bool, bool, float, float]:
     """Return what of two designs is the better one: holds, then clean, then the most parts."""
     return study.status == "holds", study.jams == 0, study.robust.share, study.delivered[1]
+
+
+def _check_named(part: Part, plain: Bowl, request: DesignRequest, known: Shares | None) -> None:
+    """Raise FeederError for a heading that its aspect does not have on the track that the user knows."""
+    if request.aspect is None or request.heading is None or part.vertices is None:
+        return
+    wide = max(plain.track.radius, float(vectors.length(np.ptp(part.vertices, axis=0))))  # one that it fits
+    track = replace(plain.track, radius=wide)
+    every = orientations(part, find(part) if known is None else known.aspects, track)
+    place(every, request.aspect, request.heading, part.source)
 
 
 def _settled(proofs: Proofs) -> bool:

@@ -6,11 +6,11 @@ import numpy as np
 
 from feederscrew.designing import pulses, trying
 from feederscrew.designing.slots import STEP, widened
-from feederscrew.errors import FeederError
 from feederscrew.rates import stream
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import names
-from feederscrew.tooling.devices.named import place_of
+from feederscrew.tooling.devices.named import nearest
+from feederscrew.tooling.devices.named import rows as rows_of
 from feederscrew.tooling.isolating.chain import judged, limits, numbered
 from feederscrew.tooling.isolating.shop_values import millimetres
 
@@ -104,8 +104,8 @@ def promising(known, shares, request):
         rows = [k for k in rows if k in asked] or (asked if request.aspect is not None else [])
     if request.heading is None or request.aspect is None:
         return rows
-    where = known.lying[0].posture.solid.source
-    return [place_of(known.lying, request.aspect, request.heading, where, kind=FeederError)]
+    rows_of(known.aspects, request.aspect, known.lying[0].posture.solid.source)
+    return [nearest(known.aspects, known.headings, request.aspect, request.heading)]
 
 
 def bare(known, shares, request, devices):

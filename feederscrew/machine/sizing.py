@@ -13,7 +13,7 @@ from feederscrew.mechanics.wall.stable_headings import headings
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import posture
-from feederscrew.tooling.devices.named import place
+from feederscrew.tooling.devices.named import nearest
 
 STRAIGHT = Track(climb=0.0, bank=0.0, radius=1e3, width=1.0)  # [m] a wall without a bend
 ROUNDS = 200  # of a search that halves its error in each
@@ -201,9 +201,9 @@ def _check_diameter(across: float, part: Lying, given: str, rules: Sizing, *, fi
 
 
 def _place(known: Sequence[tuple[str, float]], wanted: tuple[str, float]) -> int:
-    """Which of some aspects and headings [rad] is meant."""
+    """Which of some aspects and headings [rad] is the wanted one, known from a straight track."""
     aspects, headings = zip(*known)
-    return place(aspects, headings, *wanted, "the part")
+    return nearest(aspects, headings, *wanted)
 
 
 def _rounded_up(value: float, step: float) -> float:

@@ -172,3 +172,18 @@ def test_a_bowl_that_is_given_is_twice_as_wide_as_the_part_is_long(share, fits):
         return
     with pytest.raises(FeederError, match=r"track\.radius"):
         sizing._check_diameter(share * LYING.longest, LYING, "a part", rules, fixed=True)
+
+
+def test_what_is_wanted_has_another_heading_on_a_bend():
+    """On a straight track and on one of 40 mm some headings of the skew body differ by more than 3 deg."""
+    part, aspects = awkward.part()
+    track, away = replace(sizing.STRAIGHT, radius=0.04), []
+    for name in np.array(aspects.names)[aspects.stable]:
+        lying = posture(part, aspects, name)
+        straight, bent = headings(lying, sizing.STRAIGHT), headings(lying, track)
+        for heading in straight.headings:
+            off = np.abs(np.angle(np.exp(1j * (bent.headings - heading))))
+            away.append(np.degrees(off.min()))
+            laid = sizing.shape(part, aspects, track, (name, heading))
+            assert laid.length == bent.lengths[np.argmin(off)]
+    assert max(away) > 3.0

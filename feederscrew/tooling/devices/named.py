@@ -37,9 +37,9 @@ def place(aspects, headings, aspect, heading, where, named="", kind=FeederError)
         If the part has no such orientation.
     """
     known = _places(aspects, aspect)
-    away = [abs(_turn(headings[k] - heading)) for k in known]
-    if known and min(away) <= WITHIN:
-        return known[int(np.argmin(away))]
+    found = nearest(aspects, headings, aspect, heading) if known else None
+    if found is not None and abs(_turn(headings[found] - heading)) <= WITHIN:
+        return found
     if named:
         some = known or range(len(aspects))
         listed = ", ".join(f"{aspects[k]}@{round(np.degrees(headings[k])) % 360}" for k in some)
@@ -49,6 +49,11 @@ def place(aspects, headings, aspect, heading, where, named="", kind=FeederError)
     listed = ", ".join(f"{np.degrees(headings[k]):.4g}" for k in known)
     what = f"aspect {aspects[known[0]]} has no stable heading {np.degrees(heading):.4g} deg"
     raise kind(where, what, f"choose one of {listed} deg")
+
+
+def nearest(aspects, headings, aspect, heading):
+    """Return the place of an orientation that is known from another track: its headings are others there."""
+    return min(_places(aspects, aspect), key=lambda k: abs(_turn(headings[k] - heading)))
 
 
 def rows(aspects, aspect, where, kind=FeederError):
