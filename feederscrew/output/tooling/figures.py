@@ -66,7 +66,7 @@ def chain(devices, every, shares, wanted=None):
             ink.text(page, left, HEAD - 22, _device(device, place), weight="bold")
         ink.text(page, (panel + 1) * wide - OUT + 8, HEAD - 22, "as it leaves", weight="bold")
     size = _scale(every, rows, column)
-    leaving.bar_on_page(page, panels * wide - 16, 40, size)
+    leaving.bar_on_page(page, panels * wide - 16, 66, size)  # below the title, which may be as long
     for place, k in enumerate(rows):
         panel, line = divmod(place, high)
         left, top = panel * wide, HEAD + line * ROW
