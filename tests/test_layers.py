@@ -99,10 +99,6 @@ def test_a_heavy_library_has_one_door():
     assert not wrong
 
 
-def test_a_room_stays_small():
-    assert not [path for path in FILES if len(path.read_text().splitlines()) > 300]
-
-
 def test_every_room_of_the_order_exists():
     library = ROOT / "feederscrew"
     rooms = {path.relative_to(library).parts[0].removesuffix(".py") for path in library.glob("**/*.py")}
@@ -126,16 +122,6 @@ def test_no_imports_go_in_a_circle():
     TopologicalSorter(graph).prepare()  # raises CycleError, which names the circle
 
 
-# a command, its study and what it is made of go by one name; so do the views of every study's record
-ALIKE = {path.stem for path in ROOT.glob("cli/*.py")} | {"tables", "files", "figures", "record"}
-ALIKE |= {"balance", "cells"}  # the same of a part on the floor and on the track
-
-
-def test_modules_of_one_name_are_of_one_kind():
-    names = Counter(path.stem for path in FILES if path.stem != "__init__")
-    assert {name for name, count in names.items() if count > 1} <= ALIKE
-
-
 OTHERWISE = {"bank", "gap", "jet", "profile", "step", "tip"}  # kinds of devices whose names have other uses
 
 
@@ -150,51 +136,7 @@ def test_a_device_is_known_by_name_in_its_own_folder_only():
             assert not (by_kind and {getattr(one, "value", "") for one in told} & set(KINDS)), path
 
 
-CROWD = 18  # modules of a folder that are still seen at a glance
-BODY = 40  # lines of a function, its docstring aside
-
-
-def test_no_folder_is_a_crowd():
-    tests = ROOT.glob("tests/**/*.py")
-    modules = (path for path in [*FILES, *tests] if path.stem != "__init__" and path.parent.name != "cli")
-    crowded = {
-        str(folder): count for folder, count in Counter(p.parent for p in modules).items() if count > CROWD
-    }
-    assert not crowded
-
-
 def test_no_class_name_occurs_twice():
     nodes = (node for path in FILES for node in tree(path).body)
     names = Counter(node.name for node in nodes if isinstance(node, ast.ClassDef))
     assert not [name for name, count in names.items() if count > 1]
-
-
-def lines_of(function):
-    """The lines of a function's body without its docstring."""
-    begin = 1 if ast.get_docstring(function) and len(function.body) > 1 else 0
-    return function.body[-1].end_lineno - function.body[begin].lineno + 1
-
-
-def test_no_function_is_long():
-    nodes = (node for path in FILES for node in ast.walk(tree(path)))
-    assert not [node.name for node in nodes if isinstance(node, ast.FunctionDef) and lines_of(node) > BODY]
-
-
-PARAMETERS = 8  # of a function; a study's further options are one record, see `check.options`
-
-
-def parameters(function):
-    """How many parameters a function has."""
-    asked = function.args
-    named = [*asked.posonlyargs, *asked.args, *asked.kwonlyargs]
-    return len(named) + (asked.vararg is not None) + (asked.kwarg is not None)
-
-
-def test_no_function_takes_more_parameters_than_can_be_kept_apart():
-    found = {
-        f"{module(path)}.{node.name}": parameters(node)
-        for path in FILES
-        for node in ast.walk(tree(path))
-        if isinstance(node, ast.FunctionDef)
-    }
-    assert {name: count for name, count in found.items() if count > PARAMETERS} == {}
