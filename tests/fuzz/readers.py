@@ -5,23 +5,57 @@ A command tries far fewer in the same time; what a reader lets through, the kind
 
 import traceback
 import warnings
+import zipfile
 from pathlib import Path
+
+import numpy as np
 
 ROOT = Path(__file__).parent.parent.parent
 TOSSES = "tests/fuzz/tosses.csv"
 COUNTED = ("docs/measured/cuboid_047.csv", "docs/measured/arc_chute.csv", "docs/measured/example/feeding.csv")
 
 
+CONTENT_TYPES = (
+    '<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
+    '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+    '<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>'
+    "</Types>"
+)
+RELATIONS = (
+    '<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
+    '<Relationship Target="/3D/3dmodel.model" Id="r0" '
+    'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
+)
+
+
 def _load(name):
     from feederscrew.part import load
 
-    load(name)
+    _check_body(load(name))
 
 
 def _load_open(name):
     from feederscrew.part import load
 
-    load(name, allow_open=True)
+    _check_body(load(name, allow_open=True))
+
+
+def _check_body(part):
+    """A part that is accepted has mass, and no principal moment above the sum of the others."""
+    small, middle, large = np.linalg.eigvalsh(part.inertia)
+    assert part.mass > 0
+    assert small >= 0
+    assert large <= (small + middle) * (1 + 1e-6), (small, middle, large)
+
+
+def _zipped(name):
+    """Read a 3MF whose model is the given XML: damage of an archive's own bytes hardly gets further."""
+    packed = Path(name).with_suffix(".3mf")
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("[Content_Types].xml", CONTENT_TYPES)
+        archive.writestr("_rels/.rels", RELATIONS)
+        archive.write(name, "3D/3dmodel.model")
+    _load(packed)
 
 
 def _bowl(name):
@@ -63,6 +97,12 @@ def _launches(name):
 READERS = {  # seeds, how the damaged file is called, and what reads it
     "read stl": (("tests/fuzz/cube.stl", "parts/key_a_d12x20.stl", "tests/fuzz/text.stl"), "part.stl", _load),
     "read open stl": (("tests/fuzz/cube.stl", "tests/fuzz/text.stl"), "part.stl", _load_open),
+    "read obj": (("tests/fuzz/cube.obj",), "part.obj", _load),
+    "read ply": (("tests/fuzz/cube.ply", "tests/fuzz/quads.ply"), "part.ply", _load),
+    "read off": (("tests/fuzz/quads.off",), "part.off", _load),
+    "read glb": (("tests/fuzz/cube.glb",), "part.glb", _load),
+    "read 3mf": (("tests/fuzz/bodies.3mf",), "part.3mf", _load),
+    "read 3mf model": (("tests/fuzz/bodies.model", "tests/fuzz/project.model"), "part.model", _zipped),
     "read bowl": (("docs/measured/example/bowl.yaml", "configs/thesis.yaml"), "bowl.yaml", _bowl),
     "read card": (("parts/magnet.yaml", "parts/arc_chute.yaml"), "card.yaml", _load),
     "read names": (("tests/fuzz/names.yaml",), "names.yaml", _names),
