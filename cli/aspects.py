@@ -7,7 +7,10 @@ from feederscrew_cli import grouped, options, waiting
 SURFACES = click.Choice(["soft", "medium", "hard"])
 
 
-@grouped.command(short_help="Resting aspects of a part and how often it lands on each.")
+@grouped.command(
+    short_help="Resting aspects of a part and how often it lands on each.",
+    rare=("unstable", "as_published", "surface_exponent", "graph"),
+)
 @options.part
 @click.option("--all", "unstable", is_flag=True, help="List the facets that it rolls off too.")
 @click.option(
@@ -21,12 +24,12 @@ SURFACES = click.Choice(["soft", "medium", "hard"])
 )
 @click.option("--surface-exponent", type=options.Number(-10, 10), help="The same as a number, 0 to about 3.")
 @click.option(
-    "--drop", "drops", type=click.IntRange(0, 10**7),
+    "--drops", type=click.IntRange(0, 10**7), cls=options.Renamed, former=("--drop",),
     help="How many drops; 0 for none.  [default: until every share is known to 1 %]",
 )  # fmt: skip
 @click.option(
     "--rule", type=click.Choice(["recommended", "closed"]), default="recommended", show_default=True,
-    help="closed: a closed form is the answer, at once, as with --drop 0.",
+    help="closed: a closed form is the answer, at once, as with --drops 0.",
 )  # fmt: skip
 @click.option("--graph", is_flag=True, help="With -o: what tips into what over which barrier, CSV and PNG.")
 @click.option(

@@ -63,7 +63,10 @@ def _of_the_solid(command):
     )
 
 
-@grouped.command(short_help="Size the bowl for a part and a rate; its springs, tuning and drift.")
+@grouped.command(
+    short_help="Size the bowl for a part and a rate; its springs, tuning and drift.",
+    rare=("heading", "gap", "fill", "material", "bed", "join", "step", "chord"),
+)
 @options.optional_part
 @_wanted
 @_of_the_solid

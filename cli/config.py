@@ -57,6 +57,19 @@ def schema(file, replace):
         click.echo(f"Wrote {file}", err=True)
 
 
+@config.command(short_help="List the materials that --density knows.")
+@options.printed
+def materials(out):
+    """Example: feeder config materials
+
+    List the materials that --density and the key 'density' of a part card know by name, with their densities.
+    """
+    from feederscrew.output.inertia import tables
+
+    frame = tables.materials()
+    out.show(frame, {"materials": list(frame.rows())})
+
+
 @config.command(short_help="Show the values in effect and where each came from.")
 @options.bowl
 @options.output

@@ -56,7 +56,10 @@ REQUEST = (  # what shall leave, and what may be used
         "--tolerance", "length", "0.1 mm", "How much larger or smaller than its file a part may be."
     ),
     click.option(
-        "--budget",
+        "--trials",
+        "budget",
+        cls=options.Renamed,
+        former=("--budget",),
         type=click.IntRange(1, 1000),
         default=16,
         show_default=True,
@@ -89,7 +92,10 @@ def _asked(command):
     return options.stacked(options.packed(command, "asked", REQUESTED), *REQUEST)
 
 
-@grouped.command(short_help="From a part and a rate to a bowl that its own trial confirms.")
+@grouped.command(
+    short_help="From a part and a rate to a bowl that its own trial confirms.",
+    rare=("heading", "budget", "draws", "tolerance"),
+)
 @options.part
 @click.argument("others", metavar="[PART...]", nargs=-1, type=options.FILE)
 @_asked

@@ -41,7 +41,10 @@ def _tested(command):
     return options.packed(command, "test", ("drops", "until", "seed", "jobs", "trace"))
 
 
-@grouped.command(short_help="A virtual drop test: how often a part lands on each aspect.")
+@grouped.command(
+    short_help="A virtual drop test: how often a part lands on each aspect.",
+    rare=("spin", "speed", "restitution", "friction", "trace", "launches", "amplitudes", "seconds"),
+)
 @options.part
 @conditions
 @click.option(

@@ -17,29 +17,13 @@ from feederscrew.units import printable
 from feederscrew_cli import argument_names
 from feederscrew_cli.interrupt import INTERRUPTED
 
-COMMANDS = {
-    "aspects": "feederscrew_cli.aspects",
-    "inertia": "feederscrew_cli.inertia",
-    "compare": "feederscrew_cli.compare",
-    "drop": "feederscrew_cli.drop",
-    "calibrate": "feederscrew_cli.calibrate",
-    "slide": "feederscrew_cli.slide",
-    "convey": "feederscrew_cli.convey",
-    "rate": "feederscrew_cli.rate",
-    "tune": "feederscrew_cli.tune",
-    "bowl": "feederscrew_cli.bowl",
-    "tooling": "feederscrew_cli.tooling",
-    "trial": "feederscrew_cli.trial",
-    "design": "feederscrew_cli.design",
-    "floor": "feederscrew_cli.floor",
-    "track": "feederscrew_cli.track",
-    "headings": "feederscrew_cli.headings",
-    "batch": "feederscrew_cli.batch",
-    "config": "feederscrew_cli.config",
-    "report": "feederscrew_cli.report",
-    "reproduce": "feederscrew_cli.reproduce",
-    "doctor": "feederscrew_cli.doctor",
+GROUPS = {  # heading: commands, in the order of a job
+    "Design": ("design", "tooling", "trial", "bowl", "report"),
+    "Part": ("aspects", "drop", "inertia", "compare", "calibrate"),
+    "Bowl": ("rate", "tune", "convey", "slide", "floor", "track", "headings"),
+    "Files": ("batch", "config", "doctor", "reproduce"),
 }
+COMMANDS = {name: f"feederscrew_cli.{name}" for names in GROUPS.values() for name in names}
 COLOUR = False if os.environ.get("NO_COLOR") else None  # None: on a terminal only
 NO_CHOICE = re.compile(r"'([^']*)' is not one of")
 SELDOM = 20_000  # objects made between two searches for garbage: libraries make hardly any as they load
@@ -63,8 +47,14 @@ class Fence(click.Group):
     """Turns every fault into its lines on stderr and the exit status that goes with it."""
 
     def list_commands(self, ctx):
-        """In the order of the pipeline, not of the alphabet."""
+        """In the order of a job, not of the alphabet."""
         return list(self.commands)
+
+    def format_commands(self, ctx, formatter):
+        """Write the commands by group."""
+        for heading, names in GROUPS.items():
+            with formatter.section(heading):
+                formatter.write_dl([(name, self.commands[name].short_help) for name in names])
 
     def main(self, args=None, **extra):  # type: ignore[override]  # it returns in no mode
         """Run one command line and leave the interpreter."""
@@ -171,9 +161,10 @@ def _help_hint(error):
 @click.version_option(__version__, prog_name="feeder")
 @click.pass_context
 def feeder(ctx):
-    """Example: feeder aspects parts/lbracket_30x20x15.stl -o results
+    """Example: feeder design parts/washer_m6.stl --target 40/min -o results
 
-    Resting aspects, sliding limits and conveying of small parts in vibratory bowl feeders.
+    Vibratory bowl feeders from the CAD file of a part: how it lies and travels, which cuts let one way up
+    leave, how many a minute, and in which bowl, tried part by part.
     """
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help())

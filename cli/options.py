@@ -39,6 +39,25 @@ class Named(click.Option):
             self.help = shown
 
 
+class Renamed(click.Option):
+    """An option with ``former`` names, which are still taken; its help shows the present one."""
+
+    def __init__(self, *arguments, former, **keywords):
+        super().__init__(*arguments, **keywords)
+        self.present = list(self.opts)
+        self.opts += former
+
+    def get_help_record(self, context):
+        """The help of the present name, which says the former."""
+        taken, self.opts = self.opts, self.present
+        try:
+            names, text = super().get_help_record(context)
+        finally:
+            self.opts = taken
+        former = ", ".join(name for name in taken if name not in self.present)
+        return names, f"{text}  (once {former})"
+
+
 class Number(click.FloatRange):
     """A number within limits; not 'nan', which is within any."""
 
@@ -83,10 +102,8 @@ def _reading():
         click.option(
             "--density",
             metavar="DENSITY",
-            cls=Named,
-            names=completion.known_materials,
             shell_complete=completion.materials,
-            help='A value, as "7.85 g/cm3", or a material.',
+            help='A material of `feeder config materials`, or a value, as "7.85 g/cm3".  [default: steel]',
         ),
         click.option(
             "--centre-of-mass",
@@ -161,6 +178,20 @@ def pictures(command):
     )(command)
 
 
+FORMAT = click.option(
+    "--format",
+    type=click.Choice(talk.FORMATS),
+    default="table",
+    show_default=True,
+    help="What is printed on stdout.",
+)
+
+
+def printed(command):
+    """``--format`` alone, for what writes no files; the command receives ``out``, a ``talk.Output``."""
+    return stacked(packed(command, "out", ("format",), talk.Output.of), FORMAT)
+
+
 def output(command):
     """Where results and talk go; the command receives ``out``, a ``talk.Output``."""
     return stacked(
@@ -179,13 +210,7 @@ def output(command):
             type=Place(),
             help="Write a rule for make: what the files of -o are made from.",
         ),
-        click.option(
-            "--format",
-            type=click.Choice(talk.FORMATS),
-            default="table",
-            show_default=True,
-            help="What is printed on stdout.",
-        ),
+        FORMAT,
         click.option("-q", "--quiet", is_flag=True, help="Suppress warnings and messages."),
         click.option("-v", "--verbose", is_flag=True, help="Say what is read and how long each step takes."),
     )

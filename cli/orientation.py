@@ -148,7 +148,13 @@ def doubt(command):
     return options.stacked(command, *DOUBT)
 
 
-DOUBT = tuple(
-    quantity.with_default(name, "length", "0 mm", f"Standard deviation of where {what}.")
-    for name, what in (("--play", "a part is over a cut"), ("--tolerance", "a cut's edge is"))
-)
+DOUBT = (
+    quantity.with_default(
+        "--position-deviation play", "length", "0 mm",
+        "Standard deviation of where a part is over a cut.", former=("--play",),
+    ),
+    quantity.with_default(
+        "--edge-deviation tolerance", "length", "0 mm",
+        "Standard deviation of where a cut's edge is.", former=("--tolerance",),
+    ),
+)  # fmt: skip

@@ -5,10 +5,14 @@ import click
 METAVARS = {"length": "LENGTH", "number": "SHARE", "time": "TIME"}
 
 
-def with_default(names, dimension, default, meaning, **bounds):
+def with_default(names, dimension, default, meaning, former=(), **bounds):
     """An option of a quantity with a default, which its help shows; bounds as of ``Quantity``."""
+    from feederscrew_cli.options import Renamed  # which stands on this module
+
+    renamed = {"cls": Renamed, "former": former} if former else {}
     return click.option(
         *names.split(),
+        **renamed,
         type=Quantity(dimension, **bounds),
         default=default,
         show_default=True,

@@ -5,7 +5,10 @@ import math
 from feederscrew_cli import grouped, options, orientation
 
 
-@grouped.command(short_help="Correctly oriented parts per minute, with each factor of the chain.")
+@grouped.command(
+    short_help="Correctly oriented parts per minute, with each factor of the chain.",
+    rare=("gap", "fill", "play", "tolerance"),
+)
 @options.part
 @orientation.any_chain
 @orientation.taken_of_a_seed
@@ -22,8 +25,8 @@ def rate(part, wanted, taken, play, tolerance, bowl, out):
 
     Devices are a list in the bowl file, in the order parts meet them: 'devices:' with lines such as
     '- wiper: 6 mm' or '- gap: 9 mm'. Below '- yield:' stands the share of each aspect that passes.
-    `feeder config init` lists every kind. --play and --tolerance give the share that passes a device by
-    its margin, instead of all or none.
+    `feeder config init` lists every kind. --position-deviation and --edge-deviation give the share that
+    passes a device by its margin, instead of all or none.
 
     With --config the shares of the aspects are those of what lies at the track's entry. Parts are fed from
     a hopper onto the moving floor of that bowl until the shares settle. Else they are the recommended

@@ -18,8 +18,10 @@ WANTED = (
         help="Size a bowl for this rate as well: 120/min.",
     ),
     click.option(
-        "--trial",
+        "--parts",
         "sent",
+        cls=options.Renamed,
+        former=("--trial",),
         type=click.IntRange(1, 10**4),
         metavar="N",
         help="Send N parts along the track and through the devices, to be played.",

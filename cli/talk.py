@@ -27,7 +27,7 @@ class Output:
     command: str  # the command's name, as run.json records it
     arguments: tuple[str, ...]  # as typed
     format: str  # of what goes to stdout: one of FORMATS
-    directory: str | None  # of -o
+    directory: str | None = None  # of -o
     quiet: bool = False
     verbose: bool = False
     depfile: str | None = None  # of --depfile

@@ -17,7 +17,10 @@ def _asked(command):
     return options.packed(command, "asked", ASKED)
 
 
-@grouped.command(short_help="Which cuts let only one orientation leave the bowl.")
+@grouped.command(
+    short_help="Which cuts let only one orientation leave the bowl.",
+    rare=("step", "cutter", "play", "tolerance", "cad", "verdicts", "seconds"),
+)
 @options.part
 @click.option(
     "--aspect", metavar="NAME", help="Aspect on which the part must leave.  [default: every orientation]"

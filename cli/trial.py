@@ -55,7 +55,10 @@ def _together(queue, **others):
     return {"queue": queue, **others}
 
 
-@grouped.command(short_help="A trial run: parts of true shape on the vibrating, tooled track.")
+@grouped.command(
+    short_help="A trial run: parts of true shape on the vibrating, tooled track.",
+    rare=("landing", "poured", "measured", "amplitudes"),
+)
 @options.part
 @click.option(
     "--aspect",

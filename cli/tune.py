@@ -6,7 +6,7 @@ from feederscrew_cli import grouped, options, orientation, waiting
 from feederscrew_cli.quantity import Quantity
 
 
-@grouped.command(short_help="Amplitude, angle or frequency that reaches a rate.")
+@grouped.command(short_help="Amplitude, angle or frequency that reaches a rate.", rare=("gap", "fill"))
 @options.part
 @click.option(
     "--target",

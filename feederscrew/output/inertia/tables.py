@@ -3,7 +3,8 @@
 import numpy as np
 
 from feederscrew.output import columns, tables
-from feederscrew.output.columns import G_MM2, MM, MM3
+from feederscrew.output.columns import G_CM3, G_MM2, MM, MM3
+from feederscrew.part.density import MATERIALS
 
 AXES = "xyz"
 NOISE = 1e-8  # of the largest of a vector or matrix: rounding of the file, 0 in the table
@@ -32,6 +33,24 @@ def document(study):
         "bounding_box_corner_mm": _in(balance.corner, MM),
         "warnings": warnings,
     }
+
+
+def materials():
+    """Return the materials that a part may be of.
+
+    Returns
+    -------
+    Frame
+        Columns ``material``, ``density_g_cm3``, ``aliases`` and ``source``.
+    """
+    return tables.frame(
+        {
+            "material": [material.name for material in MATERIALS],
+            "density_g_cm3": [material.density / G_CM3 for material in MATERIALS],
+            "aliases": [", ".join(material.aliases) for material in MATERIALS],
+            "source": [material.source for material in MATERIALS],
+        }
+    )
 
 
 def rows(study):

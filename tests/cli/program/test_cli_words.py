@@ -1,5 +1,6 @@
 """What the program says, in the words of the trade."""
 
+import json
 import os
 import re
 import shutil
@@ -26,11 +27,15 @@ def words(text):
     return " ".join(text.split())
 
 
-def test_help_names_the_rules_and_the_materials(run):
-    told = words(run("rate", "--help").stdout)
+def test_help_names_the_rules_and_leads_to_the_materials(run):
+    told = words(run("rate", "--help-all").stdout)
     assert f"Whose probabilities are taken: {', '.join(registry.CHOICES)}." in told
-    assert f"or a material: {', '.join(material.name for material in MATERIALS)}." in told
+    assert "feeder config materials" in told and "[default: steel]" in told
     assert "-q, --quiet Suppress warnings and messages." in told
+    listed = json.loads(run("config", "materials", "--format", "json").stdout)["materials"]
+    assert [(row["material"], 1000 * row["density_g_cm3"]) for row in listed] == [
+        (material.name, pytest.approx(material.density)) for material in MATERIALS
+    ]
 
 
 def test_a_remark_is_folded_for_a_terminal_and_one_line_for_a_program():
@@ -100,16 +105,33 @@ def test_a_part_that_does_not_move_on_the_plate_sticks():
 
 
 @pytest.mark.parametrize("name", list(feeder.commands))
-def test_the_help_of_a_command_lists_each_option_once_in_groups(run, name):
+def test_the_whole_help_of_a_command_lists_each_option_once_in_groups(run, name):
     command = feeder.commands[name]
-    said = run(name, "--help").stdout.partition("\nOptions:\n")[2]
-    shown = [option for option in command.params if isinstance(option, click.Option)]
-    for option in shown:
-        longest = max(option.opts, key=len)
+    grouped_help = isinstance(command, grouped.Grouped)
+    said = run(name, "--help-all" if grouped_help else "--help").stdout.partition("\nOptions:\n")[2]
+    for option in (option for option in command.params if isinstance(option, click.Option)):
+        longest = max(getattr(option, "present", option.opts), key=len)
         assert len(re.findall(rf"^  (?:-\w, )?{longest}(?=[ \n])", said, re.MULTILINE)) == 1, longest
     assert "\n  PART" not in said and "\n  [PART]" not in said, "an argument is no option"
-    long = isinstance(command, grouped.Grouped) and len(shown) >= grouped.LONG
-    assert "\nOutput:\n" in said or not long
+    assert "\nOutput:\n" in said or "--format" not in said or not grouped_help
+
+
+@pytest.mark.parametrize("name", list(feeder.commands))
+def test_the_help_of_a_command_fits_a_screen_and_names_every_option(run, name):
+    said = run(name, "--help").stdout
+    assert len(said.splitlines()) <= 60
+    for option in (option for option in feeder.commands[name].params if isinstance(option, click.Option)):
+        longest = max(getattr(option, "present", option.opts), key=len)
+        assert re.search(rf"(?<![\w-]){longest}(?![\w-])", said), longest
+
+
+def test_a_former_name_of_an_option_is_taken_and_not_shown(run):
+    present, former = (
+        run("aspects", NUT, option, "0", "--format", "csv", "-q").stdout for option in ("--drops", "--drop")
+    )
+    assert present == former != ""
+    said = run("aspects", "--help").stdout
+    assert re.search(r"^  --drops ", said, re.MULTILINE) and not re.search(r"--drop[ ,](?!.*once)", said)
 
 
 @pytest.mark.parametrize("name", list(feeder.commands))

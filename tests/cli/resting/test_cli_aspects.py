@@ -241,7 +241,7 @@ def test_the_graph_is_written(run, tmp_path, stl):
 
 
 def test_a_drop_test_joins_the_columns(run, stl):
-    rows = json.loads(run("aspects", stl, "--drop", "300", "--format", "json", "-q").stdout)["aspects"]
+    rows = json.loads(run("aspects", stl, "--drops", "300", "--format", "json", "-q").stdout)["aspects"]
     assert sum(row["p_drop"] for row in rows) == pytest.approx(1.0, abs=0.05)
     assert all(row["p_drop_low"] <= row["p_drop"] <= row["p_drop_high"] for row in rows)
 
@@ -258,7 +258,7 @@ def test_one_answer_with_an_interval_comes_last(run, stl):
 
 
 def test_the_answer_is_the_drop_test_where_there_is_one(run, stl):
-    told = document(run("aspects", stl, "--drop", "300", "--format", "json", "-q"))
+    told = document(run("aspects", stl, "--drops", "300", "--format", "json", "-q"))
     assert told["recommended"] == "drop test, launch feed"
     for row in told["aspects"]:
         assert row["p_recommended"] == row["p_drop"]
