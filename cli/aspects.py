@@ -93,4 +93,6 @@ def _study(solid, chosen, out):
     if study.recommended is not None:
         out.say(f"Recommended: {study.recommended.rule}")
     out.warn(*study.aspects.warnings)
+    if out.format == "table" and study.recommended is not None:
+        out.say("PMI, CSA and stability are published rules, to compare with: go by recommended.")
     return study

@@ -51,7 +51,7 @@ class Renamed(click.Option):
         """The help of the present name, which says the former."""
         taken, self.opts = self.opts, self.present
         try:
-            names, text = super().get_help_record(context)
+            names, text = super().get_help_record(context) or (self.present[0], "")
         finally:
             self.opts = taken
         former = ", ".join(name for name in taken if name not in self.present)

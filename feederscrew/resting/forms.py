@@ -7,6 +7,9 @@ from feederscrew.resting.faces import EQUAL
 
 FLAT, CYLINDER, CONE = "flat", "cylinder", "cone"
 BALL, OFF_CENTRE, WITH_A_FLAT = "ball", "off-centre ball", "ball with a flat"
+ROLLS = "on side (rolls)"
+SAME_SIZE = 0.02  # share by which two sizes of a part may differ and count as one, for a posture's words
+OPPOSITE = -0.9999  # cosine between the normals of two faces that lie back to back
 LEVEL = 1e-3  # [1] slope of an axis that counts as level: a file's noise on a short cylinder
 ALONE = "the part is a ball: it rests on no aspect, its one class rolls in every direction"
 CENTRED = "a rolling class is the side of a ball about the centre of mass: it rolls in every direction"
@@ -44,6 +47,49 @@ def _form(face, hull, flats):
     if np.ptp(hull.heights[face.triangles]) < EQUAL * face.height:
         return BALL
     return WITH_A_FLAT if flats else OFF_CENTRE
+
+
+def postures(normals, contact_areas, kinds, hull):
+    """Return in words how a part lies on each class: its height there beside its least and greatest height.
+
+    Parameters
+    ----------
+    normals : (A, 3) float [1]
+        Outward normal of the side that is down.
+    contact_areas : (A,) float [m2]
+    kinds : sequence of str
+        'flat' or 'rolling'.
+    hull : Hull
+
+    Returns
+    -------
+    list of str
+        'flat', 'on end' or 'on side'. A flat class adds that the face that is down is the larger or smaller
+        of two back to back, or the largest of the part; a rolling class says that it rolls.
+    """
+    reach = (hull.vertices[:, None, :] * normals[None, :, :]).sum(axis=-1)  # (V, A)
+    sizes = np.ptp(reach, axis=0)
+    return [
+        _posture(row, sizes, contact_areas, normals, hull.radius) if kinds[row] == FLAT else ROLLS
+        for row in range(len(normals))
+    ]
+
+
+def _posture(row, sizes, areas, normals, radius):
+    """The words of one flat class."""
+    if np.ptp(sizes) <= SAME_SIZE * sizes.max():
+        words = "flat" if sizes[row] < radius else "on a face"
+    elif sizes[row] <= sizes.min() * (1.0 + SAME_SIZE):
+        words = "flat"
+    else:
+        words = "on end" if sizes[row] >= sizes.max() * (1.0 - SAME_SIZE) else "on side"
+    opposite = np.flatnonzero((normals * normals[row]).sum(axis=-1) < OPPOSITE)
+    unlike = opposite[np.abs(areas[opposite] - areas[row]) > SAME_SIZE * areas[row]]
+    if len(unlike):
+        return f"{words} ({'larger' if areas[row] > areas[unlike[0]] else 'smaller'} face)"
+    if areas[row] >= areas.max() * (1.0 - SAME_SIZE) and np.ptp(areas) > SAME_SIZE * areas.max():
+        return f"{words} (largest face)"
+    return words
 
 
 def said(found):

@@ -7,13 +7,14 @@ from feederscrew.errors import ArgumentError
 from feederscrew.output import columns, tables
 from feederscrew.output.columns import DEG, G_MM2, MM, MM2, UJ
 from feederscrew.resting import names_file
+from feederscrew.resting.forms import postures
 from feederscrew.units import shown
 
 MOST = 24  # rows that a picture shows
 NORMALS = ("normal_x", "normal_y", "normal_z")
 RECOMMENDED = ("p_recommended", "p_recommended_low", "p_recommended_high")
 PRINTED = (  # the table for people, unless they ask for more
-    "aspect", "kind", "faces", "stable", "height_mm", *RECOMMENDED,
+    "aspect", "lies", "stable", "height_mm", *RECOMMENDED,
     "p_pmi", "p_csa", "p_stability", "surface", "tumbling",
 )  # fmt: skip
 
@@ -46,6 +47,7 @@ def aspects(study):
             **{f"p_{rule}": chance for rule, chance in found.probabilities.items()},
             **_barriers(found),
             "form": found.forms,
+            **_lies(study),
             "rolling_circle_mm": np.where(np.isfinite(found.rolling_circles), found.rolling_circles, np.nan)
             / MM,
             **_interval("p_drop", study.tally),
@@ -76,12 +78,30 @@ def printed(frame, wanted=None):
         If there is no such column.
     """
     if wanted is None:
-        return frame.only(name for name in PRINTED if name in frame)
+        return by_share(frame.only(name for name in PRINTED if name in frame))
     names = list(frame) if wanted.strip() == "all" else [name.strip() for name in wanted.split(",")]
     for name in names:
         if name not in frame:
             raise ArgumentError("columns", f"there is no column {shown(name)}", hint(name, list(frame)))
     return frame.only(names)
+
+
+def by_share(frame):
+    """Return a table of aspects with the likeliest answer first; as it is where there is no answer."""
+    if RECOMMENDED[0] not in frame:
+        return frame
+    order = np.argsort(
+        -np.nan_to_num(np.asarray(frame[RECOMMENDED[0]], dtype=float), nan=-1.0), kind="stable"
+    )
+    return tables.frame({name: [column[row] for row in order] for name, column in frame.items()})
+
+
+def _lies(study):
+    """How the part lies, in words; nothing of a card, which has no shape."""
+    hull, found = study.part.hull, study.aspects
+    if hull is None:
+        return {}
+    return {"lies": postures(found.normals, found.contact_areas, found.kinds, hull)}
 
 
 def _barriers(found):

@@ -78,7 +78,7 @@ def test_as_published_counts_each_class_once(run):
 
 def test_the_table_is_for_people(run, stl):
     lines = run("aspects", stl).stdout.splitlines()
-    assert lines[0].split()[:4] == ["aspect", "kind", "faces", "stable"]
+    assert lines[0].split()[:4] == ["aspect", "lies", "stable", "height"]
     assert "normal" not in lines[0]
     assert "[mm]" in lines[1]
     assert len(lines) == 5
