@@ -26,7 +26,7 @@ class Jobs(click.ParamType):
 def _grouped(command):
     """Hand over what is computed as ``asked``, and what of it as ``choices``."""
     choices = options.packed(command, "choices", ("rule", "launch", "drops", "pictures"))
-    return options.packed(choices, "asked", ("sources", "configs", "overrides"))
+    return options.packed(choices, "asked", ("sources", "configs", "overrides", "density"))
 
 
 @grouped.command(short_help="Aspects, conveying and rate of any number of parts, in parallel.")
@@ -40,6 +40,7 @@ def _grouped(command):
     help="Bowl file or folder; may be repeated.",
 )
 @options.overrides
+@options.DENSITY
 @options.rule
 @orientation.LAUNCHED
 @click.option(

@@ -92,6 +92,12 @@ def parts(command):
     )
 
 
+DENSITY = click.option(
+    "--density",
+    metavar="DENSITY",
+    shell_complete=completion.materials,
+    help='A material of `feeder config materials`, or a value, as "7.85 g/cm3".  [default: steel]',
+)
 READING = ("units", "density", "centre_of_mass", "names", "allow_open")
 
 
@@ -99,12 +105,7 @@ def _reading():
     """The options of READING."""
     return (
         click.option("--units", type=UNITS, help="Length unit of the file (STL has none).  [default: mm]"),
-        click.option(
-            "--density",
-            metavar="DENSITY",
-            shell_complete=completion.materials,
-            help='A material of `feeder config materials`, or a value, as "7.85 g/cm3".  [default: steel]',
-        ),
+        DENSITY,
         click.option(
             "--centre-of-mass",
             metavar="X,Y,Z",

@@ -23,7 +23,7 @@ CARD_KEY = re.compile(rb"^(mass|inertia|aspects)\s*:", re.MULTILINE)
 LONGEST, MOST_BYTES = 80, 160  # letters and bytes of a folder's name
 
 
-def gather(sources, configs=(), overrides=()):
+def gather(sources, configs=(), overrides=(), density=None):
     """Gather every part in every bowl, each with a folder name of its own.
 
     Parameters
@@ -34,6 +34,8 @@ def gather(sources, configs=(), overrides=()):
         Bowl files, folders of them and patterns; none for the defaults.
     overrides : sequence of str
         'drive.frequency=50 Hz', for every bowl.
+    density : str, optional
+        Material or value of each part that names none in a list.
 
     Returns
     -------
@@ -47,7 +49,7 @@ def gather(sources, configs=(), overrides=()):
     """
     faults: list[FeederError] = []
     wanted = [path for config in configs for path in _expanded(config, CARDS, "bowl")] or [None]
-    rows = [row for source in sources for row in _rows(source, faults)]
+    rows = [_of_density(row, density) for source in sources for row in _rows(source, faults)]
     lines = dict.fromkeys(wanted, "")
     for row in rows:
         if row.config:
@@ -61,6 +63,13 @@ def gather(sources, configs=(), overrides=()):
         for path in ([row.config] if row.config else wanted)
     )
     return _named(list(requests))
+
+
+def _of_density(row, density):
+    """The row with a density, unless it names one or is a part card, which says its own."""
+    if density is None or "density" in dict(row.options) or Path(row.source).suffix[1:].lower() in CARDS:
+        return row
+    return replace(row, options=(*row.options, ("density", density)))
 
 
 def _request(row, conditions, names):

@@ -17,7 +17,7 @@ FORMULA = ("=", "+", "-", "@", "\t", "\r")
 TILES = ACROSS * DOWN
 HIDDEN = (  # from a table for people; reasons stand above it, a line each
     "reason", "folder", "aspects", "material", "aspect", "heading_deg", "rule", "answer", "regime",
-    "passes_devices", "parts_per_minute_low", "parts_per_minute_high", "drops", "drop_aspect", "p_drop",
+    "passes_devices", "drops", "drop_aspect", "p_drop",
     "note", "warnings",
 )  # fmt: skip
 

@@ -63,6 +63,7 @@ def _results(task):
     offers.write(files, aspects_files.offers(study), pictures=choices.pictures)
     conveying = travel(request.conditions)
     files.write("convey.json", tables.json_text(conveying))
+    rated, rate_warnings = _rate(part, found, task, files)
     row = {
         "config": request.conditions.name,
         "material": part.material,
@@ -70,7 +71,7 @@ def _results(task):
         "aspects": int(found.stable.sum()),
         "velocity_mm_s": conveying["velocity_mm_s"],
         "regime": conveying["regime"],
-        **_rate(part, found, task, files),
+        **rated,
         **tested,
     }
     if choices.pictures and part.vertices is not None:
@@ -86,7 +87,9 @@ def _results(task):
         | dict(request.conditions.texts)
         | {"rule": choices.rule, "drops": choices.drops, "launch": choices.launch or "fed"}
         | ({"names": request.names.source} if request.names else {}),
-        warnings=(*part.warnings, *request.conditions.warnings, *found.warnings, *_tried(part, request)),
+        warnings=tuple(
+            dict.fromkeys((*part.warnings, *request.conditions.warnings, *found.warnings, *rate_warnings))
+        ),
         files=dict(files),  # who takes it need not import this module
     )
 
@@ -99,9 +102,9 @@ def travel(conditions):
 
 
 def _rate(part, found, task, files):
-    """Rate the aspect wanted, else the orientation that leaves most often; why, where the rate is 0."""
+    """Rate the aspect wanted, else the orientation that leaves most often; what ``feeder rate`` warns of."""
     if part.vertices is None:
-        return {"note": "a part card has no outline: no rate"}
+        return {"note": "a part card has no outline: no rate"}, _tried(part, task.request)
     conditions, rule = task.request.conditions, task.choices.rule
     study = rate(part, conditions.bowl, task.request.aspect, rule=rule, known=Shares(found))
     document = proof.beside(rate_tables.document(study), conditions.tried, part, conditions.bowl)
@@ -110,9 +113,11 @@ def _rate(part, found, task, files):
     rates = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
     way = study.rate.orientations.lying[study.rate.row].name
     named = {"orientation": way, "rule": rule, "answer": study.answer}
-    why = "; ".join(rate_tables.remarks(study)) if document["parts_per_minute"] <= 0.0 else ""
+    remarks = rate_tables.remarks(study)
+    why = "; ".join(remarks) if document["parts_per_minute"] <= 0.0 else ""
     noted = {"note": why} if why else {}
-    return named | noted | {name: document[name] for name in (*wanted, *rates)}
+    warnings = (*study.warnings, *remarks, *_tried(part, task.request))
+    return named | noted | {name: document[name] for name in (*wanted, *rates)}, warnings
 
 
 def _tried(part, request):

@@ -398,3 +398,27 @@ def test_stopped_at_any_moment_it_ends_soon_and_resumes_to_the_same_bytes(tmp_pa
         child.wait(timeout=10.0)
     subprocess.run(call, check=True, cwd=ROOT, capture_output=True)
     assert tree(tmp_path) == whole
+
+
+def test_a_row_has_the_warnings_of_rate(tmp_path):
+    """A cap rolls back down the climb: `feeder rate` warns of it, and so does the table of a batch."""
+    cap = PARTS / "cap_14x10.stl"
+    (row,) = ran(asked(cap), tmp_path, jobs=1).rows
+    alone = CliRunner().invoke(feeder, ["rate", str(cap), "--rule", "closed"]).stderr
+    said = [line.removeprefix("Warning: ") for line in alone.splitlines() if line.startswith("Warning: ")]
+    assert said and all(text in row["warnings"] for text in said)
+    low, rate, high = (
+        row[f"parts_per_minute{end}"] for end in ("_low", "", "_high")
+    )  # the interval of rate as well
+    assert low < rate < high
+
+
+def test_a_density_is_of_the_parts_that_name_none(tmp_path):
+    block(tmp_path / "one.stl", 10, 20, 30)
+    block(tmp_path / "two.stl", 10, 20, 30)
+    (tmp_path / "list.csv").write_text("part,density\none.stl,brass\ntwo.stl,\n")
+    rows = ran(asked(tmp_path / "list.csv", density="abs"), tmp_path / "out", jobs=1).rows
+    assert [(row["material"], row["mass_g"]) for row in rows] == [
+        ("brass", pytest.approx(6.0 * 8.47)),
+        ("abs", pytest.approx(6.0 * 1.05)),
+    ]
