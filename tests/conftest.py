@@ -149,6 +149,7 @@ def coarse(request):
 def run(tmp_path, monkeypatch):
     """Run one ``feeder`` command line inside an empty folder; gives click's result."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("feederscrew_cli.progress.LINE_EVERY_S", 1e9)  # what a slow machine says of itself
 
     def call(*arguments, stdin=None):
         return CliRunner().invoke(feeder, [str(argument) for argument in arguments], input=stdin)

@@ -175,3 +175,21 @@ def test_a_closed_terminal_does_not_end_what_ignores_it():
         assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
     finally:
         signal.signal(signal.SIGHUP, before)
+
+
+def test_a_long_run_says_where_it_is_in_a_file_too(monkeypatch, capsys):
+    """A line every 15 s where stderr is no terminal: here at once, after 2 of 4 in 3 s."""
+    clock = iter([100.0, 100.5, 103.0, 120.0])
+    monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))
+    monkeypatch.setattr(progress, "LINE_EVERY_S", 2.0)
+    with progress.Progress(None, what="orientations") as shown:
+        shown.reach(1, 4)
+        shown.reach(2, 4)
+    assert capsys.readouterr().err == "orientations: 2 of 4 after 3 s, about 3 s to go\n"
+
+
+def test_a_quiet_run_says_nothing_of_where_it_is(monkeypatch, capsys):
+    monkeypatch.setattr(progress, "LINE_EVERY_S", 0.0)
+    with progress.Progress(None, False) as shown:
+        shown.reach(1, 4)
+    assert capsys.readouterr().err == ""
