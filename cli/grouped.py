@@ -4,7 +4,7 @@ import click
 
 LONG = 12  # options from which on they are grouped
 GROUPS = {  # heading: names of the options
-    "The part": ("units", "density", "centre_of_mass", "names", "allow_open"),
+    "The part": ("units", "density", "centre_of_mass", "names", "body", "allow_open"),
     "The bowl": ("path", "paths", "overrides"),
     "How parts arrive": ("launch", "rule", "probabilities", "surface", "surface_exponent"),
     "The run": ("seed", "jobs"),

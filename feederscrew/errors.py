@@ -41,6 +41,10 @@ class MeshError(FeederError):
     """A part file that gives no honest number."""
 
 
+class SeveralBodiesError(MeshError):
+    """A part file of more than one body."""
+
+
 class ConfigError(FeederError):
     """A value in a YAML file or in an option that cannot be used."""
 
