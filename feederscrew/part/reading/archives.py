@@ -56,15 +56,20 @@ def pieces(archive: zipfile.ZipFile, name: str, most: int = LARGEST) -> Iterator
     BombError
         As soon as more is unpacked than ``most``, or than a mesh of its packed size can be.
     """
-    packed, size = archive.getinfo(name).compress_size, 0
+    entry, size = archive.getinfo(name), 0
+    _refuse_size(entry.file_size, entry.compress_size, most)  # as announced, which may be a lie
     with archive.open(name) as member:
         while piece := member.read(PIECE):
             size += len(piece)
-            if size > most:
-                raise BombError(f"unpacks to more than {most >> 20} MB")
-            if size > max(SMALL, MOST_TIMES * packed):
-                raise BombError(f"unpacks to more than {MOST_TIMES} times its size")
+            _refuse_size(size, entry.compress_size, most)
             yield piece
+
+
+def _refuse_size(size, packed, most):
+    if size > most:
+        raise BombError(f"unpacks to more than {most >> 20} MB")
+    if size > max(SMALL, MOST_TIMES * packed):
+        raise BombError(f"unpacks to more than {MOST_TIMES} times its size")
 
 
 def content(archive: zipfile.ZipFile, name: str, most: int = LARGEST) -> bytes:

@@ -5,7 +5,7 @@ import numpy as np
 from feederscrew.part.reading import facets
 from feederscrew.part.reading.decimals import Decimals
 from feederscrew.part.reading.formats import plain
-from feederscrew.part.reading.soup import Soup, refuse_crowds
+from feederscrew.part.reading.soup import MOST_CORNERS, MOST_FACETS, Soup, refuse_crowds
 
 FROM_ZERO = "its facets count corners from 0, OBJ counts them from 1: read as counted from 0"
 
@@ -33,6 +33,8 @@ def soup(data: bytes) -> Soup:
             if len(parts) < 4:
                 raise ValueError("a corner of fewer than three numbers")
             words += parts[1:4]
+            if len(words) > 3 * MOST_CORNERS:
+                refuse_crowds(len(words) // 3, 0)
         elif parts[0] in (b"f", b"fo"):
             indices = [int(word.partition(b"/")[0]) for word in parts[1:]]
             if min(indices, default=1) < 0:
@@ -41,6 +43,8 @@ def soup(data: bytes) -> Soup:
             sizes.append(len(indices))
             corners += indices
             objects.append(len(names) - 1)
+            if len(sizes) > MOST_FACETS:
+                refuse_crowds(0, len(sizes))
         elif parts[0] == (b"o" if named else b"g"):
             names.append(b" ".join(parts[1:]))
     refuse_crowds(len(words) // 3, len(corners) - 2 * len(sizes))

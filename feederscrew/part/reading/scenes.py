@@ -18,6 +18,7 @@ from feederscrew.part.reading.soup import Soup, refuse_crowds
 AGAIN = "export the part again"
 LARGEST_SCENE = 1 << 24  # [bytes] of the JSON of a GLB: it names nodes and buffers, the numbers are elsewhere
 WIDTHS = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}  # [bytes] by component type: glTF 2.0, 3.6.2.2
+MOST_NODES, DEEPEST = 20_000, 50  # instances; nodes within nodes
 NUMBERS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 PACKED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
 logging.getLogger("trimesh").addHandler(logging.NullHandler())  # it would log to stderr
@@ -104,9 +105,7 @@ def _refuse_claims(data, where):
         raise MeshError(where, f"is a GLB packed by {needed[0]}, which is not read", "export it unpacked")
     numbers = [_announced(accessor, scene, len(data), where) for accessor in scene.get("accessors", ())]
     refuse_crowds(0, sum(numbers) // 30)  # texture coordinates and normals counted in
-    children = [child for node in scene.get("nodes", ()) for child in node.get("children", ())]
-    if len(children) != len(set(children)):
-        raise ValueError("a node within two others")
+    _refuse_nests(scene.get("nodes", ()))
     corners = facets = 0
     for node in scene.get("nodes", ()):
         for primitive in scene["meshes"][node["mesh"]].get("primitives", ()) if "mesh" in node else ():
@@ -115,6 +114,22 @@ def _refuse_claims(data, where):
             corners += int(scene["accessors"][at]["count"])
             facets += int(scene["accessors"][around]["count"]) // (3 if primitive.get("mode", 4) == 4 else 1)
             refuse_crowds(corners, facets)
+
+
+def _refuse_nests(nodes):
+    """Refuse nodes that are no trees, or deep ones."""
+    if len(nodes) > MOST_NODES:
+        raise ValueError(f"more than {MOST_NODES} nodes")
+    pairs = [(child, parent) for parent, node in enumerate(nodes) for child in node.get("children", ())]
+    parents = dict(pairs)
+    if len(parents) != len(pairs):
+        raise ValueError("a node within two others")
+    for node in parents:
+        depth = 0
+        while node in parents:
+            node, depth = parents[node], depth + 1
+            if depth > DEEPEST:
+                raise ValueError(f"nodes within nodes more than {DEEPEST} deep")
 
 
 def _announced(accessor, scene, size, where):

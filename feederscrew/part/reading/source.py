@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from feederscrew import documents
-from feederscrew.errors import DAMAGE, MeshError
+from feederscrew.errors import DAMAGE, MeshError, printable
 from feederscrew.part.reading import archives, formats, obj, off, ply, scenes, stl, threemf
 from feederscrew.part.reading.decimals import CommaError
 from feederscrew.part.reading.formats import CARD, FORMATS
@@ -31,7 +31,7 @@ class File:
 
     source: str  # as given, '-' for standard input
     where: str  # for error lines
-    name: str  # file stem
+    name: str  # file stem, printable
     suffix: str  # lower case, without the dot; '' for standard input
     data: bytes
     sha256: str
@@ -65,7 +65,7 @@ def file(source, stdin=None):
         raise MeshError(where, f"is larger than {LARGEST >> 20} MB", "export it with fewer facets")
     path = Path("stdin" if source == "-" else source)
     digest = hashlib.sha256(data).hexdigest()
-    return File(source, where, path.stem, path.suffix.lower().removeprefix("."), data, digest)
+    return File(source, where, printable(path.stem), path.suffix.lower().removeprefix("."), data, digest)
 
 
 def soup(file):

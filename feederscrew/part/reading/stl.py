@@ -16,7 +16,7 @@ UNKNOWN_COUNTS = (0, 0xFFFFFFFF)  # what streaming exporters leave in the header
 COMMENT_LINE = re.compile(rb"(?m)^[ \t]*(?:#|//|;)[^\n]*$")
 COMMENT = re.compile(rb"(?:#|//|;)[^\n]*")
 BEGIN = re.compile(rb"(?i)\s*solid\b([^\n]*?)(?=\bfacet\s+normal\b|\n|\Z)")  # a name ends with its line
-END = re.compile(rb"(?i)\bendsolid\b[^\n]*?(?=\bsolid\b[^\n]{0,300}?\bfacet\s+normal\b|\n|\Z)")
+END = re.compile(rb"(?i)\bendsolid\b[^\n]*?(?=\bsolid\b[^\n]{0,80}?\bfacet\s+normal\b|\n|\Z)")
 NEXT = re.compile(rb"(?i)\bendfacet\s+(?=solid\b)")  # where a solid begins before the last one has ended
 SOMETHING = re.compile(rb"\S")
 WORDS = 21  # of a facet of three corners

@@ -22,6 +22,7 @@ from feederscrew.units import counted, listed, shown
 
 MOST, DEEPEST = 5_000, 50  # instances; components within components
 MOST_PLACED = 100_000  # objects, or items and components
+MOST_NAMES = 1_000  # of elements: a dozen, and those of extensions
 MOST_CONFIG = 1 << 24  # [bytes] of what a slicer adds
 UNITS = {  # of the specification: one of ours, and how many of it they are
     "micron": ("um", 1.0),
@@ -271,6 +272,8 @@ class ModelReader:
         local = self.locals.get(name)
         if local is None:
             local = self.locals[name] = name.rpartition("}")[2]
+            if len(self.locals) > MOST_NAMES:
+                raise ValueError(f"its XML has more than {MOST_NAMES} kinds of elements")
             extension = FOREIGN.search(name)
             if extension:
                 what = f"is a 3MF in the extension {extension[0].lower()}, which is not read"

@@ -174,7 +174,8 @@ def _closed(vertices, faces, edges, where, unit, allow_open):
     if fault is None:
         return solid, False, unseen, ()
     if not allow_open:
-        raise SeveralBodiesError(where, *fault)
+        several = fault[1] in (shells.SPLIT, shells.INNER)
+        raise (SeveralBodiesError if several else MeshError)(where, *fault)
     return solid, True, unseen, (f"{fault[0]}: taken together as one part (`allow_open`)",)
 
 
