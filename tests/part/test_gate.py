@@ -67,7 +67,8 @@ REFUSED = {
     "truncated_hexbolt": (
         "is cut short: 476 facets announced, 316 are there - export the part again, or copy the whole file"
     ),
-    "two_nuts": "holds 2 bodies: 1 (302.5 mm3, 11.55 x 10 x 5.2 mm), 2 (302.5 mm3, 11.55 x 10 x 5.2 mm)" + TAKE,
+    "two_nuts": "holds 2 bodies: 1 (302.5 mm3, 11.55 x 10 x 5.2 mm), 2 (302.5 mm3, 11.55 x 10 x 5.2 mm)"
+    + TAKE,
     "zero_bytes": "is empty - export the part again",
 }
 

@@ -225,7 +225,9 @@ def _with_cavities(points, faces, shell, volume, low, high):
         boxed[k] = False
         own = np.unique(faces[shell == k])
         probes = points[own[:: -(-len(own) // PROBES)]]
-        around.append([j for j in np.flatnonzero(boxed).tolist() if _within(probes, points[faces[shell == j]])])
+        around.append(
+            [j for j in np.flatnonzero(boxed).tolist() if _within(probes, points[faces[shell == j]])]
+        )
     is_cavity = np.zeros(number, dtype=bool)
     for k in sorted(range(number), key=lambda k: len(around[k])):
         if not around[k] or volume[k] == 0.0:

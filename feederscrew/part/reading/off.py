@@ -69,6 +69,6 @@ def _rings(words, count):
     for _ in range(count):
         if at >= len(words):
             raise ValueError("it announces more than it holds")
-        rings.append(_ring(words[at:at + 1 + int(words[at])]))
+        rings.append(_ring(words[at : at + 1 + int(words[at])]))
         at += 1 + len(rings[-1])
     return rings

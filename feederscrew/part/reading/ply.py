@@ -62,7 +62,9 @@ def soup(data: bytes) -> Soup:
         raise ValueError("it has no corners")
     vertices = np.stack([np.asarray(columns[f"vertex.{axis}"], dtype=float) for axis in "xyz"], axis=1)
     empty = np.empty(0, dtype=np.int64)
-    sizes, corners = next((columns[f"face.{name}"] for name in CORNERS if f"face.{name}" in columns), (empty, empty))
+    sizes, corners = next(
+        (columns[f"face.{name}"] for name in CORNERS if f"face.{name}" in columns), (empty, empty)
+    )
     refuse_crowds(len(vertices), int(sizes.sum()) - 2 * len(sizes))
     faces, _ = facets.triangles(vertices, sizes, corners)
     return Soup(vertices, faces, "ply", warnings=decimals.warnings)
@@ -134,7 +136,9 @@ def _rows_alike(data, at, element, order):
         if one.count and (rows[f"n{k}"] != rows[f"n{k}"][0]).any():
             return None
         column = rows[f"v{k}"]
-        columns[one.name] = (rows[f"n{k}"].astype(np.int64), column.ravel().astype(np.int64)) if one.count else column
+        columns[one.name] = (
+            (rows[f"n{k}"].astype(np.int64), column.ravel().astype(np.int64)) if one.count else column
+        )
     return columns, at + dtype.itemsize * element.rows
 
 

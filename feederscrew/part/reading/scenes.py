@@ -17,7 +17,14 @@ from feederscrew.part.reading.soup import Soup, refuse_crowds
 
 AGAIN = "export the part again"
 LARGEST_SCENE = 1 << 24  # [bytes] of the JSON of a GLB: it names nodes and buffers, the numbers are elsewhere
-WIDTHS = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}  # [bytes] by component type: glTF 2.0, 3.6.2.2
+WIDTHS = {
+    5120: 1,
+    5121: 1,
+    5122: 2,
+    5123: 2,
+    5125: 4,
+    5126: 4,
+}  # [bytes] by component type: glTF 2.0, 3.6.2.2
 MOST_NODES, DEEPEST = 20_000, 50  # instances; nodes within nodes
 NUMBERS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 PACKED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")

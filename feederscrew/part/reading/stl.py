@@ -19,6 +19,7 @@ BEGIN = re.compile(rb"(?i)\s*solid\b([^\n]*?)(?=\bfacet\s+normal\b|\n|\Z)")  # a
 END = re.compile(rb"(?i)\bendsolid\b[^\n]*?(?=\bsolid\b[^\n]{0,80}?\bfacet\s+normal\b|\n|\Z)")
 NEXT = re.compile(rb"(?i)\bendfacet\s+(?=solid\b)")  # where a solid begins before the last one has ended
 SOMETHING = re.compile(rb"\S")
+LAST = 2000  # [bytes] at the end of a text, the last name in them
 WORDS = 21  # of a facet of three corners
 AGAIN = "export the part again, or copy the whole file"
 
@@ -116,7 +117,14 @@ class StlText:
         """Take words that are facets of three corners and nothing else."""
         if len(words) % WORDS:
             return False
-        marks = ((0, b"facet"), (5, b"outer"), (7, b"vertex"), (11, b"vertex"), (15, b"vertex"), (20, b"endfacet"))
+        marks = (
+            (0, b"facet"),
+            (5, b"outer"),
+            (7, b"vertex"),
+            (11, b"vertex"),
+            (15, b"vertex"),
+            (20, b"endfacet"),
+        )
         if any(set(words[at::WORDS]) - {mark} for at, mark in marks):
             return False
         count = len(words) // WORDS
@@ -161,7 +169,7 @@ def _from_text(text, warnings, where):
     try:
         ended = _solids(text, read)
         if not read.whole:
-            raise MeshError(where, "is cut short: the text does not end with 'endsolid'", AGAIN)
+            raise _cut_short(where)
         refuse_crowds(len(read.words) // 3, sum(read.sizes) - 2 * len(read.sizes))
         vertices = decimals.read(read.words).reshape(-1, 3)
     except CommaError as error:
@@ -169,14 +177,16 @@ def _from_text(text, warnings, where):
     except TooManyFacetsError:
         raise
     except ValueError:
-        raise _garbled(where) from None
+        raise (_garbled if END.search(text, max(0, len(text) - LAST)) else _cut_short)(where) from None
     sizes = np.array(read.sizes, dtype=np.int64)
     faces, facet = facets.triangles(vertices, sizes, np.arange(len(vertices)))
     if not ended:
         warnings += ("the text does not end with 'endsolid', and its last facet is whole: read to there",)
     names = tuple(name.decode(errors="replace") for name in read.names)
     said = (*warnings, *decimals.warnings, *facets.split_warning(sizes))
-    return Soup(vertices, faces, ASCII, warnings=said, names=names, objects=np.array(read.solids, np.int64)[facet])
+    return Soup(
+        vertices, faces, ASCII, warnings=said, names=names, objects=np.array(read.solids, np.int64)[facet]
+    )
 
 
 def _solids(text, read):
@@ -191,6 +201,10 @@ def _solids(text, read):
         read.take(text[at:stop], plain(name))
         at = end.end() if end and not following else stop
     return end is not None
+
+
+def _cut_short(where):
+    return MeshError(where, "is cut short: the text does not end with 'endsolid'", AGAIN)
 
 
 def _garbled(where):

@@ -33,7 +33,14 @@ UNITS = {  # of the specification: one of ours, and how many of it they are
     "meter": ("m", 1.0),
 }
 PART, NEGATIVE, MODIFIER, SUPPORT, UNPRINTED = "part", "negative", "modifier", "support", "unprintable"
-TYPES = {"model": PART, "": PART, "support": SUPPORT, "solidsupport": SUPPORT, "surface": SUPPORT, "other": SUPPORT}
+TYPES = {
+    "model": PART,
+    "": PART,
+    "support": SUPPORT,
+    "solidsupport": SUPPORT,
+    "surface": SUPPORT,
+    "other": SUPPORT,
+}
 ROLES = (  # pattern of what slicers call a volume, and what it is
     (re.compile(r"(?i)negative"), NEGATIVE),
     (re.compile(r"(?i)modifier|infill_mesh|cutting_mesh"), MODIFIER),
@@ -46,7 +53,11 @@ LEFT_OUT = {  # role: noun, what is done
 }
 FOREIGN = re.compile(r"(?i)beamlattice|boolean|securecontent|displacement|implicit|volumetric")
 RELATION = re.compile(r"(?i)/3dmodel$")
-CONFIGS = ("Metadata/model_settings.config", "Metadata/Slic3r_PE_model.config", "Metadata/Slic3r_model.config")
+CONFIGS = (
+    "Metadata/model_settings.config",
+    "Metadata/Slic3r_PE_model.config",
+    "Metadata/Slic3r_model.config",
+)
 WAY_OUT = "subtract it in CAD and export the part again"
 
 
@@ -193,7 +204,9 @@ class Package3MF:
             key = (name, str(first))
             kind = self.notes.roles.get(key, role) if role == PART else role
             corners, own = np.unique(faces[first : last + 1], return_inverse=True)
-            yield Piece3MF(self.notes.names.get(key, title), kind, item, vertices[corners], own.reshape(-1, 3))
+            yield Piece3MF(
+                self.notes.names.get(key, title), kind, item, vertices[corners], own.reshape(-1, 3)
+            )
 
     def _path(self, attributes, path):
         return attributes["path"].lstrip("/") if "path" in attributes else path
@@ -303,7 +316,8 @@ class ModelReader:
         if text.strip().lower() in ("true", "1") and self.here.role == PART:
             self.here.role = _role(self.mark)
 
-    def _count(self, what, most=MOST_FACETS):
+    def _count(self, what, most=None):
+        most = most or MOST_FACETS
         self.size[what] += 1
         if self.size[what] > most:
             raise archives.BombError(f"has more than {most} {what}")
@@ -345,8 +359,10 @@ def _covers(ranges, count):
     """Whether ranges of facets, first and last, are all of so many, each once."""
     ordered = sorted(ranges)
     ends = [-1, *(last for _, last in ordered)]
-    return bool(ranges) and ends[-1] == count - 1 and all(
-        first == end + 1 and last >= first for (first, last), end in zip(ordered, ends)
+    return (
+        bool(ranges)
+        and ends[-1] == count - 1
+        and all(first == end + 1 and last >= first for (first, last), end in zip(ordered, ends))
     )
 
 
