@@ -16,6 +16,7 @@ from feederscrew.part import load
 # An L of 10 x 6 x 4 mm, its section concave: 156 mm3. Sides are given as a CAD program has them.
 SECTION = [(0, 0), (10, 0), (10, 3), (3, 3), (3, 6), (0, 6)]
 CORNERS = [(x, y, z) for z in (0, 4) for x, y in SECTION]
+AROUND = [(k, (k + 1) % 6, 6 + (k + 1) % 6, 6 + k) for k in range(6)]
 SIDES = [
     (5, 4, 3, 2, 1, 0),
     (6, 7, 8, 9, 10, 11),
@@ -37,7 +38,7 @@ def mm3(part):
 
 
 def ply(order, rows="<", extra=""):
-    """A PLY of the L with its sides as they are; vertices have a colour, facets a flag behind their corners."""
+    """A PLY of the L with its sides as they are; vertices have a colour, facets a flag."""
     head = (
         f"ply\nformat {order} 1.0\ncomment as scanners write it\nelement vertex 12\nproperty float x\n"
         "property uchar red\nproperty double y\nproperty float z\nelement face 8\n"
@@ -68,7 +69,7 @@ def text_stl(sides=FACETS, name="L", end="\n", comma=False, last=True):
     """A text STL of the L."""
     lines = [f"solid {name}"]
     for side in sides:
-        corners = [("vertex %.3f %.3f %.3f" % CORNERS[k]) for k in side]
+        corners = ["vertex {:.3f} {:.3f} {:.3f}".format(*CORNERS[k]) for k in side]
         corners = [line.replace(".", ",") for line in corners] if comma else corners
         lines += ["facet normal 0 0 0", "outer loop", *corners, "endloop", "endfacet"]
     return end.join([*lines, *([f"endsolid {name}"] if last else [])]) + "\n"
@@ -90,7 +91,8 @@ def text_stl(sides=FACETS, name="L", end="\n", comma=False, last=True):
         obj(1, minus=True),
         obj(1).replace("v 10 0 0", "v 10 \\\n0 0"),
     ],
-    ids=["little", "big", "text", "edges", "off", "one head", "colours", "normals", "one line", "obj", "relative", "continued"],
+    ids=["little", "big", "text", "edges", "off", "one head", "colours", "normals", "one line",
+         "obj", "relative", "continued"],
 )  # fmt: skip
 def test_facets_of_several_sizes_keep_their_outline(data):
     """The section is concave: a fan from its first corner would enclose 156 mm3 of other shape or none."""
@@ -231,8 +233,9 @@ def scene(count, nodes, **accessor):
 
 ONE = [{"mesh": 0}]
 CHAIN = [{"mesh": 0, "children": [k + 1]} for k in range(5000)] + ONE
-PLY = "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
-HEAD = PLY + "element face {}\nproperty list uchar int vertex_indices\nend_header\n"
+PLY = "ply\nformat binary_little_endian 1.0\nelement vertex {}\n"
+XYZ = "property float x\nproperty float y\nproperty float z\n"
+HEAD = PLY + XYZ + "element face {}\nproperty list uchar int vertex_indices\nend_header\n"
 
 
 @pytest.mark.parametrize(

@@ -93,14 +93,18 @@ def test_parts_of_a_slicer_by_their_meaning(subtype, volume, word):
 
 @pytest.mark.parametrize(
     ("kind", "volume", "word"),
-    [("NegativeVolume", 224.0, "negative"), ("ParameterModifier", 240.0, "modifier"), ("SupportBlocker", 240.0, "support")],
-)  # fmt: skip
+    [
+        ("NegativeVolume", 224.0, "negative"),
+        ("ParameterModifier", 240.0, "modifier"),
+        ("SupportBlocker", 240.0, "support"),
+    ],
+)
 def test_ranges_of_facets_by_their_meaning(kind, volume, word):
     """PrusaSlicer keeps all volumes of an object in one mesh."""
     notes = (
         '<?xml version="1.0"?><config><object id="1"><volume firstid="0" lastid="11"><metadata type="volume" '
-        'key="volume_type" value="ModelPart"/></volume><volume firstid="12" lastid="23"><metadata type="volume" '
-        f'key="volume_type" value="{kind}"/></volume></object></config>'
+        'key="volume_type" value="ModelPart"/></volume><volume firstid="12" lastid="23">'
+        f'<metadata type="volume" key="volume_type" value="{kind}"/></volume></object></config>'
     )
     part = loaded(package(model([thing(1, mesh(BLOCK, PIN))], ['objectid="1"']), **{PRUSA: notes}))
     assert mm3(part) == pytest.approx(volume, rel=1e-9)

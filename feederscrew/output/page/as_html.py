@@ -2,10 +2,10 @@
 
 import base64
 import csv
-import html
 import io
 import json
 import struct
+from html import escape as html_escape
 from importlib import resources
 from itertools import groupby
 
@@ -74,7 +74,7 @@ def html(page):
 
 def escape(text: str) -> str:
     """Return a text as HTML, its lines kept, with an escape for every letter that is not printable."""
-    return html.escape("\n".join(map(printable, text.split("\n"))))
+    return html_escape("\n".join(map(printable, text.split("\n"))))
 
 
 def _asset(name):

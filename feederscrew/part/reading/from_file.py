@@ -45,7 +45,8 @@ def load(
     source : str or Path
         STL, OBJ, PLY, OFF, GLB, 3MF, STEP or YAML; '-' reads standard input.
     units : str, optional
-        'mm', 'cm', 'm', 'um' or 'in'; without it what the format states (GLB: m; 3MF and STEP: their own), else mm.
+        'mm', 'cm', 'm', 'um' or 'in'; without it what the format states (GLB: m; 3MF and STEP: their own),
+        else mm.
     density : str, optional
         A material or a value, '7.85 g/cm3'; steel without it.
     centre_of_mass : str, optional

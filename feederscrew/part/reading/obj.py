@@ -50,12 +50,12 @@ def soup(data: bytes) -> Soup:
     refuse_crowds(len(words) // 3, len(corners) - 2 * len(sizes))
     decimals = Decimals()
     vertices = decimals.read([plain(word) for word in words]).reshape(-1, 3)
-    indices, begins, warnings = np.array(corners, dtype=np.int64), 1, decimals.warnings
-    if len(indices) and indices.min() == 0:
-        if relative or indices.max() >= len(vertices):
+    whole, begins, warnings = np.array(corners, dtype=np.int64), 1, decimals.warnings
+    if len(whole) and whole.min() == 0:
+        if relative or whole.max() >= len(vertices):
             raise ValueError("a facet names corner 0; OBJ counts from 1")
         begins, warnings = 0, (*warnings, FROM_ZERO)
-    faces, facet = facets.triangles(vertices, np.array(sizes, dtype=np.int64), indices - begins)
+    faces, facet = facets.triangles(vertices, np.array(sizes, dtype=np.int64), whole - begins)
     shown = tuple(name.decode(errors="replace") for name in names)
     return Soup(faces=faces, vertices=vertices, format="obj", warnings=warnings, names=shown,
                 objects=np.array(objects, dtype=np.int64)[facet])  # fmt: skip

@@ -27,10 +27,7 @@ def soup(data: bytes) -> Soup:
     head = lines[0].split() if lines else []
     if head[:1] == [b"BINARY"]:
         raise ValueError("binary OFF is not read")
-    if len(head) >= 6 and len(lines) == 1:  # all in one line
-        words = head[3:]
-    else:
-        words = None
+    words = head[3:] if len(lines) == 1 else None  # all in one line
     corners, count = (int(word) for word in head[:2])
     if not 0 <= corners + count <= len(text) or corners < 0 or count < 0:
         raise ValueError("it announces more than it holds")

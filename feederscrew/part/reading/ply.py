@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass, field
+from typing import Any, Literal
 
 import numpy as np
 
@@ -95,7 +96,7 @@ def _header(text):
 
 def _from_bytes(data, at, elements, order):
     """Columns by 'element.property' of binary rows; lists as their sizes and all their numbers."""
-    columns = {}
+    columns: dict[str, Any] = {}
     for element in elements:
         if not element.rows or not element.properties:
             continue
@@ -111,7 +112,8 @@ def _from_bytes(data, at, elements, order):
 
 def _rows_alike(data, at, element, order):
     """Columns and the end of rows whose lists are as long as those of the first; None if they are not."""
-    fields, end = [], at
+    fields: list[Any] = []
+    end = at
     for k, one in enumerate(element.properties):
         length = 0
         if one.count:
@@ -149,7 +151,7 @@ def _row_by_row(data, at, element, order):
         (one is kept, np.dtype(one.count).itemsize if one.count else 0, np.dtype(one.type).itemsize)
         for one in element.properties
     ]
-    little = "little" if order == "<" else "big"
+    little: Literal["little", "big"] = "little" if order == "<" else "big"
     sizes, pieces = [], []
     for _ in range(element.rows):
         for wanted, counted, width in steps:
@@ -172,7 +174,8 @@ def _row_by_row(data, at, element, order):
 
 def _from_text(words, elements, decimals):
     """Columns as ``_from_bytes`` has them, of rows in text."""
-    columns, at = {}, 0
+    columns: dict[str, Any] = {}
+    at = 0
     for element in elements:
         if element.rows * len(element.properties) > len(words) - at:
             raise ValueError(ANNOUNCES)
@@ -185,7 +188,7 @@ def _from_text(words, elements, decimals):
                     columns[f"vertex.{one.name}"] = decimals.read(words[at + k : end : width])
             at = end
             continue
-        lists = {one.name: ([], []) for one in element.properties if one.name in CORNERS}
+        lists: dict[str, Any] = {one.name: ([], []) for one in element.properties if one.name in CORNERS}
         for _ in range(element.rows):
             for one in element.properties:
                 length = 1

@@ -101,7 +101,7 @@ def _joined(pieces, kind, unit):
 
 def _refuse_claims(data, where):
     """Refuse a GLB whose scene names more numbers, instances or facets than it holds or than are read."""
-    magic, _, length, chunk = struct.unpack("<4I", data[:16])
+    _, _, length, chunk = struct.unpack("<4I", data[:16])
     if max(length, 20 + chunk) > len(data):
         raise MeshError(where, "is a damaged GLB: it announces more than it holds", AGAIN)
     if chunk > LARGEST_SCENE:

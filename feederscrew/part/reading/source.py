@@ -11,7 +11,7 @@ from feederscrew.errors import DAMAGE, MeshError, printable
 from feederscrew.part.reading import archives, formats, obj, off, ply, scenes, stl, threemf
 from feederscrew.part.reading.decimals import CommaError
 from feederscrew.part.reading.formats import CARD, FORMATS
-from feederscrew.part.reading.soup import LARGEST, LARGEST_TEXT, Soup, TooManyFacetsError
+from feederscrew.part.reading.soup import LARGEST, LARGEST_TEXT, TooManyFacetsError
 
 AGAIN = "export the part again"
 FEWER = "export it with fewer facets"

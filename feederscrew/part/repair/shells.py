@@ -97,12 +97,16 @@ def _turns_around(vertices, faces, shell, one):
 
 
 def winding(point, corners):
-    """Return how often closed triangles go round a point [1]: their solid angles (van Oosterom, Strackee 1983).
+    """Return how often closed triangles go round a point [1].
 
     Parameters
     ----------
     point : (3,) float [unit of the file]
     corners : (F, 3, 3) float [unit of the file]
+
+    References
+    ----------
+    van Oosterom, Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30 (1983).
     """
     a, b, c = np.moveaxis(corners - point, 1, 0)
     la, lb, lc = (vectors.norm(corner) for corner in (a, b, c))
