@@ -12,6 +12,7 @@ from feederscrew.part import mass
 from feederscrew.part.reading.soup import Soup
 from feederscrew.part.repair import edges as repair_edges
 from feederscrew.part.repair import shells, weld
+from feederscrew.part.repair.gate import FARTHEST
 from feederscrew.units import shown
 
 CRACK_SHARE = 1e-4  # [1] of the size: open surfaces whose rims are closer are of one body
@@ -56,6 +57,7 @@ def bodies(soup: Soup) -> tuple[FileBody, ...]:
         within a body that faces the other way is its cavity. Open surfaces that nearly meet are one body.
     """
     points = np.nan_to_num(soup.vertices, posinf=0.0, neginf=0.0)
+    points[np.abs(points) > FARTHEST] = 0.0  # what is not finite, the gate names
     first, group = weld.distinct(points)
     points, faces = points[first], group[soup.faces]
     a, b, c = faces.T
@@ -67,7 +69,7 @@ def bodies(soup: Soup) -> tuple[FileBody, ...]:
     volume = np.bincount(shell, mass.tetrahedra(points[faces]), minlength=number)
     low, high = _boxes(points, faces, shell, number)
     of_body = _with_cavities(points, faces, shell, np.where(is_open, 0.0, volume), low, high)
-    found = []
+    found: list[FileBody] = []
     for one in dict.fromkeys(of_body[shell].tolist()):
         own = np.flatnonzero(of_body == one)
         mine = np.flatnonzero(np.isin(shell, own))

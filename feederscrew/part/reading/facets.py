@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from feederscrew.geometry import vectors
 from feederscrew.units import counted
 
+TINY = 1e-300  # [unit of the file] a facet smaller than that is a point
 STRAIGHT = 1e-9  # [1] of the facet's area: a corner that turns by less does not make a fan
 MOST_CORNERS_OF_ONE = 20_000  # of one facet
 
@@ -66,8 +67,9 @@ def _split(vertices, rings):
     faces = rings[:, fan]
     if size == 3:
         return faces
-    points = vertices[rings]
-    points = np.nan_to_num(points - points[:, :1], posinf=0.0, neginf=0.0)
+    points = np.nan_to_num(vertices[rings], posinf=0.0, neginf=0.0)
+    points = points / np.maximum(np.abs(points).max(axis=(1, 2), keepdims=True), TINY)
+    points = points - points[:, :1]
     following = np.roll(points, -1, axis=1)
     normals = vectors.cross(points, following).sum(axis=1)  # Newell's: twice the area
     along = following - points
@@ -89,7 +91,7 @@ def _ears(points, normal):
     first = first / vectors.norm(first)
     second = vectors.cross(normal, first)
     flat = np.stack([np.einsum("si,i->s", points, axis) for axis in (first, second)], axis=1)
-    flat = flat / np.abs(flat).max()
+    flat = flat / np.abs(flat).max()  # of a facet with an area
     ears = np.asarray(triangulate([flat]), dtype=np.int64).reshape(-1, 3)
     if len(ears) != len(points) - 2:
         raise ValueError(f"the outline of a facet of {len(points)} corners crosses itself")

@@ -6,6 +6,8 @@ import warnings
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from feederscrew import documents
 from feederscrew.errors import DAMAGE, MeshError, printable
 from feederscrew.part.reading import archives, formats, obj, off, ply, scenes, stl, threemf
@@ -99,7 +101,7 @@ def _read(file, kind):
     """The triangles of a file of a known format; whatever its reader raises is a line."""
     title, data = FORMATS[kind].title, file.data
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), np.errstate(all="ignore"):  # what is not finite, the gate names
             warnings.simplefilter("error", DeprecationWarning)  # numpy's way to say 'not a number'
             if kind in TEXTS:
                 if len(data) > LARGEST_TEXT:
