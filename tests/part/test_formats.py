@@ -145,7 +145,12 @@ def test_text_stl_cut_within_a_facet_is_refused(tmp_path, cut):
 
 
 @pytest.mark.parametrize(
-    "data", [text_stl().replace("10.000", "1,000.0"), text_stl().replace("10.000", "10,0", 1)]
+    "data",
+    [
+        text_stl().replace("10.000", "1,000.0"),
+        text_stl().replace("10.000", "10,0", 1),
+        text_stl().replace(".000", "").replace("vertex 10 ", "vertex 1,000 "),
+    ],
 )
 def test_commas_that_may_be_no_points_are_refused(tmp_path, data):
     assert "comma" in files.refused(files.written(tmp_path, data.encode()))

@@ -10,6 +10,7 @@ from feederscrew.part.reading import facets
 from feederscrew.part.reading.decimals import CommaError, Decimals
 from feederscrew.part.reading.formats import ASCII, BINARY, FACET, HEADER, claimed_facets, plain
 from feederscrew.part.reading.soup import LARGEST_TEXT, Soup, TooManyFacetsError, refuse_crowds
+from feederscrew.units import shown
 
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 UNKNOWN_COUNTS = (0, 0xFFFFFFFF)  # what streaming exporters leave in the header
@@ -88,6 +89,10 @@ def _ascii(data, where):
     return _from_text(COMMENT_LINE.sub(b"", text), warnings, where)
 
 
+class WordError(ValueError):
+    """A word that a text STL has not, or not there."""
+
+
 @dataclass
 class StlText:
     """The facets of a text, as they are read."""
@@ -140,24 +145,26 @@ class StlText:
         at, last = 0, len(words)
         while at < last:
             if words[at] != b"facet":
-                raise ValueError("a word that is no facet's")
+                raise WordError(words[at])
             try:
                 at = words.index(b"outer", at, at + 7) + 2
             except ValueError:
                 self.whole = last - at > 7
                 if self.whole:
-                    raise
+                    raise WordError(words[at + 1]) from None
                 return
             size = 0
             while words[at : at + 1] == [b"vertex"]:
                 if at + 4 > last:
                     self.whole = False
                     return
+                if b"vertex" in words[at + 1 : at + 4] or b"endloop" in words[at + 1 : at + 4]:
+                    raise ValueError("a corner of fewer than three numbers")
                 self.words += words[at + 1 : at + 4]
                 size, at = size + 1, at + 4
             self.sizes.append(size)
             if words[at : at + 2] != [b"endloop", b"endfacet"][: last - at]:
-                raise ValueError("a word that is no facet's")
+                raise WordError(words[at])
             if at + 2 > last:
                 self.whole = False
                 return
@@ -176,6 +183,13 @@ def _from_text(text, warnings, where):
         raise MeshError(where, f"has {error}", "write numbers with a decimal point") from None
     except TooManyFacetsError:
         raise
+    except WordError as error:
+        if END.search(text, max(0, len(text) - LAST)) is None:
+            raise _cut_short(where) from None
+        word = shown(error.args[0].decode(errors="replace"))
+        raise MeshError(
+            where, f"has {word} where an STL has none", "remove it, or export the part again"
+        ) from None
     except ValueError:
         raise (_garbled if END.search(text, max(0, len(text) - LAST)) else _cut_short)(where) from None
     sizes = np.array(read.sizes, dtype=np.int64)

@@ -335,6 +335,8 @@ class NotesReader:
         """Take one element."""
         if name == "object":
             self.object, self.part = attributes.get("id", ""), None
+        elif name in ("plate", "assemble"):
+            self.object, self.part = "", None
         elif name == "part":
             self.part = (self.object, attributes.get("id", ""))
             self.notes.roles[self.part] = _role(attributes.get("subtype", ""))
