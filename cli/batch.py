@@ -72,9 +72,9 @@ def batch(ctx, asked, choices, jobs, scheduler, resume, out):
     that some failed.
 
     PARTS are part files, folders of them, patterns ("parts/**/*.stl") and lists. A list is a CSV whose
-    first line names its columns: part, units, density, centre_of_mass, names, aspect and config, or some.
-    -o DIR gets summary.csv with a row a part, index.html, contact_sheet.png, and a folder a part in
-    DIR/parts.
+    first line names its columns: part, units, density, centre_of_mass, body, names, aspect and config,
+    or some. -o DIR gets summary.csv with a row a part, index.html, contact_sheet.png, and a folder a
+    part in DIR/parts.
     """
     ctx.with_resource(ended_within(PATIENCE))
     from feederscrew import batch as batches

@@ -18,7 +18,7 @@ class Place(click.Path):
 
 
 FILE = Place(allow_dash=True)
-UNITS = click.Choice(["mm", "cm", "m", "in"])
+UNITS = click.Choice(["mm", "cm", "m", "um", "in"])
 LAUNCHES = click.Choice(["place", "drop", "flip", "roll", "feed", "tumble"])  # the last: once that of roll
 
 
@@ -98,7 +98,7 @@ DENSITY = click.option(
     shell_complete=completion.materials,
     help='A material of `feeder config materials`, or a value, as "7.85 g/cm3".  [default: steel]',
 )
-READING = ("units", "density", "centre_of_mass", "names", "allow_open")
+READING = ("units", "density", "centre_of_mass", "names", "body", "allow_open")
 
 
 def _reading():
@@ -116,6 +116,11 @@ def _reading():
             metavar="FILE",
             type=Place(),
             help="Names of its aspects (names.yaml of aspects -o): they stay when the ranks change.",
+        ),
+        click.option(
+            "--body",
+            metavar="BODY",
+            help="Which of several bodies in the file: its number, its name, or largest.",
         ),
         click.option(
             "--allow-open", is_flag=True, help="Compute from an open surface; every output says so."

@@ -16,6 +16,9 @@ from feederscrew.units import shown
 LARGEST = 200_000  # [bytes]: a bowl file or part card has a few hundred; parsing time grows with size
 PIECE = 1 << 22  # [bytes] of a stream that are asked for at once
 DEEPEST = 12  # levels of nesting
+POINTER_HEAD = b"version https://git-lfs.github.com/spec/"
+POINTER = "is a pointer file of git LFS, not the file it stands for"
+PULL = "fetch the file with `git lfs pull`"
 
 
 @dataclass(frozen=True)
@@ -103,7 +106,7 @@ def content(
         raise kind("''", "is an empty path", f"name {wanted}")
     try:
         with Path(path).open("rb") as file:
-            return upto(file, most)
+            data = upto(file, most)
     except FileNotFoundError:
         if Path(path).is_symlink():
             raise kind(path, "is a link to a file that is not there", "mend or remove the link") from None
@@ -113,6 +116,9 @@ def content(
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise kind(path, f"cannot be read ({reason})", "check the path and its permissions") from None
+    if data.startswith(POINTER_HEAD):
+        raise kind(path, POINTER, PULL)
+    return data
 
 
 def upto(file: BinaryIO, most: int) -> bytes | bytearray:

@@ -24,11 +24,20 @@ DAMAGE: tuple[type[Exception], ...] = (  # what other people's readers raise on 
 )
 
 
+def printable(text: str) -> str:
+    """Return a text on one line, with an escape for every letter that a terminal may take for a command."""
+    letters = " ".join(text.splitlines())
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in letters)
+
+
 class FeederError(Exception):
-    """Say where it is, what is wrong and how to mend it; all three are required."""
+    """Say where it is, what is wrong and how to mend it; all three are required.
+
+    The line is printable, whatever texts of a file are in it.
+    """
 
     def __init__(self, where: object, what: str, mend: str) -> None:
-        super().__init__(f"{where}: {what} - {mend}")
+        super().__init__(printable(f"{where}: {what} - {mend}"))
         self.where, self.what, self.mend = where, what, mend
 
     @property
@@ -39,6 +48,10 @@ class FeederError(Exception):
 
 class MeshError(FeederError):
     """A part file that gives no honest number."""
+
+
+class SeveralBodiesError(MeshError):
+    """A part file of more than one body."""
 
 
 class ConfigError(FeederError):

@@ -4,6 +4,8 @@ import math
 import re
 from collections.abc import Iterable
 
+from feederscrew.errors import printable as printable  # of a user's text, as a whole line
+
 FOOT, INCH, POUND = 0.3048, 0.0254, 0.45359237  # [m, m, kg] exact by definition
 MINUTE, HOUR = 60.0, 3600.0  # [s]
 GRAVITY = 9.80665  # [m/s2] standard: 3rd General Conference on Weights and Measures, 1901
@@ -119,12 +121,6 @@ def one_line(text: str) -> str:
     """Return a user's text fit for a message: printable, on one line and not too long."""
     line = " ".join("".join(c if c.isprintable() else " " for c in text).split())
     return line if len(line) <= 40 else f"{line[:37]}..."
-
-
-def printable(text: str) -> str:
-    """Return a text on one line, with an escape for every letter that a terminal may take for a command."""
-    letters = " ".join(text.splitlines())
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in letters)
 
 
 def counted(number: int, noun: str) -> str:

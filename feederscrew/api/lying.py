@@ -31,6 +31,7 @@ def load(
     density: str | float | None = None,
     centre_of_mass: str | Sequence[float] | None = None,
     names: Path | None = None,
+    body: str | int | None = None,
     allow_open: bool = False,
     stdin: IO[bytes] | None = None,
 ) -> Part:
@@ -41,13 +42,15 @@ def load(
     source : str or Path
         STL, OBJ, PLY, OFF, GLB, 3MF, STEP or YAML.
     units : str, optional
-        'mm', 'cm', 'm' or 'in', of a file that does not state it.
+        'mm', 'cm', 'm', 'um' or 'in', of a file that does not state it.
     density : str or float [kg/m3], optional
         A material or a value, '7.85 g/cm3'; steel without it.
     centre_of_mass : str or (3,) float, optional
         'x,y,z' in the file's axes and units, if the part is not homogeneous.
     names : str or Path, optional
         File of names of its aspects, as ``write_names`` writes it; letters without it.
+    body : str or int, optional
+        Which of several bodies in the file: its number from 1, its name, or 'largest'.
     allow_open : bool
         Compute from an open surface.
     stdin : binary file, optional
@@ -68,6 +71,7 @@ def load(
         density=_density(density),
         centre_of_mass=_point(centre_of_mass),
         names=None if names is None else asked.a_file("names", names),
+        body=_body(body),
         allow_open=allow_open,
         stdin=stdin,
     )
@@ -229,6 +233,14 @@ def _point(given: str | Sequence[float] | None) -> str | None:
     mend = "give 'x,y,z', or three numbers in the file's unit"
     check.kind("centre_of_mass", given, (tuple, list, np.ndarray), mend)
     return ",".join(repr(check.argument("centre_of_mass", one)) for one in given)
+
+
+def _body(given: str | int | None) -> str | None:
+    """A name, 'largest', or a number as the text of one."""
+    if given is None or isinstance(given, str):
+        return given
+    check.kind("body", given, (int, np.integer), "give its number, its name, or 'largest'")
+    return str(int(given))
 
 
 def _density(given: str | float | None) -> str | None:

@@ -9,7 +9,7 @@ from feederscrew import documents
 from feederscrew.errors import ConfigError
 
 PART, NAMES, ASPECT, CONFIG = "part", "names", "aspect", "config"
-OPTIONS = ("units", "density", "centre_of_mass")
+OPTIONS = ("units", "density", "centre_of_mass", "body")
 COLUMNS = (PART, *OPTIONS, NAMES, ASPECT, CONFIG)
 LARGEST = 20_000_000  # [bytes] a few hundred thousand parts
 

@@ -53,7 +53,7 @@ class Request:
 
     source: str  # path as typed
     conditions: Conditions
-    options: tuple[tuple[str, str], ...] = ()  # units, density, centre_of_mass: those that were given
+    options: tuple[tuple[str, str], ...] = ()  # units, density, centre_of_mass, body: those that were given
     name: str = ""  # of its folder, unlike any other of the batch
     aspect: str | None = None  # the one wanted; None for the orientation that leaves most often
     names: AspectNames | None = None  # of its aspects

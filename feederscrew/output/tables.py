@@ -43,6 +43,7 @@ SHARES = ("share", "efficiency", "purity")  # last words of columns of shares ..
 PASSED = ("passes", "passes_devices", "passed_low", "passed_high")  # ... and whole names of others
 DIGITS = 4  # significant, in a table for people
 NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
+MIXED = "value"  # a column whose rows have units of their own: none is rounding beside another
 PAGE = 100  # letters of a line that a table for people should not be wider than
 
 
@@ -271,7 +272,8 @@ def _numbers(name, values):
     if np.issubdtype(values.dtype, np.integer):
         return [str(value) for value in values]
     values = values * (100.0 if is_share(name) else 1.0)
-    nothing = NOISE * max(np.abs(values[np.isfinite(values)]), default=0.0)
+    largest = max(np.abs(values[np.isfinite(values)]), default=0.0)
+    nothing = 0.0 if name == MIXED else NOISE * largest
     return _pointed([_number(0.0 if abs(value) <= nothing else value) for value in values])
 
 

@@ -28,10 +28,10 @@ class CardAspect:
 class Part(Shown):
     """A solid to be fed: its surface (none for a part card) and its mass properties."""
 
-    name: str  # file stem
+    name: str  # file stem; with the body's number behind it where one of several is taken
     source: str  # the path as given, '-' for standard input
-    sha256: str  # of the file's bytes
-    units: str  # of the file: mm, cm, m or in
+    sha256: str  # of the file's bytes; where one of several bodies is taken, of these and its number
+    units: str  # of the file: mm, cm, m, um or in
     material: str  # what the density is, for people: 'steel (default)', '7.85 g/cm3'
     density: float | None  # [kg/m3]; None for a part card without one
     volume: float | None  # [m3]; None for a part card
@@ -46,9 +46,10 @@ class Part(Shown):
     names: AspectNames | None = None  # that the user gives its aspects
     open_surface: bool = False  # computed with ``allow_open``: every output must say so
     warnings: tuple[str, ...] = ()
+    file_sha256: str | None = None  # of the file's bytes; None: as ``sha256``
 
     @property
     def inputs(self):
         """The sha256 of each file it was read from, by its path."""
         named = {} if self.names is None else {self.names.source: self.names.sha256}
-        return {self.source: self.sha256} | named
+        return {self.source: self.file_sha256 or self.sha256} | named

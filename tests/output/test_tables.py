@@ -171,3 +171,20 @@ def test_a_table_wider_than_a_page_loses_its_spare_columns_in_order():
     assert len(tables.text(shown, "table").splitlines()[-1]) <= tables.PAGE
     assert tables.to_page(wide, spare, 200)[1] == []
     assert tables.to_page(wide, spare, 10)[1] == ["low", "high", "note"]
+
+
+def test_what_has_a_unit_of_its_own_is_no_rounding_beside_another():
+    """On the terminal and on a page; in a column of one unit it is."""
+    from feederscrew.output.page import numbers
+
+    mixed = tables.frame({"quantity": ["density", "volume"], "value": [7.85, 2.1e13]})
+    assert "7.850" in tables.text(mixed, "table")
+    assert numbers.cells(mixed)[2][0] == ("density", "7.850")
+    alike = tables.frame({"volume_mm3": [1e-3, 2.1e13]})
+    assert numbers.cells(alike)[2][0] == ("0",)
+
+
+def test_texts_of_a_page_are_printable():
+    from feederscrew.output.page.as_html import escape
+
+    assert escape("red\x1b[31m <b>\nnext \u202e") == "red\\x1b[31m &lt;b&gt;\nnext \\u202e"

@@ -19,6 +19,15 @@ SPLIT = (
     " or pass `allow_open` to take them as one part"
 )
 
+TAKE = f" - take one with `body` (its number, its name, or largest), {SPLIT}"
+
+
+def several(*bodies):
+    """The line that lists bodies: volume and size of each."""
+    listed = ", ".join(f"{k} ({text})" for k, text in enumerate(bodies, 1))
+    return f"holds {len(bodies)} bodies: {listed}{TAKE}"
+
+
 TAKEN = {  # file: volume [mm3], its relative tolerance, warnings
     "count_zero_hexbolt": (
         1675.738,
@@ -58,7 +67,8 @@ REFUSED = {
     "truncated_hexbolt": (
         "is cut short: 476 facets announced, 316 are there - export the part again, or copy the whole file"
     ),
-    "two_nuts": f"holds 2 bodies, of 302.5, 302.5 mm3 - {SPLIT}",
+    "two_nuts": "holds 2 bodies: 1 (302.5 mm3, 11.55 x 10 x 5.2 mm), 2 (302.5 mm3, 11.55 x 10 x 5.2 mm)"
+    + TAKE,
     "zero_bytes": "is empty - export the part again",
 }
 
@@ -274,14 +284,14 @@ def test_t_junctions_all_round_a_side(tmp_path):
 def test_bodies_apart_are_counted(tmp_path):
     bodies = [files.box((1, 1, 1), (3 * k, 0, 0)) * 4 for k in range(5)]
     path = files.written(tmp_path, np.concatenate(bodies))
-    assert files.refused(path) == f"holds 5 bodies, of 64, 64, 64, ... mm3 - {SPLIT}"
+    assert files.refused(path) == several(*["64 mm3, 4 x 4 x 4 mm"] * 5)
 
 
 def test_bodies_that_overlap(tmp_path):
     path = files.written(
         tmp_path, np.concatenate([files.box((10, 10, 10)), files.box((10, 10, 8), (5, 5, 5))])
     )
-    assert files.refused(path) == f"holds 2 bodies, of 1000, 800 mm3 - {SPLIT}"
+    assert files.refused(path) == several("1000 mm3, 10 x 10 x 10 mm", "800 mm3, 10 x 10 x 8 mm")
     part = load(path, allow_open=True)
     assert mm3(part) == pytest.approx(1800.0)
     assert part.open_surface
@@ -291,7 +301,7 @@ def test_bodies_that_overlap(tmp_path):
 @pytest.mark.parametrize("touch", [(10, 10, 0), (10, 10, 10)], ids=["edge", "corner"])
 def test_bodies_that_touch_are_two(tmp_path, touch):
     path = files.written(tmp_path, np.concatenate([files.box((10, 10, 10)), files.box((10, 10, 10), touch)]))
-    assert files.refused(path) == f"holds 2 bodies, of 1000, 1000 mm3 - {SPLIT}"
+    assert files.refused(path) == several(*["1000 mm3, 10 x 10 x 10 mm"] * 2)
 
 
 def test_a_part_that_touches_itself_along_an_edge(tmp_path):
@@ -323,21 +333,22 @@ def test_cavity_in_a_part_inside_out(tmp_path):
     [
         (
             files.inside_out(CAVITY),
-            "a body of 8 mm3 lies inside another, both facing outwards"
-            " - reverse the inner surface if it is a cavity, else save each body as a file of its own",
+            "a body of 8 mm3 lies inside another, both facing outwards: 1 (1000 mm3, 10 x 10 x 10 mm), "
+            "2 (8 mm3, 2 x 2 x 2 mm) - take one with `body` (its number, its name, or largest), "
+            "reverse the inner surface if it is a cavity, else save each body as a file of its own",
         ),
         (
             CAVITY + np.array([8, 0, 0]),
             "a cavity of 8 mm3 crosses another surface - move the cavity inside the material in CAD",
         ),
-        (CAVITY + np.array([20, 0, 0]), f"holds 2 bodies, of 1000, 8 mm3 - {SPLIT}"),
+        (CAVITY + np.array([20, 0, 0]), several("1000 mm3, 10 x 10 x 10 mm", "8 mm3, 2 x 2 x 2 mm")),
         (
             np.concatenate([CAVITY * 2, files.inside_out(files.box((1, 1, 1), (3.1, 3.2, 3.3)))]),
-            f"holds 2 bodies, of 1000, 1 mm3 - {SPLIT}",
+            several("936 mm3, 10 x 10 x 10 mm", "1 mm3, 1 x 1 x 1 mm"),
         ),
         (
             np.concatenate([CAVITY * 2, files.box((1, 1, 1), (3.1, 3.2, 3.3))]),
-            f"holds 2 bodies, of 1000, 1 mm3 - {SPLIT}",
+            several("936 mm3, 10 x 10 x 10 mm", "1 mm3, 1 x 1 x 1 mm"),
         ),
     ],
     ids=["outwards", "crossing", "outside", "cavity in a cavity", "loose body in a cavity"],
@@ -357,7 +368,7 @@ def test_volume_above_the_hull_is_refused(tmp_path):
 
 def test_numbers_of_a_line_are_in_the_units_of_the_file(tmp_path):
     path = files.written(tmp_path, np.concatenate([HOUSING, HOUSING + 20]))
-    assert files.refused(path, units="in") == f"holds 2 bodies, of 1000, 1000 in3 - {SPLIT}"
+    assert files.refused(path, units="in") == several(*["1000 in3, 10 x 10 x 10 in"] * 2)
 
 
 def test_given_facets_of_a_part_stay_as_they_are(tmp_path):

@@ -5,10 +5,11 @@ import csv
 import io
 import json
 import struct
-from html import escape
+from html import escape as html_escape
 from importlib import resources
 from itertools import groupby
 
+from feederscrew.errors import printable
 from feederscrew.output import DPI, tables
 from feederscrew.output.page import blocks as kinds
 from feederscrew.output.page.numbers import cells
@@ -69,6 +70,11 @@ def html(page):
             "</body>\n</html>\n",
         ]
     )
+
+
+def escape(text: str) -> str:
+    """Return a text as HTML, its lines kept, with an escape for every letter that is not printable."""
+    return html_escape("\n".join(map(printable, text.split("\n"))))
 
 
 def _asset(name):

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from feederscrew.errors import printable
 from feederscrew.output import tables
 
 DIGITS = 4  # significant, in a cell for people
@@ -54,11 +55,11 @@ def _column(name, values):
         return [str(value) for value in values]
     if tables.is_share(name):
         return [percent(value) for value in values]
-    noise = NOISE * np.abs(values[np.isfinite(values)]).max(initial=0.0)
+    noise = 0.0 if name == tables.MIXED else NOISE * np.abs(values[np.isfinite(values)]).max(initial=0.0)
     return [number(0.0 if abs(value) <= noise else value) for value in values]
 
 
 def _word(value):
     if isinstance(value, (bool, np.bool_)):
         return "yes" if value else "no"
-    return NOTHING if value is None or value != value else str(value)
+    return NOTHING if value is None or value != value else printable(str(value))

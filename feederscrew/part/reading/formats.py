@@ -3,6 +3,8 @@
 import re
 from dataclasses import dataclass
 
+from feederscrew.documents import POINTER, POINTER_HEAD
+
 CARD, BINARY, ASCII = "card", "stl", "stl-ascii"
 HEADER, FACET = 84, 50  # [bytes] of a binary STL
 HEAD = 1 << 16  # [bytes] looked at
@@ -14,7 +16,6 @@ class Format:
 
     title: str
     suffixes: tuple[str, ...]
-    loader: str = ""  # trimesh's name for it
     needs: tuple[str, ...] = ()  # modules of an extra
     extra: str = ""
 
@@ -22,22 +23,23 @@ class Format:
 FORMATS = {
     BINARY: Format("binary STL", ("stl",)),
     ASCII: Format("ASCII STL", ("stl",)),
-    "obj": Format("OBJ", ("obj",), "obj"),
-    "ply": Format("PLY", ("ply",), "ply"),
-    "off": Format("OFF", ("off",), "off"),
-    "glb": Format("GLB", ("glb",), "glb"),
-    "3mf": Format("3MF", ("3mf",), "3mf", ("lxml", "networkx"), "3mf"),
-    "step": Format("STEP", ("step", "stp"), "glb", ("cascadio",), "step"),
+    "obj": Format("OBJ", ("obj",)),
+    "ply": Format("PLY", ("ply",)),
+    "off": Format("OFF", ("off",)),
+    "glb": Format("GLB", ("glb",)),
+    "3mf": Format("3MF", ("3mf",)),
+    "step": Format("STEP", ("step", "stp", "stpz"), ("cascadio",), "step"),
     CARD: Format("a part card", ("yaml", "yml")),
 }
 MARKS = (  # pattern at the start of a file, and its format
     (rb"glTF", "glb"),
     (rb"ply[ \t]*[\r\n]", "ply"),
-    (rb"(?:#[^\n]*\n|\s)*C?OFF\b", "off"),
+    (rb"(?:#[^\n]*\n|\s)*(?:ST)?C?N?OFF\b", "off"),
     (rb"\s*(?:/\*[^*]*\*/\s*)?ISO-10303-21", "step"),
 )
 UTF16 = "is text in UTF-16"
 ALIENS = (  # what people save under a mesh's name by mistake
+    (re.escape(POINTER_HEAD), POINTER),
     (rb"\xff\xfe[\t-~]\0|\xfe\xff\0[\t-~]|(?:[\t-~]\0){8}|(?:\0[\t-~]){8}", UTF16),
     (rb"(?i)\s*solid\b[^\0]*\bfacet\s+normal[^\0]*\0", "is ASCII STL with NUL bytes in the middle"),
     (rb"(?is)\s*<.{,2000}?(?<=<)(?:!doctype\s+html|html\b|head\b|body\b)", "is an HTML page, not a part"),
@@ -52,6 +54,9 @@ ALIENS = (  # what people save under a mesh's name by mistake
 )
 ASCII_ONLY = bytes(byte if byte < 128 else ord("?") for byte in range(256))
 OBJ_LINE = re.compile(rb"(?m)^[ \t]*v[ \t]+[-+.\d]\S*[ \t]+[-+.\d]\S*[ \t]+[-+.\d]")
+MODEL_MEMBER = re.compile(rb"(?i)\.model")
+STEP_MEMBER = re.compile(rb"(?i)\.ste?p")
+STL_HEAD = re.compile(rb"(?i)(?:\s++|(?:#|//|;)[^\n]*\n)*+(?:solid\b|facet\s+normal\b)")
 CARD_LINE = re.compile(rb"(?m)^(?:mass|centre_of_mass|inertia|aspects|floor|track)[ \t]*:")
 
 
@@ -100,15 +105,15 @@ def claimed_facets(data):
 
 
 def _marked(data, head):
-    if head.startswith(b"PK\x03\x04") and b"3dmodel.model" in data.lower():
-        return "3mf"
+    if head.startswith(b"PK\x03\x04"):
+        return "3mf" if MODEL_MEMBER.search(data) else "step" if STEP_MEMBER.search(data) else None
     return next((kind for mark, kind in MARKS if re.match(mark, head, re.DOTALL)), None)
 
 
 def _text(head, suffix):
     if b"\0" in head:
         return None
-    if re.match(rb"(?i)\s*solid\b", head) and re.search(rb"(?i)facet|endsolid", head):
+    if STL_HEAD.match(head) and re.search(rb"(?i)facet|endsolid", head):
         return ASCII
     if OBJ_LINE.search(head):
         return "obj"

@@ -1,21 +1,23 @@
 """From a file and the options of the command line to a ``Part``."""
 
+import hashlib
 from dataclasses import replace
 
 import numpy as np
 
 from feederscrew import check, documents
-from feederscrew.errors import ArgumentError, MeshError
+from feederscrew.errors import ArgumentError, MeshError, SeveralBodiesError
 from feederscrew.part import aspect_names, card
 from feederscrew.part.density import density as density_of
 from feederscrew.part.hull import convex_hull
+from feederscrew.part.reading import bodies
 from feederscrew.part.reading import source as read
 from feederscrew.part.reading.formats import FORMATS
 from feederscrew.part.record import Part
 from feederscrew.part.repair import gate
 from feederscrew.units import QuantityError, factor, quantity, shown
 
-UNITS = {"mm": "millimetres", "in": "inches", "cm": "centimetres", "m": "metres"}
+UNITS = {"mm": "millimetres", "in": "inches", "cm": "centimetres", "m": "metres", "um": "micrometres"}
 FED = (0.5e-3, 0.3)  # [m] largest dimension of what bowls feed
 USUAL = 2e-3  # [m] below it, an inch file read in mm is likelier than a part so small
 GIVEN_CENTRE = (
@@ -25,7 +27,17 @@ GIVEN_CENTRE = (
 OVERLAP = 1e-6  # [1] of the hull's volume
 
 
-def load(source, *, units=None, density=None, centre_of_mass=None, names=None, allow_open=False, stdin=None):
+def load(
+    source,
+    *,
+    units=None,
+    density=None,
+    centre_of_mass=None,
+    names=None,
+    body=None,
+    allow_open=False,
+    stdin=None,
+):
     """Read a part from a mesh file or a part card.
 
     Parameters
@@ -33,13 +45,16 @@ def load(source, *, units=None, density=None, centre_of_mass=None, names=None, a
     source : str or Path
         STL, OBJ, PLY, OFF, GLB, 3MF, STEP or YAML; '-' reads standard input.
     units : str, optional
-        'mm', 'cm', 'm' or 'in'; without it what the format states (GLB: m; 3MF and STEP: their own), else mm.
+        'mm', 'cm', 'm', 'um' or 'in'; without it what the format states (GLB: m; 3MF and STEP: their own),
+        else mm.
     density : str, optional
         A material or a value, '7.85 g/cm3'; steel without it.
     centre_of_mass : str, optional
         'x,y,z' in the file's axes and units, or with units: where it is, if the part is not homogeneous.
     names : str or Path or AspectNames, optional
         File of names of the aspects, or what ``naming.read`` made of it; letters without it.
+    body : str, optional
+        Which of several bodies in the file is the part: its number from 1, its name, or 'largest'.
     allow_open : bool
         Compute from an open surface or several bodies, and say so.
     stdin : binary file, optional
@@ -68,18 +83,24 @@ def load(source, *, units=None, density=None, centre_of_mass=None, names=None, a
     value, material = density_of(density)
     file = read.file(source, stdin)
     if read.is_card(file):
+        if body is not None:
+            raise ArgumentError("body", "a part card is of one body", "leave it out")
         _refuse_beside_card(units=units, density=density, centre_of_mass=centre_of_mass, names=names)
         return card.part(file)
     known = (
         names if names is None or isinstance(names, aspect_names.AspectNames) else aspect_names.read(names)
     )
-    solid = _solid(file, read.soup(file), units, (value, material), centre_of_mass, allow_open)
+    solid = _solid(file, read.soup(file), units, (value, material), centre_of_mass, body, allow_open)
     return replace(solid, names=known)
 
 
-def _solid(file, soup, wanted, stuff, centre_text, allow_open):
+def _solid(file, soup, wanted, stuff, centre_text, body, allow_open):
     unit, said = _unit(soup, wanted)
-    surface = gate.surface(soup.vertices, soup.faces, file.where, unit, allow_open)
+    soup, one = (soup, None) if body is None else bodies.taken(soup, body, file.where, unit)
+    try:
+        surface = gate.surface(soup.vertices, soup.faces, file.where, unit, allow_open)
+    except SeveralBodiesError as fault:
+        raise bodies.refusal(fault, soup, unit) from None
     scale = factor(unit, "length")
     vertices, solid = surface.vertices * scale, surface.solid.scaled(scale)
     centre, shifted = _centre(centre_text, unit, solid.centre)
@@ -87,9 +108,10 @@ def _solid(file, soup, wanted, stuff, centre_text, allow_open):
     _must_fit_hull(solid.volume, hull.volume, unit, file.where)
     density, material = stuff
     return Part(
-        name=file.name,
+        name=file.name if one is None else f"{file.name}-{one.number}",
         source=file.source,
-        sha256=file.sha256,
+        sha256=file.sha256 if one is None else _digest(file.sha256, one.number),
+        file_sha256=file.sha256,
         units=unit,
         material=material,
         density=density,
@@ -103,6 +125,11 @@ def _solid(file, soup, wanted, stuff, centre_text, allow_open):
         open_surface=surface.open_surface,
         warnings=(*soup.warnings, *said, *_unlikely(vertices, unit, wanted), *surface.warnings, *shifted),
     )
+
+
+def _digest(sha256, body):
+    """The sha256 that stands for one of several bodies of a file: no trial of another is its own."""
+    return hashlib.sha256(f"{sha256} body {body}".encode()).hexdigest()
 
 
 def _refuse_beside_card(**options):

@@ -1,46 +1,44 @@
-"""OBJ, PLY, OFF, GLB, 3MF and STEP, through trimesh's scenes: instances placed, then joined."""
+"""GLB and, through it, STEP: instances placed, by trimesh's scenes, once the file's claims add up."""
 
 import importlib.util
 import io
 import json
 import logging
-import re
 import struct
 import warnings
-import zipfile
-import zlib
-from typing import Any
 
 import numpy as np
 
 from feederscrew import units
-from feederscrew.errors import DAMAGE, MeshError
-from feederscrew.part.reading import step, threemf
-from feederscrew.part.reading.formats import FORMATS, plain
-from feederscrew.part.reading.soup import LARGEST, Soup
+from feederscrew.errors import MeshError
+from feederscrew.part.reading import archives, step
+from feederscrew.part.reading.formats import FORMATS
+from feederscrew.part.reading.soup import Soup, refuse_crowds
 
-MOST = 20_000_000  # facets, instances counted
-ARCHIVES = (zipfile.BadZipFile, zlib.error)  # what damaged archives raise
-REFUSED: tuple[type[Exception], ...] = (*DAMAGE, *ARCHIVES, DeprecationWarning)
-THREEMF_UNITS = {  # the units of the specification, and one of ours with how many of it they are
-    "micron": ("mm", 1e-3),
-    "centimeter": ("cm", 1.0),
-    "inch": ("in", 1.0),
-    "foot": ("in", 12.0),
-    "meter": ("m", 1.0),
-}
 AGAIN = "export the part again"
+LARGEST_SCENE = 1 << 24  # [bytes] of the JSON of a GLB: it names nodes and buffers, the numbers are elsewhere
+WIDTHS = {
+    5120: 1,
+    5121: 1,
+    5122: 2,
+    5123: 2,
+    5125: 4,
+    5126: 4,
+}  # [bytes] by component type: glTF 2.0, 3.6.2.2
+MOST_NODES, DEEPEST = 20_000, 50  # instances; nodes within nodes
+NUMBERS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+PACKED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
 logging.getLogger("trimesh").addHandler(logging.NullHandler())  # it would log to stderr
 
 
 def soup(data, kind, where):
-    """Return the triangles of a mesh file that trimesh reads as a scene.
+    """Return the triangles of a GLB or STEP file.
 
     Parameters
     ----------
     data : bytes
     kind : str
-        A key of ``FORMATS`` that names a loader.
+        'glb' or 'step'.
     where : str
         The file, for error lines.
 
@@ -57,76 +55,96 @@ def soup(data, kind, where):
     if not all(importlib.util.find_spec(module) for module in format.needs):
         what = f"{format.title} needs {' and '.join(format.needs)}, not installed"
         raise MeshError(where, what, f'pip install "feederscrew[{format.extra}]"')
-    try:
-        if _claims(data, kind) > len(data):
-            raise MeshError(where, f"is a damaged {format.title}: it announces more than it holds", AGAIN)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            warnings.simplefilter("error", DeprecationWarning)  # numpy's way to say 'not a number'
-            meshes, unit = _meshes(data, kind, where)
-            return _joined(meshes, unit, data, kind)
-    except REFUSED as error:
-        raise MeshError(where, f"is a damaged {format.title} ({_reason(error)})", AGAIN) from None
+    unit = "m"
+    if kind == "step":
+        text = archives.step(data) if data.startswith(b"PK") else data
+        unit, data = step.unit(text), step.glb(text)
+    _refuse_claims(data, where)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        warnings.simplefilter("error", DeprecationWarning)  # numpy's way to say 'not a number'
+        found = _joined(_pieces(data), kind, unit)
+    return found
 
 
-def _meshes(data, kind, where):
-    """Every mesh of the scene where its instances stand, and the scene's unit."""
+def _pieces(data):
+    """Name, corners and facets of every mesh of the scene where its instances stand."""
     import trimesh
 
-    loader = FORMATS[kind].loader
-    options: dict[str, Any] = {"skip_materials": True} if kind == "obj" else {}
-    if kind == "step":
-        data = step.glb(data)
-    if kind == "3mf":
-        threemf.refuse_bombs(data)
-    if kind in ("obj", "off", "ply"):
-        text, mark, rest = data.partition(b"end_header") if kind == "ply" else (data, b"", b"")
-        data = plain(text) + mark + rest
-    scene = trimesh.load_scene(io.BytesIO(data), file_type=loader, process=False, **options)
-    surfaces = {name: len(mesh.faces) for name, mesh in scene.geometry.items() if hasattr(mesh, "faces")}
-    count = sum(surfaces.get(scene.graph[node][1], 0) for node in scene.graph.nodes_geometry)
-    if count > MOST:
-        raise MeshError(where, f"has {count} facets", "export it with fewer facets")
-    meshes = [mesh for mesh in scene.dump() if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces)]
-    return meshes, scene.units
+    scene = trimesh.load_scene(io.BytesIO(data), file_type="glb", process=False, skip_materials=True)
+    for node in scene.graph.nodes_geometry:
+        transform, name = scene.graph[node]
+        mesh = scene.geometry[name]
+        if not isinstance(mesh, trimesh.Trimesh) or not len(mesh.faces):
+            continue
+        mesh = mesh.copy()
+        mesh.apply_transform(transform)
+        yield str(node), np.asarray(mesh.vertices), np.asarray(mesh.faces)
 
 
-def _joined(meshes, unit, data, kind):
-    for mesh in meshes:
-        if mesh.faces.min() < 0 or mesh.faces.max() >= len(mesh.vertices):
+def _joined(pieces, kind, unit):
+    names, points, faces, sizes, count = [], [np.empty((0, 3))], [np.empty((0, 3), dtype=int)], [], 0
+    for name, vertices, own in pieces:
+        if own.min() < 0 or own.max() >= len(vertices):
             raise ValueError("a facet names a corner that is not there")
-    sizes = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
-    vertices = np.concatenate([np.empty((0, 3)), *(mesh.vertices for mesh in meshes)])
-    moved = [mesh.faces + start for mesh, start in zip(meshes, sizes)]
-    faces = np.concatenate([np.empty((0, 3), dtype=int), *moved])
-    if kind == "step":  # through GLB: in metres, whatever the file was drawn in
-        unit = step.unit(data)
+        names.append(name)
+        points.append(vertices)
+        faces.append(own + count)
+        sizes.append(len(own))
+        count += len(vertices)
+    vertices = np.concatenate(points)
+    if unit != "m":  # through GLB: in metres, whatever the file was drawn in
         vertices = vertices / units.factor(unit, "length")
-    if kind == "3mf":
-        unit, factor = THREEMF_UNITS.get((unit or "").rstrip("s"), ("mm", 1.0))
-        vertices = vertices * factor
-    stated = {"glb": "m", "step": unit, "3mf": unit}.get(kind)
-    return Soup(vertices, faces, kind, stated)
+    objects = np.repeat(np.arange(len(names)), sizes)
+    return Soup(vertices, np.concatenate(faces), kind, unit, names=tuple(names), objects=objects)
 
 
-def _claims(data, kind):
-    """How many elements a file announces; each takes a byte at least."""
-    if kind == "ply":
-        header = data.partition(b"end_header")[0]
-        return sum(int(count) for count in re.findall(rb"(?m)^\s*element\s+\S+\s+(\d+)", header))
-    if kind == "glb":
-        _, _, length, chunk = struct.unpack("<4I", data[:16])
-        if length > len(data):
-            return length
-        document = json.loads(data[20 : 20 + chunk])
-        return max([0, *(int(accessor["count"]) for accessor in document.get("accessors", ()))])
-    if kind == "3mf":
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            packed_out = sum(member.file_size for member in archive.infolist())
-        return packed_out if packed_out > LARGEST else 0
-    return 0
+def _refuse_claims(data, where):
+    """Refuse a GLB whose scene names more numbers, instances or facets than it holds or than are read."""
+    _, _, length, chunk = struct.unpack("<4I", data[:16])
+    if max(length, 20 + chunk) > len(data):
+        raise MeshError(where, "is a damaged GLB: it announces more than it holds", AGAIN)
+    if chunk > LARGEST_SCENE:
+        raise ValueError(f"a scene of more than {LARGEST_SCENE >> 20} MB")
+    scene = json.loads(data[20 : 20 + chunk])
+    needed = [name for name in scene.get("extensionsRequired", ()) if name in PACKED]
+    if needed:
+        raise MeshError(where, f"is a GLB packed by {needed[0]}, which is not read", "export it unpacked")
+    numbers = [_announced(accessor, scene, len(data), where) for accessor in scene.get("accessors", ())]
+    refuse_crowds(0, sum(numbers) // 30)  # texture coordinates and normals counted in
+    _refuse_nests(scene.get("nodes", ()))
+    corners = facets = 0
+    for node in scene.get("nodes", ()):
+        for primitive in scene["meshes"][node["mesh"]].get("primitives", ()) if "mesh" in node else ():
+            at = primitive["attributes"]["POSITION"]
+            around = primitive.get("indices", at)
+            corners += int(scene["accessors"][at]["count"])
+            facets += int(scene["accessors"][around]["count"]) // (3 if primitive.get("mode", 4) == 4 else 1)
+            refuse_crowds(corners, facets)
 
 
-def _reason(error):
-    words = " ".join(str(error).split()) or type(error).__name__
-    return words if len(words) <= 60 else words[:57] + "..."
+def _refuse_nests(nodes):
+    """Refuse nodes that are no trees, or deep ones."""
+    if len(nodes) > MOST_NODES:
+        raise ValueError(f"more than {MOST_NODES} nodes")
+    pairs = [(child, parent) for parent, node in enumerate(nodes) for child in node.get("children", ())]
+    parents = dict(pairs)
+    if len(parents) != len(pairs):
+        raise ValueError("a node within two others")
+    for node in parents:
+        depth = 0
+        while node in parents:
+            node, depth = parents[node], depth + 1
+            if depth > DEEPEST:
+                raise ValueError(f"nodes within nodes more than {DEEPEST} deep")
+
+
+def _announced(accessor, scene, size, where):
+    """How many numbers an accessor announces; refused where its bytes are not there."""
+    count = int(accessor["count"]) * NUMBERS[accessor["type"]]
+    least = count * WIDTHS[accessor["componentType"]]
+    view = accessor.get("bufferView")
+    held = 0 if view is None else int(scene["bufferViews"][view]["byteLength"])
+    if count < 0 or held > size or (least > held and "sparse" not in accessor):
+        raise MeshError(where, "is a damaged GLB: it announces more than it holds", AGAIN)
+    return count

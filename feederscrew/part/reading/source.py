@@ -2,15 +2,28 @@
 
 import hashlib
 import sys
-from dataclasses import dataclass
+import warnings
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from feederscrew import documents
-from feederscrew.errors import MeshError
-from feederscrew.part.reading import formats, scenes, stl
-from feederscrew.part.reading.formats import CARD, FORMATS
-from feederscrew.part.reading.soup import LARGEST, Soup
+import numpy as np
 
+from feederscrew import documents
+from feederscrew.errors import DAMAGE, MeshError, printable
+from feederscrew.part.reading import archives, formats, obj, off, ply, scenes, stl, threemf
+from feederscrew.part.reading.decimals import CommaError
+from feederscrew.part.reading.formats import CARD, FORMATS
+from feederscrew.part.reading.soup import LARGEST, LARGEST_TEXT, TooManyFacetsError
+
+AGAIN = "export the part again"
+FEWER = "export it with fewer facets"
+POINTS = "write numbers with a decimal point"
+TEXTS = {"obj": obj.soup, "off": off.soup}
+REFUSED: tuple[type[Exception], ...] = (*DAMAGE, *archives.DAMAGED, DeprecationWarning)
+MENDS = {
+    formats.UTF16: "save it as ASCII or UTF-8 text",
+    documents.POINTER: documents.PULL,
+}
 EXPORT = "export the part as STL, OBJ, PLY, OFF, GLB, 3MF or STEP"
 
 
@@ -20,7 +33,7 @@ class File:
 
     source: str  # as given, '-' for standard input
     where: str  # for error lines
-    name: str  # file stem
+    name: str  # file stem, printable
     suffix: str  # lower case, without the dot; '' for standard input
     data: bytes
     sha256: str
@@ -54,7 +67,7 @@ def file(source, stdin=None):
         raise MeshError(where, f"is larger than {LARGEST >> 20} MB", "export it with fewer facets")
     path = Path("stdin" if source == "-" else source)
     digest = hashlib.sha256(data).hexdigest()
-    return File(source, where, path.stem, path.suffix.lower().removeprefix("."), data, digest)
+    return File(source, where, printable(path.stem), path.suffix.lower().removeprefix("."), data, digest)
 
 
 def soup(file):
@@ -75,13 +88,43 @@ def soup(file):
     """
     kind, alien = formats.detect(file.data, file.suffix)
     if kind in (None, CARD):
-        mend = "save it as ASCII or UTF-8 text" if alien == formats.UTF16 else EXPORT
+        mend = MENDS.get(alien, EXPORT)
         raise MeshError(file.where, alien or "is a part card, not a mesh", mend)
-    reader = stl.soup if kind.startswith("stl") else scenes.soup
-    found = reader(file.data, kind, file.where)
-    if not len(found.faces):
-        raise MeshError(file.where, "has no facets", "export the part again as a solid")
-    return Soup(found.vertices, found.faces, kind, found.unit, _misnamed(file, kind) + found.warnings)
+    read = _read(file, kind)
+    if not len(read.faces):
+        left_out = "".join(f"; {text}" for text in read.warnings) if kind == "3mf" else ""
+        raise MeshError(file.where, f"has no facets{left_out}", "export the part again as a solid")
+    return replace(read, format=kind, warnings=_misnamed(file, kind) + read.warnings)
+
+
+def _read(file, kind):
+    """The triangles of a file of a known format; whatever its reader raises is a line."""
+    title, data = FORMATS[kind].title, file.data
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):  # what is not finite, the gate names
+            warnings.simplefilter("error", DeprecationWarning)  # numpy's way to say 'not a number'
+            if kind in TEXTS:
+                if len(data) > LARGEST_TEXT:
+                    raise TooManyFacetsError(f"is text of more than {LARGEST_TEXT >> 20} MB")
+                return TEXTS[kind](bytes(data).removeprefix(b"\xef\xbb\xbf"))
+            if kind == "ply":
+                return ply.soup(data)
+            if kind == "3mf":
+                return threemf.soup(data, file.where)
+            return (stl.soup if kind.startswith("stl") else scenes.soup)(data, kind, file.where)
+    except CommaError as error:
+        raise MeshError(file.where, f"has {error}", POINTS) from None
+    except (TooManyFacetsError, archives.BombError) as error:
+        raise MeshError(file.where, f"is too large: it {error}", FEWER) from None
+    except MemoryError:
+        raise MeshError(file.where, "needs more memory than there is", FEWER) from None
+    except REFUSED as error:
+        raise MeshError(file.where, f"is a damaged {title} ({_reason(error)})", AGAIN) from None
+
+
+def _reason(error):
+    words = " ".join(str(error).split()) or type(error).__name__
+    return words if len(words) <= 60 else words[:57] + "..."
 
 
 def is_card(file):
@@ -95,7 +138,7 @@ def _bytes(source, where, stdin):
     if source != "-" and stdin is None:
         return documents.content(source, LARGEST, "a part file", MeshError)
     try:
-        return documents.upto(stdin or sys.stdin.buffer, LARGEST)
+        return bytes(documents.upto(stdin or sys.stdin.buffer, LARGEST))
     except (OSError, ValueError) as error:
         raise MeshError(where, f"cannot be read ({error})", "check what it comes from") from None
 

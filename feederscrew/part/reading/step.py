@@ -8,16 +8,23 @@ from pathlib import Path
 
 FLATNESS, TURN = 0.01, 0.1  # [mm, rad] between a curved face and its facets, and from facet to facet
 PATIENCE = 60  # [s]
+MOST_MEMORY = 3 << 30  # [bytes]
 CONVERT = """
 import ctypes, signal, sys
 if sys.platform == "linux":
     ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # it ends when its parent does, however that ends
 if hasattr(signal, "alarm"):
     signal.alarm(PATIENCE + 5)  # and after its time in any case
+try:
+    import resource  # what it needs beyond that is no fed part
+    least = min(bytes for bytes in (MOST_MEMORY, *resource.getrlimit(resource.RLIMIT_AS)) if bytes > 0)
+    resource.setrlimit(resource.RLIMIT_AS, (least, least))
+except (ImportError, ValueError, OSError):
+    pass
 import cascadio
 source, target, *tolerances = sys.argv[1:]
 sys.exit(cascadio.step_to_glb(source, target, *map(float, tolerances), use_parallel=False))
-""".replace("PATIENCE", str(PATIENCE))
+""".replace("PATIENCE", str(PATIENCE)).replace("MOST_MEMORY", str(MOST_MEMORY))
 UNITS = ((rb"CONVERSION_BASED_UNIT\s*\(\s*'INCH", "in"), (rb"\.CENTI\.\s*,\s*\.METRE\.", "cm"))
 METRE = rb"SI_UNIT\s*\(\s*\$\s*,\s*\.METRE\."
 

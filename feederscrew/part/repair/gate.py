@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.errors import MeshError
+from feederscrew.errors import MeshError, SeveralBodiesError
 from feederscrew.geometry import vectors
 from feederscrew.part import mass
 from feederscrew.part.repair import crossings, mend, shells, sight, weld
@@ -174,7 +174,8 @@ def _closed(vertices, faces, edges, where, unit, allow_open):
     if fault is None:
         return solid, False, unseen, ()
     if not allow_open:
-        raise MeshError(where, *fault)
+        several = fault[1] in (shells.SPLIT, shells.INNER)
+        raise (SeveralBodiesError if several else MeshError)(where, *fault)
     return solid, True, unseen, (f"{fault[0]}: taken together as one part (`allow_open`)",)
 
 

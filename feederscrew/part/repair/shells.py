@@ -93,11 +93,21 @@ def _turns_around(vertices, faces, shell, one):
     corners = np.unique(faces[own])
     step = -(-len(corners) // max(1, min(PROBES, BUDGET // len(faces))))
     others = vertices[faces[~own]]
-    return np.array([_winding(point, others) for point in vertices[corners[::step]]])
+    return np.array([winding(point, others) for point in vertices[corners[::step]]])
 
 
-def _winding(point, corners):
-    """How often closed triangles go round a point: their solid angles (van Oosterom, Strackee 1983)."""
+def winding(point, corners):
+    """Return how often closed triangles go round a point [1].
+
+    Parameters
+    ----------
+    point : (3,) float [unit of the file]
+    corners : (F, 3, 3) float [unit of the file]
+
+    References
+    ----------
+    van Oosterom, Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30 (1983).
+    """
     a, b, c = np.moveaxis(corners - point, 1, 0)
     la, lb, lc = (vectors.norm(corner) for corner in (a, b, c))
     triple = np.einsum("fi,fi->f", a, vectors.cross(b, c))

@@ -22,6 +22,7 @@ class Head:
     units: str = ""  # how the part file is read: as --units, --density, --centre-of-mass
     density: str = ""
     centre_of_mass: str = ""
+    body: str = ""  # which of several bodies in the part file: as --body
     names: str = ""  # path of the file that names the aspects, from the folder of the counts
     config: str = ""  # path of the bowl file, from the folder of the counts
     launch: str = ""  # what was done to the part: a name of ``recommended.LAUNCHES``
@@ -35,7 +36,7 @@ class Head:
     @property
     def reading(self):
         """What the part file is read with, as keywords of ``feederscrew.part.load``."""
-        values = {name: getattr(self, name) for name in ("units", "density", "centre_of_mass")}
+        values = {name: getattr(self, name) for name in ("units", "density", "centre_of_mass", "body")}
         return {name: value for name, value in values.items() if value}
 
 

@@ -66,7 +66,8 @@ class Measured:
 
 def of_another_part(source, head, part):
     """Say, a sentence each, where the head of a file was not written for a part."""
-    if part.sha256.startswith(head.mesh):
+    digest = part.file_sha256 if head.body and part.file_sha256 else part.sha256
+    if digest.startswith(head.mesh):
         return ()
     sentence = f"{source}: counted with another part file: its mesh is {head.mesh[:8]}"
     return (f"{sentence}, that of {part.source} {part.sha256[:8]}",)

@@ -129,3 +129,14 @@ def test_impossible_density_names_the_unit(run, stl):
     assert done.stderr == (
         "Error: --density: '7850 g/cm3' is the density of no solid - did you mean 7850 kg/m3?\n"
     )
+
+
+@pytest.mark.parametrize("metres", [7.0, 0.007])
+def test_no_number_of_a_table_is_zero_beside_a_larger_one(run, tmp_path, metres):
+    """Of a part of 7 m the density, the box and the axes were printed as 0: mm3 and g/cm3 share a column."""
+    path = files.written(tmp_path, files.box((1e3 * metres, 0.9e3 * metres, 0.8e3 * metres)))
+    printed = dict(line.split()[:2] for line in run("inertia", path).stdout.splitlines()[1:])
+    assert float(printed["density_g_cm3"]) == pytest.approx(7.85)
+    box = [float(printed[f"bounding_box_{axis}_mm"]) for axis in "xyz"]
+    assert box == pytest.approx([1e3 * metres, 0.9e3 * metres, 0.8e3 * metres], rel=1e-3)
+    assert abs(float(printed["principal_axis_1_x"])) == pytest.approx(1.0)
