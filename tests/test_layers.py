@@ -23,7 +23,11 @@ DOORS = {
     "matplotlib": {"feederscrew/output", "feederscrew/records.py", "feederscrew/thesis/pages"},
     "embreex": {"feederscrew/output"},
     "ezdxf": {"feederscrew/dxf.py"},
-    "manifold3d": {"feederscrew/tooling/solid.py", "feederscrew/solidbowl/facets.py"},
+    "manifold3d": {
+        "feederscrew/tooling/solid.py",
+        "feederscrew/solidbowl/facets.py",
+        "feederscrew/part/repair/bodies.py",
+    },
     "OCP": {"feederscrew/output/tooling/written_step.py", "feederscrew/solidbowl/exact"},
     "click": {"cli"},
     "numba": {"feederscrew/geometry"},
