@@ -119,6 +119,25 @@ def measure_gaps(vertices: NDArray[np.float64], edges: MeshEdges, size: float) -
     return OpenGaps(cracks, width, (float(x), float(y), float(z)), len(open_edges) - cracks)
 
 
+def folded_share(vertices: NDArray[np.float64], faces: NDArray[np.int64], edges: MeshEdges) -> float:
+    """Return the share of the area in facets that lie back to back with a neighbour.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    edges : MeshEdges
+        Of the faces.
+
+    Returns
+    -------
+    float [1]
+        0 for a solid; 1 for loose facets, each closed by itself.
+    """
+    area, pairs = _back_to_back(vertices, faces, edges)
+    return float(area[np.unique(pairs)].sum()) / float(area.sum())
+
+
 def _widths(least, largest):
     """Widths from the least to the largest, each some steps of a power of ten."""
     if largest <= least:
@@ -157,17 +176,21 @@ def _join_within(vertices, faces, before, width, where):
 
 def _folds(vertices, faces, edges, width):
     """Whether facets that now share an edge lie back to back."""
+    area, pairs = _back_to_back(vertices, faces, edges)
+    sides = vertices[faces] - vertices[faces[:, [1, 2, 0]]]
+    solid = area > SLIVER_WIDTHS * width * vectors.norm(sides).max(axis=1)
+    return bool(solid[pairs].all(axis=1).any())
+
+
+def _back_to_back(vertices, faces, edges):
+    """(F,) twice the area of each facet, (N, 2) neighbours across an edge of two that face each other."""
     pairs = edges.mates(edges.count == 2)
-    pairs = pairs[(pairs < len(faces)).all(axis=1)]
+    i, j = pairs[(pairs < len(faces)).all(axis=1)].T
     a, b, c = (vertices[corner] for corner in faces.T)
     across = vectors.cross(b - a, c - a)
     area = vectors.norm(across)
-    longest = np.maximum(np.maximum(vectors.norm(b - a), vectors.norm(c - b)), vectors.norm(a - c))
-    solid = area > SLIVER_WIDTHS * width * longest
-    pairs = pairs[solid[pairs].all(axis=1)]
-    i, j = pairs.T
-    turn = np.einsum("nx,nx->n", across[i], across[j])
-    return bool((turn < FOLD_COSINE * area[i] * area[j]).any())
+    back = np.einsum("nx,nx->n", across[i], across[j]) < FOLD_COSINE * area[i] * area[j]
+    return area, np.column_stack([i[back], j[back]])
 
 
 def _is_thin(joined, share):

@@ -20,6 +20,7 @@ FARTHEST = 1e30  # [unit of the file]
 EMPTY = 1e-10  # [1] of the size cubed: less volume is rounding
 OVERLAP_SHARE = 1e-6  # [1] of the hull's volume: more than the hull by so much is rounding
 LEAST_SHARE, OPEN_LEAST_SHARE = 1e-5, 1e-3  # [1] of the hull's volume that a part fills, closed or not
+LOOSE_SHARE = 1e-3  # [1] of the area: so much may lie back to back where holes are filled
 ROUNDING = 1e-9  # [1] of the largest: what rounding does to moments
 SHALLOW, DEEP = 1e-4, 2e-2  # [1] of the size: how far facets may pass through others, unsaid and at all
 INVERTED = "all facets pointed inwards; reversed"
@@ -210,7 +211,17 @@ def _opened(vertices, faces, edges, size, where, unit, allow_open):
     )
     capped = np.concatenate([vertices[faces], caps(vertices, hole.rims)])
     filled, facets = weld.welded(capped.reshape(-1, 3), np.arange(3 * len(capped)).reshape(-1, 3))
-    number, shell = shells.shells(table(facets, len(filled)), facets)
+    if not len(facets):
+        raise MeshError(where, "encloses no volume", SOLID)
+    closed = table(facets, len(filled))
+    gaps = cracks.measure_gaps(vertices, edges, size)
+    if gaps.cracks and cracks.folded_share(filled, facets, closed) > LOOSE_SHARE:
+        what = (
+            f"its facets hang loose: {gaps.cracks} open edges run along cracks up to {gaps.width:.2g} {unit} "
+            "wide, which cannot be joined without loss of what is as thin"
+        )
+        raise MeshError(where, what, SEW)
+    number, shell = shells.shells(closed, facets)
     if number == 1:
         return vertices, faces, mass.solid(capped), True, said
     several = _as_bodies(filled, facets, shell, where, unit, allow_open)
@@ -223,15 +234,13 @@ def _opened(vertices, faces, edges, size, where, unit, allow_open):
 def _as_bodies(vertices, faces, shell, where, unit, allow_open):
     """Several closed surfaces as bodies taken together; None where they are one body and its cavities."""
     volume = np.bincount(shell, mass.tetrahedra(vertices[faces])).astype(float)
-    largest = np.argmax(np.abs(volume))
-    empty = np.abs(volume) <= EMPTY * abs(volume[largest])
+    empty = np.abs(volume) <= EMPTY * np.abs(volume).max()
     if empty.any():  # a loose facet and its own cap
         shell = np.where(empty, -1, np.cumsum(~empty) - 1)[shell]
         faces, shell, volume = faces[shell >= 0], shell[shell >= 0], volume[~empty]
-        largest = np.argmax(np.abs(volume))
     if len(volume) < 2:
         return None
-    outwards = np.sign(volume[largest])
+    outwards = np.sign(volume[np.argmax(np.abs(volume))])
     fault = shells.fault(vertices, faces[:, :: int(outwards) or 1], shell, outwards * volume, unit)
     if fault is None:
         return None
