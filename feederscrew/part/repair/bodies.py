@@ -14,7 +14,7 @@ MAX_SHELLS = 1000
 OVERLAP_SHARE = 1e-6  # [1] of the smallest body: less is the file's rounding
 LISTED_BODIES = 3  # with their volume
 SAVE_APART = "save each body as a file of its own, or unite them in CAD if they are one part"
-INNER_BODY = "reverse the inner surface if it is a cavity, else leave it out"
+INNER_CAVITY = "reverse the inner surface if it is a body, else leave it out"
 CROSSING_CAVITY = "move the cavity inside the material, or turn the body inside out, in CAD"
 
 
@@ -56,13 +56,13 @@ def take_together(
     Raises
     ------
     MeshError
-        If it is open to doubt what is material: a surface within another that faces the same way, a cavity
-        that crosses a surface, or bodies that overlap and cannot be united.
+        If it is open to doubt what is material: a cavity within a cavity, or one that crosses a surface. Also
+        if bodies overlap and cannot be united.
 
     Notes
     -----
-    What lies in no other surface is a body. What lies in another and faces the other way is its cavity, or a
-    body within a cavity.
+    What lies in no other surface is a body. What lies in a body and faces the other way is its cavity; facing
+    the same way it is material that is counted once. What lies in a cavity and faces the other way is a body.
     """
     if len(volume) > MAX_SHELLS:
         raise MeshError(where, f"holds {len(volume)} closed surfaces", SAVE_APART)
@@ -76,6 +76,14 @@ def take_together(
     reversed_bodies = int(turned[bodies].sum())
     if 0 < reversed_bodies < len(bodies):
         warnings.append(f"{reversed_bodies} of {len(bodies)} bodies pointed inwards; reversed")
+    embedded = bodies[(parent[bodies] >= 0) & is_body[parent[bodies]]]
+    if len(embedded):
+        largest = np.abs(volume[embedded]).max()
+        number = f"{len(embedded)} {'body lies' if len(embedded) == 1 else 'bodies lie'}"
+        warnings.append(
+            f"{number} wholly inside others, the largest of {largest:.4g} {unit}3, all facing the same way: "
+            "counted once; a cavity must face the other way"
+        )
     owner = np.where(is_body, np.arange(len(volume)), parent)
     before = float(mass.tetrahedra(vertices[faces]).sum())
     united = _unite(vertices, faces, owner[shell], bodies, where)
@@ -90,23 +98,25 @@ def _nest(vertices, faces, shell, volume, where, unit):
     """(S,) int the surface next around each, -1 without one; (S,) bool whether it is a body, not a cavity."""
     low, high = _boxes(vertices, faces, shell, len(volume))
     order = np.argsort(-np.abs(volume), kind="stable")
-    parent, depth = np.full(len(volume), -1), np.zeros(len(volume), dtype=int)
+    parent, is_body = np.full(len(volume), -1), np.ones(len(volume), dtype=bool)
     for place, inner in enumerate(order):
-        for outer in order[:place]:
-            if (low[inner] >= high[outer]).any() or (high[inner] <= low[outer]).any():
-                continue
+        larger = order[:place]
+        meets = ((low[inner] < high[larger]) & (high[inner] > low[larger])).all(axis=1)
+        for outer in larger[meets]:
             turns = np.abs(shells.turns_around(vertices, faces, shell, inner, outer))
-            same_way = volume[inner] * volume[outer] > 0.0
-            if (turns > 0.5).all() and (np.abs(turns - 1.0) < 0.1).all():
-                parent[inner], depth[inner] = outer, depth[inner] + 1
-            elif (turns > 0.1).any() and not same_way:
+            if (np.abs(turns - 1.0) < 0.1).all():
+                parent[inner] = outer
+            elif (turns > 0.1).any() and volume[inner] * volume[outer] < 0.0:
                 what = f"a surface of {abs(volume[inner]):.4g} {unit}3 that faces inwards crosses another"
                 raise MeshError(where, what, CROSSING_CAVITY)
-        if depth[inner] and volume[inner] * volume[parent[inner]] > 0.0:
-            both = "outwards" if volume[inner] > 0.0 else "inwards"
-            what = f"a body of {abs(volume[inner]):.4g} {unit}3 lies inside another, both facing {both}"
-            raise MeshError(where, what, INNER_BODY)
-    return parent, depth % 2 == 0
+        if parent[inner] < 0:
+            continue
+        same_way = bool(volume[inner] * volume[parent[inner]] > 0.0)
+        is_body[inner] = is_body[parent[inner]] == same_way
+        if same_way and not is_body[inner]:
+            what = f"a cavity of {abs(volume[inner]):.4g} {unit}3 lies inside another"
+            raise MeshError(where, what, INNER_CAVITY)
+    return parent, is_body
 
 
 def _boxes(vertices, faces, shell, number):

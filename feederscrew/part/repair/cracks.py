@@ -13,10 +13,11 @@ from feederscrew.part.repair.mend import close_seams, turn_one_way_round
 
 JOIN_SHARE, OPEN_JOIN_SHARE = 1e-4, 1e-2  # [1] of the size: cracks joined unasked, and with ``allow_open``
 THIN_SHARE, OPEN_THIN_SHARE = 0.05, 0.2  # [1] of the volume: the same, of a layer as thick as the crack
-STEPS = 4  # widths tried for each power of ten, the least first
+STEPS = 3  # widths tried for each power of ten, the least first
 FOLD_COSINE = -0.9998  # between normals: such facets lie back to back
 SLIVER_WIDTHS = 4.0  # facets lower than so many crack widths have no normal that says anything
-MAX_COMPARISONS = 20_000_000  # of open edges with each other: half a second
+MAX_COMPARISONS = 20_000_000  # of open edges with each other: some seconds
+COMPARED_AT_ONCE = 500_000  # what some ten MB hold
 CRACK_ALONG = 0.9  # [1] cosine between both sides of a crack, at least
 GAP_SHARE = 0.02  # [1] of the size: what is wider is a hole, not a crack
 
@@ -78,7 +79,9 @@ def join_cracks(
     edges = table(faces, len(vertices))
     fewest, best = int(np.abs(edges.net).sum()), None
     crowded = int((edges.count > 2).sum())
-    for width in _widths(least, largest * size):
+    gaps = _gaps(*_open_edges(vertices, edges))
+    nearest = float(gaps.min() if allow_open else gaps.max())  # unasked, all must close
+    for width in _widths(max(least, 0.5 * nearest), largest * size):
         joined = _join_within(vertices, faces, edges, width, where)
         if joined is None or int((joined.edges.count > 2).sum()) > crowded:
             continue
@@ -106,17 +109,14 @@ def measure_gaps(vertices: NDArray[np.float64], edges: MeshEdges, size: float) -
     OpenGaps
         Of very many open edges some, evenly drawn, stand for all.
     """
-    open_edges = np.flatnonzero(edges.net)
-    facet = edges.order[edges.start[open_edges]] // 3
-    tail, head = vertices[edges.low[open_edges]], vertices[edges.high[open_edges]]
-    step = -(-(len(open_edges) ** 2) // MAX_COMPARISONS)
-    gaps = np.array([_gap(k, tail, head, facet, size) for k in range(0, len(open_edges), step)])
+    chosen, tail, head, facet = _open_edges(vertices, edges)
+    gaps = _gaps(chosen, tail, head, facet)
     along = gaps <= GAP_SHARE * size
-    cracks = round(float(along.mean()) * len(open_edges))
+    cracks = round(float(along.mean()) * len(tail))
     widest = int(np.argmax(np.where(along, gaps, -1.0)))
-    x, y, z = 0.5 * (tail[widest * step] + head[widest * step]) + 0.0
+    x, y, z = 0.5 * (tail[chosen[widest]] + head[chosen[widest]]) + 0.0
     width = float(gaps[widest]) if cracks else 0.0
-    return OpenGaps(cracks, width, (float(x), float(y), float(z)), len(open_edges) - cracks)
+    return OpenGaps(cracks, width, (float(x), float(y), float(z)), len(tail) - cracks)
 
 
 def folded_share(vertices: NDArray[np.float64], faces: NDArray[np.int64], edges: MeshEdges) -> float:
@@ -201,19 +201,28 @@ def _is_thin(joined, share):
     return joined.width * 0.5 * float(vectors.norm(across).sum()) <= share * volume
 
 
-def _gap(edge, tails, heads, facet, size):
-    """How far an open edge is from the nearest of other facets that run along it; infinite without one."""
-    way = heads[edge] - tails[edge]
+def _open_edges(vertices, edges):
+    """Which open edges stand for all; (N, 3) and (N, 3) the ends of all; (N,) a facet of each."""
+    open_edges = np.flatnonzero(edges.net)
+    step = -(-(len(open_edges) ** 2) // MAX_COMPARISONS)
+    ends = vertices[edges.low[open_edges]], vertices[edges.high[open_edges]]
+    return np.arange(0, len(open_edges), step), *ends, edges.order[edges.start[open_edges]] // 3
+
+
+def _gaps(chosen, tails, heads, facet):
+    """How far open edges are from the nearest of other facets that run along them; infinite without one."""
     ways = heads - tails
-    lengths = np.maximum(vectors.norm(ways), np.finfo(float).tiny)
-    cosine = np.abs(np.einsum("nx,x->n", ways, way)) / (lengths * lengths[edge])
-    beside = (cosine > CRACK_ALONG) & (facet != facet[edge])
-    if not beside.any():
-        return np.inf
-    starts, ways, lengths = tails[beside], ways[beside], lengths[beside]
-    widest = 0.0
-    for share in (0.0, 0.5, 1.0):
-        offset = tails[edge] + share * way - starts
-        t = np.clip(np.einsum("nx,nx->n", offset, ways) / lengths**2, 0.0, 1.0)
-        widest = max(widest, float(vectors.norm(offset - t[:, None] * ways).min()))
-    return widest
+    squares = np.maximum(np.einsum("nx,nx->n", ways, ways), np.finfo(float).tiny)
+    widest = []
+    rows = max(1, COMPARED_AT_ONCE // len(tails))
+    for edge in np.array_split(chosen, -(-len(chosen) // rows)):
+        cosine = np.abs(np.einsum("ex,nx->en", ways[edge], ways)) / np.sqrt(squares[edge, None] * squares)
+        beside = (cosine > CRACK_ALONG) & (facet[edge, None] != facet)
+        gap = np.zeros(len(edge))
+        for share in (0.0, 0.5, 1.0):
+            offset = (tails[edge] + share * ways[edge])[:, None] - tails
+            t = np.clip(np.einsum("enx,nx->en", offset, ways) / squares, 0.0, 1.0)
+            distance = vectors.norm(offset - t[..., None] * ways)
+            gap = np.maximum(gap, np.where(beside, distance, np.inf).min(axis=1))
+        widest.append(gap)
+    return np.concatenate(widest)

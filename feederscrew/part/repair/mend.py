@@ -13,6 +13,8 @@ from feederscrew.part.repair import weld
 SOLID = "export it as a closed solid"
 MOST_SEAMS = 5000  # open edges: with more than that the surface has worse than T-junctions
 
+PAIRS_AT_ONCE = 1_000_000  # of edges and corners: what some ten MB hold
+
 
 @dataclass(frozen=True)
 class Seams:
@@ -201,28 +203,33 @@ def close_seams(vertices, faces, edges, tolerance):
     if not 0 < len(tails) <= MOST_SEAMS:
         return vertices, faces, (), Seams(0, 0.0)
     rim = np.unique([tails, heads])
-    fans, offsets = zip(
-        *(_fan(vertices, rim, tail, head, tolerance) for tail, head in zip(tails.tolist(), heads.tolist()))
-    )
+    fans, width = _fans(vertices, rim, tails, heads, tolerance)
     joined = np.concatenate([faces, *fans])
     after = gate_edges.table(joined, len(vertices))
     if len(joined) == len(faces) or np.abs(after.net).sum() >= len(tails):
         return vertices, faces, (), Seams(0, 0.0)
-    count = sum(len(fan) > 0 for fan in fans)
+    count = len(fans)
     text = f"{_many(count, 'edge meets', 'edges meet')} neighbours half way (T-junctions): joined"
-    return vertices, joined, (text,), Seams(count, max(offsets))
+    return vertices, joined, (text,), Seams(count, width)
 
 
-def _fan(vertices, rim, tail, head, tolerance):
-    """(N, 3) facets between an edge and the rim corners on it, how far these are off it; none without."""
-    along = vertices[head] - vertices[tail]
-    offset = vertices[rim] - vertices[tail]
-    t = vectors.product(offset, along) / vectors.dot(along, along)
-    off_line = vectors.norm(offset - t[:, None] * along)
-    on = np.flatnonzero((off_line <= tolerance) & (t > 0.0) & (t < 1.0) & (rim != tail) & (rim != head))
-    chain = [tail, *rim[on[np.argsort(t[on])]].tolist(), head]
-    fan = np.array([(head, a, b) for a, b in pairwise(chain[:-1])], dtype=int).reshape(-1, 3)
-    return fan, float(off_line[on].max(initial=0.0))
+def _fans(vertices, rim, tails, heads, tolerance):
+    """Facets (N, 3) between each edge and the rim corners on it, where there are any; the furthest off it."""
+    fans, width = [], 0.0
+    step = max(1, PAIRS_AT_ONCE // len(rim))
+    for begin in range(0, len(tails), step):
+        tail, head = tails[begin : begin + step], heads[begin : begin + step]
+        along = vertices[head] - vertices[tail]
+        offset = vertices[rim] - vertices[tail][:, None]
+        t = np.einsum("enx,ex->en", offset, along) / np.einsum("ex,ex->e", along, along)[:, None]
+        off_line = vectors.norm(offset - t[..., None] * along[:, None])
+        on = (off_line <= tolerance) & (t > 0.0) & (t < 1.0) & (rim != tail[:, None]) & (rim != head[:, None])
+        width = max(width, float(off_line[on].max(initial=0.0)))
+        for edge in np.flatnonzero(on.any(axis=1)):
+            place = np.flatnonzero(on[edge])
+            chain = [int(tail[edge]), *rim[place[np.argsort(t[edge, place])]].tolist()]
+            fans.append(np.array([(int(head[edge]), a, b) for a, b in pairwise(chain)], dtype=int))
+    return fans, width
 
 
 def _many(count, one, more):
