@@ -12,6 +12,7 @@ from feederscrew.bowl.devices import strangers
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying.answer import conveying
 from feederscrew.machine import speeds
+from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
 from feederscrew.rates import arrivals, stretches, well_oriented
 from feederscrew.records import Shown
@@ -227,12 +228,14 @@ def rate(
     Raises
     ------
     FeederError
-        If the part has no outline or no such aspect, no such rule has probabilities of it, or the bowl has
-        no steady state.
+        If the part has no outline, more facets than can be followed past devices, or no such aspect, no such
+        rule has probabilities of it, or the bowl has no steady state.
     """
     own = check.options("rate", RateOptions, options)
     checked(bowl, heading, own, own.sigma)
     chain = bowl.devices if devices is None else tuple(devices)
+    if any(device.placed for device in chain):
+        refuse_many_facets(part)
     known = shares(part, bowl, rule=rule) if known is None else known
     found = known.aspects
     target = None if aspect is None else well_oriented.wanted(part, found, bowl.track, aspect, heading)

@@ -11,6 +11,7 @@ from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
+from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
 from feederscrew.rates.steadiness import steady
 from feederscrew.rates.tipping import marked, remark
@@ -137,10 +138,12 @@ def tooling(
     Raises
     ------
     FeederError
-        If the part has no mesh, is too large for the bowl, or has no such orientation or rule.
+        If the part has no mesh or very many facets, is too large for the bowl, or has no such orientation or
+        rule.
     """
     own = check.options("tooling", ToolingOptions, wishes)
     check.of_an_aspect(aspect, heading)
+    refuse_many_facets(part)
     found = arriving(part, bowl, rule) if known is None else known
     every = _coming(part, found, bowl)
     if rule not in found.chances:

@@ -1,4 +1,4 @@
-"""Several bodies taken as one part: each turned by itself, united where they overlap; no impossible moments."""
+"""Several bodies as one part: each turned by itself, united where they overlap; moments stay possible."""
 
 import numpy as np
 import part_files as files
