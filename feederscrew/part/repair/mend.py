@@ -13,8 +13,6 @@ from feederscrew.part.repair import weld
 SOLID = "export it as a closed solid"
 MOST_SEAMS = 5000  # open edges: with more than that the surface has worse than T-junctions
 
-PAIRS_AT_ONCE = 1_000_000  # of edges and corners: what some ten MB hold
-
 
 @dataclass(frozen=True)
 class Seams:
@@ -215,21 +213,26 @@ def close_seams(vertices, faces, edges, tolerance):
 
 def _fans(vertices, rim, tails, heads, tolerance):
     """Facets (N, 3) between each edge and the rim corners on it, where there are any; the furthest off it."""
-    fans, width = [], 0.0
-    step = max(1, PAIRS_AT_ONCE // len(rim))
-    for begin in range(0, len(tails), step):
-        tail, head = tails[begin : begin + step], heads[begin : begin + step]
-        along = vertices[head] - vertices[tail]
-        offset = vertices[rim] - vertices[tail][:, None]
-        t = np.einsum("enx,ex->en", offset, along) / np.einsum("ex,ex->e", along, along)[:, None]
-        off_line = vectors.norm(offset - t[..., None] * along[:, None])
-        on = (off_line <= tolerance) & (t > 0.0) & (t < 1.0) & (rim != tail[:, None]) & (rim != head[:, None])
-        width = max(width, float(off_line[on].max(initial=0.0)))
-        for edge in np.flatnonzero(on.any(axis=1)):
-            place = np.flatnonzero(on[edge])
-            chain = [int(tail[edge]), *rim[place[np.argsort(t[edge, place])]].tolist()]
-            fans.append(np.array([(int(head[edge]), a, b) for a, b in pairwise(chain)], dtype=int))
-    return fans, width
+    from scipy.spatial import cKDTree
+
+    along = vertices[heads] - vertices[tails]
+    length = vectors.norm(along)
+    middles = vertices[tails] + 0.5 * along
+    near = cKDTree(vertices[rim]).query_ball_point(middles, 0.5 * length + tolerance, return_sorted=True)
+    edge = np.repeat(np.arange(len(tails)), [len(corners) for corners in near])
+    corner = rim[np.concatenate([np.asarray(corners, dtype=int) for corners in near])]
+    offset = vertices[corner] - vertices[tails[edge]]
+    t = np.einsum("nx,nx->n", offset, along[edge]) / length[edge] ** 2
+    off_line = vectors.norm(offset - t[:, None] * along[edge])
+    on = (off_line <= tolerance) & (t > 0.0) & (t < 1.0) & (corner != tails[edge]) & (corner != heads[edge])
+    edge, corner, t = edge[on], corner[on], t[on]
+    order = np.lexsort((t, edge))
+    fans = []
+    for places in np.split(order, np.flatnonzero(np.diff(edge[order])) + 1) if len(order) else ():
+        place = edge[places[0]]
+        chain = [int(tails[place]), *corner[places].tolist()]
+        fans.append(np.array([(int(heads[place]), a, b) for a, b in pairwise(chain)], dtype=int))
+    return fans, float(off_line[on].max(initial=0.0))
 
 
 def _many(count, one, more):
