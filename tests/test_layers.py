@@ -24,7 +24,7 @@ DOORS = {
     "embreex": {"feederscrew/output"},
     "ezdxf": {"feederscrew/dxf.py"},
     "manifold3d": {
-        "feederscrew/part/reading",
+        "feederscrew/part",
         "feederscrew/tooling/solid.py",
         "feederscrew/solidbowl/facets.py",
     },

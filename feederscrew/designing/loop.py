@@ -13,6 +13,7 @@ from feederscrew.designing.robust import robust_run
 from feederscrew.designing.searching import Candidate, Search
 from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.geometry import vectors
+from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import Shares
@@ -60,7 +61,7 @@ def design(
     Raises
     ------
     FeederError
-        If the part has no surface, fits no bowl, or has no such aspect.
+        If the part has no surface or very many facets, fits no bowl, or has no such aspect.
     """
     _check_named(part, plain, request, known)
     search = Search(part, request, plain, frozenset(given), told or (lambda text: None), known, before=before)
@@ -105,6 +106,7 @@ def merit(study: DesignStudy) -> tuple[bool, bool, float, float]:
 
 def _check_named(part: Part, plain: Bowl, request: DesignRequest, known: Shares | None) -> None:
     """Raise FeederError for a heading that its aspect does not have on the track that the user knows."""
+    refuse_many_facets(part)
     if request.aspect is None or request.heading is None or part.vertices is None:
         return
     wide = max(plain.track.radius, float(vectors.length(np.ptp(part.vertices, axis=0))))  # one that it fits

@@ -10,9 +10,11 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.designing.hazards.risks import Risk
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
+from feederscrew.part.smallness import small_part_remarks
 from feederscrew.running import RunSettings
 from feederscrew.studies.tooling import ToolingStudy, listed
 from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.isolating.design import MARGIN
 from feederscrew.trial.result import TrialRun
 from feederscrew.units import counted
 
@@ -168,7 +170,9 @@ class DesignStudy:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
-        return self.part.warnings
+        allowances = {"margin": MARGIN, "tolerance": self.request.tolerance}
+        width = None if self.bowl is None else self.bowl.track.width
+        return (*self.part.warnings, *small_part_remarks(self.part, allowances, width))
 
     @property
     def slowest(self) -> FilledQueue | None:

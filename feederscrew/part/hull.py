@@ -39,7 +39,7 @@ class Hull:
         return check.frozen(solid_angles(np.zeros(3), self.corners))
 
 
-def convex_hull(points, centre, where="part"):
+def convex_hull(points, centre, where="part", given=True):
     """Return the convex hull of a point set about a centre of mass inside it.
 
     Parameters
@@ -50,6 +50,8 @@ def convex_hull(points, centre, where="part"):
         Centre of mass, in the same axes.
     where : str
         The file, for the error line.
+    given : bool
+        Whether the user gave the centre of mass; else it is that of the surface.
 
     Returns
     -------
@@ -94,7 +96,7 @@ def convex_hull(points, centre, where="part"):
         raise MeshError(
             where,
             "the centre of mass is not inside the part's convex hull",
-            "check `centre_of_mass` and its units",
+            "check `centre_of_mass` and its units" if given else "export it as a closed solid",
         )
     return Hull(
         vertices=check.frozen(vertices),

@@ -17,6 +17,7 @@ from feederscrew.resting.forms import FLAT, LEVEL, forms, said
 from feederscrew.resting.rules import published, recommended, registry, surface
 from feederscrew.resting.rules.quantities import ClassQuantities
 from feederscrew.resting.rules.recommended import Recommended
+from feederscrew.resting.shallow import published_changes, remark, shallow_facets
 from feederscrew.resting.tumbling import by_class, walk
 
 CONVEX = 1e-6  # [1] of the hull's volume: a smaller difference breaks no symmetry
@@ -46,6 +47,7 @@ class Aspects(Shown):
     recommended: Recommended | None = None  # the one answer to take; None for a card
     closed: Recommended | None = None  # the closed form nearest to it
     ground: by_class.Ground | None = None  # faces, basins and barriers behind the rows
+    complete: dict[str, np.ndarray] = field(default_factory=dict)  # (A,) [1] by published rule, all facets
     warnings: tuple[str, ...] = ()
 
     @property
@@ -111,7 +113,8 @@ def find(part, *, as_published=False, unstable=False, exponent=None, launch=reco
     if part.vertices is None:
         return _from_card(part)
     hull = part.hull or convex_hull(part.vertices, part.centre_of_mass, part.source)
-    stable = stable_faces(hull, landscape(hull))
+    basins = landscape(hull)
+    stable = stable_faces(hull, basins)
     faces = stable + (unstable_faces(hull, stable) if unstable else [])
     moments = _moments(part, hull)
     label = classes(faces, part, moments)
@@ -120,7 +123,18 @@ def find(part, *, as_published=False, unstable=False, exponent=None, launch=reco
     chances = _probabilities(table, as_published)
     order = _ranked(table, chances["csa"], part, moments)
     names, result = naming.named([groups[k] for k in order], table["normals"][order], hull, part.names)
+    shallow = shallow_facets(hull, basins, stable)
+    weights = registry.weights(_quantities(table, as_published))
+    complete = published_changes(shallow, weights, table["stable"], part.inertia, as_published)
     named = _named(names, table, chances, order, result)
+    named = replace(
+        named,
+        complete={rule: check.frozen(chance[order]) for rule, chance in complete.items()},
+        warnings=(
+            *named.warnings,
+            *remark(shallow, names, *(_in_order(of, order) for of in (chances, complete))),
+        ),
+    )
     ground = by_class.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
     weighted = surface.EXPONENTS["hard"] if exponent is None else exponent
     return _answered(_tumbled(named, ground, part, weighted), launch, exponent)
@@ -203,8 +217,18 @@ def _clean(directions):
 
 def _probabilities(table, as_published):
     """Probability of each class by every rule that weighs classes."""
+    return _normalised(_quantities(table, as_published), table["stable"])
+
+
+def _in_order(chances, order):
+    """Probabilities by rule, rows in another order."""
+    return {rule: chance[order] for rule, chance in chances.items()}
+
+
+def _quantities(table, as_published):
+    """What the rules weigh of each class."""
     faces, heights = table["faces"], table["heights"]
-    quantities = ClassQuantities(
+    return ClassQuantities(
         faces=faces,
         pmi_faces=np.ones_like(faces) if as_published else faces,
         heights=heights,
@@ -214,7 +238,6 @@ def _probabilities(table, as_published):
         solid_angles=table["solid_angles"],
         contact_areas=table["contact_areas"],
     )
-    return _normalised(quantities, table["stable"])
 
 
 def _normalised(quantities, stable):

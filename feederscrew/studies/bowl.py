@@ -19,6 +19,7 @@ from feederscrew.machine.springs import Springs, gain, leaf_stress, springs, upr
 from feederscrew.machine.stroke import Stroke, angles, greatest_amplitude, stroke
 from feederscrew.machine.unbalanced import Rocking, both
 from feederscrew.part.record import Part
+from feederscrew.part.smallness import small_part_remarks
 from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.tipping import remark
 from feederscrew.records import Shown
@@ -91,7 +92,9 @@ class MachineSheet(Shown):
     def remarks(self) -> tuple[str, ...]:
         """What must not be overlooked, a tuple of str."""
         own = () if self.solid is None else self.solid.remarks
-        return (*checks.remarks(self), *own)
+        width = self.bowl.track.width
+        small = () if self.order is None else small_part_remarks(self.order.part, {}, width)
+        return (*checks.remarks(self), *small, *own)
 
     @property
     def rocking(self) -> tuple[Rocking, Rocking] | None:

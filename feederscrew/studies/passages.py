@@ -11,6 +11,7 @@ from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
 from feederscrew.rates import passing, stream
 from feederscrew.rates.tipping import marked
@@ -57,7 +58,14 @@ def passages(part: Part, bowl: Bowl, aspects: Aspects, rule: str) -> PassagesStu
     Returns
     -------
     PassagesStudy
+
+    Raises
+    ------
+    FeederError
+        If the part has very many facets.
     """
+    if any(device.placed for device in bowl.devices):
+        refuse_many_facets(part)
     every, _ = marked(orientations(part, aspects, bowl.track), bowl)
     devices = tuple(device for device in bowl.devices if device.placed)
     return PassagesStudy(

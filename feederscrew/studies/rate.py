@@ -12,7 +12,9 @@ from feederscrew.bowl.devices import strangers
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying.answer import conveying
 from feederscrew.machine import speeds
+from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
+from feederscrew.part.smallness import small_part_remarks
 from feederscrew.rates import arrivals, stretches, well_oriented
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
@@ -23,6 +25,7 @@ from feederscrew.running import CoresKeywords, OnCores
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.simulated import memory
 from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.isolating.design import PLAY, TOLERANCE
 
 ALIKE = 1.0 - 1e-9  # of the most frequent orientation: as frequent
 LEAST = 1e-6  # of what must be above 0
@@ -166,6 +169,14 @@ class RateStudy(Shown):
     rule: str  # whose probabilities are taken
     rate: well_oriented.Rate
     measured: profiles.Measured | None = None  # the counts that are taken, if they are
+    sigma: float = 0.0  # [m] of play and tolerance together
+
+    @property
+    def of_size(self) -> tuple[str, ...]:
+        """What to say of a part not much larger than play and tolerance, or than its track is wide."""
+        usual = "play and tolerance as usual" if self.sigma == 0.0 else "play and tolerance"
+        allowances = {usual: self.sigma or float(np.hypot(PLAY, TOLERANCE))} if self.devices else {}
+        return small_part_remarks(self.part, allowances, self.bowl.track.width)
 
     @property
     def parts(self) -> well_oriented.Range:
@@ -182,7 +193,13 @@ class RateStudy(Shown):
         """What a user must not overlook, a sentence each: of the devices, the aspects, the velocity."""
         odd = speeds.remark(self.rate.velocity.value, self.bowl.sizing)
         other = () if self.measured is None else self.measured.warnings(self.part)
-        return (*strangers(self.devices, self.aspects.names), *self.aspects.warnings, *other, *odd)
+        return (
+            *strangers(self.devices, self.aspects.names),
+            *self.aspects.warnings,
+            *self.of_size,
+            *other,
+            *odd,
+        )
 
 
 def rate(
@@ -227,12 +244,14 @@ def rate(
     Raises
     ------
     FeederError
-        If the part has no outline or no such aspect, no such rule has probabilities of it, or the bowl has
-        no steady state.
+        If the part has no outline, more facets than can be followed past devices, or no such aspect, no such
+        rule has probabilities of it, or the bowl has no steady state.
     """
     own = check.options("rate", RateOptions, options)
     checked(bowl, heading, own, own.sigma)
     chain = bowl.devices if devices is None else tuple(devices)
+    if any(device.placed for device in chain):
+        refuse_many_facets(part)
     known = shares(part, bowl, rule=rule) if known is None else known
     found = known.aspects
     target = None if aspect is None else well_oriented.wanted(part, found, bowl.track, aspect, heading)
@@ -248,6 +267,7 @@ def rate(
         rule=rule,
         rate=well_oriented.rate(lying, speed, target, rule, gap=own.gap, fill=own.fill),
         measured=known.measured,
+        sigma=own.sigma,
     )
 
 

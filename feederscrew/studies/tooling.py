@@ -11,7 +11,9 @@ from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
+from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
+from feederscrew.part.smallness import small_part_remarks
 from feederscrew.rates.steadiness import steady
 from feederscrew.rates.tipping import marked, remark
 from feederscrew.records import Shown
@@ -21,7 +23,7 @@ from feederscrew.studies.wishes import ToolingKeywords, ToolingOptions, asked_fo
 from feederscrew.tooling.devices.kinds import names
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating import tracks
-from feederscrew.tooling.isolating.design import MARGIN, place
+from feederscrew.tooling.isolating.design import MARGIN, PLAY, TOLERANCE, place
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.isolating.proposal import Design, Goal
 from feederscrew.tooling.mirrored import named
@@ -45,6 +47,8 @@ class ToolingStudy(Shown):
     designs: tuple[Design | None, ...]  # (M,) None where it was not asked for
     wanted: int | None  # the orientation asked for; None for all of them
     up: tuple[str, ...] = ()  # aspects that count as the one wanted
+    play: float = PLAY  # [m] of the part from the wall, within the margin
+    tolerance: float = TOLERANCE  # [m] of its size, within the margin
     trials: tuple[Any, ...] = ()  # designing.own_trial.TriedDesign of what was tried, that of `design` first
 
     def trial_of(self, place: int) -> Any:
@@ -78,7 +82,15 @@ class ToolingStudy(Shown):
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
         late = any(one is not None and one.late for one in self.designs)
-        return (*self.aspects.warnings, *remark(self.orientations), *([LATE] if late else []))
+        lines = (*self.aspects.warnings, *self.of_size, *remark(self.orientations))
+        return (*lines, *([LATE] if late else []))
+
+    @property
+    def of_size(self) -> tuple[str, ...]:
+        """What to say of a part that is not much larger than what is asked for, or than the track is wide."""
+        margin = self.margin - self.play - self.tolerance
+        allowances = {"margin": margin, "play": self.play, "tolerance": self.tolerance}
+        return small_part_remarks(self.part, allowances, self.bowl.track.width)
 
 
 def tooling(
@@ -137,10 +149,12 @@ def tooling(
     Raises
     ------
     FeederError
-        If the part has no mesh, is too large for the bowl, or has no such orientation or rule.
+        If the part has no mesh or very many facets, is too large for the bowl, or has no such orientation or
+        rule.
     """
     own = check.options("tooling", ToolingOptions, wishes)
     check.of_an_aspect(aspect, heading)
+    refuse_many_facets(part)
     found = arriving(part, bowl, rule) if known is None else known
     every = _coming(part, found, bowl)
     if rule not in found.chances:
@@ -174,6 +188,8 @@ def tooling(
         designs=tuple(designs),
         wanted=wanted,
         up=may_use.up,
+        play=own.play,
+        tolerance=own.tolerance,
     )
     return study if wanted is None else study.on_its_width(wanted)
 

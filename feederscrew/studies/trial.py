@@ -15,6 +15,7 @@ from feederscrew.documents import hint
 from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
+from feederscrew.part.smallness import small_part_remarks
 from feederscrew.rates import arrivals, stream
 from feederscrew.rates.well_oriented import RECOMMENDED
 from feederscrew.records import Shown
@@ -31,6 +32,7 @@ from feederscrew.trial.outlet import Outlet
 from feederscrew.trial.queue import GAPS, QueuePlan, queue_of
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.shape import solid_of
+from feederscrew.trial.starts import PLAY
 
 ENGINE = "feeder's own kernel"
 PARTS, FEW = 200, 60  # parts one at a time; fewer where they only tell what a queue meets
@@ -82,6 +84,7 @@ class TrialStudy(Shown):
         """What a user must not overlook, a sentence each."""
         first = self.runs[0]
         listed = [*strangers(first.bowl.devices, self.aspects.names), *self.aspects.warnings]
+        listed += small_part_remarks(self.part, {"play at the wall": PLAY}, first.bowl.track.width)
         listed += () if self.measured is None else self.measured.warnings(self.part)
         several = len(self.runs) > 1
         for run in self.runs:

@@ -9,12 +9,12 @@ from feederscrew import check
 from feederscrew.dropping.rigid_body import principal_axes
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
+from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.hull import convex_hull
 from feederscrew.trial.kernel.near_borders import BLOCK
 
 FLAT = 2e-3  # [rad] facets that meet at a smaller angle are one face
 ONWARDS = 3e-3  # of the unit of length: an edge goes on so far where a hollow edge meets its end
-MOST = 20000  # facets of a part
 
 
 class TrueSolid(NamedTuple):
@@ -106,9 +106,7 @@ def _check_surface(part):
     """Raise FeederError for a part without a surface, or with one of very many facets."""
     if part.vertices is None:
         raise FeederError(part.source, "has no surface, as a part card", "give the part as a mesh")
-    if len(part.faces) > MOST:
-        what = f"has {len(part.faces)} facets, too many to follow on the track"
-        raise FeederError(part.source, what, f"export it more coarsely, with {MOST} facets at most")
+    refuse_many_facets(part)
 
 
 def onwards(corners, place, ends, hollow):

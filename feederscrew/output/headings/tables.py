@@ -3,6 +3,7 @@
 import numpy as np
 
 from feederscrew.output import tables
+from feederscrew.part.smallness import small_part_remarks
 from feederscrew.units import factor
 
 MM = factor("mm", "length")
@@ -52,7 +53,7 @@ def answer(study):
 
 def remarks(study):
     """Return what a reader of a HeadingsStudy should know, a sentence each."""
-    lines, width = [], study.track.width / MM
+    lines, width = list(small_part_remarks(study.part, {}, study.track.width)), study.track.width / MM
     for one in study.headings:
         if one.rounded:
             lines.append(f"aspect {one.aspect} is round in plan: it takes any heading")

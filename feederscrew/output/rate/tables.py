@@ -17,7 +17,9 @@ def document(study):
     found, rule = study.rate, study.rule
     known, row = found.orientations, found.row
     return {
-        **columns.part(study.part, (*study.aspects.warnings, *stopping(found), *spaced(study))),
+        **columns.part(
+            study.part, (*study.aspects.warnings, *study.of_size, *stopping(found), *spaced(study))
+        ),
         **_range("parts_per_minute", found.parts, PER_MINUTE),
         "aspect": known.aspects[row],
         "heading_deg": known.headings[row] / DEG,

@@ -26,7 +26,7 @@ QUASI_STATIC = "quasi-static, until a trial confirms it"
 def document(study):
     """Return a ToolingStudy as the JSON document."""
     values = {
-        **columns.part(study.part, study.aspects.warnings),
+        **columns.part(study.part, (*study.aspects.warnings, *study.of_size)),
         "rule": study.rule,
         "margin_asked_mm": study.margin / MM,
         "orientations": orientations(study),

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from feederscrew import check, documents
-from feederscrew.errors import ArgumentError, MeshError, SeveralBodiesError
+from feederscrew.errors import ArgumentError, SeveralBodiesError
 from feederscrew.part import aspect_names, card
 from feederscrew.part.density import density as density_of
 from feederscrew.part.hull import convex_hull
@@ -24,7 +24,6 @@ GIVEN_CENTRE = (
     "the centre of mass is as given and how the mass is spread is not known: "
     "the inertia is that of the homogeneous solid about its own centroid"
 )
-OVERLAP = 1e-6  # [1] of the hull's volume
 
 
 def load(
@@ -104,8 +103,8 @@ def _solid(file, soup, wanted, stuff, centre_text, body, allow_open):
     scale = factor(unit, "length")
     vertices, solid = surface.vertices * scale, surface.solid.scaled(scale)
     centre, shifted = _centre(centre_text, unit, solid.centre)
-    hull = convex_hull(vertices, centre, file.where)
-    _must_fit_hull(solid.volume, hull.volume, unit, file.where)
+    hull = convex_hull(vertices, centre, file.where, given=centre_text is not None)
+    gate.check_hull(surface, hull.volume / scale**3, file.where, unit)
     density, material = stuff
     return Part(
         name=file.name if one is None else f"{file.name}-{one.number}",
@@ -177,10 +176,3 @@ def _centre(text, unit, homogeneous):
     except QuantityError as error:
         raise ArgumentError("centre_of_mass", error.what, error.mend) from None
     return centre, (GIVEN_CENTRE,)
-
-
-def _must_fit_hull(volume, most, unit, where):
-    if volume > most * (1.0 + OVERLAP):
-        cube = factor(unit, "length") ** 3
-        what = f"its volume, {volume / cube:.4g} {unit}3, is more than its convex hull's, {most / cube:.4g}"
-        raise MeshError(where, f"{what}: facets overlap", "unite the overlapping bodies in CAD")

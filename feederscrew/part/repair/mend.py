@@ -1,5 +1,6 @@
 """What the gate mends, saying so: repeated facets, mixed winding, corners that nearly meet, T-junctions."""
 
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -11,6 +12,14 @@ from feederscrew.part.repair import weld
 
 SOLID = "export it as a closed solid"
 MOST_SEAMS = 5000  # open edges: with more than that the surface has worse than T-junctions
+
+
+@dataclass(frozen=True)
+class Seams:
+    """Edges that were joined with several shorter ones of their neighbours."""
+
+    count: int
+    width: float  # [unit of the file] largest distance of a corner from such an edge
 
 
 def mended(vertices, faces, tolerance, where):
@@ -38,8 +47,14 @@ def mended(vertices, faces, tolerance, where):
     MeshError
         If the facets cannot be turned one way round, or cancel out.
     """
-    said: tuple[str, ...] = ()
-    for step in (_without_repeats, _near_corners_joined, _one_way_round, _seams_closed):
+    edges = gate_edges.table(faces, len(vertices))
+    vertices, faces, said = leave_out_strays(vertices, faces, edges, tolerance)
+    for step in (
+        _without_repeats,
+        _near_corners_joined,
+        turn_one_way_round,
+        _seams_closed,
+    ):
         edges = gate_edges.table(faces, len(vertices))
         if edges.paired:
             return vertices, faces, edges, said
@@ -53,6 +68,43 @@ def mended(vertices, faces, tolerance, where):
         joins = _many(crowded, "edge joins", "edges join")
         said += (f"{joins} more than two facets: the solid touches itself there",)
     return vertices, faces, edges, said
+
+
+def leave_out_strays(vertices, faces, edges, tolerance):
+    """Leave out facets whose corners lie on a line and that close nothing: with them more edges are open.
+
+    Facets without area that share edges stand and fall together. One that joins two facets, as the filler of
+    a T-junction does, stays.
+    """
+    flat = np.flatnonzero(_heights(vertices, faces) <= tolerance)
+    if not len(flat):
+        return vertices, faces, ()
+    edge_of_side = np.empty(edges.order.shape, dtype=int)
+    edge_of_side[edges.order] = np.repeat(np.arange(len(edges.count)), edges.count)
+    sides = edge_of_side.reshape(-1, 3)[flat]
+    number, node = graphs.components(
+        np.repeat(np.arange(len(flat)), 3), len(flat) + sides.ravel(), len(flat) + len(edges.count)
+    )
+    group = np.repeat(node[: len(flat)], 3)
+    pairs, count = np.unique(np.column_stack([group, sides.ravel()]), axis=0, return_counts=True)
+    of_group, edge = pairs.T
+    opens = np.where(count % 2 == 1, np.where(edges.count[edge] % 2 == 1, -1, 1), 0)
+    change = np.bincount(of_group, opens, number)
+    alone = np.bincount(of_group, count != edges.count[edge], number) == 0  # touches no other facet
+    stray = flat[(change < 0)[group[::3]] | alone[group[::3]]]
+    if not len(stray) or len(stray) == len(faces):
+        return vertices, faces, ()
+    kept = np.ones(len(faces), dtype=bool)
+    kept[stray] = False
+    text = f"{_many(len(stray), 'stray facet', 'stray facets')} without area left out: corners on a line"
+    return *weld.compacted(vertices, faces[kept]), (text,)
+
+
+def _heights(vertices, faces):
+    """(F,) [unit of the file] height of each facet over its longest side."""
+    a, b, c = (vertices[corner] for corner in faces.T)
+    longest = np.maximum(np.maximum(vectors.norm(b - a), vectors.norm(c - b)), vectors.norm(a - c))
+    return vectors.norm(vectors.cross(b - a, c - a)) / np.maximum(longest, np.finfo(float).tiny)
 
 
 def _without_repeats(vertices, faces, edges, tolerance, where):
@@ -88,7 +140,7 @@ def _near_corners_joined(vertices, faces, edges, tolerance, where):
     return *weld.compacted(vertices, target[faces]), (text,)
 
 
-def _one_way_round(vertices, faces, edges, tolerance, where):
+def turn_one_way_round(vertices, faces, edges, tolerance, where):
     """Facets turned until neighbours agree, as few in each shell as can be."""
     two = np.flatnonzero(edges.count == 2)
     askew = edges.net[two] != 0
@@ -122,33 +174,65 @@ def _parity(mates, askew, count, where):
 
 
 def _seams_closed(vertices, faces, edges, tolerance, where):
-    """Edges that meet corners of their neighbours half way, joined there by facets without area."""
+    *surface, said, _ = close_seams(vertices, faces, edges, tolerance)
+    return *surface, said
+
+
+def close_seams(vertices, faces, edges, tolerance):
+    """Join edges that meet corners of their neighbours half way by facets without area.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    edges : MeshEdges
+        Of the faces.
+    tolerance : float [unit of the file]
+        Corners closer than this to an edge are on it.
+
+    Returns
+    -------
+    vertices, faces : as above
+        The facets that join them come last.
+    said : tuple of str
+    seams : Seams
+    """
     tails, heads = edges.rim()
     if not 0 < len(tails) <= MOST_SEAMS:
-        return vertices, faces, ()
+        return vertices, faces, (), Seams(0, 0.0)
     rim = np.unique([tails, heads])
-    fans = [_fan(vertices, rim, tail, head, tolerance) for tail, head in zip(tails.tolist(), heads.tolist())]
+    fans, width = _fans(vertices, rim, tails, heads, tolerance)
     joined = np.concatenate([faces, *fans])
     after = gate_edges.table(joined, len(vertices))
     if len(joined) == len(faces) or np.abs(after.net).sum() >= len(tails):
-        return vertices, faces, ()
-    count = sum(len(fan) > 0 for fan in fans)
-    return (
-        vertices,
-        joined,
-        (f"{_many(count, 'edge meets', 'edges meet')} neighbours half way (T-junctions): joined",),
-    )
+        return vertices, faces, (), Seams(0, 0.0)
+    count = len(fans)
+    text = f"{_many(count, 'edge meets', 'edges meet')} neighbours half way (T-junctions): joined"
+    return vertices, joined, (text,), Seams(count, width)
 
 
-def _fan(vertices, rim, tail, head, tolerance):
-    """(N, 3) facets between an edge and the rim corners on it; none where there are none."""
-    along = vertices[head] - vertices[tail]
-    offset = vertices[rim] - vertices[tail]
-    t = vectors.product(offset, along) / vectors.dot(along, along)
-    off_line = vectors.norm(offset - t[:, None] * along)
-    on = np.flatnonzero((off_line <= tolerance) & (t > 0.0) & (t < 1.0) & (rim != tail) & (rim != head))
-    chain = [tail, *rim[on[np.argsort(t[on])]].tolist(), head]
-    return np.array([(head, a, b) for a, b in pairwise(chain[:-1])], dtype=int).reshape(-1, 3)
+def _fans(vertices, rim, tails, heads, tolerance):
+    """Facets (N, 3) between each edge and the rim corners on it, where there are any; the furthest off it."""
+    from scipy.spatial import cKDTree
+
+    along = vertices[heads] - vertices[tails]
+    length = vectors.norm(along)
+    middles = vertices[tails] + 0.5 * along
+    near = cKDTree(vertices[rim]).query_ball_point(middles, 0.5 * length + tolerance, return_sorted=True)
+    edge = np.repeat(np.arange(len(tails)), [len(corners) for corners in near])
+    corner = rim[np.concatenate([np.asarray(corners, dtype=int) for corners in near])]
+    offset = vertices[corner] - vertices[tails[edge]]
+    t = np.einsum("nx,nx->n", offset, along[edge]) / length[edge] ** 2
+    off_line = vectors.norm(offset - t[:, None] * along[edge])
+    on = (off_line <= tolerance) & (t > 0.0) & (t < 1.0) & (corner != tails[edge]) & (corner != heads[edge])
+    edge, corner, t = edge[on], corner[on], t[on]
+    order = np.lexsort((t, edge))
+    fans = []
+    for places in np.split(order, np.flatnonzero(np.diff(edge[order])) + 1) if len(order) else ():
+        place = edge[places[0]]
+        chain = [int(tails[place]), *corner[places].tolist()]
+        fans.append(np.array([(int(heads[place]), a, b) for a, b in pairwise(chain)], dtype=int))
+    return fans, float(off_line[on].max(initial=0.0))
 
 
 def _many(count, one, more):

@@ -87,6 +87,27 @@ def _several(volume, unit):
     return f"holds {len(volume)} bodies, of {listed} {unit}3", SPLIT
 
 
+def turns_around(vertices, faces, shell, inner, outer):
+    """Return how often one shell goes round corners of another.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float [unit of the file]
+    faces : (F, 3) int
+    shell : (F,) int
+    inner, outer : int
+
+    Returns
+    -------
+    (N,) float [1]
+        1 inside the outer shell, 0 outside; negative where it faces inwards.
+    """
+    corners = np.unique(faces[shell == inner])
+    around = vertices[faces[shell == outer]]
+    step = -(-len(corners) // max(1, min(PROBES, BUDGET // len(around))))
+    return np.array([winding(point, around) for point in vertices[corners[::step]]])
+
+
 def _turns_around(vertices, faces, shell, one):
     """(N,) float [1] how often the other shells go round corners of one: 1 in their material, 0 outside."""
     own = shell == one

@@ -32,6 +32,7 @@ class Landscape:
     ripples: np.ndarray  # (R, 2) sinks on either side of a smooth edge that were too deep to merge
     rises: np.ndarray  # (R,) [1] height of the way over that edge, above the higher side, as a share of it
     bends: np.ndarray  # (R,) [rad] between the lowest triangles on either side
+    lows: np.ndarray  # (L,) triangles from which no way leads down, before any were merged
 
 
 def edges(hull):
@@ -108,6 +109,7 @@ def landscape(hull):
         ripples=basins[strips],
         rises=way / hull.heights[basins[strips]].max(axis=1, initial=0.0) - 1.0,
         bends=_bend(hull, strips),
+        lows=_sinks(local),
     )
 
 
