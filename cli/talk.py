@@ -80,6 +80,10 @@ class Output:
 
             solid = load(**keywords)
         self.warn(*solid.warnings)
+        if self.verbose:
+            from feederscrew.studies.simulated import on_disk
+
+            self.say(*filter(None, [on_disk.refusal()]))
         return solid
 
     def settings(self, bowl):

@@ -116,15 +116,19 @@ def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED) -> Aspects:
 
 def _on_the_floor(part: Part, found: Aspects, bowl: Bowl, fed: int | None, seed: int, run: OnCores) -> Any:
     """What lies at the track's entry, followed once in a run."""
-    from feederscrew.dropping.plate.arrival import arrival
+    from feederscrew.dropping.plate import arrival as floor
 
     def make() -> Any:
         if run.before:
             run.before(None)
-        return arrival(part, found, bowl, drops=fed, seed=seed, jobs=run.cores, progress=run.progress)
+        return floor.arrival(part, found, bowl, drops=fed, seed=seed, jobs=run.cores, progress=run.progress)
 
-    floor = (bowl.drive, bowl.restitution, bowl.friction.kinetic, bowl.gravity)
-    return memory.once(part, found, (floor, fed, seed), make, lambda arrived: not arrived.shaken.partial)
+    settings = (bowl.drive, bowl.restitution, bowl.friction.kinetic, bowl.gravity, fed, seed)
+    simulation = memory.Simulation(
+        "arrival", settings, make, lambda arrived: not arrived.shaken.partial, floor.to_arrays,
+        lambda arrays: floor.from_arrays(part, found, bowl, fed, arrays),
+    )  # fmt: skip
+    return memory.once(part, found, simulation)
 
 
 @dataclass(frozen=True)
