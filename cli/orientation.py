@@ -1,5 +1,6 @@
 """The options that say which parts are wanted: shared by the commands that count them."""
 
+import math
 from typing import Any
 
 import click
@@ -39,6 +40,13 @@ def of_an_aspect(asked):
     """Refuse a heading without the aspect that it is a heading of."""
     if asked["heading"] is not None and asked["aspect"] is None:
         raise click.UsageError("--heading is given without --aspect - name the aspect as well")
+
+
+def name(asked):
+    """Return the name of the orientation that is asked for, 'A@90', or of its aspect; None where none is."""
+    if asked["aspect"] is None or asked["heading"] is None:
+        return asked["aspect"]
+    return f"{asked['aspect']}@{round(math.degrees(asked['heading'])) % 360}"
 
 
 LEAVES_MOST = click.option(

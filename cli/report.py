@@ -86,7 +86,7 @@ def report(part, bowl, taken, directory, format, quiet, verbose, **wanted):
     with out.folder(solid.name, found.inputs, effective) as folder:
         made = page(found, out.step)
         out.warn(*(line for line in made.warnings if line not in solid.warnings))
-        out.warn(*proof.warnings(verified(bowl["path"]), solid, record(found.settings)))
+        out.warn(*proof.warnings(verified(bowl["path"]), solid, record(found.settings), found.aspect))
         write(folder, made, format)
 
 

@@ -86,7 +86,12 @@ def _results(task):
         | dict(request.conditions.texts)
         | {"rule": choices.rule, "drops": choices.drops, "launch": choices.launch or "fed"}
         | ({"names": request.names.source} if request.names else {}),
-        warnings=(*part.warnings, *request.conditions.warnings, *found.warnings, *_tried(part, request)),
+        warnings=(
+            *part.warnings,
+            *request.conditions.warnings,
+            *found.warnings,
+            *_tried(part, request, row.get("orientation")),
+        ),
         files=dict(files),  # who takes it need not import this module
     )
 
@@ -104,21 +109,21 @@ def _rate(part, found, task, files):
         return {"note": "a part card has no outline: no rate"}
     conditions, rule = task.request.conditions, task.choices.rule
     study = rate(part, conditions.bowl, task.request.aspect, rule=rule, known=Shares(found))
-    document = proof.beside(rate_tables.document(study), conditions.tried, part, conditions.bowl)
+    way = study.rate.orientations.lying[study.rate.row].name
+    document = proof.beside(rate_tables.document(study), conditions.tried, part, conditions.bowl, way)
     offers.write(files, rate_files.offers(study))
     wanted = ("aspect", "heading_deg", "pitch_mm", "p_orientation", "passes_devices")
     rates = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
-    way = study.rate.orientations.lying[study.rate.row].name
     named = {"orientation": way, "rule": rule, "answer": study.answer}
     why = "; ".join(rate_tables.remarks(study)) if document["parts_per_minute"] <= 0.0 else ""
     noted = {"note": why} if why else {}
     return named | noted | {name: document[name] for name in (*wanted, *rates)}
 
 
-def _tried(part, request):
+def _tried(part, request, wanted):
     """What the bowl file says of its trial."""
     conditions = request.conditions
-    return proof.warnings(conditions.tried, part, conditions.bowl)
+    return proof.warnings(conditions.tried, part, conditions.bowl, wanted)
 
 
 def _answered(part, task, files):

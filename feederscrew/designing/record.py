@@ -7,6 +7,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.verified import DRAWS_HELD, FALLS_SHORT, HOLDS, PURE, RATE_KEPT
 from feederscrew.designing.hazards.risks import Risk
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
@@ -17,8 +18,7 @@ from feederscrew.trial.result import TrialRun
 from feederscrew.units import counted
 
 OUTCOMES = ("any", "lying", "hanging")
-HOLDS, FALLS_SHORT, NONE = "holds", "falls short", "none"
-RATE_KEPT, PURE, DRAWS_HELD = 0.9, 0.98, 0.95  # [1] of the target, of what leaves, of the draws
+NONE = "none"
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,8 @@
 """Arrays kept on disk from run to run, each under the full key of what they were made of.
 
-An entry is one line of JSON: its key, a digest, and arrays of plain numbers. Nothing in it is ever run. Whoever reads it compares
-the key and checks the numbers. Without a folder that is the user's own nothing is kept, and the same is simulated again.
+An entry is one line of JSON: its key, a digest, and arrays of plain numbers. Nothing in it is ever run.
+Whoever reads it compares the key and checks the numbers. Without a folder that is the user's own nothing is
+kept, and the same is simulated again.
 """
 
 import base64
@@ -53,8 +54,8 @@ def read(key: Mapping[str, str]) -> dict[str, np.ndarray] | None:
     Returns
     -------
     dict of str to array, or None
-        Arrays of float, int or bool, closed to writing. None where there is no entry, or one that is damaged, too large, of
-        another key, no regular file, or in a folder that others may write.
+        Arrays of float, int or bool, closed to writing. None where there is no entry, or one that is
+        damaged, too large, of another key, no regular file, or in a folder that others may write to.
     """
     folder, full = _folder(), _full(key)
     if folder is None or refusal() is not None:
@@ -87,7 +88,7 @@ def write(key: Mapping[str, str], arrays: Arrays) -> None:
 
 
 def refusal() -> str | None:
-    """Return why the folder of the cache is not used, a sentence that says how to mend it; None where it is used."""
+    """Return why the folder of the cache is not used, and how to mend that; None where it is used."""
     folder = _folder()
     if folder is None or not hasattr(os, "geteuid"):
         return None
@@ -96,14 +97,14 @@ def refusal() -> str | None:
     except (OSError, ValueError):
         return None
     if not stat.S_ISDIR(held.st_mode):
-        return f"the cache {folder} is not used: it is no folder - name another in {VARIABLE}"
-    if held.st_uid != os.geteuid():
-        return (
-            f"the cache {folder} is not used: it belongs to another user - name your own folder in {VARIABLE}"
-        )
-    if held.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
-        return f"the cache {folder} is not used: other users may write to it - run chmod go-w on it"
-    return None
+        why, mend = "it is no folder", f"name another in {VARIABLE}"
+    elif held.st_uid != os.geteuid():
+        why, mend = "it belongs to another user", f"name a folder of your own in {VARIABLE}"
+    elif held.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+        why, mend = "other users may write to it", "run chmod go-w on it"
+    else:
+        return None
+    return f"the cache {folder} is not used: {why} - {mend}"
 
 
 def _folder() -> Path | None:
