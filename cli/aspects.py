@@ -21,7 +21,7 @@ SURFACES = click.Choice(["soft", "medium", "hard"])
 )
 @click.option("--surface-exponent", type=options.Number(-10, 10), help="The same as a number, 0 to about 3.")
 @click.option(
-    "--drop", "drops", type=click.IntRange(0, 10**7),
+    "--drop", "drops", type=options.Whole(0, 10**7),
     help="How many drops; 0 for none.  [default: until every share is known to 1 %]",
 )  # fmt: skip
 @click.option(

@@ -57,26 +57,26 @@ REQUEST = (  # what shall leave, and what may be used
     ),
     click.option(
         "--budget",
-        type=click.IntRange(1, 1000),
+        type=options.Whole(1, 1000),
         default=16,
         show_default=True,
         help="Short trials of the search, at most.",
     ),
     click.option(
         "--draws",
-        type=click.IntRange(1, 1000),
+        type=options.Whole(1, 1000),
         default=20,
         show_default=True,
         help="Trials of the answer with part, friction, drive and cuts drawn from their spread.",
     ),
     click.option(
         "--seed",
-        type=click.IntRange(0),
+        type=options.Whole(0),
         default=1,
         show_default=True,
         help="Seed of everything that is drawn.",
     ),
-    click.option("--jobs", type=click.IntRange(1, 256), metavar="N", help="Cores to use.  [default: all]"),
+    click.option("--jobs", type=options.Whole(1, 256), metavar="N", help="Cores to use.  [default: all]"),
 )
 REQUESTED = (
     "target", "aspect", "heading", "up", "outcome", "without", "diameter", "tolerance", "budget", "draws",

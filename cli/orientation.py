@@ -67,11 +67,11 @@ LAUNCHED = click.option(
     help="What is done to the part, on a floor at rest.  [default: fed onto the bowl's moving floor]",
 )
 FED = click.option(
-    "--fed", metavar="N", type=click.IntRange(1, 10**6),
+    "--fed", metavar="N", type=options.Whole(1, 10**6),
     help="Feed N parts onto the moving floor.  [default: until every share is known to 2 %]",
 )  # fmt: skip
 SEED = click.option(
-    "--seed", type=click.IntRange(0), default=1, show_default=True, help="Seed of the parts that are fed."
+    "--seed", type=options.Whole(0), default=1, show_default=True, help="Seed of the parts that are fed."
 )
 PROBABILITIES = click.option(
     "--probabilities",

@@ -20,7 +20,7 @@ WANTED = (
     click.option(
         "--trial",
         "sent",
-        type=click.IntRange(1, 10**4),
+        type=options.Whole(1, 10**4),
         metavar="N",
         help="Send N parts along the track and through the devices, to be played.",
     ),

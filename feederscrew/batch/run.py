@@ -8,8 +8,7 @@ from feederscrew.batch.cluster import Cluster
 from feederscrew.batch.store import Store
 from feederscrew.batch.task import FAILED, Choices, Outcome, Task
 from feederscrew.batch.workers import Processes, processors
-from feederscrew.documents import hint
-from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.errors import FeederError
 from feederscrew.output import tables
 from feederscrew.output.batch import SHEET
 from feederscrew.part.reading import source
@@ -70,11 +69,10 @@ def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda
     FeederError
         If the folder cannot be used or the scheduler is lost; what is finished is kept.
     """
-    from feederscrew.resting.rules.registry import CHOICES  # while the processes import their libraries
+    from feederscrew.resting.rules.registry import require_rule  # while the processes import their libraries
 
     choices = choices or Choices()
-    if choices.rule not in CHOICES:
-        raise ArgumentError("rule", f"unknown rule {choices.rule!r}", hint(choices.rule, CHOICES))
+    require_rule(choices.rule)
     with Store(directory) as store:
         store.remove(summary.NAME, index_page.NAME, SHEET.format("*"))
         under_way = _UnderWay(store, choices, resume, tell)

@@ -11,6 +11,7 @@ from feederscrew.bowl.verified import DRAWS_HELD, FALLS_SHORT, HOLDS, PURE, RATE
 from feederscrew.designing.hazards.risks import Risk
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
+from feederscrew.resting.rules.registry import require_rule
 from feederscrew.running import RunSettings
 from feederscrew.studies.tooling import ToolingStudy, listed
 from feederscrew.tooling.devices.base import Device
@@ -46,6 +47,7 @@ class DesignRequest:
 
     def __post_init__(self) -> None:
         check.of_an_aspect(self.aspect, self.heading)
+        require_rule(self.rule)
         for name in ("up", "without"):  # names may come as a text
             object.__setattr__(self, name, listed(getattr(self, name)))
 

@@ -18,7 +18,7 @@ from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH, launch_named
-from feederscrew.resting.rules.registry import RECOMMENDED
+from feederscrew.resting.rules.registry import RECOMMENDED, require_rule
 from feederscrew.running import CoresKeywords, OnCores
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.simulated import memory
@@ -88,6 +88,7 @@ def shares(
         Every fault of the file; if the part has no shape to drop.
     """
     own = check.options("shares", OnCores, run)
+    require_rule(rule)
     check.argument("seed", seed, 0)
     if fed is not None:
         check.argument("fed", fed, 1)
@@ -236,6 +237,7 @@ def rate(
     """
     own = check.options("rate", RateOptions, options)
     checked(bowl, heading, own, own.sigma)
+    require_rule(rule)
     chain = bowl.devices if devices is None else tuple(devices)
     known = shares(part, bowl, rule=rule) if known is None else known
     found = known.aspects

@@ -1,5 +1,6 @@
 """The program: its commands, its help and its one error fence."""
 
+import contextlib
 import importlib
 import json
 import os
@@ -16,7 +17,7 @@ from click.testing import CliRunner
 from feederscrew import __version__
 from feederscrew.errors import Faults, FeederError, MeshError
 from feederscrew.output import style, tables
-from feederscrew_cli import options
+from feederscrew_cli import interrupt, options
 from feederscrew_cli.main import Fence, feeder
 
 ROOT = Path(__file__).parents[3]
@@ -262,6 +263,26 @@ Fence("feeder", commands=[click.Command("nap", callback=nap)])(["nap"])
     child.send_signal(signal.SIGINT)
     _, said = child.communicate(timeout=10)
     assert (child.returncode, said.strip()) == (130, "Stopped.")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+@pytest.mark.parametrize("held", [contextlib.nullcontext, interrupt.held_back, interrupt.noted])
+@pytest.mark.parametrize(
+    "after", [None, ImportError("half-loaded"), MeshError("a", "b", "c"), click.exceptions.Exit(1)]
+)
+def test_an_interrupt_that_somebody_drops_is_no_success(capsys, held, after):
+    """A library that loads drops it, a run gives what is there: make must not take it as done."""
+
+    def work():
+        with contextlib.suppress(KeyboardInterrupt), held():
+            signal.raise_signal(signal.SIGINT)
+        if after is not None:
+            raise after
+
+    with pytest.raises(SystemExit) as ended:
+        Fence("feeder", commands=[click.Command("work", callback=work)])(["work"])
+    assert ended.value.code == 130 and "Traceback" not in capsys.readouterr().err
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 @pytest.mark.long
