@@ -74,7 +74,6 @@ def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda
     choices = choices or Choices()
     require_rule(choices.rule)
     with Store(directory) as store:
-        store.remove(summary.NAME, index_page.NAME, SHEET.format("*"))
         under_way = _UnderWay(store, choices, resume, tell)
         for outcome in workers.outcomes(under_way.tasks(requests)):
             under_way.finish(outcome)
@@ -123,10 +122,12 @@ def _finished(store, requests, kept, workers):
 
     rows = summary.rows(store, requests)
     sheets = workers.each(_contact_sheet, summary.sheets(store, rows))
-    for number, sheet in enumerate(sheets, 1):
-        store.write(SHEET.format(f"_{number}" if number > 1 else ""), sheet)
-    store.write(index_page.NAME, html(index_page.page(store, rows)))
-    store.write(summary.NAME, tables.text(summary.frame(rows), "csv"))  # last: it says that all is there
+    files = {
+        SHEET.format(f"_{number}" if number > 1 else ""): sheet for number, sheet in enumerate(sheets, 1)
+    }
+    files[index_page.NAME] = html(index_page.page(store, rows))
+    files[summary.NAME] = tables.text(summary.frame(rows), "csv")  # last: it says that all is there
+    store.write(files, without=[SHEET.format("*")])
     return Batch(
         rows=rows,
         kept=kept,
