@@ -52,7 +52,7 @@ class Number(click.FloatRange):
     def convert(self, value, param, ctx):
         """The number, or a wrong call."""
         if isinstance(value, str) and not DECIMAL.fullmatch(value.strip()):
-            self.fail(f"{value!r} is not a number - write digits, as 0.5", param, ctx)
+            self.fail(f"{value!r} is not a number", param, ctx)
         number = super().convert(value, param, ctx)
         return number if number == number else self.fail(f"{value!r} is not a number", param, ctx)
 

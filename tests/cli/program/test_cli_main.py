@@ -310,3 +310,36 @@ def test_a_number_that_is_none_is_a_wrong_call(run, call, line):
     done = run(call[0], ROOT / "parts/washer_m6.stl", *call[1:])
     assert done.exit_code == 2 and done.stdout == ""
     assert done.stderr == f"Error: Invalid value for {line} (see feeder {call[0]} --help)\n"
+
+
+RULED = {
+    "rate": (), "tooling": (), "trial": (), "report": ("--aspect", "A"), "batch": ("-o", "out"),
+    "design": ("--target", "30/min"), "bowl": ("--target", "30/min"),
+    "tune": ("--aspect", "A", "--target", "30/min"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("command", RULED)
+def test_an_unknown_rule_is_told_before_anything_is_read(command):
+    """It was a KeyError of design."""
+    done = CliRunner().invoke(feeder, [command, "gone.stl", "--rule", "closd", *RULED[command]])
+    assert (
+        done.exit_code == 1 and done.stderr == "Error: --rule: unknown rule 'closd' - did you mean closed?\n"
+    )
+
+
+def _numbers(command, above=()):
+    """Every option of a command that takes a number."""
+    for option in command.params:
+        if isinstance(option.type, (click.types.IntParamType, click.types.FloatParamType)):
+            yield (*above, option.opts[-1])
+
+
+NUMBERED = [given for name in feeder.commands for given in _numbers(feeder.commands[name], (name,))]
+
+
+@pytest.mark.parametrize("command, option", NUMBERED)
+@pytest.mark.parametrize("text", ["1_0", "\u0661\u0662", "\uff11", "nan"])
+def test_a_number_is_of_plain_digits(command, option, text):
+    done = CliRunner().invoke(feeder, [command, "gone.stl", option, text])
+    assert done.exit_code == 2 and option in done.stderr and "Traceback" not in done.stderr
