@@ -239,6 +239,19 @@ def rewritten(entry, change):
     entry.write_text(json.dumps(held))
 
 
+def test_an_entry_damaged_anywhere_is_as_none(folder, rng):
+    arrays = {"p": np.arange(4.0), "n": np.array(3)}
+    on_disk.write(KEY, arrays)
+    (entry,) = folder.iterdir()
+    whole = entry.read_bytes()
+    for _ in range(300):
+        start, length = rng.integers(len(whole)), rng.integers(0, 40)
+        odd = rng.choice([b"", b"[" * 3000, b"1e999", b"null", b"\x00", b"9" * 5000, bytes(rng.bytes(10))])
+        entry.write_bytes(whole[:start] + odd + whole[start + length :])
+        found = on_disk.read(KEY)
+        assert found is None or all((found[name] == arrays[name]).all() for name in arrays)
+
+
 def of_floats(*values, shape=None):
     data = np.array(values, "<f8")
     return {"kind": "float", "shape": shape or [len(values)], "data": base64.b64encode(data).decode()}
