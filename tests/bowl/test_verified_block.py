@@ -8,6 +8,7 @@ import shapes
 from feederscrew import __version__ as VERSION
 from feederscrew import bowl as bowls
 from feederscrew.bowl.verified import SHARED, body_fingerprint, fingerprint
+from feederscrew.output import proof
 from feederscrew.output.tooling.bowl_file import device_value
 from feederscrew.part.aspect_names import AspectNames
 from feederscrew.tooling.devices.kinds import KINDS
@@ -170,3 +171,15 @@ def test_a_queue_that_nothing_left_has_no_purity(tmp_path):
     nothing = {"delivered": "0/min", "delivered_low": "0/min", "delivered_high": "0/min"}
     found = block(tmp_path, status="falls short", purity="none", **nothing)
     assert found.purity is None and "nothing left" in found.sentence and "nan" not in found.sentence
+
+
+@pytest.mark.parametrize("wanted, leads", [("A@0", True), ("B@0", False), ("A@90", False)])
+def test_a_trial_leads_for_its_own_orientation_only(tmp_path, wanted, leads):
+    """The trial of A@0 was given as the rate of B."""
+    part = replace(PART, sha256=BLOCK["part"].strip('"'))
+    tried, own = block(tmp_path, up=None), {"parts_per_minute": 105.5}
+    document = proof.beside(own, tried, part, BOWL, wanted)
+    assert document["parts_per_minute"] == pytest.approx(12.0 if leads else 105.5)
+    assert (document["verified"] is not None) == leads
+    (said,) = proof.warnings(tried, part, BOWL, wanted)
+    assert ("its trial delivers 12/min" in said) == leads and ("void: A@0 was tried" in said) != leads
