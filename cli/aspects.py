@@ -24,7 +24,7 @@ SURFACES = click.Choice(["soft", "medium", "hard"])
 )
 @click.option("--surface-exponent", type=options.Number(-10, 10), help="The same as a number, 0 to about 3.")
 @click.option(
-    "--drops", type=click.IntRange(0, 10**7), cls=options.Renamed, former=("--drop",),
+    "--drops", type=options.Whole(0, 10**7), cls=options.Renamed, former=("--drop",),
     help="How many drops; 0 for none.  [default: until every share is known to 1 %]",
 )  # fmt: skip
 @click.option(

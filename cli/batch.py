@@ -18,7 +18,7 @@ class Jobs(click.ParamType):
         """The number; None for 'auto'."""
         if value == "auto":
             return None
-        if not value.isdecimal() or not int(value):
+        if not options.WHOLE.fullmatch(value) or not int(value) > 0:
             self.fail(f"{value!r} is not a number of processes - give 1, 2, ... or auto", param, ctx)
         return int(value)
 
@@ -46,7 +46,7 @@ def _grouped(command):
 @click.option(
     "--drops",
     metavar="N",
-    type=click.IntRange(0, 10_000_000),
+    type=options.Whole(0, 10_000_000),
     default=0,
     help="Simulated drops of each part; none without it.",
 )

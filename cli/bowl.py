@@ -119,10 +119,11 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
             study.bowl(settings, solid, target, **wanted, solid=shape) if solid else study.machine(settings)
         )
         tried, record = bowls.verified(path), bowls.record(settings)
-        out.warn(*found.remarks, *proof.warnings(tried, solid, record))
+        own = solid, record, orientation.name(wanted)
+        out.warn(*found.remarks, *proof.warnings(tried, *own))
         offers.write(folder, machine.offers(found), pictures=pictures)
-        document = proof.beside(tables.document(found), tried, solid, record)
-        out.show(tables.summary(found, tried if proof.holds(tried, solid, record) else None), document)
+        document = proof.beside(tables.document(found), tried, *own)
+        out.show(tables.summary(found, tried if proof.holds(tried, *own) else None), document)
 
 
 def _found(bowl, measured, out):

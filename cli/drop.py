@@ -49,16 +49,16 @@ def _tested(command):
 @conditions
 @click.option(
     "--drops",
-    type=click.IntRange(1, 10**7),
+    type=options.Whole(1, 10**7),
     help="How many drops.  [default: 10000; on a plate 400; 64 of each of --launches]",
 )
 @click.option("--until", metavar="SHARE", help='Go on until no 95 % interval is wider: "1%" to either side.')
 @click.option(
-    "--seed", type=click.IntRange(0), default=1, show_default=True, help="Seed of the random launches."
+    "--seed", type=options.Whole(0), default=1, show_default=True, help="Seed of the random launches."
 )
-@click.option("--jobs", type=click.IntRange(1, 256), metavar="N", help="Cores to use.  [default: all]")
+@click.option("--jobs", type=options.Whole(1, 256), metavar="N", help="Cores to use.  [default: all]")
 @click.option(
-    "--trace", type=click.IntRange(1, 1000), metavar="K", help="With -o: the motion of the first K drops."
+    "--trace", type=options.Whole(1, 1000), metavar="K", help="With -o: the motion of the first K drops."
 )
 @tosses.launches
 @plates.plate

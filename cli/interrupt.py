@@ -6,6 +6,33 @@ import signal
 import threading
 
 INTERRUPTED = 128 + signal.SIGINT
+_heard = threading.Event()  # whether this run of the program was told to stop
+
+
+def was_heard():
+    """Return whether Ctrl-C, or a signal taken for it, has come since the program began."""
+    return _heard.is_set()
+
+
+@contextlib.contextmanager
+def listening():
+    """Note every Ctrl-C of the block beside letting it through: a library may drop it, a run end early."""
+    _heard.clear()
+    ours = threading.current_thread() is threading.main_thread()
+    before = signal.getsignal(signal.SIGINT)
+    if not ours or before is not signal.default_int_handler:
+        yield
+        return
+
+    def catch(*_):
+        _heard.set()
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, catch)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 @contextlib.contextmanager
@@ -20,6 +47,7 @@ def held_back():
     caught: list[tuple] = []
 
     def catch(*received):
+        _heard.set()
         if caught:
             raise KeyboardInterrupt
         caught.append(received)
@@ -45,6 +73,7 @@ def noted():
         return
 
     def catch(*received):
+        _heard.set()
         caught.append(received)
         raise KeyboardInterrupt
 
@@ -78,6 +107,7 @@ def ended_within(seconds):
     timer.daemon = True
 
     def catch(*_):
+        _heard.set()
         if not timer.ident:
             timer.start()
         raise KeyboardInterrupt

@@ -15,7 +15,7 @@ from feederscrew import __version__
 from feederscrew.errors import ArgumentError, Faults, FeederError
 from feederscrew.units import printable
 from feederscrew_cli import argument_names
-from feederscrew_cli.interrupt import INTERRUPTED
+from feederscrew_cli.interrupt import INTERRUPTED, listening, was_heard
 
 GROUPS = {  # heading: commands, in the order of a job
     "Design": ("design", "tooling", "trial", "bowl", "report"),
@@ -61,22 +61,35 @@ class Fence(click.Group):
         arguments = list(sys.argv[1:] if args is None else args)
         _take_any_name()
         gc.set_threshold(SELDOM)
+        with listening():
+            status = self._status(arguments, extra)
+            status = status if isinstance(status, int) else 0
+            if was_heard() and status in (0, 1):  # what is there was given; make must not take it as done
+                status = INTERRUPTED
+        sys.exit(status)
+
+    def _status(self, arguments, extra):
+        """Run one command line; the exit status."""
         try:
-            status = super().main(arguments, **{**extra, "standalone_mode": False, "obj": arguments})
-        except click.Abort:
+            return super().main(arguments, **{**extra, "standalone_mode": False, "obj": arguments})
+        except (click.Abort, KeyboardInterrupt):
             _tell("Stopped.")
-            status = INTERRUPTED
+            return INTERRUPTED
         except click.ClickException as error:
             _tell(
                 "Error: " + " ".join(error.format_message().split()) + _near_miss(error) + _help_hint(error)
             )
-            status = error.exit_code
+            return error.exit_code
         except BrokenPipeError:
-            status = _without_stdout(PIPE_CLOSED)
+            return _without_stdout(PIPE_CLOSED)
         except (OSError, UnicodeError) as error:
             _tell("Error: " + _of_the_system(error))
-            status = _without_stdout(1)
-        sys.exit(status if isinstance(status, int) else 0)
+            return _without_stdout(1)
+        except Exception:  # a library that an interrupt has hit while it loads fails in any way
+            if not was_heard():
+                raise
+            _tell("Stopped.")
+            return INTERRUPTED
 
     def invoke(self, ctx):
         """Run the command, each fault printed on a line of its own."""

@@ -1,6 +1,7 @@
 """Every option that two commands share, once."""
 
 import functools
+import re
 
 import click
 
@@ -39,6 +40,10 @@ class Named(click.Option):
             self.help = shown
 
 
+WHOLE = re.compile(r"[+-]?[0-9]{1,30}")
+DECIMAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+
+
 class Renamed(click.Option):
     """An option with ``former`` names, which are still taken; its help shows the present one."""
 
@@ -59,14 +64,26 @@ class Renamed(click.Option):
 
 
 class Number(click.FloatRange):
-    """A number within limits; not 'nan', which is within any."""
+    """A number within limits, of the digits 0 to 9; not 'nan', which is within any."""
 
     name = "number"
 
     def convert(self, value, param, ctx):
         """The number, or a wrong call."""
+        if isinstance(value, str) and not DECIMAL.fullmatch(value.strip()):
+            self.fail(f"{value!r} is not a number", param, ctx)
         number = super().convert(value, param, ctx)
         return number if number == number else self.fail(f"{value!r} is not a number", param, ctx)
+
+
+class Whole(click.IntRange):
+    """A whole number within limits, of the digits 0 to 9: Python takes those of other scripts, and '1_0'."""
+
+    def convert(self, value, param, ctx):
+        """The number, or a wrong call."""
+        if isinstance(value, str) and not WHOLE.fullmatch(value.strip()):
+            self.fail(f"{value!r} is not a valid whole number - write digits, as 10", param, ctx)
+        return super().convert(value, param, ctx)
 
 
 def optional_part(command):
@@ -151,6 +168,14 @@ def overrides(command):
     )(command)
 
 
+def _known_rule(context, option, value):
+    """The name of a rule; a mistyped one is told of before anything is read."""
+    from feederscrew.resting.rules.registry import require_rule
+
+    require_rule(value)
+    return value
+
+
 def rule(command):
     """``--rule``; the command receives its name."""
     return click.option(
@@ -160,6 +185,7 @@ def rule(command):
         metavar="NAME",
         cls=Named,
         names=completion.known_rules,
+        callback=_known_rule,
         shell_complete=completion.rules,
         help="Whose probabilities are taken.",
     )(command)

@@ -1,5 +1,6 @@
 """The options that say which parts are wanted: shared by the commands that count them."""
 
+import math
 from typing import Any
 
 import click
@@ -41,6 +42,13 @@ def of_an_aspect(asked):
         raise click.UsageError("--heading is given without --aspect - name the aspect as well")
 
 
+def name(asked):
+    """Return the name of the orientation that is asked for, 'A@90', or of its aspect; None where none is."""
+    if asked["aspect"] is None or asked["heading"] is None:
+        return asked["aspect"]
+    return f"{asked['aspect']}@{round(math.degrees(asked['heading'])) % 360}"
+
+
 LEAVES_MOST = click.option(
     "--aspect",
     metavar="NAME",
@@ -59,11 +67,11 @@ LAUNCHED = click.option(
     help="What is done to the part, on a floor at rest.  [default: fed onto the bowl's moving floor]",
 )
 FED = click.option(
-    "--fed", metavar="N", type=click.IntRange(1, 10**6),
+    "--fed", metavar="N", type=options.Whole(1, 10**6),
     help="Feed N parts onto the moving floor.  [default: until every share is known to 2 %]",
 )  # fmt: skip
 SEED = click.option(
-    "--seed", type=click.IntRange(0), default=1, show_default=True, help="Seed of the parts that are fed."
+    "--seed", type=options.Whole(0), default=1, show_default=True, help="Seed of the parts that are fed."
 )
 PROBABILITIES = click.option(
     "--probabilities",

@@ -45,7 +45,8 @@ def rate(part, wanted, taken, play, tolerance, bowl, out):
     with out.folder(solid.name, solid.inputs | known.inputs, effective) as folder:
         found = study(solid, record, known=known, sigma=math.hypot(play, tolerance), **wanted)
         tried = bowls.verified(bowl["path"])
-        document = proof.beside(tables.document(found), tried, solid, record)
-        out.warn(*found.warnings, *tables.remarks(found), *proof.warnings(tried, solid, record))
+        own = solid, record, found.rate.orientations.lying[found.rate.row].name
+        document = proof.beside(tables.document(found), tried, *own)
+        out.warn(*found.warnings, *tables.remarks(found), *proof.warnings(tried, *own))
         offers.write(folder, files.offers(found))
         out.show(tables.summary(document), document)

@@ -22,7 +22,7 @@ WANTED = (
         "sent",
         cls=options.Renamed,
         former=("--trial",),
-        type=click.IntRange(1, 10**4),
+        type=options.Whole(1, 10**4),
         metavar="N",
         help="Send N parts along the track and through the devices, to be played.",
     ),
@@ -88,7 +88,7 @@ def report(part, bowl, taken, directory, format, quiet, verbose, **wanted):
     with out.folder(solid.name, found.inputs, effective) as folder:
         made = page(found, out.step)
         out.warn(*(line for line in made.warnings if line not in solid.warnings))
-        out.warn(*proof.warnings(verified(bowl["path"]), solid, record(found.settings)))
+        out.warn(*proof.warnings(verified(bowl["path"]), solid, record(found.settings), found.aspect))
         write(folder, made, format)
 
 

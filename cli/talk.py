@@ -80,6 +80,10 @@ class Output:
 
             solid = load(**keywords)
         self.warn(*solid.warnings)
+        if self.verbose:
+            from feederscrew.studies.simulated import on_disk
+
+            self.say(*filter(None, [on_disk.refusal()]))
         return solid
 
     def settings(self, bowl):
@@ -157,12 +161,16 @@ class Output:
             yield folder
             if folder.left_out:
                 self.warn(f"stopped while drawing: without {', '.join(folder.left_out)}")
-            folder.keep(
-                self.command,
-                arguments=placeless(self.arguments),
-                effective=effective or {},
-                warnings=self.warnings,
-            )
+            with held_back():  # all of them or none
+                folder.keep(
+                    self.command,
+                    arguments=placeless(self.arguments),
+                    effective=effective or {},
+                    warnings=self.warnings,
+                )
+        if folder.left_out:
+            self.say(f"Wrote {folder.path} ({', '.join(sorted(folder.staged))}, run.json)")
+            raise KeyboardInterrupt  # not done: no rule for make, the status of what was stopped
         self.depend(folder.path / name for name in sorted(folder.staged))
         self.say(f"Wrote {folder.path} ({', '.join(sorted(folder.staged))}, run.json)")
 

@@ -80,11 +80,11 @@ def _asked(command):
 @click.option("--cad", is_flag=True, help="Write tooling.step as well; needs feederscrew[cad].")
 @click.option("--turn", is_flag=True, help="Allow steps and ledges that turn parts over, before the cuts.")
 @click.option(
-    "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the search for holes."
+    "--seed", type=options.Whole(min=0), default=1, show_default=True, help="Seed of the search for holes."
 )
 @click.option(
     "--verdicts",
-    type=click.IntRange(min=1),
+    type=options.Whole(min=1),
     default=30000,
     show_default=True,
     help="Limit of the search for holes, in verdicts an orientation: it ends alike on every machine.",

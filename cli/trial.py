@@ -21,7 +21,7 @@ def _queued(command):
         command,
         click.option(
             "--queue",
-            type=click.IntRange(1, 1000),
+            type=options.Whole(1, 1000),
             metavar="N",
             help="Send a queue of N parts as well, which push each other.",
         ),
@@ -69,11 +69,11 @@ def _together(queue, **others):
 @orientation.taken
 @click.option(
     "--parts",
-    type=click.IntRange(1, 10**6),
+    type=options.Whole(1, 10**6),
     help="Parts that are sent one at a time.  [default: 200; with --queue 60]",
 )
 @click.option(
-    "--landing", type=click.IntRange(1, 10**6), metavar="N", help="Let N parts fall onto the track as well."
+    "--landing", type=options.Whole(1, 10**6), metavar="N", help="Let N parts fall onto the track as well."
 )
 @_queued
 @click.option(
@@ -84,12 +84,12 @@ def _together(queue, **others):
 )
 @click.option(
     "--seed",
-    type=click.IntRange(0),
+    type=options.Whole(0),
     default=1,
     show_default=True,
     help="Seed of the play and the phases that are drawn.",
 )
-@click.option("--jobs", type=click.IntRange(1, 256), metavar="N", help="Cores to use.  [default: all]")
+@click.option("--jobs", type=options.Whole(1, 256), metavar="N", help="Cores to use.  [default: all]")
 @options.bowl
 @options.pictures
 @options.output

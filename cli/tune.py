@@ -52,7 +52,8 @@ def tune(part, target, wanted, taken, worst, bowl, out):
             progress=waiting.told(out, "settings"), **wanted,
         )  # fmt: skip
         tried = bowls.verified(bowl["path"])
-        out.warn(*found.warnings, *tables.remarks(found), *proof.warnings(tried, solid, record))
+        own = solid, record, orientation.name(wanted)
+        out.warn(*found.warnings, *tables.remarks(found), *proof.warnings(tried, *own))
         offers.write(folder, files.offers(found))
-        document = proof.beside(tables.document(found), tried, solid, record)
+        document = proof.beside(tables.document(found), tried, *own)
         out.show(tables.shown(found, out.format), document, spare=())

@@ -80,6 +80,51 @@ def frozen(array: Any) -> np.ndarray:
     return array
 
 
+def ranged(
+    name: str,
+    array: np.ndarray,
+    shape: tuple[int, ...],
+    low: float = -np.inf,
+    high: float = np.inf,
+    *,
+    whole: bool = False,
+    gaps: bool = False,
+) -> np.ndarray:
+    """Return an array that was read from a file, closed to writing, once every number in it is in its range.
+
+    Parameters
+    ----------
+    name : str
+    array : array
+    shape : tuple of int
+        Expected shape; -1 stands for any length.
+    low, high : float
+    whole : bool
+        Whether its numbers are whole; floats otherwise.
+    gaps : bool
+        Whether NaN stands for a number that is not known.
+
+    Returns
+    -------
+    array of ``shape``
+
+    Raises
+    ------
+    ValueError
+        If the shape or the kind of number is another one, or a number is not finite or out of range.
+    """
+    fits = len(array.shape) == len(shape) and all(
+        want in (-1, size) for want, size in zip(shape, array.shape, strict=True)
+    )
+    if not fits or array.dtype.kind != ("i" if whole else "f"):
+        raise ValueError(f"{name} is an array {array.shape} of {array.dtype}, not {shape}")
+    known = np.isfinite(array) & (array >= low) & (array <= high)
+    if not (known | np.isnan(array) if gaps else known).all():
+        raise ValueError(f"{name} has a number that is not within {low:g} to {high:g}")
+    array.setflags(write=False)
+    return array
+
+
 def of_an_aspect(aspect: str | None, heading: float | None) -> None:
     """Raise an ArgumentError where a heading is given without the aspect that it is a heading of."""
     if heading is not None and aspect is None:

@@ -19,6 +19,7 @@ DEEPEST = 12  # levels of nesting
 POINTER_HEAD = b"version https://git-lfs.github.com/spec/"
 POINTER = "is a pointer file of git LFS, not the file it stands for"
 PULL = "fetch the file with `git lfs pull`"
+MAX_FAULTS = 50  # of a file that are listed
 
 
 @dataclass(frozen=True)
@@ -207,12 +208,17 @@ def decoded(data: bytes | bytearray, name: str) -> str:
 
 
 def raise_all(faults: Iterable[FeederError]) -> None:
-    """Raise every fault of a file in one go, in the order of its lines, the first of each place."""
+    """Raise up to MAX_FAULTS of the faults of a file, in the order of its lines, the first of each place."""
     first: dict[str, FeederError] = {}
     for fault in faults:
         first.setdefault(str(fault.where), fault)
-    if first:
-        raise Faults(sorted(first.values(), key=_position))
+    listed = sorted(first.values(), key=_position)
+    if len(listed) > MAX_FAULTS:
+        where = str(listed[MAX_FAULTS].where)
+        more = f"the first of {len(listed) - MAX_FAULTS} further faults"
+        listed = [*listed[:MAX_FAULTS], ConfigError(where, more, "mend those above first")]
+    if listed:
+        raise Faults(listed)
 
 
 def hint(word: str, known: Iterable[str]) -> str:

@@ -1,20 +1,52 @@
-"""DXF files, the one door to ezdxf: closed polylines read from a layer, and drawings written."""
+"""DXF files, the one door to ezdxf: closed outlines read from a layer, and drawings written."""
 
 import contextlib
 import io
+import itertools
 import logging
+import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from feederscrew import units
 from feederscrew.errors import DAMAGE, ConfigError
 
-MILLIMETRES = {0: 1.0, 1: 25.4, 4: 1.0, 5: 10.0, 6: 1000.0}  # by $INSUNITS; 0 states none
+MILLIMETRES = {  # by $INSUNITS: DXF Reference of Autodesk, "HEADER Section"; 0 states none
+    0: 1.0, 1: 25.4, 2: 304.8, 3: 1609344.0, 4: 1.0, 5: 10.0, 6: 1000.0, 7: 1e6, 8: 25.4e-6, 9: 25.4e-3,
+    10: 914.4, 11: 1e-7, 12: 1e-6, 13: 1e-3, 14: 100.0, 15: 1e4, 16: 1e5, 21: 1200e3 / 3937.0,
+    22: 100e3 / 3937.0, 23: 3600e3 / 3937.0,
+}  # fmt: skip
 IN_MILLIMETRES = 4  # of $INSUNITS
 FARTHEST = 1e3  # [m] from the origin of a drawing to a corner of a hole
 LETTERS = 3.0  # [mm] height of texts
+CHORD_ERROR_M = 1e-6  # at most between a curve and the chord read for it; the corners lie on the curve
+MAX_CHORD_ANGLE = math.radians(15.0)  # of an arc to one chord
+JOIN_M = 1e-6  # ends of lines and arcs so near are one corner
+FLAT_M = 1e-6  # by which the heights of an outline may differ
+REPEATED_M = 1e-9  # a corner so near to the last one is none
+STRAIGHT_M = 1e-12  # a corner so near to the line through its neighbours is none
+MAX_FILE_BYTES = 10_000_000
+MAX_ENTITIES = 10_000  # on the layer, those of blocks included
+MAX_CORNERS = 1000  # of one outline, after its curves are read as chords
+MAX_BLOCK_DEPTH = 8  # blocks within blocks
+ANNOTATIONS = frozenset(
+    ("TEXT", "MTEXT", "DIMENSION", "LEADER", "MULTILEADER", "POINT", "ATTDEF", "VIEWPORT", "TOLERANCE")
+)  # no edges of a hole
+FITTED = 2 | 4  # flags of a POLYLINE that stands for a fitted curve
+
+Point = tuple[float, ...]  # (x, y, z) in the drawing's own unit, then (x, y) [m]
+
+
+class _Unread(Exception):
+    """What a layer holds that is not read: what is wrong, and how to mend it."""
+
+    def __init__(self, what: str, mend: str) -> None:
+        super().__init__(what)
+        self.what, self.mend = what, mend
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,49 +61,298 @@ class Layer:
 
 
 def closed_polylines(path: Path, layer: str, where: str) -> list[list[tuple[float, float]]]:
-    """Read the closed polylines of one layer.
+    """Read the closed outlines of one layer, curves as chords.
+
+    Closed polylines, circles, ellipses and splines are outlines by themselves. Lines, arcs and open curves
+    are joined where their ends meet. Blocks are read as what they hold. Texts and dimensions are left out.
 
     Parameters
     ----------
     path : Path
+        A regular file of at most MAX_FILE_BYTES.
     layer : str
+        Upper and lower case are the same, as in any drawing.
     where : str
         Of the file's name in the bowl file, for the fault.
 
     Returns
     -------
     list of list of (float, float) [m]
+        Corners on the outline; between them it is at most CHORD_ERROR_M away.
 
     Raises
     ------
     ConfigError
-        If the file cannot be read as DXF or has no such layer.
+        If the file cannot be read as DXF, has no such layer, no known unit, or on the layer what is no flat
+        closed outline.
     """
     import ezdxf
 
     logging.getLogger(ezdxf.__name__).setLevel(logging.CRITICAL)  # our line says what is wrong
+    name = units.printable(str(path))
     try:
-        found = _rings(ezdxf.readfile(path), layer)
+        if not path.exists():
+            raise FileNotFoundError
+        if not path.is_file():
+            raise ConfigError(where, f"{name} is no regular file", "name a DXF file")
+        if path.stat().st_size > MAX_FILE_BYTES:
+            what = f"{name} has more than {MAX_FILE_BYTES // 10**6} MB"
+            raise ConfigError(where, what, "save the hole alone")
+        found = _outlines(ezdxf.readfile(path), layer)
     except FileNotFoundError:
-        raise ConfigError(where, f"{path}: no such file", "check the path") from None
+        raise ConfigError(where, f"{name}: no such file", "check the path") from None
+    except _Unread as fault:
+        what = f"layer {units.shown(layer)} of {units.printable(path.name)} {fault.what}"
+        raise ConfigError(where, what, fault.mend) from None
     except (*DAMAGE, ezdxf.DXFError):  # type: ignore[misc]
         raise ConfigError(
-            where, f"{path} cannot be read as DXF", "save it as ASCII DXF R2000 or later"
+            where, f"{name} cannot be read as DXF", "save it as ASCII DXF R2000 or later"
         ) from None
-    if not all(abs(place) <= FARTHEST for ring in found for corner in ring for place in corner):
-        what = f"{path.name} has a corner farther than {FARTHEST:g} m from its origin, or at no finite place"
-        raise ConfigError(where, what, "check the drawing's units, and save it again")
     if not found:
-        what = f"{path.name} has no closed polyline on layer {units.shown(layer)}"
+        what = f"{units.printable(path.name)} has no closed outline on layer {units.shown(layer)}"
         raise ConfigError(where, what, "draw the hole as one closed polyline (LWPOLYLINE)")
     return found
 
 
-def _rings(drawing: Any, layer: str) -> list[list[tuple[float, float]]]:
-    """Corners (x, y) [m] of each closed polyline on a layer."""
-    size = MILLIMETRES.get(drawing.units, 1.0) * 1e-3
-    lines = drawing.modelspace().query(f'LWPOLYLINE[layer=="{layer}"]') if _named(layer) else []
-    return [[(x * size, y * size) for x, y in line.get_points("xy")] for line in lines if line.closed]
+def _outlines(drawing: Any, layer: str) -> list[list[tuple[float, float]]]:
+    """Corners (x, y) [m] of each closed outline on a layer."""
+    code = int(drawing.header.get("$INSUNITS", 0))
+    if code not in MILLIMETRES:
+        raise _Unread(f"is drawn in unit {code} of $INSUNITS", "save the drawing in millimetres")
+    size = MILLIMETRES[code] * 1e-3
+    rings: list[list[tuple[float, float]]] = []
+    chains: list[list[tuple[float, float]]] = []
+    for kind, entity in _on_layer(drawing.modelspace(), layer.casefold()):
+        points, closed = _points(kind, entity, CHORD_ERROR_M / size)
+        flat = _flat(points, size)
+        ends_meet = len(flat) > 2 and math.dist(flat[0], flat[-1]) <= JOIN_M
+        (rings if closed or ends_meet else chains).append(flat)
+    return [_simplified(ring) for ring in (*rings, *_joined(chains))]
+
+
+def _on_layer(space: Iterable[Any], layer: str) -> Iterator[tuple[str, Any]]:
+    """The kind of each entity with an edge on a layer, and the entity; blocks as what they hold."""
+    for count, entity in enumerate(_within_blocks(space, layer, 0), 1):
+        if count > MAX_ENTITIES:
+            raise _Unread(f"has more than {MAX_ENTITIES} entities", "keep the hole alone on its layer")
+        yield entity.dxftype(), entity
+
+
+def _within_blocks(space: Iterable[Any], layer: str, depth: int) -> Iterator[Any]:
+    """Entities on a layer, those of inserted blocks as they stand; within a block layer 0 is the insert's."""
+    for entity in space:
+        own = str(entity.dxf.get("layer", "0")).casefold()
+        if entity.dxftype() != "INSERT":
+            if own == layer and entity.dxftype() not in ANNOTATIONS:
+                yield entity
+            continue
+        if depth >= MAX_BLOCK_DEPTH:
+            raise _Unread(f"has blocks nested deeper than {MAX_BLOCK_DEPTH}", "explode the blocks")
+        for single in entity.multi_insert() if entity.mcount > 1 else (entity,):
+            held = list(itertools.islice(single.virtual_entities(), MAX_ENTITIES + 1))
+            for inner in held:
+                if str(inner.dxf.get("layer", "0")) == "0":
+                    inner.dxf.layer = entity.dxf.get("layer", "0")
+            yield from _within_blocks(held, layer, depth + 1)
+
+
+def _points(kind: str, entity: Any, sagitta: float) -> tuple[list[Point], bool]:
+    """Points (x, y, z) [drawing units] along an entity, chords within the sagitta; whether it is closed."""
+    dxf = entity.dxf
+    if kind == "LINE":
+        return [tuple(dxf.start), tuple(dxf.end)], False
+    if kind == "LWPOLYLINE":
+        corners = [tuple(corner) for corner in entity.get_points("xyb")]
+        return _bulged(corners, bool(entity.closed), float(dxf.get("elevation", 0.0)), entity.ocs(), sagitta)
+    if kind == "POLYLINE" and not dxf.flags & FITTED:
+        if entity.is_2d_polyline:
+            places = [vertex.dxf.location for vertex in entity.vertices]
+            bulges = [float(vertex.dxf.get("bulge", 0.0)) for vertex in entity.vertices]
+            corners = [(place.x, place.y, bulge) for place, bulge in zip(places, bulges, strict=True)]
+            height = float(tuple(dxf.get("elevation", (0.0, 0.0, 0.0)))[2])
+            return _bulged(corners, bool(entity.is_closed), height, entity.ocs(), sagitta)
+        if entity.is_3d_polyline:
+            return [tuple(vertex.dxf.location) for vertex in entity.vertices], bool(entity.is_closed)
+    if kind in ("ARC", "CIRCLE"):
+        return _round(kind, entity, sagitta)
+    if kind == "ELLIPSE":
+        _near((*dxf.center, *dxf.major_axis))
+        found = itertools.islice(entity.flattening(sagitta, MAX_CORNERS // 16), MAX_CORNERS + 2)
+        return [tuple(point) for point in found], False
+    if kind == "SPLINE" and len(entity.control_points):
+        return _spline(entity, sagitta), False
+    raise _Unread(
+        f"holds {units.one_line(kind)}, which is not read",
+        "draw the hole of polylines, lines, arcs, circles, ellipses and splines",
+    )
+
+
+def _bulged(
+    corners: list[Point], closed: bool, height: float, frame: Any, sagitta: float
+) -> tuple[list[Point], bool]:
+    """Points of a polyline whose corners (x, y, bulge) stand in a frame of their own; whether it is closed.
+
+    A bulge is the tangent of a quarter of the angle of the arc to the next corner, positive to the left: DXF
+    Reference of Autodesk, "LWPOLYLINE".
+    """
+    _near([place for corner in corners for place in corner])
+    if len(corners) > MAX_ENTITIES:
+        raise _Unread(f"has an outline of {len(corners)} corners", f"keep it below {MAX_CORNERS}")
+    flat: list[tuple[float, float]] = []
+    following = corners[1:] + corners[:1]
+    for k, ((x, y, bulge), (to_x, to_y, _)) in enumerate(zip(corners, following, strict=True)):
+        flat.append((x, y))
+        if bulge == 0.0 or (k == len(corners) - 1 and not closed):
+            continue
+        angle, across, up = 4.0 * math.atan(bulge), to_x - x, to_y - y
+        to_centre = (1.0 - bulge**2) / (4.0 * bulge)
+        centre = 0.5 * (x + to_x) - up * to_centre, 0.5 * (y + to_y) + across * to_centre
+        radius, start = math.dist(centre, (x, y)), math.atan2(y - centre[1], x - centre[0])
+        count = _chords(radius, abs(angle), sagitta)
+        for n in range(1, count):
+            turn = start + angle * n / count
+            flat.append((centre[0] + radius * math.cos(turn), centre[1] + radius * math.sin(turn)))
+    return [tuple(point) for point in frame.points_to_wcs((x, y, height) for x, y in flat)], closed
+
+
+def _round(kind: str, entity: Any, sagitta: float) -> tuple[list[Point], bool]:
+    """Points of an arc or a circle; whether it is closed."""
+    dxf, closed = entity.dxf, kind == "CIRCLE"
+    radius = abs(float(dxf.radius))
+    start, end = (0.0, 360.0) if closed else (float(dxf.start_angle), float(dxf.end_angle))
+    _near((*dxf.center, radius))
+    _near((start, end))
+    sweep = 360.0 if closed else (end - start) % 360.0 or 360.0
+    count = _chords(radius, math.radians(sweep), sagitta)
+    angles = [start + sweep * n / count for n in range(count if closed else count + 1)]
+    return [tuple(point) for point in entity.vertices(angles)], closed
+
+
+def _spline(entity: Any, sagitta: float) -> list[Point]:
+    """Points of a spline, from the knot where its curve begins to the one where it ends.
+
+    A rational spline is one in (w x, w y, w z, w): L. Piegl and W. Tiller, "The NURBS Book", 2nd ed., ch. 4.
+    """
+    from scipy.interpolate import BSpline
+
+    places, degree = np.array([tuple(place) for place in entity.control_points]), int(entity.dxf.degree)
+    knots, weights = np.array(entity.knots, float), np.array(entity.weights or np.ones(len(places)), float)
+    _near((*places.ravel(), *knots, *weights))
+    fits = len(knots) == len(places) + degree + 1 and 1 <= degree <= 15 and degree < len(places)
+    if not fits or len(weights) != len(places) or (np.diff(knots) < 0.0).any() or not (weights > 0.0).all():
+        raise _Unread("holds a SPLINE whose knots do not fit it", "draw it again, or as a polyline")
+    curve = BSpline(knots, np.column_stack([places * weights[:, None], weights]), degree)
+    spans = np.unique(knots[degree : len(places) + 1])
+    count = 4
+    while count * len(spans) <= 4 * MAX_CORNERS:
+        shares = np.arange(2 * count) / (2.0 * count)
+        times = np.append((spans[:-1, None] + np.diff(spans)[:, None] * shares).ravel(), spans[-1])
+        found = curve(times)
+        points = found[:, :3] / found[:, 3:]
+        off = points[1::2] - 0.5 * (points[:-2:2] + points[2::2])
+        if np.sqrt((off**2).sum(axis=1)).max(initial=0.0) <= sagitta:
+            return [tuple(map(float, point)) for point in points[::2]]
+        count *= 2
+    raise _Unread("holds a SPLINE of too many chords", "check the drawing's units")
+
+
+def _chords(radius: float, angle: float, sagitta: float) -> int:
+    """How many chords an arc of an angle [rad] takes for none to be farther from it than the sagitta."""
+    if not radius > 0.0 or not angle > 0.0:
+        return 1
+    step = min(2.0 * math.acos(max(1.0 - sagitta / radius, 0.0)), MAX_CHORD_ANGLE)
+    count = math.ceil(angle / max(step, 1e-12))
+    if count > MAX_CORNERS:
+        raise _Unread(f"has an arc that takes {count} chords", "check the drawing's units")
+    return count
+
+
+def _near(places: Iterable[float]) -> None:
+    """Refuse numbers that are of no drawing, before curves are made of them."""
+    if not all(abs(float(place)) <= 1e12 for place in places):
+        raise _Unread("has a corner at no finite place", "check the drawing's units, and save it again")
+
+
+def _flat(points: list[Point], size: float) -> list[tuple[float, float]]:
+    """Points (x, y) [m] of a flat outline."""
+    if not points:
+        return []
+    if not all(abs(place) * size <= FARTHEST for point in points for place in point):
+        what = f"has a corner farther than {FARTHEST:g} m from the origin, or at no finite place"
+        raise _Unread(what, "check the drawing's units, and save it again")
+    heights = [point[2] * size for point in points]
+    if max(heights) - min(heights) > FLAT_M:
+        raise _Unread("has an outline that is not flat", "draw the hole in the plane of X and Y")
+    return [(point[0] * size, point[1] * size) for point in points]
+
+
+def _joined(chains: list[list[tuple[float, float]]]) -> Iterator[list[tuple[float, float]]]:
+    """Outlines of chains whose ends meet, by a grid of their ends; raises _Unread where one stays open."""
+    ends: dict[tuple[int, int], list[tuple[int, int]]] = {}  # chain and which end, by cell
+    chains = [chain for chain in chains if len(chain) > 1]
+    for k, chain in enumerate(chains):
+        for end in (0, -1):
+            ends.setdefault(_cell(chain[end]), []).append((k, end))
+    left = set(range(len(chains)))
+    while left:
+        first = min(left)
+        left.remove(first)
+        ring = list(chains[first])
+        while math.dist(ring[0], ring[-1]) > JOIN_M or len(ring) < 3:
+            met = [
+                (k, end)
+                for cell in _around(_cell(ring[-1]))
+                for k, end in ends.get(cell, ())
+                if k in left and math.dist(chains[k][end], ring[-1]) <= JOIN_M
+            ]
+            if len(met) != 1:
+                raise _open(ring[-1], len(met), chains, left, ring[0])
+            k, end = met[0]
+            left.remove(k)
+            ring += chains[k][1:] if end == 0 else chains[k][-2::-1]
+        yield ring
+
+
+def _open(place: Point, count: int, chains: list[Any], left: set[int], start: Point) -> _Unread:
+    """The fault of an outline that does not go on, or goes on in several ways."""
+    at = f"at ({1e3 * place[0]:.4g}, {1e3 * place[1]:.4g}) mm"
+    if count:
+        return _Unread(f"has an outline that branches {at}", "keep one closed outline on the layer")
+    others = [chains[k][end] for k in left for end in (0, -1)] + [start]
+    gap = min(math.dist(place, other) for other in others)
+    return _Unread(
+        f"has an outline that is open {at}: {1e3 * gap:.3g} mm to the next end", "close the outline"
+    )
+
+
+def _cell(place: Point) -> tuple[int, int]:
+    return math.floor(place[0] / JOIN_M), math.floor(place[1] / JOIN_M)
+
+
+def _around(cell: tuple[int, int]) -> Iterator[tuple[int, int]]:
+    for i, j in itertools.product((-1, 0, 1), repeat=2):
+        yield cell[0] + i, cell[1] + j
+
+
+def _simplified(ring: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """The outline without corners that repeat the last one or lie on the line through their neighbours."""
+    corners = [b for a, b in zip((ring[-1], *ring), ring, strict=False) if math.dist(a, b) > REPEATED_M]
+    corners = corners or ring[:1]
+    kept = [
+        b
+        for a, b, c in zip((corners[-1], *corners), corners, (*corners[1:], corners[0]), strict=False)
+        if not _is_straight(a, b, c)
+    ]
+    if len(kept) > MAX_CORNERS:
+        raise _Unread(f"has an outline of {len(kept)} corners", f"keep it below {MAX_CORNERS}")
+    return kept
+
+
+def _is_straight(a: Point, b: Point, c: Point) -> bool:
+    """Whether b lies on the line from a to c, between them."""
+    length = math.dist(a, c)
+    on = abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) <= STRAIGHT_M * length
+    return on and (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) > 0.0
 
 
 def written(layers: Iterable[Layer]) -> bytes:
@@ -121,7 +402,3 @@ def _without_a_date(options: Any) -> Iterator[None]:
         yield
     finally:
         options.write_fixed_meta_data_for_testing = before
-
-
-def _named(layer: str) -> bool:
-    return layer.replace("_", "").replace("-", "").isalnum()

@@ -117,6 +117,15 @@ def split(text: str) -> tuple[float, str]:
     return number, SPELLINGS.get(unit, unit)
 
 
+def decimal(text: str) -> float:
+    """Return a plain finite number of the digits 0 to 9, as a file writes it; else raises QuantityError."""
+    match = NUMBER.fullmatch(text.strip())
+    number = float(match.group()) if match else math.nan
+    if not math.isfinite(number):
+        raise _no_number(text)
+    return number
+
+
 def one_line(text: str) -> str:
     """Return a user's text fit for a message: printable, on one line and not too long."""
     line = " ".join("".join(c if c.isprintable() else " " for c in text).split())

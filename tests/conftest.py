@@ -113,7 +113,7 @@ def fewer():
     @contextlib.contextmanager
     def context():
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(memory, "_MADE", OrderedDict())
+            patch.setattr(memory, "_RECORDS", OrderedDict())
             _set(patch, FEWEST)
             yield
 

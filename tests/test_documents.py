@@ -110,6 +110,16 @@ def test_faults_are_told_in_order_and_once_a_place():
     documents.raise_all([])
 
 
+def test_of_very_many_faults_the_first_are_listed():
+    """A file of 30,000 wrong keys gave 30,000 lines."""
+    faults = [ConfigError(f"f:{k}:1", "is odd", "mend it") for k in range(1, 1001)]
+    with pytest.raises(Faults) as caught:
+        documents.raise_all(faults)
+    lines = caught.value.lines
+    assert len(lines) == documents.MAX_FAULTS + 1 and lines[0].startswith("f:1:1: is odd")
+    assert "950 further faults" in lines[-1]
+
+
 def test_hints():
     assert documents.hint("Amplitud", ["amplitude", "frequency"]) == "did you mean amplitude?"
     assert documents.hint("xyz", ["amplitude", "frequency"]) == "known are amplitude, frequency"

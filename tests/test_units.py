@@ -84,3 +84,13 @@ def test_any_text_is_a_finite_quantity_or_a_fault(text, dimension):
         assert math.isfinite(units.quantity(text, dimension))
     except units.QuantityError as fault:
         assert "\n" not in str(fault)
+
+
+@pytest.mark.parametrize("text", ["", "nan", "inf", "1e999", "1_0", "\u0663", "\u00b2", "0x10", "1 2", "1,5"])
+def test_a_number_of_a_file_is_of_plain_digits(text):
+    with pytest.raises(units.QuantityError):
+        units.decimal(text)
+
+
+def test_a_number_of_a_file():
+    assert [units.decimal(text) for text in (" 1.5 ", "-2", "+.5e1", "3.")] == [1.5, -2.0, 5.0, 3.0]

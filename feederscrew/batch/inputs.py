@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from feederscrew import bowl as bowls
+from feederscrew import documents
 from feederscrew.batch import listing
 from feederscrew.batch.task import Conditions, Request
 from feederscrew.conveying import answer
@@ -116,7 +117,8 @@ def _fits(path, suffixes, kind):
         return False
     if suffix not in CARDS or not path.is_file():
         return True
-    return (CARD_KEY.search(path.read_bytes()) is not None) == (kind == "part")
+    held = documents.content(path, documents.LARGEST, "a YAML file")
+    return (CARD_KEY.search(held) is not None) == (kind == "part")
 
 
 def _there(path):

@@ -8,8 +8,7 @@ from feederscrew.batch.cluster import Cluster
 from feederscrew.batch.store import Store
 from feederscrew.batch.task import FAILED, Choices, Outcome, Task
 from feederscrew.batch.workers import Processes, processors
-from feederscrew.documents import hint
-from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.errors import FeederError
 from feederscrew.output import tables
 from feederscrew.output.batch import SHEET
 from feederscrew.part.reading import source
@@ -70,13 +69,11 @@ def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda
     FeederError
         If the folder cannot be used or the scheduler is lost; what is finished is kept.
     """
-    from feederscrew.resting.rules.registry import CHOICES  # while the processes import their libraries
+    from feederscrew.resting.rules.registry import require_rule  # while the processes import their libraries
 
     choices = choices or Choices()
-    if choices.rule not in CHOICES:
-        raise ArgumentError("rule", f"unknown rule {choices.rule!r}", hint(choices.rule, CHOICES))
+    require_rule(choices.rule)
     with Store(directory) as store:
-        store.remove(summary.NAME, index_page.NAME, SHEET.format("*"))
         under_way = _UnderWay(store, choices, resume, tell)
         for outcome in workers.outcomes(under_way.tasks(requests)):
             under_way.finish(outcome)
@@ -125,10 +122,12 @@ def _finished(store, requests, kept, workers):
 
     rows = summary.rows(store, requests)
     sheets = workers.each(_contact_sheet, summary.sheets(store, rows))
-    for number, sheet in enumerate(sheets, 1):
-        store.write(SHEET.format(f"_{number}" if number > 1 else ""), sheet)
-    store.write(index_page.NAME, html(index_page.page(store, rows)))
-    store.write(summary.NAME, tables.text(summary.frame(rows), "csv"))  # last: it says that all is there
+    files = {
+        SHEET.format(f"_{number}" if number > 1 else ""): sheet for number, sheet in enumerate(sheets, 1)
+    }
+    files[index_page.NAME] = html(index_page.page(store, rows))
+    files[summary.NAME] = tables.text(summary.frame(rows), "csv")  # last: it says that all is there
+    store.write(files, without=[SHEET.format("*")])
     return Batch(
         rows=rows,
         kept=kept,

@@ -18,6 +18,7 @@ MARKER = "batch.json"  # says that the folder is a batch's
 PARTS = "parts"
 AGAIN = "make room there, then start this batch again with `resume`: what is finished is kept"
 STALE = ".batch-"  # how the name of what is not finished begins
+REPLACED = "replaced"  # folder in it of results that make room for new ones
 
 
 class Store:
@@ -43,10 +44,11 @@ class Store:
             self.parts.parent.mkdir(parents=True, exist_ok=True)
             self.lock = _locked(self.path)
             self._check_ours()
-            for stale in self.path.glob(f"{STALE}*"):
-                shutil.rmtree(stale) if stale.is_dir() else stale.unlink()
-            self.write(MARKER, tables.json_text({"version": __version__}))
             self.parts.mkdir(exist_ok=True)
+            for stale in self.path.glob(f"{STALE}*"):
+                self._put_back(stale)
+                shutil.rmtree(stale) if stale.is_dir() else stale.unlink()
+            self.write({MARKER: tables.json_text({"version": __version__})})
         except OSError as error:
             mend = "give another folder to `directory`"
             raise FeederError(self.path, f"cannot be written ({error.strerror})", mend) from error
@@ -85,20 +87,39 @@ class Store:
                 (fresh / name).parent.mkdir(parents=True, exist_ok=True)
                 (fresh / name).write_bytes(content)
             if place.exists():
-                place.rename(Path(staging, "old"))
+                Path(staging, REPLACED).mkdir()
+                place.rename(Path(staging, REPLACED, outcome.name))
             fresh.rename(place)
+
+    def _put_back(self, staging):
+        """Put results back that a run had taken out of their place when it was killed."""
+        for old in staging.glob(f"{REPLACED}/*"):
+            if not (self.parts / old.name).exists():
+                old.rename(self.parts / old.name)
 
     def file(self, name, file):
         """Read the bytes of one result of a part; None where it is not there."""
         path = self.parts / name / file
         return path.read_bytes() if path.exists() else None
 
-    def write(self, name, content):
-        """Put one file of the whole batch in place, text or bytes, at once."""
+    def write(self, files, without=()):
+        """Put files of the whole batch in place once all of them are written; until then the old ones stay.
+
+        Parameters
+        ----------
+        files : dict of str to (str or bytes)
+            Content by name, in the order in which they are put in place.
+        without : sequence of str
+            Patterns of files of an earlier run, which go where they are not among the new ones.
+        """
         with self._writing(), tempfile.TemporaryDirectory(prefix=STALE, dir=self.path) as staging:
-            staged = Path(staging, "new")
-            staged.write_bytes(tables.encoded(content))
-            staged.replace(self.path / name)
+            for name, content in files.items():
+                Path(staging, name).write_bytes(tables.encoded(content))
+            for name in files:
+                Path(staging, name).replace(self.path / name)
+            for path in (path for pattern in without for path in self.path.glob(pattern)):
+                if path.name not in files:
+                    path.unlink()
 
     @contextlib.contextmanager
     def _writing(self):
@@ -108,12 +129,6 @@ class Store:
         except OSError as error:
             what = f"cannot be written ({error.strerror or error})"
             raise FeederError(self.path, what, AGAIN) from error
-
-    def remove(self, *patterns):
-        """Take files of the whole batch away, those that say what is no longer so."""
-        for pattern in patterns:
-            for path in self.path.glob(pattern):
-                path.unlink()
 
     def strangers(self, names):
         """Return the folders of parts that are not in this batch, by name."""

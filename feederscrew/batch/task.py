@@ -9,7 +9,7 @@ from importlib import metadata
 
 from feederscrew import __version__
 from feederscrew.bowl import Bowl
-from feederscrew.bowl.verified import Verified
+from feederscrew.bowl.verified import Verified, VoidTrial
 from feederscrew.output.folder import LIBRARIES
 from feederscrew.part.aspect_names import AspectNames
 
@@ -27,7 +27,7 @@ class Conditions:
     texts: tuple[tuple[str, str], ...]  # key and value in effect, as text
     given: bool = False  # whether a bowl file was named
     warnings: tuple[str, ...] = ()  # what a machine makes of its drive
-    tried: Verified | None = None  # what the file says of its trial
+    tried: Verified | VoidTrial | None = None  # what the file says of its trial
 
 
 @dataclass(frozen=True)

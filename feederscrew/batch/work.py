@@ -104,26 +104,26 @@ def travel(conditions):
 def _rate(part, found, task, files):
     """Rate the aspect wanted, else the orientation that leaves most often; what ``feeder rate`` warns of."""
     if part.vertices is None:
-        return {"note": "a part card has no outline: no rate"}, _tried(part, task.request)
+        return {"note": "a part card has no outline: no rate"}, _tried(part, task.request, None)
     conditions, rule = task.request.conditions, task.choices.rule
     study = rate(part, conditions.bowl, task.request.aspect, rule=rule, known=Shares(found))
-    document = proof.beside(rate_tables.document(study), conditions.tried, part, conditions.bowl)
+    way = study.rate.orientations.lying[study.rate.row].name
+    document = proof.beside(rate_tables.document(study), conditions.tried, part, conditions.bowl, way)
     offers.write(files, rate_files.offers(study))
     wanted = ("aspect", "heading_deg", "pitch_mm", "p_orientation", "passes_devices")
     rates = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
-    way = study.rate.orientations.lying[study.rate.row].name
     named = {"orientation": way, "rule": rule, "answer": study.answer}
     remarks = rate_tables.remarks(study)
     why = "; ".join(remarks) if document["parts_per_minute"] <= 0.0 else ""
     noted = {"note": why} if why else {}
-    warnings = (*study.warnings, *remarks, *_tried(part, task.request))
+    warnings = (*study.warnings, *remarks, *_tried(part, task.request, way))
     return named | noted | {name: document[name] for name in (*wanted, *rates)}, warnings
 
 
-def _tried(part, request):
+def _tried(part, request, wanted):
     """What the bowl file says of its trial."""
     conditions = request.conditions
-    return proof.warnings(conditions.tried, part, conditions.bowl)
+    return proof.warnings(conditions.tried, part, conditions.bowl, wanted)
 
 
 def _answered(part, task, files):

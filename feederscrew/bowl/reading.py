@@ -13,6 +13,7 @@ from feederscrew.bowl.settings import OVERRIDES, Setting, chain, default, effect
 from feederscrew.documents import Entry, Node
 from feederscrew.errors import ArgumentError, ConfigError, FeederError
 
+SMALLEST = 1e-15  # [SI] a number nearer to 0 is 0: squared, or divided by, it would leave the range of floats
 TOP_LEVEL = (*SECTIONS, devices.SECTION, verified.SECTION, *(key.name for key in KEYS if not key.section))
 
 
@@ -87,6 +88,7 @@ def checked(
         raise kind(where, f"{subject}{fault.what}", fault.mend) from None
     if key.choices:
         return Setting(key, str(value), value, where)
+    value = 0.0 if abs(value) < SMALLEST else value
     low, high = (units.quantity(limit, key.dimension) for limit in (key.lowest, key.highest))
     if not low <= value <= high:
         what = f"{subject}{units.shown(text)} is out of range"

@@ -1,10 +1,15 @@
 """The ``verified`` block of a bowl file: what a trial of exactly this bowl with this part has shown."""
 
+import datetime
 import hashlib
 import math
-from collections.abc import Iterator
+import re
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields
 from os import PathLike
+from typing import Any
+
+import numpy as np
 
 from feederscrew import documents, units
 from feederscrew.bowl.record import Bowl
@@ -13,6 +18,33 @@ from feederscrew.tooling.devices.base import Device
 
 SECTION = "verified"
 SHARED = {one.name for one in fields(Device)}  # what every device has
+HOLDS, FALLS_SHORT = "holds", "falls short"  # what a trial may come to
+RATE_KEPT, PURE, DRAWS_HELD = (
+    0.9,
+    0.98,
+    0.95,
+)  # [1] of the target, of what leaves, of the draws
+ROUNDING = 1e-3  # [1] of a number as the file writes it
+NOTHING_LEFT = "none"  # the purity of a queue that nothing left
+MAX_RATE = 1e6 / units.MINUTE  # [1/s]
+MAX_QUEUE_S = 1e7  # [s] four months
+MAX_COUNT = 10**6  # of parts, jams and draws
+MAX_SEED = 2**64
+MAX_TEXT = 200  # letters
+HASH = re.compile(r"[0-9a-f]{16,64}", re.ASCII)
+VERSION = re.compile(r"\d+(\.[0-9A-Za-z]+){1,5}([+-][0-9A-Za-z.]+)?", re.ASCII)
+AMONG = " or "  # between the names of what counts as one
+
+
+@dataclass(frozen=True)
+class VoidTrial:
+    """A block that cannot be a record of a trial: nothing in it counts."""
+
+    faults: tuple[str, ...]  # what is wrong with it, a sentence each
+
+    def void(self, part: Part | None, bowl: Bowl, version: str, wanted: str | None = None) -> Iterator[str]:
+        """Say what is wrong with it, as ``Verified.void`` does of a block that can be one."""
+        yield from self.faults
 
 
 @dataclass(frozen=True)
@@ -25,7 +57,7 @@ class Verified:
     delivered: float  # [1/s] that the queue of the trial delivered
     low: float  # [1/s]
     high: float  # [1/s]
-    purity: float  # [1]
+    purity: float | None  # [1]; None where nothing left
     jams: int
     queue_seconds: float  # [s]
     draws: int
@@ -34,32 +66,51 @@ class Verified:
     part: str  # sha256 of its file
     bowl: str  # of ``fingerprint``
     up: str = ""  # aspects that counted as the wanted one, whatever their heading: 'A, B'
+    body: str = ""  # of ``body_fingerprint``; '' where the file does not say
 
-    def void(self, part: Part | None, bowl: Bowl, version: str) -> Iterator[str]:
-        """Say what has changed since, a sentence each; nothing where the block still holds.
+    def void(self, part: Part | None, bowl: Bowl, version: str, wanted: str | None = None) -> Iterator[str]:
+        """Say what is other than was tried, a sentence each; nothing where the block holds.
 
         Parameters
         ----------
-        part : Part
+        part : Part or None
+            None where no part is given.
         bowl : Bowl
         version : str
             Of this program.
+        wanted : str, optional
+            The aspect, 'A', or the orientation, 'A@2', that is counted now.
         """
         if part is not None and part.sha256[: len(self.part)] != self.part:
             yield "the part is another one than was tried"
+        elif part is not None and self.body and body_fingerprint(part) != self.body:
+            yield "the part has other units, density, centre of mass or names than was tried"
+        if wanted is not None and not self.counts(wanted):
+            tried, other = units.one_line(self.wanted), units.one_line(wanted)
+            yield f"{tried} was tried, and {other} is another orientation"
         if fingerprint(bowl) != self.bowl:
             yield "the bowl has been changed since it was tried"
         if self.version != version:
             yield f"version {self.version} tried it, this is {version}"
 
+    def counts(self, wanted: str) -> bool:
+        """Return whether an aspect, 'A', or an orientation, 'A@2', is what the trial counted."""
+        first, *others = (name.casefold() for name in self.wanted.split(AMONG))
+        up = {*others, *(name.strip().casefold() for name in self.up.split(",") if name.strip())}
+        name = wanted.casefold()
+        aspect = name.rpartition("@")[0] or name
+        alike = first if "@" in name else first.rpartition("@")[0] or first
+        return name == alike or aspect in up or name in up
+
     @property
     def sentence(self) -> str:
         """What the trial showed, in a sentence."""
         minute = units.factor("/min", "rate")
+        purity = "nothing left" if self.purity is None else f"purity {100.0 * self.purity:.3g} %"
         counted = f", {self.up} at any heading counted in: a rule counts one orientation" if self.up else ""
         return (
             f"its trial delivers {self.delivered / minute:.4g}/min ({self.low / minute:.3g} "
-            f"to {self.high / minute:.3g}) of {self.wanted}{counted}, purity {100.0 * self.purity:.3g} %, "
+            f"to {self.high / minute:.3g}) of {self.wanted}{counted}, {purity}, "
             f"{self.jams} jams in {self.queue_seconds:.3g} s of queue, "
             f"{self.held} of {self.draws} draws sort: {self.status}"
         )
@@ -103,31 +154,188 @@ def _own(value: object) -> str:
     return f"{value:.4g}" if isinstance(value, float) and math.isfinite(value) else str(value)
 
 
-def verified(path: str | PathLike[str] | None) -> Verified | None:
-    """Return the ``verified`` block of a bowl file, or None where it has none that can be read.
+def body_fingerprint(part: Part) -> str:
+    """Return a short text that other units, another density, centre of mass or other names of a part change.
+
+    Parameters
+    ----------
+    part : Part
+
+    Returns
+    -------
+    str
+        Sixteen digits; the last digits of numbers do not count.
+    """
+    size = 1.0 if part.vertices is None else float(np.ptp(part.vertices, axis=0).max())
+    centre = " ".join(f"{round(float(place) / size, 3) + 0.0:.3f}" for place in part.centre_of_mass)
+    names = () if part.names is None else part.names.names
+    listed = [f"{part.mass:.5g}", f"{size:.5g}", centre, repr(names)]
+    return hashlib.sha256("\n".join(listed).encode()).hexdigest()[:16]
+
+
+def verified(path: str | PathLike[str] | None) -> Verified | VoidTrial | None:
+    """Return the ``verified`` block of a bowl file.
 
     Parameters
     ----------
     path : str or Path or None
+
+    Returns
+    -------
+    Verified, VoidTrial or None
+        None where the file has no such block; a VoidTrial where what it says cannot be of a trial.
     """
     if path is None or str(path) == "-":
         return None
     root, _ = documents.read(path)
     entry = root.find(SECTION) if root.kind == "mapping" else None
-    if entry is None or entry.value.kind != "mapping":
+    if entry is None:
         return None
-    text = {one.key: one.value.text for one in entry.value.entries}
-    try:
-        rates = (
-            units.quantity(text[k], "rate")
-            for k in ("target", "delivered", "delivered_low", "delivered_high")
-        )
-        target, delivered, low, high = rates
-        return Verified(
-            text["status"], text["wanted"], target, delivered, low, high,
-            float(text["purity"]), int(text["jams"]),
-            units.quantity(text["queue_seconds"], "time"), int(text["draws"]), int(text["draws_held"]),
-            text["version"], text["part"], text["bowl"], text.get("up", ""),
-        )  # fmt: skip
-    except (KeyError, ValueError, units.QuantityError):
-        return None
+    if entry.value.kind != "mapping":
+        return VoidTrial((f"{SECTION} is no mapping",))
+    text = {one.key: one.value.text for one in entry.value.entries}  # of a list or a mapping ''
+    faults = [*_faults_of_fields(text)]
+    if faults:
+        return VoidTrial(tuple(faults))
+    block = _block(text)
+    faults = [*_contradictions(block)]
+    return VoidTrial(tuple(faults)) if faults else block
+
+
+def _number(dimension: str, low: float, high: float) -> Callable[[str], float]:
+    """A reader of numbers from low to high, in SI units."""
+
+    def read(text: str) -> float:
+        value = units.quantity(text, dimension)
+        if not low <= value <= high:
+            raise ValueError
+        return value
+
+    return read
+
+
+def _whole(high: int) -> Callable[[str], int]:
+    """A reader of whole numbers from 0."""
+
+    def read(text: str) -> int:
+        if not re.fullmatch(r"\d{1,20}", text, re.ASCII) or int(text) > high:
+            raise ValueError
+        return int(text)
+
+    return read
+
+
+def _pattern(pattern: re.Pattern[str], most: int = 64) -> Callable[[str], str]:
+    """A reader of texts of one form."""
+
+    def read(text: str) -> str:
+        if len(text) > most or not pattern.fullmatch(text):
+            raise ValueError
+        return text
+
+    return read
+
+
+def _word(*words: str) -> Callable[[str], str]:
+    """A reader of one of several words."""
+
+    def read(text: str) -> str:
+        if text not in words:
+            raise ValueError
+        return text
+
+    return read
+
+
+def _text(text: str) -> str:
+    if not text.strip() or not text.isprintable() or len(text) > MAX_TEXT:
+        raise ValueError
+    return text
+
+
+def _purity(text: str) -> float | None:
+    return None if text == NOTHING_LEFT else _number("number", 0.0, 1.0)(text)
+
+
+def _date(text: str) -> datetime.date:
+    if not text.isascii():
+        raise ValueError
+    return datetime.date.fromisoformat(text)
+
+
+_RATE = _number("rate", 0.0, MAX_RATE)
+READERS: dict[str, tuple[Callable[[str], Any], str]] = {  # by key: how it is read, and what it must be
+    "status": (_word(HOLDS, FALLS_SHORT), f"'{HOLDS}' or '{FALLS_SHORT}'"),
+    "wanted": (_text, "the name of an orientation"),
+    "target": (_RATE, "a rate from 0 to 1e6/min"),
+    "delivered": (_RATE, "a rate from 0 to 1e6/min"),
+    "delivered_low": (_RATE, "a rate from 0 to 1e6/min"),
+    "delivered_high": (_RATE, "a rate from 0 to 1e6/min"),
+    "purity": (_purity, "a share from 0 to 1, or none"),
+    "jams": (_whole(MAX_COUNT), "a whole number up to 1000000"),
+    "queue_seconds": (_number("time", 1e-3, MAX_QUEUE_S), "a time of more than 0 s"),
+    "draws": (_whole(MAX_COUNT), "a whole number up to 1000000"),
+    "draws_held": (_whole(MAX_COUNT), "a whole number up to 1000000"),
+    "version": (_pattern(VERSION, 40), "a version"),
+    "part": (_pattern(HASH), "16 digits of the sha256 of the part's file"),
+    "bowl": (_pattern(HASH), "the 16 digits of a bowl"),
+}
+OPTIONAL: dict[str, tuple[Callable[[str], Any], str]] = {
+    "up": (_text, "names of aspects"),
+    "outcome": (_word("lying", "hanging"), "lying or hanging"),
+    "trial_parts": (_whole(MAX_COUNT), "a whole number up to 1000000"),
+    "seed": (_whole(MAX_SEED), "a whole number"),
+    "tried": (_date, "a date"),
+    "body": (_pattern(HASH), "the 16 digits of a part"),
+}
+
+
+def _faults_of_fields(text: Mapping[str, str]) -> Iterator[str]:
+    """What is wrong with single fields, a sentence each; what they say is not repeated."""
+    for key, (read, wanted) in (READERS | OPTIONAL).items():
+        if key not in text:
+            if key in READERS:
+                yield f"it has no {key}"
+            continue
+        try:
+            read(text[key])
+        except ValueError:
+            yield f"{key} is not {wanted}"
+
+
+def _block(text: Mapping[str, str]) -> Verified:
+    """The block of fields that are right one by one."""
+    value = {key: read(text[key]) for key, (read, _) in READERS.items()}
+    return Verified(
+        value["status"], value["wanted"], value["target"], value["delivered"], value["delivered_low"],
+        value["delivered_high"], value["purity"], value["jams"], value["queue_seconds"], value["draws"],
+        value["draws_held"], value["version"], value["part"], value["bowl"], text.get("up", ""),
+        text.get("body", ""),
+    )  # fmt: skip
+
+
+def _contradictions(block: Verified) -> Iterator[str]:
+    """Fields that cannot be true together, a sentence each."""
+    if not block.low <= block.delivered <= block.high:
+        yield "delivered is not between delivered_low and delivered_high"
+    if block.held > block.draws:
+        yield "draws_held is more than draws"
+    if (block.purity or 0.0) <= 0.0 < block.delivered:
+        yield "parts were delivered at a purity of 0"
+    if block.purity and not block.delivered > 0.0:
+        yield "nothing was delivered, and what left was pure"
+    if block.status == HOLDS and any(_shortfalls(block)):
+        yield f"its status is '{HOLDS}', and {' and '.join(_shortfalls(block))}"
+
+
+def _shortfalls(block: Verified) -> Iterator[str]:
+    """Why a design with these figures does not hold."""
+    enough = 1.0 - ROUNDING
+    if not block.target > 0.0 or block.low < enough * RATE_KEPT * block.target:
+        yield "less than the target was delivered"
+    if (block.purity or 0.0) < enough * PURE:
+        yield f"the purity is below {100.0 * PURE:.3g} %"
+    if block.jams:
+        yield "there were jams"
+    if block.held < DRAWS_HELD * block.draws or not block.draws:
+        yield "too few draws held"

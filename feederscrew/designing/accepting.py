@@ -1,14 +1,17 @@
 """An acceptance sheet that was filled in at the machine, beside what was computed."""
 
 import csv
+import io
 from dataclasses import dataclass
 from pathlib import Path
 
+from feederscrew import documents, units
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
 
 HEAD = ("quantity", "fill", "computed", "low", "high", "unit", "measured", "sample")
 RATE, YIELD, JAMS = "good parts at the discharge", "yield, good of what leaves", "jams"
+MAX_BYTES, MAX_HEAD_BYTES = 200_000, 1000  # of a sheet; of its first line
 SAMPLE = 100  # parts, where the sheet does not say how many were looked at
 OFF = 0.1  # [1] of a computed value without ends, from which a measured one is another
 
@@ -51,9 +54,10 @@ class SheetLine:
 def is_sheet(path: str | Path) -> bool:
     """Return whether a file is an acceptance sheet, by its first line."""
     try:
-        with Path(path).open(encoding="utf-8-sig", newline="") as file:
-            return tuple(one.strip() for one in next(csv.reader(file), ())) == HEAD
-    except (OSError, UnicodeDecodeError):
+        with Path(path).open("rb") as file:
+            first = file.read(MAX_HEAD_BYTES).decode("utf-8-sig", errors="replace").splitlines()
+        return tuple(one.strip() for one in next(csv.reader(first[:1]), ())) == HEAD
+    except (OSError, csv.Error):
         return False
 
 
@@ -71,16 +75,22 @@ def sheet(path: str | Path) -> tuple[SheetLine, ...]:
     Raises
     ------
     FeederError
-        If a number is not one, or nothing was measured.
+        If it cannot be read or is too large, a number is not one, or nothing was measured.
     """
+    data = documents.content(path, MAX_BYTES, "an acceptance sheet", FeederError)
+    if len(data) > MAX_BYTES:
+        raise FeederError(path, f"has more than {MAX_BYTES // 1000} kB", "give an acceptance sheet")
     lines = []
-    with Path(path).open(encoding="utf-8-sig", newline="") as file:
-        for place, row in enumerate(csv.DictReader(file), start=2):
+    try:
+        text = io.StringIO(documents.decoded(data, str(path)), newline="")
+        for place, row in enumerate(csv.DictReader(text), start=2):
             values: dict = {n: _number(path, place, n, row.get(n)) for n in HEAD if n not in TEXT}
             if values["computed"] is None:
                 raise FeederError(f"{path}:{place}", "has no computed value", "leave that column as it was")
-            texts: dict = {name: (row.get(name) or "").strip() for name in TEXT}
+            texts: dict = {name: units.printable((row.get(name) or "").strip()) for name in TEXT}
             lines.append(SheetLine(**texts, **values))
+    except csv.Error as error:
+        raise FeederError(path, f"is not CSV ({error})", "check its quotes and commas") from None
     if all(line.measured is None for line in lines):
         raise FeederError(str(path), "nothing was measured", "fill in the column 'measured'")
     return tuple(lines)
@@ -94,7 +104,7 @@ def _number(path: str | Path, place: int, name: str, text: str | None) -> float 
     if text is None or not text.strip():
         return None
     try:
-        return float(text.strip().replace(",", "."))
-    except ValueError as fault:
+        return units.decimal(text.replace(",", "."))
+    except units.QuantityError as fault:
         mend = "write a number alone, the unit is in its own column"
-        raise FeederError(f"{path}:{place}", f"{name} is {text.strip()!r}, not a number", mend) from fault
+        raise FeederError(f"{path}:{place}", f"{name}: {fault.what}", mend) from fault

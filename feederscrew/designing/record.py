@@ -7,10 +7,12 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.verified import DRAWS_HELD, FALLS_SHORT, HOLDS, PURE, RATE_KEPT
 from feederscrew.designing.hazards.risks import Risk
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
+from feederscrew.resting.rules.registry import require_rule
 from feederscrew.running import RunSettings
 from feederscrew.studies.tooling import ToolingStudy, listed
 from feederscrew.tooling.devices.base import Device
@@ -19,8 +21,7 @@ from feederscrew.trial.result import TrialRun
 from feederscrew.units import counted
 
 OUTCOMES = ("any", "lying", "hanging")
-HOLDS, FALLS_SHORT, NONE = "holds", "falls short", "none"
-RATE_KEPT, PURE, DRAWS_HELD = 0.9, 0.98, 0.95  # [1] of the target, of what leaves, of the draws
+NONE = "none"
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,7 @@ class DesignRequest:
 
     def __post_init__(self) -> None:
         check.of_an_aspect(self.aspect, self.heading)
+        require_rule(self.rule)
         for name in ("up", "without"):  # names may come as a text
             object.__setattr__(self, name, listed(getattr(self, name)))
 

@@ -34,7 +34,7 @@ class Result(Shown):
     single: float | None = None  # [1] restitution given as one value, which scatters as that of impacts does
 
 
-def test(part, aspects, preset, own, *, drops=None, until=None, traced=0, run=USUAL_RUN):
+def test(part, aspects, preset, own, *, drops=None, until=None, traced=0, dropped=None, run=USUAL_RUN):
     """Drop a part and count the aspects it rests on.
 
     Parameters
@@ -53,6 +53,8 @@ def test(part, aspects, preset, own, *, drops=None, until=None, traced=0, run=US
         Go on until every class's 95 % interval is this narrow to either side, '1%'.
     traced : int
         Of how many drops, from the first, the motion is kept as well.
+    dropped : Drops, optional
+        Of a run of the same arguments: nothing is dropped then.
     run : RunSettings
         Its progress as in ``ensemble.drop``.
 
@@ -64,6 +66,8 @@ def test(part, aspects, preset, own, *, drops=None, until=None, traced=0, run=US
     ------
     FeederError
         If the part has no shape, or an option is no such quantity or out of range.
+    ValueError
+        If ``dropped`` is of another part.
     KeyboardInterrupt
         If the user stops it before there is anything to count; later, the result is partial.
     """
@@ -72,17 +76,20 @@ def test(part, aspects, preset, own, *, drops=None, until=None, traced=0, run=US
     shape, length = shape_of_part(part, found)
     launch, single = conditions.launch_of(preset, length, own), conditions.single(own.get("restitution"))
     launch = launch if single is None else launch.scattering()
-    run.begin()
     count = len(aspects.names)
-    dropped = ensemble.drop(
-        shape,
-        launch,
-        np.random.default_rng(run.seed),
-        count=USUAL if drops is None and until is None else drops,
-        aim=None if width is None else Aim(width, found.rows, count),
-        jobs=run.jobs,
-        progress=run.progress,
-    )
+    if dropped is None:
+        run.begin()
+        dropped = ensemble.drop(
+            shape,
+            launch,
+            np.random.default_rng(run.seed),
+            count=USUAL if drops is None and until is None else drops,
+            aim=None if width is None else Aim(width, found.rows, count),
+            jobs=run.jobs,
+            progress=run.progress,
+        )
+    elif len(dropped.faces) and dropped.faces.max() >= len(found.rows):
+        raise ValueError("a drop rests on a face that the part has not")
     counted = ensemble.tally(dropped, found.rows, count, surface=own.get("restitution") is not None)
     starts = sample(launch, shape, min(traced, len(dropped.faces)), np.random.default_rng(run.seed))
     traces = follow(shape, length, principal_axes(part.inertia)[1], starts, dropped, found.rows)

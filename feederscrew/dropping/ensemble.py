@@ -31,6 +31,36 @@ class Drops:
     partial: bool  # stopped by the user before all were done
 
 
+def drops_of(arrays, most):
+    """Return the drops of a finished run from plain arrays, once every number is one that a drop can have.
+
+    Parameters
+    ----------
+    arrays : dict of str to array
+        The fields of ``Drops`` but for ``partial``, each (N,).
+    most : int
+        Drops that the run was for.
+
+    Returns
+    -------
+    Drops
+
+    Raises
+    ------
+    ValueError
+        If a number or a shape is of no drop.
+    KeyError
+        If a field is missing.
+    """
+    faces = check.ranged("faces", arrays["faces"], (-1,), kernel.UNSETTLED, np.inf, whole=True)
+    if not 1 <= len(faces) <= most:
+        raise ValueError(f"{len(faces)} drops of {most}")
+    size = (len(faces),)
+    times, energies = (check.ranged(name, arrays[name], size, 0.0) for name in ("times", "energies"))
+    restitutions = check.ranged("restitutions", arrays["restitutions"], size, 0.0, 1.0)
+    return Drops(faces, times, energies, restitutions, partial=False)
+
+
 @dataclass(frozen=True, eq=False)
 class Tally(Shown):
     """Drops counted by class; A classes."""

@@ -10,7 +10,7 @@ import numpy as np
 from feederscrew import check, documents
 from feederscrew.errors import FeederError
 from feederscrew.resting.counts.count_rows import Few, cells
-from feederscrew.units import shown
+from feederscrew.units import QuantityError, decimal, shown
 
 POSITION, ATTITUDE = ("x0_m", "y0_m", "z0_m"), ("qw0", "qx0", "qy0", "qz0")
 VELOCITY, SPIN = ("vx0", "vy0", "vz0"), ("wx0", "wy0", "wz0")
@@ -120,9 +120,10 @@ def _checked(header, row, where, few):
 
 def _is_number(text):
     try:
-        return math.isfinite(float(text))
-    except ValueError:
+        decimal(text)
+    except QuantityError:
         return False
+    return True
 
 
 def _launches(header, rows, source, digest):

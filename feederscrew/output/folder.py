@@ -6,6 +6,7 @@ import os
 import platform
 import shutil
 import tempfile
+import time
 from importlib import metadata
 from pathlib import Path, PurePosixPath
 
@@ -14,6 +15,8 @@ from feederscrew.errors import FeederError
 from feederscrew.output import tables
 
 RECORD = "run.json"
+STAGING_PREFIX = ".feeder."  # of a folder that is being written
+STAGING_AGE_S = 3600.0  # older ones were left by a run that was killed
 LIBRARIES = ("embreex", "matplotlib", "numba", "numpy", "pandas", "scipy", "trimesh")
 NO_FILE = {"path": "", "sha256": ""}  # in place of an input where all is by default
 RESERVED = {"CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10))}
@@ -103,7 +106,8 @@ class ResultFolder:
         records = self._records()
         old = records.get(command, {}).get("files", [])
         records[command] = record
-        staging = Path(tempfile.mkdtemp(prefix=".feeder.", dir=self.root))
+        _tidy(self.root)
+        staging = Path(tempfile.mkdtemp(prefix=STAGING_PREFIX, dir=self.root))
         try:
             contents = {**self.staged, RECORD: tables.json_text(dict(sorted(records.items()))).encode()}
             for name, content in contents.items():
@@ -170,6 +174,14 @@ def safe_name(name):
 def _inside(name):
     path = PurePosixPath(name)
     return bool(path.parts) and not path.is_absolute() and ".." not in path.parts and "\\" not in name
+
+
+def _tidy(root):
+    """Delete what runs that were killed have left half-written."""
+    for left in root.glob(f"{STAGING_PREFIX}*"):
+        with contextlib.suppress(OSError):
+            if left.lstat().st_mtime < time.time() - STAGING_AGE_S:
+                shutil.rmtree(left, ignore_errors=True)
 
 
 def _missing(path):

@@ -5,27 +5,29 @@ from feederscrew import __version__, units
 PER_MINUTE = units.factor("/min", "rate")
 
 
-def warnings(verified, part, bowl):
+def warnings(verified, part, bowl, wanted=None):
     """Say what the trial of a bowl file has shown, or why that holds no more: a list of str.
 
     Parameters
     ----------
-    verified : Verified or None
+    verified : Verified, VoidTrial or None
         Of the bowl file; None where it has none.
     part : Part or None
     bowl : Bowl
+    wanted : str, optional
+        The aspect, 'A', or the orientation, 'A@2', that is counted.
     """
     if verified is None:
         return []
-    void = list(verified.void(part, bowl, __version__))
+    void = list(verified.void(part, bowl, __version__, wanted))
     if void:
         return [f"the trial of this bowl file is void: {'; '.join(void)} - run feeder design again"]
     return [verified.sentence]
 
 
-def holds(verified, part, bowl):
-    """Return whether a bowl file has a trial that is still of this part and this bowl."""
-    return verified is not None and not any(verified.void(part, bowl, __version__))
+def holds(verified, part, bowl, wanted=None):
+    """Return whether a bowl file has a trial that is still of this part, this bowl and what is wanted."""
+    return verified is not None and not any(verified.void(part, bowl, __version__, wanted))
 
 
 def leads(document):
@@ -34,7 +36,7 @@ def leads(document):
     return bool(tried) and document["parts_per_minute"] == tried["parts_per_minute"]
 
 
-def beside(document, verified, part, bowl):
+def beside(document, verified, part, bowl, wanted=None):
     """Return a document with the trial's figures beside its own; the lower rate leads.
 
     A trial that counted several aspects as one leads in any case: the rule counts one orientation.
@@ -43,16 +45,18 @@ def beside(document, verified, part, bowl):
     ----------
     document : dict
         With ``parts_per_minute`` and its ends, or without a rate.
-    verified : Verified or None
+    verified : Verified, VoidTrial or None
     part : Part
     bowl : Bowl
+    wanted : str, optional
+        As for ``warnings``.
 
     Returns
     -------
     dict
         As given where there is no trial that holds.
     """
-    if not holds(verified, part, bowl):
+    if not holds(verified, part, bowl, wanted):
         return document if verified is None else document | {"verified": None}
     known = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
     tried = dict(zip(known, (end / PER_MINUTE for end in (verified.delivered, verified.low, verified.high))))

@@ -1,7 +1,8 @@
 """The study of ``feeder aspects``: how one part rests, how often, and what tips it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
@@ -115,16 +116,27 @@ def answered(part: Part) -> Aspects:
 
 def _dropped(part: Part, found: Aspects, launch: str, drops: int | None, run: OnCores) -> "DropStudy":
     """The drop test, made once in a run."""
+    from feederscrew.dropping.ensemble import drops_of
     from feederscrew.studies.simulated.drop import drop
+
+    many: dict[str, Any] = {"drops": MOST, "until": AIM} if drops is None else {"drops": drops}
 
     def make() -> "DropStudy":
         if run.before:
             run.before(many["drops"])
         return drop(part, launch, **many, jobs=run.cores, progress=run.progress, aspects=found)
 
-    many = {"drops": MOST, "until": AIM} if drops is None else {"drops": drops}
-    test = memory.once(part, found, (launch, drops), make, lambda test: not test.result.drops.partial)
-    return replace(test, part=part, aspects=found)
+    def to_arrays(test: "DropStudy") -> dict[str, np.ndarray]:
+        held = vars(test.result.drops)
+        return {name: value for name, value in held.items() if name != "partial"}
+
+    def from_arrays(arrays: Mapping[str, np.ndarray]) -> "DropStudy":
+        return drop(part, launch, **many, dropped=drops_of(arrays, many["drops"]), aspects=found)
+
+    simulation = memory.Simulation(
+        "drop", (launch, drops), make, lambda test: not test.result.drops.partial, to_arrays, from_arrays
+    )
+    return replace(memory.once(part, found, simulation), part=part, aspects=found)
 
 
 def with_drops(found: Aspects, test: "DropStudy", launch: str) -> AspectsStudy:

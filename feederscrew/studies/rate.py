@@ -20,7 +20,7 @@ from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH, launch_named
-from feederscrew.resting.rules.registry import RECOMMENDED
+from feederscrew.resting.rules.registry import RECOMMENDED, require_rule
 from feederscrew.running import CoresKeywords, OnCores
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.simulated import memory
@@ -91,6 +91,7 @@ def shares(
         Every fault of the file; if the part has no shape to drop.
     """
     own = check.options("shares", OnCores, run)
+    require_rule(rule)
     check.argument("seed", seed, 0)
     if fed is not None:
         check.argument("fed", fed, 1)
@@ -119,15 +120,19 @@ def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED) -> Aspects:
 
 def _on_the_floor(part: Part, found: Aspects, bowl: Bowl, fed: int | None, seed: int, run: OnCores) -> Any:
     """What lies at the track's entry, followed once in a run."""
-    from feederscrew.dropping.plate.arrival import arrival
+    from feederscrew.dropping.plate import arrival as floor
 
     def make() -> Any:
         if run.before:
             run.before(None)
-        return arrival(part, found, bowl, drops=fed, seed=seed, jobs=run.cores, progress=run.progress)
+        return floor.arrival(part, found, bowl, drops=fed, seed=seed, jobs=run.cores, progress=run.progress)
 
-    floor = (bowl.drive, bowl.restitution, bowl.friction.kinetic, bowl.gravity)
-    return memory.once(part, found, (floor, fed, seed), make, lambda arrived: not arrived.shaken.partial)
+    settings = (bowl.drive, bowl.restitution, bowl.friction.kinetic, bowl.gravity, fed, seed)
+    simulation = memory.Simulation(
+        "arrival", settings, make, lambda arrived: not arrived.shaken.partial, floor.to_arrays,
+        lambda arrays: floor.from_arrays(part, found, bowl, fed, arrays),
+    )  # fmt: skip
+    return memory.once(part, found, simulation)
 
 
 @dataclass(frozen=True)
@@ -249,6 +254,7 @@ def rate(
     """
     own = check.options("rate", RateOptions, options)
     checked(bowl, heading, own, own.sigma)
+    require_rule(rule)
     chain = bowl.devices if devices is None else tuple(devices)
     if any(device.placed for device in chain):
         refuse_many_facets(part)

@@ -1,6 +1,7 @@
 """Many parts: how they are named, shared out, kept and taken up again."""
 
 import csv
+import errno
 import io
 import json
 import os
@@ -263,6 +264,50 @@ def test_resume_repeats_only_what_is_missing_or_changed(tmp_path, three):
     assert (third.done, fourth.done) == (["b"], ["a"])
     assert {name for name, data in tree(out).items() if whole[name] != data} >= {"parts/b/aspects.csv"}
     assert tree(out)["parts/a/aspects.csv"] == whole["parts/a/aspects.csv"]
+
+
+def test_tables_of_the_last_run_stay_until_the_new_ones_are_there(tmp_path, three):
+    """They were taken away first: a run that was killed left neither."""
+    out = tmp_path / "out"
+    ran(three, out, workers=Here())
+    (out / "contact_sheet_7.png").write_bytes(b"of an earlier run")
+    before = tree(out)
+    tables = {name for name in before if "/" not in name}
+    with pytest.raises(KeyboardInterrupt):
+        ran(three[:2], out, workers=Here(stop_after=1))
+    assert {name: tree(out)[name] for name in tables} == {name: before[name] for name in tables}
+    ran(three[:2], out, workers=Here())
+    assert len((out / "summary.csv").read_text().splitlines()) == 3
+    assert not (out / "contact_sheet_7.png").exists()
+
+
+def test_a_full_disk_at_the_end_leaves_the_tables_of_the_last_run(tmp_path, three, monkeypatch):
+    out = tmp_path / "out"
+    ran(three[:1], out, workers=Here())
+    before, write = (out / "summary.csv").read_bytes(), Path.write_bytes
+
+    def full(path, data):
+        if path.name == "summary.csv":
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return write(path, data)
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    with pytest.raises(FeederError, match="No space left"):
+        ran(three[:2], out, workers=Here())
+    assert (out / "summary.csv").read_bytes() == before
+    assert not [path for path in out.iterdir() if path.name.startswith(".")]
+
+
+def test_results_that_a_killed_run_had_moved_away_are_put_back(tmp_path, three):
+    out = tmp_path / "out"
+    ran(three[:2], out, workers=Here())
+    before = tree(out)
+    left = out / ".batch-killed" / "replaced"
+    left.mkdir(parents=True)
+    (out / "parts/a").rename(left / "a")
+    crew = Here()
+    assert ran(three[:2], out, workers=crew, resume=True).kept == 2
+    assert tree(out) == before and crew.done == []
 
 
 def test_a_part_whose_worker_dies_is_tried_again_then_told_and_tried_once_more_by_resume(tmp_path, three):

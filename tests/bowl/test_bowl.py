@@ -329,7 +329,14 @@ def test_any_override_is_a_bowl_or_faults_of_one_line(text):
         assert all("\n" not in line for line in error.lines)
 
 
-@given(st.floats(0.0, 90.0))
+@given(st.just(0.0) | st.floats(1e-12, 90.0))
 def test_a_value_in_full_precision_comes_back(angle):
     read = bowl.read(None, [f"drive.vibration_angle={angle!r} deg"])
     assert read.drive.vibration_angle == angle * units.factor("deg", "angle")
+
+
+def test_a_number_next_to_nothing_is_nothing():
+    """An amplitude of 1e-300 mm gave a velocity of nan mm/s."""
+    found = bowl.read(None, ["drive.amplitude=1e-300 mm", "friction.kinetic=1e-310"])
+    assert (found.drive.amplitude, found.friction.kinetic) == (0.0, 0.0)
+    assert bowl.read(None, ["drive.amplitude=1e-9 mm"]).drive.amplitude == pytest.approx(1e-12)

@@ -1,9 +1,14 @@
 """Drawings of holes: read back as written, and damaged ones told of in a line."""
 
+import itertools
+import os
 from pathlib import Path
 
+import ezdxf
 import numpy as np
 import pytest
+import shapely
+import shapely.affinity
 
 from feederscrew import dxf
 from feederscrew.errors import ConfigError
@@ -74,3 +79,249 @@ def _refused(path, data):
     with pytest.raises(ConfigError) as told:
         dxf.closed_polylines(path, "HOLE", "bowl.yaml:3")
     assert str(told.value) == f"bowl.yaml:3: {path} {UNREADABLE}"
+
+
+def drawn(tmp_path, draw, insunits=4, layer="HOLE"):
+    """What is read of a layer of a drawing that a function draws."""
+    document = ezdxf.new("R2010", units=insunits)
+    document.layers.add(layer)
+    draw(document.modelspace(), {"layer": layer})
+    document.saveas(tmp_path / "drawn.dxf")
+    return dxf.closed_polylines(tmp_path / "drawn.dxf", layer, "bowl.yaml:3")
+
+
+def area(ring):
+    return 1e6 * shapely.Polygon(ring).area
+
+
+def slot(space, look, **more):
+    """A slot 12 by 3.5 mm in all, with round ends."""
+    corners = [(0.0, 0.0, 0.0), (8.5, 0.0, 1.0), (8.5, 3.5, 0.0), (0.0, 3.5, 1.0)]
+    space.add_lwpolyline(corners, format="xyb", close=True, dxfattribs=look | more)
+
+
+def slot_of_lines(space, look):
+    """The same of two lines and two arcs, in no order and direction."""
+    space.add_arc((8.5, 1.75), 1.75, 270, 90, dxfattribs=look)
+    space.add_line((8.5, 3.5), (0.0, 3.5), dxfattribs=look)
+    space.add_line((8.5, 0.0), (0.0, 0.0), dxfattribs=look)
+    space.add_arc((0.0, 1.75), 1.75, 90, 270, dxfattribs=look)
+    space.add_text("a slot", dxfattribs=look)
+
+
+def slot_of_old_lines(space, look):
+    corners = [(0.0, 0.0, 0.0, 0.0, 0.0), (8.5, 0.0, 0.0, 0.0, 1.0), (8.5, 3.5), (0.0, 3.5, 0.0, 0.0, 1.0)]
+    space.add_polyline2d(corners, format="xyseb", close=True, dxfattribs=look)
+
+
+def slot_in_a_block(space, look):
+    """Drawn at half the size on layer 0 of a block that a block holds; inserted at twice the size, turned."""
+    inner, outer = (space.doc.blocks.new(name) for name in ("INNER", "OUTER"))
+    corners = [(0.0, 0.0, 0.0), (4.25, 0.0, 1.0), (4.25, 1.75, 0.0), (0.0, 1.75, 1.0)]
+    inner.add_lwpolyline(corners, format="xyb", close=True)
+    outer.add_blockref("INNER", (1.0, 2.0), dxfattribs={"xscale": 2.0, "yscale": 2.0, "rotation": 30.0})
+    space.add_blockref("OUTER", (5.0, 5.0), dxfattribs=look)
+
+
+SLOT = 8.5 * 3.5 + np.pi * 1.75**2  # [mm2]
+
+
+@pytest.mark.parametrize("draw", [slot, slot_of_lines, slot_of_old_lines, slot_in_a_block])
+def test_round_ends_are_read_as_round(tmp_path, draw):
+    """Read as chords without a word a slot let pass 105.5 parts a minute that it rejects."""
+    (ring,) = drawn(tmp_path, draw)
+    assert area(ring) == pytest.approx(SLOT, rel=3e-4) and area(ring) < SLOT
+    round_outline = shapely.LineString([(0.0, 1.75e-3), (8.5e-3, 1.75e-3)]).buffer(1.75e-3, quad_segs=400)
+    if draw is not slot_in_a_block:
+        off = shapely.Polygon(ring).hausdorff_distance(round_outline)
+        assert off < 2.0 * dxf.CHORD_ERROR_M
+
+
+def half_moon(space, look):
+    """Bulges to either side: a semicircle out, a quarter in."""
+    quarter = np.tan(np.pi / 8.0)
+    space.add_lwpolyline(
+        [(0.0, 0.0, 1.0), (4.0, 0.0, 0.0), (4.0, 2.0, -quarter), (2.0, 4.0, 0.0), (0.0, 4.0, 0.0)],
+        format="xyb", close=True, dxfattribs=look,
+    )  # fmt: skip
+
+
+ROUND = {  # what is drawn, and its area [mm2] by a closed form
+    "bulges": (half_moon, 16.0 + 0.5 * np.pi * 4.0 - np.pi),
+    "circle": (lambda space, look: space.add_circle((3, 4), 2.5, dxfattribs=look), np.pi * 6.25),
+    "large": (lambda space, look: space.add_circle((3, 4), 90, dxfattribs=look), np.pi * 8100.0),
+    "small": (lambda space, look: space.add_circle((3, 4), 0.01, dxfattribs=look), np.pi * 1e-4),
+    "ellipse": (
+        lambda space, look: space.add_ellipse((1, 2), (4, 3), 0.5, dxfattribs=look),
+        np.pi * 5.0 * 2.5,
+    ),
+    "mirrored": (
+        lambda space, look: space.add_circle((3, 4), 2.5, dxfattribs=look | {"extrusion": (0, 0, -1)}),
+        np.pi * 6.25,
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", ROUND)
+def test_curves_have_the_area_of_their_closed_form(tmp_path, kind):
+    draw, exact = ROUND[kind]
+    (ring,) = drawn(tmp_path, draw)
+    assert area(ring) == pytest.approx(exact, rel=1.2e-2 if kind == "small" else 6e-4)
+
+
+def test_a_spline_is_read_as_it_runs(tmp_path):
+    """A closed uniform cubic, against its basis functions: Piegl and Tiller, "The NURBS Book", ch. 2."""
+    places = np.array([(0.0, 0.0), (10.0, 0.0), (12.0, 9.0), (0.0, 10.0)])
+
+    def draw(space, look):
+        space.add_spline(dxfattribs=look).set_closed([(x, y, 0.0) for x, y in places])
+
+    (ring,) = drawn(tmp_path, draw)
+    t = np.linspace(0.0, 1.0, 500, endpoint=False)[:, None]
+    basis = ((1 - t) ** 3, 3 * t**3 - 6 * t**2 + 4, -3 * t**3 + 3 * t**2 + 3 * t + 1, t**3)
+    fine = shapely.Polygon(
+        np.concatenate([sum(b / 6.0 * places[(k + j) % 4] for j, b in enumerate(basis)) for k in range(4)])
+    )
+    assert area(ring) == pytest.approx(fine.area, rel=1e-3)
+    assert (
+        fine.hausdorff_distance(shapely.affinity.scale(shapely.Polygon(ring), 1e3, 1e3, origin=(0, 0)))
+        < 1e3 * dxf.CHORD_ERROR_M
+    )
+
+
+def test_a_rational_spline_is_a_circle(tmp_path):
+    """Nine control points: Piegl and Tiller, sec. 7.5. The spline of a CAD program's circle."""
+    root = np.sqrt(0.5)
+    places = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
+
+    def draw(space, look):
+        spline = space.add_rational_spline(
+            [(5.0 * x, 5.0 * y, 0.0) for x, y in places], [1, root] * 4 + [1], 2
+        )
+        spline.knots = [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]
+        spline.dxf.layer = look["layer"]
+
+    (ring,) = drawn(tmp_path, draw)
+    assert np.hypot(*np.array(ring).T) == pytest.approx(5e-3, abs=1e-12)
+    assert area(ring) == pytest.approx(25.0 * np.pi, rel=1e-3)
+
+
+def test_a_mirrored_coordinate_system_mirrors(tmp_path):
+    corners = [(1.0, 0.0), (5.0, 0.0), (5.0, 2.0)]
+
+    def draw(space, look):
+        space.add_lwpolyline(corners, close=True, dxfattribs=look | {"extrusion": (0, 0, -1)})
+
+    (ring,) = drawn(tmp_path, draw)
+    np.testing.assert_allclose(sorted(ring), sorted((-1e-3 * x, 1e-3 * y) for x, y in corners), atol=1e-15)
+
+
+# One unit in millimetres: BIPM, SI Brochure, and NIST SP 811, table B.8
+IN_MM = {
+    1: 25.4, 2: 304.8, 4: 1.0, 5: 10.0, 6: 1e3, 8: 25.4e-6, 9: 0.0254, 10: 914.4, 12: 1e-6, 13: 1e-3, 14: 1e2,
+    21: 304.8006096, 22: 25.4000508,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("code", IN_MM)
+def test_a_drawing_is_read_in_its_unit(tmp_path, code):
+    """12 feet became 12 mm."""
+    side = 12.0 / IN_MM[code]
+
+    def draw(space, look):
+        space.add_lwpolyline([(0, 0), (side, 0), (side, side)], close=True, dxfattribs=look)
+
+    (ring,) = drawn(tmp_path, draw, insunits=code)
+    assert area(ring) == pytest.approx(72.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("code", [17, 18, 20, 25, 99, -1])
+def test_another_unit_is_refused(tmp_path, code):
+    path = tmp_path / "hole.dxf"
+    lines = dxf.written([dxf.Layer("HOLE", 1, rings=(np.array(RING),))]).decode().split("\n")
+    lines[lines.index("$INSUNITS") + 2] = str(code)
+    path.write_text("\n".join(lines))
+    with pytest.raises(ConfigError, match=r"unit"):
+        dxf.closed_polylines(path, "HOLE", "bowl.yaml:3")
+
+
+def nested(space, look):
+    for k in range(12):
+        block = space.doc.blocks.new(f"B{k}")
+        for _ in range(10):
+            if k:
+                block.add_blockref(f"B{k - 1}", (0, 0))
+            else:
+                block.add_line((0, 0), (1, 1))
+    space.add_blockref("B11", (0, 0), dxfattribs=look)
+
+
+def line(*points, **more):
+    def draw(space, look):
+        for a, b in itertools.pairwise(points):
+            space.add_line(a, b, dxfattribs=look | more)
+
+    return draw
+
+
+def fitted(space, look):
+    space.add_polyline2d([(0, 0), (5, 0), (5, 5)], close=True, dxfattribs=look | {"flags": 1 | 4})
+
+
+REFUSED = {
+    "open": (line((0, 0), (4, 0), (4, 4)), "open"),
+    "branches": (line((0, 0), (4, 0), (4, 4), (4, 0), (9, 9)), "branches"),
+    "a tail": (line((0, 0), (4, 0), (4, 4), (0, 0), (-1, -1)), "open"),
+    "not flat": (line((0, 0, 0), (4, 0, 0), (4, 4, 1), (0, 0, 0)), "not flat"),
+    "hatch": (lambda space, look: space.add_hatch(dxfattribs=look), "HATCH"),
+    "face": (lambda space, look: space.add_3dface([(0, 0), (1, 0), (1, 1)], dxfattribs=look), "3DFACE"),
+    "ray": (lambda space, look: space.add_ray((0, 0), (1, 0), dxfattribs=look), "RAY"),
+    "fitted": (fitted, "POLYLINE"),
+    "bomb": (nested, "blocks"),
+    "corners": (
+        lambda space, look: space.add_lwpolyline(
+            [(np.cos(t), np.sin(t)) for t in np.linspace(0.0, 6.28, 1500)], close=True, dxfattribs=look
+        ),
+        "corners",
+    ),
+    "giant": (lambda space, look: space.add_circle((0, 0), 1e5, dxfattribs=look), "chords"),
+    "nowhere": (lambda space, look: space.add_circle((1e300, 0), 1, dxfattribs=look), "finite"),
+}
+
+
+@pytest.mark.parametrize("kind", REFUSED)
+def test_what_is_no_flat_closed_outline_is_refused_by_name(tmp_path, kind):
+    draw, word = REFUSED[kind]
+    with pytest.raises(ConfigError, match=word) as told:
+        drawn(tmp_path, draw)
+    assert str(told.value).startswith("bowl.yaml:3: ") and str(told.value).isprintable()
+
+
+def test_more_entities_than_a_hole_has_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(dxf, "MAX_ENTITIES", 30)
+    with pytest.raises(ConfigError, match="entities"):
+        drawn(tmp_path, line(*[(k, k % 2) for k in range(40)]))
+
+
+def test_several_outlines_and_corners_on_a_straight_side(tmp_path):
+    def draw(space, look):
+        space.add_circle((0, 0), 2, dxfattribs=look)
+        space.add_lwpolyline([(0, 0), (1, 0), (2, 0), (3, 0), (3, 3), (3, 3), (0, 0)], dxfattribs=look)
+
+    _, corner = drawn(tmp_path, draw)
+    assert len(corner) == 3 and area(corner) == pytest.approx(4.5)
+
+
+def test_a_layer_has_one_name_in_upper_and_lower_case(tmp_path):
+    drawn(tmp_path, slot, layer="My Hole (1)")
+    assert len(dxf.closed_polylines(tmp_path / "drawn.dxf", "my hole (1)", "x")) == 1
+
+
+def test_only_a_file_of_some_size_is_read(tmp_path):
+    (tmp_path / "big.dxf").touch()
+    os.truncate(tmp_path / "big.dxf", 1 << 40)
+    os.mkfifo(tmp_path / "pipe.dxf")
+    (tmp_path / "zero.dxf").symlink_to("/dev/zero")
+    for name, word in (("big", "MB"), ("pipe", "regular"), ("zero", "regular")):
+        with pytest.raises(ConfigError, match=word):
+            dxf.closed_polylines(tmp_path / f"{name}.dxf", "HOLE", "bowl.yaml:3")

@@ -3,10 +3,14 @@
 from dataclasses import fields, replace
 
 import pytest
+import shapes
 
+from feederscrew import __version__ as VERSION
 from feederscrew import bowl as bowls
-from feederscrew.bowl.verified import SHARED, fingerprint
+from feederscrew.bowl.verified import SHARED, body_fingerprint, fingerprint
+from feederscrew.output import proof
 from feederscrew.output.tooling.bowl_file import device_value
+from feederscrew.part.aspect_names import AspectNames
 from feederscrew.tooling.devices.kinds import KINDS
 
 
@@ -37,3 +41,145 @@ def test_another_view_or_climb_or_bank_is_another_bowl(tmp_path):
     )
     for kind, first, second in pairs:
         assert fingerprint(of_one(tmp_path, kind, first)) != fingerprint(of_one(tmp_path, kind, second))
+
+
+PART = shapes.part(shapes.box(10, 10, 10))
+BOWL = bowls.default()
+BLOCK = {
+    "status": "holds",
+    "wanted": "A@0",
+    "target": "10/min",
+    "delivered": "12/min",
+    "delivered_low": "11/min",
+    "delivered_high": "13/min",
+    "purity": "1",
+    "jams": "0",
+    "queue_seconds": "180 s",
+    "draws": "20",
+    "draws_held": "20",
+    "version": f'"{VERSION}"',
+    "part": f'"{PART.sha256[:16] or "0" * 16}"',
+    "bowl": f'"{fingerprint(BOWL)}"',
+}
+OPTIONAL = {
+    "up": '"A, B"',
+    "outcome": "lying",
+    "trial_parts": "6",
+    "seed": "1",
+    "tried": '"2026-11-25"',
+    "body": f'"{body_fingerprint(PART)}"',
+}
+
+
+def block(tmp_path, **changes):
+    """What is read of a bowl file with this block; a key of None is left out."""
+    lines = [f"  {key}: {text}" for key, text in {**BLOCK, **OPTIONAL, **changes}.items() if text is not None]
+    (tmp_path / "b.yaml").write_text("\n".join(["verified:", *lines]) + "\n")
+    return bowls.verified(tmp_path / "b.yaml")
+
+
+def void(tmp_path, of=None, asked="A@0", **changes):
+    found = block(tmp_path, **changes)
+    return list(found.void(of, BOWL, VERSION, asked))
+
+
+@pytest.mark.parametrize("part", [None, replace(PART, sha256=BLOCK["part"].strip('"'))])
+def test_a_whole_block_holds(tmp_path, part):
+    assert void(tmp_path, part) == []
+    assert void(tmp_path, part, **dict.fromkeys(OPTIONAL)) == []
+    found = block(tmp_path)
+    assert (found.purity, found.jams, found.draws, found.up) == (1.0, 0, 20, "A, B")
+    assert "12/min (11 to 13) of A@0" in found.sentence
+
+
+NEVER = ("", "nan", ".inf", "-5", "-1/min", "1e400", "1_0", "٣", "[1]", "{a: 1}", '"\\e[31m"', '"a\\nb"')
+WRONG = {
+    "status": ("none", "Holds", "true"),
+    "wanted": (f'"{"A" * 300}"',),
+    "target": ("10", "1e9/min", "10 mm"),
+    "delivered": ("12", "14/min", "10/min", "1e9/min", "0/min"),
+    "delivered_low": ("12.5/min", "11 s", "5/min"),
+    "delivered_high": ("11.5/min", "1e7/min"),
+    "purity": ("500 %", "1.01", "0.5", "0", "none", "1/min"),
+    "jams": ("-3", "3", "1.5", "1e1", "10" * 15),
+    "queue_seconds": ("0 s", "180", "1e30 s", "-1 s"),
+    "draws": ("0", "19", "100", "1" + 23 * "0", "20.5"),
+    "draws_held": ("21", "10", "1" + 23 * "0"),
+    "version": ("2", "x", '"0.2.0 or so"'),
+    "part": ("abc", '"zcb9e5277f2576a5"', '"0"', f'"{"0" * 65}"'),
+    "bowl": ("abc", '"0"', '"0000000000000000"'),
+    "outcome": ("standing",),
+    "trial_parts": ("1.5", "10" * 15),
+    "seed": ("1.5",),
+    "tried": ("2026-13-01", "yesterday"),
+    "body": ("abc", '"0"'),
+}
+# A text may be any name, and a name may look like a number.
+NAMES = {"wanted": {"nan", ".inf", "-5", "-1/min", "1e400", "1_0", "٣"}, "up": set(NEVER)}
+
+
+@pytest.mark.parametrize(
+    "key, text",
+    [
+        (key, text)
+        for key in (*BLOCK, *OPTIONAL)
+        for text in (*NEVER, *WRONG.get(key, ()))
+        if text not in NAMES.get(key, ())
+    ],
+)
+def test_a_block_that_cannot_be_true_is_void(tmp_path, key, text):
+    said = void(tmp_path, **{key: text})
+    assert len(said) >= 1, text
+    line = "; ".join(said)
+    assert line.isprintable() and not any(word in line for word in ("nan", "500", "-5", "-3", "1" + 23 * "0"))
+
+
+@pytest.mark.parametrize("key", BLOCK)
+def test_a_block_without_a_field_is_void(tmp_path, key):
+    assert f"it has no {key}" in void(tmp_path, **{key: None})
+
+
+def test_a_trial_counts_for_what_was_wanted_and_for_nothing_else(tmp_path):
+    for wanted in ("A", "A@0", "a@0", None):
+        assert void(tmp_path, asked=wanted, up=None) == []
+    for wanted in ("B", "B@0", "A@90", "A@1"):
+        assert "another orientation" in void(tmp_path, asked=wanted, up=None)[0]
+    for wanted in ("B", "B@90", "A@90"):
+        assert void(tmp_path, asked=wanted) == []
+    (several,) = [block(tmp_path, up=None, wanted='"A@0 or B"')]
+    assert several.counts("B@7") and several.counts("A@0") and not several.counts("A@90")
+    assert void(tmp_path, asked="C")
+
+
+def test_another_density_or_name_is_another_part(tmp_path):
+    same = replace(PART, sha256=BLOCK["part"].strip('"'))
+    for other in (
+        replace(same, mass=2.0 * same.mass),
+        replace(same, centre_of_mass=same.centre_of_mass + 0.001),
+        replace(same, names=AspectNames("n.yaml", "", (("top", (0.0, 0.0, 1.0)),))),
+    ):
+        assert void(tmp_path, other) and void(tmp_path, same) == []
+
+
+def test_a_block_that_is_no_mapping_is_void(tmp_path):
+    for text in ("verified:\n", "verified: 3\n", "verified: [1, 2]\n"):
+        (tmp_path / "b.yaml").write_text(text)
+        assert "mapping" in next(bowls.verified(tmp_path / "b.yaml").void(None, BOWL, VERSION))
+
+
+def test_a_queue_that_nothing_left_has_no_purity(tmp_path):
+    nothing = {"delivered": "0/min", "delivered_low": "0/min", "delivered_high": "0/min"}
+    found = block(tmp_path, status="falls short", purity="none", **nothing)
+    assert found.purity is None and "nothing left" in found.sentence and "nan" not in found.sentence
+
+
+@pytest.mark.parametrize("wanted, leads", [("A@0", True), ("B@0", False), ("A@90", False)])
+def test_a_trial_leads_for_its_own_orientation_only(tmp_path, wanted, leads):
+    """The trial of A@0 was given as the rate of B."""
+    part = replace(PART, sha256=BLOCK["part"].strip('"'))
+    tried, own = block(tmp_path, up=None), {"parts_per_minute": 105.5}
+    document = proof.beside(own, tried, part, BOWL, wanted)
+    assert document["parts_per_minute"] == pytest.approx(12.0 if leads else 105.5)
+    assert (document["verified"] is not None) == leads
+    (said,) = proof.warnings(tried, part, BOWL, wanted)
+    assert ("its trial delivers 12/min" in said) == leads and ("void: A@0 was tried" in said) != leads

@@ -10,7 +10,7 @@ import shapes
 from scipy.stats import binom
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import calm_drive, loop, queues
+from feederscrew.designing import accepting, calm_drive, loop, queues
 from feederscrew.designing.hazards.risks import Risk
 from feederscrew.designing.record import (
     Attempt,
@@ -19,6 +19,7 @@ from feederscrew.designing.record import (
     FilledQueue,
     RobustRun,
 )
+from feederscrew.errors import FeederError
 from feederscrew.output import tables as tables_of
 from feederscrew.output.designs import design_file, design_page, tables
 from feederscrew.output.page import blocks
@@ -234,3 +235,27 @@ def test_what_draws_lose_at_a_device_is_tried_again_at_a_faster_drive(monkeypatc
     worst[bowl] = 16, "A@0 is carried through in 4 of 20"
     loop._prove(search, first, proofs)
     assert len(proofs) == 3 and len(asked) == 1
+
+
+@pytest.mark.parametrize("measured", ["nan", "inf", "1_0", "\u0663", "many", "1e999"])
+def test_a_sheet_holds_plain_numbers(tmp_path, measured):
+    path = tmp_path / "sheet.csv"
+    head = ",".join(accepting.HEAD)
+    path.write_text(f"{head}\njams,low,0,0,1,1,{measured},100\n")
+    assert accepting.is_sheet(path)
+    with pytest.raises(FeederError, match=r"sheet\.csv:2"):
+        accepting.sheet(path)
+
+
+def test_a_sheet_is_read_within_bounds(tmp_path):
+    path = tmp_path / "sheet.csv"
+    line = "\x1b[31mjams,low,0,0,1,1,2,100\n"
+    path.write_text(",".join(accepting.HEAD) + "\n" + line)
+    (found,) = accepting.sheet(path)
+    assert found.quantity.isprintable() and found.measured == 2.0
+    path.write_text(",".join(accepting.HEAD) + "\n" + 20_000 * line)
+    with pytest.raises(FeederError, match="kB"):
+        accepting.sheet(path)
+    path.write_bytes(b"\xff\xfe" + path.read_bytes()[:100])
+    with pytest.raises(FeederError, match="UTF-8"):
+        accepting.sheet(path)

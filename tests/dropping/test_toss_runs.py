@@ -143,6 +143,8 @@ FAULTS = [
     (f"toss,{','.join(STATE[:-1])}\n{WHOLE}\n", ":1: there is no column wz0 - give the columns toss,"),
     (f"{HEAD},x0_m\n{WHOLE},1\n", ":1: column x0_m is given twice - keep one of them"),
     (HEAD + "\n" + WHOLE.replace("0.05", "high") + "\n", "z0_m: 'high' is not a number"),
+    (HEAD + "\n" + WHOLE.replace("0.05", "1_0") + "\n", "z0_m: '1_0' is not a number"),
+    (HEAD + "\n" + WHOLE.replace("0.05", "\u0663") + "\n", "z0_m: '\u0663' is not a number"),
     (HEAD + "\n" + WHOLE.replace("1.0", "0.5", 1) + "\n", "the quaternion has the length 0.5"),
     (HEAD + "\n" + WHOLE.replace("0.05", "5e4") + "\n", "z0_m is 5e4 - give m, from -1000 to"),
     (f"{HEAD},face_up_end\n{WHOLE},top\n", "face_up_end: 'top' is not a side of the part"),

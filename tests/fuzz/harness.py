@@ -78,7 +78,8 @@ TOGETHER = "together"  # the kind of case in which a part, a bowl and the option
 KINDS = (*PLAN, *readers.READERS, TOGETHER)
 ROUND = 50  # inputs of one kind at a time
 QUICK = {  # of readers, so that each takes some seconds
-    "read stl": 1500, "read open stl": 1500, "read bowl": 300, "read card": 300, "read names": 300,
+    "read stl": 1500, "read open stl": 1500, "read bowl": 300, "read verified": 300,
+    "read card": 300, "read names": 300,
     "read counts": 4000, "read list": 2000, "read launches": 4000, "read dxf": 1000,
 }  # fmt: skip
 

@@ -64,6 +64,22 @@ def _bowl(name):
     bowl.read(name)
 
 
+def _verified(name):
+    """A block that is believed has figures that can be; one that is not says why in plain letters."""
+    from feederscrew import __version__, bowl
+
+    block = bowl.verified(name)
+    if block is None:
+        return
+    said = list(block.void(None, bowl.default(), __version__))
+    if hasattr(block, "sentence"):
+        said.append(block.sentence)
+        if not (0.0 <= block.low <= block.delivered <= block.high and 0 <= block.held <= block.draws):
+            raise ValueError(f"believed: {block}")
+    if not all(line.isprintable() for line in said):
+        raise ValueError(f"control characters: {said}")
+
+
 def _hole(name):
     from feederscrew import dxf
 
@@ -104,6 +120,7 @@ READERS = {  # seeds, how the damaged file is called, and what reads it
     "read 3mf": (("tests/fuzz/bodies.3mf",), "part.3mf", _load),
     "read 3mf model": (("tests/fuzz/bodies.model", "tests/fuzz/project.model"), "part.model", _zipped),
     "read bowl": (("docs/measured/example/bowl.yaml", "configs/thesis.yaml"), "bowl.yaml", _bowl),
+    "read verified": (("tests/fuzz/verified.yaml",), "bowl.yaml", _verified),
     "read card": (("parts/magnet.yaml", "parts/arc_chute.yaml"), "card.yaml", _load),
     "read names": (("tests/fuzz/names.yaml",), "names.yaml", _names),
     "read counts": (COUNTED, "counts.csv", _counts),

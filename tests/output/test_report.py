@@ -201,7 +201,7 @@ def test_a_part_card_has_no_views():
         ({"aspect": "Q"}, f"{BRACKET}: there is no aspect 'Q' - choose one of A, B, C, D, E"),
         (
             {"rule": "guess"},
-            "rule guess: has no probabilities of this part - choose one of pmi, csa, stability, "
+            "rule: unknown rule 'guess' - known are pmi, csa, stability, "
             "quasistatic, crsa, barrier, surface, hops, closed, recommended",
         ),
     ],

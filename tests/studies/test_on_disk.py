@@ -1,6 +1,13 @@
 """What was simulated is taken again by a later run, if nothing of it has changed."""
 
+import base64
+import hashlib
+import json
+import os
+import pickle
+import stat
 from collections import OrderedDict
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +15,7 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.dropping.plate import arrival
+from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.rate import shares
 from feederscrew.studies.simulated import memory, on_disk
 
@@ -23,7 +31,7 @@ def runs(tmp_path, monkeypatch):
     monkeypatch.setattr(arrival, "arrival", lambda *args, **own: made.append(1) or simulate(*args, **own))
 
     def run(part=PART, bowl=BOWL, **own):
-        monkeypatch.setattr(memory, "_MADE", OrderedDict())
+        monkeypatch.setattr(memory, "_RECORDS", OrderedDict())
         return shares(part, bowl, fed=40, **own).aspects, len(made)
 
     run.folder = tmp_path / "kept"
@@ -52,7 +60,7 @@ def test_what_differs_is_simulated_anew(runs, other):
 
 def test_other_code_does_not_find_it(runs, monkeypatch):
     runs()
-    monkeypatch.setattr(on_disk, "_code", lambda: b"another edition")
+    monkeypatch.setattr(on_disk, "_code", lambda: "another edition")
     assert runs()[1] == 2
 
 
@@ -75,16 +83,238 @@ def test_without_a_place_to_write_all_goes_on(runs, monkeypatch, tmp_path):
         assert runs()[1] == before + 1
 
 
-def test_the_oldest_go_and_what_is_kept_cannot_be_changed(monkeypatch, tmp_path):
-    monkeypatch.setenv(on_disk.VARIABLE, str(tmp_path))
-    monkeypatch.setattr(on_disk, "MOST", 3)
-    (tmp_path / "mine.txt").write_text("older than all")
+KEY = {"kind": "test", "settings": "()"}
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv(on_disk.VARIABLE, str(tmp_path / "cache"))
+    return tmp_path / "cache"
+
+
+def numbered(k):
+    return KEY | {"part": str(k)}
+
+
+def test_the_oldest_go_and_what_is_kept_cannot_be_changed(monkeypatch, folder):
+    monkeypatch.setattr(on_disk, "MAX_ENTRIES", 3)
+    folder.mkdir()
+    (folder / "mine.txt").write_text("older than all")
+    (folder / "mine.simulated").mkdir()
     for k in range(5):
-        on_disk.write(bytes([k]), np.arange(3.0))
-    assert len(list(tmp_path.iterdir())) == 4 and (tmp_path / "mine.txt").exists()
-    found = on_disk.read(bytes([4]))
+        on_disk.write(numbered(k), {"p": np.arange(3.0)})
+    assert len(list(folder.iterdir())) == 5 and (folder / "mine.txt").exists()
+    found = on_disk.read(numbered(4))
     with pytest.raises(ValueError, match="read-only"):
-        found[0] = 1.0
-    monkeypatch.setattr(on_disk, "LARGEST", 10)
-    on_disk.write(b"large", np.arange(3.0))
-    assert on_disk.read(b"large") is None
+        found["p"][0] = 1.0
+    monkeypatch.setattr(on_disk, "MAX_ENTRY_BYTES", 10)
+    on_disk.write(numbered(9), {"p": np.arange(3.0)})
+    assert on_disk.read(numbered(9)) is None
+
+
+def test_arrays_come_back_as_they_were(folder):
+    arrays = {
+        "p": np.array([[1.0 / 3.0, np.nan], [-np.inf, 5e-324]]),
+        "n": np.array(7),
+        "which": np.array([True, False]),
+        "none": np.zeros((0, 3)),
+    }
+    on_disk.write(KEY, arrays)
+    found = on_disk.read(KEY)
+    assert set(found) == set(arrays)
+    for name, array in arrays.items():
+        np.testing.assert_array_equal(found[name], array)
+        assert (found[name].dtype, found[name].shape) == (array.dtype, array.shape)
+
+
+def test_entries_that_were_swapped_are_of_another_key(folder):
+    for k in (1, 2):
+        on_disk.write(numbered(k), {"p": np.full(2, float(k))})
+    first, second = folder.iterdir()
+    held = first.read_bytes(), second.read_bytes()
+    first.write_bytes(held[1]), second.write_bytes(held[0])
+    assert on_disk.read(numbered(1)) is None and on_disk.read(numbered(2)) is None
+
+
+class Bomb:
+    """Runs code where it is unpickled."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def __reduce__(self):
+        return (open, (str(self.path), "w"))
+
+
+def test_nothing_of_an_entry_is_run(folder, tmp_path):
+    on_disk.write(KEY, {"p": np.arange(3.0)})
+    (entry,) = folder.iterdir()
+    data = pickle.dumps(Bomb(tmp_path / "ran"))
+    entry.write_bytes(hashlib.sha256(data).digest() + data)
+    assert on_disk.read(KEY) is None and not (tmp_path / "ran").exists()
+
+
+def as_pipe(entry, tmp_path):
+    os.mkfifo(entry)
+
+
+def as_device(entry, tmp_path):
+    entry.symlink_to("/dev/zero")
+
+
+def as_link(entry, tmp_path):
+    (tmp_path / "moved").write_bytes(as_link.data)
+    entry.symlink_to(tmp_path / "moved")
+
+
+def as_folder(entry, tmp_path):
+    entry.mkdir()
+
+
+def as_hole(entry, tmp_path):
+    with entry.open("wb") as file:
+        file.truncate(1 << 40)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs pipes")
+@pytest.mark.parametrize("other", [as_pipe, as_device, as_link, as_folder, as_hole])
+def test_only_a_regular_file_is_read(folder, tmp_path, other):
+    on_disk.write(KEY, {"p": np.arange(3.0)})
+    (entry,) = folder.iterdir()
+    as_link.data = entry.read_bytes()
+    entry.unlink()
+    other(entry, tmp_path)
+    assert on_disk.read(KEY) is None
+    on_disk.write(KEY, {"p": np.arange(3.0)})
+    assert (on_disk.read(KEY) is not None) == (other is not as_folder)
+    assert len(list(folder.iterdir())) == 1
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid"), reason="needs owners")
+def test_a_folder_that_others_may_write_is_not_used(folder, monkeypatch):
+    on_disk.write(KEY, {"p": np.arange(3.0)})
+    assert on_disk.refusal() is None and stat.S_IMODE(folder.stat().st_mode) == 0o700
+    folder.chmod(0o777)
+    assert on_disk.read(KEY) is None and "other users" in on_disk.refusal()
+    on_disk.write(numbered(2), {"p": np.arange(3.0)})
+    assert len(list(folder.iterdir())) == 1
+    folder.chmod(0o755)
+    assert on_disk.read(KEY) is not None
+    monkeypatch.setattr(os, "geteuid", lambda: folder.stat().st_uid + 1)
+    assert on_disk.read(KEY) is None and "another user" in on_disk.refusal()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a full disk")
+def test_a_full_disk_leaves_nothing(folder, monkeypatch):
+    real = os.open
+    folder.mkdir()
+
+    def full(path, flags, *mode):
+        handle = real(path, flags, *mode)
+        if flags & os.O_WRONLY:
+            os.close(handle)
+            return real("/dev/full", os.O_WRONLY)
+        return handle
+
+    monkeypatch.setattr(os, "open", full)
+    on_disk.write(KEY, {"p": np.arange(3.0)})
+    assert list(folder.iterdir()) == []
+
+
+def test_what_a_killed_run_left_is_tidied_up(folder):
+    folder.mkdir()
+    old, fresh = folder / "tmp1.simulated", folder / "tmp2.simulated"
+    old.write_bytes(b"half"), fresh.write_bytes(b"half")
+    os.utime(old, (1.0, 1.0))
+    on_disk.write(KEY, {"p": np.arange(3.0)})
+    assert not old.exists() and fresh.exists() and on_disk.read(KEY) is not None
+
+
+def rewritten(entry, change):
+    """The entry with other arrays in it, its digest made right again: whoever writes it can do so."""
+    held = json.loads(entry.read_bytes())
+    change(held)
+    line = json.dumps([held["key"], held["arrays"]], sort_keys=True).encode()
+    held["sha256"] = hashlib.sha256(line).hexdigest()
+    entry.write_text(json.dumps(held))
+
+
+def test_an_entry_damaged_anywhere_is_as_none(folder, rng):
+    arrays = {"p": np.arange(4.0), "n": np.array(3)}
+    on_disk.write(KEY, arrays)
+    (entry,) = folder.iterdir()
+    whole = entry.read_bytes()
+    for _ in range(300):
+        start, length = rng.integers(len(whole)), rng.integers(0, 40)
+        odd = rng.choice([b"", b"[" * 3000, b"1e999", b"null", b"\x00", b"9" * 5000, bytes(rng.bytes(10))])
+        entry.write_bytes(whole[:start] + odd + whole[start + length :])
+        found = on_disk.read(KEY)
+        assert found is None or all((found[name] == arrays[name]).all() for name in arrays)
+
+
+def of_floats(*values, shape=None):
+    data = np.array(values, "<f8")
+    return {"kind": "float", "shape": shape or [len(values)], "data": base64.b64encode(data).decode()}
+
+
+def of_whole(*values, shape=None):
+    data = np.array(values, "<i8")
+    return {
+        "kind": "int",
+        "shape": [len(values)] if shape is None else shape,
+        "data": base64.b64encode(data).decode(),
+    }
+
+
+WRONG = [
+    ("plate", of_floats(1.0, 1.0, 1.0)),
+    ("plate", of_floats(np.nan, 0.0, 0.0)),
+    ("plate", of_floats(5.0, 0.0, 0.0)),
+    ("plate", of_floats(-0.5, 1.0, 0.5)),
+    ("plate", of_floats(0.5, 0.5)),
+    ("plate", of_whole(1, 0, 0)),
+    ("start", of_floats(2.0, 0.0, 0.0)),
+    ("error", of_floats(np.inf, 0.0, 0.0)),
+    ("counts", of_whole(*[-1] * 9, shape=[3, 3])),
+    ("times", of_floats(-1.0, 0.0, 0.0)),
+    ("changing", of_whole(0, 0, 0)),
+    ("course", of_floats(shape=[0, 3])),
+    ("velocity", of_floats(np.inf, 0.0, 0.0)),
+    ("parts", of_whole(0, shape=[])),
+    ("parts", of_whole(41, shape=[])),
+    ("parts", of_whole(-40, shape=[])),
+    ("lost", of_whole(1, shape=[])),
+    ("seconds", of_floats(1e300, shape=[])),
+    ("limit", of_floats(0.1, 0.1, 7.0)),
+    ("limit", {"kind": "object", "shape": [3], "data": ""}),
+    ("limit", {"kind": "float", "shape": [10**30, 0], "data": ""}),
+    ("limit", {"kind": "float", "shape": [3], "data": "?"}),
+    ("limit", None),
+]
+
+
+@pytest.mark.parametrize("name, wrong", WRONG)
+def test_an_entry_of_numbers_that_cannot_be_is_as_none(runs, name, wrong):
+    first, before = runs()
+    (entry,) = runs.folder.iterdir()
+    rewritten(entry, lambda held: held["arrays"].update({name: wrong}))
+    found, after = runs()
+    assert after == before + 1
+    np.testing.assert_array_equal(first.recommended.p, found.recommended.p)
+
+
+def test_a_drop_test_is_checked_as_well(tmp_path, monkeypatch):
+    monkeypatch.setenv(on_disk.VARIABLE, str(tmp_path / "kept"))
+    made = []
+
+    def run():
+        monkeypatch.setattr(memory, "_RECORDS", OrderedDict())
+        return resting(PART, drops=30, before=made.append).tally
+
+    first, again = run(), run()
+    assert len(made) == 1 and (first.counts == again.counts).all() and (first.high == again.high).all()
+    (entry,) = (tmp_path / "kept").iterdir()
+    for wrong in (of_whole(*[77] * 30), of_whole(*[-5] * 30), of_whole(0), of_floats(*[0.0] * 30)):
+        rewritten(entry, lambda held, wrong=wrong: held["arrays"].update(faces=wrong))
+        assert (run().counts == first.counts).all()
+    assert len(made) == 5

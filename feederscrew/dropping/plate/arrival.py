@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.dropping.ensemble import NORMAL, half_width
-from feederscrew.dropping.plate import bowl_test, drive
+from feederscrew.dropping.plate import bowl_test, drive, occupancy
 from feederscrew.dropping.plate.occupancy import Occupancy
 from feederscrew.running import RunSettings
 
@@ -94,6 +94,66 @@ def arrival(part, aspects, bowl, *, drops=None, seed=1, jobs=1, progress=None):
 
 def _without_rides(found):
     return replace(found, shaken=replace(found.shaken, rides=None))
+
+
+def to_arrays(found):
+    """Return what was seen of the parts on the floor as plain arrays, for ``from_arrays``.
+
+    Source: own.
+
+    Parameters
+    ----------
+    found : Arrival
+        Of a run that was not stopped.
+
+    Returns
+    -------
+    dict of str to array
+    """
+    shaken = found.shaken
+    counted = {
+        "parts": np.array(shaken.parts),
+        "lost": np.array(shaken.lost),
+        "seconds": np.array(shaken.seconds),
+    }
+    return occupancy.to_arrays(shaken.occupancy) | counted
+
+
+def from_arrays(part, aspects, bowl, drops, arrays):
+    """Return an arrival from plain arrays, once every number in them is one that such parts can have.
+
+    Source: own. What follows from other numbers, such as the intervals, is computed again.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    aspects : Aspects
+        Of that part.
+    bowl : Bowl
+    drops : int or None
+        As for ``arrival``.
+    arrays : dict of str to array
+        As of ``to_arrays``.
+
+    Returns
+    -------
+    Arrival
+
+    Raises
+    ------
+    ValueError
+        If a number or a shape cannot be of such parts.
+    KeyError
+        If an array is missing.
+    """
+    most = MOST if drops is None else drops
+    parts, lost = (int(check.ranged(k, arrays[k], (), 0, most, whole=True)) for k in ("parts", "lost"))
+    seconds = float(check.ranged("seconds", arrays["seconds"], (), 0.0, 2.0 * max(SPELLS)))
+    if parts < 1 or parts + lost > most or (drops is not None and parts + lost != drops):
+        raise ValueError(f"{parts} parts and {lost} that were lost, of {most}")
+    seen = occupancy.from_arrays(arrays, len(aspects.names), parts)
+    return judged(bowl_test.shaken_of(part, aspects, bowl, LAUNCH, PACE, (parts, lost, seconds), seen))
 
 
 def steps_needed(hull, bowl):

@@ -124,6 +124,45 @@ def test(part, aspects, bowls, preset, own, *, drops=None, pace=EXACT, run=USUAL
     return results
 
 
+def shaken_of(part, aspects, bowl, preset, pace, counted, seen):
+    """Return what parts did on one plate, from what was seen of them in an earlier run that was not stopped.
+
+    Source: docs/resting.md, "On the vibrating plate".
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    aspects : Aspects
+        Of that part.
+    bowl : Bowl
+    preset : str
+        A key of ``launch.PRESETS``.
+    pace : Pace
+        Of that run.
+    counted : (int, int, float [s])
+        Parts, those that were lost, and the time counted for each.
+    seen : Occupancy
+
+    Returns
+    -------
+    Shaken
+    """
+    _, length = shape_of_part(part, ground(part, aspects))
+    launch = _surfaced(conditions.launch_of(preset, length, {}, bowl.gravity), bowl, {}, pace)
+    parts, lost, seconds = counted
+    return Shaken(
+        bowl=bowl,
+        launch=conditions.described(launch, length, bowl.gravity),
+        throw_number=drive.throw_number(bowl),
+        parts=parts,
+        seconds=seconds,
+        occupancy=seen,
+        lost=lost,
+        partial=False,
+    )
+
+
 def _after(before, total, progress):
     """``progress`` for parts that come after others; None without one."""
     return progress and (lambda done: progress(before + done, total))

@@ -1,6 +1,7 @@
 """From looks at parts on a plate to shares, rates and velocities, each with its interval."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy.special import gammaincinv  # half a quantile of chi-square; scipy.stats takes a third of a second
@@ -16,6 +17,8 @@ FEW = 5  # transitions: with fewer nothing is said of where they lead
 DOUBLINGS = 48  # of the time to which the balance of the rates is followed
 CHANGING = 0.005  # smallest change of a share that is called one
 SURE = 3.0  # standard errors by which it must stand out
+FOLLOWING = ("plate_low", "plate_high", "rates", "rates_low", "rates_high")  # from other fields
+ROUNDING = 1e-9  # [1] by which shares may add up to more than 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +94,66 @@ def occupancy(faces, places, rows, count, period, rng):
         **_rates(counts, times), **_velocities(places, inside, period),
     }  # fmt: skip
     return Occupancy(**{name: check.frozen(np.asarray(value)) for name, value in found.items()})
+
+
+def to_arrays(seen):
+    """Return an Occupancy as plain arrays, without those that follow from others.
+
+    Source: own.
+    """
+    return {name: value for name, value in vars(seen).items() if name not in FOLLOWING}
+
+
+def from_arrays(arrays, count, parts):
+    """Return an Occupancy from plain arrays, once every number in them is one that it can have.
+
+    Source: own. Intervals and rates follow from the other numbers, and are computed again.
+
+    Parameters
+    ----------
+    arrays : dict of str to array
+        As of ``to_arrays``.
+    count : int
+        Classes.
+    parts : int
+        Above 0.
+
+    Returns
+    -------
+    Occupancy
+
+    Raises
+    ------
+    ValueError
+        If a number or a shape cannot be of so many parts.
+    KeyError
+        If an array is missing.
+    """
+    row, square = (count,), (count, count)
+    read = partial(_ranged, arrays)
+    start, plate = read("start", row, 0.0, 1.0), read("plate", row, 0.0, 1.0)
+    counts, times = read("counts", square, 0, np.inf, whole=True), read("times", row, 0.0)
+    course = read("course", (-1, count), 0.0, 1.0)
+    changing = arrays["changing"]
+    if changing.shape != row or changing.dtype.kind != "b":
+        raise ValueError("changing is not one answer a class")
+    most = 1.0 + ROUNDING
+    if len(course) < 1 or any((shares.sum(axis=-1) > most).any() for shares in (start, plate, course)):
+        raise ValueError("shares add up to more than 1, or there are none")
+    low, high = wilson(plate * parts, parts)
+    found = {
+        "start": start, "plate": plate, "plate_low": low, "plate_high": high,
+        "error": read("error", row, 0.0, 1.0),
+        **{name: read(name, row, 0.0, most, gaps=True) for name in ("limit", "limit_low", "limit_high")},
+        "changing": changing, "counts": counts, "times": times, "course": course, **_rates(counts, times),
+        "velocity": read("velocity", (3,), gaps=True),
+        "velocities": read("velocities", (count, 3), gaps=True),
+    }  # fmt: skip
+    return Occupancy(**{name: check.frozen(np.asarray(value)) for name, value in found.items()})
+
+
+def _ranged(arrays, name, *bounds, **kind):
+    return check.ranged(name, arrays[name], *bounds, **kind)
 
 
 def lasting(faces):

@@ -5,7 +5,7 @@ import datetime
 from feederscrew import __version__, units
 from feederscrew.bowl import unbalance
 from feederscrew.bowl.devices import SECTION
-from feederscrew.bowl.verified import fingerprint
+from feederscrew.bowl.verified import NOTHING_LEFT, body_fingerprint, fingerprint
 from feederscrew.output.tooling.bowl_file import device_value
 
 PER_MINUTE, MM = units.factor("/min", "rate"), units.factor("mm", "length")
@@ -90,7 +90,8 @@ def _verified(study):
     yield "delivered", value
     yield "delivered_low", low
     yield "delivered_high", high
-    yield "purity", f"{study.purity[0]:.4g}"
+    purity = study.purity[0]
+    yield "purity", f"{purity:.4g}" if purity == purity else NOTHING_LEFT
     yield "jams", study.jams
     yield "queue_seconds", f"{study.queue_seconds:.6g} s"
     yield "trial_parts", study.trial_parts
@@ -100,4 +101,5 @@ def _verified(study):
     yield "version", f'"{__version__}"'
     yield "tried", f'"{datetime.datetime.now(datetime.UTC):%Y-%m-%d}"'
     yield "part", f'"{study.part.sha256[:16]}"'
+    yield "body", f'"{body_fingerprint(study.part)}"'
     yield "bowl", f'"{fingerprint(study.bowl)}"'

@@ -1,5 +1,7 @@
 """The sheet of a machine and the sheet that a quotation asks for: one line a quantity, in plain text."""
 
+import math
+
 import numpy as np
 
 from feederscrew import units
@@ -146,11 +148,16 @@ def _travel(study):
         "vibration angle [deg]",
         f"{bowl.drive.vibration_angle / DEG:.3g} to the track, {upright:.3g} to the horizontal",
     )
-    yield "velocity at this stroke [mm/s]", f"{found.velocity / MM_S:.3g}, {found.regime}"
-    yield "hardest impact [mm/s]", f"{found.hardest_impact / MM_S:.3g}"
+    yield "velocity at this stroke [mm/s]", f"{_known(found.velocity / MM_S)}, {found.regime}"
+    yield "hardest impact [mm/s]", _known(found.hardest_impact / MM_S)
     if study.order is None:
-        speeds = (study.velocities[0] / MM_S, study.velocities[-1] / MM_S)
-        yield "velocity from full to empty [mm/s]", "{:.3g} to {:.3g}, amplitude left alone".format(*speeds)
+        full, empty = (_known(study.velocities[k] / MM_S) for k in (0, -1))
+        yield "velocity from full to empty [mm/s]", f"{full} to {empty}, amplitude left alone"
+
+
+def _known(value):
+    """A number to three digits; 'none' where there is none, as without a steady state."""
+    return f"{value:.3g}" if math.isfinite(value) else "none"
 
 
 def _springs(study):

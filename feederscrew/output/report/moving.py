@@ -115,7 +115,8 @@ def rate(case):
     """Well-oriented parts a minute."""
     found = case.rate
     tried = bowls.verified(case.path)
-    document = proof.beside(rate_tables.document(found), tried, case.part, case.bowl)
+    own = case.part, case.bowl, found.rate.orientations.lying[found.rate.row].name
+    document = proof.beside(rate_tables.document(found), tried, *own)
     lead = Text(
         "The chain from velocity to rate. The range in brackets is over all starts, friction a fifth off, "
         "restitution where the part hops, and the interval of the shares. The second table has what the "
@@ -124,7 +125,7 @@ def rate(case):
     return Chapter(
         (lead, Table(rate_tables.summary(document)), Table(_passing(found, document["orientations"]))),
         tiles=(_rate_tile(document),),
-        warnings=(*rate_tables.remarks(found), *found.warnings, *proof.warnings(tried, case.part, case.bowl)),
+        warnings=(*rate_tables.remarks(found), *found.warnings, *proof.warnings(tried, *own)),
     )
 
 

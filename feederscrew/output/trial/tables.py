@@ -201,8 +201,10 @@ def summary(study):
         at = f"amplitude {run.bowl.drive.amplitude / MM:.4g} mm, throw number {run.throw_number:.3g}: "
         back = run.rolling_back / MM_S
         beside = f" (those that roll back {back:.4g} mm/s)" if np.isfinite(back) else ""
+        moves = np.isfinite(run.velocity)
+        speed = f"{run.velocity / MM_S:.4g} mm/s{beside}" if moves else "no part moves on"
         yield at + (
-            f"{run.velocity / MM_S:.4g} mm/s{beside}, {run.parts / PER_MINUTE:.4g} parts per minute, "
+            f"{speed}, {run.parts / PER_MINUTE:.4g} parts per minute, "
             f"efficiency {100.0 * run.efficiency:.4g} %, purity {100.0 * np.nan_to_num(run.purity):.4g} %"
         )
         if run.queue is None and run.jams:

@@ -7,9 +7,12 @@ names of rules and the table in ``docs/resting.md`` are made from these entries,
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from feederscrew.documents import hint
+from feederscrew.errors import ArgumentError
 from feederscrew.resting.basins import barriers
 from feederscrew.resting.rules import hops, published, surface, tumbled
 from feederscrew.resting.rules.quantities import ClassQuantities, FaceQuantities
+from feederscrew.units import shown
 
 RECOMMENDED = "recommended"  # the answer that is made from the rules; a name beside theirs
 
@@ -103,6 +106,12 @@ BY_NAME = {rule.name: rule for rule in RULES}
 NAMES = tuple(BY_NAME)
 CLOSED = "closed"  # of the rules the one that is nearest to the recommended answer: the quick look
 CHOICES = (*NAMES, CLOSED, RECOMMENDED)  # what a user may ask for
+
+
+def require_rule(rule):
+    """Raise an ArgumentError where a user asks for a rule that there is not; it names the nearest one."""
+    if rule not in CHOICES:
+        raise ArgumentError("rule", f"unknown rule {shown(str(rule))}", hint(str(rule), CHOICES))
 
 
 def weights(quantities):

@@ -8,7 +8,7 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.dropping import drop_test, traces
-from feederscrew.dropping.ensemble import Tally
+from feederscrew.dropping.ensemble import Drops, Tally
 from feederscrew.part.record import Part
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects, find
@@ -56,6 +56,7 @@ def drop(
     until: str | None = None,
     traced: int = 0,
     aspects: Aspects | None = None,
+    dropped: Drops | None = None,
     **run: Unpack[RunKeywords],
 ) -> DropStudy:
     """Study on which aspects a part comes to rest when it is dropped again and again.
@@ -76,6 +77,8 @@ def drop(
         Of how many drops, from the first, the motion is kept as well.
     aspects : Aspects, optional
         Of the part, where they are known already.
+    dropped : Drops, optional
+        Of an earlier run of the same arguments: nothing is dropped then.
     **run
         With the defaults of ``RunSettings``.
         seed : int, of the random launches.
@@ -100,7 +103,7 @@ def drop(
     found = find(part) if aspects is None else aspects
     result = drop_test.test(
         part, found, launch, dict(conditions or {}),
-        drops=drops, until=until, traced=traced, run=own,
+        drops=drops, until=until, traced=traced, dropped=dropped, run=own,
     )  # fmt: skip
     return DropStudy(part, found, result)
 

@@ -150,7 +150,7 @@ def test_report_bowl_and_batch_lead_with_a_trial_that_delivers_less(designed, ru
     wanted = [chapter for chapter in CHAPTERS if chapter[0] in ("rate", "bowl")]
     monkeypatch.setattr(report, "page", functools.partial(report.page, chapters=wanted))
     text = (folder / "design.yaml").read_text()
-    for word, rate in (("delivered", 5), ("delivered_low", 4), ("delivered_high", 6)):
+    for word, rate in (("target", 4), ("delivered", 5), ("delivered_low", 4), ("delivered_high", 6)):
         text = re.sub(rf"  {word}: .*", f"  {word}: {rate}/min", text)
     Path("slow.yaml").write_text(text)
     part, own = folder.parent / "cube.stl", ("--config", "slow.yaml")

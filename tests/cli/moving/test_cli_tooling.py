@@ -132,7 +132,7 @@ def test_a_mixed_queue(run, block):
             "Error: track.radius: 12 mm is less than the part's 23.32 mm across - give the radius of a bowl "
             "that holds the part",
         ),
-        (("--rule", "pmj"), "Error: --rule pmj: has no probabilities of this part - did you mean pmi?"),
+        (("--rule", "pmj"), "Error: --rule: unknown rule 'pmj' - did you mean pmi?"),
     ],
 )
 def test_faults_are_one_line(run, block, arguments, line):

@@ -92,7 +92,7 @@ def test_files_and_amplitudes(run, block, tmp_path):
         (["--poured"], "--poured is for a queue - give --queue N as well"),
         (["--with", "counts.csv"], "--with is for a queue - give --queue N as well"),
         (["--aspect", "Q"], "there is no aspect 'Q' - choose one of"),
-        (["--rule", "nothing"], "--rule nothing: has no probabilities of this part - "),
+        (["--rule", "nothing"], "--rule: unknown rule 'nothing' - "),
         (["--amplitude", "9 m"], "--amplitude: drive.amplitude: '9 m' is out of range - give 0 mm to 20 mm"),
     ],
 )

@@ -1,5 +1,6 @@
 """The program: its commands, its help and its one error fence."""
 
+import contextlib
 import importlib
 import json
 import os
@@ -16,7 +17,7 @@ from click.testing import CliRunner
 from feederscrew import __version__
 from feederscrew.errors import Faults, FeederError, MeshError
 from feederscrew.output import style, tables
-from feederscrew_cli import options
+from feederscrew_cli import interrupt, options
 from feederscrew_cli.main import Fence, feeder
 
 ROOT = Path(__file__).parents[3]
@@ -264,6 +265,26 @@ Fence("feeder", commands=[click.Command("nap", callback=nap)])(["nap"])
     assert (child.returncode, said.strip()) == (130, "Stopped.")
 
 
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+@pytest.mark.parametrize("held", [contextlib.nullcontext, interrupt.held_back, interrupt.noted])
+@pytest.mark.parametrize(
+    "after", [None, ImportError("half-loaded"), MeshError("a", "b", "c"), click.exceptions.Exit(1)]
+)
+def test_an_interrupt_that_somebody_drops_is_no_success(capsys, held, after):
+    """A library that loads drops it, a run gives what is there: make must not take it as done."""
+
+    def work():
+        with contextlib.suppress(KeyboardInterrupt), held():
+            signal.raise_signal(signal.SIGINT)
+        if after is not None:
+            raise after
+
+    with pytest.raises(SystemExit) as ended:
+        Fence("feeder", commands=[click.Command("work", callback=work)])(["work"])
+    assert ended.value.code == 130 and "Traceback" not in capsys.readouterr().err
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
 @pytest.mark.long
 @pytest.mark.thorough
 def test_the_readme_says_what_the_program_says(monkeypatch, capsys, fewer):
@@ -289,3 +310,36 @@ def test_a_number_that_is_none_is_a_wrong_call(run, call, line):
     done = run(call[0], ROOT / "parts/washer_m6.stl", *call[1:])
     assert done.exit_code == 2 and done.stdout == ""
     assert done.stderr == f"Error: Invalid value for {line} (see feeder {call[0]} --help)\n"
+
+
+RULED = {
+    "rate": (), "tooling": (), "trial": (), "report": ("--aspect", "A"), "batch": ("-o", "out"),
+    "design": ("--target", "30/min"), "bowl": ("--target", "30/min"),
+    "tune": ("--aspect", "A", "--target", "30/min"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("command", RULED)
+def test_an_unknown_rule_is_told_before_anything_is_read(command):
+    """It was a KeyError of design."""
+    done = CliRunner().invoke(feeder, [command, "gone.stl", "--rule", "closd", *RULED[command]])
+    assert (
+        done.exit_code == 1 and done.stderr == "Error: --rule: unknown rule 'closd' - did you mean closed?\n"
+    )
+
+
+def _numbers(command, above=()):
+    """Every option of a command that takes a number."""
+    for option in command.params:
+        if isinstance(option.type, (click.types.IntParamType, click.types.FloatParamType)):
+            yield (*above, option.opts[-1])
+
+
+NUMBERED = [given for name in feeder.commands for given in _numbers(feeder.commands[name], (name,))]
+
+
+@pytest.mark.parametrize("command, option", NUMBERED)
+@pytest.mark.parametrize("text", ["1_0", "\u0661\u0662", "\uff11", "nan"])
+def test_a_number_is_of_plain_digits(command, option, text):
+    done = CliRunner().invoke(feeder, [command, "gone.stl", option, text])
+    assert done.exit_code == 2 and option in done.stderr and "Traceback" not in done.stderr

@@ -143,8 +143,9 @@ def test_an_interrupt_while_drawing_keeps_the_counts(run, tmp_path, monkeypatch)
         raise KeyboardInterrupt
 
     monkeypatch.setattr("feederscrew.output.style.png", stopped)
-    done = run("drop", "a.stl", "--drops", 20, "-o", "out")
+    done = run("drop", "a.stl", "--drops", 20, "-o", "out", "--depfile", "drop.d")
     assert "Warning: stopped while drawing: without drop.png\n" in done.stderr
+    assert done.exit_code == 130 and not (tmp_path / "drop.d").exists()
     assert sorted(path.name for path in (tmp_path / "out/a").iterdir()) == [
         "drop.csv",
         "drop.json",

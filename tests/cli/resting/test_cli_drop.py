@@ -240,7 +240,7 @@ def test_an_interrupt_prints_and_writes_what_is_there(run, stl, tmp_path):
     err = heard(terminal, "Wrote .*\n").replace("\r\n", "\n")
     os.close(terminal)
     out, _ = running.communicate(timeout=60)
-    assert running.returncode == 0, err
+    assert running.returncode == 130, err
     folder = tmp_path / "results/box"
     told = json.loads((folder / "drop.json").read_text())
     assert f"Warning: partial: stopped after {told['drops']} drops\n" in err and "Traceback" not in err
