@@ -208,6 +208,7 @@ def _screened(search, candidate):
     drawn = robust_run(
         search.part, candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.rows,
         draws=min(SCREENED, request.draws), tolerance=request.tolerance, run=request.run,
+        any_heading=candidate.proposal.any_heading,
     )  # fmt: skip
     if drawn.partial:
         raise KeyboardInterrupt
@@ -262,6 +263,7 @@ def _short(search, bowl, ways, weights, proposal):
     """The short trial: what is wanted first; where none of it leaves, the others are not tried."""
     request, rows = search.request, trying.often(weights, (proposal.row,))
     own = {"run": replace(request.run, before=search.before)}
+    own |= {"aspects": search.known.aspects, "any_heading": proposal.any_heading}
     right = set(trying.wanted_rows(ways, proposal.states(ways)))
     first = [k for k in rows if k in right] or [proposal.row]
     tried = trying.single(search.part, bowl, ways, weights, proposal.rows, rows=first, each=EACH, **own)

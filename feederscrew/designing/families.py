@@ -203,7 +203,8 @@ def again(study, cuts, request, given, *, told, before):
     search.known = exploring.arriving(search, bare)
     ways, weights = exploring.offered(search, bare)
     same = proposals.alike(ways.lying, study.turn, request.up)
-    proposal = proposals.Proposal(study.turn, tuple(cuts), study.before, "the values of all", same)
+    free = proposals.free_headings(ways.lying, study.turn, request)
+    proposal = proposals.Proposal(study.turn, tuple(cuts), study.before, "the values of all", same, free)
     made = calm_drive.PlainBowl(bare, frozenset(given), None)
     candidate = exploring.attempted(search, made, proposal, weights)
     if not candidate.attempt.clean:

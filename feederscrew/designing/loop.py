@@ -162,7 +162,7 @@ def proved(search: Search, candidate: Candidate, *, whole: bool) -> DesignStudy:
     search.told(f"draws: {candidate.attempt.wanted}, {request.draws} of part, friction, drive and cuts")
     tested = robust_run(
         part, bowl, ways, weights, candidate.proposal.rows, draws=request.draws,
-        tolerance=request.tolerance, run=request.run,
+        tolerance=request.tolerance, run=request.run, any_heading=candidate.proposal.any_heading,
     )  # fmt: skip
     study = replace(study, robust=tested, partial=tested.partial)
     if tested.partial or not (whole or tested.share >= DRAWS_HELD):
@@ -170,7 +170,7 @@ def proved(search: Search, candidate: Candidate, *, whole: bool) -> DesignStudy:
     search.told(f"queue: {candidate.attempt.wanted}, {candidate.proposal.told}")
     line = queues.FollowedRow(
         part, bowl, known.aspects, ways, weights, candidate.tried.states, request.seed, search.told,
-        RATE_KEPT * request.target,
+        RATE_KEPT * request.target, candidate.proposal.any_heading,
     )  # fmt: skip
     study = _queued(study, queues.filled(line, whole=whole))
     study = _queued(study, queues.longer(line, study))

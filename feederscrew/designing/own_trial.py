@@ -125,7 +125,8 @@ def _tried(study: ToolingStudy, one: Design, run: RunSettings) -> TriedDesign:
     try:
         tried = trying.single(
             study.part, bowl, ways, shares, (one.wanted, *alike(ways.lying, one.wanted, study.up)), rows=rows,
-            each=EACH, run=run,
+            each=EACH, run=run, aspects=study.aspects,
+            any_heading=trying.aspects_at_any_heading(ways.lying, one.wanted, study.up),
         )  # fmt: skip
     except FeederError as fault:  # the bowl does not convey
         return TriedDesign(name, one.wanted, _devices(one), one.efficiency, 0.0, np.nan, 0, (fault.what,))

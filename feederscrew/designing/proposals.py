@@ -43,6 +43,7 @@ class Proposal:
     before: tuple  # of Device
     step: str  # why it is tried
     same: tuple = ()  # rows that count as it
+    any_heading: tuple = ()  # names of aspects that count as it, whatever the heading
 
     @property
     def devices(self):
@@ -85,6 +86,11 @@ def alike(lying, row, up):
     return tuple(k for k, one in enumerate(lying) if k != row and one.aspect.casefold() in names)
 
 
+def free_headings(lying, row, request):
+    """Return the aspects that count as a wanted row at any heading, by what a DesignRequest asks for."""
+    return trying.aspects_at_any_heading(lying, row, request.up, heading_given=request.heading is not None)
+
+
 def _folded(names):
     return {name.strip().casefold() for name in names}
 
@@ -115,7 +121,8 @@ def bare(known, shares, request, devices):
         return None
     leaving = (shares[:, None] * known.leaving).sum(axis=0)
     best = max(rows, key=lambda k: leaving[known.leaves_as[k]])
-    made = Proposal(best, (), tuple(devices), "no device", alike(known.lying, best, request.up))
+    same, free = alike(known.lying, best, request.up), free_headings(known.lying, best, request)
+    made = Proposal(best, (), tuple(devices), "no device", same, free)
     pure = trying.gain(known, shares, made.states(known)) / max(leaving.sum(), 1e-300)
     return made if pure >= ENOUGH else None
 
@@ -154,7 +161,8 @@ def proposed(part, bowl, aspects, row, known, request, how):
         return None
     cuts = tuple(pulses.quickened(rounded(cut, known.lying, row), known.lying) for cut in found.cuts)
     step = f"proposed with margins of {millimetres(margin)}"
-    made = Proposal(row, cuts, tuple(found.before), step, alike(known.lying, row, request.up))
+    same, free = alike(known.lying, row, request.up), free_headings(known.lying, row, request)
+    made = Proposal(row, cuts, tuple(found.before), step, same, free)
     if found.isolated:
         return made
     through = known_through(part, aspects, replace(bowl, devices=made.devices))
