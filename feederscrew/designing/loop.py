@@ -74,8 +74,10 @@ def design(
         _make_whole(search, proofs)
     except KeyboardInterrupt:
         return replace(_best(search, proofs), attempts=tuple(search.attempts), partial=True)
-    best = _best(search, proofs)
-    return replace(best, attempts=tuple(search.attempts), nearest=nearest.nearest(best, search))
+    best = replace(_best(search, proofs), attempts=tuple(search.attempts))
+    if any(study.partial for study, _ in proofs):  # which of them it is
+        return replace(best, partial=True)
+    return replace(best, nearest=nearest.nearest(best, search))
 
 
 def _best(search: Search, proofs: Proofs) -> DesignStudy:
@@ -167,16 +169,27 @@ def proved(search: Search, candidate: Candidate, *, whole: bool) -> DesignStudy:
     study = replace(study, robust=tested, partial=tested.partial)
     if tested.partial or not (whole or tested.share >= DRAWS_HELD):
         return study
-    search.told(f"queue: {candidate.attempt.wanted}, {candidate.proposal.told}")
-    line = queues.FollowedRow(
-        part, bowl, known.aspects, ways, weights, candidate.tried.states, request.seed, search.told,
-        RATE_KEPT * request.target, candidate.proposal.any_heading,
-    )  # fmt: skip
-    study = _queued(study, queues.filled(line, whole=whole))
-    study = _queued(study, queues.longer(line, study))
+    try:
+        study = _in_queues(search, study, candidate, known, whole=whole)
+    except KeyboardInterrupt:
+        return replace(study, partial=True)
     every = [ways.lying[k] for k in trying.often(weights)]
     found = risks.risks(ways.lying[row], bowl, study.queues, every=every, seed=request.seed)
     return replace(study, risks=found)
+
+
+def _in_queues(
+    search: Search, study: DesignStudy, candidate: Candidate, known: Shares, *, whole: bool
+) -> DesignStudy:
+    """The design with its queues, as far as it holds unless ``whole``, and with the slowest for longer."""
+    search.told(f"queue: {candidate.attempt.wanted}, {candidate.proposal.told}")
+    line = queues.FollowedRow(
+        search.part, candidate.bowl, known.aspects, candidate.ways, candidate.weights,
+        candidate.tried.states, search.request.seed, search.told, RATE_KEPT * search.request.target,
+        candidate.proposal.any_heading,
+    )  # fmt: skip
+    study = _queued(study, queues.filled(line, whole=whole))
+    return _queued(study, queues.longer(line, study))
 
 
 def _queued(study: DesignStudy, found: tuple[FilledQueue, ...]) -> DesignStudy:

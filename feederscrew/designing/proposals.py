@@ -11,7 +11,7 @@ from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import names
 from feederscrew.tooling.devices.named import nearest
 from feederscrew.tooling.devices.named import rows as rows_of
-from feederscrew.tooling.isolating.chain import judged, limits, numbered
+from feederscrew.tooling.isolating.chain import WHERE, judged, limits, numbered
 from feederscrew.tooling.isolating.shop_values import millimetres
 
 ROWS = 6  # orientations for which chains are proposed, the most frequent first
@@ -188,7 +188,7 @@ def rounded(cut, every, row):
 def moved(cut, limit, every, row):
     """Return a cut of one number at another value, with its margins there."""
     limit = float(np.round(limit / STEP) * STEP)
-    device = replace(cut.device, limit=limit, text=millimetres(limit))
+    device = cut.device.valued(limit)
     must = np.array([one.name in cut.returns for one in every])
     return judged(every, row, device, must, cut.smallest, cut.largest)
 
@@ -269,11 +269,9 @@ def _before(proposal, others, wanted, every):
         return None
     (kind, middle, listed), room = chosen, best[1]
     limit = float(np.round(middle / STEP) * STEP)
-    device = kind("design", limit=limit, text=millimetres(limit))
+    device = kind.proposal(WHERE, limit).rewritten()
     must = np.array([k in listed for k in range(len(every))])
-    ends = [
-        kind("design", limit=limit + way, text=millimetres(limit + way)) for way in (-0.5 * room, 0.5 * room)
-    ]
+    ends = [device.valued(limit + way) for way in (-0.5 * room, 0.5 * room)]
     cut = judged(every, proposal.row, device, must, *ends)
     return replace(proposal, cuts=(cut, *proposal.cuts), step=f"{kind.kind} of {device.text} before it")
 

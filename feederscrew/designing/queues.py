@@ -107,7 +107,12 @@ def filled(row: FollowedRow, *, whole: bool = True) -> tuple[FilledQueue, ...]:
         return _denied((*found, one), row.least)
 
     for name, gaps in FILLS:
-        one = row.followed(name, gaps, row.seed, None if whole else denied)
+        try:
+            one = row.followed(name, gaps, row.seed, None if whole else denied)
+        except KeyboardInterrupt:  # before anything of it was seen
+            if not found:
+                raise
+            return (*found[:-1], replace(found[-1], partial=True))
         last = one.partial or not (whole or not denied(one))
         found.append(one)
         if last:

@@ -209,8 +209,7 @@ def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, run, any_
             speeds.append(speed)
             run.tell(done, draws)
     except KeyboardInterrupt:
-        if not done:
-            raise
+        pass  # what was done is counted, and marked
     worst = "" if not wrong else f"{wrong.most_common(1)[0][0]} in {wrong.most_common(1)[0][1]} of {done}"
     return RobustRun(done, held, worst, float(min(speeds, default=np.nan)), partial=done < draws)
 

@@ -212,12 +212,19 @@ def single(
     Returns
     -------
     Tried
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user stops it before all parts are through.
     """
     rows, states = np.asarray(rows, int), wanted_states(known, np.atleast_1d(wanted))
     seen = course.course(
         part, bowl, known.lying, course.Sending(rows, each * len(rows)), bowl.devices,
         poses=counted(known, states, any_heading), leaves=course.rightly(known.leaving), run=run,
     )  # fmt: skip
+    if seen.partial:  # fewer parts than were to be tried decide nothing
+        raise KeyboardInterrupt
     whole, asked = np.isin(seen.fates, (course.PASSED, course.TURNED)), np.isin(seen.orientations[-1], states)
     if aspects is not None and any_heading and not isinstance(known.states[states[0]], Hanging):
         asked |= _lies_on(part, aspects, seen, any_heading)

@@ -182,7 +182,7 @@ def _separated(given, cuts):
     if steeper is None or first is None or any(device.leans for device in given.before):
         return tuple(cuts)
     climb = one.track.climb
-    slower = replace(steeper, angle=climb, text=f"{{climb: {np.degrees(climb):.6g} deg}}")
+    slower = replace(steeper, angle=climb).rewritten()
     last = next((k for k, cut in enumerate(cuts) if cut.device.hangs), len(cuts))
     back = (plain_cut(slower),) if last < len(cuts) else ()
     return (*cuts[:first], plain_cut(steeper), *cuts[first:last], *back, *cuts[last:])
