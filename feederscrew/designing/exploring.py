@@ -11,7 +11,6 @@ from feederscrew.designing.searching import Candidate
 from feederscrew.rates import arrivals, spacing
 from feederscrew.rates.tipping import FLAT
 from feederscrew.studies.rate import shares
-from feederscrew.studies.wishes import may_be_up
 from feederscrew.tooling.hanging import neck
 
 EACH = 2  # parts of each orientation in a short trial
@@ -32,7 +31,6 @@ def candidates(search):
     search : Search
         Its ``passed`` and ``failed`` are filled.
     """
-    may_be_up(search.part, _aspects(search), search.request.up)
     for bank in _banks(search, _aspects(search)):
         made = calm_drive.section(
             search.part,

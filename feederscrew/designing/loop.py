@@ -16,6 +16,8 @@ from feederscrew.geometry import vectors
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import Shares
+from feederscrew.studies.wishes import may_be_left_out, may_be_up
+from feederscrew.tooling.devices.named import rows
 from feederscrew.tooling.isolating.design import place
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial.result import TrialRun
@@ -106,12 +108,20 @@ def merit(study: DesignStudy) -> tuple[bool, bool, float, float]:
 
 
 def _check_named(part: Part, plain: Bowl, request: DesignRequest, known: Shares | None) -> None:
-    """Raise FeederError for a heading that its aspect does not have on the track that the user knows."""
-    if request.aspect is None or request.heading is None or part.vertices is None:
+    """Raise FeederError for what is asked for and is not there: an aspect, its heading, a kind of device."""
+    may_be_left_out(request.without)
+    if part.vertices is None:
+        return
+    aspects = find(part) if known is None else known.aspects
+    may_be_up(part, aspects, request.up)
+    if request.aspect is None:
+        return
+    rows(aspects.names, request.aspect, part.source)
+    if request.heading is None:
         return
     wide = max(plain.track.radius, float(vectors.length(np.ptp(part.vertices, axis=0))))  # one that it fits
     track = replace(plain.track, radius=wide)
-    every = orientations(part, find(part) if known is None else known.aspects, track)
+    every = orientations(part, aspects, track)
     place(every, request.aspect, request.heading, part.source)
 
 
