@@ -52,9 +52,16 @@ class ToolingStudy(Shown):
         return next((one for one in self.trials if one.wanted == place), None)
 
     def isolates(self, place: int) -> bool:
-        """Return whether an orientation is isolated: by the static rule, and not denied by its trial."""
+        """Return whether an orientation is isolated: what leaves is pure, by the rule and by its trial.
+
+        Where no trial was made, what no verdict is sure to return counts as leaving.
+        """
         found, tried = self.designs[place], self.trial_of(place)
-        return found is not None and found.isolated and not (tried is not None and tried.faults)
+        if found is None or not found.isolated:
+            return False
+        if tried is not None:
+            return not tried.faults
+        return not found.purity < found.least_purity  # also where nothing that comes leaves
 
     @property
     def design(self) -> Design | None:

@@ -50,7 +50,8 @@ def _head(study):
     one, found = study.orientations[study.wanted], study.design
     return [
         f"# Tooling that lets aspect {one.aspect} at heading {one.name.partition('@')[2]} deg leave.",
-        f"# Efficiency {100.0 * found.efficiency:.4g} %, purity {'at least ' * bool(found.purity_is_least)}"
+        f"# By the static rule: efficiency {'at least ' * (found.least < found.efficiency)}"
+        f"{100.0 * found.least:.4g} %, purity {'at least ' * bool(found.purity_is_least)}"
         f"{100.0 * found.purity:.4g} %, by {study.answer}.",
         *_tried(study.trial_of(study.wanted)),
     ]
@@ -62,4 +63,4 @@ def _tried(trial):
         return ["# By the static rule, not tried: see feeder trial."]
     if trial.faults:
         return [f"# DENIED by its trial: {'; '.join(trial.faults)}."]
-    return [f"# Of {trial.parts} parts tried {100.0 * trial.efficiency:.4g} % leave so."]
+    return [f"# Of {trial.parts} parts tried {trial.figures}."]

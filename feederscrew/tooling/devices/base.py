@@ -272,7 +272,8 @@ class Device:
 
 def length_text(value):
     """Return a length [m] as a bowl file has it, to a ten-thousandth of a millimetre: '9.25 mm'."""
-    return f"{round(value / WRITTEN_STEP_M) * WRITTEN_STEP_M / MM:.9g} mm"
+    steps = value / WRITTEN_STEP_M
+    return f"{(round(steps) if math.isfinite(steps) else steps) * WRITTEN_STEP_M / MM:.9g} mm"
 
 
 def angle_text(value):
