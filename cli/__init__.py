@@ -21,8 +21,9 @@ def end_while_loading(*_received: object) -> None:
     os._exit(128 + signal.SIGINT)
 
 
+PROGRAM = sys.argv[0].replace("\\", "/").rpartition("/")[2].split(".")[0]  # not of a script that imports it
 if (
-    sys.argv[0].replace("\\", "/").rpartition("/")[2].split(".")[0] == "feeder"  # the program, not a script that imports it
+    PROGRAM == "feeder"
     and threading.current_thread() is threading.main_thread()
     and signal.getsignal(signal.SIGINT) is signal.default_int_handler
 ):
