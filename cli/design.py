@@ -192,9 +192,11 @@ def _written(out, folder, found, settings, pictures):
     """What one design leaves in its folder."""
     from feederscrew.designing import beside
     from feederscrew.output import offers
-    from feederscrew.output.designs import files
+    from feederscrew.output.designs import design_file, files
 
     made = beside.Built() if found.partial else beside.built(found, settings)
+    if found.bowl is not None:  # read back and compared, whether or not it is kept
+        design_file.bowl_file(found, settings, made.sheet)
     out.warn(*found.warnings, *([f"no solid of the bowl is made: {made.why}"] if made.why else []))
     offers.write(folder, files.offers(found, settings, made), pictures=pictures)
 

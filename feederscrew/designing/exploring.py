@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from feederscrew.bowl.devices import check_written
 from feederscrew.designing import calm_drive, proposals, trying
 from feederscrew.designing.record import Attempt
 from feederscrew.designing.robust import denied, robust_run
@@ -220,6 +221,7 @@ def _screened(search, candidate):
 def attempted(search, made, proposal, weights):
     """Return a Candidate: one short trial at the drive that the target asks for."""
     part = search.part
+    check_written(proposal.devices, "design.yaml")
     bowl = replace(made.bowl, devices=proposal.devices)
     ways = proposals.known_through(part, search.known.aspects, bowl)
     gain = trying.gain(ways, weights, proposal.states(ways))

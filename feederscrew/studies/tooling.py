@@ -8,6 +8,7 @@ from typing import Any, Unpack
 import numpy as np
 
 from feederscrew import check
+from feederscrew.bowl.devices import check_written
 from feederscrew.bowl.record import Bowl
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
@@ -167,7 +168,8 @@ def tooling(
         own.told(0, len(asked))
     cache: dict[float, _Track] = {bowl.track.width: _Track(bowl, every, shares, {})}
     for done, k in enumerate(asked):
-        designs[k] = _best(part, found, rule, k, cache, asked_of_each)
+        designs[k] = best = _best(part, found, rule, k, cache, asked_of_each)
+        check_written(best.devices, "tooling.yaml")
         if own.told is not None:
             own.told(done + 1, len(asked))
     study = ToolingStudy(

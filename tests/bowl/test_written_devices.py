@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,8 +11,11 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew import documents
 from feederscrew.bowl import devices
+from feederscrew.bowl.reading import settings_of_text
 from feederscrew.designing import proposals, pulses
+from feederscrew.designing.record import DesignRequest, DesignStudy
 from feederscrew.errors import FeederError
+from feederscrew.output.designs import design_file
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.devices.sensing import VIEWS
@@ -138,3 +142,48 @@ def test_a_text_of_another_device_is_refused(text):
     wiper = replace(KINDS["wiper"].proposal("design", 0.0113), text=text)
     with pytest.raises(FeederError, match="not the device that was tried"):
         devices.check_written((wiper,), "design.yaml")
+
+
+def made(bowl):
+    request = DesignRequest(40.0 / 60.0)
+    return DesignStudy(shapes.part(shapes.box(10, 10, 10)), request, bowl, "A@0", 0)
+
+
+def test_drive_track_and_machine_are_read_back_as_they_were_tried():
+    rng, plain = np.random.default_rng(11), bowls.default()
+    for _ in range(10):
+        drive = replace(
+            plain.drive,
+            amplitude=float(rng.uniform(1e-5, 1e-3)),
+            frequency=float(rng.uniform(20.0, 100.0)),
+            vibration_angle=float(rng.uniform(0.1, 0.6)),
+            phase=float(rng.uniform(-1.0, 1.0)),
+        )
+        track = replace(
+            plain.track, climb=float(rng.uniform(0.0, 0.1)), bank=float(rng.uniform(0.0, 0.2)),
+            radius=float(rng.uniform(0.1, 0.4)), width=float(rng.uniform(0.01, 0.05)),
+        )  # fmt: skip
+        machine = replace(plain.machine, bowl_mass=float(rng.uniform(1.0, 20.0)), spring_angle=0.3)
+        bowl = replace(plain, drive=drive, track=track)
+        text = design_file.bowl_file(made(bowl), (), SimpleNamespace(bowl=replace(bowl, machine=machine)))
+        found = bowls.record(settings_of_text(text, "design.yaml"))
+        assert devices.differences(drive, found.drive) == devices.differences(track, found.track) == []
+        assert devices.differences(machine, found.machine) == []
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"drive": {"second_harmonic": 0.1}},
+        {"friction": {"static": 0.41}},
+        {"gravity": 1.62},
+        {"restitution": 0.31},
+    ],
+)
+def test_a_value_that_the_file_would_not_give_back_is_refused(changed):
+    bowl = bowls.default()
+    for name, value in changed.items():
+        own = replace(getattr(bowl, name), **value) if isinstance(value, dict) else value
+        bowl = replace(bowl, **{name: own})
+    with pytest.raises(FeederError, match="not the bowl that was tried"):
+        design_file.bowl_file(made(bowl), ())

@@ -11,7 +11,11 @@ from feederscrew.tooling.isolating.proposal import LEAST_SHARE
 from feederscrew.units import factor
 
 MM, DEG = factor("mm", "length"), factor("deg", "angle")
-HIDDEN = ("reasons",)
+LEAVING = (  # efficiency and purity, of the trial where there is one
+    "efficiency", "efficiency_low", "efficiency_high", "purity", "purity_low", "efficiency_static",
+    "purity_static",
+)  # fmt: skip
+HIDDEN = ("reasons", *(name for name in LEAVING if "_" in name))  # the sentences of the trial have them
 SPARE = (  # left out of a table for people that is too wide, the first ones first
     ("smallest_cut", "largest_cut"),
     ("mirror", "wall_distance_mm", "balcony_mm", "canyon_mm", "gap_mm"),
@@ -63,12 +67,6 @@ def orientations(study):
     """
     rows = zip(study.orientations, study.shares, study.designs)
     return [_row(one, share) | _designed(study, k, found) for k, (one, share, found) in enumerate(rows)]
-
-
-LEAVING = (
-    "efficiency", "efficiency_low", "efficiency_high", "purity", "purity_low", "efficiency_static",
-    "purity_static",
-)  # fmt: skip
 
 
 def leaving(study, place):
