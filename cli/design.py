@@ -7,7 +7,7 @@ import click
 
 from feederscrew_cli import grouped, options, orientation, quantity, waiting
 from feederscrew_cli.angle import Angle
-from feederscrew_cli.interrupt import held_back, noted
+from feederscrew_cli.interrupt import INTERRUPTED, held_back, noted
 from feederscrew_cli.quantity import Quantity
 from feederscrew_cli.span import Span
 
@@ -113,8 +113,8 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
     with the numbers it rests on. What falls short says where, with the nearest design that would hold.
 
     What --config says of track, drive and friction is kept. Its devices stay before those of the design.
-    The same seed gives the same answer whatever the number of jobs. Ctrl-C gives the best so far, marked
-    partial.
+    The same seed gives the same answer whatever the number of jobs. Ctrl-C ends it
+    with exit status 130 as not proved: it says what was counted so far, and writes no papers to build from.
 
     Of several parts each is designed for one track and one chain of devices, as far as they go: what is
     changed from one to the next is listed in family/changeover.csv and on the page family/family.html. Each
@@ -149,6 +149,13 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
             found = loop.design(solid, record, given, request, known=known, **search)
         _written(out, folder, found, settings, pictures)
         out.show(tables.summary(found), tables.document(found))
+    _ended(found)
+
+
+def _ended(found):
+    """End as stopped where the user stopped it: what is not proved is no success."""
+    if found.partial:
+        click.get_current_context().exit(INTERRUPTED)
 
 
 @contextlib.contextmanager
@@ -191,9 +198,11 @@ def _written(out, folder, found, settings, pictures):
     """What one design leaves in its folder."""
     from feederscrew.designing import beside
     from feederscrew.output import offers
-    from feederscrew.output.designs import files
+    from feederscrew.output.designs import design_file, files
 
-    made = beside.built(found, settings)
+    made = beside.Built() if found.partial else beside.built(found, settings)
+    if found.bowl is not None:  # read back and compared, whether or not it is kept
+        design_file.bowl_file(found, settings, made.sheet)
     out.warn(*found.warnings, *([f"no solid of the bowl is made: {made.why}"] if made.why else []))
     offers.write(folder, files.offers(found, settings, made), pictures=pictures)
 
@@ -216,3 +225,4 @@ def _family(out, parts, asked, written):
     with out.folder("family", inputs | bowls.identity(path), bowls.texts(settings)) as folder:
         offers.write(folder, family_page.offers(found), pictures=pictures)
         out.show(family.summary(found), family.document(found))
+    _ended(found)

@@ -1,5 +1,6 @@
 """Quantities as people write them, '0.5 mm', in SI units: the one place for every factor."""
 
+import json
 import math
 import re
 from collections.abc import Iterable
@@ -55,6 +56,7 @@ SPELLINGS = {
 }
 NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![\d._,+-])", re.ASCII)
 COMMA = re.compile(r"[+-]?\d+,\d+", re.ASCII)
+PLAIN_YAML = re.compile(r"(?!- )[\w.+/-]([\w.+@/% -]*[\w.+@/%-])?")
 PLAIN = str.maketrans({"²": "2", "³": "3", "^": None, "*": " ", "·": " ", "\N{MINUS SIGN}": "-"})
 
 
@@ -130,6 +132,11 @@ def one_line(text: str) -> str:
     """Return a user's text fit for a message: printable, on one line and not too long."""
     line = " ".join("".join(c if c.isprintable() else " " for c in text).split())
     return line if len(line) <= 40 else f"{line[:37]}..."
+
+
+def quoted(text: str) -> str:
+    """Return a text as YAML takes it on one line: as it is where it is plain, else in double quotes."""
+    return text if PLAIN_YAML.fullmatch(text) else json.dumps(text, ensure_ascii=False)
 
 
 def counted(number: int, noun: str) -> str:

@@ -54,8 +54,9 @@ def design(
     Returns
     -------
     DesignStudy
-        Its ``status`` is one of three words; its ``bowl`` has the devices. Of several parts a FamilyStudy:
-        its ``members``, whether all is ``shared``, and the worst ``status``.
+        Its ``status`` is one of four words, 'not proved' where the user stopped it; its ``bowl`` has the
+        devices. Of several parts a FamilyStudy: its ``members``, whether all is ``shared``, and the worst
+        ``status``.
     """
     from feederscrew import bowl as bowls
     from feederscrew.designing.families import family

@@ -1,15 +1,18 @@
 """The devices along the track, as a bowl file lists them."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Container, Iterable, Sequence
+from dataclasses import fields, is_dataclass
 
 from feederscrew import documents, units
 from feederscrew.documents import Entry
 from feederscrew.errors import ConfigError, FeederError
-from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.devices.base import WRITTEN_STEP_M, Device
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.devices.values import written
 
 SECTION = "devices"  # of a bowl file
+WRITTEN_SHARE = 1e-6  # [1] of a value, within which it is that of its text
 
 
 def listed(entry: Entry, faults: list[FeederError]) -> tuple[Device, ...]:
@@ -114,6 +117,68 @@ def strangers(chain: Sequence[Device], aspects: Sequence[str]) -> list[str]:
         for name, _ in device.shares
         if name.casefold() not in known
     ]
+
+
+def value_text(device: Device) -> str:
+    """Return the value of a device as a bowl file has it; a hole with its corners, as files move."""
+    return device.value_text() if device.corners else device.text
+
+
+def check_written(chain: Iterable[Device], name: str) -> None:
+    """Refuse devices that a bowl file would not give back as they are.
+
+    Parameters
+    ----------
+    chain : iterable of Device
+        As they were tried, each with its text.
+    name : str
+        Of what is written, for the fault.
+
+    Raises
+    ------
+    FeederError
+        If a text is no device, or one of which some attribute is another.
+    """
+    for device in chain:
+        line = f"{device.kind}: {value_text(device)}"
+        try:
+            root, faults = documents.load(f"- {line}\n", name)
+            documents.raise_all(faults)
+            other = differences(device, _device(root.items[0]))
+        except FeederError as fault:
+            other = [fault.what]
+        if other:
+            what = f"'{units.one_line(line)}' is not the device that was tried: {'; '.join(other)}"
+            raise FeederError(name, what, "this is a fault of feeder: report it with the command you gave")
+
+
+def differences(one: object, other: object, unlike: Container[str] = ("where", "text")) -> list[str]:
+    """Return in what two records of one kind differ by more than a file's digits, an attribute a sentence.
+
+    Parameters
+    ----------
+    one, other : dataclass
+    unlike : collection of str
+        Attributes that may differ.
+    """
+    if type(one) is not type(other):
+        return [f"it is a {type(other).__name__} and not a {type(one).__name__}"]
+    rows = ((field.name, getattr(one, field.name), getattr(other, field.name)) for field in fields(one))  # type: ignore[arg-type]
+    return [
+        f"{name} is {b!r} and not {a!r}" for name, a, b in rows if name not in unlike and not _alike(a, b)
+    ]
+
+
+def _alike(a: object, b: object) -> bool:
+    """Whether two values are equal but for the digits that a file has."""
+    if isinstance(a, tuple) and isinstance(b, tuple):
+        return len(a) == len(b) and all(map(_alike, a, b))
+    if isinstance(a, float | int) and isinstance(b, float | int):
+        same = math.isclose(a, b, rel_tol=WRITTEN_SHARE, abs_tol=0.51 * WRITTEN_STEP_M)
+        return same or (math.isnan(a) and math.isnan(b))
+    if is_dataclass(a) and is_dataclass(b):
+        return not differences(a, b)
+    return a == b
 
 
 def _device(item: documents.Node) -> Device:

@@ -46,6 +46,15 @@ def settings(path: str | PathLike[str] | None = None, overrides: Iterable[str] =
     return found
 
 
+def settings_of_text(text: str, name: str) -> tuple[Setting, ...]:
+    """Return every value in effect of the text of a bowl file; the rest as for ``settings``."""
+    given, faults = _given(*documents.load(text, name))
+    found = effective(given)
+    faults += [*_kinetic_above_static(given), *devices.misplaced(chain(found), _width(found))]
+    documents.raise_all(faults)
+    return found
+
+
 def _width(found: Iterable[Setting]) -> float:
     return next(s.value for s in found if s.key.name == "track.width")
 
@@ -99,7 +108,11 @@ def checked(
 
 
 def _from_file(path: str | PathLike[str]) -> tuple[dict[str, Setting], list[FeederError]]:
-    root, faults = documents.read(path)
+    return _given(*documents.read(path))
+
+
+def _given(root: Node, faults: list[FeederError]) -> tuple[dict[str, Setting], list[FeederError]]:
+    """Settings of the tree of a bowl file by key name, and what is wrong with it."""
     if root.kind != "mapping":
         raise ConfigError(root.where, "no 'key: value' line", "start from 'feeder config init'")
     given: dict[str, Setting] = {}

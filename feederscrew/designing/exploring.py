@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from feederscrew.bowl.devices import check_written
 from feederscrew.designing import calm_drive, proposals, trying
 from feederscrew.designing.record import Attempt
 from feederscrew.designing.robust import denied, robust_run
@@ -11,7 +12,6 @@ from feederscrew.designing.searching import Candidate
 from feederscrew.rates import arrivals, spacing
 from feederscrew.rates.tipping import FLAT
 from feederscrew.studies.rate import shares
-from feederscrew.studies.wishes import may_be_up
 from feederscrew.tooling.hanging import neck
 
 EACH = 2  # parts of each orientation in a short trial
@@ -32,7 +32,6 @@ def candidates(search):
     search : Search
         Its ``passed`` and ``failed`` are filled.
     """
-    may_be_up(search.part, _aspects(search), search.request.up)
     for bank in _banks(search, _aspects(search)):
         made = calm_drive.section(
             search.part,
@@ -208,6 +207,7 @@ def _screened(search, candidate):
     drawn = robust_run(
         search.part, candidate.bowl, candidate.ways, candidate.weights, candidate.proposal.rows,
         draws=min(SCREENED, request.draws), tolerance=request.tolerance, run=request.run,
+        any_heading=candidate.proposal.any_heading,
     )  # fmt: skip
     if drawn.partial:
         raise KeyboardInterrupt
@@ -221,6 +221,7 @@ def _screened(search, candidate):
 def attempted(search, made, proposal, weights):
     """Return a Candidate: one short trial at the drive that the target asks for."""
     part = search.part
+    check_written(proposal.devices, "design.yaml")
     bowl = replace(made.bowl, devices=proposal.devices)
     ways = proposals.known_through(part, search.known.aspects, bowl)
     gain = trying.gain(ways, weights, proposal.states(ways))
@@ -262,6 +263,7 @@ def _short(search, bowl, ways, weights, proposal):
     """The short trial: what is wanted first; where none of it leaves, the others are not tried."""
     request, rows = search.request, trying.often(weights, (proposal.row,))
     own = {"run": replace(request.run, before=search.before)}
+    own |= {"aspects": search.known.aspects, "any_heading": proposal.any_heading}
     right = set(trying.wanted_rows(ways, proposal.states(ways)))
     first = [k for k in rows if k in right] or [proposal.row]
     tried = trying.single(search.part, bowl, ways, weights, proposal.rows, rows=first, each=EACH, **own)

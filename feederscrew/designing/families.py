@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from feederscrew.designing import calm_drive, exploring, loop, proposals
-from feederscrew.designing.record import FALLS_SHORT, HOLDS, NONE, DesignStudy
+from feederscrew.designing.record import FALLS_SHORT, HOLDS, NONE, NOT_PROVED, DesignStudy
 from feederscrew.designing.searching import Search
 from feederscrew.errors import FeederError
 from feederscrew.studies.aspects import answered
@@ -19,10 +19,13 @@ class FamilyStudy:
     """Designs of several parts that are to run in one bowl."""
 
     members: tuple[DesignStudy, ...]
+    stopped: bool = False  # by the user, before each part was designed and tried
 
     @property
     def status(self):
-        """The worst word of its parts: holds where each does."""
+        """The worst word of its parts: holds where each does; not proved where the user stopped it."""
+        if self.partial:
+            return NOT_PROVED
         words = {one.status for one in self.members}
         return next(word for word in (NONE, FALLS_SHORT, HOLDS) if word in words)
 
@@ -34,7 +37,7 @@ class FamilyStudy:
     @property
     def partial(self):
         """Whether the user stopped it."""
-        return any(one.partial for one in self.members)
+        return self.stopped or any(one.partial for one in self.members)
 
 
 def iron(study):
@@ -88,14 +91,19 @@ def family(parts, plain, given, request, *, told=None, before=None):
     told = told or (lambda text: None)
     plain, given, first = _common(parts, plain, frozenset(given), request)
     found: dict[int, DesignStudy] = {}
-    for k in (first, *(k for k in range(len(parts)) if k != first)):
-        told(f"{parts[k].name}:")
-        lead = found.get(first)
-        found[k] = _member(parts[k], lead, plain, given, request, told=told, before=before)
-        if found[k].partial:
-            return FamilyStudy(tuple(found[n] for n in sorted(found)))
-    members = tuple(found[k] for k in range(len(parts)))
-    return FamilyStudy(_of_one_chain(members, request, given, told, before))
+    try:
+        for k in (first, *(k for k in range(len(parts)) if k != first)):
+            told(f"{parts[k].name}:")
+            lead = found.get(first)
+            found[k] = _member(parts[k], lead, plain, given, request, told=told, before=before)
+            if found[k].partial:
+                return FamilyStudy(tuple(found[n] for n in sorted(found)))
+        members = tuple(found[k] for k in range(len(parts)))
+        return FamilyStudy(_of_one_chain(members, request, given, told, before))
+    except KeyboardInterrupt:
+        if not found:
+            raise
+        return FamilyStudy(tuple(found[n] for n in sorted(found)), stopped=True)
 
 
 def _common(parts, plain, given, request):
@@ -121,7 +129,7 @@ def _member(part, lead, plain, given, request, *, told, before):
     if found.status == HOLDS or found.partial:
         return replace(found, request=request)
     other = loop.design(part, plain, given, request, **own)
-    return max((found, other), key=loop.merit)
+    return replace(max((found, other), key=loop.merit), partial=other.partial)
 
 
 def _of_one_chain(members, request, given, told, before):
@@ -138,6 +146,8 @@ def _of_one_chain(members, request, given, told, before):
         if [cut.device.text for cut in cuts] != [cut.device.text for cut in member.cuts]:
             told(f"{member.part.name}: with the values of all")
             member = again(member, cuts, request, given | set(TRACK), told=told, before=before)
+        if member is not None and member.partial:
+            raise KeyboardInterrupt
         if member is None or member.status != HOLDS:
             return members
         made.append(member)
@@ -203,7 +213,8 @@ def again(study, cuts, request, given, *, told, before):
     search.known = exploring.arriving(search, bare)
     ways, weights = exploring.offered(search, bare)
     same = proposals.alike(ways.lying, study.turn, request.up)
-    proposal = proposals.Proposal(study.turn, tuple(cuts), study.before, "the values of all", same)
+    free = proposals.free_headings(ways.lying, study.turn, request)
+    proposal = proposals.Proposal(study.turn, tuple(cuts), study.before, "the values of all", same, free)
     made = calm_drive.PlainBowl(bare, frozenset(given), None)
     candidate = exploring.attempted(search, made, proposal, weights)
     if not candidate.attempt.clean:

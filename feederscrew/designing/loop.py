@@ -17,6 +17,8 @@ from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import Shares
+from feederscrew.studies.wishes import may_be_left_out, may_be_up
+from feederscrew.tooling.devices.named import rows
 from feederscrew.tooling.isolating.design import place
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial.result import TrialRun
@@ -75,8 +77,10 @@ def design(
         _make_whole(search, proofs)
     except KeyboardInterrupt:
         return replace(_best(search, proofs), attempts=tuple(search.attempts), partial=True)
-    best = _best(search, proofs)
-    return replace(best, attempts=tuple(search.attempts), nearest=nearest.nearest(best, search))
+    best = replace(_best(search, proofs), attempts=tuple(search.attempts))
+    if any(study.partial for study, _ in proofs):  # which of them it is
+        return replace(best, partial=True)
+    return replace(best, nearest=nearest.nearest(best, search))
 
 
 def _best(search: Search, proofs: Proofs) -> DesignStudy:
@@ -105,13 +109,21 @@ def merit(study: DesignStudy) -> tuple[bool, bool, float, float]:
 
 
 def _check_named(part: Part, plain: Bowl, request: DesignRequest, known: Shares | None) -> None:
-    """Raise FeederError for a heading that its aspect does not have on the track that the user knows."""
+    """Raise FeederError for what is asked for and is not there: an aspect, its heading, a kind of device."""
     refuse_many_facets(part)
-    if request.aspect is None or request.heading is None or part.vertices is None:
+    may_be_left_out(request.without)
+    if part.vertices is None:
+        return
+    aspects = find(part) if known is None else known.aspects
+    may_be_up(part, aspects, request.up)
+    if request.aspect is None:
+        return
+    rows(aspects.names, request.aspect, part.source)
+    if request.heading is None:
         return
     wide = max(plain.track.radius, float(vectors.length(np.ptp(part.vertices, axis=0))))  # one that it fits
     track = replace(plain.track, radius=wide)
-    every = orientations(part, find(part) if known is None else known.aspects, track)
+    every = orientations(part, aspects, track)
     place(every, request.aspect, request.heading, part.source)
 
 
@@ -164,21 +176,32 @@ def proved(search: Search, candidate: Candidate, *, whole: bool) -> DesignStudy:
     search.told(f"draws: {candidate.attempt.wanted}, {request.draws} of part, friction, drive and cuts")
     tested = robust_run(
         part, bowl, ways, weights, candidate.proposal.rows, draws=request.draws,
-        tolerance=request.tolerance, run=request.run,
+        tolerance=request.tolerance, run=request.run, any_heading=candidate.proposal.any_heading,
     )  # fmt: skip
     study = replace(study, robust=tested, partial=tested.partial)
     if tested.partial or not (whole or tested.share >= DRAWS_HELD):
         return study
-    search.told(f"queue: {candidate.attempt.wanted}, {candidate.proposal.told}")
-    line = queues.FollowedRow(
-        part, bowl, known.aspects, ways, weights, candidate.tried.states, request.seed, search.told,
-        RATE_KEPT * request.target,
-    )  # fmt: skip
-    study = _queued(study, queues.filled(line, whole=whole))
-    study = _queued(study, queues.longer(line, study))
+    try:
+        study = _in_queues(search, study, candidate, known, whole=whole)
+    except KeyboardInterrupt:
+        return replace(study, partial=True)
     every = [ways.lying[k] for k in trying.often(weights)]
     found = risks.risks(ways.lying[row], bowl, study.queues, every=every, seed=request.seed)
     return replace(study, risks=found)
+
+
+def _in_queues(
+    search: Search, study: DesignStudy, candidate: Candidate, known: Shares, *, whole: bool
+) -> DesignStudy:
+    """The design with its queues, as far as it holds unless ``whole``, and with the slowest for longer."""
+    search.told(f"queue: {candidate.attempt.wanted}, {candidate.proposal.told}")
+    line = queues.FollowedRow(
+        search.part, candidate.bowl, known.aspects, candidate.ways, candidate.weights,
+        candidate.tried.states, search.request.seed, search.told, RATE_KEPT * search.request.target,
+        candidate.proposal.any_heading,
+    )  # fmt: skip
+    study = _queued(study, queues.filled(line, whole=whole))
+    return _queued(study, queues.longer(line, study))
 
 
 def _queued(study: DesignStudy, found: tuple[FilledQueue, ...]) -> DesignStudy:

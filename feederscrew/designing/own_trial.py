@@ -9,6 +9,7 @@ import numpy as np
 from feederscrew.designing import trying
 from feederscrew.designing.proposals import alike
 from feederscrew.designing.robust import denied
+from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
 from feederscrew.rates import stream
 from feederscrew.running import RunSettings
@@ -23,6 +24,9 @@ SEARCHES = 8  # designs that are looked for after a denied one
 # stretches that reject nothing: to leave them out makes no other chain
 KEPT = tuple(name for name in names(leans=True) if not KINDS[name].grooved)
 OFTEN = 0.02  # [1] shares of the orientations that are tried, and the one that is wanted
+RARE = 1e-3  # [1] of the wanted share: what comes less often than that changes no purity
+FURTHER = 8  # orientations that come less often than OFTEN and may leave, and are tried as well
+SLIGHT = 1e-9  # [1] of rounding
 
 
 @dataclass(frozen=True)
@@ -33,19 +37,48 @@ class TriedDesign:
     wanted: int  # its place among the orientations
     devices: tuple[str, ...]  # of the chain, as a bowl file has them
     static_efficiency: float  # [1]
-    efficiency: float  # [1] of those tried
+    efficiency: float  # [1] of all that is offered
     purity: float  # [1] NaN where nothing leaves
     parts: int
     faults: tuple[str, ...]  # what the trial denies, a sentence each
+    efficiency_ends: tuple[float, float] = (0.0, 1.0)  # [1] 95 % interval
+    purity_ends: tuple[float, float] = (0.0, 1.0)  # [1]
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the trial denies nothing and the rule's efficiency lies in its interval."""
+        low, high = self.efficiency_ends
+        return not self.faults and low - SLIGHT <= self.static_efficiency <= high + SLIGHT
+
+    @property
+    def verdict(self) -> str:
+        """What the trial says of the rule."""
+        if self.faults:
+            return "the trial denies it: " + "; ".join(self.faults)
+        return (
+            "the trial agrees" if self.agrees else "the trial sorts too, but the rule's efficiency is not its"
+        )
+
+    @property
+    def figures(self) -> str:
+        """What leaves, with its intervals."""
+        purity = "nothing leaves"
+        if not np.isnan(self.purity):
+            purity = f"{_percent(self.purity, self.purity_ends)} of what leaves"
+        return f"{_percent(self.efficiency, self.efficiency_ends)} do, {purity}"
 
     @property
     def sentence(self) -> str:
         """Both verdicts."""
-        said = "the trial agrees" if not self.faults else "the trial denies it: " + "; ".join(self.faults)
         return (
             f"{self.name}: the static rule lets {100.0 * self.static_efficiency:.3g} % leave, of {self.parts}"
-            f" parts tried {100.0 * self.efficiency:.3g} % do; {said}"
+            f" parts tried {self.figures}; {self.verdict}"
         )
+
+
+def _percent(value: float, ends: tuple[float, float]) -> str:
+    low, high = (f"{100.0 * end:.3g}" for end in ends)
+    return f"{100.0 * value:.4g} % ({low} to {high})"
 
 
 def own_trials(
@@ -121,24 +154,88 @@ def _tried(study: ToolingStudy, one: Design, run: RunSettings) -> TriedDesign:
     ways = stream.along(study.orientations, study.aspects, bowl.devices, bowl=bowl)
     name, total = ways.lying[one.wanted].name, study.shares.sum()
     shares = study.shares / total if total > 0.0 else np.full(len(study.shares), 1.0 / len(study.shares))
-    rows = [k for k in trying.often(shares, (one.wanted,)) if shares[k] >= OFTEN or k == one.wanted]
+    rows = _rows_tried(ways, shares, one.wanted)
     try:
         tried = trying.single(
             study.part, bowl, ways, shares, (one.wanted, *alike(ways.lying, one.wanted, study.up)), rows=rows,
-            each=EACH, run=run,
+            each=EACH, run=run, aspects=study.aspects,
+            any_heading=trying.aspects_at_any_heading(ways.lying, one.wanted, study.up),
         )  # fmt: skip
     except FeederError as fault:  # the bowl does not convey
         return TriedDesign(name, one.wanted, _devices(one), one.efficiency, 0.0, np.nan, 0, (fault.what,))
+    efficiency, purity = shares_leaving(tried)
+    value, (low, high) = purity[0], purity[1:]
+    impure = []
+    if value < one.least_purity:
+        impure.append(
+            f"{_percent(value, (low, high))} of what leaves is wanted, of {100.0 * one.least_purity:.3g} %"
+        )
     return TriedDesign(
         name=name,
         wanted=one.wanted,
         devices=_devices(one),
         static_efficiency=one.efficiency,
-        efficiency=tried.efficiency,
-        purity=tried.purity,
+        efficiency=efficiency[0],
+        purity=value,
         parts=int(tried.parts.sum()),
-        faults=tuple(denied(tried)),
+        faults=(*denied(tried), *impure),
+        efficiency_ends=efficiency[1:],
+        purity_ends=(low, high),
     )
+
+
+def _rows_tried(ways: stream.Orientations, shares: np.ndarray, wanted: int) -> list[int]:
+    """Orientations that are tried: those that come often, and of the others those that may leave."""
+    often = [k for k in np.argsort(-shares, kind="stable") if shares[k] >= OFTEN or k == wanted]
+    may = (ways.may_leave > 0.0) & (shares >= RARE * shares[wanted]) & (shares > 0.0)
+    further = [k for k in np.argsort(-shares, kind="stable") if may[k] and k not in often]
+    return [int(k) for k in (*often, *further[:FURTHER])]
+
+
+def shares_leaving(tried: trying.Tried) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """Return efficiency and purity [1] of a short trial, each as value, low and high end.
+
+    What was not tried counts as the static rule says; what that is not sure to return, as wrong at the lower
+    end.
+
+    Parameters
+    ----------
+    tried : Tried
+
+    Returns
+    -------
+    (value, low, high), (value, low, high)
+        95 % intervals of shares of all parts offered; a purity of NaN where nothing leaves.
+
+    References
+    ----------
+    Sums of shares: G. Y. Zou, A. Donner, "Construction of confidence limits about effect measures: a general
+    approach", Statist. Med. 27, 1693-1702, 2008.
+    """
+    known, shares = tried.known, tried.shares / max(tried.shares.sum(), 1e-300)
+    rest = np.setdiff1d(np.arange(len(shares)), tried.rows)
+    as_ruled = known.leaving[rest][:, list(tried.states)].sum(axis=1) * (known.leaves[rest] > 0.0)
+    right = _summed(shares[tried.rows], tried.right, tried.parts)
+    wrong = _summed(shares[tried.rows], tried.wrong, tried.parts)
+    more = float((shares[rest] * as_ruled).sum())
+    other = float((shares[rest] * np.maximum(known.leaves[rest] - as_ruled, 0.0)).sum())
+    doubt = float((shares[rest] * np.maximum(known.may_leave[rest] - as_ruled, 0.0)).sum())
+    efficiency = right[0] + more, right[1], min(right[2] + more, 1.0)
+    against = wrong[0] + other, wrong[1], wrong[2] + doubt
+    if not efficiency[0] + against[0] > 0.0:
+        return efficiency, (np.nan, 0.0, 1.0)
+    pure = [a / (a + b) if a > 0.0 else 0.0 for a, b in zip(efficiency, (against[0], against[2], against[1]))]
+    return efficiency, (pure[0], pure[1], pure[2])
+
+
+def _summed(shares: np.ndarray, counts: np.ndarray, parts: np.ndarray) -> tuple[float, float, float]:
+    """The sum of shares [1] times proportions, with its 95 % interval."""
+    ends = [wilson([count], total) for count, total in zip(counts, parts, strict=True)]
+    low, high = (np.array([float(end[k][0]) for end in ends]) for k in range(2))
+    value = counts / np.maximum(parts, 1)
+    total = float((shares * value).sum())
+    down, up = (float(np.sqrt(((shares * off) ** 2).sum())) for off in (value - low, high - value))
+    return total, max(total - down, 0.0), min(total + up, 1.0)
 
 
 def document(tried: Iterable[TriedDesign]) -> list[dict[str, Any]]:
@@ -149,9 +246,14 @@ def document(tried: Iterable[TriedDesign]) -> list[dict[str, Any]]:
             "devices": list(one.devices),
             "efficiency_static": one.static_efficiency,
             "efficiency_tried": one.efficiency,
+            "efficiency_low": one.efficiency_ends[0],
+            "efficiency_high": one.efficiency_ends[1],
             "purity_tried": None if np.isnan(one.purity) else one.purity,
+            "purity_low": one.purity_ends[0],
+            "purity_high": one.purity_ends[1],
             "parts": one.parts,
             "sorts": not one.faults,
+            "agrees": one.agrees,
             "denied": list(one.faults),
         }
         for one in tried

@@ -11,7 +11,7 @@ from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import names
 from feederscrew.tooling.devices.named import nearest
 from feederscrew.tooling.devices.named import rows as rows_of
-from feederscrew.tooling.isolating.chain import judged, limits, numbered
+from feederscrew.tooling.isolating.chain import WHERE, judged, limits, numbered
 from feederscrew.tooling.isolating.shop_values import millimetres
 
 ROWS = 6  # orientations for which chains are proposed, the most frequent first
@@ -43,6 +43,7 @@ class Proposal:
     before: tuple  # of Device
     step: str  # why it is tried
     same: tuple = ()  # rows that count as it
+    any_heading: tuple = ()  # names of aspects that count as it, whatever the heading
 
     @property
     def devices(self):
@@ -85,6 +86,11 @@ def alike(lying, row, up):
     return tuple(k for k, one in enumerate(lying) if k != row and one.aspect.casefold() in names)
 
 
+def free_headings(lying, row, request):
+    """Return the aspects that count as a wanted row at any heading, by what a DesignRequest asks for."""
+    return trying.aspects_at_any_heading(lying, row, request.up, heading_given=request.heading is not None)
+
+
 def _folded(names):
     return {name.strip().casefold() for name in names}
 
@@ -115,7 +121,8 @@ def bare(known, shares, request, devices):
         return None
     leaving = (shares[:, None] * known.leaving).sum(axis=0)
     best = max(rows, key=lambda k: leaving[known.leaves_as[k]])
-    made = Proposal(best, (), tuple(devices), "no device", alike(known.lying, best, request.up))
+    same, free = alike(known.lying, best, request.up), free_headings(known.lying, best, request)
+    made = Proposal(best, (), tuple(devices), "no device", same, free)
     pure = trying.gain(known, shares, made.states(known)) / max(leaving.sum(), 1e-300)
     return made if pure >= ENOUGH else None
 
@@ -154,7 +161,8 @@ def proposed(part, bowl, aspects, row, known, request, how):
         return None
     cuts = tuple(pulses.quickened(rounded(cut, known.lying, row), known.lying) for cut in found.cuts)
     step = f"proposed with margins of {millimetres(margin)}"
-    made = Proposal(row, cuts, tuple(found.before), step, alike(known.lying, row, request.up))
+    same, free = alike(known.lying, row, request.up), free_headings(known.lying, row, request)
+    made = Proposal(row, cuts, tuple(found.before), step, same, free)
     if found.isolated:
         return made
     through = known_through(part, aspects, replace(bowl, devices=made.devices))
@@ -180,7 +188,7 @@ def rounded(cut, every, row):
 def moved(cut, limit, every, row):
     """Return a cut of one number at another value, with its margins there."""
     limit = float(np.round(limit / STEP) * STEP)
-    device = replace(cut.device, limit=limit, text=millimetres(limit))
+    device = cut.device.valued(limit)
     must = np.array([one.name in cut.returns for one in every])
     return judged(every, row, device, must, cut.smallest, cut.largest)
 
@@ -261,11 +269,9 @@ def _before(proposal, others, wanted, every):
         return None
     (kind, middle, listed), room = chosen, best[1]
     limit = float(np.round(middle / STEP) * STEP)
-    device = kind("design", limit=limit, text=millimetres(limit))
+    device = kind.proposal(WHERE, limit).rewritten()
     must = np.array([k in listed for k in range(len(every))])
-    ends = [
-        kind("design", limit=limit + way, text=millimetres(limit + way)) for way in (-0.5 * room, 0.5 * room)
-    ]
+    ends = [device.valued(limit + way) for way in (-0.5 * room, 0.5 * room)]
     cut = judged(every, proposal.row, device, must, *ends)
     return replace(proposal, cuts=(cut, *proposal.cuts), step=f"{kind.kind} of {device.text} before it")
 

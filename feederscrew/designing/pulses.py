@@ -69,7 +69,7 @@ def longer(proposal: Any, tried: Tried, every: Sequence[Orientation]) -> Any:
 
 
 def _timed(device: Any, time: float) -> Any:
-    return device.with_pulse(time, _milliseconds(time))
+    return device.with_pulse(time)
 
 
 def _milliseconds(time: float) -> str:

@@ -13,6 +13,7 @@ from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
 from feederscrew.running import RunSettings
+from feederscrew.tooling.hanging import Hanging
 from feederscrew.trial.queue import GAPS, QueuedParts, QueuePlan, queue_of
 
 FILLS = (("low", trying.LOW), ("normal", GAPS), ("high", 0.0))  # free way between parts over their length
@@ -36,6 +37,7 @@ class FollowedRow:
     seed: int
     told: Callable | None = None  # called with what is being followed, a sentence
     least: float = 0.0  # wanted parts [1/s] below which a fill does not hold
+    any_heading: tuple[str, ...] = ()  # aspects on which parts are wanted, whatever their heading
 
     def followed(self, fill: str, gaps: float, seed: int, denied: Denied | None = None) -> FilledQueue:
         """Return the FilledQueue of PARTS that come with a mean free way of so many lengths between them.
@@ -44,16 +46,45 @@ class FollowedRow:
         """
         if self.told:
             self.told(f"queue of {PARTS} at {fill} fill, {SECONDS:g} s")
-        poses = trying.counted(self.known, self.states)
+        poses = trying.counted(self.known, self.states, self.any_heading)
 
         def ends(seen: QueuedParts) -> bool:
-            return denied is not None and denied(_counted(fill, gaps, seen, self.states))
+            return denied is not None and denied(self.count(fill, gaps, seen))
 
         seen = queue_of(
             self.part, self.bowl, self.aspects, self.known.lying, poses, self.shares,
             QueuePlan(PARTS, SECONDS, gaps, ends if denied else None), RunSettings(seed),
         )  # fmt: skip
-        return _counted(fill, gaps, seen, self.states)
+        return self.count(fill, gaps, seen)
+
+    def wanted_parts(self, seen: QueuedParts) -> int:
+        """Return how many whole parts left a queue as it was asked for.
+
+        On an aspect that counts at any heading a part counts by the face below it, as at the outlet, whether
+        or not its heading is one of the known. Any other counts in the orientations that are wanted.
+        """
+        lying, names = self.known.states, list(self.aspects.names)
+        free = () if isinstance(lying[self.states[0]], Hanging) else self.any_heading
+        others = [k for k in self.states if lying[k].aspect not in free]
+        right = sum(seen.aspects[names.index(name)] for name in free) + sum(seen.leaving[k] for k in others)
+        return min(int(right), int(seen.leaving.sum()))
+
+    def count(self, fill: str, gaps: float, seen: QueuedParts) -> FilledQueue:
+        """Return what a queue did as a FilledQueue."""
+        return FilledQueue(
+            fill=fill,
+            gaps=gaps,
+            parts=seen.parts,
+            seconds=seen.seconds,
+            counted=seen.counted,
+            delivered=seen.delivered,
+            right=self.wanted_parts(seen),
+            left=int(seen.leaving.sum()),
+            returned=seen.returned,
+            jams=seen.jams,
+            climbs=seen.climbs,
+            partial=seen.partial,
+        )
 
 
 def filled(row: FollowedRow, *, whole: bool = True) -> tuple[FilledQueue, ...]:
@@ -76,7 +107,12 @@ def filled(row: FollowedRow, *, whole: bool = True) -> tuple[FilledQueue, ...]:
         return _denied((*found, one), row.least)
 
     for name, gaps in FILLS:
-        one = row.followed(name, gaps, row.seed, None if whole else denied)
+        try:
+            one = row.followed(name, gaps, row.seed, None if whole else denied)
+        except KeyboardInterrupt:  # before anything of it was seen
+            if not found:
+                raise
+            return (*found[:-1], replace(found[-1], partial=True))
         last = one.partial or not (whole or not denied(one))
         found.append(one)
         if last:
@@ -150,20 +186,3 @@ def _denied(found: tuple[FilledQueue, ...], least: float) -> bool:
     whole = left * max(len(FILLS) * SECONDS / seconds, 1.0)
     slow = last.seconds >= FILLED and last.ends[1] < least
     return bool(last.jams or left - right > (1.0 - PURE) * whole or slow)
-
-
-def _counted(name: str, gaps: float, seen: QueuedParts, states: tuple[int, ...]) -> FilledQueue:
-    return FilledQueue(
-        fill=name,
-        gaps=gaps,
-        parts=seen.parts,
-        seconds=seen.seconds,
-        counted=seen.counted,
-        delivered=seen.delivered,
-        right=int(sum(seen.leaving[k] for k in states)),
-        left=int(seen.leaving.sum()),
-        returned=seen.returned,
-        jams=seen.jams,
-        climbs=seen.climbs,
-        partial=seen.partial,
-    )

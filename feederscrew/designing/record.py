@@ -21,7 +21,7 @@ from feederscrew.trial.result import TrialRun
 from feederscrew.units import counted
 
 OUTCOMES = ("any", "lying", "hanging")
-NONE = "none"
+NONE, NOT_PROVED = "none", "not proved"
 
 
 @dataclass(frozen=True)
@@ -229,10 +229,21 @@ class DesignStudy:
 
     @property
     def status(self) -> str:
-        """One of three words."""
+        """One of four words; what the user stopped is no evidence, neither for a design nor against it."""
+        if self.partial:
+            return NOT_PROVED
         if self.bowl is None or not self.delivered[0] > 0.0:
-            return FALLS_SHORT if self.bowl is not None and (self.queues or self.partial) else NONE
+            return FALLS_SHORT if self.bowl is not None and self.queues else NONE
         return HOLDS if not self.shortfalls else FALLS_SHORT
+
+    @property
+    def proved_so_far(self) -> tuple[str, ...]:
+        """What was counted until now, a sentence each; of a design that was stopped it decides nothing."""
+        if self.bowl is None:
+            return (f"{counted(len(self.attempts), 'short trial')} made, none of a design was proved",)
+        robust = self.robust
+        draws = f"{robust.held} of {counted(robust.draws, 'draw')} sort, {self.request.draws} are asked for"
+        return (draws if robust.draws else "no draw was tried", *_followed(self.queues))
 
     @property
     def shortfalls(self) -> tuple[str, ...]:
@@ -244,21 +255,27 @@ class DesignStudy:
         """Why it does not hold: where it falls short and the nearest that would hold; '' where it holds."""
         if self.status == HOLDS:
             return ""
+        if self.partial:
+            return "; ".join(("stopped before all was tried", *self.proved_so_far))
         return "; ".join((*self.shortfalls, *self.nearest)) or "no orientation gets through its own trial"
+
+
+def _followed(queues: tuple[FilledQueue, ...]) -> Iterator[str]:
+    """What each queue has shown so far."""
+    if not queues:
+        yield "no queue was followed"
+    for one in queues:
+        end = "was stopped after" if one.partial else "was followed for"
+        parts = f"{one.right} of {counted(one.left, 'part')} left as wanted"
+        yield f"the queue at {one.fill} fill {end} {one.seconds:.3g} s: {parts}, {counted(one.jams, 'jam')}"
 
 
 def _shortfalls(study: DesignStudy) -> Iterator[str]:
     minute, (purity, _) = 60.0, study.purity
     low = study.delivered[1]
     if study.bowl is None:
-        if study.partial:
-            yield "stopped before a design was proved"
         for one in study.attempts[:3]:
             yield f"{one.wanted}: {', '.join(one.faults[:3]) or 'nothing leaves'}"
-        return
-    if study.partial and not study.queues:
-        sort = f"{study.robust.held} of {study.robust.draws} draws sort"
-        yield f"stopped before a queue was followed: {sort if study.robust.draws else 'no draw was tried'}"
         return
     if low < RATE_KEPT * study.request.target:
         yield (
@@ -279,5 +296,3 @@ def _shortfalls(study: DesignStudy) -> Iterator[str]:
     if study.robust.share < DRAWS_HELD:
         worst = f": {study.robust.worst}" if study.robust.worst else ""
         yield f"{study.robust.held} of {study.robust.draws} draws of part, friction and drive sort{worst}"
-    if study.partial:
-        yield "stopped before all was tried"

@@ -163,7 +163,7 @@ def matched(one, every):
     return min(range(len(every)), key=lambda k: away(every[k]))
 
 
-def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, run):
+def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, run, any_heading=()):
     """Try draws of part, friction, drive and cuts.
 
     Parameters
@@ -181,6 +181,8 @@ def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, run):
         Of the part.
     run : RunSettings
         Its progress is told how many draws are done, of how many.
+    any_heading : sequence of str
+        Aspects that count as the wanted one, whatever the heading.
 
     Returns
     -------
@@ -192,20 +194,27 @@ def robust_run(part, bowl, known, shares, wanted, *, draws, tolerance, run):
     try:
         for draw in range(draws):
             faults, speed = _draw(
-                part, bowl, known, shares, np.atleast_1d(wanted), tolerance, (run.seed, draw), run.jobs
+                part,
+                bowl,
+                known,
+                shares,
+                np.atleast_1d(wanted),
+                tolerance,
+                (run.seed, draw),
+                run.jobs,
+                any_heading,
             )
             held, done = held + (not faults), draw + 1
             wrong.update(set(faults))
             speeds.append(speed)
             run.tell(done, draws)
     except KeyboardInterrupt:
-        if not done:
-            raise
+        pass  # what was done is counted, and marked
     worst = "" if not wrong else f"{wrong.most_common(1)[0][0]} in {wrong.most_common(1)[0][1]} of {done}"
     return RobustRun(done, held, worst, float(min(speeds, default=np.nan)), partial=done < draws)
 
 
-def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs):
+def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs, any_heading):
     """What goes wrong in one draw, and the velocity there."""
     rng = np.random.default_rng(seed)
     other = drawn_part(part, tolerance, rng)
@@ -218,11 +227,12 @@ def _draw(part, bowl, known, shares, wanted, tolerance, seed, jobs):
         lying = at_entry(bare.lying, driven.devices)
         rows = [matched(known.lying[k], lying) for k in chosen]
         alike = [matched(known.lying[k], lying) for k in wanted] if len(wanted) > 1 else []
+        free = {lying[matched(one, lying)].aspect for one in known.lying if one.aspect in any_heading}
         ways = stream.along(bare.lying, aspects, driven.devices, bowl=driven, rows={*rows, *alike})
         even = np.full(len(ways.lying), 1.0 / len(ways.lying))
         tried = trying.single(
             other, driven, ways, even, [rows[0], *alike], rows=list(dict.fromkeys(rows)), each=1,
-            run=RunSettings(sum(seed), jobs),
+            run=RunSettings(sum(seed), jobs), aspects=aspects, any_heading=tuple(sorted(free)),
         )  # fmt: skip
     except FeederError as fault:  # the drawn bowl does not convey, or the part does not fit
         return [fault.what], 0.0

@@ -7,12 +7,15 @@ from typing import Any
 import numpy as np
 
 from feederscrew.bowl.record import Bowl
+from feederscrew.mechanics.wall.outline import rests
 from feederscrew.part.record import Part
 from feederscrew.rates import spacing, stream
+from feederscrew.resting.aspects import Aspects
 from feederscrew.running import RunSettings
 from feederscrew.tooling.hanging import Hanging
 from feederscrew.tooling.orientations import Orientation
-from feederscrew.trial import course
+from feederscrew.trial import course, runs
+from feederscrew.trial.looks import AspectsBelow
 
 SELDOM = 5e-3  # [1] orientations that come less often are left out
 HELD = (course.HANGING, course.STOPPED)  # what is stuck on the bare track is pushed on by a queue
@@ -109,7 +112,36 @@ def wanted_rows(known: stream.Orientations, states: Sequence[int]) -> list[int]:
     return [k for k in range(len(known.lying)) if known.leaving[k, list(states)].sum() > 0.5]
 
 
-def counted(known: stream.Orientations, states: Sequence[int]) -> tuple[Orientation, ...]:
+def aspects_at_any_heading(
+    lying: Sequence[Orientation], row: int, up: Sequence[str], *, heading_given: bool = False
+) -> tuple[str, ...]:
+    """Return the aspects on which a part counts as wanted however it is turned.
+
+    Parameters
+    ----------
+    lying : sequence of Orientation
+    row : int
+        The wanted one.
+    up : sequence of str
+        Aspects that may be up: those of `--up`.
+    heading_given : bool
+        Whether one heading of the wanted aspect was asked for.
+
+    Returns
+    -------
+    tuple of str
+        Those of ``up``, and the wanted row's own where it is round in plan and takes any heading.
+    """
+    names, one = {name.strip().casefold() for name in up}, lying[row]
+    found = [other.aspect for other in lying if other.aspect.casefold() in names]
+    if not heading_given and rests(one.posture.outline, one.track.radius).rounded:
+        found.append(one.aspect)
+    return tuple(dict.fromkeys(found))
+
+
+def counted(
+    known: stream.Orientations, states: Sequence[int], any_heading: Sequence[str] = ()
+) -> tuple[Orientation, ...]:
     """Return the poses in which parts may be found; of an aspect that counts beside another at any heading.
 
     Parameters
@@ -118,6 +150,8 @@ def counted(known: stream.Orientations, states: Sequence[int]) -> tuple[Orientat
         S states.
     states : sequence of int
         The wanted one, and others that count as it.
+    any_heading : sequence of str
+        Further aspects that count at any heading.
 
     Returns
     -------
@@ -125,6 +159,7 @@ def counted(known: stream.Orientations, states: Sequence[int]) -> tuple[Orientat
         S of them.
     """
     names = {known.states[k].aspect for k in states[1:] if not isinstance(known.states[k], Hanging)}
+    names |= set(any_heading)
     return tuple(replace(one, any_heading=one.aspect in names) for one in known.states)
 
 
@@ -149,6 +184,8 @@ def single(
     rows: Any,
     each: int,
     run: RunSettings,
+    aspects: Aspects | None = None,
+    any_heading: Sequence[str] = (),
 ) -> Tried:
     """Try parts one at a time.
 
@@ -167,20 +204,33 @@ def single(
     each : int
         Parts of each.
     run : RunSettings
+    aspects : Aspects, optional
+        Of the part: needed where some aspect counts at any heading.
+    any_heading : sequence of str
+        Aspects on which a part counts as wanted, whatever its heading.
 
     Returns
     -------
     Tried
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user stops it before all parts are through.
     """
     rows, states = np.asarray(rows, int), wanted_states(known, np.atleast_1d(wanted))
     seen = course.course(
         part, bowl, known.lying, course.Sending(rows, each * len(rows)), bowl.devices,
-        poses=counted(known, states), leaves=course.rightly(known.leaving), run=run,
+        poses=counted(known, states, any_heading), leaves=course.rightly(known.leaving), run=run,
     )  # fmt: skip
-    out, whole = seen.orientations[-1], np.isin(seen.fates, (course.PASSED, course.TURNED))
+    if seen.partial:  # fewer parts than were to be tried decide nothing
+        raise KeyboardInterrupt
+    whole, asked = np.isin(seen.fates, (course.PASSED, course.TURNED)), np.isin(seen.orientations[-1], states)
+    if aspects is not None and any_heading and not isinstance(known.states[states[0]], Hanging):
+        asked |= _lies_on(part, aspects, seen, any_heading)
     own = [seen.entered == k for k in rows]
     count = [[int((one & some).sum()) for one in own] for some in (
-        np.ones(len(whole), bool), whole & np.isin(out, states), whole & ~np.isin(out, states),
+        np.ones(len(whole), bool), whole & asked, whole & ~asked,
         np.isin(seen.fates, HELD),
     )]  # fmt: skip
     moving = seen.velocities[np.isfinite(seen.velocities) & (seen.velocities > 0.0)]
@@ -192,6 +242,17 @@ def single(
         state=states[0], states=states, deepest=float(seen.depths.max(initial=0.0)),
         apart=spacing.needed(bowl.devices, known.lying, bowl), seen=(seen,),
     )  # fmt: skip
+
+
+def _lies_on(part: Part, aspects: Aspects, seen: course.Course, names: Sequence[str]) -> np.ndarray:
+    """(N,) bool, whether a part left lying on one of some aspects, or would come to, at any heading."""
+    found, ride, riders = np.zeros(len(seen.fates), bool), seen.rides[-1], seen.riders[-1]
+    if len(seen.rides) < len(seen.stations):  # none came to the last station
+        return found
+    passed = ride.outcomes == runs.PASSED
+    rows = [aspects.names.index(name) for name in names]
+    found[riders[passed]] = np.isin(AspectsBelow(part, aspects).of(ride.states[passed]), rows)
+    return found
 
 
 def _places(seen: course.Course, own: np.ndarray) -> dict[str, int]:

@@ -8,6 +8,7 @@ from typing import Any, Unpack
 import numpy as np
 
 from feederscrew import check
+from feederscrew.bowl.devices import check_written
 from feederscrew.bowl.record import Bowl
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
@@ -56,9 +57,16 @@ class ToolingStudy(Shown):
         return next((one for one in self.trials if one.wanted == place), None)
 
     def isolates(self, place: int) -> bool:
-        """Return whether an orientation is isolated: by the static rule, and not denied by its trial."""
+        """Return whether an orientation is isolated: what leaves is pure, by the rule and by its trial.
+
+        Where no trial was made, what no verdict is sure to return counts as leaving.
+        """
         found, tried = self.designs[place], self.trial_of(place)
-        return found is not None and found.isolated and not (tried is not None and tried.faults)
+        if found is None or not found.isolated:
+            return False
+        if tried is not None:
+            return not tried.faults
+        return not found.purity < found.least_purity  # also where nothing that comes leaves
 
     @property
     def design(self) -> Design | None:
@@ -174,7 +182,8 @@ def tooling(
         own.told(0, len(asked))
     cache: dict[float, _Track] = {bowl.track.width: _Track(bowl, every, shares, {})}
     for done, k in enumerate(asked):
-        designs[k] = _best(part, found, rule, k, cache, asked_of_each)
+        designs[k] = best = _best(part, found, rule, k, cache, asked_of_each)
+        check_written(best.devices, "tooling.yaml")
         if own.told is not None:
             own.told(done + 1, len(asked))
     study = ToolingStudy(

@@ -69,10 +69,7 @@ def asked_for(part: Part, bowl: Bowl, found: Aspects, own: ToolingOptions) -> Wi
     if own.outcome not in OUTCOMES:
         raise ArgumentError("outcome", f"{own.outcome!r} is unknown", f"choose {', '.join(OUTCOMES)}")
     check.argument("step", own.step, FINE)
-    kinds = listed(own.without)
-    for kind in kinds:
-        if kind not in KINDS:
-            raise ArgumentError("without", f"unknown device {shown(kind)}", hint(kind, list(KINDS)))
+    kinds = may_be_left_out(own.without)
     wishes = Wishes(
         outcome=own.outcome,
         without=kinds,
@@ -89,6 +86,15 @@ def listed(names: str | Sequence[str]) -> tuple[str, ...]:
     """Return the names of a list, or of a text with commas."""
     names = names.split(",") if isinstance(names, str) else names
     return tuple(name.strip() for name in names if name.strip())
+
+
+def may_be_left_out(without: str | Sequence[str]) -> tuple[str, ...]:
+    """Return the names of kinds of devices that are not used, checked."""
+    kinds = listed(without)
+    for kind in kinds:
+        if kind not in KINDS:
+            raise ArgumentError("without", f"unknown device {shown(kind)}", hint(kind, list(KINDS)))
+    return kinds
 
 
 def may_be_up(part: Part, found: Aspects, up: str | Sequence[str]) -> tuple[str, ...]:

@@ -7,9 +7,9 @@ import shapes
 
 from feederscrew import __version__ as VERSION
 from feederscrew import bowl as bowls
+from feederscrew.bowl.devices import value_text
 from feederscrew.bowl.verified import SHARED, body_fingerprint, fingerprint
 from feederscrew.output import proof
-from feederscrew.output.tooling.bowl_file import device_value
 from feederscrew.part.aspect_names import AspectNames
 from feederscrew.tooling.devices.kinds import KINDS
 
@@ -24,7 +24,7 @@ def test_a_device_written_and_read_back_is_the_same_and_a_changed_one_is_not(tmp
     bowl = of_one(tmp_path, kind, KINDS[kind].example)
     (one,) = bowl.devices
     tried = fingerprint(bowl)
-    assert fingerprint(of_one(tmp_path, kind, device_value(one))) == tried
+    assert fingerprint(of_one(tmp_path, kind, value_text(one))) == tried
     for own in (each.name for each in fields(one) if each.name not in SHARED):
         value = getattr(one, own)
         if isinstance(value, float):

@@ -21,7 +21,7 @@ from feederscrew.designing.record import (
 )
 from feederscrew.errors import FeederError
 from feederscrew.output import tables as tables_of
-from feederscrew.output.designs import design_file, design_page, tables
+from feederscrew.output.designs import design_file, design_page, files, tables
 from feederscrew.output.page import blocks
 from feederscrew.output.page.as_html import html
 
@@ -63,14 +63,14 @@ def test_the_bowl_file_says_what_counted_as_one(tmp_path):
 
 def test_what_was_stopped_early_says_so():
     none = DesignStudy(PART, DesignRequest(1.0), None, None, None, partial=True)
-    assert (none.status, none.why) == ("none", "stopped before a design was proved")
+    assert (none.status, none.why.split(";")[0]) == ("not proved", "stopped before all was tried")
     for held, draws, said in (
         (0, 0, "no draw was tried"),
-        (1, 1, "1 of 1 draws sort"),
-        (3, 7, "3 of 7 draws sort"),
+        (1, 1, "1 of 1 draw sort"),
+        (3, 7, "3 of 7 draws sort, 20 are asked for"),
     ):
         some = replace(study(queue()), queues=(), robust=RobustRun(draws, held, ""), partial=True)
-        assert (some.status, some.why) == ("falls short", f"stopped before a queue was followed: {said}")
+        assert some.status == "not proved" and said in some.why and "no queue was followed" in some.why
 
 
 def test_what_no_queue_was_followed_of_verifies_nothing(tmp_path):
@@ -78,6 +78,32 @@ def test_what_no_queue_was_followed_of_verifies_nothing(tmp_path):
     (tmp_path / "design.yaml").write_text(design_file.bowl_file(some, ()))
     assert bowls.verified(tmp_path / "design.yaml") is None
     assert "Nothing is verified" in (tmp_path / "design.yaml").read_text()
+
+
+def test_a_queue_that_was_stopped_is_no_verdict_in_any_output(tmp_path):
+    """Of 0.4 s of a queue: not 0 a minute, 8,150 jams an hour and a purity of nothing."""
+    begun = replace(queue(0, 0, 0), seconds=0.4, counted=0.0, delivered=0.0, partial=True)
+    for some in (study(begun, partial=True), study(queue(), partial=True)):
+        told = tables.document(some)
+        assert (some.status, told["status"]) == ("not proved", "not proved")
+        assert all(told[name] is None for name in tables.PROOF)
+        assert told["proved_so_far"] and told["robust"]["held"] == 20
+        printed = tables_of.text(tables.summary(some), "table")
+        assert "not proved" in printed and "20 of 20 draws sort" in " ".join(printed.split())
+        assert not any(word in printed for word in ("holds", "falls short", "an hour", "nan"))
+        names = [one.name for one in files.offers(some, ())]
+        assert names == ["design.json", "design_trials.csv", "design.yaml"]
+        (tmp_path / "design.yaml").write_text(design_file.bowl_file(some, ()))
+        assert "\nverified:" not in (tmp_path / "design.yaml").read_text()
+        assert bowls.verified(tmp_path / "design.yaml") is None
+    assert tables.document(study(begun, partial=True))["queues"][0]["delivered_per_minute"] is None
+    assert "stopped after 0.4 s" in study(begun, partial=True).why
+
+
+def test_a_design_of_which_no_part_has_left_verifies_nothing():
+    """Its purity is a share of nothing, and no number of a block."""
+    text = design_file.bowl_file(study(queue(0, 0, 50)), ())
+    assert "\nverified:" not in text and "nan" not in text
 
 
 def fills(right, left, returned, jams=0):

@@ -135,7 +135,7 @@ def test_a_sorter_of_two_orientations_passes_both(tmp_path):
     assert verdict(both, first, every).passes == verdict(both, second, every).passes == 1.0
     rest = [other for other in every if all(other is not kept for kept in along)]
     assert rest and all(verdict(both, other, every).passes < 1.0 for other in rest)
-    again = both.with_play(2e-3, "2 mm")
+    again = both.with_play(2e-3)
     assert again.text == f"{{of: [{', '.join(names)}], play: 2 mm, sees: outline}}"
     assert len(both.standing(BOWL.track, every).sensor.wanted) == 2
 
@@ -144,7 +144,7 @@ def test_a_sorter_of_two_orientations_passes_both(tmp_path):
 def test_a_sorter_read_back_is_the_one_that_was_written(tmp_path, turn):
     """To the last digits of its headings: what was verified of it stays so."""
     like, also = ("A", np.radians(turn), 1e-3), (("B", np.radians(0.37 * turn)),)
-    one = KINDS["sorter"]("b.yaml", like=like, also=also).with_play(2e-3, "2 mm")
+    one = KINDS["sorter"]("b.yaml", like=like, also=also).with_play(2e-3)
     (tmp_path / "b.yaml").write_text(f"devices:\n  - sorter: {one.text}\n")
     (back,) = bowls.read(tmp_path / "b.yaml").devices
     assert (back.like[0], back.also[0][0]) == ("A", "B")

@@ -3,10 +3,12 @@
 import datetime
 
 from feederscrew import __version__, units
-from feederscrew.bowl import unbalance
+from feederscrew import bowl as bowls
+from feederscrew.bowl import devices, reading, unbalance
 from feederscrew.bowl.devices import SECTION
 from feederscrew.bowl.verified import NOTHING_LEFT, body_fingerprint, fingerprint
-from feederscrew.output.tooling.bowl_file import device_value
+from feederscrew.designing.record import NOT_PROVED
+from feederscrew.errors import FeederError
 
 PER_MINUTE, MM = units.factor("/min", "rate"), units.factor("mm", "length")
 DRIVE = (
@@ -42,6 +44,11 @@ def bowl_file(study, settings, sheet=None):
     Returns
     -------
     str
+
+    Raises
+    ------
+    FeederError
+        If a command that reads it back would have another bowl than was tried.
     """
     own = {"drive": study.bowl.drive, "track": study.bowl.track}
     own |= {} if sheet is None else {"machine": sheet.bowl.machine}
@@ -59,13 +66,33 @@ def bowl_file(study, settings, sheet=None):
             lines += [f"  {word}: {text}" for word, text in _unbalance(own[section])]
     if study.bowl.devices:
         lines += [f"{SECTION}:  # along the track, in the order parts meet them"]
-        lines += [f"  - {one.kind}: {device_value(one)}" for one in study.bowl.devices]
-    if study.queues:
+        lines += [f"  - {one.kind}: {devices.value_text(one)}" for one in study.bowl.devices]
+    bowl = _read_back(lines, study, own)
+    if study.status == NOT_PROVED:
+        lines += ["# Nothing is verified: it was stopped before all was tried."]
+    elif any(one.left for one in study.queues):
         lines += ["verified:  # void as soon as part, bowl or version is another"]
-        lines += [f"  {word}: {value}" for word, value in _verified(study)]
+        lines += [f"  {word}: {value}" for word, value in _verified(study, bowl)]
     else:
-        lines += ["# Nothing is verified: it was stopped before a queue was followed."]
+        lines += ["# Nothing is verified: no part has left a queue."]
     return "\n".join(lines) + "\n"
+
+
+def _read_back(lines, study, own):
+    """The Bowl that commands read from these lines, which is the one that was tried in every value."""
+    name, bowl = "design.yaml", study.bowl
+    devices.check_written(bowl.devices, name)
+    found = bowls.record(reading.settings_of_text("\n".join(lines) + "\n", name))
+    wrong = [
+        f"{section}: {text}"
+        for section, record in {"friction": bowl.friction, **own}.items()
+        for text in devices.differences(record, getattr(found, section))
+    ]
+    wrong += devices.differences(bowl, found, ("drive", "friction", "track", "machine", "sizing", "devices"))
+    if wrong:
+        mend = "this is a fault of feeder: report it with the command you gave"
+        raise FeederError(name, f"is not the bowl that was tried: {'; '.join(wrong)}", mend)
+    return found
 
 
 def _unbalance(machine):
@@ -79,7 +106,7 @@ def _text(record, word, unit, dimension):
     return f"{getattr(record, word) / scale:.9g} {unit}".strip()
 
 
-def _verified(study):
+def _verified(study, bowl):
     value, low, high = (f"{rate / PER_MINUTE:.4g}/min" for rate in study.delivered)
     yield "status", study.status
     yield "wanted", study.wanted
@@ -102,4 +129,4 @@ def _verified(study):
     yield "tried", f'"{datetime.datetime.now(datetime.UTC):%Y-%m-%d}"'
     yield "part", f'"{study.part.sha256[:16]}"'
     yield "body", f'"{body_fingerprint(study.part)}"'
-    yield "bowl", f'"{fingerprint(study.bowl)}"'
+    yield "bowl", f'"{fingerprint(bowl)}"'

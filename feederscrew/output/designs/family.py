@@ -79,7 +79,8 @@ def summary(study):
     rows = [("status", study.status), ("one bowl for all", "yes" if study.shared else "no")]
     for one in study.members:
         rate, low, _ = (value / minute for value in one.delivered)
-        text = f"{one.status}, {one.wanted or NOTHING}, {rate:.4g} a minute (at least {low:.4g})"
+        text = f"{one.status}, {one.wanted or NOTHING}"
+        text += "" if one.partial else f", {rate:.4g} a minute (at least {low:.4g})"
         rows.append((one.part.name, text + (f": {one.why}" if one.why else "")))
     for what, how, values in changes(study):
         rows.append((f"{how}: {what}", "; ".join(values)))

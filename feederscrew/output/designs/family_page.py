@@ -88,6 +88,8 @@ def parts(study):
 
 def offers(study):
     """Offer the files of a FamilyStudy itself, as a list of Offer; each part has its own folder."""
+    if study.partial:  # nothing to build from
+        return [offer.document("family.json", family.document, study)]
     return [
         offer.document("family.json", family.document, study),
         offer.table("changeover.csv", family.changeover, study),

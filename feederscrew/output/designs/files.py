@@ -1,5 +1,6 @@
 """What ``feeder design`` leaves in its folder."""
 
+from feederscrew.designing import record
 from feederscrew.output import machine, solidbowl
 from feederscrew.output import offers as offer
 from feederscrew.output.designs import design_file, tables
@@ -22,8 +23,11 @@ def offers(study, settings, built=None):
     -------
     list of Offer
         Document, page and acceptance sheet; of a design with a bowl the bowl file, and everything of the
-        tooling, of the machine and of the bowl as a solid.
+        tooling, of the machine and of the bowl as a solid. Of one that is not proved what was tried only:
+        nothing to build from.
     """
+    if study.status == record.NOT_PROVED:
+        return list(_unproved(study, settings))
     sheet, drawn = (None, None) if built is None else (built.sheet, built.drawn)
     found = [
         offer.document("design.json", tables.document, study),
@@ -47,6 +51,14 @@ def offers(study, settings, built=None):
         own = tooling_files.offers(study.tooling, settings)
         found += [one for one in own if one.name != "tooling.yaml"]  # design.yaml has the devices
     return found
+
+
+def _unproved(study, settings):
+    """What is handed over of a design that was stopped."""
+    yield offer.document("design.json", tables.document, study)
+    yield offer.table("design_trials.csv", tables.attempts, study)
+    if study.bowl is not None:
+        yield offer.text("design.yaml", design_file.bowl_file, study, settings)
 
 
 def _page(study, built):

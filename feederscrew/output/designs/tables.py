@@ -5,6 +5,7 @@ import textwrap
 import numpy as np
 
 from feederscrew import units
+from feederscrew.designing import record
 from feederscrew.dropping.plate.drive import throw_number
 from feederscrew.output import columns, tables
 from feederscrew.tooling.devices import named
@@ -17,7 +18,7 @@ WIDTH = 62  # letters of a value that is printed beside its name
 
 def document(study):
     """Return a DesignStudy as the JSON document."""
-    rates, (purity, purity_low) = study.delivered, study.purity
+    proved = study.status != record.NOT_PROVED
     return {
         **columns.part(study.part, study.warnings),
         "status": study.status,
@@ -25,15 +26,8 @@ def document(study):
         "up": list(study.request.up),
         "outcome": study.outcome,
         "target_per_minute": study.request.target / PER_MINUTE,
-        "delivered_per_minute": rates[0] / PER_MINUTE,
-        "delivered_low": rates[1] / PER_MINUTE,
-        "delivered_high": rates[2] / PER_MINUTE,
-        "worst_friction_per_minute": study.worst / PER_MINUTE,
+        **(_proof(study) if proved else dict.fromkeys(PROOF)),
         "static_per_minute": study.static_rate / PER_MINUTE,
-        "purity": None if np.isnan(purity) else purity,
-        "purity_low": purity_low,
-        "jams": study.jams,
-        "jams_per_hour_high": study.jams_per_hour_high if np.isfinite(study.jams_per_hour_high) else None,
         "queue_seconds": study.queue_seconds,
         "robust": {
             "draws": study.robust.draws,
@@ -49,10 +43,26 @@ def document(study):
         "answer": study.source,
         "seed": study.request.seed,
         "partial": study.partial,
+        "proved_so_far": [] if proved else list(study.proved_so_far),
         "bowl": bowl(study),
         "queues": [queue(one) for one in study.queues],
         "attempts": attempts(study).rows(),
     }
+
+
+PROOF = (  # what a design has shown: none of it of one that is not proved
+    "delivered_per_minute", "delivered_low", "delivered_high", "worst_friction_per_minute", "purity",
+    "purity_low", "jams", "jams_per_hour_high",
+)  # fmt: skip
+
+
+def _proof(study):
+    """The figures of a design that its queues have shown, by the names of ``PROOF``."""
+    purity, purity_low = study.purity
+    high = study.jams_per_hour_high
+    rates = (end / PER_MINUTE for end in (*study.delivered, study.worst))
+    values = (*rates, None if np.isnan(purity) else purity, purity_low, study.jams)
+    return dict(zip(PROOF, (*values, high if np.isfinite(high) else None), strict=True))
 
 
 def bowl(study):
@@ -89,12 +99,13 @@ def queue(one):
         "free_way": one.gaps,
         "parts": one.parts,
         "seconds": one.seconds,
-        "delivered_per_minute": one.rate / PER_MINUTE,
+        "delivered_per_minute": None if one.partial else one.rate / PER_MINUTE,
         "left": one.left,
         "right": one.right,
         "returned": one.returned,
         "jams": one.jams,
         "climbs": one.climbs,
+        "partial": one.partial,
     }
 
 
@@ -159,10 +170,25 @@ def folded(name, value):
 
 def outcome(d):
     """Return rows of what a design's document says of the answer and of its devices."""
-    rows = [
+    head = [
         ("status", d["status"]),
-        ("leaves as", d["wanted"] or "-"),
+        ("leaves as", _leaves_as(d)),
         ("asked for [1/min]", f"{d['target_per_minute']:.4g}"),
+    ]
+    proved = _shown(d) if d["status"] != record.NOT_PROVED else []
+    chain = [f"{one['device']}: {named.whole_degrees(one['value'])}" for one in d["chain"]] or ["none"]
+    return [*head, *proved, *((f"device {k}", one) for k, one in enumerate(chain, start=1))]
+
+
+def _leaves_as(d):
+    """The orientation that leaves, and which aspects count at any heading."""
+    up = f", counting {', '.join(d['up'])} at any heading" if d["up"] else ""
+    return (d["wanted"] or "-") + up
+
+
+def _shown(d):
+    """Rows of what a design has shown."""
+    return [
         (
             "delivered at the lowest fill [1/min]",
             f"{d['delivered_per_minute']:.4g} ({d['delivered_low']:.4g} to {d['delivered_high']:.4g})",
@@ -178,8 +204,6 @@ def outcome(d):
         ("jams", f"{d['jams']} in {d['queue_seconds']:.4g} s of queue" + _hourly(d)),
         ("draws that sort", f"{d['robust']['held']} of {d['robust']['draws']}"),
     ]
-    chain = [f"{one['device']}: {named.whole_degrees(one['value'])}" for one in d["chain"]] or ["none"]
-    return rows + [(f"device {k}", one) for k, one in enumerate(chain, start=1)]
 
 
 def dimensions(d):

@@ -1,6 +1,6 @@
 """A bowl file with the devices of a design, which every command reads back."""
 
-from feederscrew.bowl.devices import SECTION
+from feederscrew.bowl.devices import SECTION, check_written, value_text
 from feederscrew.tooling.isolating.shop_values import millimetres
 
 TRACK, WIDTH = "track", "track.width"
@@ -20,6 +20,7 @@ def bowl_file(study, settings):
     -------
     str
     """
+    check_written(study.design.devices, "tooling.yaml")
     width = study.design.width
     given = [s for s in settings if s.given and s.key.field != SECTION]
     given = [s for s in given if width is None or s.key.name != WIDTH]
@@ -31,20 +32,13 @@ def bowl_file(study, settings):
     if width is not None and not any(s.key.section == TRACK for s in given):
         lines += [f"{TRACK}:", _wide(width)]
     lines += [f"{SECTION}:  # along the track, in the order parts meet them"]
-    lines += [f"  - {device.kind}: {device_value(device)}" for device in study.design.before]
-    lines += [f"  - {cut.device.kind}: {cut.device.text}{_mark(cut)}" for cut in study.design.cuts]
+    lines += [f"  - {device.kind}: {value_text(device)}" for device in study.design.before]
+    lines += [f"  - {cut.device.kind}: {value_text(cut.device)}{_mark(cut)}" for cut in study.design.cuts]
     return "\n".join(lines) + "\n"
 
 
 def _wide(width):
     return f"  width: {millimetres(width)}  # as the design asks for"
-
-
-def device_value(device):
-    """Return the value of a device as a bowl file has it; a hole with its corners, as files move."""
-    if not device.corners:
-        return device.text
-    return f"[{', '.join(f'[{millimetres(x)}, {millimetres(y)}]' for x, y in device.corners)}]"
 
 
 def _mark(cut):
@@ -56,7 +50,8 @@ def _head(study):
     one, found = study.orientations[study.wanted], study.design
     return [
         f"# Tooling that lets aspect {one.aspect} at heading {one.name.partition('@')[2]} deg leave.",
-        f"# Efficiency {100.0 * found.efficiency:.4g} %, purity {'at least ' * bool(found.purity_is_least)}"
+        f"# By the static rule: efficiency {'at least ' * (found.least < found.efficiency)}"
+        f"{100.0 * found.least:.4g} %, purity {'at least ' * bool(found.purity_is_least)}"
         f"{100.0 * found.purity:.4g} %, by {study.answer}.",
         *_tried(study.trial_of(study.wanted)),
     ]
@@ -68,4 +63,4 @@ def _tried(trial):
         return ["# By the static rule, not tried: see feeder trial."]
     if trial.faults:
         return [f"# DENIED by its trial: {'; '.join(trial.faults)}."]
-    return [f"# Of {trial.parts} parts tried {100.0 * trial.efficiency:.4g} % leave so."]
+    return [f"# Of {trial.parts} parts tried {trial.figures}."]

@@ -110,10 +110,10 @@ def limits(study):
         top, one, found = HEAD + place * ROW, every[k], study.designs[k]
         ink.rule(page, top)
         _measured(page, top, one, shares[k])
-        colour = style.INK if found is None else PASSES if found.isolated else FALLS
+        colour = style.INK if found is None else PASSES if study.isolates(k) else FALLS
         _above(_axes(page, (LEFT, top, COLUMN, ROW), size, True), one, None, None, colour)
         _ahead(_axes(page, (LEFT + COLUMN, top, COLUMN, ROW), size, False), one, None, colour)
-        for line, text in enumerate(_isolated(found)):
+        for line, text in enumerate(_isolated(study, k)):
             ink.text(page, 830, top + 30 + line * LINE, text, colour=colour)
     return page
 
@@ -260,15 +260,21 @@ def _measured(page, top, one, share):
         ink.text(page, 138, top + 50 + place * LINE, value)
 
 
-def _isolated(found):
-    """Lines on what isolates an orientation, or why nothing does."""
+def _isolated(study, place):
+    """Lines on what isolates an orientation, or why nothing does: the trial's word first."""
+    found, tried = study.designs[place], study.trial_of(place)
     if found is None:
         return ["not asked for"]
     result = textwrap.wrap(" and ".join(cut.device.kind for cut in found.cuts) or "no device", LETTERS)
-    if found.isolated:
+    if study.isolates(place):
         margin = f"margin {found.margin / MM:.2f} mm" if np.isfinite(found.margin) else ""
-        return [*result, f"{100.0 * found.efficiency:.3g} % of the parts leave", margin]
-    why = textwrap.shorten("; ".join(found.reasons), 4 * LETTERS, placeholder=" ...")
+        return [
+            *result,
+            f"{100.0 * tables.leaving(study, place)['efficiency']:.3g} % of the parts leave",
+            margin,
+        ]
+    reasons = (*(() if tried is None else tried.faults), *found.reasons)
+    why = textwrap.shorten("; ".join(reasons), 4 * LETTERS, placeholder=" ...")
     return ["not isolated", *textwrap.wrap(why, LETTERS)]
 
 

@@ -11,7 +11,11 @@ from feederscrew.tooling.isolating.proposal import LEAST_SHARE
 from feederscrew.units import factor
 
 MM, DEG = factor("mm", "length"), factor("deg", "angle")
-HIDDEN = ("reasons",)
+LEAVING = (  # efficiency and purity, of the trial where there is one
+    "efficiency", "efficiency_low", "efficiency_high", "purity", "purity_low", "efficiency_static",
+    "purity_static",
+)  # fmt: skip
+HIDDEN = ("reasons", *(name for name in LEAVING if "_" in name))  # the sentences of the trial have them
 SPARE = (  # left out of a table for people that is too wide, the first ones first
     ("smallest_cut", "largest_cut"),
     ("mirror", "wall_distance_mm", "balcony_mm", "canyon_mm", "gap_mm"),
@@ -42,8 +46,7 @@ def document(study):
         "isolated_static": study.design.isolated,
         "steady": study.design.steady,
         "track_width_mm": study.bowl.track.width / MM,
-        "efficiency": study.design.efficiency,
-        "purity": study.design.purity,
+        **leaving(study, study.wanted),
         "before": [f"{device.kind}: {device.text}" for device in study.design.before],
         "chain": [_cut(cut) for cut in study.design.cuts],
         "quasi_static": [cut.device.kind for cut in study.design.cuts if cut.device.turns],
@@ -66,6 +69,21 @@ def orientations(study):
     return [_row(one, share) | _designed(study, k, found) for k, (one, share, found) in enumerate(rows)]
 
 
+def leaving(study, place):
+    """Return efficiency and purity [1] of an orientation's design, by the names of ``LEAVING``.
+
+    Of its trial where one was made, with the 95 % interval. Else the least by the static rule: without what
+    may roll or rock on its way, and with what no verdict is sure to return counted as leaving.
+    """
+    found, tried = study.designs[place], study.trial_of(place)
+    if tried is not None:
+        pure = (None, None) if np.isnan(tried.purity) else (tried.purity, tried.purity_ends[0])
+        values = (tried.efficiency, *tried.efficiency_ends, *pure)
+    else:
+        values = (found.least, found.least, found.efficiency, found.purity, found.purity)
+    return dict(zip(LEAVING, (*values, found.efficiency, found.purity), strict=True))
+
+
 def status(study, place):
     """Return what is known of an orientation's design, in one word.
 
@@ -74,7 +92,7 @@ def status(study, place):
     tried = study.trial_of(place)
     if tried is not None and tried.faults:
         return "denied"
-    if not study.designs[place].isolated:
+    if not study.isolates(place):
         return "none"
     return "static" if tried is None else "confirmed"
 
@@ -159,19 +177,21 @@ def remarks(study, efficiency=0.0):
 def _lead(study, found):
     """What becomes of the orientation asked for: what the trial says first."""
     one, tried = study.orientations[study.wanted], study.trial_of(study.wanted)
-    shares = 100.0 * found.efficiency, "at least " * bool(found.purity_is_least), 100.0 * found.purity
-    leave = "{:.3g} % of the parts offered leave so, {}{:.4g} % of what leaves".format(*shares)
+    shares = (
+        "at least " * (found.least < found.efficiency), 100.0 * found.least,
+        "at least " * bool(found.purity_is_least), 100.0 * found.purity,
+    )  # fmt: skip
+    leave = "{}{:.3g} % of the parts offered leave so, {}{:.4g} % of what leaves".format(*shares)
     if not found.efficiency > 0.0:
         leave = "none of the parts offered leaves so"
     if tried is not None and tried.faults:
         return f"{one.name} is not isolated: {tried.sentence.partition(': ')[2]}"
-    if not found.isolated:
-        return f"{one.name} is not isolated: {leave}"
     if tried is None:
-        return f"{one.name} is isolated: {leave}"
+        return f"{one.name} is {'' if study.isolates(study.wanted) else 'not '}isolated: {leave}"
     return (
-        f"{one.name} is isolated: {leave}; of {tried.parts} parts tried {100.0 * tried.efficiency:.3g} % do, "
-        "and the trial agrees"
+        f"{one.name} is {'' if found.isolated else 'not '}isolated: of {tried.parts} parts tried "
+        f"{tried.figures}; by the static rule {100.0 * found.efficiency:.3g} % of those offered leave so, "
+        f"and {tried.verdict}"
     )
 
 
@@ -245,8 +265,8 @@ def _row(one, share):
 
 def _designed(study, place, found):
     if found is None:
-        names = "isolated status devices track_width_mm margin_mm steady efficiency purity left_over reasons"
-        return dict.fromkeys(names.split())
+        names = "isolated status devices track_width_mm margin_mm steady"
+        return dict.fromkeys([*names.split(), *LEAVING, "left_over", "reasons"])
     return {
         "isolated": study.isolates(place),
         "status": status(study, place),
@@ -254,8 +274,7 @@ def _designed(study, place, found):
         "track_width_mm": None if found.width is None else found.width / MM,
         "margin_mm": found.margin / MM,
         "steady": found.steady if found.cuts else None,
-        "efficiency": found.efficiency,
-        "purity": found.purity,
+        **leaving(study, place),
         "left_over": list(found.left_over),
         "reasons": list(found.reasons),
     }

@@ -16,6 +16,7 @@ CLOSE = 1e-9  # [m] a part this much over a limit still passes
 UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
 MM = units.factor("mm", "length")
 STANDARD_GRAVITY = 9.80665  # [m/s2]
+WRITTEN_STEP_M = 1e-7  # [m] to which a length is written
 RETURNED, STOPPED, CARRIED = "returned", "stopped", "carried"  # what becomes of a part at a device
 LONG = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
 ROOM = 1.3  # a device has so many lengths of the longest part to itself
@@ -214,14 +215,22 @@ class Device:
         """Return the value [m] of a device of this kind that an orientation just passes."""
         raise NotImplementedError(f"{cls.kind} is not one number")
 
+    def value_text(self):
+        """Return its value as a bowl file has it, with every attribute that is not as by default."""
+        return length_text(self.limit)
+
+    def rewritten(self):
+        """Return it with the text of its own attributes."""
+        return replace(self, text=self.value_text())
+
     @classmethod
     def proposal(cls, where, limit):
         """Return the device of a value [m] that a design tries."""
         return cls(where, limit=limit)
 
-    def valued(self, limit, text):
-        """Return it with another value [m], written as some text."""
-        return replace(self, limit=limit, text=text)
+    def valued(self, limit):
+        """Return it with another value [m], and with the text of that."""
+        return replace(self, limit=limit).rewritten()
 
     def acts(self, track):
         """Return whether it does anything at all on a track."""
@@ -259,6 +268,27 @@ class Device:
         """Return the ConfigError of a hole that leaves nothing of a track of some width [m]."""
         what = f"{self.kind} leaves no track: the track is {1e3 * width:.4g} mm wide"
         return ConfigError(self.where, what, "give a smaller one, or a wider track")
+
+
+def length_text(value):
+    """Return a length [m] as a bowl file has it, to a ten-thousandth of a millimetre: '9.25 mm'."""
+    steps = value / WRITTEN_STEP_M
+    return f"{(round(steps) if math.isfinite(steps) else steps) * WRITTEN_STEP_M / MM:.9g} mm"
+
+
+def angle_text(value):
+    """Return an angle [rad] as a bowl file has it: '30 deg'."""
+    return f"{math.degrees(value):.9g} deg"
+
+
+def corners_text(corners):
+    """Return corners [m] as a bowl file has them."""
+    return f"[{', '.join(f'[{length_text(x)}, {length_text(y)}]' for x, y in corners)}]"
+
+
+def mapping_text(entries):
+    """Return pairs of a key and a text as a bowl file has them on one line; without those of no text."""
+    return f"{{{', '.join(f'{key}: {text}' for key, text in entries if text)}}}"
 
 
 def room_of(every):

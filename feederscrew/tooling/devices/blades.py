@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -10,7 +10,15 @@ import numpy as np
 from feederscrew import value_forms as forms
 from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import STOPPED, Device, room_of
+from feederscrew.tooling.devices.base import (
+    STOPPED,
+    Device,
+    angle_text,
+    corners_text,
+    length_text,
+    mapping_text,
+    room_of,
+)
 from feederscrew.tooling.devices.pieces import FRAME, Blade, Standing
 
 SQUARE = 0.5 * math.pi  # [rad] of the face to the direction of travel: straight across the track
@@ -86,9 +94,17 @@ class Wiper(_Overhead):
     def proposal(cls, where, limit):
         return cls(where, limit=limit, sweep=PROPOSED)
 
-    def valued(self, limit, text):
-        own = f"{{clearance: {text}, sweep: {math.degrees(self.sweep):.6g} deg}}"
-        return replace(self, limit=limit, text=own if self.face else text)
+    def value_text(self):
+        if not (self.face or self.contour or math.isfinite(self.friction)):
+            return super().value_text()
+        return mapping_text(
+            (
+                ("clearance", length_text(self.limit)),
+                ("sweep", angle_text(self.sweep) if self.face else ""),
+                ("friction", f"{self.friction:.9g}" if math.isfinite(self.friction) else ""),
+                ("contour", corners_text(self.contour) if self.contour else ""),
+            )
+        )
 
     @property
     def face(self):

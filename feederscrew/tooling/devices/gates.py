@@ -2,7 +2,7 @@
 
 from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import named, values
-from feederscrew.tooling.devices.base import STOPPED, Device
+from feederscrew.tooling.devices.base import STOPPED, Device, corners_text, length_text, mapping_text
 
 HIGH = 1.0  # [m] no opening is higher
 
@@ -23,6 +23,12 @@ class Profile(Device):
     @classmethod
     def read(cls, entry):
         return values.opening(entry)
+
+    def value_text(self):
+        if not self.like:
+            return corners_text(self.corners)
+        aspect, heading, play = self.like
+        return mapping_text((("of", named.written(aspect, heading)), ("play", length_text(play))))
 
     @property
     def across(self):

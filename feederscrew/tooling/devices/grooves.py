@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import room_of
+from feederscrew.tooling.devices.base import angle_text, mapping_text, room_of
 from feederscrew.tooling.devices.leans import LEAST, Bank, Lean
 from feederscrew.tooling.devices.pieces import Slope, Standing
 
@@ -38,11 +38,14 @@ class Groove(Lean):
         given = values.mapping(entry, ("angle",), "write {angle: 30 deg}")
         return {"angle": values.within(given, "angle", "angle", FLATTEST, STEEPEST)}
 
+    def value_text(self):
+        return mapping_text((("angle", angle_text(self.angle)),))
+
     @classmethod
     def of(cls, degrees, where):
         """Return a groove of so many degrees, and the low bank that ends it."""
-        groove = cls(where, angle=math.radians(degrees), text=f"{{angle: {degrees:g} deg}}")
-        return groove, Bank.of(LEAST, where)
+        groove = cls(where, angle=math.radians(degrees))
+        return groove.rewritten(), Bank.of(LEAST, where)
 
     @classmethod
     def holding(cls, one, wall_friction, where):

@@ -83,7 +83,10 @@ class Rails(Device):
         lead = self.lead if lead is None else lead
         if lead:
             lead = (min(lead[0], span[0]), max(lead[1], span[1]), *lead[2:])
-        return replace(self, span=tuple(span), lead=tuple(lead), text=written(span, lead))
+        return replace(self, span=tuple(span), lead=tuple(lead)).rewritten()
+
+    def value_text(self):
+        return written(self.span, self.lead)
 
     def standing(self, track, every):
         """Return its slot, which goes on behind it: those that hang do not come back onto the track."""

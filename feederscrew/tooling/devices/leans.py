@@ -7,7 +7,7 @@ import numpy as np
 
 from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import Device, room_of
+from feederscrew.tooling.devices.base import Device, angle_text, mapping_text, room_of
 from feederscrew.tooling.devices.pieces import Slope, Standing
 
 STEEPEST = math.radians(45.0)  # [rad]
@@ -82,7 +82,10 @@ class Bank(Lean):
     @classmethod
     def of(cls, degrees, where):
         """Return the bank of so many degrees."""
-        return cls(where, angle=math.radians(degrees), text=f"{degrees:g} deg")
+        return cls(where, angle=math.radians(degrees)).rewritten()
+
+    def value_text(self):
+        return angle_text(self.angle)
 
     @classmethod
     def holding(cls, one, wall_friction, where):
@@ -126,7 +129,10 @@ class Separation(Lean):
 
     @classmethod
     def parting(cls, where):
-        return cls(where, angle=math.radians(PARTING), text=f"{{climb: {PARTING:g} deg}}")
+        return cls(where, angle=math.radians(PARTING)).rewritten()
+
+    def value_text(self):
+        return mapping_text((("climb", angle_text(self.angle)),))
 
     @property
     def serves(self):  # type: ignore[override]  # of others a text of the class

@@ -7,7 +7,7 @@ import numpy as np
 
 from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import RETURNED, UNSURE, Device, carried
+from feederscrew.tooling.devices.base import RETURNED, UNSURE, Device, carried, length_text, mapping_text
 
 DISTANCE = "distance from the wall to the centre of mass"
 
@@ -124,6 +124,9 @@ class Slot(Device):
     def read(cls, entry):
         return values.span(entry)
 
+    def value_text(self):
+        return span_text(self.span)
+
     def misfits(self, width):
         return between(self, width)
 
@@ -134,6 +137,11 @@ class Slot(Device):
         margin = met.over_span(self.span)
         first, last = self.span
         return met.verdict(max(margin, -UNSURE) if met.rides(last - first, np.inf) else margin)
+
+
+def span_text(span):
+    """Return a span [m] off the wall as a bowl file has it."""
+    return mapping_text(zip(("from", "to"), map(length_text, span)))
 
 
 def between(device, width):

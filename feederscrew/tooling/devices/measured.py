@@ -2,9 +2,10 @@
 
 import math
 
+from feederscrew import units
 from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import Device, Verdict
+from feederscrew.tooling.devices.base import Device, Verdict, mapping_text
 
 
 class Yield(Device):
@@ -19,6 +20,9 @@ class Yield(Device):
     @classmethod
     def read(cls, entry):
         return values.shares(entry)
+
+    def value_text(self):
+        return mapping_text((units.quoted(name), f"{share:.9g}") for name, share in self.shares)
 
     def judged(self, met):
         shares = {name.casefold(): share for name, share in self.shares}

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 
+from feederscrew import units
 from feederscrew.errors import ConfigError, FeederError
 
 WITHIN = np.radians(3.0)  # so near to a heading that the part can have, a named one is that
@@ -73,6 +74,11 @@ def place_of(every, aspect, heading, where, named="", kind=ConfigError):
     return place(
         [one.aspect for one in every], [one.heading for one in every], aspect, heading, where, named, kind
     )
+
+
+def written(aspect, heading):
+    """Return an orientation by its aspect and heading [rad] as a bowl file names it: 'A@90'."""
+    return units.quoted(f"{aspect}@{np.degrees(heading):.9g}")
 
 
 def whole_degrees(text):

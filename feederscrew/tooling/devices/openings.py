@@ -4,7 +4,7 @@ import numpy as np
 
 from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import hole_shapes, values
-from feederscrew.tooling.devices.base import UNSURE, Device, carried
+from feederscrew.tooling.devices.base import UNSURE, Device, carried, corners_text
 
 DRAWN = forms.mapping(dxf=forms.TEXT, layer={"type": ["string", "number"]})
 
@@ -65,6 +65,9 @@ class CutOut(Device):
     @classmethod
     def read(cls, entry):
         return values.polygon(entry)
+
+    def value_text(self):
+        return corners_text(self.corners)
 
     def misfits(self, width):
         across = [y for _, y in self.corners]

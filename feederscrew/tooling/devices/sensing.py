@@ -5,15 +5,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feederscrew import units
 from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import named, values
-from feederscrew.tooling.devices.base import MM, RETURNED, Device, room_of
+from feederscrew.tooling.devices.base import MM, RETURNED, Device, length_text, mapping_text, room_of
 from feederscrew.tooling.devices.nozzles import SPREAD, Nozzles
 from feederscrew.tooling.devices.pieces import Sensor, Standing
 
 VIEWS = ("outline", "side", "height", "relief")
 RESOLUTION = {"outline": 1e-4, "side": 1e-4, "height": 1e-3, "relief": 1e-4}  # [m] camera, fibre, laser
 BORE, PRESSURE, PULSE = 2e-3, 3e5, 0.04  # [m], [Pa], [s] of each nozzle: 1.28 N, 0.051 N s
+NOZZLE_COUNT = 4.0
+BAR, MS = units.factor("bar", "pressure"), units.factor("ms", "time")
 REACTION = 0.01  # [s] of sensor and valve: 5 to 15 ms
 NOZZLES = forms.mapping(
     ("nozzle", "pressure", "height", "time", "nozzles"),
@@ -37,7 +40,7 @@ class Sorter(Device):
     pressure: float = PRESSURE  # [Pa] at the nozzle, above the ambient
     height: float = math.nan  # [m] of the lowest nozzle over the track; NaN: low enough for the thinnest
     time: float = PULSE  # [s] of a pulse
-    nozzles: float = 4.0  # one above the other
+    nozzles: float = NOZZLE_COUNT  # one above the other
 
     kind = "sorter"
     form = forms.mapping(
@@ -85,19 +88,39 @@ class Sorter(Device):
             made.append(cls(where, like=like, sees=view, also=also))
         return made
 
-    def with_play(self, play, text):
-        """Return the same sorter with other play [m], written as some text, and headings as it says."""
+    def with_play(self, play):
+        """Return the same sorter with other play [m], and headings as its text has them."""
         turns = [(name, f"{np.degrees(turn):.6g}") for name, turn in (self.like[:2], *self.also)]
-        names = [f"{name}@{turn}" for name, turn in turns]
-        named_ones = names[0] if len(names) == 1 else f"[{', '.join(names)}]"
-        written = f"{{of: {named_ones}, play: {text}, sees: {self.sees}}}"
         first, *also = ((name, float(np.radians(float(turn)))) for name, turn in turns)
-        return replace(self, like=(*first, float(play)), also=tuple(also), text=written)
+        return replace(self, like=(*first, float(play)), also=tuple(also)).rewritten()
 
-    def with_pulse(self, time, written):
-        """Return the same sorter with a pulse of some time [s], which its text calls so."""
-        said = self.text.partition(", jet: ")[0].removesuffix("}")
-        return replace(self, time=time, text=f"{said}, jet: {{time: {written}}}}}")
+    def with_pulse(self, time):
+        """Return the same sorter with a pulse of some time [s]."""
+        return replace(self, time=time).rewritten()
+
+    def value_text(self):
+        names = [named.written(*one) for one in (self.like[:2], *self.also)]
+        return mapping_text(
+            (
+                ("of", names[0] if len(names) == 1 else f"[{', '.join(names)}]"),
+                ("play", length_text(self.like[2])),
+                ("sees", self.sees),
+                ("resolution", "" if math.isnan(self.resolution) else length_text(self.resolution)),
+                ("jet", self._jet_text()),
+            )
+        )
+
+    def _jet_text(self):
+        """Its nozzles and its pulse as a bowl file has them, as far as they are not as by default."""
+        nozzles = [
+            ("nozzle", length_text(self.nozzle), self.nozzle != BORE),
+            ("pressure", f"{self.pressure / BAR:.9g} bar", self.pressure != PRESSURE),
+            ("height", length_text(self.height) if math.isfinite(self.height) else "", True),
+            ("time", f"{self.time / MS:.9g} ms", self.time != PULSE),
+            ("nozzles", f"{self.nozzles:.9g}", self.nozzles != NOZZLE_COUNT),
+        ]
+        told = [(key, text) for key, text, changed in nozzles if changed and text]
+        return mapping_text(told) if told else ""
 
     def differs(self, met):
         """Return by how much [m] an orientation is seen to differ from the nearest of the wanted ones.

@@ -5,15 +5,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from feederscrew import units
 from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import MM, RETURNED, UNSURE, Device, room_of
+from feederscrew.tooling.devices.base import (
+    MM,
+    RETURNED,
+    UNSURE,
+    Device,
+    length_text,
+    mapping_text,
+    room_of,
+)
 from feederscrew.tooling.devices.nozzles import SPREAD, Nozzles
 from feederscrew.tooling.devices.pieces import Standing
 
 CLEAR = 2.0  # times the force that just moves a part off: within it, to either side, nothing is sure
 PLACES = 9  # along a part at which a jet meets it
 BORE, PRESSURE = 2e-3, 2e4  # [m], [Pa]
+BAR = units.factor("bar", "pressure")
 
 
 @dataclass(frozen=True)
@@ -38,6 +48,10 @@ class SteadyJet(Device):
     @classmethod
     def read(cls, entry):
         return values.nozzle(entry, needed=("nozzle", "pressure", "height"))
+
+    def value_text(self):
+        entries = (("nozzle", length_text(self.nozzle)), ("pressure", f"{self.pressure / BAR:.9g} bar"))
+        return mapping_text((*entries, ("height", length_text(self.height))))
 
     @property
     def jet(self):

@@ -192,8 +192,8 @@ def written(node):
     if node.kind == "list":
         return f"[{', '.join(written(item) for item in node.items)}]"
     if node.kind == "mapping":
-        return f"{{{', '.join(f'{one.key}: {written(one.value)}' for one in node.entries)}}}"
-    return " ".join(node.text.split())
+        return f"{{{', '.join(f'{units.quoted(one.key)}: {written(one.value)}' for one in node.entries)}}}"
+    return units.quoted(" ".join(node.text.split()))
 
 
 def mapping(entry, names, mend, optional=()):

@@ -8,7 +8,7 @@ import numpy as np
 from feederscrew.tooling.devices.base import STOPPED, UNSURE, Device
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.falling_through import surely_gone
-from feederscrew.tooling.isolating.shop_values import FINE, STEP, fine, millimetres, snapped
+from feederscrew.tooling.isolating.shop_values import FINE, STEP, fine, snapped
 from feederscrew.tooling.verdicts import Meeting, verdict
 
 WHERE = "design"
@@ -231,13 +231,13 @@ def _cut(every, wanted, device, must, least, step):
 
     def at(value):
         value = fine(snapped(value, step, up=not upper)) if step > FINE else fine(value)
-        return device.valued(value, millimetres(value))
+        return device.valued(value)
 
     chosen = _surest(every, must, at, middle if np.isfinite(nearest) else device.limit, device.limit)
     if device.carries and least < np.inf:
         eased = max(chosen.limit, nearest - least) if upper else min(chosen.limit, nearest + least)
         chosen = _surest(every, must, at, float(eased), chosen.limit, least - 2.0 * FINE)
-    ends = [device.valued(float(end), millimetres(end)) for end in (nearest, values[wanted])]
+    ends = [device.valued(float(end)) for end in (nearest, values[wanted])]
     return judged(every, wanted, chosen, must, *ends)
 
 
@@ -248,7 +248,7 @@ def _sensor(every, wanted, device, must, step):
 
     def at(play):
         play = fine(max(snapped(play, step, up=False), least))
-        return device.with_play(play, millimetres(play))
+        return device.with_play(play)
 
     own = device.differs(Meeting(every[wanted], every))
     chosen = _surest(every, must, at, 0.5 * (own + widest), least)

@@ -12,7 +12,6 @@ from feederscrew.tooling.devices.base import carried
 from feederscrew.tooling.devices.openings import CutOut
 from feederscrew.tooling.devices.values import crossed
 from feederscrew.tooling.isolating.chain import WHERE, judged
-from feederscrew.tooling.isolating.shop_values import millimetres
 from feederscrew.tooling.verdicts import verdict
 
 STARTS = 220  # random holes tried
@@ -277,5 +276,4 @@ def _border(holds, inside, outside):
 def device_of(corners):
     """Return the hole of some corners (K, 2) [m]."""
     shape = tuple((float(x), float(y)) for x, y in corners)
-    text = ", ".join(f"[{millimetres(x)}, {millimetres(y)}]" for x, y in shape)
-    return CutOut(WHERE, corners=shape, text=f"[{text}]")
+    return CutOut(WHERE, corners=shape).rewritten()

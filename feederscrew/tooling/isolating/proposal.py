@@ -10,6 +10,7 @@ from feederscrew.tooling.isolating import apart
 from feederscrew.tooling.isolating.chain import Cut, Wishes
 
 LEAST_SHARE = 5e-3  # [1] orientations that come less often need not be returned
+ISOLATED_PURITY = 0.98  # [1] of what leaves, from which an orientation is said to be isolated
 SLIGHT = 1e-9  # [1] of an orientation: less comes of rounding
 NEVER = 1e-4  # [1] those that come less often change no number: no device is added for them
 
@@ -30,12 +31,19 @@ class Design:
     late: bool = False  # the time limit stopped the search: another machine may find more
     hopeful: float = np.nan  # [1] purity where a trial confirms what is not sure to be returned
     width: float | None = None  # [m] of the track, where it is another than the bowl's
+    least_purity: float = ISOLATED_PURITY  # [1] from which it is said to isolate
+    surely: float = np.nan  # [1] of the efficiency, what does not roll or rock on its way: the least of it
     steady: bool = True  # the drive leaves the wanted orientation lying on what the cuts leave of its foot
 
     @property
     def purity_is_least(self):
         """Whether the purity counts as leaving what no verdict is sure to return."""
         return self.hopeful > self.purity
+
+    @property
+    def least(self):
+        """The least of the efficiency [1] that the static rule is sure of."""
+        return self.efficiency if np.isnan(self.surely) else min(self.surely, self.efficiency)
 
     @property
     def stands(self):
@@ -141,26 +149,48 @@ def told(given, cuts, returned, same=None, late=False):
     doubt = float(unsure.sum())  # may leave as well: no trial has said
     total, leaving = shares.sum(), out.sum()
     cuts = _with_stops(given, flow, cuts)
+    hopeful = float(out[states].sum() / leaving) if leaving > 0.0 else np.nan
+    least = min(given.purity, ISOLATED_PURITY)
+    impure = [f"only {100.0 * hopeful:.3g} % of what leaves is so"] if hopeful < least else []
     stands = any(cut.stops for cut in cuts)
     left = [k for k in np.flatnonzero(~returned & ~same) if given.often[k]]
     margins = [end for cut in cuts for end in (cut.margin_pass, cut.margin_reject) if np.isfinite(end)]
     return Design(
         wanted=wanted,
-        isolated=not stands and (not left or bool(given.coming[left].sum() <= given.allowed)),
+        isolated=not (stands or impure) and (not left or bool(given.coming[left].sum() <= given.allowed)),
         before=given.before,
         cuts=cuts,
         margin=float(min(margins, default=np.nan)),
         efficiency=float(out[states].sum() / total) if total > 0.0 else 0.0,
         purity=float(out[states].sum() / (leaving + doubt)) if leaving > 0.0 else np.nan,
-        hopeful=float(out[states].sum() / leaving) if leaving > 0.0 else np.nan,
+        hopeful=hopeful,
+        least_purity=least,
+        surely=_surely(given, flow, states),
         left_over=tuple(one.name for k, one in enumerate(flow.states) if out[k] > 0.0 and k not in states),
         reasons=(
             *(f"{' '.join(cut.stops)} come to stand at the {cut.device.kind}" for cut in cuts if cut.stops),
             *(apart.reason(every[wanted], every[k], given.margin) for k in left),
+            *impure,
             *_against(np.array([one.name for one in every])[(unsure > 0.0) & given.often]),
         ),
         late=late,
     )
+
+
+def _surely(given, flow, states):
+    """Share of the parts offered [1] that leaves as wanted and lies still on its way: the least of it.
+
+    What is on a round side with nothing that holds it at the wall may roll, and what the drive tips may rock.
+    """
+    total = given.shares.sum()
+    loose = [
+        one.returned
+        or one.may_roll_back
+        or (one.kind == "rolling" and not one.groove and (one.track.bank <= 0.0 or one.along_a_bank))
+        for one in given.every
+    ]
+    share = np.where(loose, 0.0, given.shares) * flow.leaving[:, states].sum(axis=1)
+    return float(share.sum() / total) if total > 0.0 else 0.0
 
 
 def _against(names):
@@ -182,7 +212,7 @@ def _separated(given, cuts):
     if steeper is None or first is None or any(device.leans for device in given.before):
         return tuple(cuts)
     climb = one.track.climb
-    slower = replace(steeper, angle=climb, text=f"{{climb: {np.degrees(climb):.6g} deg}}")
+    slower = replace(steeper, angle=climb).rewritten()
     last = next((k for k, cut in enumerate(cuts) if cut.device.hangs), len(cuts))
     back = (plain_cut(slower),) if last < len(cuts) else ()
     return (*cuts[:first], plain_cut(steeper), *cuts[first:last], *back, *cuts[last:])

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from feederscrew.tooling.devices.hanging_rails import Rails, written
+from feederscrew.tooling.devices.hanging_rails import Rails
 from feederscrew.tooling.hanging import neck
 from feederscrew.tooling.isolating import chain
 from feederscrew.tooling.isolating.needed import told_needed
@@ -107,7 +107,7 @@ def _rails(one, found, width, step):
     lead = _lead(one, found, span, step)
     if lead[1] >= one.track.width - RAIL or not lead[0] < one.distance - one.shift < lead[1]:
         return None
-    return Rails(chain.WHERE, span=span, lead=lead, text=written(span, lead))
+    return Rails(chain.WHERE, span=span, lead=lead).rewritten()
 
 
 def _lead(one, found, span, step):

@@ -8,7 +8,6 @@ from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.fates import course
 from feederscrew.tooling.isolating.chain import WHERE, Cut
 from feederscrew.tooling.isolating.proposal import LEAST_SHARE
-from feederscrew.tooling.isolating.shop_values import millimetres
 from feederscrew.tooling.verdicts import Meeting, verdict
 
 ROUND = 1e-4  # [m] to which a height or width is rounded
@@ -67,7 +66,7 @@ def _between(known):
 
 
 def _device(kind, limit):
-    return kind(WHERE, limit=float(limit), text=millimetres(limit))
+    return kind(WHERE).valued(float(limit))
 
 
 def _sure(given, device):

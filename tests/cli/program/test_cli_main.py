@@ -246,6 +246,22 @@ Fence("feeder", commands=[click.Command("talk", callback=talk)])(["talk"])
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+@pytest.mark.parametrize(("name", "ending"), [("bin/feeder", "(130, 'Stopped.')"), ("user.py", "(1, 'own')")])
+def test_ctrl_c_while_the_program_loads_is_one_line_and_a_script_keeps_its_own(name, ending):
+    code = f"""
+import os, signal, sys
+sys.argv[0] = {name!r}
+import feederscrew_cli
+try:
+    os.kill(os.getpid(), signal.SIGINT)
+except KeyboardInterrupt:
+    sys.exit("own")
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
+    assert str((done.returncode, done.stderr.strip())) == ending
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 def test_ctrl_c_stops_in_one_line():
     code = """
 import click, time
