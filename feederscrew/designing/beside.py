@@ -12,6 +12,7 @@ from feederscrew.bowl.settings import Setting, of_device
 from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import DesignRequest, DesignStudy
 from feederscrew.errors import FeederError
+from feederscrew.machine import checks, drive_sought
 from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
@@ -104,20 +105,66 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     """
     if study.bowl is None:
         return Built()
-    given = [f"{s.key.name}={s.text}" for s in settings if s.given and not s.key.name.startswith("devices")]
+    listed = [s for s in settings if s.given and not s.key.name.startswith("devices")]
+    given = [f"{s.key.name}={s.text}" for s in listed]
     own = [*_texts("drive", study.bowl.drive, DRIVE), *_texts("track", study.bowl.track, TRACK)]
     words = {line.partition("=")[0] for line in own} | {"drive.amplitude", "drive.peak_to_peak"}
+    words |= {"sizing.fill_density"}
     kept = [line for line in given if line.partition("=")[0] not in words]
     devices = tuple(of_device(k, one) for k, one in enumerate(study.devices, start=1))
     try:
         made = bowls.settings(None, (*kept, *own))
         sized, why = _sized((*made, *devices), study)
-        under = [f"machine.{name}={text}" for name, text in _machine(sized.bowl.machine)]
+        driven = replace(sized.bowl, drive=study.bowl.drive)  # at the stroke that was tried
+        machine = drive_sought.on_leaves(driven, drive_sought.given(listed, "machine"))
+        under = [f"machine.{name}={text}" for name, text in _machine(machine)]
         stroke = f"drive.amplitude={1e3 * study.bowl.drive.amplitude:.9g} mm"
-        sheet = machines.machine(bowls.settings(None, (*kept, *own, stroke, *under)))
+        lines = _last((*kept, *own, stroke, *under, *_fill(study.part, sized)))
+        sheet = machines.machine((*bowls.settings(None, lines), *devices))
     except FeederError as fault:
         return Built(why=str(fault))
+    sheet = replace(sheet, turns=sized.turns)
     return Built(sheet, _drawn(sheet, sized), why)
+
+
+def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
+    """Return a design that knows what its own machine is out of limits in, and what it cannot make.
+
+    Parameters
+    ----------
+    study : DesignStudy
+    built : Built
+        Of that design.
+
+    Returns
+    -------
+    DesignStudy
+        Its ``warnings`` hold those of ``feeder bowl`` for its file. Where the leaf springs that are drawn do
+        not make the angle that was tried, it falls short.
+    """
+    sheet = built.sheet
+    if sheet is None:
+        return study
+    warnings = [*checks.remarks(sheet)]
+    warnings += [] if built.drawn is None else checks.of_the_solid(built.drawn)
+    other = sheet.mismatch
+    lacking = (other.text,) if other is not None and other.other_angle and not other.two_axis else ()
+    return replace(
+        study, drive_mismatch=other, machine_warnings=tuple(dict.fromkeys(warnings)), machine_lacks=lacking
+    )
+
+
+def _last(lines: Iterable[str]) -> tuple[str, ...]:
+    """Of several lines of one key the last."""
+    return tuple({line.partition("=")[0]: line for line in lines}.values())
+
+
+def _fill(part: Part, sized: MachineSheet) -> Iterator[str]:
+    """What fills the bowl, and how high its outlet is: a bowl file says both without the part."""
+    room = part.volume if part.hull is None else part.hull.volume
+    yield f"sizing.fill_density={part.mass / room:.9g} kg/m3"
+    if sized.solid is not None:  # rounded down: the cuts may stand as high as they just can
+        yield f"sizing.outlet_height={np.floor(1e9 * sized.order.size.depth) / 1e6:.9g} mm"
 
 
 def _drawn(sheet: MachineSheet, sized: MachineSheet) -> MachineSheet | None:
@@ -149,6 +196,7 @@ def _machine(machine: Machine) -> Iterator[tuple[str, str]]:
     yield "spring_radius", f"{1e3 * machine.spring_radius:.6g} mm"
     yield "spring_angle", f"{np.degrees(machine.spring_angle):.6g} deg"
     yield "leaf_thickness", f"{1e3 * machine.leaf_thickness:.6g} mm"
+    yield "leaf_length", f"{1e3 * machine.leaf_length:.6g} mm"
     yield "leaves", f"{machine.leaves:.0f}"
     for word, value in unbalance.told(machine).items():
         yield word, f"{value:.12g} {'m' if word in unbalance.CENTRE else 'kg m2'}"

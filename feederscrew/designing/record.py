@@ -9,6 +9,7 @@ from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing.hazards.risks import Risk
 from feederscrew.dropping.ensemble import wilson
+from feederscrew.machine.feasibility import DriveMismatch
 from feederscrew.part.record import Part
 from feederscrew.running import RunSettings
 from feederscrew.studies.tooling import ToolingStudy, listed
@@ -153,6 +154,9 @@ class DesignStudy:
     static_rate: float = 0.0  # [1/s] that the static rule promises
     slowed: float = 1.0  # [1] of its velocity that the drive keeps at the worst friction
     trials: tuple[TrialRun, ...] = ()  # its short trial: what is wanted, then the others
+    drive_mismatch: DriveMismatch | None = None  # with the drive that its drawn machine makes
+    machine_warnings: tuple[str, ...] = ()  # what of its drawn machine is out of limits
+    machine_lacks: tuple[str, ...] = ()  # of the drive that was tried: why it does not hold
 
     @property
     def devices(self) -> tuple[Device, ...]:
@@ -168,7 +172,7 @@ class DesignStudy:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
-        return self.part.warnings
+        return (*self.part.warnings, *self.machine_warnings)
 
     @property
     def slowest(self) -> FilledQueue | None:
@@ -273,5 +277,6 @@ def _shortfalls(study: DesignStudy) -> Iterator[str]:
     if study.robust.share < DRAWS_HELD:
         worst = f": {study.robust.worst}" if study.robust.worst else ""
         yield f"{study.robust.held} of {study.robust.draws} draws of part, friction and drive sort{worst}"
+    yield from study.machine_lacks
     if study.partial:
         yield "stopped before all was tried"

@@ -7,6 +7,7 @@ from feederscrew.bowl.record import Machine, Sizing
 from feederscrew.machine.springs import gain, leaf_stress, natural_frequency, springs
 
 THICKNESSES = (1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3, 5e-3, 6e-3)  # [m] that makers stock
+LENGTHS = (60e-3, 80e-3, 100e-3, 120e-3, 150e-3, 180e-3, 220e-3, 260e-3)  # [m] free, where it may be chosen
 THICKER = 0.5e-3  # [m] step of the same
 MOST = 60  # leaves of one set
 
