@@ -143,14 +143,19 @@ def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
         not make the angle that was tried, it falls short.
     """
     sheet = built.sheet
-    if sheet is None:
+    if study.bowl is None or sheet is None:
         return study
     warnings = [*checks.remarks(sheet)]
     warnings += [] if built.drawn is None else checks.of_the_solid(built.drawn)
     other = sheet.mismatch
     lacking = (other.text,) if other is not None and other.other_angle and not other.two_axis else ()
     return replace(
-        study, drive_mismatch=other, machine_warnings=tuple(dict.fromkeys(warnings)), machine_lacks=lacking
+        study,
+        bowl=replace(study.bowl, machine=sheet.bowl.machine),
+        machine_drawn=True,
+        drive_mismatch=other,
+        machine_warnings=tuple(dict.fromkeys(warnings)),
+        machine_lacks=lacking,
     )
 
 

@@ -154,6 +154,7 @@ class DesignStudy:
     static_rate: float = 0.0  # [1/s] that the static rule promises
     slowed: float = 1.0  # [1] of its velocity that the drive keeps at the worst friction
     trials: tuple[TrialRun, ...] = ()  # its short trial: what is wanted, then the others
+    machine_drawn: bool = False  # the machine of its bowl is the one that was sized for it
     drive_mismatch: DriveMismatch | None = None  # with the drive that its drawn machine makes
     machine_warnings: tuple[str, ...] = ()  # what of its drawn machine is out of limits
     machine_lacks: tuple[str, ...] = ()  # of the drive that was tried: why it does not hold

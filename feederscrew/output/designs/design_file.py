@@ -50,6 +50,8 @@ def bowl_file(study, settings, sheet=None):
     set_here |= {f"machine.{word}" for word in unbalance.WORDS if "machine" in own}
     given = [s for s in settings if s.given and s.key.field != SECTION and s.key.name not in set_here]
     lines = [f"# {study.status}: {study.wanted} of {study.part.name}, from feeder design."]
+    if study.drive_mismatch is not None:
+        lines += [f"# Its drive: {study.drive_mismatch.text}."]
     lines += [f"{s.key.word}: {s.text}" for s in given if not s.key.section]
     for section in dict.fromkeys((*own, *(s.key.section for s in given if s.key.section))):
         lines += [f"{section}:"]

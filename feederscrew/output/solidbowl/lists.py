@@ -5,11 +5,13 @@ import numpy as np
 from feederscrew.output.machine import sheet as sheets
 from feederscrew.output.solidbowl.unrolled_strip import numbered
 from feederscrew.solidbowl import lugs
+from feederscrew.tooling.orientations import ROUNDED
 from feederscrew.units import factor
 
 MM, MIN, LITRE = factor("mm", "length"), factor("/min", "rate"), factor("l", "volume")
 CUT = "±0.1"  # [mm] of an edge that parts meet
 GENERAL = "ISO 2768-m"
+EDGES = f"broken at most {ROUNDED / MM:.3g} mm"  # as they are tried
 MOST = 12  # rows of a list
 LONG = 46  # letters of a line in the title block
 
@@ -26,7 +28,7 @@ def cuts(paper, study, at):
     low = paper.table(*at, [9.0, 90.0, 32.0, 32.0, 32.0], rows)
     listed = [
         f"from and to: along the wall from the begin of the stretch; cuts {CUT}, everything else {GENERAL}",
-        f"arcs are facets within {plan.chord / MM:.3g} mm; edges that parts meet: broken at most 0.05 mm",
+        f"arcs are facets within {plan.chord / MM:.3g} mm; edges that parts meet: {EDGES}",
     ]
     for k, line in enumerate(listed):
         paper.text(at[0], low - 4.0 - 3.6 * k, line, size=2.2)
@@ -104,13 +106,14 @@ def _fields(study, solid, found, scale):
         ("part material", f"{order.part.material}"),
         ("fill, hopper", f"{study.fill.mass:.3g} kg, {order.hopper / LITRE:.3g} l"),
         ("drive", f"{study.stroke.frequency:.4g} Hz, {study.stroke.peak_to_peak / MM:.3g} mm"),
+        ("vibration angle", sheets.angles(study)),
         ("natural frequency", f"{study.springs.natural_frequency:.4g} Hz"),
         ("climb, bank", f"{np.degrees(plan.way.climb):.3g}°, {_banks(plan.way)}"),
         (
             "hand",
             f"{'left' if plan.left else 'right'}: parts climb {'' if plan.left else 'counter-'}clockwise",
         ),
-        ("turns", f"{plan.turns:.3g}"),
+        ("turns", f"{study.turns:.3g}"),
         ("material", f"{plan.material.name}, {plan.material.density:.4g} kg/m³"),
         ("mass, volume", f"{solid.mass:.4g} kg, {solid.with_lugs.volume / MM**3:.6g} mm³"),
         ("inertia about axis", f"{solid.inertia:.4g} kg m²"),
