@@ -21,6 +21,7 @@ from feederscrew.solidbowl.plan import CHORD
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import solidbowl
 from feederscrew.studies.bowl import MachineSheet
+from feederscrew.studies.rate import LEAST
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.tooling.isolating import proposal as static
 from feederscrew.tooling.isolating.chain import Wishes
@@ -181,12 +182,20 @@ def _drawn(sheet: MachineSheet, sized: MachineSheet) -> MachineSheet | None:
 
 
 def _sized(settings: Sequence[Setting], study: DesignStudy) -> tuple[MachineSheet, str]:
-    """The bowl of a design, with its solid, or else why there is none."""
+    """The bowl of a design, with its solid, or else why there is none.
+
+    Where the static rule lets nothing through, or too little, the machine is that of the track without devices.
+    """
     wanted = solidbowl.asked(settings, solid=True, material=STEEL, chord=CHORD)
     try:
         return machines.bowl(settings, study.part, study.request.target, solid=wanted), ""
     except FeederError as fault:
-        return machines.bowl(settings, study.part, study.request.target), str(fault)
+        why = str(fault)
+    try:
+        return machines.bowl(settings, study.part, study.request.target), why
+    except FeederError:
+        plain = [s for s in settings if not s.key.name.startswith("devices.")]
+        return machines.bowl(plain, study.part, LEAST), why
 
 
 def _texts(section: str, record: object, rows: Iterable[tuple[str, float, str]]) -> list[str]:

@@ -13,9 +13,7 @@ from feederscrew.units import factor
 SAME_ANGLE = np.radians(0.5)  # angles at the track that are nearer than this count as one
 SAME_PHASE = np.radians(0.05)
 LEAF_SPRING, TWO_AXIS = "leaf-spring drive", "two-axis drive"
-TWO_MAGNETS = (
-    "needs two magnets and a two-channel controller: one set of leaf springs cannot make it"
-)
+TWO_MAGNETS = "needs two magnets and a two-channel controller: one set of leaf springs cannot make it"
 MM_S = factor("mm/s", "velocity")
 
 

@@ -165,7 +165,7 @@ def unreachable(target: float, parts_per_metre: float, fastest: tuple[float, flo
     )
 
 
-def _speeds(bowl: Bowl, amplitudes: Any, strokes: Any, angles: Any) -> Any:
+def _speeds(bowl: Bowl, amplitudes: Any, strokes: Any, angles: Any = None) -> Any:
     """Slowest velocities of strokes as the bowl empties [m/s]; minus infinity where there is none.
 
     No stroke is beyond what drives are built for: there the magnet strikes.

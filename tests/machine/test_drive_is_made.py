@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapes
+from matplotlib.text import Text
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.direction import shares, vibration_angle
@@ -15,9 +16,10 @@ from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue
 from feederscrew.machine import building, drive_sought, feasibility, sizing, tuning
 from feederscrew.machine.springs import leaf_stress, springs
 from feederscrew.machine.stroke import stroke
-from feederscrew.output.designs import design_file, tables
+from feederscrew.output.designs import design_file, design_page, tables
 from feederscrew.output.machine import figures
 from feederscrew.output.machine import tables as machine_tables
+from feederscrew.output.solidbowl import drawing_sheet
 from feederscrew.studies import bowl as machines
 
 STEEL_PART = shapes.part(shapes.box(12.0, 10.0, 8.0))
@@ -100,20 +102,20 @@ def test_a_drive_that_the_springs_make_is_no_mismatch():
     assert feasibility.can_make(machines.machine(settings).bowl) is None
 
 
-def design(*texts):
-    """A design that holds by its trial, with the machine that is drawn for it."""
+def proved(*texts):
+    """A design that holds by its trial."""
     queue = FilledQueue("normal", 0.2, 12, 200.0, 200.0, 200.0, 200, 200, 0, 0, 0)
     bowl = bowls.read(None, (*ONE, *texts))
-    one = DesignStudy(
+    return DesignStudy(
         PART, DesignRequest(30.0 / 60.0), bowl, "A@0", 0, robust=RobustRun(20, 20, ""), queues=(queue,)
     )
-    built = beside.built(one, ())
-    return beside.with_machine(one, built), built
 
 
 @pytest.fixture(scope="module")
 def two_axis():
-    return design("drive.vibration_angle=16 deg", "drive.phase=-60 deg", "drive.amplitude=0.322 mm")
+    one = proved("drive.vibration_angle=16 deg", "drive.phase=-60 deg", "drive.amplitude=0.322 mm")
+    built = beside.built(one, ())
+    return beside.with_machine(one, built), built
 
 
 def test_a_drive_out_of_phase_stands_first_in_every_output(two_axis, tmp_path):
@@ -129,6 +131,9 @@ def test_a_drive_out_of_phase_stands_first_in_every_output(two_axis, tmp_path):
     assert tables.document(found)["bowl"]["phase_deg"] == pytest.approx(-60.0)
     assert any("phase" in text.get_text() for text in figures.bowl(sheet).texts)
     assert any("two magnets" in line for line in tables.document(found)["warnings"])
+    drawn = drawing_sheet.sheet(built.drawn).figure.findobj(Text)
+    assert any("two magnets" in text.get_text() for text in drawn)
+    assert "two magnets" in design_page.page(found, built).partition("leaves as")[0]
     assert "two magnets" in design_file.bowl_file(found, (), sheet).splitlines()[1]
 
 
@@ -186,6 +191,8 @@ def test_longer_leaves_where_none_of_the_usual_length_tunes_a_slow_drive():
 
 
 def test_a_design_whose_drawn_springs_do_not_make_its_angle_does_not_hold():
-    found, built = design("drive.vibration_angle=50 deg", "drive.amplitude=0.15 mm")
-    assert built.sheet.mismatch is not None
+    one = proved("drive.vibration_angle=50 deg", "drive.amplitude=0.15 mm")
+    assert one.status == "holds"
+    settings = bowls.settings(None, (*ONE, "drive.vibration_angle=50 deg", "drive.amplitude=0.15 mm"))
+    found = beside.with_machine(one, beside.Built(machines.machine(settings)))
     assert found.status == "falls short" and "do not make its angle" in found.why

@@ -212,7 +212,9 @@ def moved(frequency=100.0, **more):
     """The bowl in the direction in which its springs move its track."""
     machine = replace(MACHINE, **more)
     angle = float(vibration_angle(machine, BOWL.track.radius, BOWL.track.climb))
-    return replace(BOWL, machine=machine, drive=replace(BOWL.drive, vibration_angle=angle, frequency=frequency))
+    return replace(
+        BOWL, machine=machine, drive=replace(BOWL.drive, vibration_angle=angle, frequency=frequency)
+    )
 
 
 @pytest.mark.parametrize("frequency, leaves", [(100.0, 10), (50.0, 8)])

@@ -29,7 +29,15 @@ def quotation(study, tried=None):
         'quantity' and 'value', both text.
     """
     return _lines(
-        [*_drive_first(study), *_part(study), *_tried(tried), *_rates(study), *_bowl(study), *_drive(study), *_springs(study)]
+        [
+            *_drive_first(study),
+            *_part(study),
+            *_tried(tried),
+            *_rates(study),
+            *_bowl(study),
+            *_drive(study),
+            *_springs(study),
+        ]
     )
 
 
@@ -59,12 +67,12 @@ def two_axis(drive):
     return f"{feasibility.TWO_AXIS}, phase {drive.phase / DEG:.4g} deg: {feasibility.TWO_MAGNETS}"
 
 
-def angles(study):
+def angles(study, *, phase=True):
     """Return the angle of the motion at the springs and at the track, as text for titles and drawings."""
     made = study.bowl.machine.spring_angle / DEG, study.bowl.drive.vibration_angle / DEG
-    phase = study.bowl.drive.phase / DEG
     said = f"{made[0]:.3g}° at the springs, {made[1]:.3g}° to the track"
-    return f"{said}, phase {phase:.4g}°" if feasibility.is_two_axis(study.bowl.drive) else said
+    led = phase and feasibility.is_two_axis(study.bowl.drive)
+    return f"{said}, phase {study.bowl.drive.phase / DEG:.4g}°" if led else said
 
 
 def _part(study):

@@ -33,7 +33,11 @@ def summary(slides):
     """Return what holds at the bowl's own point, a column a map, as a frame for people."""
     first = slides[0]
     names = ["acceleration ratio G = A w2/g", "alpha - theta [deg]", "static friction", *LIMITS.values()]
-    names += [*ONSETS.values(), "regime", *(f"share of the map: {regime_words(name)}" for name in first.grid.names)]
+    names += [
+        *ONSETS.values(),
+        "regime",
+        *(f"share of the map: {regime_words(name)}" for name in first.grid.names),
+    ]
     columns = {f"beta = {np.degrees(one.beta):.6g} deg": _column(one) for one in slides}
     return tables.frame({"at the bowl's own point": names, **columns})
 

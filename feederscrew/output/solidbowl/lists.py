@@ -77,12 +77,23 @@ def title(paper, study, found, scale):
     paper.box(left, low, right, high, 1.2)
     solid, order = study.solid, study.order
     paper.text(left + 2.0, high - 6.0, f"Bowl for {_short(order.part.name)}", size=4.0, fontweight="bold")
+    for k, line in enumerate(_not_made(study)):
+        paper.text(left, high + 5.4 - 3.2 * k, line, size=2.0, color="#d55e00")
     pairs = _fields(study, solid, found, scale)
     half = (len(pairs) + 1) // 2
     for k, (name, value) in enumerate(pairs):
         x, y = left + 2.0 + 82.0 * (k // half), high - 13.0 - 5.6 * (k % half)
         paper.text(x, y, name, size=1.9, color="#5b6b78")
         paper.text(x + 27.0, y, value, size=2.1)
+
+
+def _not_made(study):
+    """What of its drive the springs do not make, at most two lines."""
+    said = sheets.two_axis(study.bowl.drive)
+    if said:
+        yield said
+    if study.mismatch is not None:
+        yield f"these springs make {study.mismatch.machine.text}"
 
 
 def _short(words):
@@ -106,7 +117,7 @@ def _fields(study, solid, found, scale):
         ("part material", f"{order.part.material}"),
         ("fill, hopper", f"{study.fill.mass:.3g} kg, {order.hopper / LITRE:.3g} l"),
         ("drive", f"{study.stroke.frequency:.4g} Hz, {study.stroke.peak_to_peak / MM:.3g} mm"),
-        ("vibration angle", sheets.angles(study)),
+        ("vibration angle", sheets.angles(study, phase=False)),
         ("natural frequency", f"{study.springs.natural_frequency:.4g} Hz"),
         ("climb, bank", f"{np.degrees(plan.way.climb):.3g}°, {_banks(plan.way)}"),
         (
