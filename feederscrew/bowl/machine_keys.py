@@ -128,12 +128,12 @@ SIZING = (
     _rule("greatest_spring_angle", "angle", "1 deg", "89 deg", "30 deg", "angle of the springs", ASSUMED),
     _rule(
         "greatest_spring_radius", "number", "0.05", "2", "0.9",
-        "where drive.vibration_angle is given, the springs move outwards up to this share of the bowl's radius",
+        "where drive.vibration_angle is given, springs move outwards up to this share of the bowl's radius",
         ASSUMED,
     ),
     _rule(
         "steepest_spring_angle", "angle", "1 deg", "89 deg", "45 deg",
-        "angle of the springs, at most, where drive.vibration_angle is given and they are as far out as they go",
+        "angle of the springs that are as far out as they go, where drive.vibration_angle is given",
         ASSUMED,
     ),
     _rule("base_mass", "number", "0.1", "1000", "4.2", "mass of the base over that of the bowl", ASSUMED),

@@ -168,9 +168,10 @@ def _last(lines: Iterable[str]) -> tuple[str, ...]:
 def _fill(part: Part, sized: MachineSheet) -> Iterator[str]:
     """What fills the bowl, and how high its outlet is: a bowl file says both without the part."""
     room = part.volume if part.hull is None else part.hull.volume
-    yield f"sizing.fill_density={part.mass / room:.9g} kg/m3"
+    if room:
+        yield f"sizing.fill_density={part.mass / room:.9g} kg/m3"
     if sized.solid is not None:  # rounded down: the cuts may stand as high as they just can
-        yield f"sizing.outlet_height={np.floor(1e9 * sized.order.size.depth) / 1e6:.9g} mm"
+        yield f"sizing.outlet_height={np.floor(1e9 * sized.depth) / 1e6:.9g} mm"
 
 
 def _drawn(sheet: MachineSheet, sized: MachineSheet) -> MachineSheet | None:
@@ -184,7 +185,7 @@ def _drawn(sheet: MachineSheet, sized: MachineSheet) -> MachineSheet | None:
 def _sized(settings: Sequence[Setting], study: DesignStudy) -> tuple[MachineSheet, str]:
     """The bowl of a design, with its solid, or else why there is none.
 
-    Where the static rule lets nothing through, or too little, the machine is that of the track without devices.
+    Where the static rule lets nothing or too little through, the machine is that of a track without devices.
     """
     wanted = solidbowl.asked(settings, solid=True, material=STEEL, chord=CHORD)
     try:

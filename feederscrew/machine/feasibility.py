@@ -1,4 +1,4 @@
-"""Whether the machine that is drawn makes the drive that was tried: one set of leaf springs makes one direction."""
+"""Whether the machine that is drawn makes the drive that was tried: its springs make one direction."""
 
 from dataclasses import dataclass, replace
 

@@ -143,7 +143,7 @@ def twist(machine: Machine) -> float:
 
 
 def in_plane(machine: Machine, offset: float = 0.0) -> float:
-    """Return by how much in-plane bending stiffens a bank whose clamps are rigid, over that without twist [1].
+    """Return by how much in-plane bending stiffens a bank of rigid clamps, over that without twist [1].
 
     Source: Timoshenko's beam, bent about its stiff axis; docs/bowl.md, "How it is computed".
 
@@ -162,7 +162,7 @@ def in_plane(machine: Machine, offset: float = 0.0) -> float:
 
     Notes
     -----
-    The bowl turns the upper clamp against the lower one by theta sin psi in the plane of the leaf. Where the
+    The bowl turns the upper clamp against the lower one by theta sin psi in the leaf's own plane. Where the
     middle of the leaf is nearest to the axis this is pure bending. A clamp that yields takes most of it: of a
     leaf of 40 x 2.5 x 80 mm a clamp softer than some 5 kN m/rad leaves a few per cent of the frequency.
     """

@@ -173,6 +173,7 @@ def _speeds(bowl: Bowl, amplitudes: Any, strokes: Any, angles: Any = None) -> An
     each = np.minimum(np.multiply.outer(amplitudes, strokes), greatest_amplitude(bowl))
     drive = replace(bowl.drive, amplitude=each)
     if angles is not None:
-        drive = replace(drive, vibration_angle=np.broadcast_to(angles, each.shape))
+        turned: Any = np.broadcast_to(angles, each.shape)
+        drive = replace(drive, vibration_angle=turned)
     found = answer.cells(replace(bowl, drive=drive))["velocity"]
     return np.where(np.isfinite(found), found, -np.inf).min(axis=-1)

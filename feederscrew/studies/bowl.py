@@ -31,7 +31,6 @@ from feederscrew.tooling.orientations import orientations
 
 ASSUMED_DENSITY = 7850.0  # [kg/m3] of a fill of which nothing is known: steel, solid
 PART, FILE, ASSUMED = "of the part", "as sizing.fill_density says", "steel assumed: give the part"  # fills
-OTHER_CLIMB = ("separation", "tip")  # kinds of device behind which the track has another climb or height
 ENOUGH = 1.0 - 1e-6  # of a target
 
 
@@ -301,9 +300,9 @@ def _sheet(
 
 
 def _turns(bowl: Bowl, depth: float) -> float:
-    """Turns of a track of one climb; NaN where it is level, or where a device leads it another way."""
+    """Turns of a track of one climb; NaN where it is level, or where devices may lead it another way."""
     rise = 2.0 * np.pi * bowl.track.radius * np.tan(bowl.track.climb)
-    led = any(device.kind in OTHER_CLIMB for device in bowl.devices)
+    led = bool(bowl.devices) and bowl.sizing.outlet_height > 0.0
     return float(depth / rise) if rise > 0.0 and not led else float("nan")
 
 

@@ -42,7 +42,7 @@ def element(machine):
 
 
 def stiffness(machine, offset):
-    """Of one leaf whose lower clamp is held, and whose upper one moves by one unit along the springs [N/m]."""
+    """Of one leaf whose lower clamp is held while the upper one moves along the springs [N/m]."""
     psi, radius, half = machine.spring_angle, machine.spring_radius, 0.5 * machine.leaf_length
     along, outward = np.array([0.0, -np.sin(psi), np.cos(psi)]), np.array([1.0, 0.0, 0.0])
     axes = np.array([along, outward, np.cross(along, outward)])

@@ -1,4 +1,4 @@
-"""Every paper of one run says the same of one quantity: documents, tables, pictures, drawing and bowl file."""
+"""Every paper of one run says the same of one quantity: documents, tables, pictures, drawing, bowl file."""
 
 import json
 import re
@@ -15,6 +15,8 @@ from feederscrew.output.designs import files, tables
 from feederscrew.output.machine import figures
 from feederscrew.output.machine import tables as machine_tables
 from feederscrew.output.solidbowl import drawing_sheet
+from feederscrew.output.tooling import drawing
+from feederscrew.tooling.orientations import ROUNDED
 
 PART = shapes.part(shapes.box(12.0, 10.0, 8.0))
 BOWL = """
@@ -86,14 +88,16 @@ def said(p):
     drive, track, machine, mm = file.drive, file.track, file.machine, 1e3
     yield "diameter", (
         design["diameter_mm"], solid["diameter_mm"], 2.0 * mm * track.radius, float(number("D #", picture)),
-        number("Ø#", drawing), number("#", long["bowl diameter [mm]"]), number("#", p["summary"]["diameter [mm]"]),
+        number("Ø#", drawing), number("#", long["bowl diameter [mm]"]),
+        number("#", p["summary"]["diameter [mm]"]),
     )  # fmt: skip
     yield "track width", (
         design["track_width_mm"], mm * track.width, number("track #", picture), number("track #", drawing),
         number("#", long["track width [mm]"]),
     )  # fmt: skip
     yield "climb", (
-        design["climb_deg"], np.degrees(track.climb), number("climb #", picture), number("#", long["climb [deg]"]),
+        design["climb_deg"], np.degrees(track.climb), number("climb #", picture),
+        number("#", long["climb [deg]"]), number("climb, bank\n#", drawing),
     )  # fmt: skip
     yield "turns", (
         bowl["turns"], solid["solid_turns"], number(", # turns", picture), number("#", long["turns"]),
@@ -114,13 +118,15 @@ def said(p):
         number("drive\n# Hz", drawing), accepted(p, "frequency of the drive"),
     )  # fmt: skip
     yield "angle at the track", (
-        design["vibration_angle_deg"], design["vibration_angle_at_the_track_deg"], bowl["vibration_angle_deg"],
+        design["vibration_angle_deg"], design["vibration_angle_at_the_track_deg"],
+        bowl["vibration_angle_deg"],
         np.degrees(drive.vibration_angle), number("# to the track", sheet["vibration angle [deg]"]),
         number("#° to the track", picture), number("#° to the track", drawing),
         number("#", p["summary"]["vibration angle at the track [deg]"]), accepted(p, "vibration angle"),
     )  # fmt: skip
     yield "angle at the springs", (
-        design["vibration_angle_at_the_springs_deg"], bowl["spring_angle_deg"], np.degrees(machine.spring_angle),
+        design["vibration_angle_at_the_springs_deg"], bowl["spring_angle_deg"],
+        np.degrees(machine.spring_angle),
         number("motion there # deg", sheet["springs"]), number("#° at the springs", picture),
         number("#° at the springs", drawing), accepted(p, "vibration angle at the springs"),
     )  # fmt: skip
@@ -152,7 +158,8 @@ def said(p):
         number("#", long["full bowl [kg]"]), number("fill, hopper\n# kg", drawing),
     )  # fmt: skip
     yield "velocity", (
-        bowl["velocity_mm_s"], number("# mm/s", picture), number("#", sheet["velocity at this stroke [mm/s]"]),
+        bowl["velocity_mm_s"], number("# mm/s", picture),
+        number("#", sheet["velocity at this stroke [mm/s]"]),
     )  # fmt: skip
 
 
@@ -161,6 +168,13 @@ def test_every_paper_of_a_design_says_one_number(papers):
     for name, values in said(papers):
         assert values == pytest.approx([values[0]] * len(values), rel=5.1e-3), name
     assert len(list(said(papers))) == 17
+
+
+def test_edges_are_broken_as_they_were_tried_in_sheet_and_dxf(papers):
+    said_of_edges = {
+        re.search(r"edges broken at most ([\d.]+) mm", text)[1] for text in (papers["drawing"], drawing.SHOP)
+    }
+    assert said_of_edges == {f"{1e3 * ROUNDED:g}"}
 
 
 def test_a_design_of_an_angle_that_a_larger_circle_makes_holds(papers):

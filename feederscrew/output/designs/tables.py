@@ -172,7 +172,7 @@ def outcome(d):
     """Return rows of what a design's document says of the answer and of its devices."""
     rows = [
         ("status", d["status"]),
-        *_drive(d["bowl"] or {}),
+        *_drive(d.get("bowl") or {}),
         ("leaves as", d["wanted"] or "-"),
         ("asked for [1/min]", f"{d['target_per_minute']:.4g}"),
         (

@@ -4,14 +4,13 @@ import numpy as np
 
 from feederscrew.output.machine import sheet as sheets
 from feederscrew.output.solidbowl.unrolled_strip import numbered
+from feederscrew.output.tooling.drawing import EDGES
 from feederscrew.solidbowl import lugs
-from feederscrew.tooling.orientations import ROUNDED
 from feederscrew.units import factor
 
 MM, MIN, LITRE = factor("mm", "length"), factor("/min", "rate"), factor("l", "volume")
 CUT = "±0.1"  # [mm] of an edge that parts meet
 GENERAL = "ISO 2768-m"
-EDGES = f"broken at most {ROUNDED / MM:.3g} mm"  # as they are tried
 MOST = 12  # rows of a list
 LONG = 46  # letters of a line in the title block
 
@@ -28,7 +27,7 @@ def cuts(paper, study, at):
     low = paper.table(*at, [9.0, 90.0, 32.0, 32.0, 32.0], rows)
     listed = [
         f"from and to: along the wall from the begin of the stretch; cuts {CUT}, everything else {GENERAL}",
-        f"arcs are facets within {plan.chord / MM:.3g} mm; edges that parts meet: {EDGES}",
+        f"arcs are facets within {plan.chord / MM:.3g} mm; {EDGES}",
     ]
     for k, line in enumerate(listed):
         paper.text(at[0], low - 4.0 - 3.6 * k, line, size=2.2)
@@ -78,7 +77,7 @@ def title(paper, study, found, scale):
     solid, order = study.solid, study.order
     paper.text(left + 2.0, high - 6.0, f"Bowl for {_short(order.part.name)}", size=4.0, fontweight="bold")
     for k, line in enumerate(_not_made(study)):
-        paper.text(left, high + 5.4 - 3.2 * k, line, size=2.0, color="#d55e00")
+        paper.text(left, high + 5.4 - 3.2 * k, line, size=1.85, color="#d55e00")
     pairs = _fields(study, solid, found, scale)
     half = (len(pairs) + 1) // 2
     for k, (name, value) in enumerate(pairs):
