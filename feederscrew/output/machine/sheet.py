@@ -6,6 +6,7 @@ from feederscrew import units
 from feederscrew.machine import feasibility
 from feederscrew.machine.springs import MAINS, mean_pull
 from feederscrew.output.motion_words import regime_words
+from feederscrew.part.density import DEFAULT_MATERIAL
 
 MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
 N_MM, MPA = units.factor("N/mm", "stiffness"), units.factor("MPa", "stress")
@@ -79,7 +80,7 @@ def _part(study):
     part, room = study.order.part, study.order.lying
     size = " x ".join(f"{side / MM:.4g}" for side in sorted(_box(part), reverse=True))
     yield "part, drawing", f"{part.name}, {part.source}"
-    yield "material, density [g/cm3]", f"{part.material}, {part.mass / part.volume / GRAM_CM3:.4g}"
+    yield "material, density [g/cm3]", f"{material(part)}, {part.mass / part.volume / GRAM_CM3:.4g}"
     yield "mass [g], volume [mm3]", f"{part.mass / GRAM:.4g}, {part.volume / MM**3:.5g}"
     yield "size [mm]", f"{size}; at most {room.longest / MM:.4g} along the wall, {room.tallest / MM:.4g} high"
 
@@ -92,6 +93,11 @@ def _tried(found):
             "rate as its trial showed [1/min]",
             f"{found.delivered / PER_MINUTE:.4g} ({ends}): {found.status}",
         )
+
+
+def material(part):
+    """Return what a part is made of, as text: 'steel assumed' where neither file nor user says it."""
+    return "steel assumed" if part.material == DEFAULT_MATERIAL else part.material
 
 
 def _box(part):

@@ -113,7 +113,7 @@ def _fields(study, solid, found, scale):
         ("drawing of part", _short(order.part.source.rpartition("/")[2])),
         ("rate asked for", f"{order.target / MIN:.4g} a minute"),
         ("orientation", wanted),
-        ("part material", f"{order.part.material}"),
+        ("part material", sheets.material(order.part)),
         ("fill, hopper", f"{study.fill.mass:.3g} kg, {order.hopper / LITRE:.3g} l"),
         ("drive", f"{study.stroke.frequency:.4g} Hz, {study.stroke.peak_to_peak / MM:.3g} mm"),
         ("vibration angle", sheets.angles(study, phase=False)),
