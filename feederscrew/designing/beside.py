@@ -1,13 +1,16 @@
 """What other commands make of a design: the chain as a study of tooling, the machine below the bowl."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import reduce
 
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew import units
 from feederscrew.bowl import unbalance
 from feederscrew.bowl.record import Bowl, Machine
+from feederscrew.bowl.schema import KEYS
 from feederscrew.bowl.settings import Setting, of_device
 from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import DesignRequest, DesignStudy
@@ -126,6 +129,36 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
         return Built(why=str(fault))
     sheet = replace(sheet, turns=sized.turns)
     return Built(sheet, _drawn(sheet, sized), why)
+
+
+def settings_of(bowl: Bowl, given: Collection[str] = ()) -> tuple[Setting, ...]:
+    """Return a bowl as settings that the user gave, for the machine below a design of the library.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its devices are left out: a design has its own.
+    given : collection of str
+        Names of keys that count as given although they have their default value.
+
+    Returns
+    -------
+    tuple of Setting
+        What differs from the defaults is given as well.
+    """
+    usual, lines = bowls.default(), {}
+    for key in KEYS:
+        if key.field in lines or key.word in unbalance.WORDS:
+            continue
+        value, default = (reduce(getattr, key.field.split("."), one) for one in (bowl, usual))
+        if value is None or (value == default and key.name not in given):
+            continue
+        if key.choices:
+            lines[key.field] = f"{key.name}={value}"
+        else:
+            scale = key.share * (units.factor(key.unit, key.dimension) if key.unit else 1.0)
+            lines[key.field] = f"{key.name}={value / scale:.12g} {key.unit}".strip()
+    return bowls.settings(None, tuple(lines.values()))
 
 
 def with_machine(study: DesignStudy, built: Built) -> DesignStudy:

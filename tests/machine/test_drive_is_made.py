@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 
+import awkward
 import numpy as np
 import pytest
 import shapes
@@ -147,6 +148,16 @@ def test_a_design_warns_of_what_feeder_bowl_warns_of_for_its_file(two_axis, run,
     for name in ("natural_frequency_hz", "leaf_stress_mpa", "drive_force_n", "phase_deg", "turns"):
         assert alone[name] == pytest.approx(own[name], rel=1e-6), name
     assert alone["full_bowl"]["mass_kg"] == pytest.approx(own["full_bowl"]["mass_kg"], rel=1e-6)
+
+
+def test_a_bowl_of_the_library_has_the_machine_of_the_command():
+    """Every number of a bowl as settings again, machine and sizing among them."""
+    bowl = replace(awkward.bowl("machine.leaves=7", "sizing.sheet=2.5 mm", "track.hand=left"), devices=())
+    again = bowls.record(beside.settings_of(bowl, {"drive.vibration_angle"}))
+    for name in ("drive", "friction", "track", "machine", "sizing"):
+        for field, value in vars(getattr(bowl, name)).items():
+            told = getattr(getattr(again, name), field)
+            assert told == (pytest.approx(value, rel=1e-9) if isinstance(value, float) else value), field
 
 
 def test_what_fills_the_bowl_of_a_design_is_its_part(two_axis):
