@@ -182,7 +182,11 @@ def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
     warnings = [*checks.remarks(sheet)]
     warnings += [] if built.drawn is None else checks.of_the_solid(built.drawn)
     other = sheet.mismatch
-    lacking = (other.text,) if other is not None and other.other_angle and not other.two_axis else ()
+    lacking = (
+        (f"the vibration angle {other.text}",)
+        if other is not None and other.other_angle and not other.two_axis
+        else ()
+    )
     return replace(
         study,
         bowl=replace(study.bowl, machine=sheet.bowl.machine),

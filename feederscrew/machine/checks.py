@@ -144,7 +144,7 @@ def _drive(sheet: Any) -> Iterator[FeederError]:
     elif not other.other_angle:
         yield FeederError("drive.second_harmonic", other.text, "set drive.second_harmonic to 0")
     else:
-        mend = "leave drive.vibration_angle out, to go by the springs, or change machine.spring_angle"
+        mend = "leave it out, to go by the springs"
         yield FeederError("drive.vibration_angle", other.text, mend)
 
 

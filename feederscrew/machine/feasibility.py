@@ -55,7 +55,9 @@ class DriveMismatch:
         if self.two_axis:
             reasons.append(f"out of phase by {np.degrees(self.wanted.phase):.4g} deg, {TWO_MAGNETS}")
         if self.other_angle:
-            reasons.append("the springs of this machine do not make its angle")
+            asked, made = np.degrees(self.wanted.track_angle), np.degrees(self.machine.track_angle)
+            what = f"{asked:.4g} deg as given, and the springs make it {made:.4g} deg at the track"
+            reasons.append(f"is {what}" if not reasons else f"its angle is {what}")
         if self.second_harmonic:
             reasons.append("springs that are tuned to one frequency do not make its second harmonic")
         return f"{'; '.join(reasons)}: asked for {self.wanted.text}; the springs make {self.machine.text}"
