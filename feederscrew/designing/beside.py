@@ -3,6 +3,7 @@
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
+from typing import Any
 
 import numpy as np
 
@@ -150,7 +151,8 @@ def settings_of(bowl: Bowl, given: Collection[str] = ()) -> tuple[Setting, ...]:
     for key in KEYS:
         if key.field in lines or key.word in unbalance.WORDS:
             continue
-        value, default = (reduce(getattr, key.field.split("."), one) for one in (bowl, usual))
+        pair: list[Any] = [reduce(getattr, key.field.split("."), one) for one in (bowl, usual)]
+        value, default = pair
         if value is None or (value == default and key.name not in given):
             continue
         if key.choices:
