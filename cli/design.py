@@ -1,6 +1,7 @@
 """``feeder design``."""
 
 import contextlib
+import dataclasses
 import os
 
 import click
@@ -147,7 +148,7 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
     with _folder(out, solid, inputs, settings) as folder:
         with _stoppable(out) as search:
             found = loop.design(solid, record, given, request, known=known, **search)
-        _written(out, folder, found, settings, pictures)
+        found = _written(out, folder, found, settings, pictures)
         out.show(tables.summary(found), tables.document(found))
     _ended(found)
 
@@ -195,16 +196,18 @@ def _folder(out, solid, inputs, settings):
 
 
 def _written(out, folder, found, settings, pictures):
-    """What one design leaves in its folder."""
+    """What one design leaves in its folder; returns the design with what its machine is out of limits in."""
     from feederscrew.designing import beside
     from feederscrew.output import offers
     from feederscrew.output.designs import design_file, files
 
     made = beside.Built() if found.partial else beside.built(found, settings)
+    found = beside.with_machine(found, made)
     if found.bowl is not None:  # read back and compared, whether or not it is kept
         design_file.bowl_file(found, settings, made.sheet)
     out.warn(*found.warnings, *([f"no solid of the bowl is made: {made.why}"] if made.why else []))
     offers.write(folder, files.offers(found, settings, made), pictures=pictures)
+    return found
 
 
 def _family(out, parts, asked, written):
@@ -218,9 +221,11 @@ def _family(out, parts, asked, written):
     families.named_apart(parts)
     with _stoppable(out) as search:
         found = families.family(parts, *asked, **search)
+    members = []
     for one in found.members:
         with _folder(out, one.part, one.part.inputs | bowls.identity(path), settings) as folder:
-            _written(out, folder, one, settings, pictures)
+            members.append(_written(out, folder, one, settings, pictures))
+    found = dataclasses.replace(found, members=tuple(members))
     inputs = {name: value for part in parts for name, value in part.inputs.items()}
     with out.folder("family", inputs | bowls.identity(path), bowls.texts(settings)) as folder:
         offers.write(folder, family_page.offers(found), pictures=pictures)

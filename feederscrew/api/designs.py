@@ -1,6 +1,7 @@
 """From a part and a rate to a bowl that its own trial confirms."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from feederscrew.api import asked
@@ -59,6 +60,7 @@ def design(
         ``status``.
     """
     from feederscrew import bowl as bowls
+    from feederscrew.designing import beside
     from feederscrew.designing.families import family
     from feederscrew.designing.loop import design as study
     from feederscrew.designing.record import OUTCOMES, DesignRequest
@@ -74,7 +76,11 @@ def design(
     if request.outcome not in OUTCOMES:
         raise ArgumentError("outcome", f"is {request.outcome!r}", f"give {listed(list(OUTCOMES))}")
     plain = bowls.default() if bowl is None else asked.a_bowl(bowl)
+    kept = beside.settings_of(plain, given)
     if isinstance(part, (list, tuple)) and part:
-        return family([asked.a_part(one, mesh=True) for one in part], plain, given, request)
+        found = family([asked.a_part(one, mesh=True) for one in part], plain, given, request)
+        members = (beside.with_machine(one, beside.built(one, kept)) for one in found.members)
+        return replace(found, members=tuple(members))
     known = asked.the_shares(known)
-    return study(asked.a_part(part, mesh=True), plain, given, request, known=known)
+    designed = study(asked.a_part(part, mesh=True), plain, given, request, known=known)
+    return beside.with_machine(designed, beside.built(designed, kept))

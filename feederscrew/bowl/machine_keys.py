@@ -90,6 +90,11 @@ SIZING = (
         "carried", "number", "0", "1", "10 %", "mass of the fill that vibrates with the bowl; the rest hops",
         ASSUMED,
     ),
+    _rule(
+        "fill_density", "density", "0 g/cm3", "30 g/cm3", "0 g/cm3",
+        "mass of a part over the volume of its convex hull, for a fill without a part; 0: steel is assumed",
+        "feeder design writes it",
+    ),
     _rule("hopper_interval", "time", "1 s", "1000 h", "30 min", "from one filling to the next", ASSUMED),
     _rule("controller", "number", "1 %", "1", "80 %", "setting at which the wanted rate must come", RNA),
     _rule("retune", "number", "0", "1", "15 %", "deviation of that setting from which to tune again", RNA),
@@ -121,6 +126,16 @@ SIZING = (
     ),
     _rule("least_spring_angle", "angle", "1 deg", "89 deg", "10 deg", "angle of the springs", ASSUMED),
     _rule("greatest_spring_angle", "angle", "1 deg", "89 deg", "30 deg", "angle of the springs", ASSUMED),
+    _rule(
+        "greatest_spring_radius", "number", "0.05", "2", "0.9",
+        "where drive.vibration_angle is given, springs move outwards up to this share of the bowl's radius",
+        ASSUMED,
+    ),
+    _rule(
+        "steepest_spring_angle", "angle", "1 deg", "89 deg", "45 deg",
+        "angle of the springs that are as far out as they go, where drive.vibration_angle is given",
+        ASSUMED,
+    ),
     _rule("base_mass", "number", "0.1", "1000", "4.2", "mass of the base over that of the bowl", ASSUMED),
     _rule("sheet", "length", "0.1 mm", "50 mm", "3 mm", "thickness of the bowl's sheet", ASSUMED),
     _rule("sheet_density", "density", "0.1 g/cm3", "30 g/cm3", "7.9 g/cm3", "of the bowl", "stainless steel"),

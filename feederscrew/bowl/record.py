@@ -118,6 +118,8 @@ class Sizing:
     spring_radius: float  # [1] of the bowl's radius
     least_spring_angle: float  # [rad]
     greatest_spring_angle: float  # [rad]
+    greatest_spring_radius: float  # [1] of the bowl's radius
+    steepest_spring_angle: float  # [rad] where the drive's angle is given
     base_mass: float  # [1] of the bowl's mass
     sheet: float  # [m]
     sheet_density: float  # [kg/m3]
@@ -125,6 +127,7 @@ class Sizing:
     slowest: float  # [m/s]
     fastest: float  # [m/s]
     handbook_speed: float  # [m/s]
+    fill_density: float = 0.0  # [kg/m3] mass of a part over the volume of its hull; 0: unknown
     shape: str = "cylinder"  # of the wall
     hand: str = "right"  # of the helix; 'left' is the mirror image
     bolts: float = 6.0  # of the bowl on its drive, beside the one in the middle

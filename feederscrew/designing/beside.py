@@ -1,17 +1,22 @@
 """What other commands make of a design: the chain as a study of tooling, the machine below the bowl."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import reduce
+from typing import Any
 
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew import units
 from feederscrew.bowl import unbalance
 from feederscrew.bowl.record import Bowl, Machine
+from feederscrew.bowl.schema import KEYS
 from feederscrew.bowl.settings import Setting, of_device
 from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import DesignRequest, DesignStudy
 from feederscrew.errors import FeederError
+from feederscrew.machine import checks, drive_sought
 from feederscrew.part.record import Part
 from feederscrew.rates.stream import Orientations
 from feederscrew.resting.aspects import Aspects
@@ -20,6 +25,7 @@ from feederscrew.solidbowl.plan import CHORD
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import solidbowl
 from feederscrew.studies.bowl import MachineSheet
+from feederscrew.studies.rate import LEAST
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.tooling.isolating import proposal as static
 from feederscrew.tooling.isolating.chain import Wishes
@@ -104,20 +110,107 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     """
     if study.bowl is None:
         return Built()
-    given = [f"{s.key.name}={s.text}" for s in settings if s.given and not s.key.name.startswith("devices")]
+    listed = [s for s in settings if s.given and not s.key.name.startswith("devices")]
+    given = [f"{s.key.name}={s.text}" for s in listed]
     own = [*_texts("drive", study.bowl.drive, DRIVE), *_texts("track", study.bowl.track, TRACK)]
     words = {line.partition("=")[0] for line in own} | {"drive.amplitude", "drive.peak_to_peak"}
+    words |= {"sizing.fill_density"}
     kept = [line for line in given if line.partition("=")[0] not in words]
     devices = tuple(of_device(k, one) for k, one in enumerate(study.devices, start=1))
     try:
         made = bowls.settings(None, (*kept, *own))
         sized, why = _sized((*made, *devices), study)
-        under = [f"machine.{name}={text}" for name, text in _machine(sized.bowl.machine)]
+        driven = replace(sized.bowl, drive=study.bowl.drive)  # at the stroke that was tried
+        machine = drive_sought.on_leaves(driven, drive_sought.given(listed, "machine"))
+        under = [f"machine.{name}={text}" for name, text in _machine(machine)]
         stroke = f"drive.amplitude={1e3 * study.bowl.drive.amplitude:.9g} mm"
-        sheet = machines.machine(bowls.settings(None, (*kept, *own, stroke, *under)))
+        lines = _last((*kept, *own, stroke, *under, *_fill(study.part, sized)))
+        sheet = machines.machine((*bowls.settings(None, lines), *devices))
     except FeederError as fault:
         return Built(why=str(fault))
+    sheet = replace(sheet, turns=sized.turns)
     return Built(sheet, _drawn(sheet, sized), why)
+
+
+def settings_of(bowl: Bowl, given: Collection[str] = ()) -> tuple[Setting, ...]:
+    """Return a bowl as settings that the user gave, for the machine below a design of the library.
+
+    Parameters
+    ----------
+    bowl : Bowl
+        Its devices are left out: a design has its own.
+    given : collection of str
+        Names of keys that count as given although they have their default value.
+
+    Returns
+    -------
+    tuple of Setting
+        What differs from the defaults is given as well.
+    """
+    usual, lines = bowls.default(), {}
+    for key in KEYS:
+        if key.field in lines or key.word in unbalance.WORDS:
+            continue
+        pair: list[Any] = [reduce(getattr, key.field.split("."), one) for one in (bowl, usual)]
+        value, default = pair
+        if value is None or (value == default and key.name not in given):
+            continue
+        if key.choices:
+            lines[key.field] = f"{key.name}={value}"
+        else:
+            scale = key.share * (units.factor(key.unit, key.dimension) if key.unit else 1.0)
+            lines[key.field] = f"{key.name}={value / scale:.12g} {key.unit}".strip()
+    return bowls.settings(None, tuple(lines.values()))
+
+
+def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
+    """Return a design that knows what its own machine is out of limits in, and what it cannot make.
+
+    Parameters
+    ----------
+    study : DesignStudy
+    built : Built
+        Of that design.
+
+    Returns
+    -------
+    DesignStudy
+        Its ``warnings`` hold those of ``feeder bowl`` for its file. Where the leaf springs that are drawn do
+        not make the angle that was tried, it falls short.
+    """
+    sheet = built.sheet
+    if study.bowl is None or sheet is None:
+        return study
+    warnings = [*checks.remarks(sheet)]
+    warnings += [] if built.drawn is None else checks.of_the_solid(built.drawn)
+    other = sheet.mismatch
+    lacking = (
+        (f"the vibration angle {other.text}",)
+        if other is not None and other.other_angle and not other.two_axis
+        else ()
+    )
+    return replace(
+        study,
+        bowl=replace(study.bowl, machine=sheet.bowl.machine),
+        machine_drawn=True,
+        drive_mismatch=other,
+        machine_warnings=tuple(dict.fromkeys(warnings)),
+        machine_lacks=lacking,
+    )
+
+
+def _last(lines: Iterable[str]) -> tuple[str, ...]:
+    """Of several lines of one key the last."""
+    return tuple({line.partition("=")[0]: line for line in lines}.values())
+
+
+def _fill(part: Part, sized: MachineSheet) -> Iterator[str]:
+    """What fills the bowl, and how high its outlet is: a bowl file says both without the part."""
+    room = part.volume if part.hull is None else part.hull.volume
+    if room:
+        yield f"sizing.fill_density={part.mass / room:.9g} kg/m3"
+    if sized.solid is not None:  # rounded down: the cuts may stand as high as they just can
+        yield f"sizing.outlet_height={np.floor(1e9 * sized.depth) / 1e6:.9g} mm"
 
 
 def _drawn(sheet: MachineSheet, sized: MachineSheet) -> MachineSheet | None:
@@ -129,12 +222,20 @@ def _drawn(sheet: MachineSheet, sized: MachineSheet) -> MachineSheet | None:
 
 
 def _sized(settings: Sequence[Setting], study: DesignStudy) -> tuple[MachineSheet, str]:
-    """The bowl of a design, with its solid, or else why there is none."""
+    """The bowl of a design, with its solid, or else why there is none.
+
+    Where the static rule lets nothing or too little through, the machine is that of a track without devices.
+    """
     wanted = solidbowl.asked(settings, solid=True, material=STEEL, chord=CHORD)
     try:
         return machines.bowl(settings, study.part, study.request.target, solid=wanted), ""
     except FeederError as fault:
-        return machines.bowl(settings, study.part, study.request.target), str(fault)
+        why = str(fault)
+    try:
+        return machines.bowl(settings, study.part, study.request.target), why
+    except FeederError:
+        plain = [s for s in settings if not s.key.name.startswith("devices.")]
+        return machines.bowl(plain, study.part, LEAST), why
 
 
 def _texts(section: str, record: object, rows: Iterable[tuple[str, float, str]]) -> list[str]:
@@ -149,6 +250,7 @@ def _machine(machine: Machine) -> Iterator[tuple[str, str]]:
     yield "spring_radius", f"{1e3 * machine.spring_radius:.6g} mm"
     yield "spring_angle", f"{np.degrees(machine.spring_angle):.6g} deg"
     yield "leaf_thickness", f"{1e3 * machine.leaf_thickness:.6g} mm"
+    yield "leaf_length", f"{1e3 * machine.leaf_length:.6g} mm"
     yield "leaves", f"{machine.leaves:.0f}"
     for word, value in unbalance.told(machine).items():
         yield word, f"{value:.12g} {'m' if word in unbalance.CENTRE else 'kg m2'}"

@@ -10,6 +10,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import DRAWS_HELD, FALLS_SHORT, HOLDS, PURE, RATE_KEPT
 from feederscrew.designing.hazards.risks import Risk
 from feederscrew.dropping.ensemble import wilson
+from feederscrew.machine.feasibility import DriveMismatch
 from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
 from feederscrew.resting.rules.registry import require_rule
@@ -157,6 +158,10 @@ class DesignStudy:
     static_rate: float = 0.0  # [1/s] that the static rule promises
     slowed: float = 1.0  # [1] of its velocity that the drive keeps at the worst friction
     trials: tuple[TrialRun, ...] = ()  # its short trial: what is wanted, then the others
+    machine_drawn: bool = False  # the machine of its bowl is the one that was sized for it
+    drive_mismatch: DriveMismatch | None = None  # with the drive that its drawn machine makes
+    machine_warnings: tuple[str, ...] = ()  # what of its drawn machine is out of limits
+    machine_lacks: tuple[str, ...] = ()  # of the drive that was tried: why it does not hold
 
     @property
     def devices(self) -> tuple[Device, ...]:
@@ -174,7 +179,8 @@ class DesignStudy:
         """What a user must not overlook, a sentence each."""
         allowances = {"margin": MARGIN, "tolerance": self.request.tolerance}
         width = None if self.bowl is None else self.bowl.track.width
-        return (*self.part.warnings, *small_part_remarks(self.part, allowances, width))
+        remarks = small_part_remarks(self.part, allowances, width)
+        return (*self.part.warnings, *remarks, *self.machine_warnings)
 
     @property
     def slowest(self) -> FilledQueue | None:
@@ -296,3 +302,4 @@ def _shortfalls(study: DesignStudy) -> Iterator[str]:
     if study.robust.share < DRAWS_HELD:
         worst = f": {study.robust.worst}" if study.robust.worst else ""
         yield f"{study.robust.held} of {study.robust.draws} draws of part, friction and drive sort{worst}"
+    yield from study.machine_lacks

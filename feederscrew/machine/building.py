@@ -10,8 +10,10 @@ from feederscrew.bowl.direction import shares
 from feederscrew.bowl.record import EVEN, Bowl, Machine, Sizing, Unbalance
 from feederscrew.machine.sizing import Size
 
+RADIUS_STEP_M = 1e-4  # of a springs' circle that is chosen
 
-def machine_for(bowl: Bowl, size: Size, given: Any) -> Machine:
+
+def machine_for(bowl: Bowl, size: Size, given: Any, *, exact: bool = False) -> Machine:
     """Return the machine under a bowl, what the user gave of it kept.
 
     Parameters
@@ -21,6 +23,10 @@ def machine_for(bowl: Bowl, size: Size, given: Any) -> Machine:
     size : Size
     given : set of str
         Fields of the machine that the user gave.
+    exact : bool
+        The vibration angle is given, and the machine shall make it: the springs move outwards, and then stand
+        steeper, as far as ``sizing`` allows. Without it the springs keep their circle and the angle of the
+        track follows from them.
 
     Returns
     -------
@@ -38,11 +44,12 @@ def machine_for(bowl: Bowl, size: Size, given: Any) -> Machine:
     made = replace(bowl.machine, **{name: value for name, value in guess.items() if name not in given})
     if not set(unbalance.WORDS) & set(given):
         made = replace(made, unbalance=_unbalance(size, made))
+    upright = bowl.drive.vibration_angle + size.climb
+    if exact:
+        return _exact(made, upright, radius, rules, given)
     if "spring_angle" in given:
         return made
-    return replace(
-        made, spring_angle=_spring_angle(bowl.drive.vibration_angle + size.climb, radius, made, rules)
-    )
+    return replace(made, spring_angle=_spring_angle(upright, radius, made, rules))
 
 
 def _bowl(radius: float, size: Size, rules: Sizing) -> Any:
@@ -78,7 +85,53 @@ def _unbalance(size: Size, made: Machine) -> Unbalance:
 
 def _spring_angle(wanted: float, radius: float, machine: Machine, rules: Sizing) -> float:
     """Angle of the springs, in whole degrees, that moves the bowl at its track in a wanted direction."""
-    rise, turn = shares(machine)
-    angle = np.arctan(np.tan(wanted) * radius / machine.spring_radius * turn / rise)
+    angle = needed_angle(machine, radius, wanted)
     whole = np.radians(np.round(np.degrees(angle)))
     return float(np.clip(whole, rules.least_spring_angle, rules.greatest_spring_angle))
+
+
+def needed_angle(machine: Machine, radius: float, wanted: float) -> float:
+    """Return the angle [rad] of springs on their circle that moves the bowl in a wanted direction.
+
+    Source: ``bowl.direction.direction``, solved for the springs; docs/bowl.md, "How it is computed".
+
+    Parameters
+    ----------
+    machine : Machine
+        Its spring angle is not used.
+    radius : float [m]
+        Where the bowl shall move so.
+    wanted : float [rad]
+        From the horizontal.
+    """
+    rise, turn = shares(machine)
+    return float(np.arctan(np.tan(wanted) * radius / machine.spring_radius * turn / rise))
+
+
+def _exact(machine: Machine, wanted: float, radius: float, rules: Sizing, given: Any) -> Machine:
+    """The machine whose springs move the bowl at its track in a wanted direction, as nearly as they can."""
+    usual = machine.spring_radius
+    farthest = max(min(rules.greatest_spring_radius * radius, radius - 0.5 * machine.leaf_width), usual)
+    if "spring_angle" in given:
+        if "spring_radius" in given:
+            return machine
+        return replace(machine, spring_radius=_circle(machine, wanted, radius, (usual, farthest)))
+    if "spring_radius" in given:
+        tenth = np.radians(np.round(np.degrees(needed_angle(machine, radius, wanted)), 1))
+        angle = float(np.clip(tenth, rules.least_spring_angle, rules.steepest_spring_angle))
+        return replace(machine, spring_angle=angle)
+    angle = _spring_angle(wanted, radius, machine, rules)
+    there = _circle(replace(machine, spring_angle=angle), wanted, radius, (machine.leaf_width, radius))
+    if there > farthest:
+        outside = replace(machine, spring_radius=farthest)
+        whole = np.radians(np.ceil(np.degrees(needed_angle(outside, radius, wanted))))
+        angle = float(np.clip(whole, rules.least_spring_angle, rules.steepest_spring_angle))
+        there = _circle(replace(machine, spring_angle=angle), wanted, radius, (usual, farthest))
+    return replace(machine, spring_angle=angle, spring_radius=there)
+
+
+def _circle(machine: Machine, wanted: float, radius: float, ends: tuple[float, float]) -> float:
+    """Radius of springs of their angle that move the bowl in a wanted direction, within two ends [m]."""
+    rise, turn = shares(machine)
+    there = radius * np.tan(wanted) / np.tan(machine.spring_angle) * turn / rise
+    return float(np.clip(np.round(there / RADIUS_STEP_M) * RADIUS_STEP_M, *ends))

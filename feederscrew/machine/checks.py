@@ -6,14 +6,12 @@ from typing import Any
 import numpy as np
 
 from feederscrew import units
-from feederscrew.bowl.direction import vibration_angle
 from feederscrew.errors import FeederError
 from feederscrew.machine import speeds
 from feederscrew.machine.stroke import greatest_amplitude
 
 MM, MPA = 1e-3, 1e6
 UNEVEN = 0.05  # of the stroke round a bowl, that parts show
-APART = np.radians(0.5)  # angles this near are the same
 
 
 def remarks(sheet: Any) -> tuple[str, ...]:
@@ -27,7 +25,7 @@ def remarks(sheet: Any) -> tuple[str, ...]:
     -------
     tuple of str
     """
-    found = [*_tuning(sheet), *_banks(sheet), *_stress(sheet), *_stroke(sheet), *_angle(sheet)]
+    found = [*_drive(sheet), *_tuning(sheet), *_banks(sheet), *_stress(sheet), *_stroke(sheet)]
     found += [*_throw(sheet), *_fill(sheet), *_drift(sheet)]
     found += [*_rocking(sheet)]
     if sheet.order is not None:
@@ -35,6 +33,11 @@ def remarks(sheet: Any) -> tuple[str, ...]:
     lines = [str(one) for one in found]
     tipping = () if sheet.order is None else sheet.order.tipping
     return (*lines, *tipping, *speeds.remark(sheet.answer.velocity, sheet.bowl.sizing))
+
+
+def of_the_solid(sheet: Any) -> tuple[str, ...]:
+    """Return the remarks on a machine that its bowl as a solid alone gives, of a MachineSheet with one."""
+    return (*(str(one) for one in _rocking(sheet)), *sheet.solid.remarks)
 
 
 def _rocking(sheet: Any) -> Iterator[FeederError]:
@@ -131,13 +134,18 @@ def _stroke(sheet: Any) -> Iterator[FeederError]:
         yield FeederError("drive.amplitude", what, f"give at most {most / MM:.3g} mm, or a lower frequency")
 
 
-def _angle(sheet: Any) -> Iterator[FeederError]:
-    bowl = sheet.bowl
-    by_springs = vibration_angle(bowl.machine, bowl.track.radius, bowl.track.climb)
-    if sheet.has_machine and abs(by_springs - bowl.drive.vibration_angle) > APART:
-        given, springs = np.degrees(bowl.drive.vibration_angle), np.degrees(by_springs)
-        what = f"is {given:.4g} deg as given, and the springs make it {springs:.4g} deg at the track"
-        yield FeederError("drive.vibration_angle", what, "leave it out, to go by the springs")
+def _drive(sheet: Any) -> Iterator[FeederError]:
+    """The drive that the springs of the machine do not make."""
+    other = sheet.mismatch
+    if other is None:
+        return
+    if other.two_axis:
+        yield FeederError("drive.phase", other.text, "set drive.phase to 0 deg for a leaf-spring drive")
+    elif not other.other_angle:
+        yield FeederError("drive.second_harmonic", other.text, "set drive.second_harmonic to 0")
+    else:
+        mend = "leave it out, to go by the springs"
+        yield FeederError("drive.vibration_angle", other.text, mend)
 
 
 def _fill(sheet: Any) -> Iterator[FeederError]:

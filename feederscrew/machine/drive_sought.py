@@ -1,12 +1,12 @@
 """The drive and the leaves of a bowl that bring a rate from the full bowl to the empty one."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from feederscrew.bowl.direction import vibration_angle
-from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.record import Bowl, Machine
 from feederscrew.bowl.schema import BY_NAME
 from feederscrew.bowl.settings import Setting, default
 from feederscrew.machine import building, filling, sizing, throughput, tuning
@@ -77,7 +77,7 @@ def _driven(sought: Sought, flow: throughput.Flow) -> Bowl:
     angle_given = "vibration_angle" in given(settings, "drive")
     angle = plain.drive.vibration_angle if angle_given else default(BY_NAME["drive.vibration_angle"]).value
     wanted = replace(plain, drive=replace(plain.drive, vibration_angle=angle))
-    under = building.machine_for(wanted, sought.size, given(settings, "machine"))
+    under = building.machine_for(wanted, sought.size, given(settings, "machine"), exact=angle_given)
     if not angle_given:
         angle = float(vibration_angle(under, plain.track.radius, plain.track.climb))
     fastest = []
@@ -95,13 +95,13 @@ def _driven(sought: Sought, flow: throughput.Flow) -> Bowl:
 
 def _held(empty: Bowl, sought: Sought, velocity: float, way: str) -> Bowl | None:
     """The bowl with the smallest stroke whose lowest velocity, from full to empty, is enough, or None."""
-    made, strokes = empty, np.ones(1)
+    made, strokes = empty, np.ones(1)  # of the empty bowl
     for _ in range(ROUNDS):
-        emptied = filling.emptying(made.machine, made.drive.frequency, sought.fill, made.sizing)
+        emptied = filling.emptying(made, sought.fill)
         if np.array_equal(getattr(emptied, way), strokes):
             return made
         strokes = getattr(emptied, way)
-        found, _ = throughput.amplitude_for(made, velocity, strokes)
+        found, _ = throughput.amplitude_for(made, velocity, strokes, emptied.angles)
         if found is None:
             return None
         made = _with(made, found[0], sought.settings)
@@ -113,15 +113,44 @@ def _with(bowl: Bowl, amplitude: float, settings: Iterable[Setting]) -> Bowl:
     bowl = replace(bowl, drive=replace(bowl.drive, amplitude=amplitude))
     if "leaves" in given(settings, "machine"):
         return bowl
-    at_springs, rules = stroke(bowl).springs, bowl.sizing
-    found = tuning.sets(bowl.machine, bowl.drive.frequency, at_springs, rules)
-    if "leaf_thickness" in given(settings, "machine"):
-        found = tuple(one for one in found if one.thickness == bowl.machine.leaf_thickness)
-    best = tuning.chosen(found, rules) or min(found, key=lambda one: one.stress, default=None)
-    if best is None:
-        return bowl
-    machine = replace(bowl.machine, leaves=float(best.leaves), leaf_thickness=best.thickness)
-    return replace(bowl, machine=machine)
+    return replace(bowl, machine=on_leaves(bowl, given(settings, "machine")))
+
+
+def on_leaves(bowl: Bowl, given: Collection[str]) -> Machine:
+    """Return the machine of a bowl with the leaves that tune it to its drive at its stroke.
+
+    Source: ``tuning.sets`` and ``tuning.chosen``; docs/bowl.md, "1. The part, and the rate".
+
+    Parameters
+    ----------
+    bowl : Bowl
+        With its drive.
+    given : collection of str
+        Fields of the machine that the user gave, which stay.
+
+    Returns
+    -------
+    Machine
+        With leaves of its own length, or else of the nearest length of which some set lasts. Where none
+        lasts, with those of least stress; as it is where no set tunes it.
+    """
+    rules, machine, least = bowl.sizing, bowl.machine, None
+    at_springs = stroke(bowl).springs
+    near = sorted(tuning.LENGTHS, key=lambda one: abs(np.log(one / machine.leaf_length)))
+    for length in (machine.leaf_length,) if "leaf_length" in given else (machine.leaf_length, *near):
+        long = replace(machine, leaf_length=length)
+        sets = tuning.sets(long, bowl.drive.frequency, at_springs, rules)
+        if "leaf_thickness" in given:
+            sets = tuple(one for one in sets if one.thickness == machine.leaf_thickness)
+        lasting = tuning.chosen(sets, rules)
+        if lasting is not None:
+            return replace(long, leaves=float(lasting.leaves), leaf_thickness=lasting.thickness)
+        for one in sets:
+            if least is None or one.stress < least[1].stress:
+                least = long, one
+    if least is None:
+        return machine
+    return replace(least[0], leaves=float(least[1].leaves), leaf_thickness=least[1].thickness)
 
 
 def _frequencies(bowl: Bowl, settings: Iterable[Setting]) -> tuple[float, ...]:

@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew import check
-from feederscrew.bowl.record import Machine, Sizing
+from feederscrew.bowl.direction import RIGHT, shares
+from feederscrew.bowl.record import Bowl, Machine, Sizing
 from feederscrew.machine.springs import gain, springs
 
 LEVELS = 21  # of the curve, from full to empty
@@ -28,7 +29,9 @@ class Emptying:
     masses: np.ndarray  # (N,) [kg] in the bowl
     natural_frequencies: np.ndarray  # (N,) [Hz]
     gains: np.ndarray  # (N,) [1]
-    strokes: np.ndarray  # (N,) [1] over that of the empty bowl, the controller left alone
+    springs: np.ndarray  # (N,) [1] stroke between bowl and base over that of the empty bowl
+    strokes: np.ndarray  # (N,) [1] stroke of the bowl at its track over that of the empty bowl, left alone
+    angles: np.ndarray  # (N,) [rad] from the track to the bowl's motion there
     controlled: np.ndarray  # (N,) [1] the same under amplitude control, as far as the controller reaches
 
 
@@ -66,20 +69,17 @@ def loaded(machine: Machine, fill: Fill, share: float) -> Machine:
     )
 
 
-def emptying(machine: Machine, frequency: float, fill: Fill, rules: Sizing) -> Emptying:
+def emptying(bowl: Bowl, fill: Fill) -> Emptying:
     """Compute what becomes of the stroke as a bowl empties.
 
-    Source: docs/bowl.md, "Why it feeds 220 for half a minute and then 165".
+    Source: two free bodies on springs; docs/bowl.md, "Why it feeds 220 for half a minute and then 165".
 
     Parameters
     ----------
-    machine : Machine
-        Empty.
-    frequency : float [Hz]
-        Of the drive.
+    bowl : Bowl
+        Empty. Its drive is that of the empty bowl; its ``sizing`` has the share of the fill that is carried,
+        and the setting of the controller.
     fill : Fill
-    rules : Sizing
-        Its share of the fill that is carried, and its setting of the controller.
 
     Returns
     -------
@@ -88,11 +88,23 @@ def emptying(machine: Machine, frequency: float, fill: Fill, rules: Sizing) -> E
     Notes
     -----
     The force of the magnet and the damping ratio stay as they are; the damping that parts add is left out,
-    so that a stroke near resonance is less than the one here.
+    so that a stroke near resonance is less than the one here. The springs move by force times gain over
+    stiffness. Of that the bowl rises by the share m2 / (m1 + m2) and turns by I2 / (I1 + I2): parts in it
+    make both shares smaller, and each by another amount, so that the angle at the track changes as well.
     """
+    machine, rules, drive = bowl.machine, bowl.sizing, bowl.drive
     levels = np.linspace(1.0, 0.0, LEVELS)
-    natural = np.array([springs(loaded(machine, fill, rules.carried * u)).natural_frequency for u in levels])
-    gains = gain(frequency, natural, machine.damping)
-    strokes = gains / gains[-1]
+    laden = [loaded(machine, fill, rules.carried * u) for u in levels]
+    natural = np.array([springs(one).natural_frequency for one in laden])
+    gains = gain(drive.frequency, natural, machine.damping)
+    relative = gains / gains[-1]
+    rises, turns = np.array([shares(one) for one in laden]).T
+    upright = drive.vibration_angle + bowl.track.climb
+    along = relative * turns / turns[-1] * np.cos(upright)
+    up = relative * rises / rises[-1] * np.sin(upright)
+    strokes = np.hypot(along, up)
+    angles = np.clip(np.arctan2(up, along) - bowl.track.climb, 0.0, RIGHT)
+    angles[-1], strokes[-1] = drive.vibration_angle, 1.0  # without rounding
     reach = np.minimum(1.0, strokes / rules.controller)
-    return Emptying(*(check.frozen(a) for a in (levels, levels * fill.mass, natural, gains, strokes, reach)))
+    columns = (levels, levels * fill.mass, natural, gains, relative, strokes, angles, reach)
+    return Emptying(*(check.frozen(a) for a in columns))

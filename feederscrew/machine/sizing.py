@@ -147,7 +147,7 @@ def size(
     _check_diameter(across, part, given, rules, fixed=diameter is not None)
     bend = part.length**2 / (2.0 * across)
     wide = part.width + play + bend if width is None else width
-    depth = rules.depth * across
+    depth = rules.outlet_height if rules.outlet_height > 0.0 else rules.depth * across
     angle = _climb(part, across, wide, rules) if climb is None else climb
     pitch = np.pi * across * np.tan(angle)
     turns = depth / pitch if pitch > 0.0 else np.nan

@@ -78,7 +78,7 @@ def flow(
 
 
 def amplitude_for(
-    bowl: Bowl, velocity: float, strokes: Any = ALONE
+    bowl: Bowl, velocity: float, strokes: Any = ALONE, angles: Any = None
 ) -> tuple[tuple[float, float] | None, tuple[float, float]]:
     """Return the smallest stroke from which on a part travels at least so fast.
 
@@ -92,6 +92,8 @@ def amplitude_for(
     velocity : float [m/s]
     strokes : (N,) float [1]
         Over that stroke, as the bowl empties: at the slowest of them it shall travel so fast.
+    angles : (N,) float [rad], optional
+        Vibration angle at each of them; that of the bowl without it.
 
     Returns
     -------
@@ -107,7 +109,7 @@ def amplitude_for(
     that is fast enough is taken.
     """
     amplitudes = greatest_amplitude(bowl) * np.arange(1, STEPS + 1) / STEPS
-    speeds = _speeds(bowl, amplitudes, strokes)
+    speeds = _speeds(bowl, amplitudes, strokes, angles)
     best = int(np.argmax(speeds))
     fastest = float(speeds[best]), float(amplitudes[best])
     first = _first(amplitudes, speeds >= velocity, 1.0 + bowl.sizing.retune)
@@ -116,8 +118,9 @@ def amplitude_for(
     low, high = (amplitudes[first - 1] if first else 0.0), amplitudes[first]
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if _speeds(bowl, middle, strokes) >= velocity else (middle, high)
-    return (float(high), float(_speeds(bowl, high, strokes))), fastest
+        enough = _speeds(bowl, middle, strokes, angles) >= velocity
+        low, high = (low, middle) if enough else (middle, high)
+    return (float(high), float(_speeds(bowl, high, strokes, angles))), fastest
 
 
 def _first(amplitudes: np.ndarray, fast: np.ndarray, reach: float) -> Any:
@@ -162,12 +165,15 @@ def unreachable(target: float, parts_per_metre: float, fastest: tuple[float, flo
     )
 
 
-def _speeds(bowl: Bowl, amplitudes: Any, strokes: Any) -> Any:
+def _speeds(bowl: Bowl, amplitudes: Any, strokes: Any, angles: Any = None) -> Any:
     """Slowest velocities of strokes as the bowl empties [m/s]; minus infinity where there is none.
 
     No stroke is beyond what drives are built for: there the magnet strikes.
     """
     each = np.minimum(np.multiply.outer(amplitudes, strokes), greatest_amplitude(bowl))
     drive = replace(bowl.drive, amplitude=each)
+    if angles is not None:
+        turned: Any = np.broadcast_to(angles, each.shape)
+        drive = replace(drive, vibration_angle=turned)
     found = answer.cells(replace(bowl, drive=drive))["velocity"]
     return np.where(np.isfinite(found), found, -np.inf).min(axis=-1)

@@ -4,9 +4,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from feederscrew.bowl.record import Machine, Sizing
-from feederscrew.machine.springs import gain, leaf_stress, natural_frequency, springs
+from feederscrew.machine.springs import (
+    effective_mass,
+    gain,
+    leaf_stiffness,
+    leaf_stress,
+    natural_frequency,
+    twist,
+)
 
 THICKNESSES = (1e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3, 5e-3, 6e-3)  # [m] that makers stock
+LENGTHS = tuple(1e-3 * n for n in range(60, 270, 10))  # [m] free, where it may be chosen
 THICKER = 0.5e-3  # [m] step of the same
 MOST = 60  # leaves of one set
 
@@ -26,7 +34,14 @@ class LeafSet:
 
 
 def leaf_set(
-    machine: Machine, frequency: float, amplitude: float, *, leaves: int, thickness: float, name: str = ""
+    machine: Machine,
+    frequency: float,
+    amplitude: float,
+    *,
+    leaves: int,
+    thickness: float,
+    name: str = "",
+    mass: float | None = None,
 ) -> LeafSet:
     """Compute what other leaves of the same width and length do.
 
@@ -42,22 +57,26 @@ def leaf_set(
     leaves : int
     thickness : float [m]
     name : str
+    mass : float [kg], optional
+        Effective mass of the machine, where it is known: it is that of every such set.
 
     Returns
     -------
     LeafSet
     """
     other = replace(machine, leaves=leaves, leaf_thickness=thickness)
-    found, here = springs(other), springs(machine)
+    mass = effective_mass(machine) if mass is None else mass
+    stiff, own = (one.leaves * leaf_stiffness(one) * twist(one) for one in (other, machine))
+    natural = natural_frequency(stiff, mass)
     square = leaves / machine.leaves * (thickness / machine.leaf_thickness) ** 2
     return LeafSet(
         name=name,
         thickness=thickness,
         leaves=int(leaves),
-        natural_frequency=float(found.natural_frequency),
-        by_square=float(natural_frequency(here.stiffness * square, here.effective_mass)),
-        detuning=float(found.natural_frequency / frequency - 1.0),
-        gain=float(gain(frequency, found.natural_frequency, machine.damping)),
+        natural_frequency=float(natural),
+        by_square=float(natural_frequency(own * square, mass)),
+        detuning=float(natural / frequency - 1.0),
+        gain=float(gain(frequency, natural, machine.damping)),
         stress=float(leaf_stress(other, amplitude)),
     )
 
@@ -103,9 +122,9 @@ def sets(machine: Machine, frequency: float, amplitude: float, rules: Sizing) ->
     tuple of LeafSet
         Thin leaves first; empty where no whole number of leaves does.
     """
-    stocked = sorted({*THICKNESSES, machine.leaf_thickness})
+    stocked, mass = sorted({*THICKNESSES, machine.leaf_thickness}), effective_mass(machine)
     found = (
-        leaf_set(machine, frequency, amplitude, leaves=n, thickness=t)
+        leaf_set(machine, frequency, amplitude, leaves=n, thickness=t, mass=mass)
         for t in stocked
         for n in range(int(rules.banks), MOST + 1, int(rules.banks))
     )

@@ -7,6 +7,7 @@ from feederscrew.errors import ArgumentError
 
 LIGHTEST, HEAVIEST = 10.0, 23_000.0  # [kg/m3] the lightest rigid foams; osmium has 22,590
 DEFAULT = "steel"
+DEFAULT_MATERIAL = f"{DEFAULT} (default)"  # of a part of which nobody said it
 ARGUMENT = "density"
 EN_1991 = "EN 1991-1-1, table A.4"
 EN_10088 = "EN 10088-1, annex E"
@@ -80,7 +81,7 @@ def density(text=None):
     -------
     value : float [kg/m3]
     label : str
-        For people: 'steel (default)', 'brass', '7.85 g/cm3'.
+        For people: DEFAULT_MATERIAL, 'brass', '7.85 g/cm3'.
 
     Raises
     ------
@@ -88,7 +89,7 @@ def density(text=None):
         If the text names no known material, is not a density, or is one that no solid has.
     """
     if text is None:
-        return _named()[DEFAULT].density, f"{DEFAULT} (default)"
+        return _named()[DEFAULT].density, DEFAULT_MATERIAL
     plain = " ".join(text.lower().replace("_", " ").split())
     material = _named().get(plain)
     if material:

@@ -14,7 +14,7 @@ from feederscrew.bowl.record import Bowl, Track
 from feederscrew.bowl.settings import Setting, has_machine
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError
-from feederscrew.machine import checks, drive_sought, filling, sizing, throughput, tuning
+from feederscrew.machine import checks, drive_sought, feasibility, filling, sizing, throughput, tuning
 from feederscrew.machine.springs import Springs, gain, leaf_stress, springs, upright_pull
 from feederscrew.machine.stroke import Stroke, angles, greatest_amplitude, stroke
 from feederscrew.machine.unbalanced import Rocking, both
@@ -30,7 +30,8 @@ from feederscrew.studies.rate import arriving
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
 
-STEEL = 7850.0  # [kg/m3] of a fill without a part
+ASSUMED_DENSITY = 7850.0  # [kg/m3] of a fill of which nothing is known: steel, solid
+PART, FILE, ASSUMED = "of the part", "as sizing.fill_density says", "steel assumed: give the part"  # fills
 ENOUGH = 1.0 - 1e-6  # of a target
 
 
@@ -82,6 +83,9 @@ class MachineSheet(Shown):
     sets: tuple[tuning.LeafSet, ...]
     depth: float  # [m] of the bowl
     fill: filling.Fill
+    filled_with: str  # of PART, FILE and ASSUMED
+    turns: float  # [1] of the track from the floor to the outlet; NaN of a level one
+    mismatch: feasibility.DriveMismatch | None  # with the drive that the machine makes; None where it does
     emptying: filling.Emptying
     velocities: np.ndarray  # (M,) [m/s] at each level of the emptying bowl, the controller left alone
     controlled: np.ndarray  # (M,) [m/s] the same under amplitude control
@@ -134,7 +138,11 @@ def machine(settings: Sequence[Setting]) -> MachineSheet:
         Without an order.
     """
     bowl = _on_its_springs(answer.conveying(bowls.record(settings)), settings)
-    return _sheet(bowl, settings, 2.0 * bowl.sizing.depth * bowl.track.radius, STEEL, None)
+    rules = bowl.sizing
+    density = rules.fill_density
+    filled_with = FILE if density > 0.0 else ASSUMED
+    depth = rules.outlet_height if rules.outlet_height > 0.0 else 2.0 * rules.depth * bowl.track.radius
+    return _sheet(bowl, settings, depth, (density or ASSUMED_DENSITY, filled_with), None)
 
 
 def bowl(
@@ -210,7 +218,7 @@ def bowl(
         handbook=plain.sizing.handbook_speed * flow.share / flow.length,
         shape=sizing.shape(part, found, track, wanted),
     )
-    return replace(_sheet(driven, settings, size.depth, sought.bulk, order), solid=made)
+    return replace(_sheet(driven, settings, size.depth, (sought.bulk, PART), order), solid=made)
 
 
 def _on_its_springs(bowl: Bowl, settings: Sequence[Setting]) -> Bowl:
@@ -255,15 +263,16 @@ def _ways(
 
 
 def _sheet(
-    bowl: Bowl, settings: Sequence[Setting], depth: float, bulk: float, order: Order | None
+    bowl: Bowl, settings: Sequence[Setting], depth: float, bulk: tuple[float, str], order: Order | None
 ) -> MachineSheet:
-    """Everything of a bowl with its machine."""
+    """Everything of a bowl with its machine; ``bulk`` is the density of what fills it, and whence it is."""
     under, rules, moved = bowl.machine, bowl.sizing, stroke(bowl)
     made = springs(under)
     magnified = float(gain(moved.frequency, made.natural_frequency, under.damping))
     room = None if order is None else order.size.room
-    fill = filling.full(room or bowl.track.radius, depth, bulk, rules)
-    emptied = filling.emptying(under, moved.frequency, fill, rules)
+    fill = filling.full(room or bowl.track.radius, depth, bulk[0], rules)
+    emptied = filling.emptying(bowl, fill)
+    turns = _turns(bowl, depth) if order is None else order.size.turns
     radii, turned = angles(under, bowl.track)
     force = float(made.stiffness * moved.springs / magnified)
     return MachineSheet(
@@ -283,16 +292,26 @@ def _sheet(
         sets=tuning.sets(under, moved.frequency, moved.springs, rules),
         depth=depth,
         fill=fill,
+        filled_with=bulk[1],
+        turns=float(turns),
+        mismatch=feasibility.can_make(bowl),
         emptying=emptied,
-        velocities=_velocities(bowl, emptied.strokes),
-        controlled=_velocities(bowl, emptied.controlled),
+        velocities=_velocities(bowl, emptied.strokes, emptied.angles),
+        controlled=_velocities(bowl, emptied.controlled, emptied.angles),
         order=order,
     )
 
 
-def _velocities(bowl: Bowl, strokes: np.ndarray) -> np.ndarray:
+def _turns(bowl: Bowl, depth: float) -> float:
+    """Turns of a track of one climb; NaN where it is level, or where devices may lead it another way."""
+    rise = 2.0 * np.pi * bowl.track.radius * np.tan(bowl.track.climb)
+    led = bool(bowl.devices) and bowl.sizing.outlet_height > 0.0
+    return float(depth / rise) if rise > 0.0 and not led else float("nan")
+
+
+def _velocities(bowl: Bowl, strokes: np.ndarray, angles: np.ndarray) -> np.ndarray:
     """Velocity at multiples of the bowl's stroke [m/s]; its stroke ends where the magnet would strike."""
     most = max(greatest_amplitude(bowl), bowl.drive.amplitude)
     each: Any = np.minimum(bowl.drive.amplitude * strokes, most)
-    drive = replace(bowl.drive, amplitude=each)
+    drive = replace(bowl.drive, amplitude=each, vibration_angle=cast(Any, angles))
     return check.frozen(answer.cells(replace(bowl, drive=drive))["velocity"])

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from two_masses import amplitude, driven
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.direction import direction
+from feederscrew.bowl.direction import direction, vibration_angle
 from feederscrew.machine import filling, stroke, tuning
 from feederscrew.machine.springs import (
     gain,
@@ -200,9 +200,40 @@ def test_the_stroke_as_a_bowl_empties():
     fill = filling.full(0.15, 0.09, 7850.0, replace(BOWL.sizing, fill_height=1 / 3))
     assert fill.volume == pytest.approx(np.pi * 0.15**2 * 0.03)
     assert fill.mass == pytest.approx(fill.volume * 0.5 * 7850.0)
-    found = filling.emptying(replace(MACHINE, leaves=12), 100.0, fill, BOWL.sizing)
+    found = filling.emptying(moved(leaves=12), fill)
     assert (found.levels[0], found.levels[-1], found.strokes[-1]) == (1.0, 0.0, 1.0)
     assert np.all(np.diff(found.strokes) < 0.0) and np.all(found.controlled == 1.0)
-    below = filling.emptying(replace(MACHINE, leaves=6), 100.0, fill, BOWL.sizing)
+    below = filling.emptying(moved(leaves=6), fill)
     assert below.strokes[0] < 1.0
     assert below.controlled[0] == pytest.approx(min(1.0, below.strokes[0] / 0.8))
+
+
+def moved(frequency=100.0, **more):
+    """The bowl in the direction in which its springs move its track."""
+    machine = replace(MACHINE, **more)
+    angle = float(vibration_angle(machine, BOWL.track.radius, BOWL.track.climb))
+    return replace(
+        BOWL, machine=machine, drive=replace(BOWL.drive, vibration_angle=angle, frequency=frequency)
+    )
+
+
+@pytest.mark.parametrize("frequency, leaves", [(100.0, 10), (50.0, 8)])
+def test_the_stroke_of_the_bowl_from_full_to_empty_against_two_bodies_in_time(frequency, leaves):
+    """Rise and turn of the bowl itself at its track: what parts in it take from its share is in neither."""
+    bowl = moved(frequency, leaves=leaves, damping=0.04, base_inertia=0.4)
+    radius, carried = bowl.track.radius, bowl.sizing.carried
+    fill = filling.full(0.15, 0.09, 7850.0, bowl.sizing)
+    told, ways = filling.emptying(bowl, fill), []
+    for share in (1.0, 0.0):
+        machine = filling.loaded(bowl.machine, fill, share * carried)
+        found = springs(machine)
+        damping = 2.0 * machine.damping * np.sqrt(found.stiffness * found.effective_mass)
+        way, rise, turn = driven(machine, found.stiffness, damping, 50.0, frequency, 36)
+        ways.append([amplitude(way), amplitude(rise), radius * amplitude(turn)])
+    full, empty = np.array(ways)
+    strokes = np.hypot(full[1], full[2]) / np.hypot(empty[1], empty[2])
+    assert told.strokes[0] == pytest.approx(strokes, rel=2e-4)
+    assert told.springs[0] == pytest.approx(full[0] / empty[0], rel=2e-4)
+    assert abs(told.springs[0] / told.strokes[0] - 1.0) > 0.02
+    assert told.angles[0] == pytest.approx(np.arctan2(full[1], full[2]) - bowl.track.climb, rel=2e-4)
+    assert abs(told.angles[0] - told.angles[-1]) > 1e-4

@@ -14,6 +14,7 @@ from feederscrew.output import style
 from feederscrew.output.batch import contact_sheet
 from feederscrew.output.compare import figures as compare
 from feederscrew.output.convey import figures as convey
+from feederscrew.output.convey import tables as convey_tables
 from feederscrew.output.floor import figures as floor_figures
 from feederscrew.output.floor import map_figures
 from feederscrew.output.graph import figures as graph
@@ -275,6 +276,17 @@ def test_the_history_of_a_loop_can_be_read():
 
 def test_phases_of_a_cycle_are_told_apart_without_their_colours():
     assert len({convey.PHASE_LINES[name] for name in ("forward", "backward", "flight")}) == 3
+
+
+def test_a_part_that_slips_back_is_said_to_slip_back():
+    """Once the legend said 'part: backward'."""
+    found = convey_study.convey(read(None, ("drive.amplitude=0.4 mm", "drive.frequency=50 Hz")))
+    assert found.answer.fractions["backward"] > 0.1
+    shown = convey.cycle(found.trace(), found.bowl.drive.amplitude, found.answer)
+    labels = [label for axes in shown.axes for label in axes.get_legend_handles_labels()[1]]
+    rows = convey_tables.summary(convey_tables.document(found))["quantity"]
+    assert "part slips back" in labels and "time it slips back [%]" in rows
+    assert not any("backward" in text for text in (*labels, *rows))
 
 
 def test_the_heading_of_a_column_of_numbers_stands_over_them():

@@ -26,7 +26,7 @@ def study(solid):
         order=SimpleNamespace(part=part, target=1.0, wanted=None, hopper=0.01),
         bowl=record(effective({})), solid=solid, force=100.0, fill=SimpleNamespace(mass=1.0),
         stroke=SimpleNamespace(frequency=100.0, peak_to_peak=4e-4),
-        springs=SimpleNamespace(natural_frequency=105.0),
+        springs=SimpleNamespace(natural_frequency=105.0), mismatch=None, turns=1.8,
     )  # fmt: skip
 
 

@@ -8,6 +8,7 @@ from matplotlib.patches import Patch
 from feederscrew.conveying.flights import throw_of_flight
 from feederscrew.conveying.setting import PHASES
 from feederscrew.output import style
+from feederscrew.output.motion_words import PHASE_WORDS
 from feederscrew.output.tables import heading
 from feederscrew.units import factor
 
@@ -156,7 +157,7 @@ def _by_phase(axes, trace, way):
         if inside.any():
             shown = np.where(inside, way, np.nan)
             look = {"color": PHASE_COLOURS[name], "linestyle": PHASE_LINES[name], "linewidth": 1.6}
-            axes.plot(trace.time, shown, label=f"part: {name}", **look)
+            axes.plot(trace.time, shown, label=f"part {PHASE_WORDS[name]}", **look)
 
 
 def _velocity(figure, axes, grid):

@@ -5,6 +5,7 @@ import numpy as np
 from feederscrew import units
 from feederscrew.conveying import answer, sensitivity, steady
 from feederscrew.output import tables
+from feederscrew.output.motion_words import PHASE_WORDS, regime_words
 
 MM_S = units.factor("mm/s", "velocity")
 VELOCITIES = {"velocity": "velocity_mm_s", "low": "velocity_low_mm_s", "high": "velocity_high_mm_s"}
@@ -54,14 +55,15 @@ def summary(document):
         ("lowest to highest [mm/s]", between(document["velocity_low_mm_s"], document["velocity_high_mm_s"])),
         *_single_periods(document),
         ("status", document["status"] + _of_periods(document["period"])),
-        ("regime", document["regime"]),
+        ("regime", regime_words(document["regime"])),
         ("acceleration ratio A w2/g", number(document["acceleration_ratio"])),
         ("throw number", _margin(document["throw_number"], document["margins"]["hop"])),
     ]
     for way, meaning in LIMITS.items():
         limit, margin = document[f"mu_{way}"], document["margins"][way]
         rows.append((f"friction that stops {meaning}", _margin(limit, margin)))
-    rows += [(f"time in {name} [%]", number(100.0 * share)) for name, share in document["fractions"].items()]
+    times = document["fractions"].items()
+    rows += [(f"time it {PHASE_WORDS[name]} [%]", number(100.0 * share)) for name, share in times]
     rows += [
         ("longest flight [periods]", number(document["longest_flight_periods"])),
         ("hardest impact [mm/s]", number(document["hardest_impact_mm_s"])),

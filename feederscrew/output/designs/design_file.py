@@ -24,9 +24,10 @@ TRACK = (
 MACHINE = (
     ("bowl_mass", "kg", "mass"), ("bowl_inertia", "kg m2", "inertia"), ("base_mass", "kg", "mass"),
     ("base_inertia", "kg m2", "inertia"), ("spring_radius", "mm", "length"), ("spring_angle", "deg", "angle"),
-    ("leaf_thickness", "mm", "length"), ("leaves", "", "count"),
+    ("leaf_thickness", "mm", "length"), ("leaf_length", "mm", "length"), ("leaves", "", "count"),
 )  # fmt: skip
-OWN = {"drive": DRIVE, "track": TRACK, "machine": MACHINE}
+SIZING = (("fill_density", "g/cm3", "density"), ("outlet_height", "mm", "length"))
+OWN = {"drive": DRIVE, "track": TRACK, "machine": MACHINE, "sizing": SIZING}
 
 
 def bowl_file(study, settings, sheet=None):
@@ -51,11 +52,13 @@ def bowl_file(study, settings, sheet=None):
         If a command that reads it back would have another bowl than was tried.
     """
     own = {"drive": study.bowl.drive, "track": study.bowl.track}
-    own |= {} if sheet is None else {"machine": sheet.bowl.machine}
+    own |= {} if sheet is None else {"machine": sheet.bowl.machine, "sizing": sheet.bowl.sizing}
     set_here = {f"{section}.{row[0]}" for section in own for row in OWN[section]} | {"drive.peak_to_peak"}
     set_here |= {f"machine.{word}" for word in unbalance.WORDS if "machine" in own}
     given = [s for s in settings if s.given and s.key.field != SECTION and s.key.name not in set_here]
     lines = [f"# {study.status}: {study.wanted} of {study.part.name}, from feeder design."]
+    if study.drive_mismatch is not None:
+        lines += [f"# Its drive: {study.drive_mismatch.text}."]
     lines += [f"{s.key.word}: {s.text}" for s in given if not s.key.section]
     for section in dict.fromkeys((*own, *(s.key.section for s in given if s.key.section))):
         lines += [f"{section}:"]

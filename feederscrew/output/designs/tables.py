@@ -5,14 +5,16 @@ import textwrap
 import numpy as np
 
 from feederscrew import units
+from feederscrew.conveying.answer import throw_number
 from feederscrew.designing import record
-from feederscrew.dropping.plate.drive import throw_number
+from feederscrew.machine.feasibility import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
 from feederscrew.output import columns, tables
 from feederscrew.tooling.devices import named
 
 PER_MINUTE = units.factor("/min", "rate")
 MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
 
+SAID_FIRST = {"drive_kind", "drive_needs", "drive_of_the_springs", "vibration_angle_deg"}  # or elsewhere
 WIDTH = 62  # letters of a value that is printed beside its name
 
 
@@ -70,7 +72,12 @@ def bowl(study):
     if study.bowl is None:
         return None
     drive, track = study.bowl.drive, study.bowl.track
+    two_axis, other = is_two_axis(drive), study.drive_mismatch
     return {
+        "drive_kind": TWO_AXIS if two_axis else LEAF_SPRING,
+        "drive_needs": TWO_MAGNETS if two_axis else None,
+        "drive_of_the_springs": None if other is None else other.machine.text,
+        "phase_deg": drive.phase / DEG,
         "diameter_mm": 2.0 * track.radius / MM,
         "track_width_mm": track.width / MM,
         "bank_deg": track.bank / DEG,
@@ -78,6 +85,10 @@ def bowl(study):
         "frequency_hz": drive.frequency,
         "peak_to_peak_mm": 2.0 * drive.amplitude / MM,
         "vibration_angle_deg": drive.vibration_angle / DEG,
+        "vibration_angle_at_the_track_deg": drive.vibration_angle / DEG,
+        "vibration_angle_at_the_springs_deg": (
+            study.bowl.machine.spring_angle / DEG if study.machine_drawn else None
+        ),
         "throw_number": float(throw_number(study.bowl)),
     }
 
@@ -172,6 +183,7 @@ def outcome(d):
     """Return rows of what a design's document says of the answer and of its devices."""
     head = [
         ("status", d["status"]),
+        *_drive(d.get("bowl") or {}),
         ("leaves as", _leaves_as(d)),
         ("asked for [1/min]", f"{d['target_per_minute']:.4g}"),
     ]
@@ -208,8 +220,17 @@ def _shown(d):
 
 def dimensions(d):
     """Return rows of what a design's document says of the bowl and its drive."""
-    bowl = d["bowl"] or {}
-    return [(" ".join(tables.heading(name)).strip(), f"{value:.4g}") for name, value in bowl.items()]
+    bowl = {name: value for name, value in (d["bowl"] or {}).items() if name not in SAID_FIRST}
+    named_values = [(" ".join(tables.heading(name)).strip(), value) for name, value in bowl.items()]
+    return [(name, f"{value:.4g}") for name, value in named_values if value is not None]
+
+
+def _drive(bowl):
+    """Rows of a drive that one set of leaf springs cannot make; none of one that it makes."""
+    if bowl.get("drive_needs"):
+        yield "drive", f"{bowl['drive_kind']}, phase {bowl['phase_deg']:.4g} deg: {bowl['drive_needs']}"
+    if bowl.get("drive_of_the_springs"):
+        yield "its drawn springs make", bowl["drive_of_the_springs"]
 
 
 def _hourly(d):
@@ -249,6 +270,11 @@ def _sheet(study):
     yield ("acceleration, peak", "", f"{peak:.4g}", "", "", "m/s2", "", "")
     yield ("frequency of the drive", "", f"{drive.frequency:.4g}", "", "", "Hz", "", "")
     yield ("vibration angle", "", f"{known['vibration_angle_deg']:.4g}", "", "", "deg", "", "")
+    if known["vibration_angle_at_the_springs_deg"] is not None:
+        at_springs = f"{known['vibration_angle_at_the_springs_deg']:.4g}"
+        yield ("vibration angle at the springs", "", at_springs, "", "", "deg", "", "")
+    if known["phase_deg"]:
+        yield ("phase of the drive", "", f"{known['phase_deg']:.4g}", "", "", "deg", "", "")
     yield ("drive setting", "", f"{100.0 * study.bowl.sizing.controller:.4g}", "", "", "%", "", "")
     yield (
         "reserve of the drive",

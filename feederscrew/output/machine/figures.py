@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.patches import Circle, Polygon, Rectangle, Wedge
 
 from feederscrew.output import style
+from feederscrew.output.machine import sheet as sheets
 from feederscrew.output.machine.sheet import DEG, MM, PER_MINUTE
 
 WIDE, HIGH = 1760, 1500  # [px] of the page
@@ -54,11 +55,14 @@ def _title(page, study):
     page.text(
         0.02,
         0.935,
-        f"{facts}; both views in one scale, sizes in mm",
+        f"{facts}; {sheets.angles(study)}; both views in one scale, sizes in mm",
         fontsize=9.5,
         color=style.INK,
         va="center",
     )
+    if study.mismatch is not None:
+        said = f"the springs do not make it: they make {study.mismatch.machine.text}"
+        page.text(0.02, 0.912, said, fontsize=9.5, color=style.ACCENT, va="center")
 
 
 def _from_above(axes, study, half):
@@ -202,7 +206,7 @@ def _set(machine):
     leaf = (
         f"{machine.leaf_width / MM:.3g} x {machine.leaf_thickness / MM:.3g} x {machine.leaf_length / MM:.3g}"
     )
-    return f"{machine.leaves:.0f} leaves {leaf}\nat {machine.spring_angle / DEG:.3g}°"
+    return f"{machine.leaves:.0f} leaves {leaf}\nmotion there {machine.spring_angle / DEG:.3g}°"
 
 
 def _full(study):
@@ -210,9 +214,9 @@ def _full(study):
 
 
 def _climb(study):
-    track, rise = study.bowl.track, 2.0 * np.pi * study.bowl.track.radius * np.tan(study.bowl.track.climb)
-    turns = study.depth / rise if rise > 0.0 else np.nan
-    said = f"climb {track.climb / DEG:.3g}°, {turns:.3g} turns" if np.isfinite(turns) else "level track"
+    track, turns = study.bowl.track, study.turns
+    said = f"climb {track.climb / DEG:.3g}°" if track.climb > 0.0 else "level track"
+    said += f", {turns:.3g} turns" if np.isfinite(turns) else ""
     return f"{said}\nbowl {study.bowl.machine.bowl_mass:.3g} kg, {study.bowl.machine.bowl_inertia:.3g} kg m²"
 
 

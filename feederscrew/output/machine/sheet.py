@@ -5,7 +5,10 @@ import math
 import numpy as np
 
 from feederscrew import units
+from feederscrew.machine import feasibility
 from feederscrew.machine.springs import MAINS, mean_pull
+from feederscrew.output.motion_words import regime_words
+from feederscrew.part.density import DEFAULT_MATERIAL
 
 MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
 N_MM, MPA = units.factor("N/mm", "stiffness"), units.factor("MPa", "stress")
@@ -29,24 +32,57 @@ def quotation(study, tried=None):
         'quantity' and 'value', both text.
     """
     return _lines(
-        [*_part(study), *_tried(tried), *_rates(study), *_bowl(study), *_drive(study), *_springs(study)]
+        [
+            *_drive_first(study),
+            *_part(study),
+            *_tried(tried),
+            *_rates(study),
+            *_bowl(study),
+            *_drive(study),
+            *_springs(study),
+        ]
     )
 
 
 def machine(study):
     """Return the lines of a machine without an order, as ``quotation`` does."""
-    return _lines([*_springs(study), *_readings(study), *_travel(study), *_full(study)])
+    first = _drive_first(study)
+    return _lines([*first, *_springs(study), *_readings(study), *_travel(study), *_full(study)])
 
 
 def _lines(pairs):
     return [{"quantity": quantity, "value": value} for quantity, value in pairs]
 
 
+def _drive_first(study):
+    """What one set of leaf springs cannot make, and both drives, before anything else."""
+    if feasibility.is_two_axis(study.bowl.drive):
+        yield "drive", two_axis(study.bowl.drive)
+    if study.mismatch is not None:
+        yield "drive asked for", study.mismatch.wanted.text
+        yield "these springs make", study.mismatch.machine.text
+
+
+def two_axis(drive):
+    """Return what a drive out of phase is and needs, as text; '' of a leaf-spring drive."""
+    if not feasibility.is_two_axis(drive):
+        return ""
+    return f"{feasibility.TWO_AXIS}, phase {drive.phase / DEG:.4g} deg: {feasibility.TWO_MAGNETS}"
+
+
+def angles(study, *, phase=True):
+    """Return the angle of the motion at the springs and at the track, as text for titles and drawings."""
+    made = study.bowl.machine.spring_angle / DEG, study.bowl.drive.vibration_angle / DEG
+    said = f"{made[0]:.3g}° at the springs, {made[1]:.3g}° to the track"
+    led = phase and feasibility.is_two_axis(study.bowl.drive)
+    return f"{said}, phase {study.bowl.drive.phase / DEG:.4g}°" if led else said
+
+
 def _part(study):
     part, room = study.order.part, study.order.lying
     size = " x ".join(f"{side / MM:.4g}" for side in sorted(_box(part), reverse=True))
     yield "part, drawing", f"{part.name}, {part.source}"
-    yield "material, density [g/cm3]", f"{part.material}, {part.mass / part.volume / GRAM_CM3:.4g}"
+    yield "material, density [g/cm3]", f"{material(part)}, {part.mass / part.volume / GRAM_CM3:.4g}"
     yield "mass [g], volume [mm3]", f"{part.mass / GRAM:.4g}, {part.volume / MM**3:.5g}"
     yield "size [mm]", f"{size}; at most {room.longest / MM:.4g} along the wall, {room.tallest / MM:.4g} high"
 
@@ -59,6 +95,11 @@ def _tried(found):
             "rate as its trial showed [1/min]",
             f"{found.delivered / PER_MINUTE:.4g} ({ends}): {found.status}",
         )
+
+
+def material(part):
+    """Return what a part is made of, as text: 'steel assumed' where neither file nor user says it."""
+    return "steel assumed" if part.material == DEFAULT_MATERIAL else part.material
 
 
 def _box(part):
@@ -95,7 +136,7 @@ def _bowl(study):
     yield "bowl depth [mm]", f"{size.depth / MM:.4g}"
     yield "track width [mm]", f"{size.track_width / MM:.4g} (part {study.order.lying.width / MM:.4g}, {play})"
     yield "climb [deg]", f"{size.climb / DEG:.3g} (friction carries {study.order.steepest / DEG:.3g})"
-    yield "turns", f"{size.turns:.3g}, each rises {size.pitch / MM:.3g} mm"
+    yield "turns", f"{study.turns:.3g}, each rises {size.pitch / MM:.3g} mm"
     yield from _full(study)
     hours = rules.hopper_interval / units.factor("min", "time")
     yield "hopper [l]", f"{study.order.hopper / LITRE:.3g}, filled every {hours:.4g} min"
@@ -105,7 +146,8 @@ def _full(study):
     rules, fill, under = study.bowl.sizing, study.fill, study.bowl.machine
     third = abs(rules.fill_height - 1.0 / 3.0) < 1e-3
     share = "a third" if third else f"{100 * rules.fill_height:.3g} %"
-    yield "full bowl [kg]", f"{fill.mass:.3g} in {fill.volume / LITRE:.3g} l, {share} of the depth"
+    whence = "" if study.order is not None else f", {study.filled_with}"
+    yield "full bowl [kg]", f"{fill.mass:.3g} in {fill.volume / LITRE:.3g} l, {share} of the depth{whence}"
     mass = under.bowl_mass + rules.carried * fill.mass
     inertia = under.bowl_inertia + rules.carried * fill.inertia
     yield "on the springs, empty", f"{under.bowl_mass:.3g} kg, {under.bowl_inertia:.3g} kg m2"
@@ -148,7 +190,7 @@ def _travel(study):
         "vibration angle [deg]",
         f"{bowl.drive.vibration_angle / DEG:.3g} to the track, {upright:.3g} to the horizontal",
     )
-    yield "velocity at this stroke [mm/s]", f"{_known(found.velocity / MM_S)}, {found.regime}"
+    yield "velocity at this stroke [mm/s]", f"{_known(found.velocity / MM_S)}, {regime_words(found.regime)}"
     yield "hardest impact [mm/s]", _known(found.hardest_impact / MM_S)
     if study.order is None:
         full, empty = (_known(study.velocities[k] / MM_S) for k in (0, -1))
@@ -167,11 +209,13 @@ def _springs(study):
     )
     each = f"{made.leaf_stiffness / N_MM:.5g} N/mm each"
     yield "leaves", f"{under.leaves:.0f} of {leaf} mm, {shared(study)}, {each}"
-    place = f"radius {under.spring_radius / MM:.4g} mm, {under.spring_angle / DEG:.3g} deg"
+    place = f"radius {under.spring_radius / MM:.4g} mm, motion there {under.spring_angle / DEG:.3g} deg"
     yield "springs", f"{place}, {made.stiffness / N_MM:.5g} N/mm with twist"
     held = f"base held {made.effective_mass_held:.4g}"
     yield "effective mass [kg]", f"{made.effective_mass:.4g} ({held})"
     plain = f"without twist {made.natural_frequency_without_twist:.4g}"
+    rigid = f"{made.natural_frequency_rigid:.4g} to {made.natural_frequency_rigid_end:.4g}"
+    plain += f"; rigid clamps {rigid}"
     yield "natural frequency [Hz]", f"{made.natural_frequency:.4g} ({plain})"
     yield "above the drive [%], gain", f"{100 * study.detuning:.3g}, {study.gain:.3g}"
     yield from _rocking(study)

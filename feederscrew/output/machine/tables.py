@@ -3,6 +3,7 @@
 import numpy as np
 
 from feederscrew import units
+from feederscrew.machine import feasibility
 from feederscrew.machine.springs import mean_pull
 from feederscrew.output import tables
 from feederscrew.output.machine import sheet as sheets
@@ -25,13 +26,17 @@ def document(study):
     dict
     """
     return {
+        **_drive(study),
         **({} if study.order is None else order(study)),
+        "turns": study.turns if np.isfinite(study.turns) else None,
+        "bowl_depth_mm": study.depth / MM,
         **_springs(study),
         **_stroke(study),
         "angle_by_radius": angles(study),
         "leaf_changes": leaf_sets(study.changes),
         "leaf_sets": leaf_sets(study.sets),
         "full_bowl": {
+            "filled_with": study.filled_with,
             "volume_l": study.fill.volume / LITRE,
             "mass_kg": study.fill.mass,
             "inertia_kg_m2": study.fill.inertia,
@@ -39,8 +44,33 @@ def document(study):
         },
         "emptying": emptying(study),
         "remarks": list(study.remarks),
+        "warnings": list(study.remarks),
         **({} if study.solid is None else solids.document(study.solid)),
         **({} if study.rocking is None else _rocking(study)),
+    }
+
+
+def _drive(study):
+    """What kind of drive it is; where the springs do not make it, both."""
+    drive, other = study.bowl.drive, study.mismatch
+    kind = feasibility.TWO_AXIS if feasibility.is_two_axis(drive) else feasibility.LEAF_SPRING
+    return {
+        "drive_kind": kind,
+        "phase_deg": drive.phase / DEG,
+        "drive_needs": sheets.two_axis(drive) or None,
+        "springs_make_this_drive": other is None,
+        "drive_asked_for": None if other is None else _figures(other.wanted),
+        "drive_of_the_springs": None if other is None else _figures(other.machine),
+    }
+
+
+def _figures(one):
+    return {
+        "vibration_angle_at_the_springs_deg": one.spring_angle / DEG,
+        "vibration_angle_at_the_track_deg": one.track_angle / DEG,
+        "phase_deg": one.phase / DEG,
+        "throw_number": one.throw_number,
+        "velocity_mm_s": one.velocity / MM_S if np.isfinite(one.velocity) else None,
     }
 
 
@@ -91,9 +121,7 @@ def order(study):
         "bend_mm": size.bend / MM,
         "climb_deg": size.climb / DEG,
         "steepest_climb_deg": asked.steepest / DEG,
-        "turns": size.turns,
         "turn_rise_mm": size.pitch / MM,
-        "bowl_depth_mm": size.depth / MM,
         "hopper_l": asked.hopper / LITRE,
         "sheet": sheets.quotation(study),
     }
@@ -120,6 +148,8 @@ def _springs(study):
         "natural_frequency_hz": made.natural_frequency,
         "natural_frequency_without_twist_hz": made.natural_frequency_without_twist,
         "natural_frequency_base_held_hz": made.natural_frequency_held,
+        "natural_frequency_rigid_clamps_hz": made.natural_frequency_rigid,
+        "natural_frequency_rigid_clamps_end_hz": made.natural_frequency_rigid_end,
         "drive_frequency_hz": study.stroke.frequency,
         "above_drive_percent": 100.0 * study.detuning,
         "gain": study.gain,
@@ -149,6 +179,8 @@ def _stroke(study):
         "acceleration_ratio": moved.acceleration / bowl.gravity,
         "throw_number": found.throw_number,
         "vibration_angle_deg": bowl.drive.vibration_angle / DEG,
+        "vibration_angle_at_the_track_deg": bowl.drive.vibration_angle / DEG,
+        "vibration_angle_at_the_springs_deg": bowl.machine.spring_angle / DEG,
         "velocity_mm_s": found.velocity / MM_S,
         "regime": found.regime,
         "hardest_impact_mm_s": found.hardest_impact / MM_S,
@@ -197,6 +229,8 @@ def emptying(study):
         "natural_frequency_hz": found.natural_frequencies,
         "gain": found.gains,
         "stroke_over_that_of_the_empty_bowl": found.strokes,
+        "vibration_angle_at_the_track_deg": found.angles / DEG,
+        "spring_stroke_over_that_of_the_empty_bowl": found.springs,
         "velocity_mm_s": study.velocities / MM_S,
         "velocity_controlled_mm_s": study.controlled / MM_S,
     }

@@ -3,6 +3,7 @@
 import numpy as np
 
 from feederscrew.output import tables
+from feederscrew.output.motion_words import regime_words
 
 LIMITS = {  # what a summary says of each map, in this order
     "mu_limit": "limiting friction, level floor [4.27]",
@@ -32,7 +33,11 @@ def summary(slides):
     """Return what holds at the bowl's own point, a column a map, as a frame for people."""
     first = slides[0]
     names = ["acceleration ratio G = A w2/g", "alpha - theta [deg]", "static friction", *LIMITS.values()]
-    names += [*ONSETS.values(), "regime", *(f"share of the map: {name}" for name in first.grid.names)]
+    names += [
+        *ONSETS.values(),
+        "regime",
+        *(f"share of the map: {regime_words(name)}" for name in first.grid.names),
+    ]
     columns = {f"beta = {np.degrees(one.beta):.6g} deg": _column(one) for one in slides}
     return tables.frame({"at the bowl's own point": names, **columns})
 
@@ -105,7 +110,7 @@ def _column(one):
     numbers = [one.ratio, np.degrees(one.alpha_minus_theta), one.friction]
     numbers += [one.at_bowl[name] for name in LIMITS] + [one.onsets[name] for name in ONSETS]
     shares = [_percent(share) for share in one.grid.shares().values()]
-    return [*(_number(number) for number in numbers), one.regime, *shares]
+    return [*(_number(number) for number in numbers), regime_words(one.regime), *shares]
 
 
 def _number(value):

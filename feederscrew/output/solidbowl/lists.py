@@ -4,6 +4,7 @@ import numpy as np
 
 from feederscrew.output.machine import sheet as sheets
 from feederscrew.output.solidbowl.unrolled_strip import numbered
+from feederscrew.output.tooling.drawing import EDGES
 from feederscrew.solidbowl import lugs
 from feederscrew.units import factor
 
@@ -26,7 +27,7 @@ def cuts(paper, study, at):
     low = paper.table(*at, [9.0, 90.0, 32.0, 32.0, 32.0], rows)
     listed = [
         f"from and to: along the wall from the begin of the stretch; cuts {CUT}, everything else {GENERAL}",
-        f"arcs are facets within {plan.chord / MM:.3g} mm; edges that parts meet: broken at most 0.05 mm",
+        f"arcs are facets within {plan.chord / MM:.3g} mm; {EDGES}",
     ]
     for k, line in enumerate(listed):
         paper.text(at[0], low - 4.0 - 3.6 * k, line, size=2.2)
@@ -75,12 +76,23 @@ def title(paper, study, found, scale):
     paper.box(left, low, right, high, 1.2)
     solid, order = study.solid, study.order
     paper.text(left + 2.0, high - 6.0, f"Bowl for {_short(order.part.name)}", size=4.0, fontweight="bold")
+    for k, line in enumerate(_not_made(study)):
+        paper.text(left, high + 5.4 - 3.2 * k, line, size=1.85, color="#d55e00")
     pairs = _fields(study, solid, found, scale)
     half = (len(pairs) + 1) // 2
     for k, (name, value) in enumerate(pairs):
         x, y = left + 2.0 + 82.0 * (k // half), high - 13.0 - 5.6 * (k % half)
         paper.text(x, y, name, size=1.9, color="#5b6b78")
         paper.text(x + 27.0, y, value, size=2.1)
+
+
+def _not_made(study):
+    """What of its drive the springs do not make, at most two lines."""
+    said = sheets.two_axis(study.bowl.drive)
+    if said:
+        yield said
+    if study.mismatch is not None:
+        yield f"these springs make {study.mismatch.machine.text}"
 
 
 def _short(words):
@@ -101,16 +113,17 @@ def _fields(study, solid, found, scale):
         ("drawing of part", _short(order.part.source.rpartition("/")[2])),
         ("rate asked for", f"{order.target / MIN:.4g} a minute"),
         ("orientation", wanted),
-        ("part material", f"{order.part.material}"),
+        ("part material", sheets.material(order.part)),
         ("fill, hopper", f"{study.fill.mass:.3g} kg, {order.hopper / LITRE:.3g} l"),
         ("drive", f"{study.stroke.frequency:.4g} Hz, {study.stroke.peak_to_peak / MM:.3g} mm"),
+        ("vibration angle", sheets.angles(study, phase=False)),
         ("natural frequency", f"{study.springs.natural_frequency:.4g} Hz"),
         ("climb, bank", f"{np.degrees(plan.way.climb):.3g}°, {_banks(plan.way)}"),
         (
             "hand",
             f"{'left' if plan.left else 'right'}: parts climb {'' if plan.left else 'counter-'}clockwise",
         ),
-        ("turns", f"{plan.turns:.3g}"),
+        ("turns", f"{study.turns:.3g}"),
         ("material", f"{plan.material.name}, {plan.material.density:.4g} kg/m³"),
         ("mass, volume", f"{solid.mass:.4g} kg, {solid.with_lugs.volume / MM**3:.6g} mm³"),
         ("inertia about axis", f"{solid.inertia:.4g} kg m²"),

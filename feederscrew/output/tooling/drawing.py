@@ -6,6 +6,7 @@ import numpy as np
 
 from feederscrew import dxf as files
 from feederscrew.dxf import Layer
+from feederscrew.tooling.orientations import ROUNDED
 from feederscrew.units import factor
 
 MM = factor("mm", "length")
@@ -39,7 +40,8 @@ PENS = {  # of the SVG: stroke, fill, dashes
     "GHOST": ("#7a8793", "none", "1.5 1"),
 }
 WALL = 2e-3  # [m] thickness the wall is drawn with
-SHOP = "values +-0.1 mm; edges broken 0.1 to 0.2 mm; lands 1 mm and the sheet's thickness at least"
+EDGES = f"edges broken at most {ROUNDED / MM:.3g} mm"  # as they are tried
+SHOP = f"values +-0.1 mm; {EDGES}; lands 1 mm and the sheet's thickness at least"
 
 
 def dxf(strip, ghosts=()):

@@ -4,6 +4,7 @@ import math
 
 from feederscrew import units
 from feederscrew.output import columns, tables
+from feederscrew.output.motion_words import regime_words
 from feederscrew.rates.drive_settings import WITHIN
 
 PER_MINUTE, MM_S = units.factor("/min", "rate"), units.factor("mm/s", "velocity")
@@ -44,7 +45,7 @@ def summary(study):
             "mu +-20 %": [_between(row) for row in rows],
             "velocity_mm_s": frame["velocity_mm_s"],
             "impact_mm_s": frame["hardest_impact_mm_s"],
-            "regime": [row["regime"] + (SEVERAL if row["several"] else "") for row in rows],
+            "regime": [regime_words(row["regime"]) + (SEVERAL if row["several"] else "") for row in rows],
             **{
                 f"to {short}": [_margin(value, len(short)) for value in frame[f"margin_{name}"]]
                 for short, name in (("fwd", "forward"), ("back", "backward"), ("hop", "hop"))

@@ -1,0 +1,193 @@
+"""Every paper of one run says the same of one quantity: documents, tables, pictures, drawing, bowl file."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+import shapes
+from matplotlib.text import Text
+
+from feederscrew import bowl as bowls
+from feederscrew.designing import beside
+from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
+from feederscrew.output.designs import files, tables
+from feederscrew.output.machine import figures
+from feederscrew.output.machine import tables as machine_tables
+from feederscrew.output.solidbowl import drawing_sheet
+from feederscrew.output.tooling import drawing
+from feederscrew.tooling.orientations import ROUNDED
+
+PART = shapes.part(shapes.box(12.0, 10.0, 8.0))
+BOWL = """
+drive: {amplitude: 0.42 mm, frequency: 50 Hz, vibration_angle: 25 deg}
+track: {radius: 150 mm, climb: 3.7 deg, width: 14 mm, bank: 2 deg}
+devices:
+  - separation: {climb: -2 deg}
+  - separation: {climb: 3.7 deg}
+  - gap: 5 mm
+"""
+NUMBER = r"(-?\d+(?:\.\d+)?(?:e-?\d+)?)"
+
+
+@pytest.fixture(scope="module")
+def papers(tmp_path_factory):
+    """What a design writes: documents and tables as they are, pictures and the drawing as their words."""
+    path = tmp_path_factory.mktemp("papers") / "bowl.yaml"
+    path.write_text(BOWL)
+    queue = FilledQueue("normal", 0.2, 12, 200.0, 200.0, 200.0, 200, 200, 0, 0, 0)
+    study = DesignStudy(
+        PART, DesignRequest(0.5), bowls.read(path), "A@0", 0, robust=RobustRun(20, 20, ""), queues=(queue,)
+    )
+    built = beside.built(study, ())
+    assert not built.why, built.why
+    study = beside.with_machine(study, built)
+    offered = {one.name: one for one in files.offers(study, (), built)}
+    (path.parent / "design.yaml").write_text(offered["design.yaml"].make())
+    return {
+        "study": study,
+        "built": built,
+        "design": json.loads(offered["design.json"].make()),
+        "summary": rows(tables.summary(study)),
+        "acceptance": offered["acceptance.csv"].view(),
+        "bowl": json.loads(offered["bowl.json"].make()),
+        "sheet": rows(machine_tables.summary(built.sheet)),
+        "solid": json.loads(offered["bowl_solid.json"].make()),
+        "quotation": rows(machine_tables.summary(built.drawn)),
+        "picture": words(figures.bowl(built.sheet)),
+        "drawing": words(drawing_sheet.sheet(built.drawn).figure),
+        "file": bowls.read(path.parent / "design.yaml"),
+        "path": path.parent / "design.yaml",
+    }
+
+
+def rows(frame):
+    return dict(zip(frame["quantity"], frame["value"]))
+
+
+def words(figure):
+    return "\n".join(one.get_text() for one in figure.findobj(Text))
+
+
+def number(pattern, text):
+    """The number of a pattern, where '#' stands for it."""
+    escaped = re.escape(pattern).replace(r"\#", NUMBER)
+    assert re.search(escaped, text), f"{pattern!r} is not in {text!r}"
+    return float(re.search(escaped, text)[1])
+
+
+def accepted(papers, quantity):
+    table = papers["acceptance"]
+    return float(table["computed"][list(table["quantity"]).index(quantity)])
+
+
+def said(p):
+    """Each quantity as every paper says it."""
+    design, bowl, solid, file = p["design"]["bowl"], p["bowl"], p["solid"], p["file"]
+    sheet, long, picture, drawing = p["sheet"], p["quotation"], p["picture"], p["drawing"]
+    drive, track, machine, mm = file.drive, file.track, file.machine, 1e3
+    yield "diameter", (
+        design["diameter_mm"], solid["diameter_mm"], 2.0 * mm * track.radius, float(number("D #", picture)),
+        number("Ø#", drawing), number("#", long["bowl diameter [mm]"]),
+        number("#", p["summary"]["diameter [mm]"]),
+    )  # fmt: skip
+    yield "track width", (
+        design["track_width_mm"], mm * track.width, number("track #", picture), number("track #", drawing),
+        number("#", long["track width [mm]"]),
+    )  # fmt: skip
+    yield "climb", (
+        design["climb_deg"], np.degrees(track.climb), number("climb #", picture),
+        number("#", long["climb [deg]"]), number("climb, bank\n#", drawing),
+    )  # fmt: skip
+    yield "turns", (
+        bowl["turns"], solid["solid_turns"], number(", # turns", picture), number("#", long["turns"]),
+        number("turns\n#", drawing),
+    )  # fmt: skip
+    yield "height of the outlet", (
+        bowl["bowl_depth_mm"], solid["outlet_height_mm"], mm * file.sizing.outlet_height,
+        number("outlet # over", drawing), number("#", long["bowl depth [mm]"]),
+    )  # fmt: skip
+    yield "stroke", (
+        design["peak_to_peak_mm"], bowl["peak_to_peak_mm"], 2.0 * mm * drive.amplitude,
+        number("# mm peak to peak", picture), number(": # mm peak to peak", drawing),
+        number("#", sheet["stroke, as on a sticker [mm]"]),
+        accepted(p, "stroke on the sticker, peak to peak"),
+    )  # fmt: skip
+    yield "frequency of the drive", (
+        design["frequency_hz"], bowl["drive_frequency_hz"], drive.frequency, number("# Hz, ", picture),
+        number("drive\n# Hz", drawing), accepted(p, "frequency of the drive"),
+    )  # fmt: skip
+    yield "angle at the track", (
+        design["vibration_angle_deg"], design["vibration_angle_at_the_track_deg"],
+        bowl["vibration_angle_deg"],
+        np.degrees(drive.vibration_angle), number("# to the track", sheet["vibration angle [deg]"]),
+        number("#° to the track", picture), number("#° to the track", drawing),
+        number("#", p["summary"]["vibration angle at the track [deg]"]), accepted(p, "vibration angle"),
+    )  # fmt: skip
+    yield "angle at the springs", (
+        design["vibration_angle_at_the_springs_deg"], bowl["spring_angle_deg"],
+        np.degrees(machine.spring_angle),
+        number("motion there # deg", sheet["springs"]), number("#° at the springs", picture),
+        number("#° at the springs", drawing), accepted(p, "vibration angle at the springs"),
+    )  # fmt: skip
+    yield "throw number", (
+        design["throw_number"], bowl["throw_number"], number(", #", sheet["G, throw number"]),
+        number("#", p["summary"]["throw number"]),
+    )  # fmt: skip
+    yield "radius of the springs", (
+        bowl["spring_radius_mm"], mm * machine.spring_radius, number("springs on\nradius #", picture),
+        number("radius # mm", sheet["springs"]),
+    )  # fmt: skip
+    yield "leaves", (
+        bowl["leaves"], machine.leaves, number("# leaves", picture), number("# of", sheet["leaves"]),
+    )  # fmt: skip
+    yield "natural frequency", (
+        bowl["natural_frequency_hz"], number("#", sheet["natural frequency [Hz]"]),
+        number("natural frequency\n# Hz", drawing),
+    )  # fmt: skip
+    yield "mass of the bowl", (
+        bowl["bowl_mass_kg"], solid["solid_mass_kg"], machine.bowl_mass, number("bowl # kg", picture),
+        number("steel, # kg", drawing), number("#", sheet["on the springs, empty"]),
+    )  # fmt: skip
+    yield "inertia of the bowl", (
+        bowl["bowl_inertia_kg_m2"], solid["solid_inertia_kg_m2"], machine.bowl_inertia,
+        number("kg, # kg m²", picture), number("# kg m²", drawing),
+    )  # fmt: skip
+    yield "fill", (
+        bowl["full_bowl"]["mass_kg"], number("full # kg", picture), number("#", sheet["full bowl [kg]"]),
+        number("#", long["full bowl [kg]"]), number("fill, hopper\n# kg", drawing),
+    )  # fmt: skip
+    yield "velocity", (
+        bowl["velocity_mm_s"], number("# mm/s", picture),
+        number("#", sheet["velocity at this stroke [mm/s]"]),
+    )  # fmt: skip
+
+
+def test_every_paper_of_a_design_says_one_number(papers):
+    """Rounded to three digits at the coarsest."""
+    for name, values in said(papers):
+        assert values == pytest.approx([values[0]] * len(values), rel=5.1e-3), name
+    assert len(list(said(papers))) == 17
+
+
+def test_edges_are_broken_as_they_were_tried_in_sheet_and_dxf(papers):
+    said_of_edges = {
+        re.search(r"edges broken at most ([\d.]+) mm", text)[1] for text in (papers["drawing"], drawing.SHOP)
+    }
+    assert said_of_edges == {f"{1e3 * ROUNDED:g}"}
+
+
+def test_a_design_of_an_angle_that_a_larger_circle_makes_holds(papers):
+    study = papers["study"]
+    assert study.status == "holds" and study.drive_mismatch is None
+    assert papers["bowl"]["springs_make_this_drive"] and papers["bowl"]["drive_kind"] == "leaf-spring drive"
+
+
+def test_the_file_of_a_design_makes_the_same_bowl_again(papers, run, tmp_path):
+    """Height, turns, mass and fill of the solid that `feeder bowl` makes of the part and the file."""
+    alone = json.loads(run("bowl", "--config", papers["path"], "--format", "json").stdout)
+    assert set(alone["warnings"]) <= set(papers["study"].warnings)
+    assert alone["turns"] is None  # the devices lead the track another way
+    assert alone["bowl_depth_mm"] == pytest.approx(papers["bowl"]["bowl_depth_mm"], rel=1e-6)
+    assert alone["full_bowl"]["mass_kg"] == pytest.approx(papers["bowl"]["full_bowl"]["mass_kg"], rel=1e-5)
+    assert alone["spring_angle_deg"] == pytest.approx(papers["bowl"]["spring_angle_deg"])
