@@ -16,7 +16,7 @@ NAMES := $(basename $(notdir $(PARTS)))
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .SUFFIXES:
-.PHONY: help demo test check lint format all-aspects inertia maps bench mutants docs release fuzz clean distclean
+.PHONY: help demo test check test-lowest test-newest test-without lint format all-aspects inertia maps bench mutants docs release fuzz clean distclean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -29,12 +29,39 @@ demo: $(READY) ## resting table and picture of a bracket, sliding map of a bowl
 	@echo
 	@echo "Pictures:"
 	@ls results/$(DEMO)/*.png results/bowl/*.png
+	@echo
+	@echo "The main job, from a part and a rate to a bowl that feeds it:"
+	@echo "  $(FEEDER) design parts/washer_m6.stl --target 40/min -o results"
 
 # Bytecode is kept where Python is told not to: without it each process of the suite compiles what it imports.
 test: lint ## format, lint, types and every test, warnings as errors
 	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n 2 --dist worksteal
 
-check: test ## the same: all that CI runs
+check: test ## the same, as CI runs it first
+
+# What takes long is left out here: it asks more of the processor, and nothing more of the libraries.
+SHORT := -m "not long and not thorough" -n 2 --dist worksteal
+
+# Old libraries warn of what newer ones beside them will no longer take: nothing of ours.
+test-lowest: ## the shorter tests with the lowest versions that pyproject.toml allows, in .venv-lowest
+	$(PYTHON) -m venv --clear .venv-lowest
+	.venv-lowest/bin/python -m pip install --quiet --disable-pip-version-check uv
+	.venv-lowest/bin/uv pip install --quiet --python .venv-lowest/bin/python --resolution lowest-direct --editable '.[test]'
+	NUMBA_CACHE_DIR=$(CURDIR)/.venv-lowest/numba .venv-lowest/bin/python -m pytest $(SHORT) -W ignore::DeprecationWarning $(TESTS)
+
+PLACES := $(filter-out %/shims,$(subst :, ,$(PATH))) $(wildcard $(HOME)/.pyenv/versions/*/bin)
+NEWEST ?= $(shell ls $(PLACES:%=%/python3.??) 2> /dev/null | awk -F / '{ print $$NF, $$0 }' | sort -V | tail -n 1 | cut -d ' ' -f 2)
+
+test-newest: ## the shorter tests with the newest Python and libraries there are, in .venv-newest
+	$(NEWEST) -m venv --clear .venv-newest
+	.venv-newest/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	NUMBA_CACHE_DIR=$(CURDIR)/.venv-newest/numba .venv-newest/bin/python -m pytest $(SHORT) $(TESTS)
+
+WITHOUT := lxml networkx cascadio distributed jsonschema OCP pinocchio spatialmath chromium prusa-slicer
+
+test-without: $(READY_TO_TEST) ## the shorter tests with each extra missing in turn: WITHOUT="lxml OCP" names fewer
+	for name in $(WITHOUT); do echo "without $$name"; PYTHONPATH=$(CURDIR)/tests/without FEEDER_WITHOUT=$$name \
+	  $(BIN)/python -m pytest $(SHORT) $(TESTS) || exit 1; done
 
 lint: $(READY_TO_TEST) ## format, lint and types, nothing changed
 	$(BIN)/ruff format --check .
@@ -135,7 +162,7 @@ clean: ## remove results and caches
 	rm -rf results build .pytest_cache .ruff_cache .mypy_cache .hypothesis
 
 distclean: clean ## remove .venv as well
-	rm -rf .venv *.egg-info
+	rm -rf .venv .venv-lowest .venv-newest *.egg-info
 
 $(READY): pyproject.toml
 	$(PYTHON) -m venv .venv

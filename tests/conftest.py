@@ -3,7 +3,9 @@
 import base64
 import contextlib
 import gc
+import importlib.util
 import os
+import shutil
 import signal
 from collections import OrderedDict
 
@@ -59,7 +61,36 @@ def _early(item):
     return item.path.parent.name in EARLY and item.path.name not in ("test_on_mesh.py", "test_naming.py")
 
 
+# What `make test` does not install, and how to get it; a test that needs it skips without it.
+EXTRAS = {
+    "OCP": "pip install 'feederscrew[cad]'",
+    "pinocchio": "pip install 'feederscrew[oracle]'",
+    "spatialmath": "pip install 'feederscrew[oracle]'",
+    "chromium": "install Debian's package chromium",
+    "prusa-slicer": "install Debian's package prusa-slicer",
+}
+PROGRAMS = ("chromium", "prusa-slicer")
+
+
+def _is_here(name):
+    """Whether a package can be imported, or a program be run."""
+    return (shutil.which(name) if name in PROGRAMS else importlib.util.find_spec(name)) is not None
+
+
+@pytest.hookimpl(tryfirst=True)  # before pytest selects by markers
 def pytest_collection_modifyitems(items):
+    """Mark what needs an extra, skip it where that is missing, and put all in order."""
+    for item in items:
+        for name in (name for marker in item.iter_markers("needs") for name in marker.args):
+            if name in EXTRAS:
+                item.add_marker("extra")
+            if not _is_here(name):
+                mend = EXTRAS.get(name, "pip install 'feederscrew[test]'")
+                item.add_marker(pytest.mark.skip(reason=f"needs {name}: {mend}"))
+    _sort(items)
+
+
+def _sort(items):
     """Begin with solids, while the trial is compiled, then what takes longest: nobody is left with it."""
     items.sort(key=lambda item: (item.path.parent.name != EARLY[0], item.get_closest_marker("long") is None))
 

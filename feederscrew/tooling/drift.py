@@ -6,12 +6,12 @@ Source: averaged Coulomb friction on a vibrating surface; docs/tooling.md.
 import functools
 import math
 
-from feederscrew.tooling.devices.base import STANDARD_GRAVITY
+from feederscrew.units import GRAVITY
 
 HALVINGS = 60
 
 
-def speed(push, friction, swing, gravity=STANDARD_GRAVITY):
+def speed(push, friction, swing, gravity=GRAVITY):
     """Return the velocity [m/s] at which a steady sideways push moves what slips on a vibrating track.
 
     Source: v = a pi V / (2 mu g ln(4 V / v)); docs/tooling.md, "1. The method".
@@ -72,7 +72,7 @@ def force_to_clear(one, wide, height):
     It drifts to the free edge in the time it takes to pass, or slides outright; or it tips over the side of
     its foot, where force times height is beyond weight times the way from its centre of mass to that side.
     """
-    side, weight = one.foot_reach, one.posture.mass * STANDARD_GRAVITY
+    side, weight = one.foot_reach, one.posture.mass * one.gravity
     tips = weight * side / height if height > 0.0 else math.inf
     return min(_force_to_shift(one, wide), tips)
 
@@ -80,12 +80,12 @@ def force_to_clear(one, wide, height):
 @functools.lru_cache(maxsize=1024)
 def _force_to_shift(one, wide):
     """The least sideways force [N] that drifts an orientation off the track over a way, or slides it off."""
-    weight, friction = one.posture.mass * STANDARD_GRAVITY, max(one.grip, 1e-3)
+    weight, friction = one.posture.mass * one.gravity, max(one.grip, 1e-3)
     way = max(one.track.width - one.distance, 0.0)
     low, high = 0.0, friction * weight
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        found = speed(middle / one.posture.mass, friction, one.swing)
+        found = speed(middle / one.posture.mass, friction, one.swing, one.gravity)
         gone = found * wide >= way * one.speed
         low, high = (low, middle) if gone else (middle, high)
     return high

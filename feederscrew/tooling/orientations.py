@@ -18,6 +18,7 @@ from feederscrew.tooling import foot as feet
 from feederscrew.tooling import touching
 from feederscrew.tooling.sensor_views import area
 from feederscrew.tooling.touching import silhouette
+from feederscrew.units import GRAVITY
 
 ROUNDED = 5e-5  # [m] by which the borders of a cut are rounded: less depth does not catch
 FALLEN = 2.0  # time constants after which a part that tips is lost
@@ -48,6 +49,7 @@ class Orientation:
     grip: float = 0.0  # [1] friction of the track it travels on: 0 of one that is only placed
     speed: float = 0.0  # [m/s] at which it travels
     swing: float = 0.0  # [m/s] amplitude of the track's velocity along it
+    gravity: float = GRAVITY  # [m/s2] of the bowl it travels in: standard gravity of one only placed
     wall_grip: float = 0.0  # [1] friction of the wall
     climbs: float = 0.0  # [m] height of an edge that the speed of the drive lifts it over
     groove: float = 0.0  # [rad] of both faces of the groove that it lies in; 0 on a track with a wall
@@ -229,6 +231,7 @@ def travelling(found, bowl):
             grip=float(bowl.friction.static),
             speed=along,
             swing=swing,
+            gravity=float(bowl.gravity),
             wall_grip=float(bowl.friction.wall),
             climbs=float(ROUNDED + fastest**2 / (2.0 * bowl.gravity)),
             may_roll_back=bool(not held and rolls_across(one)),

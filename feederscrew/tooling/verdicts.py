@@ -6,7 +6,7 @@ import shapely
 from feederscrew.mechanics.wall.lying_in_groove import becomes
 from feederscrew.tooling import drift, sensor_views, turning
 from feederscrew.tooling import foot as feet
-from feederscrew.tooling.devices.base import STANDARD_GRAVITY, UNSURE, Verdict, share
+from feederscrew.tooling.devices.base import UNSURE, Verdict, share
 from feederscrew.tooling.devices.pieces import GRIP
 from feederscrew.tooling.falling_through import falls_through
 from feederscrew.tooling.hanging import Hanging, hanging_margin, head_first, tip_goes_down
@@ -91,12 +91,13 @@ class Meeting:
         """
         if self.hanging:
             return self.one.distance - self.one.track.width
-        weight = self.one.posture.mass * STANDARD_GRAVITY
+        gravity = self.one.gravity
+        weight = self.one.posture.mass * gravity
         left = force - self.grip * max(weight + down, 0.0)
         if left <= 0.0:
             return self.one.distance - self.one.track.width
         speed = left * seconds / self.one.posture.mass
-        way = 0.5 * speed * seconds + speed**2 / (2.0 * STANDARD_GRAVITY * self.grip)
+        way = 0.5 * speed * seconds + speed**2 / (2.0 * gravity * self.grip)
         return float(way - (self.one.track.width - self.one.distance))
 
     @property

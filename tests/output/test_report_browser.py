@@ -34,7 +34,7 @@ from feederscrew.tooling.orientations import orientations
 LOOKED_AT = True
 
 BRACKET = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+BROWSER = shutil.which("chromium")
 FLAGS = (
     "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
     "--disable-component-update --disable-sync --use-gl=angle --use-angle=swiftshader "
@@ -74,7 +74,7 @@ PROBE = """<script>
 </script>
 </body>"""
 
-pytestmark = pytest.mark.skipif(BROWSER is None, reason="no Chromium here: install Debian's package chromium")
+pytestmark = pytest.mark.needs("chromium")
 
 
 @pytest.fixture(scope="module")

@@ -12,6 +12,8 @@ from feederscrew.errors import MeshError
 from feederscrew.part import load
 from feederscrew.part.reading import source, step
 
+NEEDS_3MF = pytest.mark.needs("lxml", "networkx")
+
 MODEL = (
     '<model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>'
     '<object id="1" type="model"><mesh><vertices>{}</vertices><triangles>{}</triangles></mesh></object>{}'
@@ -38,6 +40,7 @@ def nested(components, build):
     return file.getvalue()
 
 
+@NEEDS_3MF
 @pytest.mark.parametrize(
     ("components", "build", "reason"),
     [
@@ -57,12 +60,14 @@ def test_nested_components_are_counted_before_they_are_placed(tmp_path, componen
     assert time.perf_counter() - start < 5.0
 
 
+@NEEDS_3MF
 def test_a_part_of_one_component_is_read(tmp_path):
     path = tmp_path / "part.3mf"
     path.write_bytes(nested([(2, [1])], 2))
     assert load(path).volume == pytest.approx(9e-3**3 / 6.0)
 
 
+@pytest.mark.needs("cascadio")
 def test_a_step_file_that_takes_too_long_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(step, "PATIENCE", 1)
     monkeypatch.setattr(step, "CONVERT", "import time; time.sleep(30)")

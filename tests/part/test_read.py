@@ -27,6 +27,8 @@ AGAIN = "export the part again"
 WHOLE = f"{AGAIN}, or copy the whole file"
 NO_MESH = "export the part as STL, OBJ, PLY, OFF, GLB, 3MF or STEP"
 FORMATS = ("stl", "stl_ascii", "obj", "ply", "off", "glb", "3mf")
+NEEDS_3MF, NEEDS_STEP = pytest.mark.needs("lxml", "networkx"), pytest.mark.needs("cascadio")
+EVERY_FORMAT = [pytest.param(name, marks=NEEDS_3MF if name == "3mf" else ()) for name in FORMATS]
 
 
 def exported(format, triangles=BOX):
@@ -44,7 +46,7 @@ def suffix(format):
     return format.removesuffix("_ascii")
 
 
-@pytest.mark.parametrize("format", FORMATS)
+@pytest.mark.parametrize("format", EVERY_FORMAT)
 def test_every_format_gives_the_same_box(tmp_path, format):
     path = files.written(tmp_path, exported(format), f"box.{suffix(format)}")
     part = load(path, units="mm")
@@ -56,7 +58,7 @@ def test_every_format_gives_the_same_box(tmp_path, format):
     assert part.warnings == (warned if format == "glb" else ())
 
 
-@pytest.mark.parametrize("format", FORMATS)
+@pytest.mark.parametrize("format", EVERY_FORMAT)
 def test_standard_input_tells_its_format_by_its_bytes(format):
     part = load("-", units="mm", stdin=io.BytesIO(exported(format)))
     assert mm3(part) == pytest.approx(VOLUME, rel=1e-6)
@@ -71,7 +73,7 @@ def test_standard_input_tells_its_format_by_its_bytes(format):
         ("obj", "box.stl", "OBJ"),
         ("ply", "box.stl", "PLY"),
         ("off", "box.step", "OFF"),
-        ("3mf", "box.stl", "3MF"),
+        pytest.param("3mf", "box.stl", "3MF", marks=NEEDS_3MF),
     ],
 )
 def test_content_goes_before_the_name(tmp_path, format, name, title):
@@ -80,6 +82,7 @@ def test_content_goes_before_the_name(tmp_path, format, name, title):
     assert part.warnings == (f"named {Path(name).suffix} but its content is {title}: read as that",)
 
 
+@NEEDS_STEP
 def test_step_is_read_in_the_unit_it_was_drawn_in():
     part = load(PARTS / "hexbolt_m8x25.step")
     assert part.units == "mm"
@@ -90,6 +93,7 @@ def test_step_is_read_in_the_unit_it_was_drawn_in():
     assert given.warnings == ("STEP files state their unit, here mm: the units asked for, in, are not used",)
 
 
+@NEEDS_STEP
 def test_step_in_inches(tmp_path):
     text = (PARTS / "hexbolt_m8x25.step").read_bytes()
     inches = text.replace(b"SI_UNIT(.MILLI.,.METRE.)", b"SI_UNIT(.CENTI.,.METRE.)")
@@ -104,6 +108,7 @@ def test_glb_is_in_metres(tmp_path):
     assert mm3(part) == pytest.approx(VOLUME, rel=1e-5)
 
 
+@NEEDS_3MF
 @pytest.mark.parametrize(
     ("unit", "millimetres", "ours"),
     [("inch", 25.4, "in"), ("micron", 1e-3, "um"), ("meter", 1e3, "m"), ("foot", 304.8, "in")],
@@ -113,6 +118,14 @@ def test_3mf_states_its_unit(tmp_path, unit, millimetres, ours):
     part = load(files.written(tmp_path, data, "box.3mf"))
     assert part.units == ours
     assert mm3(part) == pytest.approx(VOLUME, rel=1e-5)
+
+
+def archived(name):
+    """A ZIP archive with one empty member."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as archive:
+        archive.writestr(name, b"")
+    return out.getvalue()
 
 
 def rezipped(data, old, new):
@@ -313,6 +326,7 @@ def test_missing_extra_is_named(tmp_path, monkeypatch, data, name, module, line)
     assert files.refused(files.written(tmp_path, data, name)) == line
 
 
+@NEEDS_3MF
 def test_damaged_file_writes_nothing_to_stderr(tmp_path, capfd):
     for format in FORMATS:
         data = exported(format)

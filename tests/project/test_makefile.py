@@ -88,6 +88,7 @@ def test_the_demo_says_where_the_pictures_are(tree):
     said = make(tree, "demo")
     assert "results/lbracket_30x20x15/aspects.png" in said
     assert "results/bowl/slide.png" in said
+    assert "feeder design parts/" in said[-400:]
 
 
 @pytest.mark.parametrize(("goal", "extra"), [("demo", "--editable ."), ("test", "--editable '.[test]'")])
@@ -110,7 +111,18 @@ def test_test_formats_lints_and_tests(tree):
         assert step in steps
 
 
-def test_ci_runs_make_test():
+def test_ci_runs_what_a_newcomer_runs_before_it_installs_more():
     script = ROOT / ".ci/run"
     assert os.access(script, os.X_OK)
-    assert script.read_text().splitlines()[-1] == "make test"
+    steps = [line.strip() for line in script.read_text().splitlines() if not line.startswith("#")]
+    demo, test = steps.index("make --quiet demo > /dev/null"), steps.index("make test")
+    assert demo < test and not any("install" in step for step in steps[:test])
+    assert "-m pytest -m extra" in steps[-1]
+
+
+def test_the_newest_python_is_sought_by_its_number(tree):
+    for name in ("python3.9", "python3.11", "python3.12"):
+        (tree / "bin" / name).parent.mkdir(exist_ok=True)
+        (tree / "bin" / name).write_text("")
+    tried = make(tree, "-n", "test-newest", f"PLACES={tree / 'bin'}").splitlines()
+    assert tried[0] == f"{tree / 'bin/python3.12'} -m venv --clear .venv-newest"

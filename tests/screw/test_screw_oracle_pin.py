@@ -17,7 +17,7 @@ from feederscrew.screw import (
 )
 
 pin = pytest.importorskip("pinocchio")
-pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
+pytestmark = [pytest.mark.filterwarnings("ignore::DeprecationWarning"), pytest.mark.needs("pinocchio")]
 
 SIZES = [1e-9, 1e-4, 1.0, 1e4, 1e9]
 seeds = pytest.mark.parametrize("seed", range(20))

@@ -6,6 +6,7 @@ import pytest
 from feederscrew.screw import Displacement, Twist, displacement, finite_twist
 
 spatialmath = pytest.importorskip("spatialmath")
+pytestmark = pytest.mark.needs("spatialmath")
 
 SIZES = [1e-9, 1e-3, 1.0, 1e3, 1e9]
 

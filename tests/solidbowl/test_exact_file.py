@@ -14,8 +14,8 @@ from feederscrew.solidbowl.exact.exact_file import step_file
 from feederscrew.solidbowl.plan import Asked
 
 
+@pytest.mark.needs("OCP")
 def test_what_is_opened_again_is_the_bowl():
-    pytest.importorskip("OCP.STEPControl")
     asked, track = Asked(left=True, outlet_angle=0.5), replace(TRACK, bank=np.radians(6.0))
     made = body(planned(CHAINS["narrowed and rails"], track=track, asked=asked, turns=0.6))
     found = step_file(made)
@@ -34,6 +34,7 @@ def test_what_to_install(monkeypatch):
 
 
 @pytest.mark.long
+@pytest.mark.needs("OCP")
 @pytest.mark.parametrize(
     ("shape", "turns", "climb", "width"),
     [
@@ -41,7 +42,6 @@ def test_what_to_install(monkeypatch):
     ],
 )
 def test_a_wall_that_steps_outwards_is_the_bowl_of_the_facets(shape, turns, climb, width):
-    pytest.importorskip("OCP.STEPControl")
     track = replace(TRACK, climb=np.radians(climb), width=width)
     made = body(planned(CHAINS["none"], track=track, asked=Asked(shape=shape), turns=turns))
     found = step_file(made)

@@ -111,6 +111,7 @@ def test_a_tip_is_a_ledge_beside_a_lower_track(shape):
     ways_down(solid)
 
 
+@pytest.mark.needs("OCP")
 def test_a_step_higher_than_the_plate_is_one_exact_body():
     """Two runs of track that do not meet were united before what joins them: one of them was lost."""
     plan = planned((TIP,))

@@ -20,7 +20,7 @@ COARSE = ["--layer-height", "1", "--first-layer-height", "1", "--nozzle-diameter
           "--fill-density", "0%", "--bed-shape", "0x0,400x0,400x400,0x400"]  # fmt: skip
 
 
-@pytest.mark.skipif(SLICER is None, reason="no slicer is installed")
+@pytest.mark.needs("prusa-slicer")
 def test_a_slicer_takes_it_without_repair(tmp_path):
     solid = body(planned(CHAINS["narrowed and rails"], name="pla"))
     files = {"bowl.stl": printing.stl(solid), "bowl.3mf": printing.threemf(solid, "bowl")}
@@ -33,7 +33,7 @@ def test_a_slicer_takes_it_without_repair(tmp_path):
         assert float(found["volume"]) == pytest.approx(solid.volume * 1e9, rel=1e-4)
 
 
-@pytest.mark.skipif(SLICER is None, reason="no slicer is installed")
+@pytest.mark.needs("prusa-slicer")
 def test_a_slicer_slices_both_files(tmp_path):
     solid = body(planned(CHAINS["gap"], asked=FLAT, track=STEEP, name="pla"))
     for name, content in (("bowl.stl", printing.stl(solid)), ("bowl.3mf", printing.threemf(solid, "bowl"))):

@@ -76,9 +76,9 @@ def test_it_begins_where_it_is_listed_and_ends_at_a_bank():
     assert early.way.angle(grooves_wall.spans(early)[0][0]) == pytest.approx(-0.85 * 2.0 * np.pi)
 
 
+@pytest.mark.needs("OCP")
 def test_the_wall_of_a_cylinder_is_cut_exactly():
     """A corner of the cut on the wall itself was not cut at all."""
-    pytest.importorskip("OCP.STEPControl")
     plan, volumes = grooved("from the entry")[0].plan, []
     for kit, measured in ((facets, lambda one: one.volume()), (exact_body, exact_faces.volume)):
         whole = _wall(plan, kit)

@@ -58,7 +58,7 @@ def test_a_jet_over_what_lies_flat_blows_off_what_stands():
 
 def test_the_force_that_tips_is_weight_times_foot_over_height():
     force = drift.force_to_clear(replace(TALL, swing=0.0), 1.0, 0.015)
-    assert force == pytest.approx(TALL.posture.mass * 9.80665 * 2.5e-3 / 0.015, rel=1e-6)
+    assert force == pytest.approx(TALL.posture.mass * BOWL.gravity * 2.5e-3 / 0.015, rel=1e-6)
 
 
 def test_a_sorter_needs_room_that_a_steeper_way_makes():
@@ -282,14 +282,14 @@ def test_a_jet_presses_a_slope_down_and_lifts_what_overhangs():
 @pytest.mark.parametrize(("push", "press"), [(1.3, 0.0), (1.9, 0.7), (1.1, -0.4), (0.9, 0.3), (9.0, -2.0)])
 def test_a_pulse_carries_a_part_as_far_as_its_motion_in_small_steps(push, press):
     """So many times its weight times friction, for 8 ms, pressed down or lifted; then friction stops it."""
-    friction, step = awkward.bowl().friction.static, 1e-6
+    friction, gravity, step = awkward.bowl().friction.static, awkward.bowl().gravity, 1e-6
     for one in awkward.lying()[::4]:
         mass = one.posture.mass
-        force, down = push * friction * mass * 9.80665, press * mass * 9.80665
+        force, down = push * friction * mass * gravity, press * mass * 9.80665
         speed = way = 0.0
         for _ in range(8000):
-            speed += step * max((force - friction * max(mass * 9.80665 + down, 0.0)) / mass, 0.0)
+            speed += step * max((force - friction * max(mass * gravity + down, 0.0)) / mass, 0.0)
             way += step * speed
-        way += speed**2 / (2.0 * friction * 9.80665)
+        way += speed**2 / (2.0 * friction * gravity)
         left = max(way, 0.0) - (one.track.width - one.distance)
         assert Meeting(one).blown(force, down, 8e-3) == pytest.approx(left, rel=1e-3)

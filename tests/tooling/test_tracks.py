@@ -145,4 +145,4 @@ def test_the_force_that_shifts_does_not_hang_on_the_height(block):
     one = block[0][0]
     low, high = (drift.force_to_clear(one, 0.02, height) for height in (0.0, 1.0))
     assert low == drift._force_to_shift(one, 0.02)
-    assert high == pytest.approx(one.posture.mass * 9.80665 * one.foot_reach)
+    assert high == pytest.approx(one.posture.mass * one.gravity * one.foot_reach)

@@ -15,7 +15,6 @@ from feederscrew.tooling.devices.pieces import Hole, Standing, across
 CLOSE = 1e-9  # [m] a part this much over a limit still passes
 UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
 MM = units.factor("mm", "length")
-STANDARD_GRAVITY = 9.80665  # [m/s2]
 WRITTEN_STEP_M = 1e-7  # [m] to which a length is written
 RETURNED, STOPPED, CARRIED = "returned", "stopped", "carried"  # what becomes of a part at a device
 LONG = 3.0  # of the part's size: a hole that goes on along the track is as good as endless

@@ -282,6 +282,7 @@ def test_the_chapter_of_a_report(target):
     assert page(report(part.load(PART)), chapters=[row]).sections == ()
 
 
+@pytest.mark.needs("lxml", "networkx")  # reads its own 3MF again
 def test_the_bowl_as_a_solid(run, tmp_path):
     config = tmp_path / "gap.yaml"
     config.write_text("devices:\n  - gap: 9 mm\n")
