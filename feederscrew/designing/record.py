@@ -10,6 +10,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.designing.hazards.risks import Risk
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.part.record import Part
+from feederscrew.records import Shown
 from feederscrew.running import RunSettings
 from feederscrew.studies.tooling import ToolingStudy, listed
 from feederscrew.tooling.devices.base import Device
@@ -132,7 +133,7 @@ class FilledQueue:
 
 
 @dataclass(frozen=True, eq=False)
-class DesignStudy:
+class DesignStudy(Shown):
     """A bowl for a part and a rate, with everything that was tried on the way."""
 
     part: Part
