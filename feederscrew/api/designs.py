@@ -1,7 +1,7 @@
 """From a part and a rate to a bowl that its own trial confirms."""
 
 from collections.abc import Callable, Collection, Sequence
-from typing import Unpack
+from typing import Unpack, overload
 
 from feederscrew import bowl as bowls
 from feederscrew.api import asked
@@ -16,6 +16,39 @@ from feederscrew.part import Part
 from feederscrew.studies.rate import LEAST, Shares
 from feederscrew.studies.wishes import listed as names_of
 from feederscrew.units import listed
+
+
+class DesignOptions(BowlSettings, total=False):
+    """The keywords of ``design`` for a type checker: of one part and of several it returns two records."""
+
+    given: Collection[str]
+    aspect: str | None
+    heading: Quantity | None
+    up: str | Sequence[str]
+    outcome: str
+    without: str | Sequence[str]
+    diameter: Quantity | tuple[Quantity, Quantity] | None
+    tolerance: Quantity
+    rule: str
+    budget: int
+    draws: int
+    seed: int
+    jobs: int
+    known: Shares | None
+    progress: Callable[[str], None] | None
+    overrides: Overrides
+
+
+@overload
+def design(
+    part: Part, target: Quantity, bowl: Bowl | None = None, **options: Unpack[DesignOptions]
+) -> DesignStudy: ...
+
+
+@overload
+def design(
+    part: Sequence[Part], target: Quantity, bowl: Bowl | None = None, **options: Unpack[DesignOptions]
+) -> FamilyStudy: ...
 
 
 @with_settings
