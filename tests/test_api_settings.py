@@ -44,7 +44,7 @@ def bowl(tmp_path):
 
 def test_each_key_with_a_name_of_its_own_is_a_keyword_and_no_other():
     missing = {key.word for key in KEYS} - set(SHARED) - set(BowlSettings.__optional_keys__)
-    assert missing == set(), "add these lines to DriveSettings of feederscrew/api/bowl_settings.py"
+    assert missing == set(), "run docs/bowl_file.py"
     assert set(BowlSettings.__optional_keys__) == {key.word for key in KEYS} - set(SHARED)
 
 

@@ -30,7 +30,7 @@ class DriveSettings(TypedDict, total=False):
     Their meanings: docs/bowl_file.md.
     """
 
-    # drive
+    # keys, written by docs/bowl_file.py
     amplitude: Setting
     peak_to_peak: Setting
     frequency: Setting
@@ -39,21 +39,17 @@ class DriveSettings(TypedDict, total=False):
     phase: Setting
     second_harmonic: Setting
     second_harmonic_phase: Setting
-    # friction
     static: Setting
     kinetic: Setting
     static_backward: Setting
     kinetic_backward: Setting
     wall: Setting
-    # of the place
     gravity: Setting
-    # track
     climb: Setting
     bank: Setting
     radius: Setting
     width: Setting
     hand: Setting
-    # machine
     bowl_mass: Setting
     bowl_inertia: Setting
     base_inertia: Setting
@@ -75,7 +71,6 @@ class DriveSettings(TypedDict, total=False):
     bolts: Setting
     bolt_hole: Setting
     bolt_circle: Setting
-    # sizing
     least_diameter: Setting
     diameter_per_length: Setting
     diameter_per_width: Setting
@@ -114,6 +109,7 @@ class DriveSettings(TypedDict, total=False):
     outlet_angle: Setting
     drains: Setting
     drain_hole: Setting
+    # end of keys
 
 
 class BowlSettings(DriveSettings, total=False):
