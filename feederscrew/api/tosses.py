@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Unpack
 
 from feederscrew.api import asked
-from feederscrew.api.asked import Condition
+from feederscrew.api.asked import Condition, Quantity
 from feederscrew.api.bowl_settings import DriveSettings, Overrides, with_settings
 from feederscrew.bowl import Bowl
 from feederscrew.part import Part
@@ -70,7 +70,7 @@ def shake(
     *,
     launch: str = "feed",
     drops: int | None = None,
-    seconds: float | None = None,
+    seconds: Quantity | None = None,
     seed: int = 1,
     jobs: int = 1,
     fall: Condition = None,
@@ -92,7 +92,7 @@ def shake(
         As for ``drop``.
     drops : int, optional
         Parts on each plate; 400 without it.
-    seconds : float, optional [s]
+    seconds : str or float [s], optional
         How long each is followed; 5 without it.
     seed, jobs, fall, spin, speed, restitution, friction
         As for ``drop``; restitution and friction are each bowl's unless given.
@@ -117,7 +117,7 @@ def shake(
         launch,
         ranges,
         drops=asked.count("drops", drops),
-        seconds=seconds,
+        seconds=None if seconds is None else asked.amount("seconds", seconds, "time", plates.LEAST),
         seed=seed,
         jobs=jobs,
     )

@@ -34,7 +34,7 @@ def _part(part: Any) -> str:
         return f"{part.name}: a part card, {mass}, {counted(len(part.aspects), 'aspect')}"
     size = " x ".join(number(side, MM) for side in np.ptp(part.vertices, axis=0))
     open_surface = ", open surface" * part.open_surface
-    return f"{part.name}: {size} mm, {mass} of {part.material}, {len(part.faces)} facets{open_surface}"
+    return f"{part.name}: {size} mm, {mass} ({part.material}), {len(part.faces)} facets{open_surface}"
 
 
 def _bowl(bowl: Any) -> str:
