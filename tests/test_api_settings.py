@@ -3,6 +3,7 @@
 import inspect
 from collections import Counter
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -12,6 +13,7 @@ from feederscrew.api.bowl_settings import BowlSettings
 from feederscrew.bowl.schema import KEYS
 from feederscrew.bowl.unbalance import KEYS as TOGETHER
 
+ROOT = Path(__file__).parent.parent
 FILE = """
 drive: {frequency: 60 Hz, peak_to_peak: 0.5 mm}
 friction: {static: 0.5}
@@ -142,3 +144,22 @@ def test_every_function_of_a_bowl_takes_settings(monkeypatch):
         names = set(inspect.signature(function).parameters) if inspect.isfunction(function) else set()
         if names & {"bowl", "bowls"} or name in without:
             assert taken <= names, name
+
+
+def test_a_design_keeps_what_its_bowl_was_read_from_and_the_settings(monkeypatch, bowl):
+    """As ``feeder design --config``: it kept the devices alone, without the names of the keys."""
+    from feederscrew.designing import loop
+
+    calls = []
+    monkeypatch.setattr(
+        loop, "design", lambda part, plain, given, request, **own: calls.append((plain, given))
+    )
+    part = fs.load(ROOT / "parts/washer_m6.stl")
+    fs.design(part, "60/min", fs.read_bowl(bowl), given={"track.width"}, climb="2 deg")
+    fs.design(part, "60/min", frequency="60 Hz")
+    (first, keys), (second, own) = calls
+    assert keys >= {"drive.frequency", "drive.peak_to_peak", "friction.static", "track.climb", "track.width"}
+    assert not {"track.radius", "drive.amplitude"} & keys and first.track.climb == pytest.approx(
+        0.0349, rel=1e-3
+    )
+    assert own == {"drive.frequency"} and second.drive.frequency == 60.0

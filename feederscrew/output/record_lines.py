@@ -82,9 +82,15 @@ def _rate(rate: Any) -> str:
     one, parts = rate.orientations.lying[rate.row], rate.parts
     low, value, high = (number(end * MINUTE) for end in (parts.low, parts.value, parts.high))
     return (
-        f"{one.aspect} at heading {number(one.heading, DEGREE)} deg: {value} parts/min ({low} to {high}), "
+        f"{_orientation(one)}: {value} parts/min ({low} to {high}), "
         f"efficiency {number(rate.efficiency, PERCENT)} %, purity {number(rate.purity, PERCENT)} %"
     )
+
+
+def _orientation(one: Any) -> str:
+    """An orientation in words: 'A at heading 90 deg', 'A hanging'."""
+    lying = f"at heading {number(one.heading, DEGREE)} deg"
+    return f"{one.aspect} {'hanging' if one.kind == 'hanging' else lying}"
 
 
 def _tune(study: Any) -> str:
@@ -140,7 +146,7 @@ def _machine(sheet: Any) -> str:
 
 def _tooling(study: Any) -> str:
     designs = [
-        f"{study.orientations[one.wanted].name} {'isolated' if one.isolated else 'not isolated'} by "
+        f"{_orientation(study.orientations[one.wanted])} {'isolated' if one.isolated else 'not isolated'} by "
         f"{', '.join(cut.device.kind for cut in one.cuts) or 'nothing'} "
         f"(efficiency {number(one.efficiency, PERCENT)} %, purity {number(one.purity, PERCENT)} %)"
         for one in study.designs
