@@ -145,15 +145,19 @@ def _machine(sheet: Any) -> str:
 
 
 def _tooling(study: Any) -> str:
-    designs = [
-        f"{_orientation(study.orientations[one.wanted])} {'isolated' if one.isolated else 'not isolated'} by "
-        f"{', '.join(cut.device.kind for cut in one.cuts) or 'nothing'} "
-        f"(efficiency {number(one.efficiency, PERCENT)} %, purity {number(one.purity, PERCENT)} %)"
-        for one in study.designs
-        if one is not None
-    ]
+    designs = [_isolated(study.orientations, one) for one in study.designs if one is not None]
     more = f"; {len(designs) - 4} more" if len(designs) > 4 else ""
     return f"{study.part.name}: {'; '.join(designs[:4])}{more}"
+
+
+def _isolated(orientations: Any, design: Any) -> str:
+    """A design in words: 'A at heading 90 deg isolated by wiper (efficiency 80 %, purity 100 %)'."""
+    where, cuts = _orientation(orientations[design.wanted]), [cut.device.kind for cut in design.cuts]
+    if not design.isolated and not cuts:
+        return f"{where} not isolated"
+    shares = f"efficiency {number(design.efficiency, PERCENT)} %, purity {number(design.purity, PERCENT)} %"
+    word = "isolated" if design.isolated else "not isolated"
+    return f"{where} {word} by {', '.join(cuts) or 'the devices of the bowl'} ({shares})"
 
 
 def _trial(study: Any) -> str:
