@@ -35,6 +35,14 @@ def test_every_public_name_is_there_and_no_other():
         fs.lod
 
 
+def test_a_shell_completes_the_names_of_the_library_only():
+    """It listed `sys`, `functools`, `importlib` and every folder that was imported."""
+    code = "import feederscrew.batch, feederscrew as fs; fs.rate; print(*[n for n in dir(fs) if n[0] != '_'])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
+    assert done.stdout.split() == sorted(fs.__all__) and done.stderr == ""
+    assert all(inspect.isfunction(one) or inspect.isclass(one) for one in map(fs.__getattr__, fs.__all__))
+
+
 def test_a_public_name_is_never_the_room_of_that_name():
     """Importing a room would put it in the place of the function."""
     code = "import feederscrew.tooling.isolating.chain, feederscrew.trial.course, feederscrew as fs; "
