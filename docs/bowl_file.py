@@ -1,16 +1,23 @@
-"""Bring docs/bowl_file.md up to date: the tables of keys and devices, from the JSON Schema.
+"""Bring docs/bowl_file.md up to date, and the keywords of the library that are keys of a bowl file.
 
-Example: python docs/bowl_file.py          (writes docs/bowl_file.md)
-         python docs/bowl_file.py --check  (status 1, and the differences, if it is out of date)
+The page has tables of keys and devices, from the JSON Schema; the keywords are those of `DriveSettings`.
+
+Example: python docs/bowl_file.py          (writes docs/bowl_file.md and feederscrew/api/bowl_settings.py)
+         python docs/bowl_file.py --check  (status 1, and the differences, if one is out of date)
 """
 
 import difflib
 import sys
+from collections import Counter
 from pathlib import Path
 
 from feederscrew.bowl import json_schema
+from feederscrew.bowl.schema import KEYS
+from feederscrew.dropping import conditions
 
 PAGE = Path(__file__).resolve().parent / "bowl_file.md"
+KEYWORDS = PAGE.parent.parent / "feederscrew" / "api" / "bowl_settings.py"
+BEGIN, END = "    # keys, written by docs/bowl_file.py\n", "    # end of keys\n"
 HEAD = "| Key | Default | From | To | Units | Meaning |\n|---|---|---|---|---|---|\n"
 
 
@@ -47,15 +54,28 @@ def between(text, name, content):
     return before + begin + content + end + rest.partition(end)[2]
 
 
+def with_keywords(text):
+    """Return the module with a keyword for each key whose name is in one section, and is none of a launch."""
+    count = Counter(key.word for key in KEYS)
+    words = [key.word for key in KEYS if count[key.word] == 1 and key.word not in conditions.KEYS]
+    before, _, rest = text.partition(BEGIN)
+    lines = "".join(f"    {word}: Setting\n" for word in words)
+    return before + BEGIN + lines + END + rest.partition(END)[2]
+
+
 def main():
     """Write or check; the exit status."""
-    old = PAGE.read_text(encoding="utf-8")
-    new = filled(old)
-    if "--check" in sys.argv:
-        sys.stdout.writelines(difflib.unified_diff(old.splitlines(True), new.splitlines(True), "page", "now"))
-        return int(old != new)
-    PAGE.write_text(new, encoding="utf-8")
-    return 0
+    status = 0
+    for path, make in ((PAGE, filled), (KEYWORDS, with_keywords)):
+        old = path.read_text(encoding="utf-8")
+        new = make(old)
+        if "--check" in sys.argv:
+            lines = difflib.unified_diff(old.splitlines(True), new.splitlines(True), path.name, "now")
+            sys.stdout.writelines(lines)
+            status |= int(old != new)
+        else:
+            path.write_text(new, encoding="utf-8")
+    return status
 
 
 if __name__ == "__main__":

@@ -9,13 +9,16 @@ from dataclasses import fields, is_dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from feederscrew.units import printable
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
 LONGEST = 360  # characters of a text in all,
 LONG = 44  # and of one field
-VIEWS = "feederscrew.output.record_views"
+MOST_LETTERS = 500  # of a text that says an answer
+VIEWS, LINES = "feederscrew.output.record_views", "feederscrew.output.record_lines"
 
 
 class Shown:
@@ -26,7 +29,16 @@ class Shown:
         cls.__repr__ = Shown.__repr__  # type: ignore[method-assign]  # or a dataclass makes its own
 
     def __repr__(self) -> str:
-        return text(self)
+        answer = import_module(LINES).answer(self)
+        if answer is None:
+            return text(self)
+        line = printable(answer)
+        line = line if len(line) <= MOST_LETTERS else f"{line[: MOST_LETTERS - 3]}..."
+        return f"{type(self).__name__}({line})"
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows: the answer and the table, of a part its view."""
+        return _view("html")(self)
 
     def to_frame(self, name: str | None = None) -> "DataFrame":
         """Return the table that the command of this record writes.
@@ -83,7 +95,7 @@ def text(record: Any) -> str:
 
 def _field(value: Any) -> str:
     """A field's value, or what kind of thing it is."""
-    if getattr(value, "shape", ()):
+    if isinstance(getattr(value, "shape", None), tuple) and value.shape:
         return f"<{' x '.join(map(str, value.shape))} array>"
     if isinstance(value, float):
         return f"{value:.6g}"
@@ -100,5 +112,5 @@ def _field(value: Any) -> str:
     return said if len(said) <= LONG else f"{said[: LONG - 3]}..."
 
 
-def _view(kind: str) -> Callable[[Any, str | None], Any]:
+def _view(kind: str) -> Callable[..., Any]:
     return getattr(import_module(VIEWS), kind)

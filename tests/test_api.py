@@ -35,6 +35,14 @@ def test_every_public_name_is_there_and_no_other():
         fs.lod
 
 
+def test_a_shell_completes_the_names_of_the_library_only():
+    """It listed `sys`, `functools`, `importlib` and every folder that was imported."""
+    code = "import feederscrew.batch, feederscrew as fs; fs.rate; print(*[n for n in dir(fs) if n[0] != '_'])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
+    assert done.stdout.split() == sorted(fs.__all__) and done.stderr == ""
+    assert all(inspect.isfunction(one) or inspect.isclass(one) for one in map(fs.__getattr__, fs.__all__))
+
+
 def test_a_public_name_is_never_the_room_of_that_name():
     """Importing a room would put it in the place of the function."""
     code = "import feederscrew.tooling.isolating.chain, feederscrew.trial.course, feederscrew as fs; "
@@ -144,19 +152,22 @@ def test_a_wrong_call_is_a_line_that_names_the_argument(bracket, call):
     assert str(caught.value) == WRONG[call]
 
 
-def test_an_unknown_keyword_of_a_search_is_told_with_those_that_are_known(bracket):
+def test_an_unknown_keyword_is_answered_with_those_that_are_known(bracket):
+    bowl = fs.read_bowl()
     for search in (fs.tooling, fs.trial):
-        with pytest.raises(TypeError, match="'colour' - known here are rule, "):
-            search(bracket, fs.read_bowl(), colour=1)
-    with pytest.raises(TypeError, match="'colour' - known here are aspect, up, "):
-        fs.design(bracket, "60/min", colour=1)
+        with pytest.raises(TypeError, match=r"'colour' - known are part, .*\bseed\b"):
+            search(bracket, bowl, colour=1)
+    for call in (fs.rate, fs.shares, fs.tune, fs.trial):
+        with pytest.raises(TypeError, match="did you mean 'seed'"):
+            call(bracket, bowl, sed=2)
+    with pytest.raises(TypeError, match="did you mean 'amplitude'"):
+        fs.convey(bowl, amplitud="0.3 mm")
+    with pytest.raises(TypeError, match=r"machine\.leaves.*sizing\.leaves"):
+        fs.convey(bowl, leaves=4)
 
 
-def test_quantities_of_a_search_are_texts_or_numbers(bracket):
-    from feederscrew.api import asked, chains
+def test_a_pair_of_quantities_is_one_or_the_smaller_and_the_larger():
+    from feederscrew.api import asked
 
-    found = asked.searched({"play": "0.2 mm", "seconds": "1 min", "step": 0.001, "up": "B"}, chains.SEARCH)
-    assert found.pop("up") == "B"
-    assert found == pytest.approx({"play": 2e-4, "seconds": 60.0, "step": 1e-3})
     assert asked.pair("diameter", "300 mm", "length") == pytest.approx((0.3, 0.3))
     assert asked.pair("diameter", (0.2, "1 m"), "length") == pytest.approx((0.2, 1.0))

@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 from os import PathLike
 from typing import Any, TypeAlias, TypedDict, cast
 
-from feederscrew import bowl as bowls
 from feederscrew import check
+from feederscrew.api.bowl_settings import Overrides, adjust_bowl
 from feederscrew.bowl import Bowl
 from feederscrew.dropping.conditions import KEYS
 from feederscrew.errors import ArgumentError
@@ -23,31 +23,14 @@ Condition: TypeAlias = Quantity | tuple[Quantity, Quantity] | None  # or the sma
 SI = {"length": "m", "angular velocity": "rad/s", "velocity": "m/s", "number": ""}
 PART = "give a Part, as load returns it"
 BOWL = "give a Bowl, as read_bowl returns it"
-
-
-class ProbabilitySource(TypedDict, total=False):
-    """Whose probabilities are taken: the keywords of every function that needs them."""
-
-    rule: str  # 'recommended' without it
-    launch: str  # on a floor at rest: 'place', 'drop', 'flip', 'roll' or 'feed'
-    probabilities: Path  # a file of counts in place of an answer of ours
-    fed: int  # parts onto the moving floor of the bowl; until the shares are known to 2 % without it
-    seed: int  # of these parts, 1 without it
-    known: Shares  # as ``shares`` returned it: nothing is computed again
-
-
-class AlongTrack(ProbabilitySource, total=False):
-    """And how parts stand on the track."""
-
-    gap: Quantity  # [m] between one part and the next
-    fill: float  # [1] share of the track that is occupied
+SEVERAL_BOWLS = f"{BOWL}, or several in a list"
 
 
 class BowlFile(TypedDict, total=False):
-    """The bowl of a function that sizes what the file leaves open: the keywords of ``read_bowl``."""
+    """The bowl of a report: keywords of ``read_bowl``."""
 
     path: Path | None
-    overrides: str | Sequence[str]
+    overrides: Overrides
 
 
 def a_part(part: object, *, mesh: bool = False) -> Part:
@@ -59,20 +42,20 @@ def a_part(part: object, *, mesh: bool = False) -> Part:
     return found
 
 
-def a_bowl(bowl: object) -> Bowl:
-    """Return the bowl; raises ArgumentError where it is none."""
+def a_bowl(bowl: object, overrides: Overrides = (), settings: Mapping[str, Any] | None = None) -> Bowl:
+    """Return the bowl with overrides and settings in it; raises ArgumentError where it is none."""
     check.kind("bowl", bowl, Bowl, BOWL)
-    return cast(Bowl, bowl)
+    return adjust_bowl(cast(Bowl, bowl), overrides, settings or {})
 
 
-def some_bowls(given: object) -> tuple[Bowl, ...]:
-    """Return one bowl, or several, as a tuple."""
-    if isinstance(given, Bowl):
-        return (given,)
-    found = several("bowls", given, Bowl, f"{BOWL}, or several in a list")
-    if not found:
+def some_bowls(
+    bowls: object, overrides: Overrides = (), settings: Mapping[str, Any] | None = None
+) -> tuple[Bowl, ...]:
+    """Return one bowl, or several, as a tuple, each with overrides and settings in it."""
+    several_bowls = (bowls,) if isinstance(bowls, Bowl) else several("bowls", bowls, Bowl, SEVERAL_BOWLS)
+    if not several_bowls:
         raise ArgumentError("bowls", "is empty", BOWL)
-    return found
+    return tuple(a_bowl(bowl, overrides, settings) for bowl in several_bowls)
 
 
 def the_aspects(found: object) -> Aspects:
@@ -94,6 +77,12 @@ def count(name: str, value: int | None, low: int = 1) -> int | None:
     if not float(check.argument(name, value, low)).is_integer():
         raise ArgumentError(name, f"is {value}", "give a whole number")
     return int(value)
+
+
+def whole(name: str, value: int, low: int = 1) -> int:
+    """Return a whole number from a lowest one."""
+    check.argument(name, value, low)
+    return cast(int, count(name, value, low))
 
 
 def several(name: str, given: object, wanted: type, mend: str) -> tuple[Any, ...]:
@@ -145,62 +134,19 @@ def pair(name: str, value: Any, dimension: str) -> tuple[float, float]:
     return low, high
 
 
-def searched(given: Mapping[str, Any], kinds: Mapping[str, str]) -> dict[str, Any]:
-    """Return the keywords of a search, quantities in SI units.
-
-    Parameters
-    ----------
-    given : dict
-        By name: a text or a number.
-    kinds : dict of str to str
-        What each may be: a dimension of ``units.UNITS``, 'share', 'count', 'seed', 'aspect', or 'any'
-        for what the search looks at itself.
-
-    Raises
-    ------
-    ArgumentError
-        If one is not what it may be; the line names it.
-    TypeError
-        If there is no such keyword.
-    """
-    _understood(given, tuple(kinds))
-    return {name: _as(name, value, kinds[name]) for name, value in given.items()}
-
-
-def _as(name: str, value: Any, kind: str) -> Any:
-    """One keyword of a search."""
-    if kind == "aspect":
-        return an_aspect(value)
-    if kind == "any" or value is None:
-        return value
-    if kind == "share":
-        return check.argument(name, value, 0.0, 1.0)
-    if kind in ("count", "seed"):
-        return count(name, value, 0 if kind == "seed" else 1)
-    return amount(name, value, kind, 0.0)
-
-
 def angle(name: str, value: Quantity | None) -> float | None:
     """Return an angle [rad] of '90 deg' or of radians; None stays None."""
     return None if value is None else amount(name, value, "angle")
 
 
-def conditions(given: Mapping[str, Condition]) -> dict[str, str | None]:
-    """Return the conditions of a launch as typed: '20 mm:50 mm'.
+def conditions(**ranges: Condition) -> dict[str, str | None]:
+    """Return the conditions of a launch that are given, as typed: '20 mm:50 mm'."""
+    return {name: _typed(name, value) for name, value in ranges.items() if value is not None}
 
-    Parameters
-    ----------
-    given : dict
-        By name: a text, a number in SI units, or the smaller and the larger of either.
 
-    Raises
-    ------
-    ArgumentError
-        If there is no such condition.
-    """
-    if strange := sorted(set(given) - set(KEYS)):
-        raise ArgumentError(strange[0], "is not a condition of a launch", f"give {listed(list(KEYS))}")
-    return {name: _typed(name, value) for name, value in given.items()}
+def share(name: str, value: float, low: float = 0.0) -> float:
+    """Return a share [1]; raises ArgumentError where it is below the lowest or above 1."""
+    return check.argument(name, value, low, 1.0)
 
 
 def an_aspect(name: str | None) -> str | None:
@@ -235,45 +181,26 @@ def surface(given: str | float | None) -> str | float | None:
     return None if given is None else check.argument("surface", given, 0.0)
 
 
-def rule(asked: ProbabilitySource) -> str:
-    """Return whose probabilities are asked for."""
-    return asked.get("rule", RECOMMENDED)
-
-
-def answered(part: Part, bowl: Bowl, asked: ProbabilitySource) -> Shares:
-    """Return the aspects of a part with the answer that was asked for."""
-    own: dict[str, Any] = dict(asked)
-    for name in ("gap", "fill"):
-        own.pop(name, None)
-    own["rule"] = rule(asked)
-    known = own.pop("known", None)
-    _understood(own, ("rule", "launch", "probabilities", "fed", "seed"))
-    if own.get("probabilities") is not None:
-        a_file("probabilities", own["probabilities"])
-    own["fed"] = count("fed", own.get("fed"))
-    own["seed"] = count("seed", own.pop("seed", 1), 0)
-    return shares(part, bowl, **own) if the_shares(known) is None else known
-
-
-def settings(asked: BowlFile) -> tuple[Any, ...]:
-    """Return the settings of a bowl file with overrides."""
-    _understood(asked, ("path", "overrides"))
-    path = asked.get("path")
-    path = None if path is None else a_file("path", path)
-    return bowls.settings(path, overrides(asked.get("overrides", ())))
-
-
-def overrides(given: object) -> tuple[str, ...]:
-    """Return the settings that go before a file's, of one text or of several."""
-    if isinstance(given, str):
-        return (given,)
-    return several("overrides", given, str, "give texts, 'drive.frequency=50 Hz'")
-
-
-def _understood(given: Mapping[str, object], names: Sequence[str]) -> None:
-    """Raise the TypeError of a keyword that is not one of some names, and say those."""
-    if strange := sorted(set(given) - set(names)):
-        raise TypeError(f"unexpected keyword argument {strange[0]!r} - known here are {listed(names)}")
+def probabilities(
+    part: Part,
+    bowl: Bowl,
+    *,
+    rule: str = RECOMMENDED,
+    launch: str | None = None,
+    probabilities: Path | None = None,
+    fed: int | None = None,
+    seed: int = 1,
+    known: Shares | None = None,
+) -> Shares:
+    """Return the aspects of a part with the answer that was asked for; see ``rate``."""
+    if probabilities is not None:
+        a_file("probabilities", probabilities)
+    count("fed", fed)
+    count("seed", seed, 0)
+    if (shared := the_shares(known)) is not None:
+        return shared
+    own = {"launch": launch, "probabilities": probabilities, "fed": fed, "seed": seed}
+    return shares(part, bowl, rule=rule, **own)  # type: ignore[arg-type]
 
 
 def _typed(name: str, value: Condition) -> str | None:

@@ -1,35 +1,80 @@
 """From a part and a rate to a bowl that its own trial confirms."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Unpack, overload
 
+from feederscrew import bowl as bowls
 from feederscrew.api import asked
 from feederscrew.api.asked import Quantity
+from feederscrew.api.bowl_settings import BowlSettings, Overrides, with_settings
 from feederscrew.bowl import Bowl
+from feederscrew.designing import beside, families, loop
 from feederscrew.designing.families import FamilyStudy
-from feederscrew.designing.record import DesignStudy
+from feederscrew.designing.record import OUTCOMES, DesignRequest, DesignStudy
 from feederscrew.errors import ArgumentError
 from feederscrew.part import Part
-from feederscrew.studies.rate import LEAST
+from feederscrew.studies.rate import LEAST, Shares
+from feederscrew.studies.wishes import listed as names_of
 from feederscrew.units import listed
 
-SEARCH = {
-    "aspect": "aspect", "up": "any", "outcome": "any", "without": "any", "diameter": "any", "rule": "any",
-    "budget": "count", "draws": "count", "seed": "seed", "jobs": "count",
-}  # fmt: skip
+
+class DesignOptions(BowlSettings, total=False):
+    """The keywords of ``design`` for a type checker: of one part and of several it returns two records."""
+
+    given: Collection[str]
+    aspect: str | None
+    heading: Quantity | None
+    up: str | Sequence[str]
+    outcome: str
+    without: str | Sequence[str]
+    diameter: Quantity | tuple[Quantity, Quantity] | None
+    tolerance: Quantity
+    rule: str
+    budget: int
+    draws: int
+    seed: int
+    jobs: int
+    known: Shares | None
+    progress: Callable[[str], None] | None
+    overrides: Overrides
 
 
+@overload
+def design(
+    part: Part, target: Quantity, bowl: Bowl | None = None, **options: Unpack[DesignOptions]
+) -> DesignStudy: ...
+
+
+@overload
+def design(
+    part: Sequence[Part], target: Quantity, bowl: Bowl | None = None, **options: Unpack[DesignOptions]
+) -> FamilyStudy: ...
+
+
+@with_settings
 def design(
     part: Part | Sequence[Part],
     target: Quantity,
     bowl: Bowl | None = None,
     *,
-    given: frozenset[str] = frozenset(),
-    known: asked.Shares | None = None,
+    given: Collection[str] = frozenset(),
+    aspect: str | None = DesignRequest.aspect,
     heading: Quantity | None = None,
-    tolerance: Quantity = "0.1 mm",
-    **search: Any,
+    up: str | Sequence[str] = DesignRequest.up,
+    outcome: str = DesignRequest.outcome,
+    without: str | Sequence[str] = DesignRequest.without,
+    diameter: Quantity | tuple[Quantity, Quantity] | None = None,
+    tolerance: Quantity = DesignRequest.tolerance,
+    rule: str = DesignRequest.rule,
+    budget: int = DesignRequest.budget,
+    draws: int = DesignRequest.draws,
+    seed: int = DesignRequest.seed,
+    jobs: int = DesignRequest.jobs,
+    known: Shares | None = None,
+    progress: Callable[[str], None] | None = None,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
 ) -> DesignStudy | FamilyStudy:
     """Design a bowl for a part and a rate and try it, as ``feeder design``.
 
@@ -40,17 +85,39 @@ def design(
     target : str or float [1/s]
         Parts that shall leave, '60/min'.
     bowl : Bowl, optional
-        What is given of it; the defaults without it.
-    given : set of str
-        Names of the keys of that bowl that are kept, 'track.width'.
-    known : Shares, optional
-        Of ``shares``; what lies on the moving floor of the designed bowl without it.
+        What its file says is kept, its devices too; the rest is designed.
+    given : collection of str
+        Names of further keys of that bowl that are kept, 'track.width'.
+    aspect : str, optional
+        On which parts leave; the one that delivers most without it.
     heading : str or float [rad], optional
+        Of that aspect.
+    up : str or sequence of str
+        Aspects that count as the one wanted, whatever their heading: 'A,B'.
+    outcome : str
+        How parts leave: 'lying', 'hanging' or 'any'.
+    without : str or sequence of str
+        Kinds of devices that are not used, 'profile,wiper'.
+    diameter : str or float or pair of them [m], optional
+        The least and the greatest of the bowl.
     tolerance : str or float [m]
         Of the part's size, to either side.
-    **search
-        aspect, up, outcome, without, diameter, rule, budget, draws, seed, jobs: as for ``feeder design``;
-        up and without are names, 'A,B' or a list.
+    rule : str
+        Whose probabilities are taken.
+    budget : int
+        Short trials of the search, at most.
+    draws : int
+        Trials of the answer with part, friction, drive and cuts drawn from their spread.
+    seed : int
+        Of everything that is drawn.
+    jobs : int
+        Cores to use; the answer does not depend on it.
+    known : Shares, optional
+        Of ``shares``; what lies on the moving floor of the designed bowl without it.
+    progress : callable, optional
+        Called with what is tried, a sentence.
+    overrides, **settings
+        As for ``read_bowl``, frequency='50 Hz': they go over the bowl's own, and are kept.
 
     Returns
     -------
@@ -59,28 +126,31 @@ def design(
         devices. Of several parts a FamilyStudy: its ``members``, whether all is ``shared``, and the worst
         ``status``.
     """
-    from feederscrew import bowl as bowls
-    from feederscrew.designing import beside
-    from feederscrew.designing.families import family
-    from feederscrew.designing.loop import design as study
-    from feederscrew.designing.record import OUTCOMES, DesignRequest
-
-    if "diameter" in search and search["diameter"] is not None:
-        search["diameter"] = asked.pair("diameter", search["diameter"], "length")
     request = DesignRequest(
         target=asked.amount("target", target, "rate", LEAST),
+        aspect=asked.an_aspect(aspect),
         heading=asked.angle("heading", heading),
+        up=names_of(up),
+        outcome=outcome,
+        without=names_of(without),
+        diameter=None if diameter is None else asked.pair("diameter", diameter, "length"),
+        rule=rule,
         tolerance=asked.amount("tolerance", tolerance, "length", 0.0),
-        **asked.searched(search, SEARCH),
+        budget=asked.whole("budget", budget),
+        draws=asked.whole("draws", draws),
+        seed=asked.whole("seed", seed, 0),
+        jobs=asked.whole("jobs", jobs),
     )
     if request.outcome not in OUTCOMES:
         raise ArgumentError("outcome", f"is {request.outcome!r}", f"give {listed(list(OUTCOMES))}")
-    plain = bowls.default() if bowl is None else asked.a_bowl(bowl)
-    kept = beside.settings_of(plain, given)
+    plain = asked.a_bowl(bowls.default() if bowl is None else bowl, overrides, settings)
+    kept_keys = frozenset(given) | {setting.key.name for setting in plain.settings if setting.given}
+    kept_settings = beside.settings_of(plain, kept_keys)
     if isinstance(part, (list, tuple)) and part:
-        found = family([asked.a_part(one, mesh=True) for one in part], plain, given, request)
-        members = (beside.with_machine(one, beside.built(one, kept)) for one in found.members)
-        return replace(found, members=tuple(members))
-    known = asked.the_shares(known)
-    designed = study(asked.a_part(part, mesh=True), plain, given, request, known=known)
-    return beside.with_machine(designed, beside.built(designed, kept))
+        parts = [asked.a_part(one, mesh=True) for one in part]
+        family = families.family(parts, plain, kept_keys, request, told=progress)
+        members = (beside.with_machine(one, beside.built(one, kept_settings)) for one in family.members)
+        return replace(family, members=tuple(members))
+    shared = asked.the_shares(known)
+    study = loop.design(asked.a_part(part, mesh=True), plain, kept_keys, request, known=shared, told=progress)
+    return beside.with_machine(study, beside.built(study, kept_settings))

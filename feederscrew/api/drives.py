@@ -1,28 +1,40 @@
 """A bowl, and how a part slips, lies and travels in it."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
+from typing import Unpack
 
 from feederscrew import bowl as bowls
 from feederscrew.api import asked
 from feederscrew.api.asked import Path, Quantity
+from feederscrew.api.bowl_settings import BowlSettings, Overrides, override_texts, with_settings
 from feederscrew.bowl import Bowl
 from feederscrew.part import Part
+from feederscrew.studies import convey as conveying
+from feederscrew.studies import floor as floors
+from feederscrew.studies import headings as lying
+from feederscrew.studies import slide as sliding
+from feederscrew.studies import track as tracks
 from feederscrew.studies.convey import ConveyStudy
 from feederscrew.studies.floor import FloorStudy
 from feederscrew.studies.headings import HeadingsStudy
+from feederscrew.studies.rate import arriving
 from feederscrew.studies.slide import SlideStudy
 from feederscrew.studies.track import TrackStudy
 
 
-def read_bowl(path: Path | None = None, overrides: str | Sequence[str] = ()) -> Bowl:
-    """Read a bowl from its file, from 'drive.frequency=50 Hz', or take the defaults.
+@with_settings
+def read_bowl(path: Path | None = None, overrides: Overrides = (), **settings: Unpack[BowlSettings]) -> Bowl:
+    """Read a bowl from its file, from settings, or take the defaults.
 
     Parameters
     ----------
     path : str or Path, optional
         Bowl file (YAML).
-    overrides : str or sequence of str
-        Such as 'drive.frequency=50 Hz'; the last of one key holds.
+    overrides : dict, str or sequence of str
+        {'drive.frequency': '50 Hz'} or 'drive.frequency=50 Hz'; the last of one key holds.
+    **settings : str or float [SI]
+        Keys of a bowl file by their last word, amplitude='0.3 mm'. They go over the overrides, and these
+        over the file.
 
     Returns
     -------
@@ -33,10 +45,19 @@ def read_bowl(path: Path | None = None, overrides: str | Sequence[str] = ()) -> 
     Faults
         Every fault of the file and of the overrides.
     """
-    return bowls.read(None if path is None else asked.a_file("path", path), asked.overrides(overrides))
+    texts = override_texts(overrides, settings)
+    return bowls.read(None if path is None else asked.a_file("path", path), texts)
 
 
-def slide(bowl: Bowl, angles: Iterable[Quantity] = (), *, as_published: bool = False) -> SlideStudy:
+@with_settings
+def slide(
+    bowl: Bowl,
+    angles: Iterable[Quantity] = (),
+    *,
+    as_published: bool = False,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
+) -> SlideStudy:
     """Compute when a part slips, which way, and when it hops, as ``feeder slide``.
 
     Parameters
@@ -46,35 +67,45 @@ def slide(bowl: Bowl, angles: Iterable[Quantity] = (), *, as_published: bool = F
         Vibration angles, a map each; the bowl's without them.
     as_published : bool
         Keep mu_limit where [4.27] is negative, as past the hop.
+    overrides, **settings
+        As for ``read_bowl``: in place of the bowl's own.
 
     Returns
     -------
     SlideStudy
     """
-    from feederscrew.studies.slide import slide as study
-
     betas = tuple(asked.amount("angles", one, "angle") for one in angles)
-    return study(asked.a_bowl(bowl), betas, as_published=as_published)
+    return sliding.slide(asked.a_bowl(bowl, overrides, settings), betas, as_published=as_published)
 
 
-def convey(bowl: Bowl) -> ConveyStudy:
+@with_settings
+def convey(bowl: Bowl, *, overrides: Overrides = (), **settings: Unpack[BowlSettings]) -> ConveyStudy:
     """Compute how a part travels on the bowl's track, as ``feeder convey``.
 
     Parameters
     ----------
     bowl : Bowl
+    overrides, **settings
+        As for ``read_bowl``, amplitude='0.3 mm': in place of the bowl's own.
 
     Returns
     -------
     ConveyStudy
         Its ``answer`` has the velocity in m/s, status, regime and margins.
     """
-    from feederscrew.studies.convey import convey as study
-
-    return study(asked.a_bowl(bowl))
+    return conveying.convey(asked.a_bowl(bowl, overrides, settings))
 
 
-def floor(part: Part, bowl: Bowl, aspect: str | None = None, *, heading: Quantity = 0.0) -> FloorStudy:
+@with_settings
+def floor(
+    part: Part,
+    bowl: Bowl,
+    aspect: str | None = None,
+    *,
+    heading: Quantity = 0.0,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
+) -> FloorStudy:
     """Compute the forces on a part on the bowl's floor and what it does, as ``feeder floor``.
 
     Parameters
@@ -85,19 +116,26 @@ def floor(part: Part, bowl: Bowl, aspect: str | None = None, *, heading: Quantit
         Its name; the likeliest without it.
     heading : str or float [rad]
         '90 deg': how it lies to the drive.
+    overrides, **settings
+        As for ``read_bowl``: in place of the bowl's own.
 
     Returns
     -------
     FloorStudy
     """
-    from feederscrew.studies.floor import floor as study
-
-    lies = asked.amount("heading", heading, "angle")
-    return study(asked.a_part(part), asked.a_bowl(bowl), aspect, lies)
+    angle = asked.amount("heading", heading, "angle")
+    return floors.floor(asked.a_part(part), asked.a_bowl(bowl, overrides, settings), aspect, angle)
 
 
+@with_settings
 def track(
-    part: Part, bowl: Bowl, aspect: str | None = None, *, heading: Quantity | None = None
+    part: Part,
+    bowl: Bowl,
+    aspect: str | None = None,
+    *,
+    heading: Quantity | None = None,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
 ) -> TrackStudy:
     """Compute the reactions on a part on the track against the wall, as ``feeder track``.
 
@@ -109,17 +147,26 @@ def track(
         Its name; the likeliest without it.
     heading : str or float [rad], optional
         As laid down; the most frequent that stays on the track without it.
+    overrides, **settings
+        As for ``read_bowl``: in place of the bowl's own.
 
     Returns
     -------
     TrackStudy
     """
-    from feederscrew.studies.track import track as study
+    angle = asked.angle("heading", heading)
+    return tracks.track(asked.a_part(part), asked.a_bowl(bowl, overrides, settings), aspect, angle)
 
-    return study(asked.a_part(part), asked.a_bowl(bowl), aspect, asked.angle("heading", heading))
 
-
-def headings(part: Part, bowl: Bowl, aspect: str | None = None) -> HeadingsStudy:
+@with_settings
+def headings(
+    part: Part,
+    bowl: Bowl,
+    aspect: str | None = None,
+    *,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
+) -> HeadingsStudy:
     """Find how a part lies along the track's wall, as ``feeder headings``.
 
     Parameters
@@ -129,13 +176,12 @@ def headings(part: Part, bowl: Bowl, aspect: str | None = None) -> HeadingsStudy
     bowl : Bowl
     aspect : str, optional
         One alone; every stable one without it.
+    overrides, **settings
+        As for ``read_bowl``: in place of the bowl's own.
 
     Returns
     -------
     HeadingsStudy
     """
-    from feederscrew.studies.headings import headings as study
-    from feederscrew.studies.rate import arriving
-
-    solid, bowl = asked.a_part(part, mesh=True), asked.a_bowl(bowl)
-    return study(solid, bowl.track, aspect, arriving(solid, bowl))
+    solid, bowl = asked.a_part(part, mesh=True), asked.a_bowl(bowl, overrides, settings)
+    return lying.headings(solid, bowl.track, aspect, arriving(solid, bowl))

@@ -1,13 +1,18 @@
 """How many well-oriented parts leave a bowl, and what drive or what bowl reaches a rate."""
 
 from collections.abc import Sequence
-from typing import Any, Unpack, cast
+from typing import Any, Unpack
 
+from feederscrew import bowl as bowls
 from feederscrew.api import asked
-from feederscrew.api.asked import AlongTrack, BowlFile, ProbabilitySource, Quantity
+from feederscrew.api.asked import Path, Quantity
+from feederscrew.api.bowl_settings import BowlSettings, Overrides, override_texts, with_settings
 from feederscrew.bowl import Bowl
 from feederscrew.part import Part
 from feederscrew.rates.well_oriented import RECOMMENDED
+from feederscrew.studies import bowl as machines
+from feederscrew.studies import rate as rates
+from feederscrew.studies import tune as tuning
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.rate import LEAST, RateStudy, Shares
 from feederscrew.studies.tune import TuneStudy
@@ -16,24 +21,47 @@ from feederscrew.tooling.devices.base import Device
 DEVICES = "give devices in a list, as a bowl's devices are"
 
 
-def shares(part: Part, bowl: Bowl, **answer: Unpack[ProbabilitySource]) -> Shares:
+@with_settings
+def shares(
+    part: Part,
+    bowl: Bowl,
+    *,
+    rule: str = RECOMMENDED,
+    launch: str | None = None,
+    probabilities: Path | None = None,
+    fed: int | None = None,
+    seed: int = 1,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
+) -> Shares:
     """Return the aspects of a part with the answer that ``rate``, ``tune`` and others take.
 
     Parameters
     ----------
     part : Part
     bowl : Bowl
-    **answer
-        rule, launch, probabilities, fed, seed: whose probabilities are taken, see ``rate``.
+    rule, launch, probabilities, fed, seed
+        Whose probabilities are taken, as for ``rate``.
+    overrides, **settings
+        As for ``read_bowl``: in place of the bowl's own.
 
     Returns
     -------
     Shares
         To be handed on as ``known``: what takes long is computed once.
     """
-    return asked.answered(asked.a_part(part), asked.a_bowl(bowl), answer)
+    return asked.probabilities(
+        asked.a_part(part),
+        asked.a_bowl(bowl, overrides, settings),
+        rule=rule,
+        launch=launch,
+        probabilities=probabilities,
+        fed=fed,
+        seed=seed,
+    )
 
 
+@with_settings
 def rate(
     part: Part,
     bowl: Bowl,
@@ -43,7 +71,14 @@ def rate(
     devices: Sequence[Device] | None = None,
     gap: Quantity = 0.0,
     fill: float = 1.0,
-    **answer: Unpack[ProbabilitySource],
+    rule: str = RECOMMENDED,
+    launch: str | None = None,
+    probabilities: Path | None = None,
+    fed: int | None = None,
+    seed: int = 1,
+    known: Shares | None = None,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
 ) -> RateStudy:
     """Compute the well-oriented parts per second, with each factor, as ``feeder rate``.
 
@@ -62,35 +97,46 @@ def rate(
         Between one part and the next.
     fill : float [1]
         Share of the track that is occupied.
-    **answer
-        rule : whose probabilities are taken, 'recommended' without it.
-        launch : what is done to the part on a floor at rest: 'place', 'drop', 'flip', 'roll' or 'feed';
-            without it parts are fed onto the moving floor of the bowl.
-        probabilities : file of counts whose shares are taken.
-        fed, seed : how many are fed, and their seed; without ``fed`` until every share is known to 2 %.
-        known : what ``shares`` returned, in place of all of them.
+    rule : str
+        Whose probabilities are taken.
+    launch : str, optional
+        What is done to the part on a floor at rest: 'place', 'drop', 'flip', 'roll' or 'feed'; without it
+        parts are fed onto the moving floor of the bowl.
+    probabilities : str or Path, optional
+        File of counts whose shares are taken.
+    fed : int, optional
+        How many parts are fed; without it until every share is known to 2 %.
+    seed : int
+        Of these parts.
+    known : Shares, optional
+        What ``shares`` returned, in place of all of them.
+    overrides, **settings
+        As for ``read_bowl``, amplitude='0.3 mm': in place of the bowl's own.
 
     Returns
     -------
     RateStudy
         Its ``parts`` are parts per second with an interval.
     """
-    from feederscrew.studies.rate import rate as study
-
-    solid, bowl = asked.a_part(part, mesh=True), asked.a_bowl(bowl)
-    return study(
+    solid, bowl = asked.a_part(part, mesh=True), asked.a_bowl(bowl, overrides, settings)
+    arriving = asked.probabilities(
+        solid, bowl,
+        rule=rule, launch=launch, probabilities=probabilities, fed=fed, seed=seed, known=known,
+    )  # fmt: skip
+    return rates.rate(
         solid,
         bowl,
         aspect,
         heading=asked.angle("heading", heading),
-        rule=asked.rule(answer),
+        rule=rule,
         devices=None if devices is None else asked.several("devices", devices, Device, DEVICES),
         gap=asked.amount("gap", gap, "length", 0.0),
         fill=fill,
-        known=asked.answered(solid, bowl, answer),
+        known=arriving,
     )
 
 
+@with_settings
 def tune(
     part: Part,
     bowl: Bowl,
@@ -99,7 +145,16 @@ def tune(
     *,
     heading: Quantity | None = None,
     worst: bool = False,
-    **answer: Unpack[AlongTrack],
+    gap: Quantity = 0.0,
+    fill: float = 1.0,
+    rule: str = RECOMMENDED,
+    launch: str | None = None,
+    probabilities: Path | None = None,
+    fed: int | None = None,
+    seed: int = 1,
+    known: Shares | None = None,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
 ) -> TuneStudy:
     """Find settings of the drive that reach a rate, as ``feeder tune``.
 
@@ -112,49 +167,53 @@ def tune(
         The one wanted.
     target : str or float [1/s]
         '60/min' of it.
-    heading
+    heading, gap, fill, rule, launch, probabilities, fed, seed, known, overrides, **settings
         As for ``rate``.
     worst : bool
         Meet the target at the worst of every start, of friction a fifth lower and higher and, where parts
         hop, of restitution over its spread.
-    **answer
-        gap, fill, rule, launch, probabilities, fed, known: as for ``rate``.
 
     Returns
     -------
     TuneStudy
     """
-    from feederscrew.studies.tune import FEW
-    from feederscrew.studies.tune import tune as study
+    solid, bowl = asked.a_part(part, mesh=True), asked.a_bowl(bowl, overrides, settings)
 
-    own = {"launch", "probabilities", "fed", "known"} & set(answer) or asked.rule(answer) != RECOMMENDED
-    few = cast(AlongTrack, {**answer, "fed": FEW})
-    solid, bowl = asked.a_part(part, mesh=True), asked.a_bowl(bowl)
-    return study(
+    def arriving(driven: Bowl, parts: int | None = fed) -> Shares:
+        return asked.probabilities(
+            solid, driven,
+            rule=rule, launch=launch, probabilities=probabilities, fed=parts, seed=seed, known=known,
+        )  # fmt: skip
+
+    is_fed = rule == RECOMMENDED and launch is None and probabilities is None and known is None
+    return tuning.tune(
         solid,
         bowl,
         aspect,
         asked.amount("target", target, "rate", LEAST),
         heading=asked.angle("heading", heading),
-        rule=asked.rule(answer),
-        gap=asked.amount("gap", answer.get("gap", 0.0), "length", 0.0),
-        fill=answer.get("fill", 1.0),
+        rule=rule,
+        gap=asked.amount("gap", gap, "length", 0.0),
+        fill=fill,
         worst=worst,
-        arriving=lambda driven: asked.answered(solid, driven, answer),
-        rough=None if own else lambda driven: asked.answered(solid, driven, few),
+        arriving=arriving,
+        rough=(lambda driven: arriving(driven, tuning.FEW)) if is_fed and fed is None else None,
     )
 
 
+@with_settings
 def size_bowl(
     part: Part,
     target: Quantity,
     aspect: str | None = None,
     *,
     heading: Quantity | None = None,
-    rule: str = "recommended",
+    rule: str = RECOMMENDED,
     gap: Quantity = 0.0,
     fill: float = 1.0,
-    **bowl: Unpack[BowlFile],
+    path: Path | None = None,
+    overrides: Overrides = (),
+    **settings: Unpack[BowlSettings],
 ) -> MachineSheet:
     """Size the bowl for a part and a rate, with its springs, tuning and drift, as ``feeder bowl``.
 
@@ -168,17 +227,17 @@ def size_bowl(
         That counts; whatever passes the devices without it.
     heading, rule, gap, fill
         As for ``rate``.
-    **bowl
-        path, overrides : as for ``read_bowl``: what they give is kept, the rest is sized.
+    path, overrides, **settings
+        As for ``read_bowl``: what they give is kept, the rest is sized.
 
     Returns
     -------
     MachineSheet
     """
-    from feederscrew.studies.bowl import bowl as study
-
     own: dict[str, Any] = {"rule": rule, "gap": asked.amount("gap", gap, "length", 0.0), "fill": fill}
     wanted = asked.amount("target", target, "rate", LEAST)
-    lies = asked.angle("heading", heading)
+    angle = asked.angle("heading", heading)
     solid = asked.a_part(part, mesh=True)
-    return study(asked.settings(bowl), solid, wanted, aspect=aspect, heading=lies, **own)
+    file = None if path is None else asked.a_file("path", path)
+    effective = bowls.settings(file, override_texts(overrides, settings))
+    return machines.bowl(effective, solid, wanted, aspect=aspect, heading=angle, **own)

@@ -1,11 +1,15 @@
 """Virtual tests of a part that is dropped: on a hard plane, and on the moving floor of a bowl."""
 
 from collections.abc import Sequence
+from typing import Unpack
 
 from feederscrew.api import asked
-from feederscrew.api.asked import Condition
+from feederscrew.api.asked import Condition, Quantity
+from feederscrew.api.bowl_settings import DriveSettings, Overrides, with_settings
 from feederscrew.bowl import Bowl
 from feederscrew.part import Part
+from feederscrew.studies.simulated import drop as drop_tests
+from feederscrew.studies.simulated import plate as plates
 from feederscrew.studies.simulated.drop import DropStudy
 from feederscrew.studies.simulated.plate import PlateStudy
 
@@ -18,7 +22,11 @@ def drop(
     seed: int = 1,
     jobs: int = 1,
     traced: int = 0,
-    **conditions: Condition,
+    fall: Condition = None,
+    spin: Condition = None,
+    speed: Condition = None,
+    restitution: Condition = None,
+    friction: Condition = None,
 ) -> DropStudy:
     """Run a virtual drop test on a hard plane, as ``feeder drop``.
 
@@ -36,9 +44,8 @@ def drop(
         Cores to use; the counts do not depend on it.
     traced : int
         Of how many drops, from the first, the motion is kept as well.
-    **conditions : str, float or pair of them
-        Ranges that replace the launch's: fall='20 mm:50 mm' or fall=(0.02, 0.05), spin, speed, restitution,
-        friction.
+    fall, spin, speed, restitution, friction : str, float or pair of them [m, rad/s, m/s, 1, 1], optional
+        Ranges that replace the launch's: fall='20 mm:50 mm' or fall=(0.02, 0.05).
 
     Returns
     -------
@@ -50,24 +57,29 @@ def drop(
     FeederError
         If the part has no shape, or an argument is of the wrong kind or out of range.
     """
-    from feederscrew.studies.simulated.drop import drop as study
-
-    given = asked.conditions(conditions)
+    ranges = asked.conditions(fall=fall, spin=spin, speed=speed, restitution=restitution, friction=friction)
     many = asked.count("drops", drops)
     solid = asked.a_part(part, mesh=True)
-    return study(solid, launch, given, drops=many, seed=seed, jobs=jobs, traced=traced)
+    return drop_tests.drop(solid, launch, ranges, drops=many, seed=seed, jobs=jobs, traced=traced)
 
 
+@with_settings
 def shake(
     part: Part,
     bowls: Bowl | Sequence[Bowl],
     *,
     launch: str = "feed",
     drops: int | None = None,
-    seconds: float | None = None,
+    seconds: Quantity | None = None,
     seed: int = 1,
     jobs: int = 1,
-    **conditions: Condition,
+    fall: Condition = None,
+    spin: Condition = None,
+    speed: Condition = None,
+    restitution: Condition = None,
+    friction: Condition = None,
+    overrides: Overrides = (),
+    **settings: Unpack[DriveSettings],
 ) -> PlateStudy:
     """Run a virtual dynamic bowl test, as ``feeder drop --plate``: parts on a plate with each bowl's drive.
 
@@ -80,10 +92,12 @@ def shake(
         As for ``drop``.
     drops : int, optional
         Parts on each plate; 400 without it.
-    seconds : float, optional [s]
+    seconds : str or float [s], optional
         How long each is followed; 5 without it.
-    seed, jobs, **conditions
+    seed, jobs, fall, spin, speed, restitution, friction
         As for ``drop``; restitution and friction are each bowl's unless given.
+    overrides, **settings
+        As for ``read_bowl``, amplitude='0.3 mm': in place of each bowl's own.
 
     Returns
     -------
@@ -96,8 +110,14 @@ def shake(
     FeederError
         As for ``drop``.
     """
-    from feederscrew.studies.simulated.plate import plate as study
-
-    own = {"drops": asked.count("drops", drops), "seconds": seconds, "seed": seed, "jobs": jobs}
-    given, plates = asked.conditions(conditions), asked.some_bowls(bowls)
-    return study(asked.a_part(part, mesh=True), plates, launch, given, **own)  # type: ignore[arg-type]
+    ranges = asked.conditions(fall=fall, spin=spin, speed=speed, restitution=restitution, friction=friction)
+    return plates.plate(
+        asked.a_part(part, mesh=True),
+        asked.some_bowls(bowls, overrides, settings),
+        launch,
+        ranges,
+        drops=asked.count("drops", drops),
+        seconds=None if seconds is None else asked.amount("seconds", seconds, "time", plates.LEAST),
+        seed=seed,
+        jobs=jobs,
+    )

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
 
-from feederscrew.bowl.reading import settings
+from feederscrew.bowl.reading import adjust, settings
 from feederscrew.bowl.record import Bowl, Drive, Friction, Track
 from feederscrew.bowl.settings import by_machine, effective, record, swept, texts
 from feederscrew.bowl.strokes import named, strokes
@@ -17,8 +17,8 @@ from feederscrew.bowl.verified import verified
 
 __all__ = [
     "Bowl", "Drive", "Friction", "Track",
-    "by_machine", "default", "identity", "name", "named", "ranges", "read", "record", "settings", "strokes",
-    "swept", "texts", "verified",
+    "adjust", "by_machine", "default", "identity", "name", "named", "ranges", "read", "record", "settings",
+    "strokes", "swept", "texts", "verified",
 ]  # fmt: skip
 
 

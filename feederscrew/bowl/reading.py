@@ -1,15 +1,26 @@
 """Bowl files and overrides, checked against the schema; every fault is reported with its place."""
 
 import itertools
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from os import PathLike
 from typing import Any
 
 from feederscrew import documents, units
 from feederscrew.bowl import devices, verified
 from feederscrew.bowl.key import Key
+from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.schema import BY_NAME, KEYS, SECTIONS, rival
-from feederscrew.bowl.settings import OVERRIDES, Setting, chain, default, effective, of_device, replaced
+from feederscrew.bowl.settings import (
+    OVERRIDES,
+    Setting,
+    chain,
+    default,
+    effective,
+    of_device,
+    record,
+    replaced,
+)
 from feederscrew.documents import Entry, Node
 from feederscrew.errors import ArgumentError, ConfigError, FeederError
 
@@ -38,6 +49,56 @@ def settings(path: str | PathLike[str] | None = None, overrides: Iterable[str] =
         Every fault of the file and of the overrides, one a line; those of overrides are `ArgumentError`.
     """
     in_file, faults = ({}, []) if path is None else _from_file(path)
+    return _overridden(in_file, overrides, faults)
+
+
+def adjust(bowl: Bowl, overrides: Iterable[str]) -> Bowl:
+    """Return a bowl with overrides over the settings that it was read from.
+
+    A key that takes its value from another one follows it, as in a file: without ``friction.kinetic`` there,
+    the override of ``friction.static`` is that of both. A bowl that was changed after it was read has its
+    values alone: then an override replaces one value, and nothing follows.
+
+    Parameters
+    ----------
+    bowl : Bowl
+    overrides : sequence of str
+        'drive.frequency=50 Hz'; the last of one key holds.
+
+    Returns
+    -------
+    Bowl
+
+    Raises
+    ------
+    Faults
+        Every fault of the overrides; where a key of the machine is given for a bowl that was changed: what
+        its drive would be is not known.
+    """
+    if bowl.settings:
+        return record(_overridden({s.key.name: s for s in bowl.settings if s.given}, overrides, []))
+    faults: list[FeederError] = []
+    for setting in _from_overrides(overrides, faults).values():
+        section, _, word = setting.key.field.rpartition(".")
+        holder: Any = getattr(bowl, section) if section else bowl
+        if section == "machine" or holder is None:
+            what = "is given for a bowl that was changed after it was read"
+            faults.append(ArgumentError(setting.where, what, "give it to read_bowl"))
+            continue
+        changed = replace(holder, **{word: setting.value if setting.key.choices else setting.size})
+        fields: dict[str, Any] = {section: changed}
+        bowl = replace(bowl, **fields) if section else changed
+    if bowl.friction.kinetic > bowl.friction.static:
+        what = f"friction.kinetic {bowl.friction.kinetic:g} is above friction.static {bowl.friction.static:g}"
+        faults.append(ArgumentError(OVERRIDES, what, "give both of them"))
+    documents.raise_all([*faults, *devices.misplaced(bowl.devices, bowl.track.width)])
+    return bowl
+
+
+def _overridden(
+    in_file: Mapping[str, Setting], overrides: Iterable[str], faults: list[FeederError]
+) -> tuple[Setting, ...]:
+    """Every value in effect of what is given and of overrides; raises all faults together."""
     typed = _from_overrides(overrides, faults)
     given = {name: s for name, s in in_file.items() if not replaced(s.key, typed)} | typed
     found = effective(given)

@@ -1,6 +1,7 @@
 """What a bowl is, in SI units."""
 
 from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from feederscrew.records import Shown
 from feederscrew.tooling.devices.base import Device
@@ -152,3 +153,4 @@ class Bowl(Shown):
     machine: Machine = None  # type: ignore[assignment]  # None only of a record made by hand
     sizing: Sizing = None  # type: ignore[assignment]
     devices: tuple[Device, ...] = ()  # along the track, in the order parts meet them
+    settings: ClassVar[tuple[Any, ...]] = ()  # it was read from; of one that was changed afterwards none

@@ -37,6 +37,11 @@ class Setting:
     given: bool = True  # by the user
 
     @property
+    def size(self) -> Any:
+        """What the field of the record holds [SI], of a key that is no word."""
+        return self.value * self.key.share
+
+    @property
     def overrides(self) -> bool:
         """Whether it goes over the file."""
         return self.given and self.where == f"{OVERRIDES} {self.key.name}"
@@ -84,7 +89,7 @@ def record(settings: Sequence[Setting]) -> Bowl:
     is replaced later must not keep the old value.
     """
     keyed = [s for s in settings if s.key.field != SECTION]
-    fields = {s.key.field: s.value if s.key.choices else s.value * s.key.share for s in keyed}
+    fields = {s.key.field: s.value if s.key.choices else s.size for s in keyed}
     fields |= {s.key.field: None for s in keyed if s.key.field in FOLLOWING and not s.given}
     sections: dict[str, dict[str, Any]] = {name: {} for name in RECORDS}
     for name, value in fields.items():
@@ -92,11 +97,13 @@ def record(settings: Sequence[Setting]) -> Bowl:
         sections.setdefault(section, {})[word] = value
     sections["machine"] = unbalance.known(sections["machine"], sections["sizing"]["hand"])
     top_level = sections.pop("")
-    return Bowl(
+    bowl = Bowl(
         **{name: RECORDS[name](**values) for name, values in sections.items()},
         **top_level,
         devices=chain(settings),
     )
+    object.__setattr__(bowl, "settings", tuple(settings))
+    return bowl
 
 
 def swept(settings: Sequence[Setting], values: Mapping[str, Any]) -> Bowl:

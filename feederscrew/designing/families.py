@@ -6,6 +6,7 @@ from feederscrew.designing import calm_drive, exploring, loop, proposals
 from feederscrew.designing.record import FALLS_SHORT, HOLDS, NONE, NOT_PROVED, DesignStudy
 from feederscrew.designing.searching import Search
 from feederscrew.errors import FeederError
+from feederscrew.records import Shown
 from feederscrew.studies.aspects import answered
 from feederscrew.tooling.devices.kinds import KINDS
 
@@ -15,7 +16,7 @@ OWN = "family"  # the folder of what is of all parts
 
 
 @dataclass(frozen=True, eq=False)
-class FamilyStudy:
+class FamilyStudy(Shown):
     """Designs of several parts that are to run in one bowl."""
 
     members: tuple[DesignStudy, ...]

@@ -13,6 +13,7 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.machine.feasibility import DriveMismatch
 from feederscrew.part.record import Part
 from feederscrew.part.smallness import small_part_remarks
+from feederscrew.records import Shown
 from feederscrew.resting.rules.registry import require_rule
 from feederscrew.running import RunSettings
 from feederscrew.studies.tooling import ToolingStudy, listed
@@ -137,7 +138,7 @@ class FilledQueue:
 
 
 @dataclass(frozen=True, eq=False)
-class DesignStudy:
+class DesignStudy(Shown):
     """A bowl for a part and a rate, with everything that was tried on the way."""
 
     part: Part

@@ -1,6 +1,8 @@
 """The table and the picture of a record: what its command writes, for a person with a notebook."""
 
+import base64
 from dataclasses import fields, is_dataclass
+from html import escape
 from importlib import import_module
 from typing import Any
 
@@ -8,8 +10,10 @@ import numpy as np
 
 from feederscrew.errors import ArgumentError
 from feederscrew.output import offers, tables
-from feederscrew.units import listed
+from feederscrew.units import listed, printable
 
+MOST_ROWS = 60  # of a table in a notebook
+VIEW = 360, 280  # [px] of a part
 # record: module and function that offer the files of its command, and what else that is handed
 OF: dict[str, tuple[Any, ...]] = {
     "AspectsStudy": ("aspects.files", "offers"),
@@ -20,7 +24,9 @@ OF: dict[str, tuple[Any, ...]] = {
     "ConveyCurve": ("convey.files", "curve_offers"),
     "ConveyPhase": ("convey.files", "phase_offers", {}),
     "ConveyMap": ("convey.files", "map_offers"),
+    "DesignStudy": ("designs.files", "offers", ()),
     "DropStudy": ("drop.files", "offers"),
+    "FamilyStudy": ("designs.family_page", "offers"),
     "FeedingStudy": ("compare.feeding", "offers"),
     "FloorStudy": ("floor.files", "offers", {}),
     "HeadingsStudy": ("headings.files", "offers", {}),
@@ -69,6 +75,46 @@ def plot(record, name=None):
     matplotlib Figure
     """
     return _chosen(record, _named(record, ".png"), name, "picture").view()
+
+
+def html(record):
+    """Return what a notebook shows of a record: its answer, and its table or its view.
+
+    Parameters
+    ----------
+    record : Shown
+
+    Returns
+    -------
+    str
+        Whatever a file or a user wrote is escaped.
+    """
+    line = f"<p>{escape(repr(record))}</p>"
+    names = {kind.__name__ for kind in type(record).__mro__}
+    if "Part" in names and record.vertices is not None:
+        return (
+            f'{line}<img width="{VIEW[0]}" alt="{escape(printable(record.name))}" src="{_view_uri(record)}">'
+        )
+    frame_of = _settings if "Bowl" in names and record.settings else frame
+    cells = frame_of(record).map(lambda cell: printable(cell) if isinstance(cell, str) else cell)
+    return line + cells.to_html(index=False, max_rows=MOST_ROWS, na_rep="", border=0)
+
+
+def _view_uri(part):
+    """A part on the lowest side of its file, shaded, as the address of an image."""
+    from feederscrew.output import style
+    from feederscrew.output.solid import render, thumbnail
+
+    solid = render.Rays(part.vertices, part.faces, part.centre_of_mass)
+    image = style.pixels(np.round(255.0 * thumbnail.on_its_lowest(solid, VIEW)[..., :3]).astype(np.uint8))
+    return f"data:image/png;base64,{base64.b64encode(style.png(image)).decode()}"
+
+
+def _settings(bowl):
+    """The keys of a bowl that somebody gave, with where they come from; all of them where none was."""
+    given = [setting for setting in bowl.settings if setting.given] or bowl.settings
+    columns = {"key": [s.key.name for s in given], "value": [s.text for s in given]}
+    return tables.data_frame(tables.frame(columns | {"from": [s.origin for s in given]}))
 
 
 def _named(record, end):

@@ -84,6 +84,13 @@ class _Pixels(_Canvas):
         imsave(filename_or_obj, self.image, format="png", dpi=DPI, metadata=metadata)
 
 
+class ShownFigure(Figure):
+    """A figure that a notebook shows as the last line of a cell, without pyplot."""
+
+    def _repr_png_(self):
+        return png(self)
+
+
 def figure(width=6.4, height=4.0):
     """Return a white figure that lays out its axes by itself, without any global state.
 
@@ -93,14 +100,14 @@ def figure(width=6.4, height=4.0):
         Of the page; a PNG has ``DPI`` pixels an inch.
     """
     layout = ConstrainedLayoutEngine(w_pad=MARGIN, h_pad=MARGIN)
-    made = Figure(figsize=(width, height), dpi=DPI, layout=layout, facecolor="white")
+    made = ShownFigure(figsize=(width, height), dpi=DPI, layout=layout, facecolor="white")
     _Canvas(made)
     return made
 
 
 def page(width, height):
     """Return a white figure of so many pixels whose axes are placed by hand."""
-    made = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor="white")
+    made = ShownFigure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor="white")
     _Canvas(made)
     return made
 

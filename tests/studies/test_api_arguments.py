@@ -63,16 +63,6 @@ def test_an_argument_that_cannot_be_used_is_named(part, call, line):
     assert str(caught.value) == line
 
 
-@pytest.mark.parametrize(
-    "call",
-    [lambda part, **own: fs.rate(part, BOWL, "C", **own), lambda part, **own: fs.shares(part, BOWL, **own)],
-)
-def test_a_keyword_that_is_unknown_is_named_with_those_that_are_known(part, call):
-    known = "rule, launch, probabilities, fed and seed"
-    with pytest.raises(TypeError, match=f"^unexpected keyword argument 'sed' - known here are {known}"):
-        call(part, sed=2)
-
-
 def test_the_seed_of_the_parts_on_the_floor_is_that_of_the_command(part, run):
     """It was called fed_seed here, and --seed there."""
     part_file = "block.stl"
@@ -110,7 +100,7 @@ def test_a_function_that_shares_its_name_with_a_room_hides_no_module(room, modul
     """``import feederscrew.tooling.x as y`` failed once the function was asked for."""
     function = getattr(fs, room)
     assert callable(function)
-    assert inspect.signature(function) == inspect.signature(getattr(api, room))
+    assert inspect.isfunction(function) and function is getattr(api, room)
     known = {}
     exec(f"import feederscrew.{room}.{module} as found", known)  # the statement itself is what is looked at
     assert known["found"].__name__ == f"feederscrew.{room}.{module}"

@@ -6,6 +6,7 @@ from feederscrew.output.solid import shading
 from feederscrew.output.solid.shading import Shot
 from feederscrew.output.solid.stance import outermost, stance
 
+DOWN = np.array([0.0, 0.0, -1.0])
 ROOM = 1.08  # of the picture over the part in it
 
 
@@ -27,6 +28,24 @@ def pixels(solid, found, row, size):
     (height, width, C) float [1]
     """
     standing = stance(outermost(solid.points), found.normals[row], found.heights[row] / solid.size)
+    return _framed(solid, standing, size)
+
+
+def on_its_lowest(solid, size):
+    """Return the picture of a solid on the lowest side of its file, (height, width, C) float [1].
+
+    Parameters
+    ----------
+    solid : Rays
+    size : (2,) int [px]
+        Width and height.
+    """
+    standing = stance(outermost(solid.points), DOWN, -float(solid.points[:, 2].min()))
+    return _framed(solid, standing, size)
+
+
+def _framed(solid, standing, size):
+    """The picture of a solid in the middle of it."""
     lowest, highest = standing.framed
     pixel = ROOM * max((highest - lowest) / size)
     left, bottom = 0.5 * (lowest + highest) - 0.5 * pixel * np.array(size)

@@ -15,7 +15,7 @@ from feederscrew_cli.main import COMMANDS
 
 pytestmark = pytest.mark.long  # all of them, so that one process has them and makes the wheel once
 ROOT = Path(__file__).parents[3]
-SOURCES = ("pyproject.toml", "README.md", "LICENSE", "feederscrew", "cli")
+SOURCES = ("pyproject.toml", "README.md", "LICENSE", "MANIFEST.in", "build_backend", "feederscrew", "cli")
 CACHES = shutil.ignore_patterns("__pycache__", "*.nbi", "*.nbc")
 PART = "lbracket_30x20x15.stl"
 COUNTS = "aspect,counted\nA,40\nB,30\nC,20\nD,10\nE,10\n"

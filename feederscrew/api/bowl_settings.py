@@ -1,0 +1,228 @@
+"""The keys of a bowl file as keywords: ``convey(bowl, amplitude="0.3 mm")``.
+
+A key has its name in its section. Two sections have a ``leaves``, a ``spring_radius`` and a ``base_mass``:
+these are no keywords, ``overrides={"machine.leaves": 4}`` sets one.
+"""
+
+import difflib
+import functools
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeAlias, TypedDict, TypeVar, cast
+
+from feederscrew import bowl as bowls
+from feederscrew import check, units
+from feederscrew.bowl import Bowl
+from feederscrew.bowl.reading import checked, named
+from feederscrew.bowl.schema import KEYS, Key
+from feederscrew.errors import ArgumentError
+
+Setting: TypeAlias = str | float | None  # '2 mm', a number in SI units, a word; None: as the bowl has it
+Overrides: TypeAlias = str | Sequence[str] | Mapping[str, str | float]  # or a dict, by the full name of a key
+BY_WORD = {key.word: key for key in KEYS}
+Function = TypeVar("Function", bound=Callable[..., object])
+OVERRIDES_MEND = "give a dict, {'drive.frequency': '50 Hz'}, or texts, 'drive.frequency=50 Hz'"
+
+
+class DriveSettings(TypedDict, total=False):
+    """Every key of a bowl file whose name is in one section only, without ``restitution``, which drops have.
+
+    Their meanings: docs/bowl_file.md.
+    """
+
+    # keys, written by docs/bowl_file.py
+    amplitude: Setting
+    peak_to_peak: Setting
+    frequency: Setting
+    vibration_angle: Setting
+    direction: Setting
+    phase: Setting
+    second_harmonic: Setting
+    second_harmonic_phase: Setting
+    static: Setting
+    kinetic: Setting
+    static_backward: Setting
+    kinetic_backward: Setting
+    wall: Setting
+    gravity: Setting
+    climb: Setting
+    bank: Setting
+    radius: Setting
+    width: Setting
+    hand: Setting
+    bowl_mass: Setting
+    bowl_inertia: Setting
+    base_inertia: Setting
+    spring_angle: Setting
+    leaf_width: Setting
+    leaf_thickness: Setting
+    leaf_length: Setting
+    leaf_modulus: Setting
+    damping: Setting
+    supply: Setting
+    centre_x: Setting
+    centre_y: Setting
+    centre_z: Setting
+    inertia_x: Setting
+    inertia_y: Setting
+    product_yz: Setting
+    product_xz: Setting
+    product_xy: Setting
+    bolts: Setting
+    bolt_hole: Setting
+    bolt_circle: Setting
+    least_diameter: Setting
+    diameter_per_length: Setting
+    diameter_per_width: Setting
+    greatest_diameter: Setting
+    diameter_step: Setting
+    least_climb: Setting
+    clearance: Setting
+    least_clearance: Setting
+    greatest_clearance: Setting
+    headroom: Setting
+    depth: Setting
+    fill_height: Setting
+    packing: Setting
+    carried: Setting
+    fill_density: Setting
+    hopper_interval: Setting
+    controller: Setting
+    retune: Setting
+    least_detuning: Setting
+    greatest_detuning: Setting
+    greatest_acceleration: Setting
+    greatest_stroke: Setting
+    banks: Setting
+    fatigue_stress: Setting
+    half_wave_diameter: Setting
+    least_spring_angle: Setting
+    greatest_spring_angle: Setting
+    greatest_spring_radius: Setting
+    steepest_spring_angle: Setting
+    sheet: Setting
+    sheet_density: Setting
+    tooling_mass: Setting
+    slowest: Setting
+    fastest: Setting
+    handbook_speed: Setting
+    bolt_share: Setting
+    shape: Setting
+    outlet_height: Setting
+    outlet_angle: Setting
+    drains: Setting
+    drain_hole: Setting
+    # end of keys
+
+
+class BowlSettings(DriveSettings, total=False):
+    """The same with ``restitution``."""
+
+    restitution: Setting
+
+
+def with_settings(function: Function) -> Function:
+    """Return a function that says its settings one by one.
+
+    ``inspect.signature`` lists each in place of ``**settings``, and the TypeError of an unknown keyword says
+    which one is near.
+    """
+    signature = inspect.signature(function)
+    own = [one for one in signature.parameters.values() if one.kind is not inspect.Parameter.VAR_KEYWORD]
+    settings = [
+        inspect.Parameter(key.word, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Setting)
+        for key in KEYS
+        if key.word in BowlSettings.__optional_keys__ and key.word not in signature.parameters
+    ]
+    names = [one.name for one in (*own, *settings)]
+
+    @functools.wraps(function)
+    def with_known_keywords(*arguments: Any, **keywords: Any) -> object:
+        if unknown := next((name for name in keywords if name not in names), None):
+            raise TypeError(f"{function.__name__}() {_unknown(unknown, [one.name for one in own], names)}")
+        return function(*arguments, **keywords)
+
+    cast(Any, with_known_keywords).__signature__ = signature.replace(parameters=[*own, *settings])
+    return cast(Function, with_known_keywords)
+
+
+def _unknown(name: str, own: Sequence[str], names: Sequence[str]) -> str:
+    """What is wrong with a keyword that a function does not have."""
+    if keys := [key for key in KEYS if key.word == name and name not in BowlSettings.__optional_keys__]:
+        full = [f"overrides={{'{key.name}': ...}}" for key in keys]
+        return f"has no keyword {name!r}, a key of {len(keys)} sections - write {' or '.join(full)}"
+    near = difflib.get_close_matches(name, names, n=1)
+    mend = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(own)} and the keys of a bowl file"
+    return f"got an unexpected keyword argument {name!r} - {mend}"
+
+
+def override_texts(overrides: Overrides, settings: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return overrides and settings as texts, 'drive.frequency=50 Hz'; of one key the last holds.
+
+    Parameters
+    ----------
+    overrides : str, sequence of str, or dict of str to (str or float) [SI]
+        A dict is by the full name of a key.
+    settings : dict of str to (str or float or None) [SI]
+        By keyword of ``BowlSettings``.
+
+    Returns
+    -------
+    tuple of str
+
+    Raises
+    ------
+    ArgumentError
+        If a value is not one that its key may have, or no such key exists.
+    """
+    texts = [_override(key, value, key.name) for key, value in _by_key(overrides)]
+    for name, value in settings.items():
+        if value is not None:
+            texts.append(_override(BY_WORD[name], value, name))
+    return (*_plain(overrides), *texts)
+
+
+def adjust_bowl(bowl: Bowl, overrides: Overrides, settings: Mapping[str, Any]) -> Bowl:
+    """Return a bowl with overrides and settings in place of its own values; see ``bowl.adjust``."""
+    texts = override_texts(overrides, settings)
+    return bowls.adjust(bowl, texts) if texts else bowl
+
+
+def _plain(overrides: Overrides) -> tuple[str, ...]:
+    """Overrides that are texts already."""
+    if isinstance(overrides, str):
+        return (overrides,)
+    if isinstance(overrides, Mapping):
+        return ()
+    check.kind("overrides", overrides, (tuple, list), OVERRIDES_MEND)
+    for text in overrides:
+        check.kind("overrides", text, str, OVERRIDES_MEND)
+    return tuple(overrides)
+
+
+def _by_key(overrides: Overrides) -> list[tuple[Key, str | float]]:
+    """Overrides of a dict."""
+    if not isinstance(overrides, Mapping):
+        return []
+    for name in overrides:
+        check.kind("overrides", name, str, OVERRIDES_MEND)
+    return [(named(name, f"overrides {units.one_line(name)}"), value) for name, value in overrides.items()]
+
+
+def _override(key: Key, value: object, argument: str) -> str:
+    """A value of a key as an override, if it is one."""
+    text = value if isinstance(value, str) else _text_in_si(key, value, argument)
+    try:
+        checked(key, text, argument, kind=ArgumentError)
+    except ArgumentError as fault:
+        raise ArgumentError(argument, fault.what.removeprefix(f"{key.name}: "), fault.mend) from None
+    return f"{key.name}={text}"
+
+
+def _text_in_si(key: Key, value: object, argument: str) -> str:
+    """A number in SI units as a text with its unit."""
+    if key.choices:
+        raise ArgumentError(argument, f"is {value!r:.40}", f"give {key.bounds}")
+    number = check.argument(argument, value)
+    unit = next(unit for unit, factor in units.UNITS[key.dimension].items() if factor == 1.0)
+    return f"{number!r} {unit}".strip()

@@ -1,0 +1,97 @@
+"""What a notebook and a shell show of a record: its answer, its table, its picture."""
+
+import html
+import re
+from dataclasses import replace
+
+import pytest
+import shapes
+
+import feederscrew as fs
+
+BOWL = fs.read_bowl(None, ("track.width=40 mm", "drive.amplitude=0.05 mm"))
+
+
+@pytest.fixture(scope="module")
+def part():
+    return shapes.part(shapes.box(8.0, 12.0, 20.0))
+
+
+STUDIES = {  # function: its record, and what its text says
+    "part": (lambda part: part, "8 x 12 x 20 mm"),
+    "bowl": (lambda _: BOWL, "2 overrides: amplitude 0.05 mm at 50 Hz"),
+    "changed bowl": (lambda _: replace(BOWL, gravity=9.8), "changed"),
+    "aspects": (lambda part: fs.aspects(part, drops=0), r"part rests on .*[ABC] \d\d(\.\d)? %, [ABC] "),
+    "shares": (lambda part: fs.shares(part, BOWL, launch="feed", rule="csa"), r"[ABC] \d\d(\.\d)? %, [ABC] "),
+    "find_aspects": (lambda part: fs.find_aspects(part), r"[ABC] \d\d(\.\d)? %, [ABC] "),
+    "inertia": (fs.inertia, r"\d g, centre of mass .* principal moments"),
+    "drop": (lambda part: fs.drop(part, drops=20), r"20 drops, [ABC] \d+"),
+    "shake": (lambda part: fs.shake(part, BOWL, drops=6, seconds=0.2), r"throw number 0\.\d+: [ABC] \d+"),
+    "slide": (lambda _: fs.slide(BOWL, ["20 deg"]), "at 20 deg"),
+    "convey": (lambda _: fs.convey(BOWL, amplitude="0.3 mm"), r"\d mm/s up the track, periodic"),
+    "floor": (lambda part: fs.floor(part, BOWL, "A", heading="10 deg"), "on A at 10 deg: "),
+    "track": (lambda part: fs.track(part, BOWL, "A"), r"on A at heading [\d.]+ deg: "),
+    "headings": (lambda part: fs.headings(part, BOWL, "A"), r"A at [\d.]+, [\d.]+ deg"),
+    "rate": (
+        lambda part: fs.rate(part, BOWL, "A", rule="csa", amplitude="0.3 mm"),
+        r"A at heading [\d.]+ deg: [\d.]+ parts/min \([\d.]+ to [\d.]+\), efficiency \d+",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_a_record_says_its_answer_and_shows_its_table(part, name):
+    make, says = STUDIES[name]
+    record = make(part)
+    text = repr(record)
+    assert re.search(says, text), text
+    assert len(text) < 600 and "array>" not in text and "\n" not in text
+    shown = record._repr_html_()
+    assert html.escape(text) in shown
+    if name == "part":
+        assert 'src="data:image/png;base64,' in shown and len(shown) < 60_000
+    else:
+        assert "<table" in shown and "<td>" in shown
+
+
+def test_shares_in_a_text_are_those_of_the_record_the_largest_first(part):
+    resting = fs.aspects(part, drops=0)
+    shares = [float(one) for one in re.findall(r"[ABC] ([\d.]+) %", repr(resting))]
+    assert shares == sorted(shares, reverse=True) and sum(shares) == pytest.approx(100.0, abs=0.2)
+    assert shares[0] == pytest.approx(100.0 * resting.recommended.p.max(), abs=0.06)
+
+
+def test_what_a_file_is_called_is_escaped(part):
+    named = replace(part, name="<b>x\x1b[31m</b>", material="<script>alert(1)</script>")
+    for shown in (
+        named._repr_html_(),
+        fs.inertia(named)._repr_html_(),
+        fs.aspects(named, drops=0)._repr_html_(),
+    ):
+        assert "<b>" not in shown and "<script" not in shown and "\x1b" not in shown
+    assert "\x1b" not in repr(named)
+
+
+def test_a_figure_shows_as_the_last_line_of_a_cell(part):
+    """As IPython asks for it: without pyplot nothing is registered for a Figure."""
+    for figure in (fs.convey(BOWL).plot(), fs.headings(part, BOWL, "A").plot()):
+        assert figure._repr_png_().startswith(b"\x89PNG")
+
+
+def test_a_bowl_shows_what_was_given(tmp_path):
+    (tmp_path / "mine.yaml").write_text("drive: {frequency: 60 Hz}\ndevices:\n  - wiper: 10 mm\n")
+    bowl = fs.read_bowl(tmp_path / "mine.yaml", amplitude="0.3 mm")
+    assert re.search(r"mine\.yaml, 1 override: amplitude 0\.3 mm at 60 Hz .* devices: wiper", repr(bowl))
+    shown = bowl._repr_html_()
+    assert "drive.frequency" in shown and "wiper: 10 mm" in shown and "track.width" not in shown
+
+
+def test_a_design_is_a_record_too(part):
+    from feederscrew.designing.families import FamilyStudy
+    from feederscrew.designing.record import DesignRequest, DesignStudy
+
+    study = DesignStudy(part, DesignRequest(target=1.0), None, None, None, nearest=("try 20/min",))
+    assert re.search(r"DesignStudy\(part: none - try 20/min", repr(study))
+    assert "<table" in study._repr_html_()
+    family = FamilyStudy((study,))
+    assert repr(family).startswith("FamilyStudy(none, ") and "<table" in family._repr_html_()

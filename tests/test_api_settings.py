@@ -1,0 +1,165 @@
+"""Keys of a bowl file as keywords and in a dict: the same bowl as from a file that says so."""
+
+import inspect
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import feederscrew as fs
+from feederscrew import api
+from feederscrew.api.bowl_settings import BowlSettings
+from feederscrew.bowl.schema import KEYS
+from feederscrew.bowl.unbalance import KEYS as TOGETHER
+
+ROOT = Path(__file__).parent.parent
+FILE = """
+drive: {frequency: 60 Hz, peak_to_peak: 0.5 mm}
+friction: {static: 0.5}
+devices:
+  - wiper: 10 mm
+"""
+OTHER = {  # neither the default nor the file's
+    "track.hand": "left", "sizing.shape": "conical", "drive.peak_to_peak": 1e-3, "machine.leaves": 12.0,
+    "sizing.leaves": 12.0, "friction.kinetic": 0.2, "friction.kinetic_backward": 0.2,
+}  # fmt: skip
+SHARED = sorted(word for word, count in Counter(key.word for key in KEYS).items() if count > 1)
+
+
+def other_value(key):
+    """A number in SI units, or a word, that a key may have."""
+    if key.name in OTHER:
+        return OTHER[key.name]
+    if key.dimension == "count":
+        return round(key.value(key.lowest)) + 1.0
+    default = key.default if key.default[:1].isdigit() else "0.7"
+    low, value = key.value(key.lowest), key.value(default)
+    return 0.9 * value + 0.1 * low if value > low else 0.9 * value + 0.1 * key.value(key.highest)
+
+
+@pytest.fixture
+def bowl(tmp_path):
+    (tmp_path / "bowl.yaml").write_text(FILE)
+    return tmp_path / "bowl.yaml"
+
+
+def test_each_key_with_a_name_of_its_own_is_a_keyword_and_no_other():
+    missing = {key.word for key in KEYS} - set(SHARED) - set(BowlSettings.__optional_keys__)
+    assert missing == set(), "run docs/bowl_file.py"
+    assert set(BowlSettings.__optional_keys__) == {key.word for key in KEYS} - set(SHARED)
+
+
+@pytest.mark.parametrize("key", [key for key in KEYS if key not in TOGETHER], ids=lambda key: key.name)
+def test_a_setting_over_a_bowl_is_that_of_the_file_with_it(bowl, key):
+    """Also what follows from it: kinetic friction from static, the drive from a machine's supply."""
+    value = other_value(key)
+    text = value if isinstance(value, str) else None
+    by_dict = fs.read_bowl(bowl, {key.name: value})
+    assert by_dict != fs.read_bowl(bowl)
+    if text is not None:
+        assert by_dict == fs.read_bowl(bowl, f"{key.name}={text}")
+    if key.word not in SHARED:
+        assert fs.read_bowl(bowl, **{key.word: value}) == by_dict
+        assert api.asked.a_bowl(fs.read_bowl(bowl), settings={key.word: value}) == by_dict
+    assert api.asked.a_bowl(fs.read_bowl(bowl), {key.name: value}) == by_dict
+
+
+def test_keys_of_one_body_are_settings_together(bowl):
+    values = {"centre_x": 3e-3, "inertia_x": 0.05, "inertia_y": 0.05}
+    texts = ("machine.centre_x=3 mm", "machine.inertia_x=0.05 kg m2", "machine.inertia_y=0.05 kg m2")
+    wanted = fs.read_bowl(bowl, texts)
+    assert fs.read_bowl(bowl, **values) == wanted != fs.read_bowl(bowl)
+    assert fs.slide(fs.read_bowl(bowl), **values).bowl == wanted
+
+
+def test_convey_with_an_amplitude_is_convey_of_that_bowl(bowl):
+    plain = fs.read_bowl()
+    fast = fs.read_bowl(overrides="drive.amplitude=0.3 mm")
+    ways = [
+        fs.convey(plain, amplitude="0.3 mm"),
+        fs.convey(plain, amplitude=0.3e-3),
+        fs.convey(plain, peak_to_peak="0.6 mm"),
+        fs.convey(plain, overrides={"drive.amplitude": "0.3 mm"}),
+        fs.convey(plain, overrides={"drive.amplitude": 0.3e-3}),
+        fs.convey(plain, overrides="drive.amplitude=0.3 mm"),
+        fs.convey(plain, overrides={"drive.amplitude": "0.2 mm"}, amplitude="0.3 mm"),
+    ]
+    velocity = fs.convey(fast).answer.velocity
+    assert [way.answer.velocity for way in ways] == pytest.approx([velocity] * len(ways), rel=1e-12)
+    assert velocity > 1.2 * fs.convey(plain).answer.velocity
+    assert fs.convey(plain, amplitude=None).answer.velocity == fs.convey(plain).answer.velocity
+
+
+def test_what_follows_a_value_follows_a_setting_and_a_bowl_changed_by_hand_keeps_its_own():
+    plain = fs.read_bowl()
+    assert fs.slide(plain, static=0.3).bowl.friction.kinetic == 0.3
+    assert fs.slide(plain, supply="60 Hz half wave").bowl.drive.frequency == 60.0
+    changed = replace(plain, gravity=9.0)
+    assert fs.slide(changed, static=0.7).bowl.friction == replace(plain.friction, static=0.7)
+    assert fs.slide(changed, peak_to_peak="1 mm").bowl.drive.amplitude == pytest.approx(0.5e-3)
+    assert fs.slide(changed, restitution=0.1).bowl == replace(changed, restitution=0.1)
+    with pytest.raises(fs.FeederError, match="give both of them"):
+        fs.slide(changed, static=0.3)
+    with pytest.raises(fs.FeederError, match="give it to read_bowl"):
+        fs.slide(changed, supply="60 Hz half wave")
+
+
+@pytest.mark.parametrize(
+    ("wrong", "line"),
+    [
+        ({"amplitude": "2 s"}, "amplitude: '2 s' is a time, not a length - give it in mm"),
+        ({"amplitude": -1.0}, "amplitude: '-1.0 m' is out of range - give 0 mm to 20 mm"),
+        ({"hand": 3}, "hand: is 3 - give right or left"),
+        ({"overrides": {"drive.amplitude": [1]}}, "drive.amplitude: is [1], not a number - give a number"),
+        ({"overrides": {"drive.hertz": 1}}, "overrides drive.hertz: unknown key 'drive.hertz' - "),
+        ({"overrides": 3}, "overrides: is 3 - give a dict"),
+        ({"amplitude": "1 mm", "peak_to_peak": "1 mm"}, "both given - keep one of them"),
+    ],
+)
+def test_a_setting_that_cannot_be_used_is_a_line_that_names_it(wrong, line):
+    for call in (lambda: fs.read_bowl(**wrong), lambda: fs.convey(fs.read_bowl(), **wrong)):
+        with pytest.raises(fs.FeederError) as caught:
+            call()
+        assert line in str(caught.value)
+
+
+def test_signatures_list_each_keyword_and_take_no_other():
+    functions = [getattr(fs, name) for name in fs.__all__ if inspect.isfunction(getattr(fs, name))]
+    assert len(functions) > 20
+    for function in functions:
+        parameters = inspect.signature(function).parameters.values()
+        assert not {one.kind for one in parameters} & {inspect.Parameter.VAR_KEYWORD}, function
+        assert all(one.annotation is not inspect.Parameter.empty for one in parameters), function
+    assert {"amplitude", "climb", "overrides", "fed"} <= set(inspect.signature(fs.rate).parameters)
+    assert inspect.signature(fs.tooling).parameters["purity"].default == 1.0
+
+
+def test_every_function_of_a_bowl_takes_settings(monkeypatch):
+    """The bowl that reaches the study has them."""
+    taken = {"amplitude", "width"}
+    without = {"design", "read_bowl", "report", "size_bowl"}  # whose bowls are files or their own
+    for name in fs.__all__:
+        function = getattr(fs, name)
+        names = set(inspect.signature(function).parameters) if inspect.isfunction(function) else set()
+        if names & {"bowl", "bowls"} or name in without:
+            assert taken <= names, name
+
+
+def test_a_design_keeps_what_its_bowl_was_read_from_and_the_settings(monkeypatch, bowl):
+    """As ``feeder design --config``: it kept the devices alone, without the names of the keys."""
+    from feederscrew.designing import loop
+
+    calls = []
+    monkeypatch.setattr(
+        loop, "design", lambda part, plain, given, request, **own: calls.append((plain, given))
+    )
+    part = fs.load(ROOT / "parts/washer_m6.stl")
+    fs.design(part, "60/min", fs.read_bowl(bowl), given={"track.width"}, climb="2 deg")
+    fs.design(part, "60/min", frequency="60 Hz")
+    (first, keys), (second, own) = calls
+    assert keys >= {"drive.frequency", "drive.peak_to_peak", "friction.static", "track.climb", "track.width"}
+    assert not {"track.radius", "drive.amplitude"} & keys and first.track.climb == pytest.approx(
+        0.0349, rel=1e-3
+    )
+    assert own == {"drive.frequency"} and second.drive.frequency == 60.0
