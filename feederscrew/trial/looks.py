@@ -120,7 +120,7 @@ def _shortest(normal):
     x, y, z = normal
     if z > 1.0 - 1e-9:  # from straight up any way is as short
         return np.diag([1.0, -1.0, -1.0])
-    spin = np.array([[0.0, 0.0, -x], [0.0, 0.0, -y], [x, y, 0.0]])
+    spin = np.array([[0.0, 0.0, x], [0.0, 0.0, y], [-x, -y, 0.0]])
     return np.eye(3) + spin + vectors.product(spin, spin) / (1.0 - z)
 
 
