@@ -89,7 +89,8 @@ class Rails(Device):
         """Return its slot, which goes on behind it: those that hang do not come back onto the track."""
         room, size = room_of(every), max(np.hypot(one.length, max(one.width, one.height)) for one in every)
         length = room + self.goes_on(track.extent)
-        return Standing(length, holes=(Hole(self.outline_on(track, length + 2.0 * size)),), hangs=True)
+        holes = (Hole(self.outline_on(track, length + 2.0 * size)),)
+        return Standing(length, holes=holes, hangs=True, slot=self.span)
 
     def judged(self, met):
         if met.hanging:
