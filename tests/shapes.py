@@ -50,6 +50,21 @@ def prism(outline, thickness):
     return trimesh.Trimesh(vertices, np.vstack([ears[:, ::-1], ears + n, sides]), process=False)
 
 
+def spur_gear(module=1.0, teeth=12, thickness=5.0):
+    """A spur gear with straight flanks, about z."""
+    root, tip, half = module * (0.5 * teeth - 1.25), module * (0.5 * teeth + 1.0), np.pi / (2 * teeth)
+    flank = [(root, -0.9 * half), (tip, -0.4 * half), (tip, 0.4 * half), (root, 0.9 * half)]
+    ring = [(far, 4.0 * half * k + turn) for k in range(teeth) for far, turn in flank]
+    return prism([(far * np.cos(turn), far * np.sin(turn)) for far, turn in ring], thickness)
+
+
+def t_nut(head=10.0, stem=5.0, high=3.0, deep=6.0, length=20.0):
+    """A T profile, its stem down, extruded along z."""
+    h, s = 0.5 * head, 0.5 * stem
+    ring = [(-s, -deep), (s, -deep), (s, 0), (h, 0), (h, high), (-h, high), (-h, 0), (-s, 0)]
+    return prism(ring, length)
+
+
 def turned(mesh, rng):
     """The mesh turned and moved at random."""
     matrix = trimesh.transformations.random_rotation_matrix(rng.random(3))

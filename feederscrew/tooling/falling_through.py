@@ -8,6 +8,7 @@ import shapely.affinity
 
 from feederscrew.tooling import between_edges
 from feederscrew.tooling.devices.hole_shapes import BEHIND
+from feederscrew.tooling.hanging import shoulder_margin
 from feederscrew.tooling.holding import may_turn_and_lie_over
 
 AZIMUTHS, TILTS = 8, 10  # ways it can tip: about level axes all round, by steps up to a right angle
@@ -73,6 +74,8 @@ def lets_go(device, one):
     if cut is None or _over_the_edge(device, one.track):
         return True
     span = device.span_on(one.track)
+    if span is not None and 0.0 < span[0] and shoulder_margin(one, span) >= 0.0:
+        return False
     if span is None:
         return falls_through(one, cut) and _drops_between(one, cut)
     return fits_as_it_lies(one, cut) or (falls_through(one, cut) and _slips(one, span))

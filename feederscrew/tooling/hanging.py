@@ -5,6 +5,7 @@ from functools import cached_property
 from typing import cast
 
 import numpy as np
+import shapely
 
 from feederscrew import check
 from feederscrew.geometry import vectors
@@ -171,6 +172,67 @@ def tip_goes_down(one, near):
     return abs(found.tip) <= STRAIGHT * found.shank or beyond >= SUNK * 0.5 * found.shank
 
 
+@dataclass(frozen=True, eq=False)
+class Shoulders:
+    """What of a part, as it lies, goes down into a slot, and what then holds it on both sides."""
+
+    stem: float  # [m] width across the track of what goes down
+    middle: float  # [m] of it, from the foot of the centre of mass
+    drop: float  # [m] by which it goes down
+    spare: float  # [m] from the foot to the border of what holds it: by how much it stands upright there
+
+
+def shoulders(one, width):
+    """Return how a part goes down into a slot along the track as it lies and is held there: a T-nut, stem down.
+
+    Source: own; docs/tooling.md, "1. The method".
+
+    Parameters
+    ----------
+    one : Orientation
+    width : float [m]
+        Of the slot, in whose middle what goes down is taken to lie.
+
+    Returns
+    -------
+    Shoulders or None
+        None where nothing goes down, or what rests on both sides then does not hold the centre of mass; of a
+        part that has a head and a shank along the track, too.
+    """
+    if isinstance(one, Hanging) or one.kind == "rolling" or neck(one) is not None:
+        return None
+    solid = one.posture.solid
+    points = vectors.product(solid.vertices - solid.centre_of_mass, one.axes.T)
+    points = points + [0.0, 0.0, one.posture.height]
+    size = float(np.ptp(points, axis=0).max())
+    flat = touching.TOUCHING * size
+    foot = points[points[:, 2] < flat, 1]
+    stem, middle = float(np.ptp(foot)), float(0.5 * (foot.min() + foot.max()))
+    drop = _underside(points, solid.faces, middle, 0.5 * width) if stem < width else 0.0
+    if not np.isfinite(drop) or drop <= flat:
+        return None
+    area = touching.area_below(points[:, :2], points[:, 2] - drop, solid.faces, flat, True)
+    half = 0.5 * width
+    beside = area.difference(shapely.box(-2.0 * size, middle - half, 2.0 * size, middle + half))
+    hull, weight = beside.convex_hull, shapely.Point(0.0, 0.0)
+    if beside.area <= touching.SLIVER * size**2 or not hull.contains(weight):
+        return None
+    return Shoulders(stem, middle, drop, float(hull.exterior.distance(weight)))
+
+
+def shoulder_margin(one, span):
+    """Return by how much [m] shoulders hold a part in a slot between two distances from the wall.
+
+    0 where it has to move across the track before its stem goes down; -inf where none hold it.
+    """
+    found = shoulders(one, span[1] - span[0])
+    if found is None:
+        return -np.inf
+    inner = one.distance + found.middle - 0.5 * found.stem - span[0]
+    outer = span[1] - one.distance - found.middle - 0.5 * found.stem
+    return float(max(min(inner, outer, found.spare), 0.0))
+
+
 def hung(one, span, known=()):
     """Return a part hanging between rails that it came to lying: docs/tooling.md, "1. The method".
 
@@ -188,10 +250,16 @@ def hung(one, span, known=()):
     -------
     Hanging
     """
-    found = neck(one)
+    held = shoulders(one, span[1] - span[0])
+    found = neck(one) if held is None else _neck_of(one, held)
     for other in known:
         if vectors.dot(found.down, other.neck.down) > ALIKE:
             return other
+    if held is not None:
+        solid = one.posture.solid
+        points = vectors.product(solid.vertices - solid.centre_of_mass, one.axes.T)
+        rail = held.drop - one.posture.height
+        return _hanging(one, found, span, one.axes, points, rail, held.middle, len(known))
     up = -found.down
     across = one.axes[1] - up * vectors.dot(one.axes[1], up)
     across = vectors.unit(across)
@@ -201,6 +269,16 @@ def hung(one, span, known=()):
     shank = float(0.5 * (points[below, 1].min() + points[below, 1].max()))
     rail = _underside(points, one.posture.solid.faces, shank, 0.5 * (span[1] - span[0]))
     return _hanging(one, found, span, axes, points, rail, shank, len(known))
+
+
+def _neck_of(one, held):
+    """The Neck of a part that its shoulders hold as it lies: its stem is the shank."""
+    solid = one.posture.solid
+    points = vectors.product(solid.vertices - solid.centre_of_mass, one.axes.T)
+    head = points[points[:, 2] > held.drop - one.posture.height - touching.TOUCHING * np.ptp(points, axis=0).max()]
+    wide, lever = float(np.ptp(head[:, 1])), float(points[:, 2].max())
+    down = check.frozen(np.einsum("ij,i->j", one.axes, [0.0, 0.0, -1.0]))
+    return Neck(held.stem, wide, wide, held.middle, 0.0, lever, down)
 
 
 def _hanging(one, found, span, axes, points, rail, shank, count):

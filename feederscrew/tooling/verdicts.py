@@ -9,7 +9,7 @@ from feederscrew.tooling import foot as feet
 from feederscrew.tooling.devices.base import UNSURE, Verdict, share
 from feederscrew.tooling.devices.pieces import GRIP
 from feederscrew.tooling.falling_through import falls_through
-from feederscrew.tooling.hanging import Hanging, hanging_margin, head_first, tip_goes_down
+from feederscrew.tooling.hanging import Hanging, hanging_margin, head_first, shoulder_margin, tip_goes_down
 from feederscrew.tooling.holding import (
     hangs_free,
     leans,
@@ -180,6 +180,10 @@ class Meeting:
     def held_by_head(self, width, widest=None):
         """Return by how much [m] a slot of some width, at its widest, holds its head and not its shank."""
         return hanging_margin(self.one, width, widest)
+
+    def held_by_shoulders(self, span):
+        """Return by how much [m] its shoulders hold it in a slot along the track, its stem down: -inf if not."""
+        return shoulder_margin(self.one, span)
 
     def wedges(self, span):
         """Return whether its head, which comes first, may stick between rails as a wedge."""

@@ -183,12 +183,13 @@ def rightly(leaving):
 def _chain(bowl, every, devices):
     """The bare track, then each device that is no measured yield."""
     size = max(one.length for one in every)
-    made, slopes = [], stations.at_entry(devices, bowl.track, every)
+    made, slopes, slot = [], stations.at_entry(devices, bowl.track, every), ()
     first = slopes
     for device in devices:
         if device.placed:
-            made.append(stations.station(device, bowl.track, every, slopes=slopes))
-            slopes = (*slopes, *device.standing(bowl.track, every).slopes)
+            standing = device.standing(bowl.track, every)
+            made.append(stations.station(device, bowl.track, every, slopes=slopes, slot=slot))
+            slopes, slot = (*slopes, *standing.slopes), standing.slot or slot
     return [stations.plain(bowl.track, every, RUN_UP * size, first), *made]
 
 

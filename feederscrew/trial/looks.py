@@ -1,5 +1,6 @@
 """In which orientation a part lies or hangs, by how far it reaches; on which aspect at any heading."""
 
+from functools import cached_property
 from typing import cast
 
 import numpy as np
@@ -7,7 +8,10 @@ import numpy as np
 from feederscrew.dropping.kernel.one_drop import UNSETTLED, face_below
 from feederscrew.dropping.rigid_body import shape_of_part
 from feederscrew.geometry import vectors
+from feederscrew.part.hull import convex_hull
 from feederscrew.resting.tumbling.by_class import ground
+from feederscrew.resting.tumbling.half_edges import half_edges
+from feederscrew.resting.tumbling.walk import LOST, roll_from_corner, roll_from_facet
 from feederscrew.tooling.hanging import Hanging
 from feederscrew.trial import whereabouts
 
@@ -20,7 +24,11 @@ OTHER = -1  # orientation: none of the known
 
 
 class Looks:
-    """Tells in which orientation a part lies, by how far it reaches in many directions.
+    """Tells in which orientation a part lies, or next comes to lie, by how far it reaches in many directions.
+
+    One that is in the air, or rocks, is named by the face on which it comes to lie if it is let go as it is:
+    its tilt is then below the angle at which it tips over an edge of that face. Where it is along the track
+    and how it is turned about the vertical stay as they are.
 
     One that lies turned by up to 10 deg, as a part that has just left a device may, is in the nearest. Where
     any heading of an aspect counts, one on that aspect is in the nearest of its orientations.
@@ -36,6 +44,7 @@ class Looks:
         }
         self.low = 0.5 * min(one.posture.height for one in every if not isinstance(one, Hanging)) / length
         self.radius, self.near = radius / length, ALIKE * solid.radius
+        self.down = _gravity(every[0].track)
         self.known = np.array([[self._standing(one, length, by) for by in ASKEW] for one in every])
         self.turned = {
             k: np.array([self._standing(one, length, by) for by in ROUND])
@@ -56,14 +65,41 @@ class Looks:
     def _of(self, state):
         place = np.arctan2(state[0], self.radius - state[1])
         level = whereabouts.moved(state[None], -place * self.radius, self.radius)[0]
-        seen = vectors.product(self.corners, whereabouts.matrix(level).T)
-        reach = vectors.product(seen, self.directions.T).max(axis=0)
+        turn = whereabouts.matrix(level)
+        if self.ups and state[2] < self.low:
+            up = {k: float(vectors.dot(turn[2], one)) for k, one in self.ups.items()}
+            return max((k for k in up if up[k] > SWINGS), key=up.__getitem__, default=OTHER)
+        found = self._lying(self._reach(turn))
+        if found == OTHER and (at_rest := self._at_rest(turn)) is not None:
+            found = self._lying(self._reach(at_rest))
+        return found
+
+    def _reach(self, turn):
+        """How far a part reaches in each direction."""
+        seen = vectors.product(self.corners, turn.T)
+        return vectors.product(seen, self.directions.T).max(axis=0)
+
+    def _lying(self, reach):
+        """The orientation in which a part lies that reaches so far; OTHER where none."""
         off = np.abs(self.known - reach).max(axis=2).min(axis=1)
         best = int(np.argmin(off))
-        if self.ups and state[2] < self.low:
-            up = {k: float(vectors.dot(whereabouts.matrix(level)[2], one)) for k, one in self.ups.items()}
-            return max((k for k in up if up[k] > SWINGS), key=up.__getitem__, default=OTHER)
         return best if off[best] < self.near else self._turned(reach)
+
+    def _at_rest(self, turn):
+        """The attitude (3, 3) of a part as it comes to lie if let go; None where it comes to lie on no face.
+
+        It tilts by the shortest way from its attitude onto the face: its heading stays.
+        """
+        down = vectors.product(turn.T, self.down)
+        corner = int(np.argmax(vectors.product(self._edges.vertices, down)))
+        facet = roll_from_facet(self._edges, roll_from_corner(self._edges, tuple(down), corner))
+        if facet == LOST:
+            return None
+        return vectors.product(_shortest(vectors.product(turn, self._edges.normals[facet])), turn)
+
+    @cached_property
+    def _edges(self):
+        return half_edges(convex_hull(self.corners, np.zeros(3)))
 
     def _turned(self, reach):
         """The orientation of which any heading counts that it lies in, turned the least; OTHER where none."""
@@ -71,6 +107,21 @@ class Looks:
         off = {k: np.abs(one - reach).max(axis=1) for k, one in self.turned.items()}
         by = {k: float(away[one < self.near].min(initial=np.inf)) for k, one in off.items()}
         return min((k for k in by if np.isfinite(by[k])), key=by.__getitem__, default=OTHER)
+
+
+def _gravity(track):
+    """Direction (3,) [1] of gravity along the wall, inwards and up, on a track that climbs and is banked."""
+    c, s = np.cos(track.climb), np.sin(track.climb)
+    return np.array([-s, -c * np.sin(track.bank), -c * np.cos(track.bank)])
+
+
+def _shortest(normal):
+    """The rotation (3, 3) by the shortest way of a direction (3,) [1] straight down."""
+    x, y, z = normal
+    if z > 1.0 - 1e-9:  # from straight up any way is as short
+        return np.diag([1.0, -1.0, -1.0])
+    spin = np.array([[0.0, 0.0, x], [0.0, 0.0, y], [-x, -y, 0.0]])
+    return np.eye(3) + spin + vectors.product(spin, spin) / (1.0 - z)
 
 
 class AspectsBelow:

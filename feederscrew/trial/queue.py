@@ -121,7 +121,7 @@ class _Queue:
         solid = rounded(solid, course.axes(every, self.principal))
         self.known = known = runs.setting(solid, length, bowl)
         self.every, self.gaps, self.parts, self.chances = every, plan.gaps, parts, np.cumsum(shares)
-        self.rng = np.random.default_rng((seed, parts))
+        self.rng, self.tilts = (np.random.default_rng(key) for key in ((seed, parts), (seed, parts, 1)))
         longest = max(one.length for one in every)
         turn = PART_OF_TURN * 2.0 * np.pi * bowl.track.radius - 2.0 * longest  # some rolls back
         room = min(1.5 * longest * parts + 2.0 * longest, max(turn, 2.0 * longest))
@@ -175,6 +175,7 @@ class _Queue:
         if self.gaps is not None:
             play = starts.PLAY * self.rng.random()
             state = whereabouts.laid(one, self.principal, self.known.length, track, place=0.0)
+            state = starts.tilted(state, self.known.solid.corners, self.tilts)
             state = starts.clear(state, self.known.solid, track, self.known.length, play, one.wall_leans)
             gap = self.apart + 2.0 * self.gaps * self.rng.random() * one.length / self.known.length
             return state, gap

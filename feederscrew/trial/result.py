@@ -188,11 +188,16 @@ class TrialRun:
         return found & gone(self.bowl.devices, lying, self.known.passes)
 
     @property
+    def differs(self):
+        """Return (M,) bool, where fewer than ``HELD`` did what the static verdict says, sure of it or not."""
+        return (self.tried > 0) & (self.holding < HELD * self.tried)
+
+    @property
     def odd(self):
         """Return (M,) bool, where fewer than ``HELD`` did what a verdict of a clear margin says."""
         margin = np.abs(np.nan_to_num(self.margin, nan=np.inf))
         clear = (margin > CLEAR) & self.sure
-        return (self.tried > 0) & clear & (self.holding < HELD * self.tried)
+        return self.differs & clear
 
     @property
     def sorts(self):

@@ -12,6 +12,7 @@ FINE = np.radians(6.0)  # between two corners of a circle, for what it touches t
 COARSEST = np.radians(45.0)  # corners further apart belong to a polygon, as of a hexagon's head, ...
 CLOSE = np.radians(10.0)  # ... and about an axis on which the part does not roll, these
 LEAST = 9  # corners of a circle
+BRIDGED = 0.01  # of the unit of length: a circle bulges so far at most where no surface joins its corners
 ALIKE = 2e-3  # of the unit of length: corners that far apart may be of one circle
 ALONG = 1.0 - 1e-6  # [1] cosine between axes that are one
 
@@ -34,7 +35,8 @@ def rounded(solid, axes):
     """
     straight = [one for one in np.eye(3) if not any(abs(vectors.dot(one, axis)) > ALONG for axis in axes)]
     made = [(axis, COARSEST) for axis in axes] + [(axis, CLOSE) for axis in straight]
-    found = [ring for axis, gap in made for ring in circles(solid.corners, axis, gap)]
+    joined = joined_pairs(solid)
+    found = [ring for axis, gap in made for ring in circles(solid.corners, axis, gap, joined)]
     found = [ring for ring in found if solid.outer[ring.corners].mean() > 0.5]
     if not found:
         return solid
@@ -84,8 +86,17 @@ class Circle(NamedTuple):
     ends: np.ndarray  # (P, 2) int, those corners
 
 
-def circles(corners, axis, gap=COARSEST):
+def joined_pairs(solid):
+    """Return which corners of a TrueSolid an edge of its surface joins, a set of (int, int)."""
+    first = np.repeat(np.arange(len(solid.firsts) - 1), np.diff(solid.firsts))
+    return set(zip(first.tolist(), solid.beside.tolist()))
+
+
+def circles(corners, axis, gap=COARSEST, joined=None):
     """Return the circles (a list of Circle) through corners, about an axis through the origin.
+
+    Between the tips of teeth, or at the sides of a slot, nothing is round: where the surface does not join two
+    neighbours a circle has no points, and what would bulge there by more than BRIDGED is no circle.
 
     Parameters
     ----------
@@ -93,6 +104,8 @@ def circles(corners, axis, gap=COARSEST):
     axis : (3,) float [1]
     gap : float [rad]
         Neighbouring corners further apart are of a polygon.
+    joined : set of (int, int), optional
+        Corners that the surface joins, of ``joined_pairs``; all neighbours without it.
     """
     across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
     across = vectors.unit(across)
@@ -106,9 +119,14 @@ def circles(corners, axis, gap=COARSEST):
         if gaps.max() > gap:
             continue
         centre, radius = along[ring].mean() * axis, away[ring].max()
+        solid = np.ones(len(ring), bool)
+        if joined is not None:
+            solid = np.array([pair in joined for pair in zip(ring.tolist(), np.roll(ring, -1).tolist())])
+        if radius * (1.0 - np.cos(0.5 * gaps[~solid].max(initial=0.0))) > BRIDGED:
+            continue
         points, ends = [np.empty((0, 3))], [np.empty((0, 2), int)]
         for k, wide in enumerate(gaps):
-            steps = int(np.ceil(wide / FINE))
+            steps = int(np.ceil(wide / FINE)) if solid[k] else 1
             at = turn[ring[k]] + wide * np.arange(1, steps)[:, None] / steps
             points.append(centre + radius * (np.cos(at) * across + np.sin(at) * aside))
             ends.append(np.tile([ring[k], ring[(k + 1) % len(ring)]], (steps - 1, 1)))

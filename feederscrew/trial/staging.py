@@ -46,7 +46,7 @@ def size_of(every):
     return max(np.hypot(one.length, max(one.width, one.height)) for one in every)
 
 
-def stage(device, standing, track, every, start=0.0, slopes=()):
+def stage(device, standing, track, every, start=0.0, slopes=(), slot=()):
     """Return one device with enough track before and behind it.
 
     Parameters
@@ -61,6 +61,8 @@ def stage(device, standing, track, every, start=0.0, slopes=()):
         Where the device begins.
     slopes : sequence of Slope
         Of the devices before it, which go on.
+    slot : (float [m], float [m]) or ()
+        Between the rails before it, from the wall: what hangs there goes on hanging up to other rails.
 
     Returns
     -------
@@ -72,8 +74,9 @@ def stage(device, standing, track, every, start=0.0, slopes=()):
     begin, beyond = start - (0.5 + SPARE) * size, passed(standing, start, size)
     ends = begin - BEFORE * size, beyond + AFTER * size
     return Stage(
-        device, *built([(standing, start, ends[1])], track, size, ends), begin=begin, exit=beyond,
-        cut=(start, start + standing.length), drop=standing.drop, aside=standing.aside, below=standing.hangs,
+        device, *built([(standing, start, ends[1])], track, size, ends, slot), begin=begin, exit=beyond,
+        cut=(start, start + standing.length), drop=standing.drop, aside=standing.aside,
+        below=standing.hangs or bool(slot),
         air=blows, size=size, width=track.extent,
     )  # fmt: skip
 
@@ -96,7 +99,7 @@ def passed(standing, start, size):
     return start + standing.length + (standing.settles + 0.5 + SPARE) * size
 
 
-def built(placed, track, size, ends) -> tuple[np.ndarray, np.ndarray]:
+def built(placed, track, size, ends, slot=()) -> tuple[np.ndarray, np.ndarray]:
     """Return plates (P, 17) and borders (B, 10) of a stretch of track with devices along it.
 
     Parameters
@@ -108,16 +111,49 @@ def built(placed, track, size, ends) -> tuple[np.ndarray, np.ndarray]:
         Of the part.
     ends : (float [m], float [m])
         Along the wall.
+    slot : (float [m], float [m]) or ()
+        Between rails that come before them, from the wall.
     """
     level, first, holes, plates, blades = 0.0, ends[0], [], [], []
-    for standing, start, last in placed:
-        holes += [(hole.outline, start) for hole in standing.holes]
+    slots = _slots(placed, size, ends, slot)
+    for k, (standing, start, last) in enumerate(placed):
+        holes += [(outline, start) for outline in _up_to_rails(placed, k)]
         blades += [_blade(blade, track, start, size, level) for blade in standing.blades]
         if standing.drop > 0.0:
-            plates.append(_floor(holes, track, size, ends, (first, last), level, depth=standing.drop + THICK))
+            cuts, depth = [*holes, *slots], standing.drop + THICK
+            plates.append(_floor(cuts, track, size, ends, (first, last), level, depth))
             level, first, holes = level - standing.drop, start - THICK, []
-    plates.append(_floor(holes, track, size, ends, (first, ends[1]), level))
+    plates.append(_floor([*holes, *slots], track, size, ends, (first, ends[1]), level))
     return stacked([*plates, *blades])
+
+
+def _slots(placed, size, ends, slot):
+    """Slots between rails (outline, start) that go on to the next rails, or to the end of what is drawn.
+
+    Those of ``placed`` are cut themselves; one of rails before them begins where the drawing does.
+    """
+    made, begin = [], ends[0] - BEHIND * size
+    for standing, start, _ in placed:
+        if standing.slot:
+            made += [_rectangle(begin, start + SMOOTH, slot)] if slot else []
+            begin = start + max(hole.outline[:, 0].max() for hole in standing.holes) - SMOOTH
+            slot = standing.slot
+    return [*made, _rectangle(begin, ends[1] + BEHIND * size, slot)] if slot and begin < ends[1] else made
+
+
+def _rectangle(begin, end, span):
+    """A hole between two places along the wall and two distances from it: its outline, from the place 0."""
+    low, high = span
+    return np.array([[begin, low], [end, low], [end, high], [begin, high]]), 0.0
+
+
+def _up_to_rails(placed, k):
+    """Outlines (K, 2) [m] of the holes of the k-th device; its slot ends where other rails begin."""
+    standing, start, _ = placed[k]
+    ends = [begin for other, begin, _ in placed[k + 1 :] if other.slot] if standing.slot else []
+    far = ends[0] - start + SMOOTH if ends else np.inf
+    for hole in standing.holes:
+        yield np.column_stack([np.minimum(hole.outline[:, 0], far), hole.outline[:, 1]])
 
 
 def _floor(holes, track, size, ends, own, level, depth=THICK):

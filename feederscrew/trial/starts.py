@@ -9,11 +9,15 @@ from feederscrew.trial import whereabouts
 
 PLAY = 5e-5  # [m] from the wall, at most, where a part is laid down
 TURN = np.radians(0.1)  # [rad] of its heading, at most
+TILT = np.radians(0.2)  # [rad] out of level: standard deviation, about any axis along the track's surface
 CLEAR = 1.02  # of the part's radius: as near to the wall as its centre of mass may come down
 
 
 def laid_down(bowl, every, entered, solid, principal, length, seed):
     """Return parts laid on the track, up to PLAY from the wall and TURN askew, at any phase of the drive.
+
+    Each lies out of level by TILT, drawn from a normal distribution, about an axis in any direction along the
+    track's surface. What is exactly level keeps a steady state that the least tilt ends: see docs/trial.md.
 
     Parameters
     ----------
@@ -44,10 +48,35 @@ def laid_down(bowl, every, entered, solid, principal, length, seed):
             every[k], principal, length, bowl.track, place=0.0,
             turn=lean,
         )  # fmt: skip
-        states[n, body.Z] -= lowest(solid.corners, states[n])
+        states[n] = tilted(states[n], solid.corners, rng)
         states[n] = clear(states[n], solid, every[k].track, length, PLAY * play, every[k].wall_leans)
         times[n] = phase / bowl.drive.frequency
     return states, times
+
+
+def tilted(state, corners, rng):
+    """Return a part's state (13,) out of level by TILT about a horizontal axis, its lowest corner on the track.
+
+    Parameters
+    ----------
+    state : (13,) float [L, sqrt(g L), 1, sqrt(g/L)]
+    corners : (C, 3) float [L]
+    rng : numpy.random.Generator
+        Two numbers of it are drawn.
+    """
+    angle, way = TILT * rng.standard_normal(), 2.0 * np.pi * rng.random()
+    x, y, c, s = np.cos(way), np.sin(way), np.cos(angle), np.sin(angle)
+    turn = np.array(
+        [
+            [c + x * x * (1.0 - c), x * y * (1.0 - c), y * s],
+            [x * y * (1.0 - c), c + y * y * (1.0 - c), -x * s],
+            [-y * s, x * s, c],
+        ]
+    )
+    out = np.array(state)
+    out[body.Q : body.Q + 4] = whereabouts.quaternion(vectors.product(turn, whereabouts.matrix(state)))
+    out[body.Z] -= lowest(corners, out)
+    return out
 
 
 def clear(state, solid, track, length, play, leans=0.0):

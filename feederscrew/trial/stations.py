@@ -7,7 +7,7 @@ from feederscrew.trial import staging
 BARE = Device("")
 
 
-def station(device, track, every, start=0.0, slopes=()):
+def station(device, track, every, start=0.0, slopes=(), slot=()):
     """Return one device with enough track before and behind it, a Stage.
 
     Parameters
@@ -21,8 +21,10 @@ def station(device, track, every, start=0.0, slopes=()):
         Where the cut begins.
     slopes : sequence of Slope
         Of the devices before it, which go on.
+    slot : (float [m], float [m]) or ()
+        Between the rails before it, in which parts hang from there on.
     """
-    return staging.stage(device, device.standing(track, every), track, every, start, slopes)
+    return staging.stage(device, device.standing(track, every), track, every, start, slopes, slot)
 
 
 def at_entry(devices, track, every):

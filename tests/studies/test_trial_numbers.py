@@ -77,6 +77,7 @@ def test_what_was_tried_is_set_beside_the_static_rule(monkeypatch):
     found = trial()
     assert found.holding.tolist() == [2, 1, 0]  # what is turned has left: it was not returned
     assert found.odd.tolist() == [True, False, True] and not found.sorts
+    assert found.differs.tolist() == (found.holding < 0.95 * found.tried).tolist()
     np.testing.assert_allclose(found.ends[0], [0.150, 0.850], atol=5e-4)  # Wilson, 2 of 4
     kept = [(0, PASSED, 0, 0.04, 1, 0.0)] * 19 + [(1, RETURNED, GONE, 0.04, 1, 0.0)]
     for missed, fine in ((1, True), (2, False)):

@@ -77,7 +77,8 @@ def test_blocks_that_touch_leave_as_near_to_each_other_as_their_inner_corners_le
     pitch = 2.0 * radius * np.arctan(0.01 / (np.sqrt(radius**2 - 0.01**2) - 0.012))  # 20 and 21.8 mm
     assert found.velocity == pytest.approx(point_velocity(bowl, flat.distance), rel=0.02)
     assert found.rate == pytest.approx(found.velocity / pitch, rel=0.01)
-    assert found.gap < 2e-5 and found.jams == found.returned == 0
+    # they came out of level by 0.2 deg, 17 um over their height
+    assert found.gap < 5e-5 and found.jams == found.returned == 0
     assert found.leaving.sum() == found.leaving[every.index(flat)] == 4
 
 

@@ -60,7 +60,7 @@ def _run(study, run):
 def orientations(run):
     """Return one row an orientation tried, those that do not do what the static rule says first."""
     margin, ends, counts = run.margin, run.ends, run.counts
-    first = sorted(np.flatnonzero(run.tried), key=lambda k: (not run.odd[k], k))
+    first = sorted(np.flatnonzero(run.tried), key=lambda k: (not run.odd[k], not run.differs[k], k))
     return [
         {
             "aspect": one.aspect,
@@ -75,7 +75,7 @@ def orientations(run):
             "ended_at": _ended(run, k),
             "predicted": "passes" if run.predicted[k] else "returned",
             "margin_mm": None if np.isnan(margin[k]) else float(margin[k]) / MM,
-            "disagrees": bool(run.odd[k]),
+            "disagrees": bool(run.differs[k]),
             "penetration_mm": float(run.depths[k]) / MM,
             "energy_won_um": _most(run.course.gains[run.course.entered == k]) / UM,
             "velocity_mm_s": _mean(run.course.velocities[run.course.entered == k]) / MM_S,

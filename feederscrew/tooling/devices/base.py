@@ -181,7 +181,9 @@ class Device:
         ----------
         met : Meeting
         """
-        cut = self.outline_on(met.one.track, LONG * met.size)
+        cut, span = self.outline_on(met.one.track, LONG * met.size), self.span_on(met.one.track)
+        if span is not None and 0.0 < span[0] and met.held_by_shoulders(span) >= 0.0:
+            return STOPPED  # it hangs in the slot up to its end
         return RETURNED if cut is None or met.falls_through(cut) else STOPPED
 
     def judged(self, met):

@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import value_forms as forms
 from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import MM, Device, room_of
+from feederscrew.tooling.devices.base import MM, UNSURE, Device, room_of
 from feederscrew.tooling.devices.ledges import between
 from feederscrew.tooling.devices.pieces import Hole, Standing
 
@@ -92,13 +92,17 @@ class Rails(Device):
         """Return its slot, which goes on behind it: those that hang do not come back onto the track."""
         room, size = room_of(every), max(np.hypot(one.length, max(one.width, one.height)) for one in every)
         length = room + self.goes_on(track.extent)
-        return Standing(length, holes=(Hole(self.outline_on(track, length + 2.0 * size)),), hangs=True)
+        holes = (Hole(self.outline_on(track, length + 2.0 * size)),)
+        return Standing(length, holes=holes, hangs=True, slot=self.span)
 
     def judged(self, met):
         if met.hanging:
             return met.verdict(met.one.over(self.span))
         first = self.entry.span
         over = met.over_slot(first)
+        stem = met.held_by_shoulders(self.span) if over < -UNSURE else -np.inf
+        if stem >= 0.0:
+            return met.verdict(stem, hangs=True)
         held = met.held_by_head(self.span[1] - self.span[0], first[1] - first[0]) if over < 0.0 else -np.inf
         free = met.goes_down(first[0]) and met.hangs_free(self.span)
         if held > 0.0 and (met.wedges(first) or not free):

@@ -6,9 +6,8 @@ from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VY, VZ, W, X, Y
 from feederscrew.dropping.kernel.floor_contacts import IMPULSE, WANTED
 from feederscrew.geometry.compiled import apart, compiled
-from feederscrew.trial.kernel import contact, track_leans
+from feederscrew.trial.kernel import contact, pushes, track_leans
 from feederscrew.trial.kernel.contact import GAP
-from feederscrew.trial.kernel.pushes import give, reversal, wanted, wanted_of_pairs
 
 REACH = 2e-3  # how far ahead contacts are looked for, beside the way of two steps
 FREE = 1e-9  # work against gravity and the drive that is rounding, of one part alone, and ...
@@ -88,6 +87,12 @@ def _no_more_than_given(solid, crowd, island, late):
         _scaled(crowd, island, min(max(scale, 0.0), 1.0))
 
 
+@compiled
+def at_once(floor, dt):
+    """Return the share [1] of a step ``dt`` [sqrt(L/g)] in which what happens, happens at its start."""
+    return min(AT_ONCE * floor.step / dt, 1.0)
+
+
 @apart
 def pushed(surface, solid, floor, crowd, island, time, dt):
     """Compute velocities after a step: gravity, drive, jets and contacts.
@@ -96,30 +101,40 @@ def pushed(surface, solid, floor, crowd, island, time, dt):
     -------
     depth of the deepest contact, whether one strikes, share of the step after which its course changes
     """
-    deepest, strikes, share = wanted_of_pairs(surface, crowd, dt)
-    count, warm = crowd.paired[0], 1.0
+    deepest, first = pushes.wanted_of_pairs(surface, crowd, dt)
+    count, warm, once = crowd.paired[0], 1.0, at_once(floor, dt)
     for m in range(island[0], island[1]):
         n = crowd.order[m]
         state = crowd.states[n]
         body.turn_freely(state, solid.inertia, dt)
-        give(surface, solid, floor, crowd, n, time, dt)
+        pushes.give(surface, solid, floor, crowd, n, time, dt)
         for k in range(3):
             state[VX + k] += crowd.given[n, k]
             crowd.free[n, k] = state[W + k]
             state[W + k] += crowd.given[n, 3 + k]
-        depth, hits, at = wanted(surface, crowd, n, dt)
-        deepest, strikes, share = min(deepest, depth), strikes or hits, min(share, at)
+        depth, share = pushes.wanted(surface, crowd, n, dt)
+        deepest, first = min(deepest, depth), min(first, share)
         count += crowd.counts[n]
         warm = dt / crowd.lasted[n] if warm > 0.0 and crowd.lasted[n] > 0.0 else 0.0
-    if count == 0 or (strikes and share > AT_ONCE):
+    strikes, share = first <= 1.0, min(first, 1.0)
+    if count == 0 or (strikes and share > once):
         return deepest, strikes, share
+    if strikes:
+        pushes.rebounds_of_pairs(surface, crowd, dt, once)
+        for m in range(island[0], island[1]):
+            pushes.rebounds(surface, crowd, crowd.order[m], dt, once)
     contact.solve(surface, crowd, crowd.states, island, True, 0.0 if strikes else warm)
     share = 1.0
     for m in range(island[0], island[1]):
         n = crowd.order[m]
         crowd.lasted[n] = -1.0 if strikes else dt
-        share = min(share, reversal(crowd, n))
+        turned = pushes.reversal(crowd, n)
+        share = min(share, turned) if turned > once else share
     _no_more_than_given(solid, crowd, island, 1.0 if strikes else 0.5)
+    if strikes:
+        share = min(share, max(once, pushes.next_strike_of_pairs(crowd, dt)))
+        for m in range(island[0], island[1]):
+            share = min(share, max(once, pushes.next_strike(crowd, crowd.order[m], dt)))
     return deepest, strikes, share
 
 

@@ -11,6 +11,8 @@ from feederscrew.trial.kernel.contact import AHEAD, BACK, GAP, NORMAL, RUB
 from feederscrew.trial.kernel.crowd_records import LEAN
 
 STILL = 1e-5  # speed along a contact below which it sticks while static friction holds
+CLOSE = 2e-5  # [1] of the unit of length: what is further off takes no part in an impact
+ROUNDING = 1e-9  # speed that is rounding
 
 
 @compiled
@@ -36,51 +38,106 @@ def give(surface, solid, floor, crowd, n, time, dt):
 
 @compiled
 def wanted(surface, crowd, n, dt):
-    """Say how each contact of a part shall leave a step, with which friction.
+    """Say how each contact of a part shall leave a step in which none strikes, with which friction.
 
     Returns
     -------
-    depth of the deepest, whether one strikes, share of the step after which the first of them does
+    depth of the deepest, share of the step after which the first of them strikes; infinite where none does
     """
-    deepest, strikes, share = 0.0, False, 1.0
+    deepest, share = 0.0, math.inf
     saved = crowd.before[n]
     for m in range(crowd.counts[n]):
         row = crowd.rows[n, m]
         gap, fall = row[GAP], contact.speed(saved, row, NORMAL)
         deepest = min(deepest, gap)
         row[WANTED] = -max(gap, 0.0) / dt - max(fall, 0.0)
-        if fall < -surface.threshold and gap + fall * dt < 0.0:
-            strikes = True
-            share = min(share, max(gap, 0.0) / (-fall * dt))
-            given = contact.speed(crowd.states[n], row, NORMAL) - fall
-            row[WANTED] = max(given - surface.restitution * fall, 0.0)
+        share = min(share, _strikes_after(surface, gap, fall, dt))
         if math.isnan(row[RUB]):
             slides = math.hypot(contact.speed(saved, row, 0), contact.speed(saved, row, 1)) > STILL
             row[AHEAD] = surface.friction[int(slides)]
             row[BACK] = surface.friction[2 + int(slides)]
         else:
             row[AHEAD] = row[BACK] = row[RUB]
-    return deepest, strikes, share
+    return deepest, share
 
 
 @compiled
 def wanted_of_pairs(surface, crowd, dt):
     """Say with which speed [sqrt(g L)] each contact of two parts shall leave a step; as ``wanted``."""
-    deepest, strikes, share = 0.0, False, 1.0
+    deepest, share = 0.0, math.inf
     for k in range(0, crowd.paired[0], 2):
         row = crowd.pairs[k]
         gap, fall = row[GAP], contact.apart_by(crowd.before, crowd, k, NORMAL)
         deepest = min(deepest, gap)
         row[WANTED] = -max(gap, 0.0) / dt
-        if fall < -surface.threshold and gap + fall * dt < 0.0:
-            strikes = True
-            share = min(share, max(gap, 0.0) / (-fall * dt))
-            given = contact.apart_by(crowd.states, crowd, k, NORMAL) - fall
-            row[WANTED] = max(given - surface.restitution * fall, 0.0)
+        share = min(share, _strikes_after(surface, gap, fall, dt))
         along = contact.apart_by(crowd.before, crowd, k, 0)
         aside = contact.apart_by(crowd.before, crowd, k, 1)
         row[AHEAD] = surface.friction[int(math.hypot(along, aside) > STILL)]
-    return deepest, strikes, share
+    return deepest, share
+
+
+@compiled
+def _strikes_after(surface, gap, fall, dt):
+    """Share of a step after which a contact strikes; infinite where it does not."""
+    if fall < -surface.threshold and gap + fall * dt < -ROUNDING * dt:
+        return max(gap, 0.0) / (-fall * dt)
+    return math.inf
+
+
+@compiled
+def rebounds(surface, crowd, n, dt, once):
+    """Say how contacts of a part shall leave an impact that begins a step: those that strike at once rebound.
+
+    What is further off than CLOSE, and strikes later than a share ``once`` of the step or not at all, takes
+    no part in the impact. The corners of a part that comes down a little out of level so strike one after
+    the other, each with the speed that the one before has left it, and the part goes on rocking.
+    """
+    for m in range(crowd.counts[n]):
+        row = crowd.rows[n, m]
+        fall = contact.speed(crowd.before[n], row, NORMAL)
+        if _strikes_after(surface, row[GAP], fall, dt) <= once:
+            given = contact.speed(crowd.states[n], row, NORMAL) - fall
+            row[WANTED] = max(given - surface.restitution * fall, 0.0)
+        elif row[GAP] > CLOSE:
+            row[WANTED] = -math.inf
+
+
+@compiled
+def rebounds_of_pairs(surface, crowd, dt, once):
+    """Say the same of contacts of two parts; as ``rebounds``."""
+    for k in range(0, crowd.paired[0], 2):
+        row = crowd.pairs[k]
+        fall = contact.apart_by(crowd.before, crowd, k, NORMAL)
+        if _strikes_after(surface, row[GAP], fall, dt) <= once:
+            given = contact.apart_by(crowd.states, crowd, k, NORMAL) - fall
+            row[WANTED] = max(given - surface.restitution * fall, 0.0)
+        elif row[GAP] > CLOSE:
+            row[WANTED] = -math.inf
+
+
+@compiled
+def next_strike(crowd, n, dt):
+    """Return the share [1] of a step after which what took no part in an impact touches; 1 if none does."""
+    share = 1.0
+    for m in range(crowd.counts[n]):
+        row = crowd.rows[n, m]
+        if row[WANTED] == -math.inf:
+            way = -dt * contact.speed(crowd.states[n], row, NORMAL)
+            share = row[GAP] / way if way * share > row[GAP] else share
+    return share
+
+
+@compiled
+def next_strike_of_pairs(crowd, dt):
+    """Return the same of contacts of two parts; as ``next_strike``."""
+    share = 1.0
+    for k in range(0, crowd.paired[0], 2):
+        row = crowd.pairs[k]
+        if row[WANTED] == -math.inf:
+            way = -dt * contact.apart_by(crowd.states, crowd, k, NORMAL)
+            share = row[GAP] / way if way * share > row[GAP] else share
+    return share
 
 
 @compiled

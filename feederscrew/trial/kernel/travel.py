@@ -58,7 +58,8 @@ def over(surface, solid, floor, crowd, island, time, notes):
             for k in range(island[0], m):
                 pairs.met(solid, crowd, crowd.order[m], crowd.order[k], reach)
         deepest, strikes, share = motion.pushed(surface, solid, floor, crowd, island, now, taken)
-        if motion.AT_ONCE < share < 1.0 - motion.AT_ONCE:
+        once = motion.at_once(floor, taken)
+        if once <= share < 1.0 - once:
             taken *= share
             motion.back(crowd, island)
             deepest, strikes, share = motion.pushed(surface, solid, floor, crowd, island, now, taken)
