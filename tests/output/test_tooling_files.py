@@ -287,7 +287,7 @@ def test_a_design_names_headings_in_whole_degrees_and_lengths_as_they_are():
     rates = "target delivered worst_friction static".split()
     found = {"status": "holds", "wanted": "A@0"} | {f"{name}_per_minute": 1.0 for name in rates}
     found |= {"delivered_low": 1.0, "delivered_high": 1.0, "purity": None, "jams": 0, "queue_seconds": 0.0}
-    found |= {"jams_per_hour_high": None, "robust": {"held": 0, "draws": 0}, "chain": [sorter]}
+    found |= {"up": [], "jams_per_hour_high": None, "robust": {"held": 0, "draws": 0}, "chain": [sorter]}
     assert design_tables.outcome(found)[-1] == ("device 1", "sorter: {of: A@0, play: 2.35 mm, sees: side}")
 
 
