@@ -79,7 +79,8 @@ KINDS = (*PLAN, *readers.READERS, TOGETHER)
 ROUND = 50  # inputs of one kind at a time
 QUICK = {  # of readers, so that each takes some seconds
     "read stl": 1500, "read open stl": 1500, "read bowl": 300, "read verified": 300,
-    "read card": 300, "read names": 300,
+    "read card": 300, "read names": 300, "read cache": 2000, "read obj": 500, "read ply": 500,
+    "read off": 500, "read glb": 200, "read 3mf": 500, "read 3mf model": 500,
     "read counts": 4000, "read list": 2000, "read launches": 4000, "read dxf": 1000,
 }  # fmt: skip
 

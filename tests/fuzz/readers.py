@@ -3,6 +3,10 @@
 A command tries far fewer in the same time; what a reader lets through, the kinds of ``harness.PLAN`` try on.
 """
 
+import contextlib
+import hashlib
+import json
+import os
 import traceback
 import warnings
 import zipfile
@@ -110,6 +114,28 @@ def _launches(name):
     launch_file.read(name)
 
 
+def _cache(name):
+    """Read a damaged entry of the cache, under a digest that fits it where it is still JSON."""
+    from feederscrew.studies.simulated import on_disk
+
+    damaged, key = Path(name).read_bytes(), {"part": "of the fuzzer"}
+    before, os.environ[on_disk.VARIABLE] = os.environ.get(on_disk.VARIABLE), "kept"
+    try:
+        on_disk.write(key, {"shares": np.array([0.25, 0.75])})
+        (entry,) = Path("kept").iterdir()
+        with contextlib.suppress(ValueError, KeyError, TypeError):
+            whole = json.loads(entry.read_bytes()) | {"arrays": json.loads(damaged)["arrays"]}
+            signed = json.dumps([whole["key"], whole["arrays"]], sort_keys=True).encode()
+            damaged = json.dumps(whole | {"sha256": hashlib.sha256(signed).hexdigest()}).encode()
+        entry.write_bytes(damaged)
+        arrays = on_disk.read(key)
+        assert arrays is None or all(array.dtype.kind in "fib" for array in arrays.values())
+    finally:
+        os.environ.pop(on_disk.VARIABLE)
+        if before is not None:
+            os.environ[on_disk.VARIABLE] = before
+
+
 READERS = {  # seeds, how the damaged file is called, and what reads it
     "read stl": (("tests/fuzz/cube.stl", "parts/key_a_d12x20.stl", "tests/fuzz/text.stl"), "part.stl", _load),
     "read open stl": (("tests/fuzz/cube.stl", "tests/fuzz/text.stl"), "part.stl", _load_open),
@@ -122,6 +148,7 @@ READERS = {  # seeds, how the damaged file is called, and what reads it
     "read bowl": (("docs/measured/example/bowl.yaml", "configs/thesis.yaml"), "bowl.yaml", _bowl),
     "read verified": (("tests/fuzz/verified.yaml",), "bowl.yaml", _verified),
     "read card": (("parts/magnet.yaml", "parts/arc_chute.yaml"), "card.yaml", _load),
+    "read cache": (("tests/fuzz/entry.json",), "entry.json", _cache),
     "read names": (("tests/fuzz/names.yaml",), "names.yaml", _names),
     "read counts": (COUNTED, "counts.csv", _counts),
     "read list": (("tests/fuzz/list.csv",), "list.csv", _gather),
