@@ -206,10 +206,12 @@ def shoulders(one, width):
     points = points + [0.0, 0.0, one.posture.height]
     size = float(np.ptp(points, axis=0).max())
     flat = touching.TOUCHING * size
-    foot = points[points[:, 2] < flat, 1]
-    stem, middle = float(np.ptp(foot)), float(0.5 * (foot.min() + foot.max()))
-    drop = _underside(points, solid.faces, middle, 0.5 * width) if stem < width else 0.0
-    if not np.isfinite(drop) or drop <= flat:
+    foot = points[points[:, 2] < flat]
+    stem, middle = float(np.ptp(foot[:, 1])), float(0.5 * (foot[:, 1].min() + foot[:, 1].max()))
+    if stem >= width or np.abs(points[:, 1] - middle).max() < 0.5 * width:
+        return None
+    drop = _underside(points, solid.faces, middle, 0.5 * width)
+    if not flat < drop <= np.ptp(foot[:, 0]):
         return None
     area = touching.area_below(points[:, :2], points[:, 2] - drop, solid.faces, flat, True)
     half = 0.5 * width
