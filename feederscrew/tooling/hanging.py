@@ -177,6 +177,7 @@ class Shoulders:
     """What of a part, as it lies, goes down into a slot, and what then holds it on both sides."""
 
     stem: float  # [m] width across the track of what goes down
+    nearest: float  # [m] from the foot of the centre of mass, inwards: what of it comes nearest to the wall
     middle: float  # [m] of it, from the foot of the centre of mass
     drop: float  # [m] by which it goes down
     spare: float  # [m] from the foot to the border of what holds it: by how much it stands upright there
@@ -219,7 +220,9 @@ def shoulders(one, width):
     hull, weight = beside.convex_hull, shapely.Point(0.0, 0.0)
     if beside.area <= touching.SLIVER * size**2 or not hull.contains(weight):
         return None
-    return Shoulders(stem, middle, drop, float(hull.exterior.distance(weight)))
+    centre = one.track.radius - one.distance
+    nearest = centre - np.hypot(foot[:, 0], centre - foot[:, 1]).max()  # the wall is curved
+    return Shoulders(stem, float(nearest), middle, drop, float(hull.exterior.distance(weight)))
 
 
 def shoulder_margin(one, span):
@@ -230,7 +233,7 @@ def shoulder_margin(one, span):
     found = shoulders(one, span[1] - span[0])
     if found is None:
         return -np.inf
-    inner = one.distance + found.middle - 0.5 * found.stem - span[0]
+    inner = one.distance + found.nearest - span[0]
     outer = span[1] - one.distance - found.middle - 0.5 * found.stem
     return float(max(min(inner, outer, found.spare), 0.0))
 
@@ -277,7 +280,9 @@ def _neck_of(one, held):
     """The Neck of a part that its shoulders hold as it lies: its stem is the shank."""
     solid = one.posture.solid
     points = vectors.product(solid.vertices - solid.centre_of_mass, one.axes.T)
-    head = points[points[:, 2] > held.drop - one.posture.height - touching.TOUCHING * np.ptp(points, axis=0).max()]
+    head = points[
+        points[:, 2] > held.drop - one.posture.height - touching.TOUCHING * np.ptp(points, axis=0).max()
+    ]
     wide, lever = float(np.ptp(head[:, 1])), float(points[:, 2].max())
     down = check.frozen(np.einsum("ij,i->j", one.axes, [0.0, 0.0, -1.0]))
     return Neck(held.stem, wide, wide, held.middle, 0.0, lever, down)
