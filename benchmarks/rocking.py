@@ -1,9 +1,9 @@
-"""Does a tall block on a vibrating track lie flat or rock? An independent rigid code: docs/trial.md, "Parts that rock".
+"""Does a tall block on a vibrating track lie flat or rock? An independent rigid code: docs/trial.md.
 
 Example: python benchmarks/rocking.py
 
 It knows nothing of `feederscrew`: eight corners of a box against track and wall, velocities and impulses by
-Moreau's time stepping, projected Gauss-Seidel to 1e-11, steps of 2 us. What comes faster than 3 mm/s rebounds.
+Moreau's time stepping, projected Gauss-Seidel, steps of 2 us. What comes faster than 3 mm/s rebounds.
 """
 
 import numpy as np
@@ -36,7 +36,7 @@ def travelled(e, tiltvec, phase):
                 pts[n, 1] = b * half[1]
                 pts[n, 2] = c * half[2]
                 n += 1
-    I = (np.sum(half**2) - half**2) / 3.0
+    moments = (np.sum(half**2) - half**2) / 3.0
     ang = np.sqrt(np.sum(tiltvec**2))
     R = np.eye(3)
     if ang > 0:
@@ -57,7 +57,6 @@ def travelled(e, tiltvec, phase):
     want = np.zeros(16)
     act = np.zeros(16, np.int64)
     arms = np.zeros((16, 3))
-    mx = 0.0
     for k in range(N):
         t = k * step
         a = A * w * w * np.sin(w * t + phase)
@@ -76,7 +75,6 @@ def travelled(e, tiltvec, phase):
                     arms[na, 2] = az
                     act[na] = s
                     lam[na] = g1[na] = g2[na] = 0.0
-                    vx = v[0] + om[1] * az - om[2] * ay
                     vy = v[1] + om[2] * ax - om[0] * az
                     vz = v[2] + om[0] * ay - om[1] * ax
                     vn = vz if s == 0 else vy
@@ -87,9 +85,9 @@ def travelled(e, tiltvec, phase):
             Ii = np.zeros((3, 3))
             for i in range(3):
                 for j in range(3):
-                    for l in range(3):
-                        Ii[i, j] += R[i, l] * R[j, l] / I[l]
-            for sw in range(SWEEPS):
+                    for m in range(3):
+                        Ii[i, j] += R[i, m] * R[j, m] / moments[m]
+            for _ in range(SWEEPS):
                 ch = 0.0
                 for c in range(na):
                     s = act[c]
@@ -140,9 +138,9 @@ def travelled(e, tiltvec, phase):
         pos += step * v
         # gyroscopic neglected for tiny rates? include: body torque-free
         wb = R.T @ om
-        wb[0] += step * (I[1] - I[2]) / I[0] * wb[1] * wb[2]
-        wb[1] += step * (I[2] - I[0]) / I[1] * wb[2] * wb[0]
-        wb[2] += step * (I[0] - I[1]) / I[2] * wb[0] * wb[1]
+        wb[0] += step * (moments[1] - moments[2]) / moments[0] * wb[1] * wb[2]
+        wb[1] += step * (moments[2] - moments[0]) / moments[1] * wb[2] * wb[0]
+        wb[2] += step * (moments[0] - moments[1]) / moments[2] * wb[0] * wb[1]
         an = np.sqrt(np.sum(om**2)) * step
         om0 = om.copy()
         om[:] = R @ wb

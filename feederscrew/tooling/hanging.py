@@ -184,7 +184,7 @@ class Shoulders:
 
 
 def shoulders(one, width):
-    """Return how a part goes down into a slot along the track as it lies and is held there: a T-nut, stem down.
+    """Return how a part goes down into a slot along the track as it lies and is held: a T-nut, stem down.
 
     Source: own; docs/tooling.md, "1. The method".
 
