@@ -74,7 +74,7 @@ def lets_go(device, one):
     if cut is None or _over_the_edge(device, one.track):
         return True
     span = device.span_on(one.track)
-    if span is not None and 0.0 < span[0] and shoulder_margin(one, span) >= 0.0:
+    if span is not None and span[0] > 0.0 and shoulder_margin(one, span) >= 0.0:
         return False
     if span is None:
         return falls_through(one, cut) and _drops_between(one, cut)

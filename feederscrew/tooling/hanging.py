@@ -177,13 +177,14 @@ class Shoulders:
     """What of a part, as it lies, goes down into a slot, and what then holds it on both sides."""
 
     stem: float  # [m] width across the track of what goes down
+    nearest: float  # [m] from the foot of the centre of mass, inwards: what of it comes nearest to the wall
     middle: float  # [m] of it, from the foot of the centre of mass
     drop: float  # [m] by which it goes down
     spare: float  # [m] from the foot to the border of what holds it: by how much it stands upright there
 
 
 def shoulders(one, width):
-    """Return how a part goes down into a slot along the track as it lies and is held there: a T-nut, stem down.
+    """Return how a part goes down into a slot along the track as it lies and is held: a T-nut, stem down.
 
     Source: own; docs/tooling.md, "1. The method".
 
@@ -206,10 +207,12 @@ def shoulders(one, width):
     points = points + [0.0, 0.0, one.posture.height]
     size = float(np.ptp(points, axis=0).max())
     flat = touching.TOUCHING * size
-    foot = points[points[:, 2] < flat, 1]
-    stem, middle = float(np.ptp(foot)), float(0.5 * (foot.min() + foot.max()))
-    drop = _underside(points, solid.faces, middle, 0.5 * width) if stem < width else 0.0
-    if not np.isfinite(drop) or drop <= flat:
+    foot = points[points[:, 2] < flat]
+    stem, middle = float(np.ptp(foot[:, 1])), float(0.5 * (foot[:, 1].min() + foot[:, 1].max()))
+    if stem >= width or np.abs(points[:, 1] - middle).max() < 0.5 * width:
+        return None
+    drop = _underside(points, solid.faces, middle, 0.5 * width)
+    if not flat < drop <= np.ptp(foot[:, 0]):
         return None
     area = touching.area_below(points[:, :2], points[:, 2] - drop, solid.faces, flat, True)
     half = 0.5 * width
@@ -217,7 +220,9 @@ def shoulders(one, width):
     hull, weight = beside.convex_hull, shapely.Point(0.0, 0.0)
     if beside.area <= touching.SLIVER * size**2 or not hull.contains(weight):
         return None
-    return Shoulders(stem, middle, drop, float(hull.exterior.distance(weight)))
+    centre = one.track.radius - one.distance
+    nearest = centre - np.hypot(foot[:, 0], centre - foot[:, 1]).max()  # the wall is curved
+    return Shoulders(stem, float(nearest), middle, drop, float(hull.exterior.distance(weight)))
 
 
 def shoulder_margin(one, span):
@@ -228,7 +233,7 @@ def shoulder_margin(one, span):
     found = shoulders(one, span[1] - span[0])
     if found is None:
         return -np.inf
-    inner = one.distance + found.middle - 0.5 * found.stem - span[0]
+    inner = one.distance + found.nearest - span[0]
     outer = span[1] - one.distance - found.middle - 0.5 * found.stem
     return float(max(min(inner, outer, found.spare), 0.0))
 
@@ -275,7 +280,9 @@ def _neck_of(one, held):
     """The Neck of a part that its shoulders hold as it lies: its stem is the shank."""
     solid = one.posture.solid
     points = vectors.product(solid.vertices - solid.centre_of_mass, one.axes.T)
-    head = points[points[:, 2] > held.drop - one.posture.height - touching.TOUCHING * np.ptp(points, axis=0).max()]
+    head = points[
+        points[:, 2] > held.drop - one.posture.height - touching.TOUCHING * np.ptp(points, axis=0).max()
+    ]
     wide, lever = float(np.ptp(head[:, 1])), float(points[:, 2].max())
     down = check.frozen(np.einsum("ij,i->j", one.axes, [0.0, 0.0, -1.0]))
     return Neck(held.stem, wide, wide, held.middle, 0.0, lever, down)

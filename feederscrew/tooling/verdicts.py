@@ -182,7 +182,7 @@ class Meeting:
         return hanging_margin(self.one, width, widest)
 
     def held_by_shoulders(self, span):
-        """Return by how much [m] its shoulders hold it in a slot along the track, its stem down: -inf if not."""
+        """Return by how much [m] its shoulders hold it in a slot, its stem down; -inf if not."""
         return shoulder_margin(self.one, span)
 
     def wedges(self, span):

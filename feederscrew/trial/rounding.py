@@ -95,8 +95,8 @@ def joined_pairs(solid):
 def circles(corners, axis, gap=COARSEST, joined=None):
     """Return the circles (a list of Circle) through corners, about an axis through the origin.
 
-    Between the tips of teeth, or at the sides of a slot, nothing is round: where the surface does not join two
-    neighbours a circle has no points, and what would bulge there by more than BRIDGED is no circle.
+    Between the tips of teeth, or at the sides of a slot, nothing is round: where the surface does not join
+    two neighbours a circle has no points, and what would bulge there by more than BRIDGED is no circle.
 
     Parameters
     ----------

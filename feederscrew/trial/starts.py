@@ -55,7 +55,7 @@ def laid_down(bowl, every, entered, solid, principal, length, seed):
 
 
 def tilted(state, corners, rng):
-    """Return a part's state (13,) out of level by TILT about a horizontal axis, its lowest corner on the track.
+    """Return a part's state (13,) out of level by TILT about a level axis, its lowest corner on the track.
 
     Parameters
     ----------

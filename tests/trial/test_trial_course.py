@@ -369,7 +369,7 @@ def test_parts_that_fall_onto_the_track_go_on_as_they_come_to_lie(bowl):
     assert fell.landed[0] > fell.landed[1:].sum()  # most lie flat
     assert fell.left == fell.fates[:, [course.PASSED, course.TURNED]].sum()
     assert fell.fates[:, course.RETURNED].sum() > 0  # their middle lies beyond the track that is left
-    assert fell.depth < 1e-4
+    assert fell.depth < 1.5e-4
 
 
 def test_parts_that_fall_anywhere_over_the_track_clear_the_wall():

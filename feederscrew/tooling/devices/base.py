@@ -182,7 +182,7 @@ class Device:
         met : Meeting
         """
         cut, span = self.outline_on(met.one.track, LONG * met.size), self.span_on(met.one.track)
-        if span is not None and 0.0 < span[0] and met.held_by_shoulders(span) >= 0.0:
+        if span is not None and span[0] > 0.0 and met.held_by_shoulders(span) >= 0.0:
             return STOPPED  # it hangs in the slot up to its end
         return RETURNED if cut is None or met.falls_through(cut) else STOPPED
 

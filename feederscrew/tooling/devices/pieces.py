@@ -79,7 +79,9 @@ class Standing:
     drop: float = 0.0  # [m] by which the track that goes on lies lower
     aside: float = 0.0  # [m] from the wall, where that begins
     hangs: bool = False  # whether parts leave hanging, their centres of mass below the track
-    slot: tuple[float, ...] = ()  # [m] from the wall: between which rails what hangs goes on behind the device
+    slot: tuple[
+        float, ...
+    ] = ()  # [m] from the wall: between which rails what hangs goes on behind the device
     settles: float = 0.0  # of the part's size: how far behind the device parts go on until they are looked at
 
 

@@ -120,7 +120,7 @@ def pushed(surface, solid, floor, crowd, island, time, dt):
     if count == 0 or (strikes and share > once):
         return deepest, strikes, share
     if strikes:
-        pushes.rebounds_of_pairs(surface, crowd, dt, once)
+        pushes.rebounds_of_pairs(surface, crowd, dt)
         for m in range(island[0], island[1]):
             pushes.rebounds(surface, crowd, crowd.order[m], dt, once)
     contact.solve(surface, crowd, crowd.states, island, True, 0.0 if strikes else warm)
@@ -132,7 +132,6 @@ def pushed(surface, solid, floor, crowd, island, time, dt):
         share = min(share, turned) if turned > once else share
     _no_more_than_given(solid, crowd, island, 1.0 if strikes else 0.5)
     if strikes:
-        share = min(share, max(once, pushes.next_strike_of_pairs(crowd, dt)))
         for m in range(island[0], island[1]):
             share = min(share, max(once, pushes.next_strike(crowd, crowd.order[m], dt)))
     return deepest, strikes, share

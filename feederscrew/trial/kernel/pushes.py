@@ -104,16 +104,17 @@ def rebounds(surface, crowd, n, dt, once):
 
 
 @compiled
-def rebounds_of_pairs(surface, crowd, dt, once):
-    """Say the same of contacts of two parts; as ``rebounds``."""
+def rebounds_of_pairs(surface, crowd, dt):
+    """Say how contacts of two parts shall leave an impact: all that strike in the step rebound together.
+
+    Parts of a row meet face to face; what is nearer by a micrometre shall not turn them.
+    """
     for k in range(0, crowd.paired[0], 2):
         row = crowd.pairs[k]
         fall = contact.apart_by(crowd.before, crowd, k, NORMAL)
-        if _strikes_after(surface, row[GAP], fall, dt) <= once:
+        if _strikes_after(surface, row[GAP], fall, dt) <= 1.0:
             given = contact.apart_by(crowd.states, crowd, k, NORMAL) - fall
             row[WANTED] = max(given - surface.restitution * fall, 0.0)
-        elif row[GAP] > CLOSE:
-            row[WANTED] = -math.inf
 
 
 @compiled
@@ -124,18 +125,6 @@ def next_strike(crowd, n, dt):
         row = crowd.rows[n, m]
         if row[WANTED] == -math.inf:
             way = -dt * contact.speed(crowd.states[n], row, NORMAL)
-            share = row[GAP] / way if way * share > row[GAP] else share
-    return share
-
-
-@compiled
-def next_strike_of_pairs(crowd, dt):
-    """Return the same of contacts of two parts; as ``next_strike``."""
-    share = 1.0
-    for k in range(0, crowd.paired[0], 2):
-        row = crowd.pairs[k]
-        if row[WANTED] == -math.inf:
-            way = -dt * contact.apart_by(crowd.states, crowd, k, NORMAL)
             share = row[GAP] / way if way * share > row[GAP] else share
     return share
 

@@ -1,4 +1,4 @@
-"""Parts that come down out of level rock as impacts of one corner after the other make them; gears have teeth."""
+"""Parts that come down out of level rock from corner to corner; gears have teeth."""
 
 from dataclasses import replace
 
