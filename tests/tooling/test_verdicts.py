@@ -152,7 +152,7 @@ def test_a_cut_out_of_a_drawing(tmp_path, block):
     made = bowls.read(path).devices[0]
     assert np.array(made.corners) == pytest.approx(1e-3 * np.array(corners, dtype=float))
     assert verdict(made, along(block), block).margin == pytest.approx(1e-3, abs=5e-6)
-    with pytest.raises(FeederError, match="has no closed polyline on layer 'GATE'"):
+    with pytest.raises(FeederError, match="no closed outline on layer 'GATE'"):
         path.write_text("devices:\n  - cut_out: {dxf: holes.dxf, layer: GATE}\n")
         bowls.read(path)
 

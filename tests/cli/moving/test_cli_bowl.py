@@ -240,7 +240,7 @@ def test_faults_are_one_line(run):
         f"{PART}: needs a bowl of 3010 mm, and none is larger than 1200 mm"
         " - feed it from a step or belt feeder, or raise sizing.greatest_diameter"
     )
-    assert told(run, PART, "--target", "9/s", "--rule", "nobody").startswith("--rule nobody: has no prob")
+    assert told(run, PART, "--target", "9/s", "--rule", "nobody").startswith("--rule: unknown rule 'nobody'")
     assert told(run, PART, "--target", "1/min", "--set", "track.radius=30 mm") == (
         "track.radius: 30 mm is too small for a part 36.05 mm long - leave it out, to have the bowl sized"
     )

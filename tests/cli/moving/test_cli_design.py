@@ -127,7 +127,7 @@ def test_the_acceptance_sheet_is_read_back_filled_in(designed, run):
     assert filled("yield", "99", "50")["accepted"] and not filled("yield", "80", "50")["accepted"]
     Path("odd.csv").write_text("\n".join([rows[0], rows[1].rsplit(",", 2)[0] + ",many,"]) + "\n")
     odd = run("compare", "odd.csv")
-    assert "measured is 'many', not a number - write a number alone" in odd.stderr
+    assert "measured: 'many' is not a number - write a number alone" in odd.stderr
 
 
 def test_a_trial_that_counted_several_aspects_as_one_leads_though_the_rule_says_less(designed, run):

@@ -31,16 +31,17 @@ def told(run, *arguments):
 
 def test_the_chain_of_one_orientation(run, block):
     document = told(run, "tooling", block, "--aspect", "A", "--heading", "90deg", *WIDE)
-    assert document["isolated"] is True
+    assert document["isolated_static"] is True
     assert document["rule"] == "recommended"
     assert len(document["orientations"]) == 6
     assert all(set(row) >= ROW for row in document["orientations"])
     assert sum(row["share"] for row in document["orientations"]) == pytest.approx(1.0, abs=1e-9)
-    assert {row["isolated"] for row in document["orientations"]} == {True, None}
     tried, *others = document["trial"]  # the chain that is proposed, then what its trial denied
-    assert document["status"] == "confirmed" and all(one["denied"] for one in others)
-    assert tried["orientation"] == "A@90" and tried["sorts"] and not tried["denied"] and tried["parts"] >= 4
-    assert tried["efficiency_static"] == pytest.approx(document["efficiency"])
+    assert document["isolated"] == tried["sorts"] == (document["status"] == "confirmed")
+    assert bool(tried["denied"]) != tried["sorts"] and all(other["denied"] for other in others)
+    assert {row["isolated"] for row in document["orientations"]} == {document["isolated"], None}
+    assert tried["orientation"] == "A@90" and tried["parts"] >= 4
+    assert tried["efficiency_static"] == pytest.approx(document["efficiency_static"])
     alone = told(run, "tooling", block, "--aspect", "A", "--heading", "90deg", "--static", *WIDE)
     assert alone["trial"] == [] and alone["status"] == "static"
     assert {row["aspect"] for row in alone["orientations"]} == {

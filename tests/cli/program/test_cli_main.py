@@ -125,7 +125,7 @@ def test_our_own_bug_keeps_its_traceback():
         (["aspects"], "Error: Missing argument 'PART'. (see feeder aspects --help)"),
         (
             ["aspects", "a.stl", "--units", "ft"],
-            "Error: Invalid value for '--units': 'ft' is not one of 'mm', 'cm', 'm', 'in'."
+            "Error: Invalid value for '--units': 'ft' is not one of 'mm', 'cm', 'm', 'um', 'in'."
             " (see feeder aspects --help)",
         ),
         (
@@ -167,7 +167,7 @@ def test_shared_options_arrive_as_keywords(tmp_path):
     assert json.loads(told(*call).stdout) == {
         "part": {
             "source": "nut.stl", "units": "in", "density": None,
-            "centre_of_mass": "-1,2,3", "names": None, "allow_open": False,
+            "centre_of_mass": "-1,2,3", "names": None, "body": None, "allow_open": False,
         },
         "bowl": {"path": None, "overrides": ["a=1", "b=2"]},
     }  # fmt: skip
