@@ -42,8 +42,10 @@ def test_the_jobs_of_the_tutorial(tmp_path, monkeypatch):
     across = next(row.split() for row in told[3].splitlines() if row.split()[:2] == ["A", "90.00"])
     assert across[4:6] == ["0", "0"]  # in the trial none of them passes or turns
     for job in (told[3], told[7]):
-        fates = {row.split()[0]: row.split() for row in job.splitlines()}
-        assert fates["A"] and "yes" not in job.split()  # no orientation against the static rule
+        fates = [row.split() for row in job.splitlines()[2:]]
+        often = [fate for fate in fates if float(fate[2]) >= 0.5]  # [%] C of the screw comes in 0.05 %
+        assert len(often) >= 4
+        assert not [fate for fate in often if fate[-1] == "yes"]  # none against the static rule
     for name in ("countersunk_m4x12", "ring_terminal"):
         assert {path.name for path in (tmp_path / "build/tutorial" / name).iterdir()} > FILES
 
