@@ -11,7 +11,7 @@ from typing import Any
 from feederscrew import __version__
 from feederscrew.batch.task import Outcome, Task, libraries
 from feederscrew.batch.workers import work
-from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.errors import FeederError, MissingPackage
 
 PATIENCE = 20  # [s] for a scheduler to answer and for a first worker
 AHEAD = 2  # tasks sent for each thread of the cluster, so that none waits
@@ -136,7 +136,7 @@ def _distributed():
         import distributed
     except ImportError:
         mend = "pip install 'feederscrew[dist]'"
-        raise ArgumentError("scheduler", "needs the package 'distributed'", mend) from None
+        raise MissingPackage("scheduler", "needs the package 'distributed'", mend) from None
     return distributed
 
 

@@ -219,8 +219,8 @@ def test_a_failed_self_check_marks_every_row(run, stl, tmp_path, monkeypatch):
 def test_a_centre_of_mass_on_or_outside_the_hull_is_one_line(run, stl, centre):
     done = run("aspects", stl, "--centre-of-mass", centre)
     line = "the centre of mass is not inside the part's convex hull - check --centre-of-mass and its units"
-    assert (done.exit_code, done.stdout) == (1, "")
-    assert done.stderr.splitlines() == [f"Error: {stl}: {line}"]
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert done.stderr.splitlines() == [f"Error: --centre-of-mass: {line}"]
 
 
 def test_a_centre_of_mass_just_inside_is_computed(run, stl):
