@@ -14,7 +14,12 @@ def options(command):
 
 def values(command):
     """The arguments of a command that are values, not files: a wrong one is a wrong call."""
-    return {param.name for param in _params(command) if not isinstance(param.type, click.Path)}
+    return {
+        name
+        for param in _params(command)
+        if not isinstance(param.type, click.Path)
+        for name in (param.name, *(word.lstrip("-").replace("-", "_") for word in param.opts))
+    }
 
 
 def _params(command):

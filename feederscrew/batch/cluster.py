@@ -11,7 +11,8 @@ from typing import Any
 from feederscrew import __version__
 from feederscrew.batch.task import Outcome, Task, libraries
 from feederscrew.batch.workers import work
-from feederscrew.errors import FeederError, MissingPackage
+from feederscrew.errors import ArgumentError, FeederError, MissingPackage
+from feederscrew.units import shown
 
 PATIENCE = 20  # [s] for a scheduler to answer and for a first worker
 AHEAD = 2  # tasks sent for each thread of the cluster, so that none waits
@@ -65,7 +66,8 @@ class Cluster:
     def _client(self):
         distributed = _distributed()
         if not ADDRESS.fullmatch(self.address):
-            raise FeederError(self.address, "is not an address of a scheduler", "write it as tcp://host:8786")
+            what = f"{shown(self.address)} is not an address of a scheduler"
+            raise ArgumentError("scheduler", what, "write it as tcp://host:8786")
         logging.getLogger("distributed").setLevel(logging.CRITICAL)  # we tell what is lost, in one line
         try:
             return distributed.Client(self.address, timeout=PATIENCE, set_as_default=False)
