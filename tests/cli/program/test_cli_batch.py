@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from feederscrew import batch as batches
 from feederscrew_cli import interrupt, progress
 
 ROOT = Path(__file__).parents[3]
@@ -49,8 +50,6 @@ def test_a_bad_part_is_one_line_and_status_1_and_resume_says_what_it_kept(run, t
 
 
 def test_a_batch_that_is_stopped_names_resume_and_resume_says_why(run, tmp_path, monkeypatch):
-    from feederscrew import batch as batches
-
     class StopsAfterOne(batches.Processes):
         def outcomes(self, tasks):
             yield next(super().outcomes(tasks))
@@ -58,7 +57,7 @@ def test_a_batch_that_is_stopped_names_resume_and_resume_says_why(run, tmp_path,
 
     call = ("batch", NUT, WASHER, "-o", "out", "--jobs", "1", "--no-pictures", "--rule", "csa")
     with monkeypatch.context() as patch:
-        patch.setattr("feederscrew.batch.run.Processes", StopsAfterOne)
+        patch.setattr(batches, "crew", lambda jobs, scheduler: StopsAfterOne(jobs))
         done = run(*call)
     assert (done.exit_code, done.stdout) == (130, "")
     assert done.stderr.splitlines()[-1] == "Stopped: 1 of 2 parts is done; go on with --resume"
@@ -140,10 +139,10 @@ def test_a_depfile_names_every_part(run, tmp_path):
         ),
         (
             ["nut.stl", "-o", "out", "--rule", "scs"],
-            1,
+            2,
             "Error: --rule: unknown rule 'scs' - did you mean csa?",
         ),
-        (["nut.stl", "-o", "out", "--set", "friction.wal=1"], 1, "did you mean friction.wall?"),
+        (["nut.stl", "-o", "out", "--set", "friction.wal=1"], 2, "did you mean friction.wall?"),
     ],
 )
 def test_a_wrong_call_is_one_line(run, call, status, line):

@@ -93,7 +93,7 @@ def test_a_bowl_file_from_a_stream_is_refused(run):
 
 def test_a_fault_prints_nothing_on_stdout(run):
     result = run("config", "show", "--set", "drive.frequency=50 mm")
-    assert (result.exit_code, result.stdout) == (1, "")
+    assert (result.exit_code, result.stdout) == (2, "")
     assert (
         result.stderr
         == "Error: --set drive.frequency: '50 mm' is a length, not a frequency - give it in Hz\n"
