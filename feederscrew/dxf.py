@@ -109,7 +109,7 @@ def closed_polylines(path: Path, layer: str, where: str) -> list[list[tuple[floa
     except _Unread as fault:
         what = f"layer {units.shown(layer)} of {units.printable(path.name)} {fault.what}"
         raise ConfigError(where, what, fault.mend) from None
-    except (*REFUSED, ezdxf.DXFError):  # type: ignore[misc]
+    except (*REFUSED, ezdxf.DXFError):
         raise ConfigError(
             where, f"{name} cannot be read as DXF", "save it as ASCII DXF R2000 or later"
         ) from None
