@@ -340,7 +340,7 @@ def test_what_was_measured_is_set_beside_what_should_be(run):
 
 def test_measured_values_that_are_none_are_refused(run):
     refused = run("bowl", "--measured", "stroke=3 kg")
-    assert refused.exit_code == 1
+    assert refused.exit_code == 2
     assert refused.stderr == "Error: --measured stroke: '3 kg' is a mass, not a length - give it in mm\n"
     only = run("bowl", "--measured", "fill=50 %")
     assert "says nothing but the fill - add stroke=0.3 mm, or an acceleration" in only.stderr

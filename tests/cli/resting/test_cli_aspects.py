@@ -293,7 +293,7 @@ def test_other_columns_are_printed_on_demand(run, stl):
     everything = run("aspects", stl, "--columns", "all").stdout
     assert all(word in everything for word in ("hops", "normal", "quasistatic"))
     wrong = run("aspects", stl, "--columns", "aspect,barier_mm")
-    assert wrong.exit_code == 1
+    assert wrong.exit_code == 2
     assert "Error: --columns: there is no column 'barier_mm' - did you mean barrier_mm?" in wrong.stderr
 
 
