@@ -125,7 +125,7 @@ def test_our_own_bug_keeps_its_traceback():
         (["aspects"], "Error: Missing argument 'PART'. (see feeder aspects --help)"),
         (
             ["aspects", "a.stl", "--units", "ft"],
-            "Error: Invalid value for '--units': 'ft' is not one of 'mm', 'cm', 'm', 'in'."
+            "Error: Invalid value for '--units': 'ft' is not one of 'mm', 'cm', 'm', 'um', 'in'."
             " (see feeder aspects --help)",
         ),
         (

@@ -299,5 +299,5 @@ def test_other_columns_are_printed_on_demand(run, stl):
 
 def test_a_column_that_is_not_there_leaves_no_files(run, tmp_path):
     done = run("aspects", PARTS / "squarenut_m5.stl", "--columns", "nonsense", "-o", "out", "--no-pictures")
-    assert (done.exit_code, list(tmp_path.iterdir())) == (1, [])
+    assert (done.exit_code, list(tmp_path.iterdir())) == (2, [])
     assert "Error: --columns: there is no column 'nonsense'" in done.stderr
