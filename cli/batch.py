@@ -3,7 +3,7 @@
 import click
 
 from feederscrew_cli import grouped, options, orientation
-from feederscrew_cli.interrupt import ended_within
+from feederscrew_cli.interrupt import INTERRUPTED, ended_within
 from feederscrew_cli.progress import Progress
 
 PATIENCE = 6.0  # [s] from Ctrl-C to the end, whatever is loading
@@ -69,7 +69,7 @@ def batch(ctx, asked, choices, jobs, scheduler, resume, out):
     orientation that leaves the bowl most often, or of the aspect that a list asks for. How often parts
     lie on each aspect is what arrives from the bowl's moving floor, as for `feeder rate`. This takes
     one to five seconds a part. A part that fails is reported, and the others go on. Exit status 1 says
-    that some failed.
+    that some failed. Ctrl-C stops it with exit status 130 and a summary of what is done; --resume goes on.
 
     PARTS are part files, folders of them, patterns ("parts/**/*.stl") and lists. A list is a CSV whose
     first line names its columns: part, units, density, centre_of_mass, body, names, aspect and config,
@@ -84,11 +84,20 @@ def batch(ctx, asked, choices, jobs, scheduler, resume, out):
     requests = batches.gather(**asked)
     out.warn(*dict.fromkeys(line for request in requests for line in request.conditions.warnings))
     workers = batches.crew(jobs, None if _typed(ctx, "jobs") else scheduler)
-    with Progress(len(requests), not out.quiet) as progress:
-        found = batches.run(
-            requests, out.directory, workers=workers, choices=batches.Choices(**choices), resume=resume,
-            tell=progress.tell,
-        )  # fmt: skip
+    chosen = batches.Choices(**choices)
+    if resume:
+        _say_what_is_stale(batches.count_stale(requests, out.directory, chosen), len(requests), out)
+    try:
+        with Progress(len(requests), not out.quiet) as progress:
+            found = batches.run(
+                requests, out.directory, workers=workers, choices=chosen, resume=resume, tell=progress.tell
+            )
+    except batches.StoppedBatchError as stopped:
+        out.say(f"Wrote {stopped.summary} (what is done; the rest is 'not computed')")
+        verb = "is" if stopped.done == 1 else "are"
+        last = f"Stopped: {stopped.done} of {stopped.total} parts {verb} done; go on with --resume"
+        click.echo(last, err=True)
+        ctx.exit(INTERRUPTED)
     out.depend(found.targets, found.sources)
     _report(found, out)
     ctx.exit(1 if found.faults else 0)
@@ -97,6 +106,13 @@ def batch(ctx, asked, choices, jobs, scheduler, resume, out):
 def _typed(ctx, name):
     """Whether an option stands on the command line."""
     return ctx.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE
+
+
+def _say_what_is_stale(reasons, total, out):
+    """Say how many parts are computed, and why; nothing where all stay as they are."""
+    if reasons:
+        why = ", ".join(f"{count} {reason}" for reason, count in reasons.items())
+        out.say(f"Computes {sum(reasons.values())} of {total} parts: {why}")
 
 
 def _report(found, out):

@@ -2,7 +2,7 @@
 
 import click
 
-from feederscrew_cli import options
+from feederscrew_cli import options, talk
 
 
 @click.group(
@@ -22,7 +22,8 @@ def config(ctx):
 @config.command(short_help="Write a commented bowl file of all defaults.")
 @click.argument("file", type=options.FILE, default="-")
 @click.option("--force", "replace", is_flag=True, help="Replace the file if it exists.")
-def init(file, replace):
+@options.QUIET
+def init(file, replace, quiet):
     """Example: feeder config init bowl.yaml
 
     Write a bowl file of all defaults, each key with its meaning, to FILE or to standard output. Its first
@@ -34,14 +35,15 @@ def init(file, replace):
         click.echo(documentation.template(), nl=False)
     else:
         documentation.write_template(file, replace=replace)
-        click.echo(f"Wrote {file}", err=True)
-        click.echo(f"Wrote {json_schema.write_beside(file)}, which editors read", err=True)
+        out = talk.Output.of(format="table", quiet=quiet)
+        out.say(f"Wrote {file}", f"Wrote {json_schema.write_beside(file)}, which editors read")
 
 
 @config.command(short_help="Print the JSON Schema of a bowl file, for editors.")
 @click.argument("file", type=options.FILE, default="-")
 @click.option("--force", "replace", is_flag=True, help="Replace the file if it exists.")
-def schema(file, replace):
+@options.QUIET
+def schema(file, replace, quiet):
     """Example: feeder config schema feeder.schema.json
 
     Write the JSON Schema of a bowl file to FILE or to standard output: its keys with units, bounds, defaults
@@ -54,7 +56,7 @@ def schema(file, replace):
         click.echo(json_schema.text(), nl=False)
     else:
         documentation.write_new(file, json_schema.text(), replace=replace)
-        click.echo(f"Wrote {file}", err=True)
+        talk.Output.of(format="table", quiet=quiet).say(f"Wrote {file}")
 
 
 @config.command(short_help="List the materials that --density knows.")

@@ -79,7 +79,7 @@ def drop(part, launch, test, launches, plate, pictures, out, **own):
     least and with the most energy. p_restitution is how far the spread of restitution moves the share.
     One value of --restitution scatters by 16 %, as filmed impacts do, and widens the interval; 0.3:0.3
     is exactly 0.3. The same seed gives the same counts whatever the number of jobs. Ctrl-C ends the
-    test early: what is counted so far is given, marked partial.
+    test early with exit status 130: what is counted so far is given, marked partial.
 
     With -o: drop.csv, drop.json, drop.png and run.json. --trace adds drop_traces.csv, where the part is
     and how it is turned from launch to rest. It also adds drop_trace.png, stills of the first traced drop

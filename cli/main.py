@@ -13,7 +13,7 @@ from collections.abc import Mapping
 import click
 
 from feederscrew import __version__
-from feederscrew.errors import ArgumentError, Faults, FeederError
+from feederscrew.errors import ArgumentError, Faults, FeederError, MissingPackage
 from feederscrew.units import printable
 from feederscrew_cli import argument_names, end_while_loading
 from feederscrew_cli.interrupt import INTERRUPTED, listening, was_heard
@@ -28,6 +28,7 @@ COMMANDS = {name: f"feederscrew_cli.{name}" for names in GROUPS.values() for nam
 COLOUR = False if os.environ.get("NO_COLOR") else None  # None: on a terminal only
 NO_CHOICE = re.compile(r"'([^']*)' is not one of")
 SELDOM = 20_000  # objects made between two searches for garbage: libraries make hardly any as they load
+WRONG_DATA, WRONG_CALL = 1, 2  # the second as click ends for a value that it checks itself
 PIPE_CLOSED = 141  # what a shell reports of any filter whose reader went away
 
 
@@ -99,9 +100,10 @@ class Fence(click.Group):
         try:
             return super().invoke(ctx)
         except FeederError as error:
-            for line in _lines(error, self.get_command(ctx, ctx.invoked_subcommand)):
+            command = self.get_command(ctx, ctx.invoked_subcommand)
+            for line in _lines(error, command):
                 _tell(f"Error: {line}")
-            return ctx.exit(1)
+            return ctx.exit(WRONG_CALL if _of_the_call(error, command) else WRONG_DATA)
         except BrokenPipeError:  # before click takes it for its own
             return ctx.exit(_without_stdout(PIPE_CLOSED))
 
@@ -132,9 +134,25 @@ def _of_the_system(error):
 def _lines(error, command):
     """Every fault as its own line; an argument of the library goes by the name of its option."""
     options = argument_names.options(command)
-    faults = error.faults if isinstance(error, Faults) else (error,)
     return tuple(
-        argument_names.translated(line, options) for fault in faults for line in _of_options(fault, options)
+        argument_names.translated(line, options)
+        for fault in _single(error)
+        for line in _of_options(fault, options)
+    )
+
+
+def _single(error):
+    return error.faults if isinstance(error, Faults) else (error,)
+
+
+def _of_the_call(error, command):
+    """Whether every fault is that of a value on the command line, none that of a file or of the machine."""
+    values = argument_names.values(command)
+    return all(
+        isinstance(fault, ArgumentError)
+        and not isinstance(fault, MissingPackage)
+        and str(fault.where).split(" ", 1)[0] in values
+        for fault in _single(error)
     )
 
 

@@ -109,8 +109,18 @@ def parts(command):
     )
 
 
+def _known_density(context, option, value):
+    """The density as typed; a wrong one is told of before anything is read."""
+    from feederscrew.part.density import density
+
+    if value is not None:
+        density(value)
+    return value
+
+
 DENSITY = click.option(
     "--density",
+    callback=_known_density,
     metavar="DENSITY",
     shell_complete=completion.materials,
     help='A material of `feeder config materials`, or a value, as "7.85 g/cm3".  [default: steel]',
@@ -219,6 +229,9 @@ FORMAT = click.option(
 )
 
 
+QUIET = click.option("-q", "--quiet", is_flag=True, help="Suppress warnings and messages.")
+
+
 def printed(command):
     """``--format`` alone, for what writes no files; the command receives ``out``, a ``talk.Output``."""
     return stacked(packed(command, "out", ("format",), talk.Output.of), FORMAT)
@@ -243,7 +256,7 @@ def output(command):
             help="Write a rule for make: what the files of -o are made from.",
         ),
         FORMAT,
-        click.option("-q", "--quiet", is_flag=True, help="Suppress warnings and messages."),
+        QUIET,
         click.option("-v", "--verbose", is_flag=True, help="Say what is read and how long each step takes."),
     )
 

@@ -110,8 +110,8 @@ def trial(part, sent, taken, amplitudes, bowl, pictures, out):
     that touch, push and climb each other on the same track. What leaves or falls off enters again at
     the end of the row. Parts per minute are then those that the queue delivers. --with sets what a
     feeding test counted by aspect (docs/counts.md) beside the profile at its outlet. The same seed
-    gives the same numbers whatever the number of jobs. Ctrl-C ends the trial early: what is finished is
-    given, marked partial.
+    gives the same numbers whatever the number of jobs. Ctrl-C ends the trial early with
+    exit status 130: what is finished is given, marked partial.
 
     With -o: trial.csv, trial_stations.csv, trial.json, trial.png (orientations in and out),
     trial_paths.png (paths from above), trial_stills.png and run.json; trial_landing.csv, and

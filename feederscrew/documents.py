@@ -10,7 +10,7 @@ from typing import Any, BinaryIO
 
 import yaml
 
-from feederscrew.errors import ConfigError, Faults, FeederError
+from feederscrew.errors import ArgumentError, ConfigError, Faults, FeederError
 from feederscrew.units import shown
 
 LARGEST = 200_000  # [bytes]: a bowl file or part card has a few hundred; parsing time grows with size
@@ -216,7 +216,8 @@ def raise_all(faults: Iterable[FeederError]) -> None:
     if len(listed) > MAX_FAULTS:
         where = str(listed[MAX_FAULTS].where)
         more = f"the first of {len(listed) - MAX_FAULTS} further faults"
-        listed = [*listed[:MAX_FAULTS], ConfigError(where, more, "mend those above first")]
+        kind = ArgumentError if all(isinstance(fault, ArgumentError) for fault in listed) else ConfigError
+        listed = [*listed[:MAX_FAULTS], kind(where, more, "mend those above first")]
     if listed:
         raise Faults(listed)
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import units
+from feederscrew import documents, units
 from feederscrew.errors import DAMAGE, ConfigError
 
 MILLIMETRES = {  # by $INSUNITS: DXF Reference of Autodesk, "HEADER Section"; 0 states none
@@ -37,6 +37,8 @@ ANNOTATIONS = frozenset(
     ("TEXT", "MTEXT", "DIMENSION", "LEADER", "MULTILEADER", "POINT", "ATTDEF", "VIEWPORT", "TOLERANCE")
 )  # no edges of a hole
 FITTED = 2 | 4  # flags of a POLYLINE that stands for a fitted curve
+
+REFUSED = (ArithmeticError, LookupError, OSError, RecursionError, ValueError)  # of damaged entities
 
 Point = tuple[float, ...]  # (x, y, z) in the drawing's own unit, then (x, y) [m]
 
@@ -98,13 +100,16 @@ def closed_polylines(path: Path, layer: str, where: str) -> list[list[tuple[floa
         if path.stat().st_size > MAX_FILE_BYTES:
             what = f"{name} has more than {MAX_FILE_BYTES // 10**6} MB"
             raise ConfigError(where, what, "save the hole alone")
-        found = _outlines(ezdxf.readfile(path), layer)
+        with path.open("rb") as file:
+            if file.read(len(documents.POINTER_HEAD)) == documents.POINTER_HEAD:
+                raise ConfigError(where, f"{name} {documents.POINTER}", documents.PULL)
+        found = _outlines(_drawing(path), layer)
     except FileNotFoundError:
         raise ConfigError(where, f"{name}: no such file", "check the path") from None
     except _Unread as fault:
         what = f"layer {units.shown(layer)} of {units.printable(path.name)} {fault.what}"
         raise ConfigError(where, what, fault.mend) from None
-    except (*DAMAGE, ezdxf.DXFError):  # type: ignore[misc]
+    except (*REFUSED, ezdxf.DXFError):
         raise ConfigError(
             where, f"{name} cannot be read as DXF", "save it as ASCII DXF R2000 or later"
         ) from None
@@ -112,6 +117,16 @@ def closed_polylines(path: Path, layer: str, where: str) -> list[list[tuple[floa
         what = f"{units.printable(path.name)} has no closed outline on layer {units.shown(layer)}"
         raise ConfigError(where, what, "draw the hole as one closed polyline (LWPOLYLINE)")
     return found
+
+
+def _drawing(path: Path) -> Any:
+    """The drawing of a file; raises ValueError for whatever ezdxf raises on a damaged one."""
+    import ezdxf
+
+    try:
+        return ezdxf.readfile(path)
+    except (*DAMAGE, ezdxf.DXFError) as error:  # type: ignore[misc]
+        raise ValueError(str(error)) from None
 
 
 def _outlines(drawing: Any, layer: str) -> list[list[tuple[float, float]]]:

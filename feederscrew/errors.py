@@ -65,6 +65,10 @@ class ArgumentError(ConfigError):
     """
 
 
+class MissingPackage(ArgumentError):
+    """An argument that asks for what a package does that is not installed; its value is not wrong."""
+
+
 class Faults(FeederError):
     """All faults of one file, reported together."""
 

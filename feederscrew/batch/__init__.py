@@ -2,10 +2,11 @@
 
 from feederscrew.batch.cluster import Cluster
 from feederscrew.batch.inputs import gather
-from feederscrew.batch.run import crew, run
+from feederscrew.batch.run import StoppedBatchError, count_stale, crew, run
 from feederscrew.batch.task import Choices, Conditions, Outcome, Request, Task
 from feederscrew.batch.workers import Processes
 
 __all__ = [
-    "Choices", "Cluster", "Conditions", "Outcome", "Processes", "Request", "Task", "crew", "gather", "run",
+    "Choices", "Cluster", "Conditions", "Outcome", "Processes", "Request", "StoppedBatchError", "Task",
+    "count_stale", "crew", "gather", "run",
 ]  # fmt: skip

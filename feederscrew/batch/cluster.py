@@ -11,7 +11,8 @@ from typing import Any
 from feederscrew import __version__
 from feederscrew.batch.task import Outcome, Task, libraries
 from feederscrew.batch.workers import work
-from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.errors import ArgumentError, FeederError, MissingPackage
+from feederscrew.units import shown
 
 PATIENCE = 20  # [s] for a scheduler to answer and for a first worker
 AHEAD = 2  # tasks sent for each thread of the cluster, so that none waits
@@ -65,7 +66,8 @@ class Cluster:
     def _client(self):
         distributed = _distributed()
         if not ADDRESS.fullmatch(self.address):
-            raise FeederError(self.address, "is not an address of a scheduler", "write it as tcp://host:8786")
+            what = f"{shown(self.address)} is not an address of a scheduler"
+            raise ArgumentError("scheduler", what, "write it as tcp://host:8786")
         logging.getLogger("distributed").setLevel(logging.CRITICAL)  # we tell what is lost, in one line
         try:
             return distributed.Client(self.address, timeout=PATIENCE, set_as_default=False)
@@ -136,7 +138,7 @@ def _distributed():
         import distributed
     except ImportError:
         mend = "pip install 'feederscrew[dist]'"
-        raise ArgumentError("scheduler", "needs the package 'distributed'", mend) from None
+        raise MissingPackage("scheduler", "needs the package 'distributed'", mend) from None
     return distributed
 
 

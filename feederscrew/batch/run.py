@@ -1,5 +1,7 @@
 """A batch from its first part to its summary."""
 
+import contextlib
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -28,6 +30,15 @@ class Batch:
     def faults(self):
         """Return one line a failed part."""
         return tuple(str(row["reason"]) for row in self.rows if row["status"] == FAILED)
+
+
+class StoppedBatchError(KeyboardInterrupt):
+    """A batch that was stopped by Ctrl-C, or by a signal that is taken for it; what is finished is kept."""
+
+    def __init__(self, done, total, summary):
+        super().__init__(f"{done} of {total} parts are done")
+        self.done, self.total = done, total  # parts that are finished, failed ones among them; all of them
+        self.summary = summary  # Path of the table of those
 
 
 def crew(jobs=None, scheduler=None):
@@ -68,6 +79,8 @@ def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda
     ------
     FeederError
         If the folder cannot be used or the scheduler is lost; what is finished is kept.
+    StoppedBatchError
+        If the user stops it: a summary lists what is done, the rest as 'not computed'.
     """
     from feederscrew.resting.rules.registry import require_rule  # while the processes import their libraries
 
@@ -75,9 +88,38 @@ def run(requests, directory, *, workers, choices=None, resume=False, tell=lambda
     require_rule(choices.rule)
     with Store(directory) as store:
         under_way = _UnderWay(store, choices, resume, tell)
-        for outcome in workers.outcomes(under_way.tasks(requests)):
-            under_way.finish(outcome)
-        return _finished(store, requests, under_way.kept, workers)
+        try:
+            with contextlib.closing(workers.outcomes(under_way.tasks(requests))) as outcomes:
+                for outcome in outcomes:
+                    under_way.finish(outcome)
+            return _finished(store, requests, under_way.kept, workers)
+        except KeyboardInterrupt:
+            done = under_way.finished & {request.name for request in requests}
+            raise StoppedBatchError(len(done), len(requests), _stopped(store, requests, done)) from None
+
+
+def count_stale(requests, directory, choices=None):
+    """Count the parts that a batch with ``resume`` computes, by the reason.
+
+    Parameters
+    ----------
+    requests : sequence of Request
+    directory : str or Path
+        As for ``run``; it need not be there.
+    choices : Choices, optional
+
+    Returns
+    -------
+    dict of str to int
+        The most frequent reason first; parts whose file cannot be read are not counted.
+    """
+    store, found = Store(directory), Counter[str]()
+    for request in requests:
+        with contextlib.suppress(FeederError):
+            data = source.file(request.source).data
+            reason = store.why_again(Task.of(request, choices or Choices(), data))
+            found.update([reason] if reason else [])
+    return dict(found.most_common())
 
 
 class _UnderWay:
@@ -86,6 +128,7 @@ class _UnderWay:
     def __init__(self, store, choices, resume, tell):
         self.store, self.choices, self.resume, self.tell = store, choices, resume, tell
         self.kept = 0
+        self.finished = set()  # folders of parts whose results are those asked for
 
     def tasks(self, requests):
         """Yield a task for each request that needs one, its file read only when the task is asked for."""
@@ -99,6 +142,7 @@ class _UnderWay:
             task = Task.of(request, self.choices, data)
             if self.resume and self.store.holds(request.name, task.key):
                 self.kept += 1
+                self.finished.add(request.name)
                 self.tell(kept=True)
             else:
                 yield task
@@ -106,6 +150,7 @@ class _UnderWay:
     def finish(self, outcome):
         """Put what came of a part in place."""
         self.store.keep(outcome)
+        self.finished.add(outcome.name)
         self.tell(kept=False)
 
 
@@ -114,6 +159,18 @@ def _contact_sheet(tiles):
     from feederscrew.output.batch import contact_sheet
 
     return contact_sheet.sheet(tiles)
+
+
+def _stopped(store, requests, finished):
+    """Write the summary of a batch that was stopped; the path.
+
+    The tables of an earlier run that ended stay until a run ends: then it is beside them.
+    """
+    before = store.text(summary.NAME)
+    name = summary.NAME if before is None or summary.is_partial(before) else summary.PARTIAL
+    rows = summary.rows(store, requests, finished)
+    store.write({name: tables.text(summary.frame(rows), "csv")})
+    return store.path / name
 
 
 def _finished(store, requests, kept, workers):
@@ -127,7 +184,7 @@ def _finished(store, requests, kept, workers):
     }
     files[index_page.NAME] = html(index_page.page(store, rows))
     files[summary.NAME] = tables.text(summary.frame(rows), "csv")  # last: it says that all is there
-    store.write(files, without=[SHEET.format("*")])
+    store.write(files, without=[SHEET.format("*"), summary.PARTIAL])
     return Batch(
         rows=rows,
         kept=kept,

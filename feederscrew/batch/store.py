@@ -9,7 +9,16 @@ import tempfile
 from pathlib import Path
 
 from feederscrew import __version__
-from feederscrew.batch.task import libraries
+from feederscrew.batch.task import (
+    CHANGED_FILE,
+    CHANGED_OPTIONS,
+    CHANGED_PROGRAM,
+    FAILED,
+    FAILED_BEFORE,
+    MEDDLED,
+    NEW,
+    libraries,
+)
 from feederscrew.errors import FeederError
 from feederscrew.output import tables
 from feederscrew.output.folder import RECORD
@@ -78,6 +87,32 @@ class Store:
             for file, sha256 in files.items()
         )
 
+    def why_again(self, task):
+        """Return why the results of a part cannot stay as they are; None where they can.
+
+        Parameters
+        ----------
+        task : Task
+
+        Returns
+        -------
+        str or None
+            As ``task.NEW`` and the constants behind it.
+        """
+        record = self.record(task.request.name)
+        if not record:
+            return NEW
+        if record.get("status") == FAILED and not record.get("key"):
+            return FAILED_BEFORE
+        if record.get("key") == task.key:
+            return None if self.holds(task.request.name, task.key) else MEDDLED
+        inputs = record.get("inputs")
+        before = inputs[0].get("sha256") if isinstance(inputs, list) and inputs else None
+        if before != task.sha256:
+            return CHANGED_FILE
+        same = record.get("version") == __version__ and record.get("libraries") == libraries()
+        return CHANGED_OPTIONS if same else CHANGED_PROGRAM
+
     def keep(self, outcome):
         """Put the results of one part in place, instead of those of an earlier run."""
         with self._writing(), tempfile.TemporaryDirectory(prefix=STALE, dir=self.path) as staging:
@@ -101,6 +136,11 @@ class Store:
         """Read the bytes of one result of a part; None where it is not there."""
         path = self.parts / name / file
         return path.read_bytes() if path.exists() else None
+
+    def text(self, name):
+        """Read a text of the whole batch; None where it is not there."""
+        path = self.path / name
+        return path.read_text(encoding="utf-8", errors="replace") if path.exists() else None
 
     def write(self, files, without=()):
         """Put files of the whole batch in place once all of them are written; until then the old ones stay.

@@ -1,12 +1,15 @@
 """One row a part: what the summary, the contact sheets and the index page are made of."""
 
+import csv
+import io
 from pathlib import Path
 
-from feederscrew.batch.task import DONE, THUMBNAIL
+from feederscrew.batch.task import DONE, NOT_COMPUTED, THUMBNAIL
 from feederscrew.output import tables
 from feederscrew.output.batch import ACROSS, DOWN
 
 NAME = "summary.csv"
+PARTIAL = "summary_partial.csv"  # of a run that was stopped, beside the tables of an earlier one
 COLUMNS = (
     "part", "folder", "config", "status", "reason", "material", "mass_g", "aspects", "aspect", "heading_deg",
     "orientation", "rule", "answer", "p_orientation", "passes_devices", "velocity_mm_s", "regime", "pitch_mm",
@@ -22,20 +25,31 @@ HIDDEN = (  # from a table for people; reasons stand above it, a line each
 )  # fmt: skip
 
 
-def rows(store, requests):
+def rows(store, requests, finished=None):
     """Read what the disk says of each part.
 
     Parameters
     ----------
     store : Store
     requests : sequence of Request
+    finished : set of str, optional
+        Folders of those that are done; what lies in others is of an earlier run and is not read.
 
     Returns
     -------
     tuple of dict
         By ``COLUMNS``, None where there is nothing to say.
     """
-    return tuple(_row(store.record(request.name), request) for request in requests)
+    nothing = {"status": NOT_COMPUTED, "reason": "", "warnings": (), "row": {}}
+    return tuple(
+        _row(store.record(one.name) if finished is None or one.name in finished else nothing, one)
+        for one in requests
+    )
+
+
+def is_partial(text):
+    """Return whether the text of a summary is that of a run that was stopped."""
+    return any(row.get("status") == NOT_COMPUTED for row in csv.DictReader(io.StringIO(text)))
 
 
 def _row(record, request):

@@ -12,6 +12,7 @@ from feederscrew.designing.record import DRAWS_HELD, RATE_KEPT, DesignRequest, D
 from feederscrew.designing.robust import robust_run
 from feederscrew.designing.searching import Candidate, Search
 from feederscrew.dropping.plate.drive import throw_number
+from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
 from feederscrew.part.facets import refuse_many_facets
 from feederscrew.part.record import Part
@@ -118,7 +119,7 @@ def _check_named(part: Part, plain: Bowl, request: DesignRequest, known: Shares 
     may_be_up(part, aspects, request.up)
     if request.aspect is None:
         return
-    rows(aspects.names, request.aspect, part.source)
+    rows(aspects.names, request.aspect, f"aspect of {part.source}", ArgumentError)
     if request.heading is None:
         return
     wide = max(plain.track.radius, float(vectors.length(np.ptp(part.vertices, axis=0))))  # one that it fits

@@ -65,9 +65,10 @@ class FollowedRow:
         """
         lying, names = self.known.states, list(self.aspects.names)
         free = () if isinstance(lying[self.states[0]], Hanging) else self.any_heading
-        others = [k for k in self.states if lying[k].aspect not in free]
-        right = sum(seen.aspects[names.index(name)] for name in free) + sum(seen.leaving[k] for k in others)
-        return min(int(right), int(seen.leaving.sum()))
+        right = np.zeros(seen.whole.shape, bool)  # a part of such a heading on such an aspect counts once
+        right[:, [names.index(name) for name in free]] = True
+        right[[k for k in self.states if lying[k].aspect not in free], :] = True
+        return int(seen.whole[right].sum())
 
     def count(self, fill: str, gaps: float, seen: QueuedParts) -> FilledQueue:
         """Return what a queue did as a FilledQueue."""

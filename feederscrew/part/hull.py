@@ -39,6 +39,10 @@ class Hull:
         return check.frozen(solid_angles(np.zeros(3), self.corners))
 
 
+class CentreOutsideError(MeshError):
+    """A centre of mass that is on or outside the part's convex hull."""
+
+
 def convex_hull(points, centre, where="part", given=True):
     """Return the convex hull of a point set about a centre of mass inside it.
 
@@ -93,7 +97,7 @@ def convex_hull(points, centre, where="part", given=True):
     radius = float(vectors.norm(vertices).max())
     heights = -qhull.equations[:, 3]
     if heights.min() <= 1e-9 * radius:
-        raise MeshError(
+        raise CentreOutsideError(
             where,
             "the centre of mass is not inside the part's convex hull",
             "check `centre_of_mass` and its units" if given else "export it as a closed solid",

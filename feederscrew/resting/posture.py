@@ -7,7 +7,7 @@ from typing import cast
 import numpy as np
 
 from feederscrew import check
-from feederscrew.errors import FeederError
+from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import centroid, outline, sides, surrounds
 from feederscrew.part.hull import convex_hull
@@ -113,7 +113,7 @@ def posture(part, aspects, name):
 
     Raises
     ------
-    FeederError
+    ArgumentError
         If the part has no such aspect; the line names those it has.
     """
     row = _row(part, aspects, name)
@@ -126,7 +126,8 @@ def _row(part, aspects, name):
     found = [row for row, known in enumerate(aspects.names) if known.casefold() == wanted]
     if not found:
         known = ", ".join(aspects.names)
-        raise FeederError(part.source, f"there is no aspect {name[:20]!r}", f"choose one of {known}")
+        where = f"aspect of {part.source}"
+        raise ArgumentError(where, f"there is no aspect {name[:20]!r}", f"choose one of {known}")
     return found[0]
 
 

@@ -262,7 +262,7 @@ def _tried(part: Part, found: Aspects, known: stream.Orientations, aspect: str |
     """Rows of the orientations that are laid down."""
     if aspect is None:
         return list(range(len(known.lying)))
-    return rows(known.aspects, aspect, part.source)
+    return rows(known.aspects, aspect, f"aspect of {part.source}", ArgumentError)
 
 
 def _shares(known: stream.Orientations, rule: str, tried: list[int]) -> np.ndarray:

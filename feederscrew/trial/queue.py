@@ -36,8 +36,9 @@ class QueuedParts:
     seconds: float  # [s] followed
     counted: float  # [s] of them since the first part came to the outlet; 0 where none did
     delivered: float  # parts that left the last device then, that in the outlet as the share of its length
-    leaving: np.ndarray  # (S + 1,) int, in which orientation whole ones left; the last is none of the known
-    aspects: np.ndarray  # (A + 1,) int, on which aspect those lay, whatever their heading; the last hung
+    # (S + 1, A + 1) int, in which orientation whole ones left, the last is none of the known; on which aspect
+    # those lay, whatever their heading, the last hung
+    whole: np.ndarray
     returned: int  # fell back into the bowl
     jams: int  # stood at a device and were taken out
     climbs: int  # times that a part came to lie on others
@@ -52,6 +53,16 @@ class QueuedParts:
     def rate(self):
         """Return delivered parts [1/s]; 0 where none came to the outlet."""
         return self.delivered / self.counted if self.counted > 0.0 else 0.0
+
+    @property
+    def leaving(self):
+        """Return (S + 1,) int, in which orientation whole parts left; the last is none of the known."""
+        return self.whole.sum(axis=1)
+
+    @property
+    def aspects(self):
+        """Return (A + 1,) int, on which aspect whole parts left, whatever their heading; the last hung."""
+        return self.whole.sum(axis=0)
 
 
 @dataclass(frozen=True)
@@ -132,7 +143,7 @@ class _Queue:
         self.looks = Looks(poses, solid, length, self.principal, bowl.track.radius)
         self.mark, self.since, self.on_others = np.zeros(parts), np.zeros(parts), np.zeros(parts, bool)
         self.below, self.hanging = AspectsBelow(part, aspects), [isinstance(one, Hanging) for one in poses]
-        self.leaving, self.aspects = np.zeros(len(poses) + 1, int), np.zeros(len(aspects.names) + 1, int)
+        self.left = np.zeros((len(poses) + 1, len(aspects.names) + 1), int)
         self.returned = self.jams = self.climbs = 0
         self.way, self.free, self.touch, self.depth = [], [], [], 0.0
         self.pressure, self.whole, self.first, self.most = np.zeros(len(self.windows)), 0, None, 0
@@ -236,8 +247,7 @@ class _Queue:
         orientation = self.looks.of([state])[0]
         hangs = orientation != OTHER and self.hanging[orientation]
         self.whole += 1
-        self.leaving[orientation] += 1
-        self.aspects[OTHER if hangs else self.below.of([state])[0]] += 1
+        self.left[orientation, OTHER if hangs else self.below.of([state])[0]] += 1
 
     def stand(self, n, front, reach, order):
         """A part that stands: what pushes it, and whether it is what holds the others up."""
@@ -286,8 +296,7 @@ class _Queue:
             seconds=seconds,
             counted=counted,
             delivered=self.whole + part - self.start if counted else 0.0,
-            leaving=check.frozen(np.array(self.leaving)),
-            aspects=check.frozen(np.array(self.aspects)),
+            whole=check.frozen(np.array(self.left)),
             returned=self.returned,
             jams=self.jams,
             climbs=self.climbs,

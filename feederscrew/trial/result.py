@@ -89,20 +89,23 @@ class TrialRun:
 
     @property
     def wanted(self):
-        """Return the orientation in which most leave; None where none does."""
-        leaving = self.leaving
-        return int(np.argmax(leaving)) if leaving.any() else None
+        """Return the known orientation in which most leave; None where none does.
+
+        What leaves in none of the known is many orientations, not one: it is never the wanted one.
+        """
+        known = self.leaving[:-1]
+        return int(np.argmax(known)) if known.any() else None
 
     @property
     def efficiency(self):
-        """Return the share of the parts offered that leaves in the orientation in which most do [1]."""
-        return float(self.leaving.max())
+        """Return the share of the parts offered that leaves in that orientation [1]."""
+        return float(self.leaving[:-1].max())
 
     @property
     def purity(self):
         """Return the share of that orientation in what leaves [1]; NaN where nothing does."""
         total = self.leaving.sum()
-        return float(self.leaving.max() / total) if total > 0.0 else np.nan
+        return self.efficiency / float(total) if total > 0.0 else np.nan
 
     @property
     def velocity(self):
@@ -142,8 +145,7 @@ class TrialRun:
         if self.wanted is None or not self.velocity > 0.0:
             return 0.0
         offered = self.velocity / float((self.shares * self.known.lengths).sum())
-        states = self.known.states
-        most = self.velocity / states[min(self.wanted, len(states) - 1)].length
+        most = self.velocity / self.known.states[self.wanted].length
         return float(min(offered * self.efficiency, most))
 
     @property

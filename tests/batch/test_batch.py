@@ -252,7 +252,7 @@ def test_resume_repeats_only_what_is_missing_or_changed(tmp_path, three):
     out = tmp_path / "out"
     with pytest.raises(KeyboardInterrupt):
         ran(three, out, workers=Here(stop_after=2))
-    assert not (out / "summary.csv").exists()
+    assert statuses(out / "summary.csv") == {"a": "done", "b": "done", "c": "not computed"}
     second, third, fourth = Here(), Here(), Here()
     assert ran(three, out, workers=second, resume=True).kept == 2
     assert second.done == ["c"]
@@ -264,6 +264,65 @@ def test_resume_repeats_only_what_is_missing_or_changed(tmp_path, three):
     assert (third.done, fourth.done) == (["b"], ["a"])
     assert {name for name, data in tree(out).items() if whole[name] != data} >= {"parts/b/aspects.csv"}
     assert tree(out)["parts/a/aspects.csv"] == whole["parts/a/aspects.csv"]
+
+
+def statuses(path):
+    with path.open(newline="") as file:
+        return {row["folder"]: row["status"] for row in csv.DictReader(file)}
+
+
+def test_a_stopped_run_lists_what_is_done_and_says_how_much_that_is(tmp_path, three):
+    out = tmp_path / "out"
+    for count in (1, 2):  # the second run begins anew, in place of the first
+        with pytest.raises(batch.StoppedBatchError) as caught:
+            ran(three, out, workers=Here(stop_after=count))
+        assert (caught.value.done, caught.value.total) == (count, 3)
+        assert caught.value.summary == out / "summary.csv"
+        assert list(statuses(out / "summary.csv").values()).count("done") == count
+    with pytest.raises(batch.StoppedBatchError) as caught:  # what is kept is done as well
+        ran(three, out, workers=Here(stop_after=0), resume=True)
+    assert caught.value.done == 2
+    ran(three, out, workers=Here(), resume=True)
+    assert set(statuses(out / "summary.csv").values()) == {"done"}
+
+
+def test_a_stopped_run_over_an_ended_one_writes_its_summary_beside(tmp_path, three):
+    """Results of other options that lie there still are not those asked for: 'not computed'."""
+    out = tmp_path / "out"
+    ran(three, out, workers=Here())
+    before, other = (out / "summary.csv").read_bytes(), batch.Choices(rule="csa", pictures=False)
+    with pytest.raises(batch.StoppedBatchError) as caught:
+        ran(three, out, workers=Here(stop_after=1), choices=other)
+    assert caught.value.summary == out / "summary_partial.csv"
+    assert list(statuses(caught.value.summary).values()) == ["done", "not computed", "not computed"]
+    assert (out / "summary.csv").read_bytes() == before
+    ran(three, out, workers=Here(), choices=other, resume=True)
+    assert not caught.value.summary.exists() and (out / "summary.csv").read_bytes() != before
+
+
+def test_resume_says_how_many_it_computes_and_why(tmp_path, three, monkeypatch):
+    out = tmp_path / "out"
+
+    def stale(requests=three, **options):
+        return batch.count_stale(
+            requests, out, batch.Choices(**{"rule": "closed", "pictures": False} | options)
+        )
+
+    choices = batch.Choices(rule="closed", pictures=False)
+    assert stale() == {"new": 3} and not out.exists()
+    ran(three, out, workers=Here(), choices=choices)
+    assert stale() == {}
+    assert stale(rule="csa") == {"other options or bowl": 3}
+    (out / "parts/a/aspects.csv").write_text("meddled with")
+    block(three[1].source, 1.0, 2.0, 3.0)
+    assert stale() == {"results changed or incomplete": 1, "another file": 1}
+    monkeypatch.setattr(task, "__version__", "9.9")
+    monkeypatch.setattr(store, "__version__", "9.9")
+    assert stale(three[2:]) == {"another version of the program or a library": 1}
+    Path(three[2].source).rename(tmp_path / "away")
+    ran(three[2:], out, workers=Here(), choices=choices)
+    (tmp_path / "away").rename(three[2].source)
+    assert stale(three[2:]) == {"failed for want of its file or of memory": 1}
 
 
 def test_tables_of_the_last_run_stay_until_the_new_ones_are_there(tmp_path, three):

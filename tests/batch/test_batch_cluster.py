@@ -12,7 +12,7 @@ from test_batch import TABLES_ONLY, Here, asked, block, ran, three, tree  # noqa
 
 from feederscrew import batch
 from feederscrew.batch import task
-from feederscrew.errors import FeederError
+from feederscrew.errors import ArgumentError, FeederError
 
 distributed = pytest.importorskip("distributed", reason="needs the extra dist")
 ROOT = Path(__file__).parents[2]
@@ -130,7 +130,7 @@ def test_no_scheduler_is_one_line(tmp_path, three, monkeypatch):  # noqa: F811
 
 def test_what_is_no_address_is_one_line():
     with pytest.raises(
-        FeederError, match=r"^nonsense: is not an address of a scheduler - write it as tcp://"
+        ArgumentError, match=r"^scheduler: 'nonsense' is not an address of a scheduler - write it as tcp://"
     ):
         list(batch.Cluster("nonsense").outcomes([]))
 

@@ -38,7 +38,7 @@ def test_a_list_asks_for_an_aspect(block, tmp_path):
     assert made.files[work.THUMBNAIL] == contact_sheet.thumbnail(part, find(part), "C")
     assert made.files[work.THUMBNAIL] != row(usual).files[work.THUMBNAIL]
     failed = work.work(task.Task.of(none, batch.Choices(), block.read_bytes()))
-    assert failed.reason == "list.csv:4: block.stl: there is no aspect 'q' - choose one of A, B, C"
+    assert failed.reason == "list.csv:4: aspect of block.stl: there is no aspect 'q' - choose one of A, B, C"
 
 
 def test_the_launch_and_the_drops_are_the_answer(block):

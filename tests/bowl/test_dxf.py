@@ -14,6 +14,7 @@ from feederscrew import dxf
 from feederscrew.errors import ConfigError
 
 RING = [(0.0, 0.0), (0.01, 0.0), (0.01, 0.004), (0.002, 0.006)]
+POINTER = b"version https://git-lfs.github.com/spec/v1\noid sha256:%s\nsize 120484\n" % (b"0" * 64)
 UNREADABLE = "cannot be read as DXF - save it as ASCII DXF R2000 or later"
 
 
@@ -35,6 +36,20 @@ def test_a_group_value_of_minus_infinity_is_a_line(drawing):
     units = lines.index("$INSUNITS") + 2
     lines[units] = "-inf"
     _refused(drawing, "\n".join(lines).encode())
+
+
+def test_a_pointer_of_git_lfs_in_place_of_a_drawing_is_named(tmp_path):
+    """It was said to be no DXF: saving it as one would not help."""
+    (tmp_path / "hole.dxf").write_bytes(POINTER)
+    with pytest.raises(ConfigError, match=r"^bowl.yaml:3: .*hole\.dxf is a pointer.* git LFS.*git lfs pull"):
+        dxf.closed_polylines(tmp_path / "hole.dxf", "HOLE", "bowl.yaml:3")
+
+
+def test_a_bug_of_ours_is_not_told_as_a_damaged_drawing(drawing, monkeypatch):
+    """It was: 'cannot be read as DXF'."""
+    monkeypatch.delattr(dxf.math, "dist")
+    with pytest.raises(AttributeError):
+        dxf.closed_polylines(drawing, "HOLE", "bowl.yaml:3")
 
 
 @pytest.mark.parametrize("cut", [12, 300, 3000])

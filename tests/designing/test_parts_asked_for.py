@@ -19,11 +19,15 @@ def block():
     return part, find(part), ways, {one.name: k for k, one in enumerate(ways.lying)}
 
 
-def seen(leaving, aspects):
-    """A queue of which so many parts left in each orientation, the last in none, and on each aspect."""
+def seen(leaving, lying):
+    """A queue of which so many parts left in each orientation, the last in none; ``lying`` on each aspect."""
+    whole = np.zeros((len(leaving), len(next(iter(lying.values())))), int)
+    for k, row in lying.items():
+        whole[k] = row
+    assert whole.sum(axis=1).tolist() == list(leaving)
     return QueuedParts(
         parts=12, on_track=9, poured=False, seconds=60.0, counted=50.0, delivered=float(sum(leaving)),
-        leaving=np.array(leaving), aspects=np.array(aspects), returned=3, jams=0, climbs=0, velocity=0.05,
+        whole=whole, returned=3, jams=0, climbs=0, velocity=0.05,
         gap=0.01, touching=0.2, pressure=np.zeros(0), depth=0.0, partial=False,
     )  # fmt: skip
 
@@ -33,8 +37,8 @@ def test_a_queue_counts_an_aspect_that_is_asked_for_however_its_parts_are_turned
     part, aspects, ways, names = block
     leaving = np.zeros(len(ways.states) + 1, int)
     leaving[[names["A@0"], names["A@90"], -1]] = 4, 6, 6
-    on = [15 if name == "A" else 0 for name in aspects.names]
-    queue = seen(leaving, [*on, 1])
+    on, nowhere = np.eye(len(aspects.names) + 1, dtype=int)[[list(aspects.names).index("A"), -1]]
+    queue = seen(leaving, {names["A@0"]: 4 * on, names["A@90"]: 6 * on, -1: 5 * on + nowhere})
 
     def right(any_heading):
         row = queues.FollowedRow(part, None, aspects, ways, None, (names["A@0"],), 1, any_heading=any_heading)
@@ -51,10 +55,23 @@ def test_a_wanted_orientation_counts_beside_an_aspect_that_may_be_up(block):
     leaving = np.zeros(len(ways.states) + 1, int)
     other = next(k for k, one in enumerate(ways.states) if one.aspect == "B")
     leaving[[names["A@0"], other, -1]] = 3, 5, 4
-    on = {"A": 6, "B": 5}
-    queue = seen(leaving, [*(on.get(name, 0) for name in aspects.names), 1])
+    a, b, nowhere = (np.eye(len(aspects.names) + 1, dtype=int)[list(aspects.names).index(n)] for n in "ABC")
+    queue = seen(leaving, {names["A@0"]: 3 * a, other: 5 * b, -1: 3 * a + nowhere})
     row = queues.FollowedRow(part, None, aspects, ways, None, (other,), 1, any_heading=("A",))
     assert row.wanted_parts(queue) == 5 + 6
+
+
+def test_a_part_counts_once_whose_orientation_and_whose_face_are_both_wanted(block):
+    """Askew, a part is nearest in attitude to B and has A below it: one part, of eight that left."""
+    part, aspects, ways, names = block
+    leaving = np.zeros(len(ways.states) + 1, int)
+    other = next(k for k, one in enumerate(ways.states) if one.aspect == "B")
+    leaving[[other, -1]] = 5, 3
+    a, b, c = (np.eye(len(aspects.names) + 1, dtype=int)[list(aspects.names).index(n)] for n in "ABC")
+    queue = seen(leaving, {other: 2 * a + 3 * b, -1: c + 2 * a})
+    row = queues.FollowedRow(part, None, aspects, ways, None, (other,), 1, any_heading=("A",))
+    assert row.wanted_parts(queue) == 5 + 2
+    assert row.count("low", 0.5, queue).left == 8
 
 
 def test_single_parts_and_draws_count_the_aspect_alike(block):

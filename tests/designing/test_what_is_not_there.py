@@ -42,5 +42,8 @@ def test_every_command_refuses_an_aspect_alike(line, run):
     shapes.box(10, 10, 10).export("cube.stl")
     command, *more = line
     done = run(command, "cube.stl", *more, "--aspect", "Q", "--rule", "csa")
-    assert done.exit_code == 1 and done.stdout == ""
-    assert done.stderr.splitlines()[-1] == "Error: cube.stl: there is no aspect 'Q' - choose one of A"
+    assert done.exit_code == 2 and done.stdout == ""
+    assert (
+        done.stderr.splitlines()[-1]
+        == "Error: --aspect of cube.stl: there is no aspect 'Q' - choose one of A"
+    )

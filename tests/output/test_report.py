@@ -198,7 +198,7 @@ def test_a_part_card_has_no_views():
 @pytest.mark.parametrize(
     ("given", "line"),
     [
-        ({"aspect": "Q"}, f"{BRACKET}: there is no aspect 'Q' - choose one of A, B, C, D, E"),
+        ({"aspect": "Q"}, f"aspect of {BRACKET}: there is no aspect 'Q' - choose one of A, B, C, D, E"),
         (
             {"rule": "guess"},
             "rule: unknown rule 'guess' - known are pmi, csa, stability, "

@@ -169,4 +169,4 @@ def test_the_command_takes_a_body(tmp_path, run):
     done = run("inertia", path, "--body", "1", "--format", "json")
     assert json.loads(done.stdout)["volume_mm3"] == pytest.approx(64.0)
     fault = run("inertia", path, "--body", "x")
-    assert fault.exit_code == 1 and fault.stderr.startswith("Error: --body: ")
+    assert fault.exit_code == 2 and fault.stderr.startswith("Error: --body: ")

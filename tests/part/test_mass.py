@@ -201,7 +201,10 @@ def test_centre_of_mass_is_in_the_units_of_the_file(tmp_path, text, units, metre
     np.testing.assert_allclose(part.centre_of_mass, metres, rtol=1e-12)
 
 
-OUTSIDE = "the centre of mass is not inside the part's convex hull - check `centre_of_mass` and its units"
+OUTSIDE = (
+    "centre_of_mass: the centre of mass is not inside the part's convex hull - "
+    "check `centre_of_mass` and its units"
+)
 TRIPLE = "write x,y,z with points and commas, as in 1.5,0,-2"
 
 

@@ -383,3 +383,42 @@ def test_glb_accessor_of_four_billion_is_refused(tmp_path):
     data = struct.pack("<5I", 0x46546C67, version, 20 + len(text) + len(rest), len(text), kind) + text + rest
     path = files.written(tmp_path, data, "a.glb")
     assert files.refused(path) == f"is a damaged GLB: it announces more than it holds - {AGAIN}"
+
+
+@pytest.mark.parametrize("fault", [AttributeError, NameError, TypeError, ImportError, AssertionError])
+@pytest.mark.parametrize("name", ["a.obj", "a.off", "a.glb"])
+def test_a_bug_of_ours_is_not_told_as_a_damaged_file(tmp_path, monkeypatch, name, fault):
+    """It was: 'is a damaged OBJ (module ... has no attribute ...)', which sends the user to his CAD."""
+
+    def broken(*_):
+        raise fault("module 'x' has no attribute 'y'")
+
+    monkeypatch.setattr("feederscrew.part.reading.facets.triangles", broken)
+    monkeypatch.setattr("feederscrew.part.reading.scenes.refuse_crowds", broken)
+    path = files.written(tmp_path, exported(name[2:]), name)
+    with pytest.raises(fault, match="has no attribute"):
+        load(path)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        b"[]", b'{"accessors": 1}', b'{"accessors": [3]}', b'{"nodes": {"a": 1}}', b'{"nodes": [7]}',
+        b'{"accessors": [{"count": [], "type": "VEC3", "componentType": 5126}]}',
+        b'{"accessors": [{"count": 1, "type": [], "componentType": 5126}]}',
+        b'{"nodes": [{"mesh": "a"}], "meshes": [{}]}', b'{"nodes": [{"mesh": 0}], "meshes": [3]}',
+        b'{"nodes": [{"children": [[]]}]}', b'{"extensionsRequired": 1}',
+    ],
+)  # fmt: skip
+def test_a_scene_of_other_kinds_of_values_is_a_line(tmp_path, scene):
+    scene += b" " * (-len(scene) % 4)
+    data = b"glTF" + struct.pack("<4I", 2, 20 + len(scene), len(scene), 0x4E4F534A) + scene
+    assert files.refused(files.written(tmp_path, data, "a.glb")).startswith("is a damaged GLB (")
+
+
+def test_what_trimesh_raises_of_any_class_is_a_damaged_file(tmp_path, monkeypatch):
+    def broken(*_, **__):
+        raise AttributeError("'NoneType' object has no attribute 'faces'")
+
+    monkeypatch.setattr("trimesh.load_scene", broken)
+    assert "is a damaged GLB ('NoneType'" in files.refused(files.written(tmp_path, GLB, "a.glb"))

@@ -80,7 +80,7 @@ def test_a_rolling_class_has_its_axis_in_the_floor():
 def test_an_unknown_aspect_names_those_that_exist():
     with pytest.raises(FeederError) as fault:
         standing(shapes.box(30, 10, 5), "Z")
-    assert str(fault.value) == "part.stl: there is no aspect 'Z' - choose one of A, B, C"
+    assert str(fault.value) == "aspect of part.stl: there is no aspect 'Z' - choose one of A, B, C"
 
 
 def test_names_ignore_case():

@@ -193,7 +193,7 @@ def test_the_track_goes_on_lower_behind_a_step(tmp_path):
 
 
 def test_what_left_stands_beside_what_was_measured():
-    told = replace(queued(BOWL, 1, 0.02), aspects=np.array([9, 3, 0, 2]))
+    told = replace(queued(BOWL, 1, 0.02), whole=np.array([[9, 3, 0, 2]]))
     columns = profiles.parse("aspect,MDFT\nA,0.5\nB,0.3\nC,0.2\n", "counts.csv", ASPECTS.names)
     shares = np.full(len(EVERY), 1.0 / len(EVERY))
     seen = outlet.outlet(told, EVERY, shares, ASPECTS.names, columns)
@@ -247,4 +247,4 @@ def test_a_queue_of_which_enough_is_seen_ends_there(monkeypatch):
     short = followed(replace(two, seconds=0.4))
     assert [one.seconds for one in seen] == pytest.approx([0.2, 0.4]) and not ended.partial
     assert (ended.seconds, ended.velocity, ended.gap) == (short.seconds, short.velocity, short.gap)
-    assert seen[0].leaving is not ended.leaving and followed(replace(two, seconds=0.1)).seconds == 0.1
+    assert seen[0].whole is not ended.whole and followed(replace(two, seconds=0.1)).seconds == 0.1

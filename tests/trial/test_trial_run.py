@@ -66,6 +66,15 @@ def test_parts_come_one_behind_the_other_and_leave_as_the_efficiency_says():
     assert run([0, 0, 1, 1], [RETURNED] * 4).parts == 0.0
 
 
+def test_what_leaves_in_no_known_orientation_is_never_the_wanted_one():
+    """Of the first three in four leave askew, a quarter as they came; of the second all as they came."""
+    made = run([0, 0, 0, 0, 1], [TURNED, TURNED, TURNED, PASSED, PASSED], out=[-1, -1, -1, 0, 1])
+    np.testing.assert_allclose(made.leaving, [0.1875, 0.25, 0.5625], rtol=1e-12)
+    assert made.wanted == 1 and made.efficiency == 0.25 and made.purity == 0.25
+    askew = run([0, 1], [TURNED, TURNED], out=-1)
+    assert askew.wanted is None and askew.efficiency == askew.purity == askew.parts == 0.0
+
+
 def test_no_more_parts_leave_than_lie_one_behind_the_other():
     """All leave as the second, 40 mm long: 1.5 a second however many come."""
     made = run([0, 0, 1, 1], [TURNED, TURNED, PASSED, PASSED], out=1)

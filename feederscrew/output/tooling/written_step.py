@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.errors import FeederError, MissingPackage
 from feederscrew.tooling import solid
 from feederscrew.units import factor
 
@@ -22,12 +22,12 @@ def check():
 
     Raises
     ------
-    ArgumentError
+    MissingPackage
     """
     try:
         import OCP.STEPControl  # noqa: F401
     except ImportError:
-        raise ArgumentError("step", "needs OpenCASCADE, which is not installed", MISSING) from None
+        raise MissingPackage("step", "needs OpenCASCADE, which is not installed", MISSING) from None
 
 
 def step(section):
@@ -44,7 +44,7 @@ def step(section):
 
     Raises
     ------
-    ArgumentError
+    MissingPackage
         If OpenCASCADE is not installed or refuses the body.
     """
     check()

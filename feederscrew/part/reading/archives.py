@@ -1,6 +1,7 @@
 """Members of ZIP archives, unpacked piece by piece and no further than a limit."""
 
 import io
+import lzma
 import re
 import zipfile
 import zlib
@@ -9,7 +10,7 @@ from pathlib import PurePosixPath
 
 from feederscrew.part.reading.soup import LARGEST
 
-DAMAGED = (zipfile.BadZipFile, zlib.error)  # what damaged archives raise
+DAMAGED = (zipfile.BadZipFile, zlib.error, lzma.LZMAError)  # what damaged archives raise
 MOST_MEMBERS = 20_000
 MOST_TIMES = 200  # a member unpacks to so many times its size: coordinates pack to a tenth or a thirtieth
 SMALL = 1 << 24  # [bytes] below it any packing is harmless
@@ -29,12 +30,15 @@ def opened(data: bytes) -> zipfile.ZipFile:
     ------
     BombError
         If it has too many members.
-    zipfile.BadZipFile
+    zipfile.BadZipFile, ValueError
         If it is damaged.
     """
     if data.count(ENTRY) > MOST_MEMBERS:
         raise BombError(f"is an archive of more than {MOST_MEMBERS} files")
-    return zipfile.ZipFile(io.BytesIO(data))
+    try:
+        return zipfile.ZipFile(io.BytesIO(data))
+    except (NotImplementedError, OSError) as error:  # zipfile's, of a version or an offset of no archive
+        raise ValueError(str(error)) from None
 
 
 def pieces(archive: zipfile.ZipFile, name: str, most: int = LARGEST) -> Iterator[bytes]:
@@ -55,14 +59,27 @@ def pieces(archive: zipfile.ZipFile, name: str, most: int = LARGEST) -> Iterator
     ------
     BombError
         As soon as more is unpacked than ``most``, or than a mesh of its packed size can be.
+    ValueError
+        If it is locked by a password, packed in a way that is not read, or damaged.
     """
     entry, size = archive.getinfo(name), 0
     _refuse_size(entry.file_size, entry.compress_size, most)  # as announced, which may be a lie
-    with archive.open(name) as member:
-        while piece := member.read(PIECE):
+    try:
+        member = archive.open(name)
+    except (OSError, RuntimeError) as error:  # zipfile's, of a password or of a packing that it does not know
+        raise ValueError(str(error)) from None
+    with member:
+        while piece := _next(member):
             size += len(piece)
             _refuse_size(size, entry.compress_size, most)
             yield piece
+
+
+def _next(member):
+    try:
+        return member.read(PIECE)
+    except OSError as error:  # bz2's
+        raise ValueError(str(error)) from None
 
 
 def _refuse_size(size, packed, most):

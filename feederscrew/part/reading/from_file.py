@@ -9,7 +9,7 @@ from feederscrew import check, documents
 from feederscrew.errors import ArgumentError, SeveralBodiesError
 from feederscrew.part import aspect_names, card
 from feederscrew.part.density import density as density_of
-from feederscrew.part.hull import convex_hull
+from feederscrew.part.hull import CentreOutsideError, convex_hull
 from feederscrew.part.reading import bodies
 from feederscrew.part.reading import source as read
 from feederscrew.part.reading.formats import FORMATS
@@ -103,7 +103,12 @@ def _solid(file, soup, wanted, stuff, centre_text, body, allow_open):
     scale = factor(unit, "length")
     vertices, solid = surface.vertices * scale, surface.solid.scaled(scale)
     centre, shifted = _centre(centre_text, unit, solid.centre)
-    hull = convex_hull(vertices, centre, file.where, given=centre_text is not None)
+    try:
+        hull = convex_hull(vertices, centre, file.where, given=centre_text is not None)
+    except CentreOutsideError as fault:
+        if centre_text is None:
+            raise
+        raise ArgumentError("centre_of_mass", fault.what, fault.mend) from None
     gate.check_hull(surface, hull.volume / scale**3, file.where, unit)
     density, material = stuff
     return Part(

@@ -10,7 +10,7 @@ import warnings
 import numpy as np
 
 from feederscrew import units
-from feederscrew.errors import MeshError
+from feederscrew.errors import DAMAGE, MeshError
 from feederscrew.part.reading import archives, step
 from feederscrew.part.reading.formats import FORMATS
 from feederscrew.part.reading.soup import Soup, refuse_crowds
@@ -27,6 +27,7 @@ WIDTHS = {
 }  # [bytes] by component type: glTF 2.0, 3.6.2.2
 MOST_NODES, DEEPEST = 20_000, 50  # instances; nodes within nodes
 NUMBERS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+NUMBER = (int, float)  # as JSON writes one
 PACKED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
 logging.getLogger("trimesh").addHandler(logging.NullHandler())  # it would log to stderr
 
@@ -63,15 +64,22 @@ def soup(data, kind, where):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         warnings.simplefilter("error", DeprecationWarning)  # numpy's way to say 'not a number'
-        found = _joined(_pieces(data), kind, unit)
+        try:
+            pieces = _pieces(data)
+        except MemoryError:
+            raise
+        except DAMAGE as error:  # trimesh's, of any class
+            raise ValueError(str(error) or type(error).__name__) from None
+        found = _joined(pieces, kind, unit)
     return found
 
 
 def _pieces(data):
-    """Name, corners and facets of every mesh of the scene where its instances stand."""
+    """Name, corners and facets of every mesh of the scene where its instances stand, all by trimesh."""
     import trimesh
 
     scene = trimesh.load_scene(io.BytesIO(data), file_type="glb", process=False, skip_materials=True)
+    pieces = []
     for node in scene.graph.nodes_geometry:
         transform, name = scene.graph[node]
         mesh = scene.geometry[name]
@@ -79,7 +87,8 @@ def _pieces(data):
             continue
         mesh = mesh.copy()
         mesh.apply_transform(transform)
-        yield str(node), np.asarray(mesh.vertices), np.asarray(mesh.faces)
+        pieces.append((str(node), np.asarray(mesh.vertices), np.asarray(mesh.faces)))
+    return pieces
 
 
 def _joined(pieces, kind, unit):
@@ -106,28 +115,45 @@ def _refuse_claims(data, where):
         raise MeshError(where, "is a damaged GLB: it announces more than it holds", AGAIN)
     if chunk > LARGEST_SCENE:
         raise ValueError(f"a scene of more than {LARGEST_SCENE >> 20} MB")
-    scene = json.loads(data[20 : 20 + chunk])
-    needed = [name for name in scene.get("extensionsRequired", ()) if name in PACKED]
+    scene = _of(dict, json.loads(data[20 : 20 + chunk]))
+    needed = [name for name in _listed(scene, "extensionsRequired") if name in PACKED]
     if needed:
         raise MeshError(where, f"is a GLB packed by {needed[0]}, which is not read", "export it unpacked")
-    numbers = [_announced(accessor, scene, len(data), where) for accessor in scene.get("accessors", ())]
+    accessors = [_of(dict, accessor) for accessor in _listed(scene, "accessors")]
+    numbers = [_announced(accessor, scene, len(data), where) for accessor in accessors]
     refuse_crowds(0, sum(numbers) // 30)  # texture coordinates and normals counted in
-    _refuse_nests(scene.get("nodes", ()))
+    nodes = [_of(dict, node) for node in _listed(scene, "nodes")]
+    _refuse_nests(nodes)
     corners = facets = 0
-    for node in scene.get("nodes", ()):
-        for primitive in scene["meshes"][node["mesh"]].get("primitives", ()) if "mesh" in node else ():
-            at = primitive["attributes"]["POSITION"]
-            around = primitive.get("indices", at)
-            corners += int(scene["accessors"][at]["count"])
-            facets += int(scene["accessors"][around]["count"]) // (3 if primitive.get("mode", 4) == 4 else 1)
+    for node in nodes:
+        mesh = _of(dict, _listed(scene, "meshes")[_of(int, node["mesh"])]) if "mesh" in node else {}
+        for primitive in _listed(mesh, "primitives"):
+            at = _of(int, _of(dict, _of(dict, primitive)["attributes"])["POSITION"])
+            around = _of(int, primitive.get("indices", at))
+            corners += int(_of(NUMBER, accessors[at]["count"]))
+            around_count = int(_of(NUMBER, accessors[around]["count"]))
+            facets += around_count // (3 if primitive.get("mode", 4) == 4 else 1)
             refuse_crowds(corners, facets)
+
+
+def _of(kind, value):
+    """A value of the scene, which must be of a kind."""
+    if not isinstance(value, kind):
+        raise ValueError(f"its scene has {value!r:.30} out of place")
+    return value
+
+
+def _listed(holder, name):
+    return _of(list, holder.get(name, []))
 
 
 def _refuse_nests(nodes):
     """Refuse nodes that are no trees, or deep ones."""
     if len(nodes) > MOST_NODES:
         raise ValueError(f"more than {MOST_NODES} nodes")
-    pairs = [(child, parent) for parent, node in enumerate(nodes) for child in node.get("children", ())]
+    pairs = [
+        (_of(int, child), parent) for parent, node in enumerate(nodes) for child in _listed(node, "children")
+    ]
     parents = dict(pairs)
     if len(parents) != len(pairs):
         raise ValueError("a node within two others")
@@ -141,10 +167,11 @@ def _refuse_nests(nodes):
 
 def _announced(accessor, scene, size, where):
     """How many numbers an accessor announces; refused where its bytes are not there."""
-    count = int(accessor["count"]) * NUMBERS[accessor["type"]]
-    least = count * WIDTHS[accessor["componentType"]]
+    count = int(_of(NUMBER, accessor["count"])) * NUMBERS[_of(str, accessor["type"])]
+    least = count * WIDTHS[_of(int, accessor["componentType"])]
     view = accessor.get("bufferView")
-    held = 0 if view is None else int(scene["bufferViews"][view]["byteLength"])
+    buffer = {} if view is None else _of(dict, _listed(scene, "bufferViews")[_of(int, view)])
+    held = 0 if view is None else int(_of(NUMBER, buffer["byteLength"]))
     if count < 0 or held > size or (least > held and "sparse" not in accessor):
         raise MeshError(where, "is a damaged GLB: it announces more than it holds", AGAIN)
     return count

@@ -1,6 +1,7 @@
 """From a path or standard input to triangles as the file has them, nothing mended yet."""
 
 import hashlib
+import struct
 import sys
 import warnings
 from dataclasses import dataclass, replace
@@ -9,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from feederscrew import documents
-from feederscrew.errors import DAMAGE, MeshError, printable
+from feederscrew.errors import MeshError, printable
 from feederscrew.part.reading import archives, formats, obj, off, ply, scenes, stl, threemf
 from feederscrew.part.reading.decimals import CommaError
 from feederscrew.part.reading.formats import CARD, FORMATS
@@ -19,7 +20,16 @@ AGAIN = "export the part again"
 FEWER = "export it with fewer facets"
 POINTS = "write numbers with a decimal point"
 TEXTS = {"obj": obj.soup, "off": off.soup}
-REFUSED: tuple[type[Exception], ...] = (*DAMAGE, *archives.DAMAGED, DeprecationWarning)
+REFUSED: tuple[type[Exception], ...] = (  # what our readers raise on damaged bytes; no bugs
+    ArithmeticError,
+    EOFError,
+    LookupError,
+    RecursionError,
+    ValueError,
+    struct.error,
+    *archives.DAMAGED,
+    DeprecationWarning,
+)
 MENDS = {
     formats.UTF16: "save it as ASCII or UTF-8 text",
     documents.POINTER: documents.PULL,
@@ -98,7 +108,7 @@ def soup(file):
 
 
 def _read(file, kind):
-    """The triangles of a file of a known format; whatever its reader raises is a line."""
+    """The triangles of a file of a known format; what its reader raises on damaged bytes is a line."""
     title, data = FORMATS[kind].title, file.data
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):  # what is not finite, the gate names

@@ -11,7 +11,7 @@ import itertools
 import numpy as np
 import shapely
 
-from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.errors import FeederError, MissingPackage
 from feederscrew.geometry.vectors import product
 from feederscrew.solidbowl.exact import exact_faces
 from feederscrew.solidbowl.facets import in_space
@@ -32,12 +32,12 @@ def check(where="step"):
 
     Raises
     ------
-    ArgumentError
+    MissingPackage
     """
     try:
         import OCP.STEPControl  # noqa: F401
     except ImportError:
-        raise ArgumentError(where, "needs OpenCASCADE, which is not installed", MISSING) from None
+        raise MissingPackage(where, "needs OpenCASCADE, which is not installed", MISSING) from None
 
 
 @contextlib.contextmanager

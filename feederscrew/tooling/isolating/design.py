@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.errors import FeederError
+from feederscrew.errors import ArgumentError
 from feederscrew.tooling.devices.kinds import names
 from feederscrew.tooling.devices.named import place_of, rows
 from feederscrew.tooling.isolating import chain, hole_search, rails, round_corners, turners, varied
@@ -186,15 +186,15 @@ def _with_holes(given, cuts, returned, search):
     return cuts, returned
 
 
-def place(every, aspect, heading, where):
-    """Return the place of an orientation by its aspect and, where given, its heading [rad].
+def place(every, aspect, heading, source):
+    """Return the place of an orientation of the part of a file by its aspect and, where given, heading [rad].
 
     Raises
     ------
-    FeederError
+    ArgumentError
         If the part has no such orientation.
     """
+    known = rows([one.aspect for one in every], aspect, f"aspect of {source}", ArgumentError)
     if heading is not None:
-        return place_of(every, aspect, heading, where, kind=FeederError)
-    known = rows([one.aspect for one in every], aspect, where)
+        return place_of(every, aspect, heading, f"heading of {source}", kind=ArgumentError)
     return max(known, key=lambda k: (not every[k].returned, every[k].heading_share, -k))

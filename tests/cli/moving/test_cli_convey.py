@@ -175,14 +175,14 @@ def test_radius_table(run):
         ),
         (
             ("--set", "friction.static_backward=0.3"),
-            1,
+            2,
             "Error: --set friction.static_backward: friction.kinetic_backward 0.6 is above "
             "friction.static_backward 0.3 (as friction.kinetic) - "
             "lower the kinetic coefficient or raise the static one",
         ),
         (
             ("--set", "friction.kinetic=0.9"),
-            1,
+            2,
             "Error: --set friction.kinetic: friction.kinetic 0.9 is above friction.static 0.6 (default) - "
             "lower the kinetic coefficient or raise the static one",
         ),

@@ -108,9 +108,9 @@ def test_a_turned_and_moved_file_changes_nothing(run, tmp_path, rng):
 
 def test_an_unknown_aspect_names_those_that_exist(run, tmp_path):
     result = run("floor", CARD, "--aspect", "Z", "-o", "out")
-    assert result.exit_code == 1
+    assert result.exit_code == 2
     assert result.stderr.splitlines()[-1] == (
-        f"Error: {CARD}: there is no aspect 'Z' - choose one of 1, 2, 3, 4, 5"
+        f"Error: --aspect of {CARD}: there is no aspect 'Z' - choose one of 1, 2, 3, 4, 5"
     )
     assert not (tmp_path / "out").exists()
 

@@ -63,7 +63,7 @@ def test_a_card_has_no_outline(run):
 
 def test_an_unknown_aspect(run):
     result = run("headings", BRACKET, "--aspect", "Q")
-    assert result.exit_code == 1
+    assert result.exit_code == 2
     assert result.stderr.splitlines()[-1] == (
-        f"Error: {BRACKET}: there is no aspect 'Q' - choose one of A, B, C, D, E"
+        f"Error: --aspect of {BRACKET}: there is no aspect 'Q' - choose one of A, B, C, D, E"
     )

@@ -64,7 +64,11 @@ def test_an_orientation_that_a_device_returns(run, config):
 @pytest.mark.parametrize(
     ("arguments", "status", "line"),
     [
-        (("--aspect", "Q"), 1, f"Error: {PART}: there is no aspect 'Q' - choose one of A, B, C, D, E"),
+        (
+            ("--aspect", "Q"),
+            2,
+            f"Error: --aspect of {PART}: there is no aspect 'Q' - choose one of A, B, C, D, E",
+        ),
         (
             ("--aspect", "A", "--set", "track.climb=40 deg"),
             1,

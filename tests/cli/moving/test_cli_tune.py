@@ -42,7 +42,7 @@ def test_files(tuned):
 
 def test_an_unreachable_target_is_one_line(run):
     result = run("tune", PART, "--aspect", "A", "--target", "100000/min", *BOWL, *PLAIN)
-    assert result.exit_code == 1
+    assert result.exit_code == 2
     (line,) = told(result)
     assert line.startswith("Error: --target: no setting reaches 100000/min: the most is ")
 

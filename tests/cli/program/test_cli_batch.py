@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from feederscrew import batch as batches
 from feederscrew_cli import interrupt, progress
 
 ROOT = Path(__file__).parents[3]
@@ -46,6 +47,35 @@ def test_a_bad_part_is_one_line_and_status_1_and_resume_says_what_it_kept(run, t
     again = run(*call, "--resume")
     assert again.exit_code == 1
     assert "Wrote out (2 parts, 1 of them as they were; open index.html)\n" in again.stderr
+
+
+def test_a_batch_that_is_stopped_names_resume_and_resume_says_why(run, tmp_path, monkeypatch):
+    class StopsAfterOne(batches.Processes):
+        def outcomes(self, tasks):
+            yield next(super().outcomes(tasks))
+            raise KeyboardInterrupt
+
+    call = ("batch", NUT, WASHER, "-o", "out", "--jobs", "1", "--no-pictures", "--rule", "csa")
+    with monkeypatch.context() as patch:
+        patch.setattr(batches, "crew", lambda jobs, scheduler: StopsAfterOne(jobs))
+        done = run(*call)
+    assert (done.exit_code, done.stdout) == (130, "")
+    assert done.stderr.splitlines()[-1] == "Stopped: 1 of 2 parts is done; go on with --resume"
+    rows = (tmp_path / "out/summary.csv").read_text().splitlines()
+    assert [(",done," in row, ",not computed," in row) for row in rows[1:]] == [(True, False), (False, True)]
+    again = run(*call, "--resume")
+    assert again.exit_code == 0 and again.stderr.splitlines()[0] == "Computes 1 of 2 parts: 1 new"
+    assert "Computes" not in run(*call, "--resume").stderr
+
+
+@pytest.mark.parametrize(
+    ("option", "value"), [("--density", "stel"), ("--density", ""), ("--set", "drive.frequency=50 mm"),
+                          ("--rule", "closd"), ("--scheduler", "nonsense")]
+)  # fmt: skip
+def test_a_wrong_value_of_an_option_ends_a_batch_before_any_part(run, tmp_path, option, value):
+    done = run("batch", NUT, WASHER, "-o", "out", option, value)
+    assert (done.exit_code, done.stdout, len(done.stderr.splitlines())) == (2, "", 1)
+    assert option in done.stderr and not list((tmp_path).glob("out/parts/*"))
 
 
 def test_a_batch_says_what_a_key_of_the_machine_makes_of_the_drive(run, tmp_path):
@@ -109,10 +139,10 @@ def test_a_depfile_names_every_part(run, tmp_path):
         ),
         (
             ["nut.stl", "-o", "out", "--rule", "scs"],
-            1,
+            2,
             "Error: --rule: unknown rule 'scs' - did you mean csa?",
         ),
-        (["nut.stl", "-o", "out", "--set", "friction.wal=1"], 1, "did you mean friction.wall?"),
+        (["nut.stl", "-o", "out", "--set", "friction.wal=1"], 2, "did you mean friction.wall?"),
     ],
 )
 def test_a_wrong_call_is_one_line(run, call, status, line):

@@ -93,7 +93,7 @@ def test_a_bowl_file_from_a_stream_is_refused(run):
 
 def test_a_fault_prints_nothing_on_stdout(run):
     result = run("config", "show", "--set", "drive.frequency=50 mm")
-    assert (result.exit_code, result.stdout) == (1, "")
+    assert (result.exit_code, result.stdout) == (2, "")
     assert (
         result.stderr
         == "Error: --set drive.frequency: '50 mm' is a length, not a frequency - give it in Hz\n"
@@ -123,3 +123,10 @@ def test_another_file_of_the_schemas_name_is_left_alone(run):
     assert done.stderr.splitlines()[-1] == (
         "Error: feeder.schema.json: exists already - name another file, or pass --force to replace it"
     )
+
+
+@pytest.mark.parametrize("command", ["init", "schema"])
+def test_init_and_schema_can_be_quiet_and_escape_what_a_name_holds(run, command):
+    assert run("config", command, "red\x1b[31m.yaml").stderr.splitlines()[0] == "Wrote red\\x1b[31m.yaml"
+    done = run("config", command, "-q", "--force", "quiet.yaml")
+    assert (done.exit_code, done.stdout, done.stderr) == (0, "", "") and Path("quiet.yaml").exists()

@@ -340,7 +340,7 @@ def test_an_unknown_rule_is_told_before_anything_is_read(command):
     """It was a KeyError of design."""
     done = CliRunner().invoke(feeder, [command, "gone.stl", "--rule", "closd", *RULED[command]])
     assert (
-        done.exit_code == 1 and done.stderr == "Error: --rule: unknown rule 'closd' - did you mean closed?\n"
+        done.exit_code == 2 and done.stderr == "Error: --rule: unknown rule 'closd' - did you mean closed?\n"
     )
 
 

@@ -96,7 +96,11 @@ def test_what_was_told_is_recorded(run, light):
 @pytest.mark.parametrize(
     ("arguments", "status", "line"),
     [
-        (("--aspect", "Q"), 1, f"Error: {PART}: there is no aspect 'Q' - choose one of A, B, C, D, E"),
+        (
+            ("--aspect", "Q"),
+            2,
+            f"Error: --aspect of {PART}: there is no aspect 'Q' - choose one of A, B, C, D, E",
+        ),
         (("--config", "none.yaml"), 1, "Error: none.yaml: "),
         (("--format", "pdf"), 2, "Error: Invalid value for '--format': 'pdf' is not one of 'html', 'md'."),
     ],

@@ -219,8 +219,8 @@ def test_a_failed_self_check_marks_every_row(run, stl, tmp_path, monkeypatch):
 def test_a_centre_of_mass_on_or_outside_the_hull_is_one_line(run, stl, centre):
     done = run("aspects", stl, "--centre-of-mass", centre)
     line = "the centre of mass is not inside the part's convex hull - check --centre-of-mass and its units"
-    assert (done.exit_code, done.stdout) == (1, "")
-    assert done.stderr.splitlines() == [f"Error: {stl}: {line}"]
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert done.stderr.splitlines() == [f"Error: --centre-of-mass: {line}"]
 
 
 def test_a_centre_of_mass_just_inside_is_computed(run, stl):
@@ -293,11 +293,11 @@ def test_other_columns_are_printed_on_demand(run, stl):
     everything = run("aspects", stl, "--columns", "all").stdout
     assert all(word in everything for word in ("hops", "normal", "quasistatic"))
     wrong = run("aspects", stl, "--columns", "aspect,barier_mm")
-    assert wrong.exit_code == 1
+    assert wrong.exit_code == 2
     assert "Error: --columns: there is no column 'barier_mm' - did you mean barrier_mm?" in wrong.stderr
 
 
 def test_a_column_that_is_not_there_leaves_no_files(run, tmp_path):
     done = run("aspects", PARTS / "squarenut_m5.stl", "--columns", "nonsense", "-o", "out", "--no-pictures")
-    assert (done.exit_code, list(tmp_path.iterdir())) == (1, [])
+    assert (done.exit_code, list(tmp_path.iterdir())) == (2, [])
     assert "Error: --columns: there is no column 'nonsense'" in done.stderr

@@ -118,13 +118,13 @@ def test_one_value_of_restitution_scatters_and_says_what_that_does(run, stl):
     [
         (
             ("--height", "99 m"),
-            1,
+            2,
             "Error: --height: '99 m' is out of range - give 0 mm to 13000 mm for this part",
         ),
-        (("--height", "20"), 1, "Error: --height: '20' has no unit - write 20 mm"),
+        (("--height", "20"), 2, "Error: --height: '20' has no unit - write 20 mm"),
         (
             ("--until", "90%"),
-            1,
+            2,
             "Error: --until: '90%' is out of range - give 0.01% to 50%",
         ),
         (("--launch", "kick"), 2, "Error: Invalid value for '--launch'"),

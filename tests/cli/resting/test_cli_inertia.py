@@ -125,7 +125,7 @@ def test_file_without_an_honest_number_is_one_line(run, name):
 
 def test_impossible_density_names_the_unit(run, stl):
     done = run("inertia", stl, "--density", "7850 g/cm3")
-    assert done.exit_code == 1
+    assert done.exit_code == 2
     assert done.stderr == (
         "Error: --density: '7850 g/cm3' is the density of no solid - did you mean 7850 kg/m3?\n"
     )

@@ -138,9 +138,9 @@ def test_what_is_simplified_is_said(run, stl):
         (("--amplitude", "80%"), 2, "Error: --amplitude is for a vibrating plate - give --plate as well"),
         (("--plate", "--until", "1%"), 2, AT_REST.format("--until")),
         (("--plate", "--trace", "1"), 2, AT_REST.format("--trace")),
-        (("--plate", "--amplitude", "0.4"), 1, "Error: --amplitude: drive.amplitude: '0.4' has no unit"),
-        (("--plate", "--amplitude", "900%"), 1, "Error: --amplitude: '900%' is out of range - give 0%"),
-        (("--plate", "--amplitude", "x%"), 1, "Error: --amplitude: 'x%' is not a number - write digits"),
+        (("--plate", "--amplitude", "0.4"), 2, "Error: --amplitude: drive.amplitude: '0.4' has no unit"),
+        (("--plate", "--amplitude", "900%"), 2, "Error: --amplitude: '900%' is out of range - give 0%"),
+        (("--plate", "--amplitude", "x%"), 2, "Error: --amplitude: 'x%' is not a number - write digits"),
         (("--plate", "--config", "none.yaml"), 1, "Error: none.yaml: "),
     ],
 )  # fmt: skip
