@@ -240,9 +240,9 @@ def _sorting(bowl: Bowl, order: Order) -> Iterator[str]:
     """Sentences on a bowl in which nothing sorts, and on a climb that a device asks for."""
     if not bowl.devices:
         wide = f"its track of {1e3 * bowl.track.width:.4g} mm carries every way up, and parts leave so"
-        mend = "make devices by feeder tooling PART --aspect NAME -o DIR, and give its tooling.yaml to --config"
+        mend = "feeder tooling PART --aspect NAME -o DIR finds devices: give its tooling.yaml as --config"
         what = "no device sorts the parts in this bowl" if order.wanted else "this bowl is for every way up"
-        yield f"{what}: {wide}. For one way up, {mend}"
+        yield f"{what}: {wide}. For one way up: {mend}"
     if order.climb_for_devices:
         climb = np.degrees(bowl.track.climb)
         yield f"the track climbs at {climb:.4g} deg, so that parts pass below the stretch that leads down"

@@ -179,7 +179,7 @@ def folded(name, value):
 
 
 def outcome(d, devices):
-    """Return rows of what a design's document says of the answer, and of its devices as the trade names them."""
+    """Return rows of the answer of a design's document, and of its devices as the trade names them."""
     head = [
         ("status", d["status"]),
         *_drive(d.get("bowl") or {}),
