@@ -3,7 +3,8 @@
 import re
 
 ORIENTATION = re.compile(r"\b([A-Z]+)@(\d+)")
-WORDED = re.compile(r"\b[A-Z]+ at (?:heading )?\d+(?:\.\d+)?(?: and \d+)* deg|\bheading\b")
+IN_WORDS = re.compile(r"\bat heading \d")
+COLUMN = re.compile(r"\bheading\b")  # of the first line of a table
 ZERO = (
     "at heading 0 the middle of the face it rests on lies ahead of its centre of mass, in the direction of "
     "travel (where it lies below it: the longest side of the outline lies along the track)"
@@ -31,6 +32,6 @@ def heading_note(text):
     if named:
         name, turn = named[1], named[2]
         return f"{named[0]}: aspect {name}, turned {turn} deg counter-clockwise seen from above; {ZERO}"
-    if WORDED.search(text):
+    if IN_WORDS.search(text) or COLUMN.search(text.partition("\n")[0]):
         return f"heading: by how much a part is turned, counter-clockwise seen from above; {ZERO}"
     return ""

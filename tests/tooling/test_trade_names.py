@@ -51,7 +51,9 @@ def test_a_vision_reject_says_what_sees_what_it_keeps_and_what_it_rejects(sees, 
     device = made("sorter", "here", like=like, also=also, sees=sees).rewritten()
     assert device.full_name == name
     keeps = "keeps A at heading 188 and 354 deg and B at heading 0 deg"
-    assert device.value_words == f"{keeps}, rejects {what} that differ by more than 8.35 mm"
+    words = f"{keeps}, rejects {what} that differ by more than 8.35 mm"
+    assert device.value_words == words
+    assert device.with_pulse(0.02).value_words == f"{words}, air for 20 ms"
 
 
 def test_no_name_is_one_of_a_file():

@@ -22,7 +22,7 @@ SPARE = (  # left out of a table for people that is too wide, the first ones fir
 CHAIN = (
     "device", "value", "margin_pass_mm", "margin_reject_mm", "smallest_cut", "largest_cut", "returns",
 )  # fmt: skip
-WORDS = {"margin_pass_mm": "wanted_passes_by_mm", "margin_reject_mm": "others_fail_by_mm"}  # for people
+WORDS = {"margin_pass_mm": "passes_by_mm", "margin_reject_mm": "others_fail_by_mm"}  # for people
 WIDE = 34  # letters of a text in a table for people
 QUASI_STATIC = "quasi-static, until a trial confirms it"
 

@@ -147,7 +147,7 @@ class Separation(Lean):
     @property
     def serves(self):  # type: ignore[override]  # of others a text of the class
         """What it is for: on the way down parts come apart, on the way up rails begin."""
-        return "makes the gaps a sorter needs" if self.angle < 0.0 else "climbs again, as rails need"
+        return "makes the gaps a vision reject needs" if self.angle < 0.0 else "climbs again, as rails need"
 
     def onward(self, one):
         """Return an orientation as it goes on, on the steeper track."""

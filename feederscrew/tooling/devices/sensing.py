@@ -133,7 +133,8 @@ class Sorter(Device):
     @property
     def value_words(self):
         what, most = SEEN_BY[self.sees][1], length_words(self.like[2])
-        return f"keeps {keeps((self.like[:2], *self.also))}, rejects {what} by more than {most}"
+        pulse = "" if self.time == PULSE else f", air for {self.time / MS:.4g} ms"
+        return f"keeps {keeps((self.like[:2], *self.also))}, rejects {what} by more than {most}{pulse}"
 
     def _jet_text(self):
         """Its nozzles and its pulse as a bowl file has them, as far as they are not as by default."""
