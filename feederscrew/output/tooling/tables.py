@@ -134,19 +134,18 @@ def summary(study, format="csv"):
         }
         for cut in study.design.cuts
     ]
-    names = CHAIN
+    names: tuple[str, ...] = CHAIN
     if format == "table":
-        rows = [_for_people(row, cut.device) for row, cut in zip(rows, study.design.cuts)]
+        rows = [_for_people(row, cut, _returned(study, cut)) for row, cut in zip(rows, study.design.cuts)]
         names = tuple(WORDS.get(name, name) for name in CHAIN)
     return tables.frame({name: [row[name] for row in rows] for name in names})
 
 
-def _for_people(row, device):
+def _for_people(row, cut, returned):
     """A device's row as the trade names it, its value in words, and headings that say whose margin it is."""
     shown = {WORDS.get(name, name): value for name, value in row.items()}
-    return shown | {
-        "device": device.full_name, "value": device.value_words, "returns": _few(row["returns"], WIDE)
-    }  # fmt: skip
+    returns = _few(returned, WIDE) if returned else row["returns"]
+    return shown | {"device": cut.device.full_name, "value": cut.device.value_words, "returns": returns}
 
 
 def _few(text, most):

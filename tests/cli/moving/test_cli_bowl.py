@@ -124,7 +124,7 @@ def test_leaves_that_do_not_share_into_the_banks_are_told(run):
 def test_a_throw_over_tooling_that_tells_parts_apart_as_they_lie(run):
     Path("cut.yaml").write_text("devices:\n  - narrowed_track: 18 mm\n  - wiper: 40 mm\n")
     asked = ("bowl", "--config", "cut.yaml", "--set", "drive.frequency=50 Hz", "--set")
-    line = "parts hop over the narrowed_track - take a smaller stroke or a flatter angle"
+    line = "parts hop over the narrowed track - take a smaller stroke or a flatter angle"
     assert line in run(*asked, "drive.amplitude=0.4 mm").stderr
     assert "parts hop" not in run(*asked, "drive.amplitude=0.1 mm").stderr
 
