@@ -34,6 +34,7 @@ class Output:
     inputs: tuple[str, ...] = ()  # the files named on the command line
     options: dict[str, str] = field(default_factory=dict)  # of the command, by the argument they are
     warnings: list[str] = field(default_factory=list)  # said so far, for run.json
+    notes: list[str] = field(default_factory=list)  # what was explained so far: each thing once
 
     @classmethod
     def of(cls, **options):
@@ -117,7 +118,19 @@ class Output:
                 those = "it" if len(left_out) == 1 else "them"
                 self.say(f"Left out of the table: {', '.join(left_out)}; --format csv prints {those} too")
         width = _window() or (None if spare is None else tables.PAGE)
-        click.echo(tables.text(shown, self.format, width), nl=False)
+        text = tables.text(shown, self.format, width)
+        click.echo(text, nl=False)
+        if self.format == "table":
+            self.explain(text)
+
+    def explain(self, text):
+        """Say once what the headings of orientations in a text are turned from."""
+        from feederscrew.output.orientation_words import heading_note
+
+        note = "" if self.notes else heading_note(text)
+        if note:
+            self.notes.append(note)
+            self.say(note)
 
     def json(self, document):
         """Print a document as JSON."""

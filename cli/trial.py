@@ -139,5 +139,9 @@ def trial(part, sent, taken, amplitudes, bowl, pictures, out):
         document = tables.document(found)
         out.warn(*found.warnings)
         out.say(*tables.summary(found))
+        for line in tables.engine(found):
+            out.detail(line)
         offers.write(folder, files.offers(found), pictures=pictures)
-        out.show(tables.frame(found), document, hidden=tables.HIDDEN, spare=tables.spare(found))
+        shown = tables.frame(found, people=out.format == "table")
+        hidden = tables.HIDDEN if not out.verbose else ("fell_mm", "seconds")
+        out.show(shown, document, hidden=hidden, spare=tables.spare(found))

@@ -43,6 +43,7 @@ class TriedDesign:
     faults: tuple[str, ...]  # what the trial denies, a sentence each
     efficiency_ends: tuple[float, float] = (0.0, 1.0)  # [1] 95 % interval
     purity_ends: tuple[float, float] = (0.0, 1.0)  # [1]
+    devices_words: tuple[str, ...] = ()  # of the chain, as the trade names them
 
     @property
     def agrees(self) -> bool:
@@ -147,6 +148,10 @@ def _devices(found: Design) -> tuple[str, ...]:
     return tuple(f"{device.kind}: {device.text}" for device in found.devices)
 
 
+def _words(found: Design) -> tuple[str, ...]:
+    return tuple(f"{device.full_name}: {device.value_words}" for device in found.devices)
+
+
 def _tried(study: ToolingStudy, one: Design, run: RunSettings) -> TriedDesign:
     """One design with parts of its own, on a track of its own width."""
     study = study.on_its_width(one.wanted)
@@ -181,6 +186,7 @@ def _tried(study: ToolingStudy, one: Design, run: RunSettings) -> TriedDesign:
         faults=(*denied(tried), *impure),
         efficiency_ends=efficiency[1:],
         purity_ends=(low, high),
+        devices_words=_words(one),
     )
 
 

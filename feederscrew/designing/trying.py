@@ -260,7 +260,7 @@ def _places(seen: course.Course, own: np.ndarray) -> dict[str, int]:
     found: dict[str, int] = {}
     for n in np.flatnonzero(own & ~np.isin(seen.fates, (course.PASSED, course.TURNED))):
         name = (
-            f"{course.FATES[seen.fates[n]].replace('_', ' ')} at {seen.stations[seen.ended[n]].device.kind}"
+            f"{course.FATES[seen.fates[n]].replace('_', ' ')} at {seen.stations[seen.ended[n]].device.name}"
         )
         found[name] = found.get(name, 0) + 1
     return found

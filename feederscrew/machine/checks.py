@@ -99,11 +99,11 @@ def _banks(sheet: Any) -> Iterator[FeederError]:
 
 def _throw(sheet: Any) -> Iterator[FeederError]:
     """Tooling that cuts the track tells parts apart by how they lie: not those that fly over it."""
-    over = [one.kind for one in sheet.bowl.devices if one.placed and not one.overhead]
+    over = [one.name for one in sheet.bowl.devices if one.placed and not one.overhead]
     throw = sheet.answer.throw_number
     if over and throw > 1.0:
-        kinds = units.listed(list(dict.fromkeys(over)))
-        what = f"the throw number {throw:.3g} is above 1, so parts hop over the {kinds}"
+        names = units.listed(list(dict.fromkeys(over)))
+        what = f"the throw number {throw:.3g} is above 1, so parts hop over the {names}"
         mend = "take a smaller stroke or a flatter angle: that tooling sorts parts by how they lie"
         yield FeederError("drive.amplitude", what, mend)
 

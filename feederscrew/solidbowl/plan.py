@@ -28,6 +28,19 @@ SHORTEST = 0.999  # of it: what is told has four digits
 SEEN, CLEARED = 0.3, 3e-4  # of the plate, and [m] over the dome: there the free edge is measured
 
 
+class TrackTooLow(FeederError):
+    """A device leads the track down too far: a steeper climb leaves more room below it."""
+
+    def needing(self, climb):
+        """Return the same fault with the least climb [rad] that mends it."""
+        mend = f"give a track.climb of at least {np.degrees(climb):.4g} deg"
+        fault = TrackTooLow(self.where, self.what, f"{mend}, else {self.mend}")
+        fault.climb = climb
+        return fault
+
+    climb: float | None = None  # [rad] that mends it; None where none is known
+
+
 @dataclass(frozen=True, eq=False)
 class BowlPlan:
     """A bowl in lengths [m] and angles [rad]; heights over the floor's edge."""
@@ -251,14 +264,14 @@ def _check_bends(way, stepped, round_once, tallest):
     if way.bends and way.lowest < LOWEST:
         what = f"a device leads the track down to {1e3 * way.lowest:.3g} mm over the floor"
         least = 1e3 * (float(way.height(way.end)) + LOWEST - way.lowest)
-        raise FeederError("devices", what, f"give a sizing.outlet_height of at least {least:.4g} mm")
+        raise TrackTooLow("devices", what, f"give a sizing.outlet_height of at least {least:.4g} mm")
     if way.bends and stepped is not None:
         _check_beside(way, stepped)
         return
     free = way.lowest - float(way.risen(way.end - round_once))
     if way.bends and way.end > round_once and free < tallest + ABOVE:
         what = f"a device leads the track down to {1e3 * free:.3g} mm over the turn below"
-        raise FeederError("devices", what, "give a lower sizing.outlet_height, or a steeper track.climb")
+        raise TrackTooLow("devices", what, "give a lower sizing.outlet_height")
 
 
 def _check_beside(way, stepped):
@@ -270,7 +283,7 @@ def _check_beside(way, stepped):
         mend = (
             f"{1e3 * stepped.needed:.4g} mm are needed: give a steeper track.climb, or sizing.shape: cylinder"
         )
-        raise FeederError("devices", what, mend)
+        raise TrackTooLow("devices", what, mend)
 
 
 def _check_floor(end, stepped, rise):

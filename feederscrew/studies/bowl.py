@@ -1,6 +1,6 @@
 """``feeder bowl``: the machine under a bowl, and the bowl for a part and a rate."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, Unpack, cast
@@ -25,6 +25,7 @@ from feederscrew.rates.tipping import remark
 from feederscrew.records import Shown
 from feederscrew.resting.aspects import Aspects
 from feederscrew.solidbowl.closed_body import BowlSolid
+from feederscrew.solidbowl.plan import TrackTooLow
 from feederscrew.studies import solidbowl
 from feederscrew.studies.rate import arriving
 from feederscrew.tooling.devices.base import Device
@@ -52,6 +53,7 @@ class Order(Shown):
     hopper: float  # [m3]
     handbook: float  # [1/s] the handbook's estimate for the same share
     shape: sizing.SizedShape  # one part on the track, to draw
+    climb_for_devices: bool = False  # whether a device that leads the track down asks for the climb
 
 
 @dataclass(frozen=True)
@@ -97,8 +99,10 @@ class MachineSheet(Shown):
         """What must not be overlooked, a tuple of str."""
         own = () if self.solid is None else self.solid.remarks
         width = self.bowl.track.width
-        small = () if self.order is None else small_part_remarks(self.order.part, {}, width)
-        return (*checks.remarks(self), *small, *own)
+        if self.order is None:
+            return (*checks.remarks(self), *own)
+        small = small_part_remarks(self.order.part, {}, width)
+        return (*_sorting(self.bowl, self.order), *checks.remarks(self), *small, *own)
 
     @property
     def rocking(self) -> tuple[Rocking, Rocking] | None:
@@ -193,13 +197,23 @@ def bowl(
     wanted = None if aspect is None else well_oriented.wanted(part, found, straight, aspect, heading)
     lying = sizing.lying(part, found, wanted)
     _check_rule(rule, found)
-    size = _size(lying, part, plain, settings, sorts=wanted is None)
-    track = replace(plain.track, radius=0.5 * size.diameter, width=size.track_width, climb=size.climb)
-    wanted = None if wanted is None else well_oriented.wanted(part, found, track, *wanted)
-    ways = _ways(part, found, track, plain.devices)
-    counted: dict[str, Any] = {"rule": rule, "target": wanted, "gap": own.gap, "fill": own.fill}
-    plain = replace(plain, track=track)
-    size, made = solidbowl.solid(plain, size, part, ways(None), own.solid, counted)
+    counted: dict[str, Any] = {"rule": rule, "gap": own.gap, "fill": own.fill}
+    least = None
+    while True:
+        size = _size(lying, part, plain, settings, sorts=wanted is None, climb=least)
+        track = replace(plain.track, radius=0.5 * size.diameter, width=size.track_width, climb=size.climb)
+        one = None if wanted is None else well_oriented.wanted(part, found, track, *wanted)
+        ways = _ways(part, found, track, plain.devices)
+        try:
+            size, made = solidbowl.solid(
+                replace(plain, track=track), size, part, ways(None), own.solid, counted | {"target": one}
+            )
+            break
+        except TrackTooLow as fault:
+            if fault.climb is None or "climb" in drive_sought.given(settings, "track"):
+                raise
+            least = fault.climb
+    wanted, counted["target"], plain = one, one, replace(plain, track=track)
     room = cast(float, part.volume if part.hull is None else part.hull.volume)  # a card has no size
     sought = drive_sought.Sought(plain, size, tuple(settings), target, part.mass / room)
     driven, flow = drive_sought.brought(sought, lambda bowl: throughput.flow(ways(bowl), **counted))
@@ -217,8 +231,21 @@ def bowl(
         hopper=target * plain.sizing.hopper_interval * room / plain.sizing.packing,
         handbook=plain.sizing.handbook_speed * flow.share / flow.length,
         shape=sizing.shape(part, found, track, wanted),
+        climb_for_devices=least is not None,
     )
     return replace(_sheet(driven, settings, size.depth, (sought.bulk, PART), order), solid=made)
+
+
+def _sorting(bowl: Bowl, order: Order) -> Iterator[str]:
+    """Sentences on a bowl in which nothing sorts, and on a climb that a device asks for."""
+    if not bowl.devices:
+        wide = f"its track of {1e3 * bowl.track.width:.4g} mm carries every way up, and parts leave so"
+        mend = "feeder tooling PART --aspect NAME -o DIR finds devices: give its tooling.yaml as --config"
+        what = "no device sorts the parts in this bowl" if order.wanted else "this bowl is for every way up"
+        yield f"{what}: {wide}. For one way up: {mend}"
+    if order.climb_for_devices:
+        climb = np.degrees(bowl.track.climb)
+        yield f"the track climbs at {climb:.4g} deg, so that parts pass below the stretch that leads down"
 
 
 def _on_its_springs(bowl: Bowl, settings: Sequence[Setting]) -> Bowl:
@@ -238,9 +265,15 @@ def _check_rule(rule: str, found: Aspects) -> None:
 
 
 def _size(
-    lying: sizing.Lying, part: Part, plain: Bowl, settings: Sequence[Setting], *, sorts: bool
+    lying: sizing.Lying,
+    part: Part,
+    plain: Bowl,
+    settings: Sequence[Setting],
+    *,
+    sorts: bool,
+    climb: float | None = None,
 ) -> sizing.Size:
-    """The size of the bowl; what the file says of its track is kept."""
+    """The size of the bowl; what the file says of its track is kept, and a ``climb`` that devices ask for."""
     said, track = drive_sought.given(settings, "track"), plain.track
     greatest = float(np.ptp(np.asarray(part.vertices), axis=0).max())
     return sizing.size(
@@ -250,7 +283,7 @@ def _size(
         sorts=sorts,
         diameter=2.0 * track.radius if "radius" in said else None,
         width=track.width if "width" in said else None,
-        climb=track.climb if "climb" in said else None,
+        climb=track.climb if "climb" in said else climb,
     )
 
 

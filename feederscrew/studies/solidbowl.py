@@ -9,6 +9,7 @@ import numpy as np
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.settings import Setting
+from feederscrew.errors import FeederError
 from feederscrew.machine.sizing import Size
 from feederscrew.part.record import Part
 from feederscrew.rates import stream
@@ -17,11 +18,16 @@ from feederscrew.solidbowl import cuts, leaning, lugs, riding, segments
 from feederscrew.solidbowl.closed_body import BowlSolid, body, screwed
 from feederscrew.solidbowl.exact import exact_body, exact_file
 from feederscrew.solidbowl.materials import STEEL, material
-from feederscrew.solidbowl.plan import CHORD, Asked, BowlPlan, plan
+from feederscrew.solidbowl.plan import CHORD, Asked, BowlPlan, TrackTooLow, plan
 from feederscrew.solidbowl.ways_down import ways_down
 from feederscrew.studies.rate import Spacing, SpacingKeywords
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.hanging import hung, neck
+
+CLIMB_STEP_RAD = np.radians(0.25)  # in which a climb is sought that leaves room below the tooled stretch
+STEEPEST_RAD = np.radians(
+    10.0
+)  # up to which it is sought: parts slide back from there on with most frictions
 
 
 @dataclass(frozen=True)
@@ -148,16 +154,20 @@ def solid(
 
     Raises
     ------
+    TrackTooLow
+        If a device leads the track down too far, with the climb that mends it, where there is one.
     FeederError
         If the track does not fit the bowl, or what falls through a cut does not reach the floor.
     """
     if asked is None:
         return size, None
-    made_of = material(asked.material, bowl.sizing)
-    track = leaning.banked(bowl.track, bowl.devices, coming.lying)
-    tooled = cuts.stretch(track, bowl.devices, coming.lying) if _tooled(bowl.devices) else None
     asked = replace(asked, friction=bowl.friction.static)
-    made = body(plan(size, track, made_of, tooled, asked, extents=np.ptp(np.asarray(part.vertices), axis=0)))
+    try:
+        planned = _planned(bowl, size, part, coming, asked)
+    except TrackTooLow as fault:
+        climb = _least_climb(bowl, size, part, coming, asked)
+        raise (fault if climb is None else fault.needing(climb)) from None
+    made = body(planned)
     wanted = 0.0 if asked.outlet_height > 0.0 else size.turns
     made = replace(made, falls=ways_down(made), turns_of_sheet=float(wanted))
     if asked.bed is not None:
@@ -168,6 +178,29 @@ def solid(
     own = {"depth": made.plan.outlet_height, "turns": made.plan.turns, "room": made.plan.room}
     size = replace(size, **own, mass=made.mass, inertia=made.inertia, unbalance=made.unbalance)
     return size, replace(made, riders=_riders(made.plan, bowl.devices, coming, counted))
+
+
+def _planned(bowl: Bowl, size: Size, part: Part, coming: stream.Orientations, asked: Asked) -> BowlPlan:
+    """The measures of the solid, its tooled stretch on the track that devices bank."""
+    track = leaning.banked(bowl.track, bowl.devices, coming.lying)
+    tooled = cuts.stretch(track, bowl.devices, coming.lying) if _tooled(bowl.devices) else None
+    extents = np.ptp(np.asarray(part.vertices), axis=0)
+    return plan(size, track, material(asked.material, bowl.sizing), tooled, asked, extents=extents)
+
+
+def _least_climb(
+    bowl: Bowl, size: Size, part: Part, coming: stream.Orientations, asked: Asked
+) -> float | None:
+    """The least climb [rad], in whole steps, at which the solid has its measures; None up to STEEPEST_RAD."""
+    first = int(np.floor(bowl.track.climb / CLIMB_STEP_RAD + 1e-9)) + 1
+    for step in range(first, round(STEEPEST_RAD / CLIMB_STEP_RAD) + 1):
+        climb = step * CLIMB_STEP_RAD
+        try:
+            _planned(replace(bowl, track=replace(bowl.track, climb=climb)), size, part, coming, asked)
+        except FeederError:
+            continue
+        return climb
+    return None
 
 
 def of_sheet(sheet: Any, settings: Sequence[Setting], aspects: Aspects) -> BowlSolid | None:

@@ -229,11 +229,11 @@ def test_a_contact_sheet_says_why_a_rate_is_zero():
 
 
 def test_a_ride_is_named_by_its_device_and_a_single_value():
-    devices = [SimpleNamespace(kind="gap", short="9 mm"), SimpleNamespace(kind="cut_out", short="[[0 mm]]")]
-    devices.append(SimpleNamespace(kind="sorter", short="{of: A@90, play: 0.2 mm}"))
+    devices = [SimpleNamespace(name="gap", short="9 mm"), SimpleNamespace(name="cut-out", short="[[0 mm]]")]
+    devices.append(SimpleNamespace(name="vision reject", short="{of: A@90, play: 0.2 mm}"))
     found = SimpleNamespace(stations=[SimpleNamespace(device=one) for one in devices])
     said = [ShownRide(place, "A@0", "rolled_back", np.zeros((1, 8))).title(found) for place in range(3)]
-    assert said == [f"A@0 at {name}: rolled back" for name in ("gap 9 mm", "cut out", "sorter")]
+    assert said == [f"A@0 at {name}: rolled back" for name in ("gap 9 mm", "cut-out", "vision reject")]
 
 
 def test_a_matrix_can_be_sorted_where_it_says_so():

@@ -268,27 +268,17 @@ def test_many_orientations_stand_in_two_panels(lying):
     assert high < 1.5 * wide
 
 
-@pytest.mark.parametrize(
-    ("text", "shown"),
-    [
-        ("{of: A@187.672, play: 8.45 mm, sees: height}", "of A@188, play 8.45 mm, sees height"),
-        ("{from: 4.4 mm, to: 11.45 mm}, lead-in 2.9 to 12.7 mm", "4.4 to 11.45 mm, lead-in 2.9 to 12.7 mm"),
-        ("[A@359.7, B@0.402124]", "A@0, B@0"),
-        ("18.85 mm", "18.85 mm"),
-        ("[[0 mm, 0 mm], [12 mm, 3 mm], [14 mm, 9 mm]]", "polygon of 3 corners"),
-    ],
-)
-def test_a_value_in_a_table_has_no_marks_of_a_bowl_file(text, shown):
-    assert tooling_tables._short(text, tooling_tables.WIDE) == shown
-
-
-def test_a_design_names_headings_in_whole_degrees_and_lengths_as_they_are():
-    sorter = {"device": "sorter", "value": "{of: A@0.402124, play: 2.35 mm, sees: side}"}
+def test_a_design_names_its_devices_as_the_trade_does():
+    sorter = made("sorter", "here", like=("A", np.radians(359.7), 2.35e-3), sees="side").rewritten()
     rates = "target delivered worst_friction static".split()
     found = {"status": "holds", "wanted": "A@0"} | {f"{name}_per_minute": 1.0 for name in rates}
     found |= {"delivered_low": 1.0, "delivered_high": 1.0, "purity": None, "jams": 0, "queue_seconds": 0.0}
-    found |= {"up": [], "jams_per_hour_high": None, "robust": {"held": 0, "draws": 0}, "chain": [sorter]}
-    assert design_tables.outcome(found)[-1] == ("device 1", "sorter: {of: A@0, play: 2.35 mm, sees: side}")
+    found |= {"jams_per_hour_high": None, "robust": {"held": 0, "draws": 0}, "up": []}
+    name, said = design_tables.outcome(found, (sorter,))[-1]
+    assert name == "device 1" and said.startswith(
+        "vision reject (camera from the side): keeps A at heading 0 deg"
+    )
+    assert said.endswith("2.35 mm") and "sorter" not in said
 
 
 def test_a_device_without_a_margin_is_drawn_so():
@@ -297,9 +287,8 @@ def test_a_device_without_a_margin_is_drawn_so():
 
 
 def test_a_table_of_polygons_fits_a_page():
-    text = "[[14.55 mm, 19.3 mm], [0 mm, 8.65 mm], [14.05 mm, 0.35 mm], [19.75 mm, 3.5 mm]]"
-    assert tooling_tables._short(text, 34) == "polygon of 4 corners"
-    assert tooling_tables._short("{from: 3.45 mm, to: 10.5 mm}", 34) == "3.45 to 10.5 mm"
+    hole = made("cut_out", "here", corners=((0.0, 0.0), (12e-3, 3e-3), (14e-3, 9e-3), (2e-3, 11e-3)))
+    assert hole.value_words == "polygon of 4 corners"
     names = " ".join(f"A@{k}" for k in range(100, 120))
     assert tooling_tables._few(names, 34) == "A@100 A@101 A@102 A@103 A@104 and 15 more"
     assert tooling_tables._few("A@90, all of C", 34) == "A@90, all of C"
@@ -327,7 +316,7 @@ def test_a_margin_that_is_none_is_not_printed_as_a_number():
 
 def test_a_verdict_that_is_not_sure_has_no_margin_on_the_page():
     """Its margin is a mark of 2e-6 mm, not a length."""
-    wiper = SimpleNamespace(kind="wiper")
+    wiper = SimpleNamespace(name="wiper")
     met = [
         [SimpleNamespace(verdict=Verdict(0.0, margin), fate="stopped", device=wiper)]
         for margin in (-2e-3, -UNSURE)
@@ -336,5 +325,5 @@ def test_a_verdict_that_is_not_sure_has_no_margin_on_the_page():
     table = tables.passages(
         SimpleNamespace(orientations=orientations, passages=met, shares=[0.5, 0.5], devices=[wiper])
     )
-    assert table["wiper_1_mm"][0] == pytest.approx(-2.0) and not table["wiper_1_mm"][1] < np.inf
-    assert list(table["outcome"]) == ["stopped by wiper", "stopped by wiper, not sure"]
+    assert table["wiper 1_mm"][0] == pytest.approx(-2.0) and not table["wiper 1_mm"][1] < np.inf
+    assert list(table["outcome"]) == ["stopped by the wiper", "stopped by the wiper, not sure"]

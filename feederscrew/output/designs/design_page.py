@@ -76,7 +76,7 @@ def _sections(study, built):
 
 def _answer(study, d):
     yield Text(_said(study))
-    yield Table(tables.two_columns(tables.outcome(d)))
+    yield Table(tables.two_columns(tables.outcome(d, study.devices)))
     if d["bowl"]:
         yield Table(tables.two_columns(tables.dimensions(d)))
     if study.risks:

@@ -9,7 +9,6 @@ from feederscrew.conveying.answer import throw_number
 from feederscrew.designing import record
 from feederscrew.machine.feasibility import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
 from feederscrew.output import columns, tables
-from feederscrew.tooling.devices import named
 
 PER_MINUTE = units.factor("/min", "rate")
 MM, MM_S, DEG = units.factor("mm", "length"), units.factor("mm/s", "velocity"), units.factor("deg", "angle")
@@ -162,7 +161,7 @@ def summary(study):
     """Return what is printed: the answer first, then what it stands on; long lines go on in the next row."""
     d = document(study)
     why = [("why", d["why"])] if d["why"] else []
-    first, *rows = outcome(d)
+    first, *rows = outcome(d, study.devices)
     rows = [first, *why, *rows, *dimensions(d), *(("risk", one) for one in d["risks"])]
     rows.append(("trials, parts", f"{len(d['attempts'])}, {d['trial_parts']}"))
     return two_columns([line for row in rows for line in folded(*row)])
@@ -179,8 +178,8 @@ def folded(name, value):
     return [(name, lines[0]), *(("", line) for line in lines[1:])]
 
 
-def outcome(d):
-    """Return rows of what a design's document says of the answer and of its devices."""
+def outcome(d, devices):
+    """Return rows of the answer of a design's document, and of its devices as the trade names them."""
     head = [
         ("status", d["status"]),
         *_drive(d.get("bowl") or {}),
@@ -188,7 +187,7 @@ def outcome(d):
         ("asked for [1/min]", f"{d['target_per_minute']:.4g}"),
     ]
     proved = _shown(d) if d["status"] != record.NOT_PROVED else []
-    chain = [f"{one['device']}: {named.whole_degrees(one['value'])}" for one in d["chain"]] or ["none"]
+    chain = [f"{one.full_name}: {one.value_words}" for one in devices] or ["none"]
     return [*head, *proved, *((f"device {k}", one) for k, one in enumerate(chain, start=1))]
 
 

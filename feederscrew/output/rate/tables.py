@@ -18,7 +18,7 @@ def document(study):
     known, row = found.orientations, found.row
     return {
         **columns.part(
-            study.part, (*study.aspects.warnings, *study.of_size, *stopping(found), *spaced(study))
+            study.part, (*study.aspects.warnings, *study.of_size, *stopping(study), *spaced(study))
         ),
         **_range("parts_per_minute", found.parts, PER_MINUTE),
         "aspect": known.aspects[row],
@@ -114,7 +114,7 @@ def remarks(study):
     if found.velocity.value <= 0.0:
         return ["the part does not travel up the track: see feeder convey"]
     turned = [
-        *stopping(found),
+        *stopping(study),
         *spaced(study),
         *_tipping(found),
         *_rolling(found),
@@ -136,10 +136,11 @@ def remarks(study):
     return turned
 
 
-def stopping(found):
+def stopping(study):
     """Return what comes to stand before which device, a sentence each."""
-    known, said = found.orientations, []
-    for place, name in enumerate(known.names):
+    found, said = study.rate, []
+    known = found.orientations
+    for place, name in enumerate(("the track", *(f"the {one.name}" for one in study.devices))):
         stands = [one.name for one, share in zip(known.lying, known.stops[:, place]) if share > 0.0]
         if stands and found.jams > 0.0:
             verb = "stops" if len(stands) == 1 else "stop"
@@ -156,11 +157,11 @@ def spaced(study):
     if study.rate.gap > free or not free > 0.0:
         return []
     kinds = units.listed(
-        [one.kind for one in study.devices if one.gap(study.rate.orientations.lying[0], 0.0) > 0.0]
+        [one.name for one in study.devices if one.gap(study.rate.orientations.lying[0], 0.0) > 0.0]
     )
     return [
         f"{kinds} looks at one part at a time: the rate is that of parts that come {free / MM:.3g} mm apart "
-        "- a separation before it makes that less"
+        "- a spacing section before it makes that less"
     ]
 
 
@@ -219,12 +220,12 @@ def _scarce(study):
 
 def _turned(devices):
     """What is not certain of the devices."""
-    kinds = [device.kind for device in devices if device.turns]
-    return [f"{', '.join(kinds)}: quasi-static, until a trial confirms it"] if kinds else []
+    names = [device.name for device in devices if device.turns]
+    return [f"{', '.join(names)}: quasi-static, until a trial confirms it"] if names else []
 
 
 def _named(device):
-    return f"{device.kind} ({device.text})" if np.isfinite(device.limit) else device.kind
+    return f"{device.name} ({device.text})" if np.isfinite(device.limit) else device.name
 
 
 def _range(name, found, unit):

@@ -45,7 +45,7 @@ def trial(case):
     scene, captions = playback.scene(study.part, run)
     views = Views(scene, tuple((*one, ()) for one in captions), "trial-views", "Orientation", plays=True)
     matrix, paths, stills = (Picture(one.name, one.make(), one.alt) for one in trial_files.pictures(study))
-    frame = trial_tables.frame(study)
+    frame = trial_tables.frame(study, people=True)
     table = Table(tables_of.frame({name: frame[name] for name in columns(run.counts)}))
     blocks = (lead, result, views, replace(stills, printed=True), table, matrix, paths)
     return Chapter(blocks, warnings=study.warnings)
@@ -62,7 +62,7 @@ def columns(counts):
 
 def _turning(study):
     """What is not certain of the devices."""
-    kinds = [device.kind for device in study.devices if device.turns]
+    kinds = [device.name for device in study.devices if device.turns]
     if kinds:
         yield Text(
             f"Where parts land that {' and '.join(dict.fromkeys(kinds))} turn over is quasi-static, until a "

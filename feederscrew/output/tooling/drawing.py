@@ -159,7 +159,7 @@ def _texts(strip):
     named = [(_label(station), (station.start, above)) for station in strip.stations]
     gates = [station for station in strip.stations if station.openings]
     seen = [
-        (f"opening of {station.device.kind}", (rings[0][:, 0].min(), -6e-3))
+        (f"opening of the {station.device.name}", (rings[0][:, 0].min(), -6e-3))
         for station, (_, rings) in zip(gates, _openings(strip))
     ]
     notes = [

@@ -236,7 +236,7 @@ def _told(page, at, one, share, found, is_wanted):
         word = tightest.fate(one, found)
         colour = PASSES if word.startswith("leaves") else FALLS
     else:
-        word, colour = f"{found[-1].fate} by {found[-1].device.kind.replace('_', ' ')}", FALLS
+        word, colour = f"{found[-1].fate} by {found[-1].device.name}", FALLS
     ink.text(page, left, top + 30, one.name, size=12, weight="bold", colour=colour)
     ink.text(page, left, top + 52, f"{100.0 * share:.3g} % of the parts")
     lines = textwrap.wrap(word, NARROW)
@@ -265,7 +265,7 @@ def _isolated(study, place):
     found, tried = study.designs[place], study.trial_of(place)
     if found is None:
         return ["not asked for"]
-    result = textwrap.wrap(" and ".join(cut.device.kind for cut in found.cuts) or "no device", LETTERS)
+    result = textwrap.wrap(" and ".join(cut.device.name for cut in found.cuts) or "no device", LETTERS)
     if study.isolates(place):
         margin = f"margin {found.margin / MM:.2f} mm" if np.isfinite(found.margin) else ""
         return [
@@ -282,7 +282,7 @@ def _device(device, place):
     value = f" {device.text}" if np.isfinite(device.limit) else ""
     value += " {:.4g} to {:.4g} mm".format(*np.divide(device.span, MM)) if device.span else ""
     play = f" with {device.like[2] / MM:.3g} mm play" if device.like else ""
-    return f"{place + 1}  {device.kind.replace('_', ' ')}{value}{play}"
+    return f"{place + 1}  {device.name}{value}{play}"
 
 
 def _rows(every, shares, wanted):

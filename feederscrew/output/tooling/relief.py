@@ -71,7 +71,7 @@ def _short(met):
     """'gap, margin +0.64 mm': device and margin."""
     if met.orientation.kind == "hanging":
         return "in the rails"
-    return f"{met.device.kind.replace('_', ' ')}, {ink.margin(met.verdict)}"
+    return f"{met.device.name}, {ink.margin(met.verdict)}"
 
 
 def _drawable(met):
@@ -110,7 +110,7 @@ def _falls(devices, every, shares, wanted):
 
 
 def _told(met, word):
-    kind = met.device.kind.replace("_", " ")
+    kind = met.device.name
     where = "half way through" if met.verdict.passes > 0.0 else "in front of it"
     if _over_a_cut(met):
         where = "where it bears least; outline: hull of its support, dot: its weight"

@@ -1,12 +1,9 @@
 """Orientations and chains of devices as tables and as a document, in the units of the shop."""
 
-import re
-
 import numpy as np
 
 from feederscrew.output import columns, tables
 from feederscrew.tooling import tightest as passages_of
-from feederscrew.tooling.devices import named
 from feederscrew.tooling.isolating.proposal import LEAST_SHARE
 from feederscrew.units import factor
 
@@ -22,7 +19,10 @@ SPARE = (  # left out of a table for people that is too wide, the first ones fir
     ("height_mm", "track_width_mm"), ("length_mm", "width_mm"), ("steady",), ("status",), ("purity",),
     ("left_over",),
 )  # fmt: skip
-SPAN = re.compile(r"\{from: ([\d.]+) mm, to: ([\d.]+) mm\}")
+CHAIN = (
+    "device", "value", "margin_pass_mm", "margin_reject_mm", "smallest_cut", "largest_cut", "returns",
+)  # fmt: skip
+WORDS = {"margin_pass_mm": "passes_by_mm", "margin_reject_mm": "others_fail_by_mm"}  # for people
 WIDE = 34  # letters of a text in a table for people
 QUASI_STATIC = "quasi-static, until a trial confirms it"
 
@@ -97,9 +97,12 @@ def status(study, place):
     return "static" if tried is None else "confirmed"
 
 
-def frame(study):
-    """Return the rows as a table."""
+def frame(study, *, people=False):
+    """Return the rows as a table; for people with devices as the trade names them."""
     rows = orientations(study)
+    if people:
+        for row, found in zip(rows, study.designs):
+            row["devices"] = row["devices"] and [cut.device.name for cut in found.cuts]
     listed = {"devices": ", ", "left_over": " ", "reasons": "; "}
     for row in rows:
         for name, between in listed.items():
@@ -114,11 +117,11 @@ def summary(study, format="csv"):
     ----------
     study : ToolingStudy
     format : str
-        Of what is printed. A table has values without the marks of a bowl file; it says how many corners a
-        polygon has, and the first names of many.
+        Of what is printed. A table names devices as the trade does, has values in words, and the first names
+        of many that are returned.
     """
     if study.design is None:
-        return frame(study)
+        return frame(study, people=format == "table")
     rows = [
         {
             "device": cut.device.kind,
@@ -131,20 +134,18 @@ def summary(study, format="csv"):
         }
         for cut in study.design.cuts
     ]
+    names: tuple[str, ...] = CHAIN
     if format == "table":
-        rows = [
-            row | {"value": _short(row["value"], WIDE), "returns": _few(row["returns"], WIDE)} for row in rows
-        ]
-    columns_of = "device value margin_pass_mm margin_reject_mm smallest_cut largest_cut returns".split()
-    return tables.frame({name: [row[name] for row in rows] for name in columns_of})
+        rows = [_for_people(row, cut, _returned(study, cut)) for row, cut in zip(rows, study.design.cuts)]
+        names = tuple(WORDS.get(name, name) for name in CHAIN)
+    return tables.frame({name: [row[name] for row in rows] for name in names})
 
 
-def _short(text, most):
-    """A device's value without the marks of a bowl file, or how many corners its polygon has."""
-    corners = text.count("[") - 1
-    if corners > 1 and len(text) > most:
-        return f"polygon of {corners} corners"
-    return re.sub(r"[][{}:]", "", named.whole_degrees(SPAN.sub(r"\1 to \2 mm", text)))
+def _for_people(row, cut, returned):
+    """A device's row as the trade names it, its value in words, and headings that say whose margin it is."""
+    shown = {WORDS.get(name, name): value for name, value in row.items()}
+    returns = _few(returned, WIDE) if returned else row["returns"]
+    return shown | {"device": cut.device.full_name, "value": cut.device.value_words, "returns": returns}
 
 
 def _few(text, most):
@@ -201,7 +202,10 @@ def trials(study):
     if study.design is None:
         said = [(one.faults, one.sentence) for one in told]
     else:
-        said = [(one.faults, f"tried as well, {'; '.join(one.devices)}: {one.sentence}") for one in told]
+        said = [
+            (one.faults, f"tried as well, {'; '.join(one.devices_words or one.devices)}: {one.sentence}")
+            for one in told
+        ]
     return [text for faults, text in said if faults], [text for faults, text in said if not faults]
 
 
@@ -232,7 +236,7 @@ def passages(study):
     named = {"orientation": [one.name for one, _ in rows], "p_of all parts": study.shares}
     for place, device in enumerate(study.devices):
         margins = [_margin(met[place].verdict) if place < len(met) else None for _, met in rows]
-        named[f"{device.kind}_{place + 1}_mm"] = margins
+        named[f"{device.name} {place + 1}_mm"] = margins
     return tables.frame(named | {"outcome": [_outcome(one, met) for one, met in rows]})
 
 
@@ -243,7 +247,7 @@ def _margin(verdict):
 def _outcome(one, met):
     if met and met[-1].verdict.passes <= 0.0:
         doubt = "" if met[-1].verdict.sure else ", not sure"
-        return f"{met[-1].fate} by {met[-1].device.kind}{doubt}"
+        return f"{met[-1].fate} by the {met[-1].device.name}{doubt}"
     return passages_of.fate(one, met)
 
 

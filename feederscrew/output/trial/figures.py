@@ -89,7 +89,7 @@ def paths(run):
                 axes.plot(way[-1] / MM, off[-1] / MM, mark, color=colour, markersize=4)
             met.setdefault(fate, None)
             widest = max(widest, off.max(initial=0.0))
-        title = f"{station.device.kind.replace('_', ' ')} {station.device.text}".strip()
+        title = f"{station.device.name}: {station.device.value_words}".removesuffix(": ")
         style.tidy(axes, title=title, x="along the wall [mm]", y="from the wall [mm]", grid="none")
         axes.axhline(0.0, color=style.INK, linewidth=3.0)  # the wall
         axes.set(

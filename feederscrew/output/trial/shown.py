@@ -20,7 +20,7 @@ class ShownRide:
         """'A@0 at gap 9 mm: returned'; of a device of several values its kind alone."""
         device = found.stations[self.place].device
         value = "" if device.short.startswith(("{", "[")) else device.short
-        where = f"{device.kind.replace('_', ' ')} {value}".strip()
+        where = f"{device.name} {value}".strip()
         return f"{self.orientation} at {where}: {self.fate.replace('_', ' ')}"
 
 

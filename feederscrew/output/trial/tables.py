@@ -12,7 +12,8 @@ from feederscrew.trial import course
 PER_MINUTE, MM_S = units.factor("/min", "rate"), units.factor("mm/s", "velocity")
 MM, DEG = columns.MM, columns.DEG
 UM = 1e-3 * MM
-HIDDEN = ("fell_mm", "seconds")
+ENGINE_FIGURES = ("penetration_mm", "energy_won_um")  # how closely the engine keeps to the laws: for -v
+HIDDEN = ("fell_mm", "seconds", *ENGINE_FIGURES)
 
 
 def document(study):
@@ -57,8 +58,11 @@ def _run(study, run):
     }
 
 
-def orientations(run):
-    """Return one row an orientation tried, those that do not do what the static rule says first."""
+def orientations(run, *, people=False):
+    """Return one row an orientation tried, those that do not do what the static rule says first.
+
+    For people devices are named as the trade does.
+    """
     margin, ends, counts = run.margin, run.ends, run.counts
     first = sorted(np.flatnonzero(run.tried), key=lambda k: (not run.odd[k], not run.differs[k], k))
     return [
@@ -72,7 +76,7 @@ def orientations(run):
             "passed_low": ends[k, 0],
             "passed_high": ends[k, 1],
             "leaves_as": _leaves(run, k),
-            "ended_at": _ended(run, k),
+            "ended_at": _ended(run, k, people=people),
             "predicted": "passes" if run.predicted[k] else "returned",
             "margin_mm": None if np.isnan(margin[k]) else float(margin[k]) / MM,
             "disagrees": bool(run.differs[k]),
@@ -93,7 +97,7 @@ def spare(study):
     """Return groups of columns to leave out of a table that is too wide; fates of no part go first."""
     counts = sum(run.counts.sum(axis=0) for run in study.runs)
     none = [name for name, count in zip(course.FATES, counts) if not count and name != "passed"]
-    measures = ("energy_won_um", "penetration_mm", "length_mm", "velocity_mm_s")
+    measures = (*ENGINE_FIGURES, "length_mm", "velocity_mm_s")
     return measures, none, ("passed_low", "passed_high"), ("predicted",), ("leaves_as",), ("share",)
 
 
@@ -166,12 +170,12 @@ def outlet(study, run):
     return known | {f"measured {one.name}": one.fractions for one in found.columns}
 
 
-def frame(study):
-    """Return the rows of every amplitude as a table."""
+def frame(study, *, people=False):
+    """Return the rows of every amplitude as a table; for people with devices as the trade names them."""
     rows = []
     for run in study.runs:
         lead = {"amplitude_mm": run.bowl.drive.amplitude / MM} if len(study.runs) > 1 else {}
-        rows += [lead | one for one in orientations(run)]
+        rows += [lead | one for one in orientations(run, people=people)]
     return tables.frame({name: [one[name] for one in rows] for name in rows[0]})
 
 
@@ -210,11 +214,6 @@ def summary(study):
         if run.queue is None and run.jams:
             where = ", ".join(_staying(run))
             yield f"jams: {run.jams} of {run.tried.sum()} parts stay at a device or hang ({where})"
-        yield (
-            f"in {run.course.seconds.sum():.4g} part-seconds the deepest penetration was "
-            f"{_most(run.course.depths) / MM:.2g} mm, and the most energy that a part won would lift it by "
-            f"{_most(run.course.gains) / UM:.2g} um"
-        )
         if run.landing is not None:
             yield _fallen(run)
         if run.queue is not None:
@@ -222,6 +221,16 @@ def summary(study):
             yield from _beside(study.outlet(run))
     if len(study.runs) > 1 and np.isfinite(study.highest):
         yield f"the tooling sorts up to an amplitude of {study.highest / MM:.4g} mm of those tried"
+
+
+def engine(study):
+    """Return how closely each run of the engine kept to the laws, a sentence each: for those who check it."""
+    for run in study.runs:
+        yield (
+            f"in {run.course.seconds.sum():.4g} part-seconds the deepest penetration was "
+            f"{_most(run.course.depths) / MM:.2g} mm, and the most energy that a part won would lift it by "
+            f"{_most(run.course.gains) / UM:.2g} um"
+        )
 
 
 def _staying(run):
@@ -281,12 +290,13 @@ def _leaves(run, k):
     return ", ".join(f"{_name(run, m)} {count[m]}" for m in np.flatnonzero(count))
 
 
-def _ended(run, k):
-    """Where those ended that did not pass: 'gap 9'."""
+def _ended(run, k, *, people=True):
+    """Where those ended that did not pass, with how many: 'gap 9'; for people as the trade names a device."""
     found = run.course
     own = (found.entered == k) & ~np.isin(found.fates, (course.PASSED, course.TURNED))
     places, counts = np.unique(found.ended[own], return_counts=True)
-    return ", ".join(f"{found.stations[p].device.kind} {n}" for p, n in zip(places, counts))
+    devices = [found.stations[p].device for p in places]
+    return ", ".join(f"{one.name if people else one.kind} {n}" for one, n in zip(devices, counts))
 
 
 def _most(values):

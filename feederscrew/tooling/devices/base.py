@@ -1,6 +1,7 @@
 """What every device along the track offers to those who read, judge, draw, make and try it."""
 
 import math
+import re
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -18,6 +19,7 @@ MM = units.factor("mm", "length")
 WRITTEN_STEP_M = 1e-7  # [m] to which a length is written
 RETURNED, STOPPED, CARRIED = "returned", "stopped", "carried"  # what becomes of a part at a device
 LONG = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
+MARKS = re.compile(r"[][{}:]")  # of a bowl file, which a value in words has none of
 ROOM = 1.3  # a device has so many lengths of the longest part to itself
 
 
@@ -60,6 +62,7 @@ class Device:
     text: str = ""  # its value as written
 
     kind: ClassVar[str] = "track"  # what it is called in a bowl file
+    trade: ClassVar[str] = ""  # what the trade calls it; '': its kind, with blanks
     form: ClassVar[dict[str, Any]] = forms.LENGTH  # of its value in a bowl file
     example: ClassVar[str] = ""  # as written after 'kind:'
     meaning: ClassVar[str] = ""
@@ -256,9 +259,29 @@ class Device:
         return f"{self.kind} {self.text}" if math.isfinite(self.limit) else self.kind
 
     @property
+    def name(self):
+        """What the trade calls it, in a sentence: 'vision reject', 'height bar'."""
+        return self.trade or self.kind.replace("_", " ")
+
+    @property
+    def full_name(self):
+        """The same with what it works by, where that differs: 'vision reject (camera from above)'."""
+        return self.name
+
+    @property
     def short(self):
-        """Its value as a table has it: headings in whole degrees."""
+        """Its value as a bowl file has it, headings in whole degrees."""
         return named.whole_degrees(self.text)
+
+    @property
+    def value_words(self):
+        """Its value in words, for a table: '9.25 mm', 'from 2 to 5 mm off the wall'."""
+        if self.corners:
+            return f"polygon of {len(self.corners)} corners"
+        if self.like:
+            aspect, heading, play = self.like
+            return f"outline of {keeps(((aspect, heading),))}, with {length_words(play)} of play"
+        return span_words(self.span) if self.span else MARKS.sub("", self.short)
 
     def beside(self, width):
         """Return the ConfigError of a hole that lies beside a track of some width [m]."""
@@ -275,6 +298,29 @@ def length_text(value):
     """Return a length [m] as a bowl file has it, to a ten-thousandth of a millimetre: '9.25 mm'."""
     steps = value / WRITTEN_STEP_M
     return f"{(round(steps) if math.isfinite(steps) else steps) * WRITTEN_STEP_M / MM:.9g} mm"
+
+
+def degrees_words(angle):
+    """Return an angle [rad] for people: '30 deg'."""
+    return f"{math.degrees(angle):.4g} deg"
+
+
+def length_words(length):
+    """Return a length [m] for people: '8.35 mm'."""
+    return f"{length / MM:.4g} mm"
+
+
+def span_words(span):
+    """Return a span [m] off the wall for people: 'from 2 to 5 mm off the wall'."""
+    return f"from {span[0] / MM:.4g} to {span[1] / MM:.4g} mm off the wall"
+
+
+def keeps(orientations):
+    """Return aspects and headings [rad] in words: 'A at heading 188 and 354 deg, B at heading 90 deg'."""
+    headings: dict[str, list[str]] = {}
+    for aspect, heading in orientations:
+        headings.setdefault(aspect, []).append(f"{round(math.degrees(heading)) % 360}")
+    return units.listed([f"{name} at heading {units.listed(turns)} deg" for name, turns in headings.items()])
 
 
 def angle_text(value):

@@ -15,7 +15,9 @@ from feederscrew.tooling.devices.base import (
     Device,
     angle_text,
     corners_text,
+    degrees_words,
     length_text,
+    length_words,
     mapping_text,
     room_of,
 )
@@ -48,6 +50,10 @@ class _Overhead(Device):
         import shapely
 
         return shapely.box(0.0, 0.0, width, self.limit)
+
+    @property
+    def value_words(self):
+        return f"{length_words(self.limit)} over the track"
 
     @classmethod
     def needed(cls, one):
@@ -105,6 +111,12 @@ class Wiper(_Overhead):
                 ("contour", corners_text(self.contour) if self.contour else ""),
             )
         )
+
+    @property
+    def value_words(self):
+        sweep = f", swept back {degrees_words(self.sweep)}" if self.face else ""
+        edge = "edge of its own" if self.contour else f"{length_words(self.limit)} over the track"
+        return edge + sweep
 
     @property
     def face(self):
@@ -181,5 +193,6 @@ class HoldDown(_Overhead):
     """A bar above the queue."""
 
     kind = "hold_down"
+    trade = "hold-down"
     example = "6 mm"
     meaning = "bar above the queue that keeps parts down; orientations that do not fit below stop before it"

@@ -11,6 +11,7 @@ class Profile(Device):
     """A gate across the track with an opening."""
 
     kind = "profile"
+    trade = "profile gate"
     form = forms.either(forms.POLYGON, forms.mapping(of=forms.NAMED, play=forms.LENGTH))
     example = "{of: A@90, play: 0.2 mm}"
     meaning = (

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import angle_text, mapping_text, room_of
+from feederscrew.tooling.devices.base import angle_text, degrees_words, mapping_text, room_of
 from feederscrew.tooling.devices.leans import LEAST, Bank, Lean
 from feederscrew.tooling.devices.pieces import Slope, Standing
 
@@ -21,6 +21,7 @@ class Groove(Lean):
     """A V from here on, until a bank: the track leans towards its wall, and the wall back by as much."""
 
     kind = "groove"
+    trade = "V groove"
     serves = "lets lie along it what is round"
     form = forms.mapping(angle=forms.ANGLE)
     example = "{angle: 30 deg}"
@@ -40,6 +41,10 @@ class Groove(Lean):
 
     def value_text(self):
         return mapping_text((("angle", angle_text(self.angle)),))
+
+    @property
+    def value_words(self):
+        return f"both faces rise at {degrees_words(self.angle)}"
 
     @classmethod
     def of(cls, degrees, where):

@@ -7,7 +7,7 @@ import numpy as np
 from feederscrew import value_forms as forms
 from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import MM, UNSURE, Device, room_of
+from feederscrew.tooling.devices.base import MM, UNSURE, Device, room_of, span_words
 from feederscrew.tooling.devices.ledges import between
 from feederscrew.tooling.devices.pieces import Hole, Standing
 
@@ -116,6 +116,11 @@ class Rails(Device):
             return self.text
         near, far = (end / MM for end in self.lead[:2])
         return f"{written(self.span)}, lead-in {near:.6g} to {far:.6g} mm"
+
+    @property
+    def value_words(self):
+        lead = f", lead-in {span_words(self.lead[:2])}" if self.lead else ""
+        return f"slot {span_words(self.span)}{lead}"
 
     def told(self):
         if not self.lead:

@@ -7,7 +7,7 @@ import numpy as np
 
 from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import Device, angle_text, mapping_text, room_of
+from feederscrew.tooling.devices.base import Device, angle_text, degrees_words, mapping_text, room_of
 from feederscrew.tooling.devices.pieces import Slope, Standing
 
 STEEPEST = math.radians(45.0)  # [rad]
@@ -64,6 +64,7 @@ class Bank(Lean):
     """Another bank from here on."""
 
     kind = "bank"
+    trade = "banked track"
     serves = "holds what rolls at the wall"
     form = forms.ANGLE
     example = "6 deg"
@@ -86,6 +87,10 @@ class Bank(Lean):
 
     def value_text(self):
         return angle_text(self.angle)
+
+    @property
+    def value_words(self):
+        return f"{degrees_words(self.angle)} towards the wall"
 
     @classmethod
     def holding(cls, one, wall_friction, where):
@@ -113,6 +118,7 @@ class Separation(Lean):
     """A steeper way down from here on, on which parts travel faster and so come apart."""
 
     kind = "separation"
+    trade = "spacing section"
     form = forms.mapping(climb=forms.ANGLE)
     example = "{climb: -4 deg}"
     meaning = (
@@ -135,9 +141,13 @@ class Separation(Lean):
         return mapping_text((("climb", angle_text(self.angle)),))
 
     @property
+    def value_words(self):
+        return f"{'goes down' if self.angle < 0.0 else 'climbs'} at {degrees_words(abs(self.angle))}"
+
+    @property
     def serves(self):  # type: ignore[override]  # of others a text of the class
         """What it is for: on the way down parts come apart, on the way up rails begin."""
-        return "makes the gaps a sorter needs" if self.angle < 0.0 else "climbs again, as rails need"
+        return "makes the gaps a vision reject needs" if self.angle < 0.0 else "climbs again, as rails need"
 
     def onward(self, one):
         """Return an orientation as it goes on, on the steeper track."""

@@ -67,6 +67,7 @@ class Tip(_Turner):
     """A ledge above a second track."""
 
     kind = "tip"
+    trade = "tipping ledge"
     example = "6 mm"
     meaning = (
         "ledge of that width above a second track, half the part's greatest length lower: orientations whose "

@@ -52,6 +52,7 @@ class CutOut(Device):
     """A hole of several corners."""
 
     kind = "cut_out"
+    trade = "cut-out"
     form = forms.either(forms.POLYGON, DRAWN)
     example = "[[0 mm, 0 mm], [9 mm, 0 mm], [9 mm, 8 mm]]"
     meaning = (

@@ -8,7 +8,16 @@ import numpy as np
 from feederscrew import units
 from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import named, values
-from feederscrew.tooling.devices.base import MM, RETURNED, Device, length_text, mapping_text, room_of
+from feederscrew.tooling.devices.base import (
+    MM,
+    RETURNED,
+    Device,
+    keeps,
+    length_text,
+    length_words,
+    mapping_text,
+    room_of,
+)
 from feederscrew.tooling.devices.nozzles import SPREAD, Nozzles
 from feederscrew.tooling.devices.pieces import Sensor, Standing
 
@@ -26,6 +35,12 @@ NOZZLES = forms.mapping(
     time=forms.quantity("time"),
     nozzles=forms.quantity("count", "1", "20"),
 )
+SEEN_BY = {  # what sees a part so, and what it compares
+    "outline": ("camera from above", "outlines that differ"),
+    "side": ("camera from the side", "side views that differ"),
+    "height": ("fibre sensor", "heights that differ"),
+    "relief": ("laser along the middle", "height profiles that differ"),
+}
 AHEAD = 0.01  # [m] from the sensor to the nozzles: a part is blown at as its middle comes to them
 
 
@@ -43,6 +58,7 @@ class Sorter(Device):
     nozzles: float = NOZZLE_COUNT  # one above the other
 
     kind = "sorter"
+    trade = "vision reject"
     form = forms.mapping(
         ("sees", "resolution", "jet"),
         of=forms.either(forms.NAMED, {"type": "array", "minItems": 1, "items": forms.NAMED}),
@@ -109,6 +125,16 @@ class Sorter(Device):
                 ("jet", self._jet_text()),
             )
         )
+
+    @property
+    def full_name(self):
+        return f"{self.name} ({SEEN_BY[self.sees][0]})"
+
+    @property
+    def value_words(self):
+        what, most = SEEN_BY[self.sees][1], length_words(self.like[2])
+        pulse = "" if self.time == PULSE else f", air for {self.time / MS:.4g} ms"
+        return f"keeps {keeps((self.like[:2], *self.also))}, rejects {what} by more than {most}{pulse}"
 
     def _jet_text(self):
         """Its nozzles and its pulse as a bowl file has them, as far as they are not as by default."""

@@ -14,6 +14,7 @@ from feederscrew.tooling.devices.base import (
     UNSURE,
     Device,
     length_text,
+    length_words,
     mapping_text,
     room_of,
 )
@@ -35,6 +36,7 @@ class SteadyJet(Device):
     height: float = math.nan  # [m] of the nozzle over the track
 
     kind = "jet"
+    trade = "air jet"
     form = forms.mapping(nozzle=forms.LENGTH, pressure=forms.quantity("pressure"), height=forms.LENGTH)
     example = "{nozzle: 2 mm, pressure: 0.2 bar, height: 8 mm}"
     meaning = (
@@ -52,6 +54,11 @@ class SteadyJet(Device):
     def value_text(self):
         entries = (("nozzle", length_text(self.nozzle)), ("pressure", f"{self.pressure / BAR:.9g} bar"))
         return mapping_text((*entries, ("height", length_text(self.height))))
+
+    @property
+    def value_words(self):
+        bore, high = length_words(self.nozzle), length_words(self.height)
+        return f"nozzle of {bore} at {self.pressure / BAR:.4g} bar, {high} over the track"
 
     @property
     def jet(self):

@@ -168,7 +168,7 @@ def told(given, cuts, returned, same=None, late=False):
         surely=_surely(given, flow, states),
         left_over=tuple(one.name for k, one in enumerate(flow.states) if out[k] > 0.0 and k not in states),
         reasons=(
-            *(f"{' '.join(cut.stops)} come to stand at the {cut.device.kind}" for cut in cuts if cut.stops),
+            *(f"{' '.join(cut.stops)} come to stand at the {cut.device.name}" for cut in cuts if cut.stops),
             *(apart.reason(every[wanted], every[k], given.margin) for k in left),
             *impure,
             *_against(np.array([one.name for one in every])[(unsure > 0.0) & given.often]),

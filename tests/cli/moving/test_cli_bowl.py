@@ -124,7 +124,7 @@ def test_leaves_that_do_not_share_into_the_banks_are_told(run):
 def test_a_throw_over_tooling_that_tells_parts_apart_as_they_lie(run):
     Path("cut.yaml").write_text("devices:\n  - narrowed_track: 18 mm\n  - wiper: 40 mm\n")
     asked = ("bowl", "--config", "cut.yaml", "--set", "drive.frequency=50 Hz", "--set")
-    line = "parts hop over the narrowed_track - take a smaller stroke or a flatter angle"
+    line = "parts hop over the narrowed track - take a smaller stroke or a flatter angle"
     assert line in run(*asked, "drive.amplitude=0.4 mm").stderr
     assert "parts hop" not in run(*asked, "drive.amplitude=0.1 mm").stderr
 
@@ -313,6 +313,39 @@ def test_a_left_hand_is_said(run):
         "mirror image - mirror the part's file too, unless it is its own mirror image"
         in " ".join(found.stderr.split())
     )
+
+
+DOWN = """\
+devices:
+  - separation: {climb: -6 deg}
+  - sorter: {of: A@188, play: 8.35 mm, sees: outline}
+  - separation: {climb: 3 deg}
+"""
+
+
+def test_the_climb_makes_room_below_a_stretch_that_leads_down(run, tmp_path):
+    """At 3.5 deg it is 24 mm over the turn below, less than a bolt of 30.5 mm needs."""
+    (tmp_path / "down.yaml").write_text(DOWN)
+    bolt = PART.with_name("hexbolt_m8x25.stl")
+    line = ["bowl", bolt, "--target", "60/min", "--config", tmp_path / "down.yaml", "--rule", "csa"]
+    flat = document(run(*line, "--format", "json"))["climb_deg"]
+    refused = run(*line, "--solid", "--set", "track.climb=3.5 deg")
+    assert refused.exit_code == 1 and "a device leads the track down to" in refused.stderr
+    least = float(refused.stderr.partition("track.climb of at least ")[2].partition(" deg")[0])
+    assert flat == pytest.approx(3.5) and least > 3.5
+    made = run(*line, "--solid", "--format", "json")
+    assert document(made)["climb_deg"] == pytest.approx(least, abs=1e-9)
+    assert f"the track climbs at {least:.4g} deg, so that parts pass below" in made.stderr
+    assert run(*line, "--solid", "--set", f"track.climb={least - 0.3} deg").exit_code == 1
+
+
+def test_a_bowl_that_sorts_nothing_says_so(run, tmp_path):
+    (tmp_path / "gap.yaml").write_text("devices:\n  - gap: 8 mm\n")
+    line = ("bowl", PART, "--target", "60/min", "--rule", "csa")
+    bare, named = run(*line).stderr, run(*line, "--aspect", "A").stderr
+    assert "every way up" in bare and "--config" in bare
+    assert "no device sorts" in named
+    assert "every way up" not in run(*line, "--config", tmp_path / "gap.yaml").stderr
 
 
 def test_a_solid_needs_a_part(run):

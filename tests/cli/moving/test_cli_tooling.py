@@ -53,6 +53,17 @@ def test_the_chain_of_one_orientation(run, block):
         assert min(margins, default=1.0) >= 0.25
 
 
+def test_a_table_names_devices_as_the_trade_does_and_says_once_what_a_heading_is(run, block):
+    own = ("tooling", block, "--aspect", "A", "--heading", "90deg", "--static", *WIDE)
+    table, csv_rows = run(*own), run(*own, "--format", "csv")
+    assert "spacing section" in table.stdout and "goes down at 6 deg" in table.stdout
+    assert "(makes the gaps a vision reject needs)" in " ".join(table.stdout.split())
+    assert "vision reject" in table.stdout and "separation" not in table.stdout + table.stderr
+    assert "separation" in csv_rows.stdout and "margin_pass_mm" in csv_rows.stdout
+    assert table.stderr.count("counter-clockwise") == 1 and "counter-clockwise" not in csv_rows.stderr
+    assert "counter-clockwise" not in run(*own, "-q").stderr
+
+
 def test_rate_reads_the_chain(run, block, tmp_path):
     document = told(
         run, "tooling", block, "--aspect", "A", "--heading", "90deg", "--launch", "feed", "--static", *WIDE
