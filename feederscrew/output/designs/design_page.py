@@ -76,6 +76,8 @@ def _sections(study, built):
 
 def _answer(study, d):
     yield Text(_said(study))
+    if d["machine"]:
+        yield Text(f"The machine: {tables.machine_text(d['machine'])}.")
     yield Table(tables.two_columns(tables.outcome(d)))
     if d["bowl"]:
         yield Table(tables.two_columns(tables.dimensions(d)))
