@@ -121,9 +121,10 @@ def bowl(part, target, made, measured, bowl, pictures, out, **wanted):
         tried, record = bowls.verified(path), bowls.record(settings)
         own = solid, record, orientation.name(wanted)
         out.warn(*found.remarks, *proof.warnings(tried, *own))
-        offers.write(folder, machine.offers(found), pictures=pictures)
+        holding = tried if proof.holds(tried, *own) else None
+        offers.write(folder, machine.offers(found, holding), pictures=pictures)
         document = proof.beside(tables.document(found), tried, *own)
-        out.show(tables.summary(found, tried if proof.holds(tried, *own) else None), document)
+        out.show(tables.summary(found, holding), document)
 
 
 def _found(bowl, measured, out):

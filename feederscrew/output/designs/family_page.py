@@ -25,7 +25,9 @@ def page(study):
 def _chapters(study):
     answer = [Text(_said(study)), Table(frame(parts(study)))]
     answer += [Text("The machine that each part asks for:"), Notes(tuple(_machines(study)))]
-    warned = tuple(dict.fromkeys(f"{one.part.name}: {said}" for one in study.members for said in one.warnings))
+    warned = tuple(
+        dict.fromkeys(f"{one.part.name}: {said}" for one in study.members for said in one.warnings)
+    )
     answer += [Notes(warned, loud=True)] if warned else []
     answer += [Notes(tuple(said), loud=True) for said in (_risks(study),) if said]
     yield Chapter(tuple(answer), tuple(_tiles(study)), anchor="answer", title="The answer")

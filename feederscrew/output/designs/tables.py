@@ -19,6 +19,7 @@ SAID_FIRST = {  # or elsewhere
     "peak_to_peak_mm", "throw_number",
 }  # fmt: skip
 ONE_SET = "one set of leaf springs makes it"
+OTHER_SET = "the leaf springs that are drawn make another one"
 CAMERAS = {  # by what a sensor sees
     "outline": "camera from above",
     "side": "camera from the side",
@@ -113,7 +114,7 @@ def machine(study):
     seen = [one for one in study.devices if one.senses]
     return {
         "drive": TWO_AXIS if two_axis else LEAF_SPRING,
-        "drive_needs": TWO_MAGNETS if two_axis else ONE_SET,
+        "drive_needs": TWO_MAGNETS if two_axis else ONE_SET if study.drive_mismatch is None else OTHER_SET,
         "phase_deg": drive.phase / DEG,
         "frequency_hz": drive.frequency,
         "stroke_peak_to_peak_mm": 2.0 * drive.amplitude / MM,
@@ -253,8 +254,8 @@ def outcome(d):
     """Return rows of what a design's document says of the answer and of its devices."""
     head = [
         ("status", d["status"]),
-        *_machine(d["machine"]),
-        *_drive(d["bowl"] or {}),
+        *_machine(d.get("machine")),
+        *_drive(d.get("bowl") or {}),
         ("leaves as", _leaves_as(d)),
         ("asked for [1/min]", f"{d['target_per_minute']:.4g}"),
     ]
