@@ -7,7 +7,7 @@ from feederscrew.output import offers
 
 MARK = "FALLS SHORT - not for manufacture"
 COLOUR, STRENGTH = "#d40000", 0.45  # of the letters, and how much they hide [1]
-SPAN = 0.75  # [1] of the diagonal that the mark takes
+DIAGONAL_SHARE, SIDE_SHARE = 0.75, 0.88  # [1] of the diagonal and the longer side that a mark takes at most
 LETTER_WIDTH = 0.62  # [1] of a bold letter over its size, in the mean
 POINTS = 72.0  # of an inch
 
@@ -23,9 +23,16 @@ def of_trial(tried):
 
 
 def diagonal(sheet, mark):
-    """Return the size of a mark's letters, in the unit of the sheet, and its turn [rad] across a sheet (width, height)."""
-    size = SPAN * float(np.hypot(*sheet)) / (LETTER_WIDTH * len(mark))
-    return size, float(np.arctan2(sheet[1], sheet[0]))
+    """Return the size of a mark's letters and its turn [rad].
+
+    Parameters
+    ----------
+    sheet : (float, float)
+        Width and height; the size has the same unit.
+    mark : str
+    """
+    length = min(DIAGONAL_SHARE * float(np.hypot(*sheet)), SIDE_SHARE * max(sheet))
+    return length / (LETTER_WIDTH * len(mark)), float(np.arctan2(sheet[1], sheet[0]))
 
 
 def across(figure, mark):

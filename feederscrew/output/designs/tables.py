@@ -266,7 +266,7 @@ def outcome(d):
 
 def _leaves_as(d):
     """The orientation that leaves, and which aspects count at any heading."""
-    up = f", counting {', '.join(d['up'])} at any heading" if d["up"] else ""
+    up = f", counting {', '.join(d['up'])} at any heading" if d.get("up") else ""
     return (d["wanted"] or "-") + up
 
 

@@ -117,7 +117,7 @@ def _tried(found):
 def rate_of_trial(found):
     """Return what a trial has delivered as text for titles and drawings."""
     value, low = (f"{end / PER_MINUTE:.4g}" for end in (found.delivered, found.low))
-    return f"{value} a minute (at least {low}): {found.status}"
+    return f"{value}/min, at least {low}: {found.status}"
 
 
 def material(part):

@@ -13,6 +13,7 @@ CUT = "±0.1"  # [mm] of an edge that parts meet
 GENERAL = "ISO 2768-m"
 MOST = 12  # rows of a list
 LONG = 46  # letters of a line in the title block
+NARROW = 38  # letters of its left column
 
 
 def cuts(paper, study, at):
@@ -95,8 +96,8 @@ def _not_made(study):
         yield f"these springs make {study.mismatch.machine.text}"
 
 
-def _short(words):
-    return words if len(words) <= LONG else f"{words[: LONG - 1]}…"
+def _short(words, letters=LONG):
+    return words if len(words) <= letters else f"{words[: letters - 1]}…"
 
 
 def _fields(study, solid, found, scale, tried):
@@ -112,8 +113,8 @@ def _fields(study, solid, found, scale, tried):
     return [
         ("drawing of part", _short(order.part.source.rpartition("/")[2])),
         ("rate asked for", f"{order.target / MIN:.4g} a minute"),
-        ("orientation", wanted if tried is None else _short(tried.wanted)),
-        *([] if tried is None else [("rate of its trial", sheets.rate_of_trial(tried))]),
+        ("orientation", wanted if tried is None else _short(tried.wanted, NARROW)),
+        *([] if tried is None else [("rate of its trial", _short(sheets.rate_of_trial(tried), NARROW))]),
         ("part material", sheets.material(order.part)),
         ("fill, hopper", f"{study.fill.mass:.3g} kg, {order.hopper / LITRE:.3g} l"),
         ("drive", f"{study.stroke.frequency:.4g} Hz, {study.stroke.peak_to_peak / MM:.3g} mm"),
