@@ -123,7 +123,7 @@ def design(part, others, asked, rule, taken, bowl, pictures, out):
 
     With -o: design.yaml, a bowl file that says what its trial showed, and design.html, the page to hand on.
     Also acceptance.csv, design_trials.csv, and the files of feeder tooling and feeder bowl, with the bowl as
-    a solid.
+    a solid. Drawings of what falls short bear a mark across; what delivers nothing has none.
     """
     if others:
         _of_one_part(asked, taken, part)

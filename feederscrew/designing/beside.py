@@ -41,6 +41,7 @@ TRACK = (
     ("radius", 1e-3, "mm"),
     ("width", 1e-3, "mm"),
 )
+FIGURES = ": asked for "  # between what is wrong with a drive and its figures, in a DriveMismatch
 SAME_STROKE = 1e-3  # [1] strokes that are nearer than this are one
 
 
@@ -150,7 +151,11 @@ def _ordered(settings: Sequence[Setting], study: DesignStudy, said: Collection[s
     stroke, tried = (2e3 * drive.amplitude for drive in (sheet.bowl.drive, cast(Bowl, study.bowl).drive))
     another = abs(stroke - tried) > SAME_STROKE * tried
     lead = f"feeder bowl takes {stroke:.3g} mm peak to peak for {rate}, {tried:.3g} mm were tried: "
-    yield from (f"{lead if another else ''}{one}" for one in sheet.remarks if one not in said)
+    drives = {one.partition(FIGURES)[0] for one in said if FIGURES in one}
+    for remark in sheet.remarks:
+        drive, figures, _ = remark.partition(FIGURES)
+        if remark not in said and not (figures and drive in drives):  # the drive is told as it was tried
+            yield f"{lead if another else ''}{remark}"
 
 
 def settings_of(bowl: Bowl, given: Collection[str] = ()) -> tuple[Setting, ...]:
