@@ -12,13 +12,17 @@ LETTER_WIDTH = 0.62  # [1] of a bold letter over its size, in the mean
 POINTS = 72.0  # of an inch
 
 
-def of_trial(tried):
+def of_trial(tried, mark=None):
     """Return the mark of a bowl whose trial falls short; '' of any other.
 
     Parameters
     ----------
     tried : Verified or None
+    mark : str, optional
+        Taken in its place where it is given.
     """
+    if mark is not None:
+        return mark
     return MARK if tried is not None and tried.status == FALLS_SHORT else ""
 
 

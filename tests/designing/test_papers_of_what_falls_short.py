@@ -184,3 +184,17 @@ def test_a_stopped_design_leaves_the_files_of_an_earlier_one(run, tmp_path, monk
     done = run(*line)
     assert done.exit_code == 130 and "earlier" in done.stderr and "Wrote" not in done.stderr
     assert written() == before
+
+
+def test_feeder_bowl_of_a_file_that_falls_short_marks_its_picture(built, run, tmp_path, monkeypatch):
+    one, machine = built
+    text = design_file.bowl_file(replace(one, request=DesignRequest(1.6)), (), machine.sheet)
+    (tmp_path / "design.yaml").write_text(text)
+    drawn = []
+    monkeypatch.setattr(marking, "across", lambda figure, mark: drawn.append(mark) or figure)
+    done = run("bowl", "--config", tmp_path / "design.yaml", "-o", tmp_path / "out")
+    assert done.exit_code == 0 and drawn == [marking.MARK]
+    sheet = (tmp_path / "out/design/bowl.csv").read_text()
+    assert "falls short" in sheet and "A@0" in sheet and "falls short" in done.stdout
+    document = json.loads((tmp_path / "out/design/bowl.json").read_text())
+    assert document["verified"]["status"] == "falls short"

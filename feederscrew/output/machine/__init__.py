@@ -4,14 +4,16 @@ from feederscrew.output import marking, proof
 from feederscrew.output.offers import document, picture, table
 
 
-def offers(study, tried=None):
+def offers(study, tried=None, mark=None):
     """Return the files of a machine.
 
     Parameters
     ----------
     study : MachineSheet
     tried : Verified, optional
-        What a trial of exactly this bowl has shown: it leads, and what falls short is marked.
+        What a trial of exactly this bowl at this stroke has shown: it leads, and what falls short is marked.
+    mark : str, optional
+        Across every drawing; that of the trial without it.
 
     Returns
     -------
@@ -21,7 +23,7 @@ def offers(study, tried=None):
     from feederscrew.output.machine import figures, tables
 
     alt = "The bowl from above and in section, with its sizes, and what it does from full to empty"
-    solid = () if study.solid is None else solidbowl.offers(study, tried)
+    solid = () if study.solid is None else solidbowl.offers(study, tried, mark)
     drawn = picture("bowl.png", alt, figures.bowl, study, tried)
     return (
         *solid,
@@ -31,7 +33,7 @@ def offers(study, tried=None):
         table("bowl_leaves.csv", tables.leaf_sets, study.sets),
         table("bowl_leaf_changes.csv", tables.leaf_sets, study.changes),
         table("bowl_emptying.csv", tables.emptying, study),
-        *marking.pictures([drawn], marking.of_trial(tried)),
+        *marking.pictures([drawn], marking.of_trial(tried, mark)),
     )
 
 

@@ -4,7 +4,7 @@ from feederscrew.output import marking
 from feederscrew.output import offers as offer
 
 
-def offers(study, tried=None):
+def offers(study, tried=None, mark=None):
     """Return the files of the solid of a bowl.
 
     Parameters
@@ -13,6 +13,8 @@ def offers(study, tried=None):
         With its solid.
     tried : Verified, optional
         What a trial of the bowl has shown: it is in the title block, and across what falls short.
+    mark : str, optional
+        Across every drawing; that of the trial without it.
 
     Returns
     -------
@@ -20,7 +22,7 @@ def offers(study, tried=None):
     """
     from feederscrew.output.solidbowl import bowl_picture, drawing_sheet, printing
 
-    name, cut, mark = study.order.part.name, study.solid.segments, marking.of_trial(tried)
+    name, cut, mark = study.order.part.name, study.solid.segments, marking.of_trial(tried, mark)
     title = " - ".join(filter(None, (f"bowl for {name}", mark)))
     pieces = (
         ()
@@ -40,7 +42,7 @@ def offers(study, tried=None):
         *exact,
         offer.text("bowl.stl", printing.stl, study.solid),
         offer.text("bowl.3mf", printing.threemf, study.solid, title),
-        offer.text("bowl.pdf", drawing_sheet.pdf, study, tried),
+        offer.text("bowl.pdf", drawing_sheet.pdf, study, tried, mark),
         *marking.pictures([picture], mark),
     )
 

@@ -20,7 +20,7 @@ STRIP = 205.0, 26.0  # [mm] of paper for the unrolled track
 FRAME = 20.0, 10.0, 410.0, 287.0
 
 
-def pdf(study, tried=None):
+def pdf(study, tried=None, mark=None):
     """Return the drawing sheet of a bowl as the bytes of a PDF.
 
     Parameters
@@ -29,15 +29,17 @@ def pdf(study, tried=None):
         With its order and its solid.
     tried : Verified, optional
         What a trial of the bowl has shown.
+    mark : str, optional
+        Across the sheet; that of the trial without it.
 
     Returns
     -------
     bytes
     """
-    return sheet(study, tried).pdf(f"{study.order.part.name}: bowl")
+    return sheet(study, tried, mark).pdf(f"{study.order.part.name}: bowl")
 
 
-def sheet(study, tried=None):
+def sheet(study, tried=None, mark=None):
     """Return the drawing sheet of a bowl as a Paper; what falls short bears a mark across it."""
     paper, solid = Paper(), study.solid.with_lugs
     found = measures(study.solid)
@@ -52,7 +54,7 @@ def sheet(study, tried=None):
     lists.cuts(paper, study, (25.0, 84.0))
     lists.parts(paper, study, (246.0, 134.0))
     lists.title(paper, study, found, scale, tried)
-    marking.across(paper.figure, marking.of_trial(tried))
+    marking.across(paper.figure, marking.of_trial(tried, mark))
     return paper
 
 
